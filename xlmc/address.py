@@ -1,0 +1,123 @@
+"""Cells and areas of a workbook: parse and print `Sheet!A1:B2`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+
+__all__ = ["MAX_COLUMN", "MAX_ROW", "Area", "Cell", "column_letters", "column_number", "parse_address", "quote_sheet"]
+
+MAX_ROW = 1_048_576
+MAX_COLUMN = 16_384
+
+_A1 = re.compile(r"\$?([A-Za-z]{1,3})\$?([1-9][0-9]{0,6})")
+_PLAIN_SHEET = re.compile(r"[^\W\d][\w.]*")
+_LOOKS_LIKE_A_CELL = re.compile(r"[A-Za-z]{1,3}[0-9]+|[Rr][0-9]*[Cc][0-9]*|[Rr]|[Cc]")
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Cell:
+    """One cell; rows and columns count from 1."""
+
+    sheet: str
+    row: int
+    column: int
+
+    @property
+    def a1(self) -> str:
+        """The address within its sheet, `B7`."""
+        return f"{column_letters(self.column)}{self.row}"
+
+    def __str__(self) -> str:
+        return f"{quote_sheet(self.sheet)}!{self.a1}"
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Area:
+    """A rectangle of cells on one sheet, both corners included."""
+
+    sheet: str
+    top: int
+    left: int
+    bottom: int
+    right: int
+
+    @property
+    def rows(self) -> int:
+        return self.bottom - self.top + 1
+
+    @property
+    def columns(self) -> int:
+        return self.right - self.left + 1
+
+    def __contains__(self, cell: Cell) -> bool:
+        return (
+            cell.sheet == self.sheet and self.top <= cell.row <= self.bottom and self.left <= cell.column <= self.right
+        )
+
+    def cells(self) -> Iterator[Cell]:
+        """Every cell, row by row."""
+        for row in range(self.top, self.bottom + 1):
+            for column in range(self.left, self.right + 1):
+                yield Cell(self.sheet, row, column)
+
+    @property
+    def a1(self) -> str:
+        """The address within its sheet, `A1:B2`."""
+        return f"{column_letters(self.left)}{self.top}:{column_letters(self.right)}{self.bottom}"
+
+    def __str__(self) -> str:
+        return f"{quote_sheet(self.sheet)}!{self.a1}"
+
+
+@cache
+def column_letters(number: int) -> str:
+    """`28 -> 'AB'`."""
+    letters = ""
+    while number:
+        number, digit = divmod(number - 1, 26)
+        letters = chr(ord("A") + digit) + letters
+    return letters
+
+
+@cache
+def column_number(letters: str) -> int:
+    """`'AB' -> 28`."""
+    number = 0
+    for letter in letters.upper():
+        number = number * 26 + ord(letter) - ord("A") + 1
+    return number
+
+
+def quote_sheet(name: str) -> str:
+    """The sheet name as a formula writes it: in quotes where it needs them."""
+    if _PLAIN_SHEET.fullmatch(name) and not _LOOKS_LIKE_A_CELL.fullmatch(name):
+        return name
+    return "'" + name.replace("'", "''") + "'"
+
+
+def parse_address(text: str, sheet: str | None = None) -> Cell | Area:
+    """Read `Sheet!B7`, `'My sheet'!$A$1:$B$2`, or, where `sheet` is given, `B7`.
+
+    Raises:
+        ValueError: the text is not an address, or names no sheet and none was given.
+    """
+    text = text.strip()
+    head, bang, tail = text.rpartition("!")
+    if bang:
+        quoted = len(head) > 1 and head[0] == head[-1] == "'"
+        sheet = head[1:-1].replace("''", "'") if quoted else head
+    if not sheet:
+        raise ValueError(f"{text!r} names no sheet")
+    corners = [_A1.fullmatch(part) for part in tail.split(":")]
+    if len(corners) > 2 or not all(corners):
+        raise ValueError(f"{text!r} is not a cell or an area")
+    places = [(int(found[2]), column_number(found[1])) for found in corners if found]
+    if any(row > MAX_ROW or column > MAX_COLUMN for row, column in places):
+        raise ValueError(f"{text!r} lies outside the sheet")
+    if len(places) == 1:
+        return Cell(sheet, *places[0])
+    (r1, c1), (r2, c2) = places
+    return Area(sheet, min(r1, r2), min(c1, c2), max(r1, r2), max(c1, c2))

@@ -1,0 +1,165 @@
+"""One block of trials: drawn, evaluated, filtered, counted. Whole blocks are evaluated and then cut at the trial count."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.compile import Column, Evaluator
+from xlmc.compile.engine import BLANK_RESULT, TEXT_RESULT
+from xlmc.errors import ErrorCode
+from xlmc.sampling import MonteCarlo
+
+__all__ = ["Block", "FilterTally", "Worker", "fault_text"]
+
+Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+
+
+@dataclass(slots=True)
+class FilterTally:
+    """How many trials each filter rejected.
+
+    Attributes:
+        rejected: `(f,)` trials that the filter rejects, whatever the others do.
+        only: `(f,)` trials that this filter alone rejects: all others keep them.
+        together: `(f, f)` trials that both of two filters reject.
+        errors: per filter, error -> trials in which the filter's cell is that error; they are among `rejected`.
+        by_error: trials that no filter finds FALSE but some filter cannot decide.
+    """
+
+    rejected: NDArray[np.int64]
+    only: NDArray[np.int64]
+    together: NDArray[np.int64]
+    errors: list[Counter[str]]
+    by_error: int
+
+    def add(self, other: FilterTally) -> None:
+        """Count another block's trials too."""
+        self.rejected += other.rejected
+        self.only += other.only
+        self.together += other.together
+        self.by_error += other.by_error
+        for mine, theirs in zip(self.errors, other.errors, strict=True):
+            mine.update(theirs)
+
+    @classmethod
+    def empty(cls, filters: int) -> FilterTally:
+        """Nothing counted yet."""
+        zeros = np.zeros(filters, np.int64)
+        square = np.zeros((filters, filters), np.int64)
+        return cls(zeros, zeros.copy(), square, [Counter() for _ in range(filters)], 0)
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """What is kept of a block: the accepted trials, the counts, and, of the first blocks, all draws.
+
+    Attributes:
+        accepted: `(m,)` trial indices.
+        draws: assumption -> `(m,)`.
+        forecasts: one a forecast, `(m,)`, NaN where it has no number.
+        faults: per forecast, fault -> accepted trials in which it has no number.
+        invalid: assumption -> trials in which its parameters were no distribution.
+        prior: assumption -> `(n,)` draws of all trials; None when not asked for.
+    """
+
+    trials: int
+    accepted: NDArray[np.int64]
+    draws: dict[str, Floats]
+    forecasts: list[Floats]
+    faults: list[Counter[str]]
+    tally: FilterTally
+    invalid: Counter[str]
+    prior: dict[str, Floats] | None
+
+
+class Worker:
+    """Runs blocks, one after another, in one thread.
+
+    Args:
+        fallible: the assumptions whose draws may be errors.
+    """
+
+    def __init__(self, sampler: MonteCarlo, evaluator: Evaluator, block: int, fallible: frozenset[str]) -> None:
+        self._sampler, self._evaluator, self._block = sampler, evaluator, block
+        self._fallible = fallible
+
+    def run(self, start: int, trials: int, keep_prior: bool) -> Block:
+        """The trials from `start` on, a whole block of them, cut to the first `trials`."""
+        draws = self._sampler.draw(start)
+        columns = self._evaluator.filters(draws, self._block)
+        invalid = {name: np.isnan(draws[name]) for name in self._fallible}
+        kept, tally = _filtered(columns, self._block, trials)
+        for bad in invalid.values():
+            kept &= ~bad
+        survivors = np.flatnonzero(kept)
+        forecasts = self._evaluator.forecasts(survivors)
+        survivors = survivors[: np.searchsorted(survivors, trials)]
+        m = survivors.size
+        return Block(
+            trials,
+            survivors + start,
+            {name: values[survivors] for name, values in draws.items()},
+            [column.as_floats()[:m] for column in forecasts],
+            [_faults(column, m) for column in forecasts],
+            tally,
+            Counter({name: int(np.count_nonzero(bad[:trials])) for name, bad in invalid.items() if bad[:trials].any()}),
+            {name: values[:trials].copy() for name, values in draws.items()} if keep_prior else None,
+        )
+
+
+def _filtered(columns: Sequence[Column], block: int, trials: int) -> tuple[Bools, FilterTally]:
+    """Which of the whole block's trials all filters keep, and the tally of its first `trials`."""
+    fails = [_fails(column) for column in columns]
+    tally = FilterTally.empty(len(columns))
+    kept = np.ones(block, bool)
+    for rejected in fails:
+        kept &= ~rejected
+    count = np.zeros(trials, np.uint16)
+    for rejected in fails:
+        count += rejected[:trials]
+    for i, rejected in enumerate(fails):
+        mine = rejected[:trials]
+        tally.rejected[i] = np.count_nonzero(mine)
+        tally.only[i] = np.count_nonzero(mine & (count == 1))
+        for j in range(i + 1):
+            tally.together[i, j] = tally.together[j, i] = np.count_nonzero(mine & fails[j][:trials])
+        tally.errors[i] = _faults(columns[i], trials)
+    tally.by_error = _rejected_by_error(columns, trials)
+    return kept, tally
+
+
+def _fails(column: Column) -> Bools:
+    fails = column.values == 0
+    return fails if column.codes is None else fails | (column.codes > 0)
+
+
+def _rejected_by_error(columns: Sequence[Column], trials: int) -> int:
+    if all(column.codes is None for column in columns):
+        return 0
+    found, false = np.zeros(trials, bool), np.zeros(trials, bool)
+    for column in columns:
+        bad = np.zeros(trials, bool) if column.codes is None else column.codes[:trials] > 0
+        found |= bad
+        false |= (column.values[:trials] == 0) & ~bad
+    return int(np.count_nonzero(found & ~false))
+
+
+def _faults(column: Column, trials: int) -> Counter[str]:
+    if column.codes is None:
+        return Counter()
+    codes, counts = np.unique(column.codes[:trials], return_counts=True)
+    found = zip(codes.tolist(), counts.tolist(), strict=True)
+    return Counter({fault_text(code): count for code, count in found if code})
+
+
+def fault_text(code: int) -> str:
+    """What a column's code stands for: an Excel error, `text` or `blank`."""
+    if code == TEXT_RESULT:
+        return "text"
+    return "blank" if code == BLANK_RESULT else ErrorCode(code).text

@@ -1,0 +1,13 @@
+"""Graph of formulas → one callable over blocks of trials, by the engine of one's choice."""
+
+from collections.abc import Callable, Mapping
+
+from xlmc.compile.engine import Column, Evaluator, Program, Target
+from xlmc.compile.formulas_engine import FormulasProgram
+from xlmc.compile.lower import Lowering
+from xlmc.compile.numpy_engine import NumpyProgram
+
+__all__ = ["ENGINES", "Column", "Evaluator", "Lowering", "Program", "Target"]
+
+ENGINES: Mapping[str, Callable[..., Program]] = {"numpy": NumpyProgram, "formulas": FormulasProgram}
+"""Name of an engine -> program of (lowering, filters, forecasts, inputs whose draws may be errors)."""

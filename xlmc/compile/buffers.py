@@ -1,0 +1,63 @@
+"""Arrays that steps write to, taken and given back as the values in them come and go."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.compile.dag import Apply, Dag, Rescue, Select
+from xlmc.functions import Kind
+
+__all__ = ["Buffers"]
+
+_LINE = 64
+
+
+class Buffers:
+    """Assigns buffers to nodes while a plan is made; `allocate` makes the arrays."""
+
+    def __init__(self, dag: Dag) -> None:
+        self._dag = dag
+        self._types: list[Kind] = []
+        self._idle: defaultdict[Kind, list[int]] = defaultdict(list)
+        self._held: dict[int, int] = {}
+
+    def take(self, place: int) -> int | None:
+        """A buffer for the node's value; None where it makes its own array."""
+        node, kind = self._dag.nodes[place], self._dag.types[place]
+        if isinstance(node, Rescue):
+            self._held.pop(node.value, None)  # the value lives on under another name: its buffer is never given back
+            return None
+        if kind not in (Kind.NUMBER, Kind.LOGICAL) or not isinstance(node, Apply | Select):
+            return None
+        self._held[place] = self.take_for(kind)
+        return self._held[place]
+
+    def take_for(self, kind: Kind) -> int:
+        """A buffer of that kind that is never given back."""
+        if self._idle[kind]:
+            return self._idle[kind].pop()
+        self._types.append(kind)
+        return len(self._types) - 1
+
+    def free(self, places: Iterable[int]) -> None:
+        """Give back the buffers of values that nothing reads any more."""
+        for place in places:
+            if place in self._held:
+                buffer = self._held.pop(place)
+                self._idle[self._types[buffer]].append(buffer)
+
+    def allocate(self, block: int) -> list[NDArray[Any]]:
+        """The arrays, `(block,)` each, on cache lines of their own."""
+        return [_array(block, np.dtype(np.bool_ if kind is Kind.LOGICAL else np.float64)) for kind in self._types]
+
+
+def _array(block: int, dtype: np.dtype[Any]) -> NDArray[Any]:
+    size = block * dtype.itemsize
+    raw = np.empty(size + _LINE, np.uint8)
+    start = -raw.ctypes.data % _LINE
+    return raw[start : start + size].view(dtype)

@@ -1,0 +1,208 @@
+"""The computation as a directed graph of nodes, each made once: common subexpressions are shared, constants folded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, assert_never
+
+import numpy as np
+
+from xlmc.functions import Function, Kind
+from xlmc.functions.logical import if_, if_error, if_na
+from xlmc.functions.values import LOGICAL, NUMBER, TEXT, Value
+
+__all__ = ["Apply", "Constant", "Dag", "Input", "Node", "Range", "Rescue", "Select", "constants", "evaluated", "uses"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Constant:
+    """A value known before the run, `(1,)` or `(1, r, c)`."""
+
+    value: Value
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """An assumption's draws, `(n,)`."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Apply:
+    """A function of the registry."""
+
+    function: Function
+    arguments: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Select:
+    """`IF`: a node of its own because only one branch is needed in each trial."""
+
+    condition: int
+    yes: int
+    no: int
+
+
+@dataclass(frozen=True, slots=True)
+class Rescue:
+    """`IFERROR`, `IFNA`: `instead` is needed only where `value` is an error."""
+
+    value: int
+    instead: int
+    only_na: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """Cells side by side, `(n, r, c)`."""
+
+    rows: tuple[tuple[int, ...], ...]
+
+
+Node = Constant | Input | Apply | Select | Rescue | Range
+
+
+class Dag:
+    """Nodes in an order in which each comes after those it uses; a node is known by its place."""
+
+    def __init__(self) -> None:
+        self.nodes: list[Node] = []
+        self.types: list[Kind] = []
+        self._known: dict[object, int] = {}
+
+    def constant(self, value: Value) -> int:
+        """The node of a known value."""
+        return self._place(_constant_key(value), Constant(value), _constant_type(value))
+
+    def input(self, name: str) -> int:
+        """The node of an assumption."""
+        node = Input(name)
+        return self._place(node, node, Kind.NUMBER)
+
+    def add(self, node: Apply | Select | Rescue | Range) -> int:
+        """The node's place; a node whose parts are all constant becomes a constant at once."""
+        if node in self._known:
+            return self._known[node]
+        known = {p: part.value for p in uses(node) if isinstance(part := self.nodes[p], Constant)}
+        if len(known) == len(set(uses(node))) and not _volatile(node):
+            place = self.constant(evaluated(node, known))
+            self._known[node] = place
+            return place
+        return self._place(node, node, self._type(node))
+
+    def _place(self, key: object, node: Node, kind: Kind) -> int:
+        if key not in self._known:
+            self._known[key] = len(self.nodes)
+            self.nodes.append(node)
+            self.types.append(kind)
+        return self._known[key]
+
+    def _type(self, node: Apply | Select | Rescue | Range) -> Kind:
+        match node:
+            case Apply(function):
+                return function.returns
+            case Select(_, yes, no):
+                return self._common_type(yes, no)
+            case Rescue(value, instead):
+                return self._common_type(value, instead)
+            case Range():
+                return Kind.ANY
+            case _:
+                assert_never(node)
+
+    def _common_type(self, left: int, right: int) -> Kind:
+        return self.types[left] if self.types[left] is self.types[right] else Kind.ANY
+
+    def upstream(self, targets: Sequence[int]) -> list[int]:
+        """The varying nodes that the targets need, in order."""
+        needed = {place for place in targets if not isinstance(self.nodes[place], Constant)}
+        for place in range(max(needed, default=-1), -1, -1):
+            if place in needed:
+                needed.update(p for p in uses(self.nodes[place]) if not isinstance(self.nodes[p], Constant))
+        return sorted(needed)
+
+
+def uses(node: Node) -> tuple[int, ...]:
+    """The places a node reads, from left to right."""
+    match node:
+        case Constant() | Input():
+            return ()
+        case Apply(_, arguments):
+            return arguments
+        case Select(condition, yes, no):
+            return condition, yes, no
+        case Rescue(value, instead):
+            return value, instead
+        case Range(rows):
+            return tuple(place for row in rows for place in row)
+        case _:
+            assert_never(node)
+
+
+def evaluated(node: Apply | Select | Rescue | Range, values: dict[int, Value]) -> Value:
+    """The node's value with everything Excel minds: the reference path, and how constants fold."""
+    match node:
+        case Apply(function, arguments):
+            return function([values[place] for place in arguments])
+        case Select(condition, yes, no):
+            return _selected(values[condition], values[yes], values[no])
+        case Rescue(value, instead, only_na):
+            return _rescued(values[value], values[instead], only_na)
+        case Range(rows):
+            return _stacked([[values[place] for place in row] for row in rows])
+        case _:
+            assert_never(node)
+
+
+def _selected(condition: Value, yes: Value, no: Value) -> Value:
+    selected: Value = if_(condition, yes, no)
+    return selected
+
+
+def _rescued(value: Value, instead: Value, only_na: bool) -> Value:
+    rescued: Value = if_na(value, instead) if only_na else if_error(value, instead)
+    return rescued
+
+
+def _stacked(rows: list[list[Value]]) -> Value:
+    cells = [value for row in rows for value in row]
+    n = max(value.shape[0] for value in cells)
+    size = (n, len(rows), len(rows[0]))
+    texts = None
+    if any(value.texts is not None for value in cells):
+        texts = _grid([np.full(1, "", object) if v.texts is None else v.texts for v in cells], size, object)
+    numbers = _grid([v.numbers for v in cells], size, np.float64)
+    return Value(numbers, _grid([v.kinds for v in cells], size, np.uint8), texts)
+
+
+def _grid(columns: list[Any], size: tuple[int, int, int], dtype: Any) -> Any:
+    """Columns (n,) to (n, r, c), each column's trials side by side in memory."""
+    out = np.empty((size[1] * size[2], size[0]), dtype)
+    for target, column in zip(out, columns, strict=True):
+        target[:] = column
+    return out.T.reshape(size)
+
+
+def _volatile(node: Node) -> bool:
+    return isinstance(node, Apply) and node.function.volatile
+
+
+def _constant_key(value: Value) -> object:
+    texts = None if value.texts is None else tuple(str(text) for text in value.texts.ravel())
+    return value.shape, value.numbers.tobytes(), value.kinds.tobytes(), texts
+
+
+def _constant_type(value: Value) -> Kind:
+    if value.numbers.ndim == 3 or value.kinds.size != 1:
+        return Kind.ANY
+    return {NUMBER: Kind.NUMBER, LOGICAL: Kind.LOGICAL, TEXT: Kind.TEXT}.get(int(value.kinds.flat[0]), Kind.ANY)
+
+
+def constants(dag: Dag) -> Iterator[tuple[int, Value]]:
+    """Every constant node."""
+    for place, node in enumerate(dag.nodes):
+        if isinstance(node, Constant):
+            yield place, node.value

@@ -1,0 +1,71 @@
+"""The fast path: plain float and bool arrays, one ufunc a node, results in buffers that are used again.
+
+A block runs with floating-point flags armed. Where one is raised, or a guard says that Excel and IEEE part, or a
+node's value turns out not to be a plain number, the block is evaluated again by `TrackingEvaluator`: errors cost
+nothing where there are none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.compile.engine import Column, Evaluator, Target
+from xlmc.compile.lower import Lowering
+from xlmc.compile.plan import Plan, Space
+from xlmc.compile.steps import Departure
+from xlmc.compile.tracking import TrackingEvaluator
+from xlmc.functions.values import Floats
+
+__all__ = ["NumpyProgram"]
+
+
+class NumpyProgram:
+    """The graph of nodes, ready to run on NumPy.
+
+    Args:
+        may_err: the inputs whose draws may be errors (NaNs), which raise no flag.
+    """
+
+    def __init__(
+        self, lowering: Lowering, filters: Sequence[Target], forecasts: Sequence[Target], may_err: frozenset[str]
+    ) -> None:
+        self._dag, self._may_err = lowering.dag, may_err
+        self._filters = [lowering.target(target) for target in filters]
+        self._forecasts = [lowering.target(target) for target in forecasts]
+        self._plan = Plan(self._dag, self._filters, self._forecasts)
+
+    def evaluator(self, block: int) -> Evaluator:
+        """See `Program`."""
+        tracking = TrackingEvaluator(self._dag, self._filters, self._forecasts)
+        return _NumpyEvaluator(self._plan, Space(self._plan, block), tracking, self._may_err)
+
+
+class _NumpyEvaluator:
+    def __init__(self, plan: Plan, space: Space, tracking: TrackingEvaluator, may_err: frozenset[str]) -> None:
+        self._plan, self._space, self._tracking, self._may_err = plan, space, tracking, may_err
+        self._inputs: Mapping[str, Floats] = {}
+        self._n = 0
+        self._departed = False
+
+    def filters(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:
+        self._inputs, self._n = inputs, n
+        self._departed = any(np.isnan(inputs[name]).any() for name in self._may_err)
+        if not self._departed:
+            try:
+                with np.errstate(divide="raise", over="raise", invalid="raise"):
+                    return self._plan.run_filters(self._space, inputs, n)
+            except (FloatingPointError, Departure):
+                self._departed = True
+        return self._tracking.filters(inputs, n)
+
+    def forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
+        if not self._departed:
+            try:
+                with np.errstate(divide="raise", over="raise", invalid="raise"):
+                    return self._plan.run_forecasts(self._space, self._inputs, survivors)
+            except (FloatingPointError, Departure):
+                self._tracking.filters(self._inputs, self._n)
+        return self._tracking.forecasts(survivors)

@@ -1,0 +1,146 @@
+"""The steps of a program in order, their buffers, and the frames they run in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.compile.branches import branch_step, externals, members, own_contexts
+from xlmc.compile.buffers import Buffers
+from xlmc.compile.dag import Dag, Input, Select, constants, uses
+from xlmc.compile.engine import Column, column_of
+from xlmc.compile.place import ROOT, SURVIVORS, Context, place
+from xlmc.compile.steps import Frame, Step, is_elementwise_ufunc, make_step, plain_constant
+from xlmc.functions import Kind
+from xlmc.functions.values import Floats, Value
+
+__all__ = ["Plan", "Space"]
+
+
+class Plan:
+    """How to run a graph of nodes: which steps, on which trials, into which buffers."""
+
+    def __init__(self, dag: Dag, filters: Sequence[int], forecasts: Sequence[int]) -> None:
+        self._dag, self._filters, self._forecasts = dag, filters, forecasts
+        self._contexts = place(dag, filters, forecasts)
+        self._template: list[Any] = [None] * len(dag.nodes)
+        for node, value in constants(dag):
+            self._template[node] = plain_constant(value)
+        first, late = (members(self._contexts, context) for context in (ROOT, SURVIVORS))
+        self._carried = externals(dag, self._contexts, SURVIVORS, forecasts)
+        self._early_inputs, self._late_inputs = self._inputs(first), self._inputs(late)
+        self.buffers = Buffers(dag)
+        self._first = self._steps(first, {*filters, *self._carried}, free_at_end=filters)
+        self._gathers = [(node, self._carry(node)) for node in self._carried]
+        self.buffers.free(self._carried)
+        self._late = self._steps(late, set(forecasts), free_at_end=())
+
+    def _inputs(self, places: list[int]) -> list[tuple[int, str]]:
+        found = [(node, self._dag.nodes[node]) for node in places]
+        return [(node, input_.name) for node, input_ in found if isinstance(input_, Input)]
+
+    def _steps(self, places: list[int], keep: set[int], free_at_end: Sequence[int]) -> list[Step]:
+        """The steps of one context; `keep` outlives them."""
+        computed = [node for node in places if not isinstance(self._dag.nodes[node], Input)]
+        reads = {node: self._reads(node) for node in computed}
+        last = {read: node for node in computed for read in reads[node]}
+        steps = []
+        for node in computed:
+            done = [read for read in dict.fromkeys(reads[node]) if last[read] == node and read not in keep]
+            steps.append(self._step(node, done))
+        self.buffers.free(node for node in free_at_end if node not in self._carried)
+        return steps
+
+    def _reads(self, node: int) -> tuple[int, ...]:
+        branches = self._branches(node)
+        outside = [read for b in branches for read in externals(self._dag, self._contexts, b, self._results(node, b))]
+        return (*uses(self._dag.nodes[node]), *outside)
+
+    def _branches(self, node: int) -> list[Context]:
+        return own_contexts(self._contexts, node)
+
+    def _results(self, node: int, branch: Context) -> tuple[int]:
+        select = self._dag.nodes[node]
+        assert isinstance(select, Select)
+        return (select.yes if branch.branch else select.no,)
+
+    def _step(self, node: int, done: list[int]) -> Step:
+        if self._branches(node):
+            self.buffers.free(done)
+            return branch_step(self._dag, self._contexts, node)
+        early = is_elementwise_ufunc(self._dag, node)
+        if early:
+            self.buffers.free(done)
+        buffer = self.buffers.take(node)
+        if not early:
+            self.buffers.free(done)
+        return make_step(self._dag, node, buffer)
+
+    def _carry(self, node: int) -> int | None:
+        """A buffer for the survivors of a node that the first steps computed."""
+        kind = self._dag.types[node]
+        return self.buffers.take_for(kind) if kind in (Kind.NUMBER, Kind.LOGICAL) else None
+
+    def run_filters(self, space: Space, inputs: Mapping[str, Floats], n: int) -> list[Column]:
+        """Evaluate what the filters need on all `n` trials.
+
+        Raises:
+            Departure, FloatingPointError: the block is not for the fast path.
+        """
+        frame = space.frame(self._template, n)
+        for node, name in self._early_inputs:
+            frame.values[node] = inputs[name]
+        for step in self._first:
+            step(frame)
+        return [_column(frame.values[node], n) for node in self._filters]
+
+    def run_forecasts(self, space: Space, inputs: Mapping[str, Floats], survivors: NDArray[np.intp]) -> list[Column]:
+        """Evaluate what the forecasts need beyond that, on the survivors of the same block.
+
+        Raises:
+            Departure, FloatingPointError: the block is not for the fast path.
+        """
+        frame = space.survivors(survivors.size)
+        for node, buffer in self._gathers:
+            frame.values[node] = _gathered(frame, node, buffer, survivors)
+        for node, name in self._late_inputs:
+            frame.values[node] = inputs[name][survivors]
+        for step in self._late:
+            step(frame)
+        return [_column(frame.values[node], survivors.size) for node in self._forecasts]
+
+
+class Space:
+    """The memory of one thread: buffers for blocks of up to `block` trials, and the frame of the block at hand."""
+
+    def __init__(self, plan: Plan, block: int) -> None:
+        self._buffers = plan.buffers.allocate(block)
+        self._frame = Frame([], [], 0)
+
+    def frame(self, template: list[Any], n: int) -> Frame:
+        """A fresh frame for `n` trials."""
+        self._frame = Frame(template.copy(), [buffer[:n] for buffer in self._buffers], n)
+        return self._frame
+
+    def survivors(self, m: int) -> Frame:
+        """The same values, for `m` of the trials."""
+        self._frame = Frame(self._frame.values, [buffer[:m] for buffer in self._buffers], m)
+        return self._frame
+
+
+def _gathered(frame: Frame, node: int, buffer: int | None, survivors: NDArray[np.intp]) -> Any:
+    found = frame.values[node]
+    if isinstance(found, Value):
+        return found.take(survivors)
+    if buffer is None:
+        return found[survivors]
+    return np.take(found, survivors, out=frame.buffers[buffer], mode="clip")
+
+
+def _column(found: Any, n: int) -> Column:
+    if isinstance(found, Value):
+        return column_of(found, n)
+    return Column(np.broadcast_to(found, (n,)))

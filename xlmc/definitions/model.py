@@ -1,0 +1,120 @@
+"""Assumptions, forecasts, filters, correlations and settings: what a workbook asks of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from xlmc.address import Cell
+from xlmc.errors import DefinitionError, Notice
+
+__all__ = [
+    "Assumption",
+    "Correlation",
+    "Definitions",
+    "Filter",
+    "Forecast",
+    "Parameter",
+    "Settings",
+    "name_key",
+]
+
+Parameter = float | Cell
+"""A number, or the cell that holds it because that cell holds a formula (it may then vary with other assumptions)."""
+
+
+def name_key(name: str) -> str:
+    """Two names are one when they differ only in case and outer blanks."""
+    return name.strip().casefold()
+
+
+@dataclass(frozen=True, slots=True)
+class Assumption:
+    """An uncertain input: its cell, its distribution, and why.
+
+    Attributes:
+        distribution: the family's name as `xlmc.distributions.FAMILIES` spells it.
+        parameters: the family's parameter key (`low`, `high`, …) -> value.
+        lower_cutoff, upper_cutoff: truncation; None where there is none.
+        base: the cell's own value, the base case.
+        frozen: held at `base`, not drawn.
+        row: where it is defined.
+        notes: the table's other columns, echoed in the record.
+    """
+
+    name: str
+    cell: Cell
+    distribution: str
+    parameters: Mapping[str, Parameter]
+    row: Cell
+    base: float | None = None
+    lower_cutoff: Parameter | None = None
+    upper_cutoff: Parameter | None = None
+    units: str = ""
+    source: str = ""
+    frozen: bool = False
+    notes: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Forecast:
+    """An answer: its cell, the share of its central range, and the threshold to report P(> threshold) for."""
+
+    name: str
+    cell: Cell
+    row: Cell
+    units: str = ""
+    central: float = 0.51
+    threshold: float | None = None
+    notes: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Filter:
+    """What makes a trial physically possible. With no limit at all the cell itself must be TRUE."""
+
+    name: str
+    cell: Cell
+    row: Cell
+    at_least: Parameter | None = None
+    at_most: Parameter | None = None
+    above: Parameter | None = None
+    below: Parameter | None = None
+    because: str = ""
+    notes: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Correlation:
+    """A Spearman rank correlation between two assumptions, by name as defined."""
+
+    first: str
+    second: str
+    value: float
+    row: Cell
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What a run is a function of, beside the workbook itself."""
+
+    trials: int = 200_000
+    seed: int = 999
+    sampling: str = "mc"
+    engine: str = "numpy"
+
+
+@dataclass(frozen=True, slots=True)
+class Definitions:
+    """Everything a workbook asks of a run, as understood.
+
+    `problems` are the mistakes found, each with its cell; a run is refused while there are any.
+    """
+
+    assumptions: tuple[Assumption, ...] = ()
+    forecasts: tuple[Forecast, ...] = ()
+    filters: tuple[Filter, ...] = ()
+    correlations: tuple[Correlation, ...] = ()
+    settings: Settings = Settings()
+    notices: tuple[Notice, ...] = ()
+    problems: tuple[DefinitionError, ...] = ()

@@ -1,0 +1,260 @@
+"""What a family of distributions is: parameters by name, rules about them, and functions of arrays.
+
+A family is one small class: its name, its parameters, the rules they must keep, and the hooks `_ppf`, `_cdf`, `_mean`,
+`_variance`, `_support` and `_mirrored`, written for parameters that keep every rule. The public methods around them
+accept parameters that vary by trial and give NaN in the trials where a rule is broken, without floating-point flags.
+
+Shapes: `n` trials; `u`, `x` and each parameter are a number or `(n,)`, and broadcast.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "HIGH",
+    "LARGEST",
+    "LIKELIEST",
+    "LOW",
+    "SMALLEST_U",
+    "Array",
+    "Family",
+    "Fault",
+    "ParameterSpec",
+    "Rule",
+    "Values",
+    "share",
+    "show",
+]
+
+Array = NDArray[np.float64]
+Values = float | Array
+"""A number, or one number for each trial, `(n,)`."""
+
+SMALLEST_U = 2.0**-54
+"""What u = 0 stands for where the quantile of 0 is infinite: half a step of the grid k·2^-53 that u comes from."""
+
+LARGEST = 1e150
+"""No parameter may be larger, so that squares and products of parameters stay finite."""
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterSpec:
+    """A parameter: the key the code uses and the column headings people may write, the usual one first."""
+
+    key: str
+    headings: tuple[str, ...]
+
+    @property
+    def heading(self) -> str:
+        return self.headings[0]
+
+
+LOW = ParameterSpec("low", ("Low", "Minimum", "Min"))
+HIGH = ParameterSpec("high", ("High", "Maximum", "Max"))
+LIKELIEST = ParameterSpec("likeliest", ("Likeliest", "Mode", "Most likely"))
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What the parameters must keep.
+
+    Attributes:
+        blames: the key of the parameter whose cell a person should look at first.
+        holds: of the parameters in order; works on numbers and on `(n,)` arrays. False where a parameter is NaN.
+        message: what is wrong when it does not hold; `{key}` stands for the value of a parameter.
+        hint: what to do then.
+    """
+
+    blames: str
+    holds: Callable[..., Any]
+    message: str
+    hint: str
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A broken rule in words, with the key of the parameter to look at first."""
+
+    key: str
+    message: str
+    hint: str
+
+
+class Family(ABC):
+    """A family of distributions. The parameters of every method follow the order of `parameters`, or go by key.
+
+    Attributes:
+        name: as people see it, and as `FAMILIES` spells it.
+        aliases: other names that people type.
+        open_below: the quantile of 0 is minus infinity, so u = 0 is read as `SMALLEST_U`.
+    """
+
+    name: ClassVar[str]
+    aliases: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[tuple[ParameterSpec, ...]]
+    rules: ClassVar[tuple[Rule, ...]] = ()
+    open_below: ClassVar[bool] = False
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        return tuple(spec.key for spec in self.parameters)
+
+    def fault(self, *params: float, **named: float) -> Fault | None:
+        """The first rule that these numbers break, if any."""
+        values = self.bind(params, named)
+        for spec, value in zip(self.parameters, values, strict=True):
+            if not -LARGEST <= value <= LARGEST:
+                message = f"{spec.heading} ({show(value)}) must be a number between -1E150 and 1E150"
+                return Fault(spec.key, message, "Correct the number")
+        shown = {key: show(value) for key, value in zip(self.keys, values, strict=True)}
+        for rule in self.rules:
+            if not rule.holds(*values):
+                return Fault(rule.blames, rule.message.format(**shown), rule.hint)
+        return None
+
+    def check(self, *params: float, **named: float) -> str | None:
+        """What is wrong with these numbers, in words; None when nothing is."""
+        fault = self.fault(*params, **named)
+        return None if fault is None else fault.message
+
+    def valid(self, *params: Values, **named: Values) -> bool | NDArray[np.bool_]:
+        """Where the parameters keep every rule: a logical, or one for each trial, `(n,)`."""
+        values = self.bind(params, named)
+        kept: Any = True
+        for value in values:
+            kept = kept & (value >= -LARGEST) & (value <= LARGEST)
+        for rule in self.rules:
+            kept = kept & rule.holds(*values)
+        return kept  # type: ignore[no-any-return]  # numbers give a bool, arrays an array
+
+    def ppf(self, u: Values, *params: Values, out: Array | None = None, **named: Values) -> Array:
+        """Quantiles of probabilities in [0, 1); NaN in trials with invalid parameters.
+
+        Args:
+            u: probabilities, a number or `(n,)`, drawn from the grid k·2^-53.
+            *params: the parameters in order, or by key in `named`; each a number or `(n,)`.
+            **named: the parameters by key.
+            out: `(n,)`, filled with the result; may be `u` itself, and then no memory is needed for it.
+        """
+        values, invalid = self._sound(self.bind(params, named))
+        own = _own_copy(u, values) if out is None else out
+        if out is not None and out is not u:
+            out[...] = u
+        if self.open_below:
+            np.copyto(own, SMALLEST_U, where=own == 0.0)
+        x = _masked(self._ppf(own, *values), invalid)
+        if out is None:
+            return x
+        if x is not out:
+            out[...] = x
+        return out
+
+    def isf(self, q: Values, *params: Values, **named: Values) -> Array:
+        """The values exceeded with probability q: `ppf(1 - q)` without the loss of digits for small q."""
+        values, invalid = self._sound(self.bind(params, named))
+        return _masked(self._isf(_own_copy(q, values), *values), invalid)
+
+    def cdf(self, x: Values, *params: Values, **named: Values) -> Array:
+        """P(X <= x), shapes as in `ppf`."""
+        return self._evaluate(self._cdf, params, named, x)
+
+    def sf(self, x: Values, *params: Values, **named: Values) -> Array:
+        """P(X >= x), exact in the upper tail; differs from `1 - cdf` only where one value has a probability."""
+        return self._evaluate(self._sf, params, named, x)
+
+    def mean(self, *params: Values, **named: Values) -> Array:
+        """The mean, `()` or `(n,)`."""
+        return self._evaluate(self._mean, params, named)
+
+    def variance(self, *params: Values, **named: Values) -> Array:
+        """The variance, `()` or `(n,)`."""
+        return self._evaluate(self._variance, params, named)
+
+    def support(self, *params: Values, **named: Values) -> tuple[Array, Array]:
+        """The lowest and the highest possible value, each `()` or `(n,)`; may be infinite."""
+        values, invalid = self._sound(self.bind(params, named))
+        low, high = self._support(*values)
+        return _masked(low, invalid), _masked(high, invalid)
+
+    @abstractmethod
+    def _ppf(self, u: Array, *args: Any, **kwargs: Any) -> Array:
+        """The quantile function. `u` belongs to the hook, which may overwrite it and return it."""
+
+    @abstractmethod
+    def _cdf(self, x: Values, *args: Any, **kwargs: Any) -> Values: ...
+
+    @abstractmethod
+    def _mean(self, *args: Any, **kwargs: Any) -> Values: ...
+
+    @abstractmethod
+    def _variance(self, *args: Any, **kwargs: Any) -> Values: ...
+
+    @abstractmethod
+    def _support(self, *args: Any, **kwargs: Any) -> tuple[Values, Values]: ...
+
+    @abstractmethod
+    def _mirrored(self, *args: Any, **kwargs: Any) -> tuple[Values, ...]:
+        """The parameters of -X in the same family; one without mirror images overrides `_sf` and `_isf` instead."""
+
+    def _sf(self, x: Values, *params: Values) -> Values:
+        return self._cdf(-x, *self._mirrored(*params))
+
+    def _isf(self, q: Array, *params: Values) -> Array:
+        return -self._ppf(q, *self._mirrored(*params))
+
+    def bind(self, params: Sequence[Any], named: Mapping[str, Any]) -> tuple[Any, ...]:
+        """The parameters in order.
+
+        Raises:
+            TypeError: one is missing, unknown or given twice.
+        """
+        if len(params) == len(self.parameters) and not named:
+            return tuple(params)
+        by_key = dict(zip(self.keys, params, strict=False))
+        if len(params) + len(named) != len(self.parameters) or {*by_key, *named} != {*self.keys}:
+            raise TypeError(f"{self.name} takes {', '.join(self.keys)}")
+        by_key.update(named)
+        return tuple(by_key[key] for key in self.keys)
+
+    def _sound(self, values: tuple[Any, ...]) -> tuple[tuple[Any, ...], Any]:
+        """The parameters with NaN in trials that break a rule, and where these are (None: nowhere)."""
+        valid = self.valid(*values)
+        if valid is True or np.all(valid):
+            return values, None
+        return tuple(np.where(valid, value, np.nan) for value in values), ~np.asarray(valid)
+
+    def _evaluate(
+        self, hook: Callable[..., Any], params: Sequence[Any], named: Mapping[str, Any], *points: Values
+    ) -> Array:
+        values, invalid = self._sound(self.bind(params, named))
+        return _masked(hook(*points, *values), invalid)
+
+
+def _own_copy(u: Values, values: tuple[Any, ...]) -> Array:
+    """`u` in memory of its own, in the shape that the result will have."""
+    shape = np.broadcast_shapes(np.shape(u), *(np.shape(value) for value in values))
+    return np.array(np.broadcast_to(u, shape), dtype=float)
+
+
+def _masked(result: Values, invalid: Any) -> Array:
+    if invalid is not None:
+        result = np.where(invalid, np.nan, result)
+    return np.asarray(result, dtype=float)
+
+
+def share(part: Values, whole: Values) -> Array:
+    """`part / whole`, and 0 where the whole is 0: a piece of no width holds nothing."""
+    whole = np.asarray(whole)
+    return np.asarray(part / np.where(whole > 0, whole, 1.0) * (whole > 0))
+
+
+def show(value: float) -> str:
+    """A number as a person would write it."""
+    return format(value, ".12g")

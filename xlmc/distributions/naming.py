@@ -1,0 +1,42 @@
+"""How people spell names: case, blanks, underscores and hyphens do not count; near misses are offered."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+__all__ = ["did_you_mean", "nearest", "plain"]
+
+_SEPARATORS = re.compile(r"[\s_\-]+")
+
+
+def plain(text: str) -> str:
+    """The spelling two names share when they differ only in case, blanks, underscores or hyphens.
+
+    >>> plain(" Std-Dev ") == plain("std dev") == plain("STD_DEV")
+    True
+    """
+    return _SEPARATORS.sub("", text).casefold()
+
+
+def nearest(text: str, known: Iterable[str], closeness: float = 0.6) -> str | None:
+    """The known name most like `text`, or None where none is alike.
+
+    >>> nearest("Unifrom", ["Normal", "Uniform"])
+    'Uniform'
+    """
+    spellings = {plain(name): name for name in known}
+    found = get_close_matches(plain(text), spellings, n=1, cutoff=closeness)
+    return spellings[found[0]] if found else None
+
+
+def did_you_mean(text: str, known: Iterable[str]) -> str:
+    """A hint: the nearest known name, or all of them where none is alike.
+
+    >>> did_you_mean("xyz", ["Normal", "Uniform"])
+    'Use one of Normal, Uniform'
+    """
+    known = tuple(known)
+    found = nearest(text, known)
+    return f"Did you mean {found}?" if found else f"Use one of {', '.join(known)}"

@@ -1,0 +1,122 @@
+"""Assumptions of a workbook as draws: constant parameters checked, dynamic ones compiled, correlated ones grouped."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.address import Cell
+from xlmc.compile import ENGINES, Lowering, Target
+from xlmc.definitions import Assumption, Correlation
+from xlmc.definitions.model import Parameter, name_key
+from xlmc.distributions import FAMILIES, Truncated
+from xlmc.errors import DefinitionError
+from xlmc.formula import ir
+from xlmc.functions.values import ERROR, TEXT
+from xlmc.sampling import CorrelatedGroup, Draw, DynamicParameters, GaussianCopula
+
+__all__ = ["correlated_groups", "draw_of", "dynamic_parameters", "parameter_target"]
+
+
+def parameter_target(cell: Cell) -> Target:
+    """A parameter's cell, taken as a number."""
+    return Target(ir.Binary("+", cell, ir.Number(0.0)), cell)
+
+
+def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
+    """How an assumption is drawn; a parameter that no assumption reaches becomes a number here.
+
+    Raises:
+        DefinitionError: the numbers are no distribution.
+    """
+    family = FAMILIES[assumption.distribution]
+    parameters = tuple(_settled(assumption.parameters[key], lowering) for key in family.keys)
+    cutoffs = None
+    if assumption.lower_cutoff is not None or assumption.upper_cutoff is not None:
+        lower = -np.inf if assumption.lower_cutoff is None else assumption.lower_cutoff
+        upper = np.inf if assumption.upper_cutoff is None else assumption.upper_cutoff
+        cutoffs = _settled(lower, lowering), _settled(upper, lowering)
+    draw = Draw(name_key(assumption.name), family, parameters, cutoffs)
+    _check(draw, assumption)
+    return draw
+
+
+def _settled(parameter: Parameter, lowering: Lowering) -> Parameter:
+    if not isinstance(parameter, Cell):
+        return float(parameter)
+    value = lowering.known(parameter_target(parameter))
+    if value is None:
+        return parameter
+    if int(value.kinds[0]) >= ERROR or int(value.kinds[0]) == TEXT:
+        raise DefinitionError("the parameter is an error", where=parameter, hint="correct the cell's formula")
+    return float(value.numbers[0])
+
+
+def _check(draw: Draw, assumption: Assumption) -> None:
+    numbers = [p for p in (*draw.parameters, *(draw.cutoffs or ())) if isinstance(p, float)]
+    if len(numbers) < len(draw.parameters) + len(draw.cutoffs or ()):
+        return  # some vary: trials in which they are no distribution become error trials
+    parameters = numbers[: len(draw.parameters)]
+    if draw.cutoffs is None:
+        fault = draw.family.fault(*parameters)
+    else:
+        lower, upper = numbers[len(parameters) :]
+        fault = Truncated(draw.family).fault(lower, upper, *parameters)
+    if fault is not None:
+        raise DefinitionError(f"{assumption.name}: {fault.message}", where=assumption.row, hint=fault.hint)
+
+
+def dynamic_parameters(draws: Sequence[Draw], lowering: Lowering, block: int) -> DynamicParameters:
+    """What computes the varying parameters of a stage from the draws of the stages before it; for one thread."""
+    cells = [p for draw in draws for p in (*draw.parameters, *(draw.cutoffs or ())) if isinstance(p, Cell)]
+    places = list(dict.fromkeys(cells))
+    targets = [parameter_target(cell) for cell in places]
+    evaluator = ENGINES["numpy"](lowering, targets, [], frozenset(lowering.inputs.values())).evaluator(block)
+
+    def parameters(drawn: Mapping[str, NDArray[np.float64]], n: int) -> dict[Hashable, NDArray[np.float64]]:
+        columns = evaluator.filters(drawn, n)
+        return {cell: column.as_floats() for cell, column in zip(places, columns, strict=True)}
+
+    return parameters
+
+
+def correlated_groups(correlations: Sequence[Correlation], live: Sequence[str]) -> list[CorrelatedGroup]:
+    """The correlations among drawn assumptions, gathered in groups that have none between them.
+
+    Raises:
+        DefinitionError: the correlations of a group contradict each other.
+    """
+    order = [name_key(name) for name in live]
+    pairs = {(name_key(c.first), name_key(c.second)): c for c in correlations}
+    pairs = {pair: c for pair, c in pairs.items() if pair[0] in order and pair[1] in order}
+    groups = []
+    for names in _connected(order, list(pairs)):
+        matrix = np.eye(len(names))
+        rows = [c for pair, c in pairs.items() if pair[0] in names]
+        for correlation in rows:
+            i, j = (names.index(name_key(name)) for name in (correlation.first, correlation.second))
+            matrix[i, j] = matrix[j, i] = correlation.value
+        groups.append(CorrelatedGroup(names, _copula(matrix, rows[0])))
+    return groups
+
+
+def _copula(matrix: NDArray[np.float64], row: Correlation) -> GaussianCopula:
+    try:
+        return GaussianCopula(matrix)
+    except ValueError as error:
+        raise DefinitionError(
+            f"{error}: no assumptions can have all of them at once", where=row.row, hint="bring them closer to 0"
+        ) from None
+
+
+def _connected(order: Sequence[str], pairs: Sequence[tuple[str, str]]) -> list[tuple[str, ...]]:
+    """The names that pairs join, directly or through others, in groups of two or more."""
+    group = {name: {name} for name in order}
+    for first, second in pairs:
+        joined = group[first] | group[second]
+        for name in joined:
+            group[name] = joined
+    distinct = {id(names): names for names in group.values() if len(names) > 1}
+    return [tuple(name for name in order if name in names) for names in distinct.values()]

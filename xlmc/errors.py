@@ -1,0 +1,146 @@
+"""Two kinds of error that never mix.
+
+`ErrorCode` names the error *values* of Excel: they live in cells, one per trial, and propagate like numbers.
+`XlmcError` and its subclasses are for people: each says where, what, and what to do.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+__all__ = [
+    "DefinitionError",
+    "ErrorCode",
+    "FormulaError",
+    "Notice",
+    "SimulationError",
+    "WorkbookError",
+    "XlmcError",
+]
+
+
+class ErrorCode(IntEnum):
+    """Excel's error values; the numbers are those of Excel's own `ERROR.TYPE`."""
+
+    NULL = 1
+    DIV0 = 2
+    VALUE = 3
+    REF = 4
+    NAME = 5
+    NUM = 6
+    NA = 7
+    GETTING_DATA = 8
+    SPILL = 9
+    CALC = 14
+
+    @property
+    def text(self) -> str:
+        """The error as a cell shows it: `ErrorCode.DIV0.text == '#DIV/0!'`."""
+        return _TEXT[self]
+
+    @classmethod
+    def from_text(cls, text: str) -> ErrorCode:
+        """The code a cell's text stands for.
+
+        Raises:
+            ValueError: the text is not an Excel error.
+        """
+        try:
+            return _CODE[text.upper()]
+        except KeyError:
+            raise ValueError(f"{text!r} is not an Excel error value") from None
+
+
+_TEXT = {
+    ErrorCode.NULL: "#NULL!",
+    ErrorCode.DIV0: "#DIV/0!",
+    ErrorCode.VALUE: "#VALUE!",
+    ErrorCode.REF: "#REF!",
+    ErrorCode.NAME: "#NAME?",
+    ErrorCode.NUM: "#NUM!",
+    ErrorCode.NA: "#N/A",
+    ErrorCode.GETTING_DATA: "#GETTING_DATA",
+    ErrorCode.SPILL: "#SPILL!",
+    ErrorCode.CALC: "#CALC!",
+}
+_CODE = {text: code for code, text in _TEXT.items()}
+
+
+class XlmcError(Exception):
+    """A message for the person at the keyboard: where it is, what is wrong, what to do.
+
+    Args:
+        message: what is wrong, one sentence without a full stop.
+        where: the cell, file or table it concerns; anything whose `str` a person recognises.
+        hint: what to do about it, one sentence without a full stop.
+    """
+
+    def __init__(self, message: str, *, where: object = None, hint: str | None = None) -> None:
+        super().__init__(message)
+        self.message = message
+        self.where = None if where is None else str(where)
+        self.hint = hint
+
+    def __str__(self) -> str:
+        place = f"{self.where}: " if self.where else ""
+        advice = f". {self.hint}" if self.hint else ""
+        return f"{place}{self.message}{advice}."
+
+
+class WorkbookError(XlmcError):
+    """The file cannot be read or written."""
+
+
+class DefinitionError(XlmcError):
+    """An assumption, forecast, filter, correlation or setting is not what it must be."""
+
+
+class SimulationError(XlmcError):
+    """The run cannot be done as asked."""
+
+
+class FormulaError(XlmcError):
+    """A formula that cannot be computed.
+
+    Args:
+        text: the formula as written, without its leading `=`.
+        span: where the faulty part stands in `text`, as (start, end).
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        where: object = None,
+        hint: str | None = None,
+        text: str | None = None,
+        span: tuple[int, int] | None = None,
+    ) -> None:
+        super().__init__(message, where=where, hint=hint)
+        self.text = text
+        self.span = span
+
+    def at(self, where: object) -> FormulaError:
+        """The same error, told of a cell."""
+        return FormulaError(self.message, where=where, hint=self.hint, text=self.text, span=self.span)
+
+    def __str__(self) -> str:
+        if self.text is None:
+            return super().__str__()
+        lines = [super().__str__(), f"    ={self.text}"]
+        if self.span is not None:
+            start, end = self.span
+            lines.append(" " * (5 + start) + "^" * max(1, end - start))
+        return "\n".join(lines)
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """Something the person should know that does not stop the work."""
+
+    message: str
+    where: object = None
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.message}" if self.where is not None else self.message

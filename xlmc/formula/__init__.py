@@ -1,0 +1,9 @@
+"""Formulas: text → tree (`parse`) → tree of cells (`resolve`) → what the forecasts need (`graph`)."""
+
+from xlmc.formula import ir
+from xlmc.formula.graph import Graph, build_graph
+from xlmc.formula.parse import compile_with_formulas, parse
+from xlmc.formula.resolve import Resolver
+from xlmc.formula.text import formula_text
+
+__all__ = ["Graph", "Resolver", "build_graph", "compile_with_formulas", "formula_text", "ir", "parse"]

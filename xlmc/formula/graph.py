@@ -1,0 +1,138 @@
+"""What the targets need: their formula cells in dependency order, and which of them vary with an assumption."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import assert_never
+
+from xlmc.address import Area, Cell
+from xlmc.errors import FormulaError
+from xlmc.formula import ir
+from xlmc.formula.resolve import Resolver
+from xlmc.workbook.model import Workbook
+
+__all__ = ["Graph", "build_graph", "references"]
+
+
+@dataclass(frozen=True)
+class Graph:
+    """The needed part of a workbook.
+
+    Attributes:
+        formulas: resolved trees of the needed formula cells, each after the cells it needs.
+        needs: every formula cell's own direct precedents that hold a formula or are inputs.
+        varying: the cells among `formulas` and the inputs that depend on an input.
+        reached: the inputs and held cells that something needs.
+    """
+
+    workbook: Workbook
+    formulas: Mapping[Cell, ir.Expression]
+    needs: Mapping[Cell, tuple[Cell, ...]]
+    varying: frozenset[Cell]
+    reached: frozenset[Cell]
+
+    def text(self, cell: Cell) -> str:
+        """The formula of a cell as the file holds it."""
+        formula = self.workbook.content(cell).formula
+        return "" if formula is None else formula.text
+
+
+def build_graph(
+    resolver: Resolver, targets: Iterable[Cell], inputs: frozenset[Cell], held: frozenset[Cell] = frozenset()
+) -> Graph:
+    """Walk upstream from `targets`; an input is taken as given, whatever its cell holds, and so is a held cell.
+
+    Raises:
+        FormulaError: a needed formula cannot be read, or the needed cells form a cycle.
+    """
+    formulas: dict[Cell, ir.Expression] = {}
+    needs: dict[Cell, tuple[Cell, ...]] = {}
+    reached: set[Cell] = set()
+    trail: dict[Cell, Iterator[Cell]] = {}
+    trees: dict[Cell, ir.Expression] = {}
+
+    def enter(cell: Cell) -> None:
+        if cell in given:
+            reached.add(cell)
+        elif cell in trail:
+            raise _cycle([*trail][[*trail].index(cell) :])
+        elif cell not in formulas and (formula := workbook.content(cell).formula) is not None:
+            trees[cell] = resolver.formula(cell, formula)
+            needs[cell] = tuple(_precedents(workbook, trees[cell], given))
+            trail[cell] = iter(needs[cell])
+
+    workbook, given = resolver.workbook, inputs | held
+    for target in targets:
+        enter(target)
+        while trail:
+            cell = next(reversed(trail))
+            following = next(trail[cell], None)
+            if following is not None:
+                enter(following)
+            else:
+                formulas[cell] = trees[cell]
+                del trail[cell]
+    return Graph(workbook, formulas, needs, _varying(formulas, needs, reached & inputs), frozenset(reached))
+
+
+def _precedents(workbook: Workbook, tree: ir.Expression, inputs: frozenset[Cell]) -> Iterator[Cell]:
+    for place in dict.fromkeys(references(tree)):
+        for cell in (place,) if isinstance(place, Cell) else _held(workbook, place, inputs):
+            if cell in inputs or workbook.content(cell).formula is not None:
+                yield cell
+
+
+def _held(workbook: Workbook, area: Area, inputs: frozenset[Cell]) -> Iterator[Cell]:
+    """The area's cells that hold something, row by row."""
+    sheet = workbook.sheets[area.sheet]
+    if area.rows * area.columns <= len(sheet.cells):
+        yield from area.cells()
+        return
+    extra = {cell for cell in inputs if cell in area}
+    held = {Cell(area.sheet, row, column) for row, column in sheet.cells}
+    yield from sorted(cell for cell in held | extra if cell in area)
+
+
+def references(tree: ir.Expression) -> Iterator[Cell | Area]:
+    """Every cell and area a resolved tree reads, from left to right."""
+    match tree:
+        case Cell() | Area():
+            yield tree
+        case ir.Unary(_, operand):
+            yield from references(operand)
+        case ir.Binary(_, left, right):
+            yield from references(left)
+            yield from references(right)
+        case ir.Call(_, arguments):
+            for part in arguments:
+                yield from references(part)
+        case ir.Array(rows):
+            for row in rows:
+                for part in row:
+                    yield from references(part)
+        case ir.Number() | ir.Text() | ir.Logical() | ir.ErrorLiteral() | ir.Missing():
+            return
+        case ir.Reference() | ir.Name() | ir.TableReference():
+            raise TypeError(f"not resolved: {tree}")
+        case _:
+            assert_never(tree)
+
+
+def _varying(
+    formulas: Iterable[Cell], needs: Mapping[Cell, tuple[Cell, ...]], inputs: Iterable[Cell]
+) -> frozenset[Cell]:
+    varying = set(inputs)
+    for cell in formulas:  # in dependency order: what a cell needs was settled before it
+        if any(need in varying for need in needs[cell]):
+            varying.add(cell)
+    return frozenset(varying)
+
+
+def _cycle(cells: list[Cell]) -> FormulaError:
+    loop = " → ".join(str(cell) for cell in [*cells, cells[0]])
+    return FormulaError(
+        f"the cells need each other in a circle: {loop}",
+        where=cells[0],
+        hint="break the circle; iterative calculation is not supported",
+    )

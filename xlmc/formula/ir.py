@@ -1,0 +1,152 @@
+"""The formula tree: a dozen frozen nodes. Passes over it are functions in the modules beside this one.
+
+`parse` makes trees with `Reference`, `Name` and `TableReference` leaves, as written. `resolve` replaces these by
+`Cell` and `Area` leaves, seen from one host cell.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from xlmc.address import Area, Cell
+from xlmc.errors import ErrorCode
+
+__all__ = [
+    "Array",
+    "Binary",
+    "Call",
+    "Corner",
+    "ErrorLiteral",
+    "Expression",
+    "Logical",
+    "Missing",
+    "Name",
+    "Number",
+    "Reference",
+    "TableReference",
+    "Text",
+    "Unary",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """`12.5`."""
+
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """`"abc"`."""
+
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class Logical:
+    """`TRUE`, `FALSE`."""
+
+    value: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorLiteral:
+    """`#N/A`."""
+
+    code: ErrorCode
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """The argument left out in `IF(a,,b)`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Corner:
+    """One corner of a reference. A whole column has no row, a whole row no column; `$` fixes either."""
+
+    row: int | None
+    column: int | None
+    row_fixed: bool = False
+    column_fixed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """`B7`, `$A$1:B2`, `C:C`, `Data!A1`; `last_sheet` of `Jan:Dec!A1`; `book` of `[1]Data!A1`."""
+
+    first: Corner
+    last: Corner | None = None
+    sheet: str | None = None
+    last_sheet: str | None = None
+    book: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A defined name, `Rate` or `Data!Rate`."""
+
+    name: str
+    sheet: str | None = None
+    book: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TableReference:
+    """`Table1[[#This Row],[a]:[b]]`: `table` is None in `[@x]`; `items` are folded, `#this row` among them."""
+
+    table: str | None
+    items: tuple[str, ...] = ()
+    first: str | None = None
+    last: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """`-x`, `+x`, and the postfix `x%`."""
+
+    operator: str
+    operand: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """`x + y` and the rest; `:` makes a range, a blank intersects, `,` joins references."""
+
+    operator: str
+    left: Expression
+    right: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """`SUM(x, y)`: the name in capitals, without `_xlfn.`. `@x` is `SINGLE(x)`, `A1#` is `ANCHORARRAY(A1)`."""
+
+    name: str
+    arguments: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Array:
+    """`{1,2;3,4}`."""
+
+    rows: tuple[tuple[Expression, ...], ...]
+
+
+Expression = (
+    Number
+    | Text
+    | Logical
+    | ErrorLiteral
+    | Missing
+    | Reference
+    | Name
+    | TableReference
+    | Cell
+    | Area
+    | Unary
+    | Binary
+    | Call
+    | Array
+)

@@ -1,0 +1,332 @@
+r"""Formula text to tree, through the tokenizer and the shunting-yard of `formulas`. Nothing else imports `formulas`.
+
+    formula   = expression
+    operand   = number | "text" | TRUE | #ERROR! | reference | name | table[…] | {array} | (expression) | FN(arguments)
+    reference = [prefix!] ( A1 | A1:B2 | A:B | 1:2 | name )          prefix = Sheet | 'a sheet' | First:Last | [1]Sheet
+    operators = from tightest:  : blank ,   - + @ (before)   % # (after)   ^   * /   + -   &   = < > <= >= <>
+
+`formulas` reads tokens by a list of classes and hands the postfix stream to a builder; both are class attributes of its
+`Parser`. Our classes stand in for those of its tokens that lose something (`--x`, `1E5`, `5%%`, `Data!Rate`,
+`Table1[Low]`, line breaks in texts), and our builder makes tree nodes. The stack machine is theirs.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from typing import Any, ClassVar
+
+import numpy as np
+from formulas.errors import FormulaError as ForeignFormulaError
+from formulas.errors import TokenError
+from formulas.parser import Parser
+from formulas.tokens.function import Array as ArrayToken
+from formulas.tokens.function import Function as FunctionToken
+from formulas.tokens.operand import Empty, Operand, XlError
+from formulas.tokens.operand import Error as ErrorToken
+from formulas.tokens.operator import Intersect, Operator, OperatorToken, Separator
+from formulas.tokens.parenthesis import Parenthesis, _update_n_args
+from schedula import EMPTY
+
+from xlmc.address import column_number
+from xlmc.errors import ErrorCode, FormulaError
+from xlmc.formula import ir
+from xlmc.formula.table_reference import TABLE_REFERENCE, parse_table_reference
+
+__all__ = ["compile_with_formulas", "parse"]
+
+_SHEET = r"[^\W\d][\w.]*"
+_PREFIX = rf"(?:'(?P<quoted>(?:[^']|'')+)'|(?P<book>\[[^\[\]]+\])?(?P<sheet>{_SHEET}(?::{_SHEET})?)?)!"
+_CELL = r"\$?[A-Za-z]{1,3}\$?[1-9][0-9]{0,6}"
+_BODY = rf"(?P<name>{_CELL}(?::{_CELL})?|\$?[A-Za-z]{{1,3}}:\$?[A-Za-z]{{1,3}}|\$?[1-9][0-9]*:\$?[1-9][0-9]*)"
+_NAME = r"(?P<name>[^\W\d][\w.\\?]*|\\[\w.\\?]*)"
+_LINE_BREAK_IN_TEXT = "\ue00a"
+_CORNER = re.compile(r"(?P<cf>\$?)(?P<c>[A-Za-z]{1,3})?(?P<rf>\$?)(?P<r>[0-9]+)?")
+
+
+class _Leaf(Operand):  # type: ignore[misc]  # formulas has no types
+    """An operand that knows its tree node."""
+
+    @property
+    def node(self) -> ir.Expression:
+        raise NotImplementedError
+
+
+class _Number(_Leaf):
+    _re = re.compile(r"\s*(?P<name>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[Ee][+-]?[0-9]+)?)(?![\w.(])")
+
+    @property
+    def node(self) -> ir.Expression:
+        return ir.Number(float(self.name))
+
+
+class _Logical(_Leaf):
+    _re = re.compile(r"\s*(?P<name>TRUE|FALSE)(?![\w.(!\[])", re.IGNORECASE)
+
+    @property
+    def node(self) -> ir.Expression:
+        return ir.Logical(self.name.upper() == "TRUE")
+
+
+class _Text(_Leaf):
+    _re = re.compile(r'\s*(?P<quote>")(?P<name>(?:""|[^"])*)"')
+
+    @property
+    def node(self) -> ir.Expression:
+        return ir.Text(self.name.replace('""', '"').replace(_LINE_BREAK_IN_TEXT, "\n"))
+
+
+class _Error(_Leaf):
+    _re = re.compile(rf"\s*(?:{_PREFIX})?(?P<name>#(?:NULL!|DIV/0!|VALUE!|REF!|NAME\?|NUM!|N/A|SPILL!|CALC!))", re.I)
+
+    @property
+    def node(self) -> ir.Expression:
+        return ir.ErrorLiteral(ErrorCode.from_text(self.name))
+
+
+class _Reference(_Leaf):
+    _re = re.compile(rf"\s*(?:{_PREFIX})?{_BODY}(?![\w.(\[\\?])")
+
+    @property
+    def node(self) -> ir.Expression:
+        first, _, last = self.attr["name"].partition(":")
+        return ir.Reference(_corner(first), _corner(last) if last else None, *_place(self.attr))
+
+
+class _Name(_Leaf):
+    _re = re.compile(rf"\s*(?:{_PREFIX})?{_NAME}(?![\w.(\[!])")
+
+    @property
+    def node(self) -> ir.Expression:
+        sheet, _, book = _place(self.attr)
+        return ir.Name(self.attr["name"], sheet, book)
+
+
+class _TableReference(_Leaf):
+    _re = TABLE_REFERENCE
+
+    @property
+    def node(self) -> ir.Expression:
+        return parse_table_reference(self.attr.get("table"), self.attr["name"])
+
+
+class _Operator(OperatorToken):  # type: ignore[misc]
+    """One operator at a time; a prefix waits on the stack for its operand, so that `--x` is two of them."""
+
+    _re = re.compile(r"\s*(?P<name><=|>=|<>|[-+*/^&=<>:@%]|\#)\s*")
+    _re_process = None
+    _n_args: ClassVar[dict[str, int]] = {"u-": 1, "u+": 1, "@": 1, "%": 1, "#": 1}
+    _precedences = Operator._precedences | {"#": 9}
+
+    def process(self, match: re.Match[str], context: object = None, parser: object = None) -> dict[str, str]:
+        return match.groupdict()
+
+    @property
+    def get_n_args(self) -> int:
+        return self._n_args.get(self.name, 2)
+
+    def ast(self, tokens: list[Any], stack: list[Any], builder: Any) -> None:
+        if self.name not in "+-@" or (tokens and _ends_an_operand(tokens[-1])):
+            super().ast(tokens, stack, builder)
+            return
+        if self.name != "@":
+            self.attr["name"] = "u" + self.name
+        tokens.append(self)
+        _update_n_args(stack)
+        stack.append(self)
+
+
+class _Function(FunctionToken):  # type: ignore[misc]
+    _re = re.compile(rf"\s*(?:{_PREFIX})?(?P<name>[^\W\d][\w.]*)\(\s*(?P<call>\))?")
+
+
+class _Parenthesis(Parenthesis):  # type: ignore[misc]
+    """`)` also closes a call's list; blanks after it may be an intersection and stay."""
+
+    _re = re.compile(r"\s*(?P<name>(?P<start>\()\s*|(?P<end>\)))")
+
+    def process(self, match: re.Match[str], context: object = None, parser: object = None) -> dict[str, str]:
+        groups = {key: text for key, text in match.groupdict().items() if text is not None}
+        return groups | {"name": groups["name"].strip()}
+
+
+def _ends_an_operand(token: Any) -> bool:
+    if isinstance(token, Parenthesis):
+        return bool(token.has_end)
+    return isinstance(token, Operand) or (isinstance(token, Operator) and token.name in "%#")
+
+
+def _place(groups: dict[str, str]) -> tuple[str | None, str | None, str | None]:
+    """Sheet, last sheet and external book of a reference's prefix."""
+    text = groups["quoted"].replace("''", "'") if "quoted" in groups else groups.get("sheet", "")
+    book = groups.get("book")
+    if "quoted" in groups and "]" in text:
+        book, _, text = text.rpartition("]")
+        book += "]"
+    first, _, last = text.partition(":")
+    return first or None, last or None, book
+
+
+def _corner(text: str) -> ir.Corner:
+    found = _CORNER.fullmatch(text)
+    if found is None:
+        raise TokenError(text)
+    row, column = found["r"], found["c"]
+    if column is None:  # a whole row, `$3`: the `$` was read as the column's
+        return ir.Corner(int(row), None, bool(found["cf"] or found["rf"]), False)
+    return ir.Corner(int(row) if row else None, column_number(column), bool(found["rf"]), bool(found["cf"]))
+
+
+class _TreeBuilder:
+    """Takes the postfix stream and keeps one tree a completed operand."""
+
+    def __init__(self, match: object = None) -> None:
+        self._operands: list[ir.Expression] = []
+
+    def __len__(self) -> int:
+        return len(self._operands)
+
+    def __getitem__(self, index: int) -> ir.Expression:
+        return self._operands[index]
+
+    def append(self, token: Any) -> None:
+        self._operands.append(self._node(token))
+
+    def finish(self) -> None:
+        """Nothing waits: every node was made when its last operand came."""
+
+    def _node(self, token: Any) -> ir.Expression:
+        if isinstance(token, _Leaf):
+            return token.node
+        if isinstance(token, Empty):
+            return ir.Missing()
+        operands = self._take(token.get_n_args)
+        return _call(token, operands) if isinstance(token, FunctionToken) else _operation(token.name, operands)
+
+    def _take(self, count: int) -> tuple[ir.Expression, ...]:
+        if count > len(self._operands):
+            raise ForeignFormulaError
+        cut = len(self._operands) - count
+        taken = tuple(self._operands[cut:])
+        del self._operands[cut:]
+        return taken
+
+
+def _call(token: Any, arguments: tuple[ir.Expression, ...]) -> ir.Expression:
+    name = re.sub(r"^(_xlfn\.|_xlws\.|_xll\.|_xludf\.)+", "", token.name, flags=re.IGNORECASE).upper()
+    if name != "ARRAY":
+        return ir.Call(name, arguments)
+    if arguments and isinstance(arguments[0], ir.Array):  # the outer of the two nested ARRAY( that `formulas` makes
+        return ir.Array(tuple(row for part in arguments if isinstance(part, ir.Array) for row in part.rows))
+    return ir.Array((arguments,))
+
+
+def _operation(operator: str, operands: tuple[ir.Expression, ...]) -> ir.Expression:
+    if operator in ("@", "#"):
+        return ir.Call("SINGLE" if operator == "@" else "ANCHORARRAY", operands)
+    if len(operands) == 1:
+        return ir.Unary(operator.removeprefix("u"), operands[0])
+    return ir.Binary(operator, *operands)
+
+
+class _Parser(Parser):  # type: ignore[misc]
+    """`formulas.Parser` with our tokens and our builder. `rest` is what was left when the last token was looked for."""
+
+    ast_builder = _TreeBuilder
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.rest = 0
+        self.filters: list[Callable[..., Any]] = [self._note, *_TOKENS]
+
+    def _note(self, text: str, context: object, parser: object) -> Any:
+        self.rest = len(text)
+        raise TokenError(text)
+
+
+_TOKENS: list[Callable[..., Any]] = [
+    _Error,
+    _Text,
+    _Reference,
+    _Number,
+    _Logical,
+    _Name,
+    _TableReference,
+    _Operator,
+    Separator,
+    _Function,
+    ArrayToken,
+    _Parenthesis,
+    Intersect,
+]
+
+
+@lru_cache(maxsize=65_536)
+def parse(text: str) -> ir.Expression:
+    """The tree of a formula, given without its leading `=`.
+
+    Raises:
+        FormulaError: the text is not a formula; the error carries the place of the faulty part.
+    """
+    parser = _Parser()
+    flat = _without_line_breaks(text).strip()
+    try:
+        _, builder = parser.ast("=" + flat)
+    except ForeignFormulaError:
+        start = min(max(0, len(text.rstrip()) - parser.rest), max(0, len(text.rstrip()) - 1))
+        raise FormulaError(
+            "the formula cannot be read from the marked place on",
+            hint="check brackets, separators and quotes there",
+            text=text,
+            span=(start, start + 1),
+        ) from None
+    tree: ir.Expression = builder[-1]
+    return tree
+
+
+def _without_line_breaks(text: str) -> str:
+    """Line breaks between tokens are blanks to Excel; inside texts they are kept."""
+    if "\n" not in text and "\r" not in text:
+        return text
+    pieces = re.split(r"""("(?:[^"]|"")*"|'(?:[^']|'')*')""", text.replace("\r\n", "\n"))
+    kept = [p.replace("\n", _LINE_BREAK_IN_TEXT if i % 2 else " ").replace("\r", " ") for i, p in enumerate(pieces)]
+    return "".join(kept)
+
+
+def compile_with_formulas(text: str) -> Callable[[Mapping[str, Any]], object]:
+    """What `formulas` itself compiles from a formula, for one trial: the slow reference.
+
+    Args:
+        text: a formula without its leading `=`, whose references name no sheet.
+
+    Returns:
+        A callable. It takes the values of the references by name (`A1`, `B1:C3`): float, bool, str, `ErrorCode` or
+        None, in an `(r, c)` object array for an area. It gives one such value.
+    """
+    compiled = Parser().ast("=" + text)[1].compile()
+    names = list(compiled.inputs)
+
+    def call(values: Mapping[str, Any]) -> object:
+        return _from_foreign(compiled(*(_to_foreign(values[name]) for name in names)))
+
+    return call
+
+
+def _to_foreign(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return np.array([[_to_foreign(item) for item in row] for row in value], dtype=object)
+    if isinstance(value, ErrorCode):
+        return ErrorToken.errors[value.text]
+    return EMPTY if value is None else value
+
+
+def _from_foreign(result: Any) -> object:
+    item = np.asarray(result, dtype=object).ravel()[0]
+    if isinstance(item, XlError):
+        return ErrorCode.from_text(str(item))
+    if isinstance(item, bool | np.bool_):
+        return bool(item)
+    if item is EMPTY:
+        return None
+    return item if isinstance(item, str) else float(item)

@@ -1,0 +1,221 @@
+"""Names, tables and relative references to cells and areas, seen from one host cell.
+
+A resolved tree has `Cell` and `Area` leaves; no `Reference`, `Name` or `TableReference` is left in it, and `:` and the
+blank have become areas.
+"""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import assert_never
+
+from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
+from xlmc.errors import ErrorCode, FormulaError
+from xlmc.formula import ir
+from xlmc.formula.parse import parse
+from xlmc.workbook.model import Formula, Table, Workbook
+
+__all__ = ["Resolver"]
+
+_REF = ir.ErrorLiteral(ErrorCode.REF)
+_NULL = ir.ErrorLiteral(ErrorCode.NULL)
+
+
+class Resolver:
+    """Resolves the formulas of one workbook."""
+
+    def __init__(self, workbook: Workbook) -> None:
+        self.workbook = workbook
+        self._used: dict[str, tuple[int, int]] = {}
+        self._open_names: list[str] = []
+
+    def formula(self, cell: Cell, formula: Formula) -> ir.Expression:
+        """The tree of a cell's formula.
+
+        Raises:
+            FormulaError: told of the cell; the formula cannot be read, or names something that is not there.
+        """
+        try:
+            return self._resolve(parse(formula.text), cell, (formula.row, formula.column))
+        except FormulaError as error:
+            complete = error if error.text is not None else _about(error, formula.text)
+            raise complete.at(cell) from None
+
+    def _resolve(self, tree: ir.Expression, host: Cell, origin: tuple[int, int]) -> ir.Expression:
+        match tree:
+            case ir.Reference():
+                return self._reference(tree, host, origin)
+            case ir.Name():
+                return self._name(tree, host)
+            case ir.TableReference():
+                return self._table(tree, host)
+            case ir.Unary(operator, operand):
+                return ir.Unary(operator, self._resolve(operand, host, origin))
+            case ir.Binary(operator, left, right):
+                parts = self._resolve(left, host, origin), self._resolve(right, host, origin)
+                return _combined(operator, *parts)
+            case ir.Call(name, arguments):
+                return ir.Call(name, tuple(self._resolve(part, host, origin) for part in arguments))
+            case ir.Array(rows):
+                return ir.Array(tuple(tuple(self._resolve(part, host, origin) for part in row) for row in rows))
+            case ir.Number() | ir.Text() | ir.Logical() | ir.ErrorLiteral() | ir.Missing() | Cell() | Area():
+                return tree
+            case _:
+                assert_never(tree)
+
+    def _reference(self, tree: ir.Reference, host: Cell, origin: tuple[int, int]) -> ir.Expression:
+        _refuse_other_books(tree.book)
+        if tree.last_sheet is not None:
+            raise FormulaError("a reference over several sheets is not supported in this version")
+        sheet = self._sheet(tree.sheet, host)
+        first = _place(tree.first, host, origin)
+        last = first if tree.last is None else _place(tree.last, host, origin)
+        if first is None or last is None:
+            return _REF
+        rows, columns = _sorted(first[0], last[0]), _sorted(first[1], last[1])
+        used = self._used_range(sheet)
+        top, bottom = rows or (1, used[0])
+        left, right = columns or (1, used[1])
+        return _area(sheet, top, left, bottom, right)
+
+    def _sheet(self, name: str | None, host: Cell) -> str:
+        if name is None:
+            return host.sheet
+        found = self.workbook.sheet_named(name)
+        if found is None:
+            raise FormulaError(f"there is no sheet {name!r}", hint=_did_you_mean(name, self.workbook.sheets))
+        return found.name
+
+    def _used_range(self, sheet: str) -> tuple[int, int]:
+        """Last row and column that hold anything: a whole column ends there."""
+        if sheet not in self._used:
+            cells = self.workbook.sheets[sheet].cells
+            self._used[sheet] = (max((r for r, _ in cells), default=1), max((c for _, c in cells), default=1))
+        return self._used[sheet]
+
+    def _name(self, tree: ir.Name, host: Cell) -> ir.Expression:
+        _refuse_other_books(tree.book)
+        scope = host.sheet if tree.sheet is None else self._sheet(tree.sheet, host)
+        found = self.workbook.defined_name(tree.name, scope)
+        if found is None:
+            known = (name.name for name in self.workbook.names)
+            raise FormulaError(f"there is no name {tree.name!r}", hint=_did_you_mean(tree.name, known))
+        key = f"{found.sheet}!{found.name}"
+        if key in self._open_names:
+            raise FormulaError(f"the name {found.name!r} is defined by itself")
+        self._open_names.append(key)
+        try:  # a name's relative references are written as seen from A1
+            return self._resolve(parse(found.text), Cell(scope, host.row, host.column), (1, 1))
+        finally:
+            self._open_names.pop()
+
+    def _table(self, tree: ir.TableReference, host: Cell) -> ir.Expression:
+        table = self._named_table(tree.table, host)
+        rows = _table_rows(table, tree.items, host)
+        if rows is None:
+            return ir.ErrorLiteral(ErrorCode.VALUE if "#this row" in tree.items else ErrorCode.REF)
+        left = _table_column(table, tree.first) if tree.first else table.area.left
+        right = _table_column(table, tree.last) if tree.last else (left if tree.first else table.area.right)
+        return _area(table.area.sheet, rows[0], min(left, right), rows[1], max(left, right))
+
+    def _named_table(self, name: str | None, host: Cell) -> Table:
+        if name is None:
+            around = [table for table in self.workbook.tables if host in table.area]
+            if not around:
+                raise FormulaError("a table's column is named without its table, outside any table")
+            return around[0]
+        found = self.workbook.table_named(name)
+        if found is None:
+            known = (table.name for table in self.workbook.tables)
+            raise FormulaError(f"there is no table {name!r}", hint=_did_you_mean(name, known))
+        return found
+
+
+def _about(error: FormulaError, text: str) -> FormulaError:
+    return FormulaError(error.message, where=error.where, hint=error.hint, text=text)
+
+
+def _refuse_other_books(book: str | None) -> None:
+    if book not in (None, "[0]"):  # [0] is this book
+        raise FormulaError(
+            "refers to another workbook", hint="copy the value into this workbook; links are not followed"
+        )
+
+
+def _did_you_mean(name: str, known: object) -> str | None:
+    close = get_close_matches(name, list(known), n=1)  # type: ignore[call-overload]
+    return f"did you mean {close[0]!r}?" if close else None
+
+
+def _place(corner: ir.Corner, host: Cell, origin: tuple[int, int]) -> tuple[int | None, int | None] | None:
+    """Row and column of a corner as the host sees it; None when it falls off the sheet."""
+    row, column = corner.row, corner.column
+    if row is not None and not corner.row_fixed:
+        row += host.row - origin[0]
+    if column is not None and not corner.column_fixed:
+        column += host.column - origin[1]
+    inside = (row is None or 1 <= row <= MAX_ROW) and (column is None or 1 <= column <= MAX_COLUMN)
+    return (row, column) if inside else None
+
+
+def _sorted(first: int | None, last: int | None) -> tuple[int, int] | None:
+    return None if first is None or last is None else (min(first, last), max(first, last))
+
+
+def _area(sheet: str, top: int, left: int, bottom: int, right: int) -> Cell | Area:
+    if top == bottom and left == right:
+        return Cell(sheet, top, left)
+    return Area(sheet, top, left, bottom, right)
+
+
+def _combined(operator: str, left: ir.Expression, right: ir.Expression) -> ir.Expression:
+    if operator not in (":", " "):
+        return ir.Binary(operator, left, right)
+    for part in (left, right):
+        if isinstance(part, ir.ErrorLiteral):
+            return part
+    if not isinstance(left, Cell | Area) or not isinstance(right, Cell | Area):
+        name = "range (:)" if operator == ":" else "intersection (a blank)"
+        raise FormulaError(f"the {name} operator needs references on both sides", hint="is an operator missing?")
+    a, b = _as_area(left), _as_area(right)
+    if a.sheet != b.sheet:
+        return ir.ErrorLiteral(ErrorCode.VALUE)
+    if operator == ":":
+        top, start = min(a.top, b.top), min(a.left, b.left)
+        return _area(a.sheet, top, start, max(a.bottom, b.bottom), max(a.right, b.right))
+    top, start, bottom, end = max(a.top, b.top), max(a.left, b.left), min(a.bottom, b.bottom), min(a.right, b.right)
+    return _area(a.sheet, top, start, bottom, end) if top <= bottom and start <= end else _NULL
+
+
+def _as_area(place: Cell | Area) -> Area:
+    if isinstance(place, Area):
+        return place
+    return Area(place.sheet, place.row, place.column, place.row, place.column)
+
+
+def _table_rows(table: Table, items: tuple[str, ...], host: Cell) -> tuple[int, int] | None:
+    """First and last row that the items name; None where the table has no such row."""
+    area, body = table.area, table.body
+    if "#this row" in items:
+        inside = host.sheet == body.sheet and body.top <= host.row <= body.bottom
+        return (host.row, host.row) if inside else None
+    spans = {
+        "#all": (area.top, area.bottom),
+        "#data": (body.top, body.bottom),
+        "#headers": (area.top, body.top - 1),
+        "#totals": (body.bottom + 1, area.bottom),
+    }
+    unknown = [item for item in items if item not in spans]
+    if unknown:
+        raise FormulaError(f"a table has no part {unknown[0]!r}")
+    named = [spans[item] for item in items or ("#data",)]
+    top, bottom = min(span[0] for span in named), max(span[1] for span in named)
+    return (top, bottom) if top <= bottom else None
+
+
+def _table_column(table: Table, name: str) -> int:
+    folded = [column.casefold() for column in table.columns]
+    if name.casefold() not in folded:
+        hint = _did_you_mean(name, table.columns)
+        raise FormulaError(f"the table {table.name!r} has no column {name!r}", hint=hint)
+    return table.area.left + folded.index(name.casefold())

@@ -1,0 +1,42 @@
+"""A resolved tree back to formula text, with every reference under a name of the caller's choice."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import assert_never
+
+from xlmc.address import Area, Cell
+from xlmc.formula import ir
+
+__all__ = ["formula_text"]
+
+
+def formula_text(tree: ir.Expression, name: Callable[[Cell | Area], str] = str) -> str:
+    """The text of a resolved tree without its leading `=`, every operation in brackets of its own."""
+    match tree:
+        case Cell() | Area():
+            return name(tree)
+        case ir.Number(value):
+            return repr(value) if value >= 0 else f"({value!r})"
+        case ir.Text(value):
+            return '"' + value.replace('"', '""') + '"'
+        case ir.Logical(value):
+            return "TRUE" if value else "FALSE"
+        case ir.ErrorLiteral(code):
+            return code.text
+        case ir.Missing():
+            return ""
+        case ir.Unary("%", operand):
+            return f"({formula_text(operand, name)}%)"
+        case ir.Unary(operator, operand):
+            return f"({operator}({formula_text(operand, name)}))"
+        case ir.Binary(operator, left, right):
+            return f"({formula_text(left, name)}{operator}{formula_text(right, name)})"
+        case ir.Call(function, arguments):
+            return f"{function}({','.join(formula_text(part, name) for part in arguments)})"
+        case ir.Array(rows):
+            return "{" + ";".join(",".join(formula_text(part, name) for part in row) for row in rows) + "}"
+        case ir.Reference() | ir.Name() | ir.TableReference():
+            raise TypeError(f"not resolved: {tree}")
+        case _:
+            assert_never(tree)

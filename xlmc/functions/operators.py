@@ -1,0 +1,102 @@
+"""The operators of formulas, as functions of one or two arguments. `x - y` and `-x` are `-` and `u-`."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from xlmc.functions.registry import Anything, Kind, Number, Text, excel
+from xlmc.functions.values import BLANK, DIV0, ERROR, NUM, TEXT, Floats, Objects, Value
+
+__all__ = ["compare"]
+
+excel("+", Number, Number, ufunc=np.add)(np.add)
+excel("-", Number, Number, ufunc=np.subtract)(np.subtract)
+excel("*", Number, Number, ufunc=np.multiply)(np.multiply)
+excel("u-", Number, ufunc=np.negative)(np.negative)
+excel("u+", Anything, returns=Kind.ANY)(lambda x: x)
+
+
+@excel("/", Number, Number, ufunc=np.divide)
+def divide(x: Floats, y: Floats) -> Floats:
+    """Quotient; `#DIV/0!` by zero."""
+    return np.where(y == 0, DIV0, x / y)
+
+
+@excel("%", Number)
+def percent(x: Floats) -> Floats:
+    """A hundredth."""
+    return x / 100
+
+
+def _not_zero_to_zero(x: Floats, y: Floats) -> bool:
+    return bool(np.all(y != 0) or np.all(x != 0))
+
+
+@excel("^", Number, Number, aliases=("POWER",), ufunc=np.power, guard=_not_zero_to_zero)
+def power(x: Floats, y: Floats) -> Floats:
+    """Power; `0^0` is `#NUM!`, zero to a negative power `#DIV/0!`, a negative base needs a whole exponent."""
+    result = np.power(x, y)
+    result = np.where((x == 0) & (y < 0), DIV0, result)
+    return np.where((x == 0) & (y == 0), NUM, result)
+
+
+@excel("&", Text, Text, returns=Kind.TEXT)
+def joined(x: Objects, y: Objects) -> Objects:
+    """The two texts, one after the other."""
+    return np.asarray(x + y, dtype=object)
+
+
+def compare(relation: Callable[[Any, Any], Any], x: Value, y: Value) -> Value:
+    """Excel's order: numbers before texts before logicals; texts without case; a blank is 0, "" or FALSE."""
+    if x.plain and y.plain and not _mixed(x, y):
+        return Value.of_logicals(np.atleast_1d(relation(x.numbers, y.numbers)))
+    if x.numbers.ndim != y.numbers.ndim:
+        x, y = x.as_range(), y.as_range()
+    errors = np.where(x.errors > 0, x.errors, y.errors).astype(np.uint8)
+    rank_x, rank_y = _ranks(x, y), _ranks(y, x)
+    by_rank = relation(rank_x, rank_y)
+    by_value = relation(x.numbers, y.numbers)
+    texts = (rank_x == TEXT) & (rank_y == TEXT)
+    by_text = relation(_text_order(x, y), 0) if texts.any() else by_value
+    result = np.where(rank_x == rank_y, np.where(texts, by_text, by_value), by_rank)
+    return Value.of_logicals(np.atleast_1d(result), errors if errors.any() else None)
+
+
+def _mixed(x: Value, y: Value) -> bool:
+    """Whether a logical meets a number."""
+    kinds = {int(k) for v in (x, y) for k in np.unique(v.kinds)} - {BLANK}
+    return len(kinds) > 1
+
+
+def _ranks(x: Value, other: Value) -> Any:
+    """0 number, 2 text, 3 logical; a blank takes the rank of what it meets."""
+    ranks = np.array([0, 3, 2, 0], np.uint8)
+    own = ranks[np.where(x.kinds >= ERROR, 0, x.kinds)]
+    met = ranks[np.where(other.kinds >= ERROR, 0, other.kinds)]
+    return np.where(x.kinds == BLANK, np.where(other.kinds == BLANK, 0, met), own)
+
+
+def _text_order(x: Value, y: Value) -> Floats:
+    """-1, 0 or 1 as x's text comes before, with or after y's; 0 where either is not a text."""
+    (left, _), (right, _) = x.to_texts(), y.to_texts()
+    order = np.frompyfunc(lambda a, b: (a.casefold() > b.casefold()) - (a.casefold() < b.casefold()), 2, 1)
+    return np.asarray(order(left, right), np.float64)
+
+
+def _register(symbol: str, relation: Callable[[Any, Any], Any], ufunc: np.ufunc) -> None:
+    def body(x: Value, y: Value) -> Value:
+        return compare(relation, x, y)
+
+    excel(symbol, Anything, Anything, returns=Kind.LOGICAL, ufunc=ufunc)(body)
+
+
+_register("=", operator.eq, np.equal)
+_register("<>", operator.ne, np.not_equal)
+_register("<", operator.lt, np.less)
+_register("<=", operator.le, np.less_equal)
+_register(">", operator.gt, np.greater)
+_register(">=", operator.ge, np.greater_equal)

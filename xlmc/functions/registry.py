@@ -1,0 +1,232 @@
+"""One row per Excel function: what it takes, what it gives, and one small pure body.
+
+A body of *element* arguments (`Number`, `Logical`, `Text`) gets arrays that broadcast, trials first, and returns one
+array; it knows nothing of errors but those it makes itself (see `values.NUM` and its like). A body of *set* arguments
+(`Numbers`, `Logicals`) gets all of its arguments flattened to one `(n, k)` array and a mask of what counts. A body with
+an `Anything` or `Cells` argument gets `Value`s and minds kinds and errors itself; only sets and `Cells` take ranges.
+
+A row with a `ufunc` promises: where no floating-point flag is raised and `guard` holds, the ufunc alone gives the
+body's values. That is what the fast engine runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.functions.values import ERROR, LOGICAL, NUMBER, Bools, Codes, Value, from_objects
+
+__all__ = [
+    "REGISTRY",
+    "Anything",
+    "Cells",
+    "Function",
+    "Kind",
+    "Logical",
+    "Logicals",
+    "Number",
+    "Numbers",
+    "Parameter",
+    "Text",
+    "excel",
+    "function_named",
+]
+
+
+class Kind(Enum):
+    """What an argument is taken as, or a result is."""
+
+    NUMBER = "number"
+    LOGICAL = "logical"
+    TEXT = "text"
+    ANY = "any"
+
+
+_REQUIRED: Final = object()
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One argument of a function; call it to give a default or to let it repeat: `Number(default=0)`.
+
+    Attributes:
+        as_set: it and all others are flattened to one set.
+        ranged: it takes a range whole; any other argument takes the cell of the range beside the formula.
+    """
+
+    kind: Kind
+    default: object = _REQUIRED
+    repeat: bool = False
+    as_set: bool = False
+    ranged: bool = False
+
+    def __call__(self, *, default: object = _REQUIRED, repeat: bool = False) -> Parameter:
+        return replace(self, default=default, repeat=repeat)
+
+    @property
+    def required(self) -> bool:
+        return self.default is _REQUIRED
+
+
+Number: Final = Parameter(Kind.NUMBER)
+Logical: Final = Parameter(Kind.LOGICAL)
+Text: Final = Parameter(Kind.TEXT)
+Anything: Final = Parameter(Kind.ANY)
+Cells: Final = Parameter(Kind.ANY, ranged=True)
+Numbers: Final = Parameter(Kind.NUMBER, repeat=True, as_set=True, ranged=True)
+Logicals: Final = Parameter(Kind.LOGICAL, repeat=True, as_set=True, ranged=True)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Function:
+    """A registry row.
+
+    Attributes:
+        ufunc: see the module; with set arguments it folds them from left to right.
+        guard: takes the body's float arrays, says whether all of them lie where `ufunc` and Excel agree.
+        volatile: its value changes without its arguments.
+    """
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    body: Callable[..., Any]
+    returns: Kind
+    ufunc: np.ufunc | None = None
+    guard: Callable[..., bool] | None = None
+    volatile: bool = False
+
+    @property
+    def takes_values(self) -> bool:
+        return any(parameter.kind is Kind.ANY for parameter in self.parameters)
+
+    @property
+    def takes_sets(self) -> bool:
+        return any(parameter.as_set for parameter in self.parameters)
+
+    def parameter(self, position: int) -> Parameter:
+        """The parameter of an argument; the last ones repeat where they may."""
+        if position < len(self.parameters):
+            return self.parameters[position]
+        cycle = [p for p in self.parameters if p.repeat]
+        return cycle[(position - len(self.parameters)) % len(cycle)]
+
+    def arity(self) -> tuple[int, int]:
+        """The fewest and the most arguments it takes."""
+        fewest = sum(1 for p in self.parameters if p.required)
+        return fewest, 255 if any(p.repeat for p in self.parameters) else len(self.parameters)
+
+    def __call__(self, arguments: Sequence[Value]) -> Value:
+        """The function of Excel: any values in, values out, errors kept per trial. Absent arguments are filled in."""
+        with np.errstate(all="ignore"):
+            if self.takes_values:
+                return _as_value(self.body(*arguments), self.returns, None)
+            if self.takes_sets:
+                return self._of_sets(arguments)
+            return self._of_elements(arguments)
+
+    def _of_elements(self, arguments: Sequence[Value]) -> Value:
+        if any(argument.numbers.ndim == 3 for argument in arguments):
+            arguments = [argument.as_range() for argument in arguments]
+        arrays: list[Any] = []
+        errors = np.zeros(1, np.uint8)
+        for position, argument in enumerate(arguments):
+            array, found = _coerced(argument, self.parameter(position).kind)
+            arrays.append(array)
+            errors = np.where(errors > 0, errors, found).astype(np.uint8)
+        arrays += [p.default for p in self.parameters[len(arguments) :] if not p.repeat]
+        return _as_value(self.body(*arrays), self.returns, errors if errors.any() else None)
+
+    def _of_sets(self, arguments: Sequence[Value]) -> Value:
+        kind = self.parameters[0].kind
+        x, counts, errors = _flattened(arguments, kind)
+        return _as_value(self.body(x, counts), self.returns, errors if errors.any() else None)
+
+
+def _coerced(value: Value, kind: Kind) -> tuple[NDArray[Any], Codes]:
+    if kind is Kind.NUMBER:
+        return value.to_numbers()
+    return value.to_logicals() if kind is Kind.LOGICAL else value.to_texts()
+
+
+def _as_value(result: Any, returns: Kind, errors: Codes | None) -> Value:
+    if isinstance(result, Value):
+        return result if errors is None else _overlaid(result, errors)
+    array = np.atleast_1d(np.asarray(result))
+    if errors is not None:
+        array = np.broadcast_to(array, np.broadcast_shapes(array.shape, errors.shape))
+    if array.dtype == object:
+        return _overlaid(from_objects(array), errors)
+    if returns is Kind.LOGICAL:
+        return Value.of_logicals(array.astype(bool), errors)
+    return Value.of_numbers(array.astype(np.float64, copy=False), errors)
+
+
+def _overlaid(value: Value, errors: Codes | None) -> Value:
+    """Argument errors go before whatever the body made of those trials."""
+    if errors is None:
+        return value
+    kinds = np.where(errors > 0, errors + np.uint8(ERROR), value.kinds).astype(np.uint8)
+    return Value(value.numbers, kinds, value.texts)
+
+
+def _flattened(arguments: Sequence[Value], kind: Kind) -> tuple[NDArray[Any], Bools, Codes]:
+    """All arguments side by side, `(n, k)`: the values, which of them count, and the first error of each trial.
+
+    A value given directly is coerced, a cell of a range (n, r, c) counts only when it is of the kind itself.
+    """
+    columns, counted, errors = [], [], []
+    for argument in arguments:
+        in_range = argument.numbers.ndim == 3
+        x, found = (argument.numbers, argument.errors) if in_range else _coerced(argument, kind)
+        wanted = (argument.kinds == NUMBER) if kind is Kind.NUMBER else (argument.kinds <= LOGICAL)
+        counts = (wanted if in_range else argument.kinds < ERROR) & (found == 0)
+        columns.append(_two_axes(x, argument.shape))
+        counted.append(_two_axes(counts, argument.shape))
+        errors.append(_two_axes(found, argument.shape))
+    n = max((column.shape[0] for column in columns), default=1)
+    x, counts, found = (np.concatenate([_tall(a, n) for a in part], axis=1) for part in (columns, counted, errors))
+    first = np.take_along_axis(found, (found > 0).argmax(axis=1, keepdims=True), axis=1)[:, 0]
+    return (x if kind is Kind.NUMBER else x != 0), counts, first
+
+
+def _two_axes(array: NDArray[Any], shape: tuple[int, ...]) -> NDArray[Any]:
+    return np.broadcast_to(array, shape).reshape(shape[0], -1)
+
+
+def _tall(array: NDArray[Any], n: int) -> NDArray[Any]:
+    return np.broadcast_to(array, (n, array.shape[1]))
+
+
+REGISTRY: Final[dict[str, Function]] = {}
+
+
+def excel(
+    name: str,
+    *parameters: Parameter,
+    returns: Kind = Kind.NUMBER,
+    aliases: tuple[str, ...] = (),
+    ufunc: np.ufunc | None = None,
+    guard: Callable[..., bool] | None = None,
+    volatile: bool = False,
+) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Register a body as the Excel function `name`."""
+
+    def register(body: Callable[..., Any]) -> Callable[..., Any]:
+        row = Function(name, parameters, body, returns, ufunc, guard, volatile)
+        for key in (name, *aliases):
+            if key in REGISTRY:
+                raise ValueError(f"{key} is registered twice")
+            REGISTRY[key] = row
+        return body
+
+    return register
+
+
+def function_named(name: str) -> Function | None:
+    """The row of an Excel function, its name in capitals and without `_xlfn.`; None when there is none."""
+    return REGISTRY.get(name)

@@ -1,0 +1,274 @@
+"""Excel values over trials: numbers, logicals, texts, blanks and errors side by side in one array.
+
+Trials are axis 0: a scalar cell is `(n,)`, a range `(n, r, c)`; a constant has n = 1 and broadcasts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.errors import ErrorCode
+
+__all__ = [
+    "BLANK",
+    "DIV0",
+    "ERROR",
+    "LOGICAL",
+    "NA",
+    "NUM",
+    "NUMBER",
+    "REF",
+    "TEXT",
+    "VALUE",
+    "Bools",
+    "Codes",
+    "Floats",
+    "Objects",
+    "Value",
+    "boxed_codes",
+    "constant",
+    "from_objects",
+    "general_text",
+    "parse_number",
+]
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Codes = NDArray[np.uint8]
+Objects = NDArray[Any]
+
+NUMBER: Final = 0
+LOGICAL: Final = 1
+TEXT: Final = 2
+BLANK: Final = 3
+ERROR: Final = 16
+"""Kinds of value; an error's kind is ERROR + its `ErrorCode`."""
+
+_QUIET_NAN = 0x7FF8_0000_0000_0000
+
+
+def _boxed(code: ErrorCode) -> float:
+    return float(np.array(_QUIET_NAN | int(code), dtype=np.uint64).view(np.float64))
+
+
+DIV0: Final = _boxed(ErrorCode.DIV0)
+VALUE: Final = _boxed(ErrorCode.VALUE)
+REF: Final = _boxed(ErrorCode.REF)
+NUM: Final = _boxed(ErrorCode.NUM)
+NA: Final = _boxed(ErrorCode.NA)
+"""Errors that a function body puts in its float result: NaNs that carry their code. Put them there last, by `np.where`:
+arithmetic on a NaN may lose the code."""
+
+
+def boxed_codes(x: Floats) -> Codes:
+    """The error of every element, 0 for none: the code a NaN carries, `#NUM!` for a plain NaN or an infinity."""
+    bad = ~np.isfinite(x)
+    if not bad.any():
+        return np.zeros(x.shape, np.uint8)
+    payload = (np.ascontiguousarray(x).view(np.uint64) & np.uint64(0xFF)).astype(np.uint8)
+    carried = np.isnan(x) & (payload > 0)
+    return np.where(bad, np.where(carried, payload, np.uint8(ErrorCode.NUM)), np.uint8(0))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Value:
+    """One Excel value per trial (and per cell of a range).
+
+    Attributes:
+        numbers: `(n,)` or `(n, r, c)`; a logical as 1.0 or 0.0; 0.0 where the kind is another.
+        kinds: the same shape, or one that broadcasts to it.
+        texts: strings where the kind is TEXT; None when there is none.
+    """
+
+    numbers: Floats
+    kinds: Codes
+    texts: Objects | None = None
+
+    @classmethod
+    def of_numbers(cls, x: Floats, errors: Codes | None = None) -> Value:
+        """Floats, with errors boxed in them or beside them."""
+        codes = boxed_codes(x) if errors is None else np.where(errors > 0, errors, boxed_codes(x))
+        return cls._with_errors(x, codes, NUMBER)
+
+    @classmethod
+    def of_logicals(cls, x: Bools, errors: Codes | None = None) -> Value:
+        """Booleans, with errors beside them."""
+        codes = np.zeros(1, np.uint8) if errors is None else errors
+        return cls._with_errors(x.astype(np.float64), codes, LOGICAL)
+
+    @classmethod
+    def of_texts(cls, x: Objects, errors: Codes | None = None) -> Value:
+        """Strings, with errors beside them."""
+        zeros = np.zeros(x.shape)
+        kinds = np.full(x.shape, TEXT, np.uint8)
+        if errors is not None:
+            kinds = np.where(errors > 0, errors + np.uint8(ERROR), kinds).astype(np.uint8)
+        return cls(zeros, kinds, x)
+
+    @classmethod
+    def _with_errors(cls, x: Floats, codes: Codes, kind: int) -> Value:
+        if not codes.any():
+            return cls(x, np.full((1,) * x.ndim, kind, np.uint8))
+        kinds = np.where(codes > 0, codes + np.uint8(ERROR), np.uint8(kind)).astype(np.uint8)
+        return cls(np.where(codes > 0, 0.0, x), kinds)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return np.broadcast_shapes(self.numbers.shape, self.kinds.shape)
+
+    @property
+    def errors(self) -> Codes:
+        """Error codes, 0 where there is none; broadcasts to the shape."""
+        return np.where(self.kinds >= ERROR, self.kinds - np.uint8(ERROR), np.uint8(0)).astype(np.uint8)
+
+    @property
+    def has_errors(self) -> bool:
+        return bool((self.kinds >= ERROR).any())
+
+    @property
+    def plain(self) -> bool:
+        """Numbers, logicals and blanks only: arithmetic needs no look at the kinds."""
+        return not (self.kinds >= ERROR).any() and not (self.kinds == TEXT).any()
+
+    def take(self, index: NDArray[np.intp]) -> Value:
+        """The trials of `index`; a constant stays as it is."""
+        if self.shape[0] == 1:
+            return self
+        pick = [None if a is None else (a if a.shape[0] == 1 else a[index]) for a in self._arrays()]
+        return Value(pick[0], pick[1], pick[2])  # type: ignore[arg-type]  # only texts may be None
+
+    def _arrays(self) -> tuple[NDArray[Any] | None, ...]:
+        return self.numbers, self.kinds, self.texts
+
+    def as_range(self) -> Value:
+        """A scalar `(n,)` as the range `(n, 1, 1)`; a range as it is."""
+        if self.numbers.ndim == 3:
+            return self
+        parts = [None if a is None else a.reshape(-1, 1, 1) for a in self._arrays()]
+        return Value(parts[0], parts[1], parts[2])  # type: ignore[arg-type]  # only texts may be None
+
+    def to_numbers(self) -> tuple[Floats, Codes]:
+        """As arithmetic sees it: logicals 1 and 0, blanks 0, texts read as numbers or `#VALUE!`."""
+        if self.texts is None or not (self.kinds == TEXT).any():
+            return self.numbers, self.errors
+        numbers, errors = (np.array(np.broadcast_to(a, self.shape)) for a in (self.numbers, self.errors))
+        for place in zip(*np.nonzero(np.broadcast_to(self.kinds == TEXT, self.shape)), strict=True):
+            number = parse_number(np.broadcast_to(self.texts, self.shape)[place])
+            numbers[place] = 0.0 if number is None else number
+            errors[place] = ErrorCode.VALUE if number is None else 0
+        return numbers, errors
+
+    def to_logicals(self) -> tuple[Bools, Codes]:
+        """As a condition sees it: numbers by `<> 0`, blanks FALSE, the texts TRUE and FALSE, others `#VALUE!`."""
+        truth, errors = self.numbers != 0, self.errors
+        if self.texts is None or not (self.kinds == TEXT).any():
+            return truth, errors
+        folded = np.array([str(t).casefold() for t in self.texts.ravel()], object).reshape(self.texts.shape)
+        is_text = self.kinds == TEXT
+        truth = np.where(is_text, folded == "true", truth)
+        bad = is_text & (folded != "true") & (folded != "false")
+        return truth, np.where(bad, np.uint8(ErrorCode.VALUE), errors).astype(np.uint8)
+
+    def to_texts(self) -> tuple[Objects, Codes]:
+        """As `&` sees it: numbers in General format, `TRUE`, `FALSE`, blanks empty."""
+        numbers, kinds = np.broadcast_to(self.numbers, self.shape), np.broadcast_to(self.kinds, self.shape)
+        out = np.empty(self.shape, object)
+        for place in np.ndindex(*self.shape):
+            out[place] = _text(float(numbers[place]), int(kinds[place]), self._text_at(place))
+        return out, np.broadcast_to(self.errors, self.shape)
+
+    def _text_at(self, place: tuple[int, ...]) -> str:
+        return "" if self.texts is None else str(np.broadcast_to(self.texts, self.shape)[place])
+
+    def objects(self) -> Objects:
+        """Every element as a Python object: float, bool, str, `ErrorCode`, or None for a blank."""
+        numbers, kinds = np.broadcast_to(self.numbers, self.shape), np.broadcast_to(self.kinds, self.shape)
+        out = np.empty(self.shape, object)
+        for place in np.ndindex(*self.shape):
+            out[place] = _object(float(numbers[place]), int(kinds[place]), self._text_at(place))
+        return out
+
+
+def _text(number: float, kind: int, text: str) -> str:
+    if kind == NUMBER:
+        return general_text(number)
+    if kind == LOGICAL:
+        return "TRUE" if number else "FALSE"
+    return text if kind == TEXT else ""
+
+
+def _object(number: float, kind: int, text: str) -> object:
+    if kind >= ERROR:
+        return ErrorCode(kind - ERROR)
+    return {NUMBER: number, LOGICAL: bool(number), TEXT: text}.get(kind)
+
+
+def from_objects(items: Objects) -> Value:
+    """The inverse of `Value.objects`."""
+    numbers, kinds = np.zeros(items.shape), np.zeros(items.shape, np.uint8)
+    texts = np.full(items.shape, "", object)
+    for place in np.ndindex(*items.shape):
+        item = items[place]
+        kinds[place] = _kind(item)
+        if isinstance(item, str):
+            texts[place] = item
+        elif item is not None and not isinstance(item, ErrorCode):
+            numbers[place] = float(item)
+    return Value(numbers, kinds, texts if (kinds == TEXT).any() else None)
+
+
+def _kind(item: object) -> int:
+    match item:
+        case None:
+            return BLANK
+        case bool() | np.bool_():
+            return LOGICAL
+        case ErrorCode():
+            return ERROR + int(item)
+        case str():
+            return TEXT
+        case _:
+            return NUMBER
+
+
+def constant(item: object) -> Value:
+    """A Python object as a constant, `(1,)`."""
+    box = np.empty(1, object)
+    box[0] = item
+    return from_objects(box)
+
+
+def parse_number(text: str) -> float | None:
+    """The number a text stands for in arithmetic; None when it is not one."""
+    stripped = text.strip()
+    percent = stripped.endswith("%")
+    body = stripped.removesuffix("%").replace(",", "")
+    try:
+        number = float(body)
+    except ValueError:
+        return None
+    if not np.isfinite(number) or "_" in body:
+        return None
+    return number / 100 if percent else number
+
+
+def general_text(number: float) -> str:
+    """A number as Excel's General format writes it into a text: up to 15 significant digits."""
+    if number == int(number) and abs(number) < 1e20:
+        digits = f"{number:.15g}"
+        return f"{int(float(digits))}"
+    text = f"{number:.15g}"
+    mantissa, mark, exponent = text.partition("e")
+    if mark:
+        return f"{mantissa}E{exponent[0]}{exponent[1:].lstrip('0').zfill(2)}"
+    return text
+
+
+def shapes(values: Iterable[Value]) -> tuple[int, ...]:
+    """The shape that all of `values` broadcast to."""
+    return np.broadcast_shapes(*(value.shape for value in values))

@@ -1,0 +1,161 @@
+"""A workbook understood and compiled: ready to be sampled and evaluated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from xlmc.compile import ENGINES, Lowering, Program, Target
+from xlmc.definitions import Assumption, Definitions, Filter, Forecast, read_definitions
+from xlmc.definitions.model import name_key
+from xlmc.drawing import correlated_groups, draw_of, dynamic_parameters
+from xlmc.errors import DefinitionError, Notice, SimulationError
+from xlmc.sampling import MonteCarlo, Stage
+from xlmc.scene import condition, survey
+from xlmc.workbook import Workbook, read_workbook
+
+if TYPE_CHECKING:
+    from xlmc.simulate import Progress, Simulation
+
+__all__ = ["Model", "load"]
+
+
+def load(path: str | Path) -> Model:
+    """Read a workbook and compile what its forecasts and filters need.
+
+    Raises:
+        WorkbookError: the file cannot be read.
+        DefinitionError: a definition is not what it must be; all faulty ones are listed.
+        FormulaError: a needed cell cannot be computed.
+    """
+    workbook = read_workbook(path)
+    definitions = read_definitions(workbook)
+    if definitions.problems:
+        raise _joined(definitions.problems)
+    return Model(workbook, definitions, Path(path))
+
+
+def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:
+    return problems[0] if len(problems) == 1 else DefinitionError("\n".join(str(p) for p in problems).rstrip("."))
+
+
+class Model:
+    """A workbook's assumptions, forecasts and filters, and the function that computes them.
+
+    Attributes:
+        workbook, definitions, path: what it was made from.
+        assumptions, forecasts, filters: as defined.
+        live: the assumptions that are drawn: needed and not frozen.
+        notices: what the person should know.
+    """
+
+    def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
+        self.workbook, self.definitions, self.path = workbook, definitions, path
+        self.scene = survey(workbook, definitions)
+        self.live: tuple[Assumption, ...] = self.scene.live
+        held = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
+        self._lowering = Lowering(self.scene.graph, {a.cell: name_key(a.name) for a in self.live}, held)
+        self._draws = {a.name: draw_of(a, self._lowering) for a in self.live}
+        self._groups = correlated_groups(definitions.correlations, [a.name for a in self.live])
+        self._check_targets()
+        notices = workbook.notices, definitions.notices, self.scene.notices, self._lowering.notices
+        self.notices: tuple[Notice, ...] = tuple(notice for part in notices for notice in part)
+
+    @property
+    def assumptions(self) -> tuple[Assumption, ...]:
+        return self.definitions.assumptions
+
+    @property
+    def forecasts(self) -> tuple[Forecast, ...]:
+        return self.definitions.forecasts
+
+    @property
+    def filters(self) -> tuple[Filter, ...]:
+        return self.definitions.filters
+
+    @property
+    def fallible(self) -> frozenset[str]:
+        """Keys of the assumptions whose draws may be errors: their parameters vary."""
+        return frozenset(name_key(a.name) for stage in self.scene.stages[1:] for a in stage)
+
+    def simulate(
+        self,
+        trials: int | None = None,
+        seed: int | None = None,
+        *,
+        engine: str | None = None,
+        jobs: int = 1,
+        progress: Progress | None = None,
+    ) -> Simulation:
+        """Run the simulation; what is not given comes from the workbook's settings.
+
+        Args:
+            trials: how many, 1 or more.
+            seed: 0 or more.
+            engine: `numpy`, or `formulas`, the slow reference.
+            jobs: threads. The result does not depend on it.
+            progress: called with (trials done, trials accepted) after every block.
+
+        Raises:
+            SimulationError: an argument is out of its range.
+        """
+        from xlmc.simulate import simulate
+
+        return simulate(self, trials=trials, seed=seed, engine=engine, jobs=jobs, progress=progress)
+
+    def function(self, inputs: Mapping[str, ArrayLike]) -> dict[str, NDArray[np.float64]]:
+        """The workbook as a function: values of every live assumption in, every forecast out. Filters are not asked.
+
+        Args:
+            inputs: name of the assumption -> `(n,)` or a number.
+
+        Returns:
+            Name of the forecast -> `(n,)`; NaN where the cell is an error, a text or blank.
+
+        Raises:
+            SimulationError: an assumption is missing.
+        """
+        given = {name_key(name): np.asarray(values, np.float64) for name, values in inputs.items()}
+        missing = [a.name for a in self.live if name_key(a.name) not in given]
+        if missing:
+            raise SimulationError(f"no values for the assumption {missing[0]!r}", hint="give every live assumption")
+        n = int(np.broadcast_shapes((1,), *(values.shape for values in given.values()))[0])
+        full = {key: np.ascontiguousarray(np.broadcast_to(values, (n,))) for key, values in given.items()}
+        needed = frozenset(name_key(a.name) for a in self.live)
+        evaluator = ENGINES["numpy"](self._lowering, self._forecast_targets, [], needed).evaluator(n)
+        columns = evaluator.filters(full, n)
+        return {f.name: column.as_floats() for f, column in zip(self.forecasts, columns, strict=True)}
+
+    def program(self, engine: str) -> Program:
+        """The filters and forecasts, compiled for an engine.
+
+        Raises:
+            SimulationError: there is no such engine.
+        """
+        if engine not in ENGINES:
+            raise SimulationError(f"there is no engine {engine!r}", hint=f"choose one of {', '.join(ENGINES)}")
+        return ENGINES[engine](self._lowering, self._filter_targets, self._forecast_targets, self.fallible)
+
+    def sampler(self, seed: int, block: int) -> MonteCarlo:
+        """The draws, block by block; for one thread."""
+        draws = [tuple(self._draws[a.name] for a in stage) for stage in self.scene.stages]
+        stages = [Stage(stage, dynamic=i > 0) for i, stage in enumerate(draws)]
+        parameters = [dynamic_parameters(stage, self._lowering, block) for stage in draws[1:]]
+        return MonteCarlo(seed, stages, self._groups, parameters, block)
+
+    @property
+    def _filter_targets(self) -> list[Target]:
+        return [Target(condition(filter_), filter_.cell) for filter_ in self.filters]
+
+    @property
+    def _forecast_targets(self) -> list[Target]:
+        return [Target(forecast.cell, forecast.cell) for forecast in self.forecasts]
+
+    def _check_targets(self) -> None:
+        """Lower every target once, so that a fault is told when the workbook is loaded."""
+        for target in (*self._filter_targets, *self._forecast_targets):
+            self._lowering.target(target)

@@ -1,0 +1,132 @@
+"""What of a workbook a run needs: its cells, and the assumptions that reach one of them, in the order to draw them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from xlmc.address import Cell
+from xlmc.definitions import Assumption, Definitions, Filter
+from xlmc.errors import DefinitionError, Notice
+from xlmc.formula import Graph, Resolver, build_graph, ir
+from xlmc.workbook import Workbook
+
+__all__ = ["Scene", "condition", "filter_limits", "parameter_cells", "survey"]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """The needed part of a workbook.
+
+    Attributes:
+        graph: the needed formula cells.
+        stages: the assumptions to draw; the parameters of a stage depend on earlier stages only.
+        idle: the assumptions that nothing needs.
+    """
+
+    graph: Graph
+    stages: tuple[tuple[Assumption, ...], ...]
+    idle: tuple[Assumption, ...]
+
+    @property
+    def live(self) -> tuple[Assumption, ...]:
+        """The assumptions to draw, in order."""
+        return tuple(assumption for stage in self.stages for assumption in stage)
+
+    @property
+    def notices(self) -> tuple[Notice, ...]:
+        """What was left out."""
+        return tuple(Notice(f"no forecast or filter needs the assumption {a.name!r}", a.cell) for a in self.idle)
+
+
+def survey(workbook: Workbook, definitions: Definitions) -> Scene:
+    """Find what the forecasts and filters need.
+
+    Raises:
+        FormulaError: a needed formula cannot be read, or needed cells form a circle.
+        DefinitionError: assumptions need each other in a circle.
+    """
+    live = {a.cell: a for a in definitions.assumptions if not a.frozen}
+    held = frozenset(a.cell for a in definitions.assumptions if a.frozen)
+    resolver = Resolver(workbook)
+    targets = [f.cell for f in definitions.forecasts]
+    for filter_ in definitions.filters:
+        targets += [filter_.cell, *(bound for _, bound in filter_limits(filter_) if isinstance(bound, Cell))]
+    while True:  # the parameters of needed assumptions may need more cells, and these more assumptions
+        graph = build_graph(resolver, targets, frozenset(live), held)
+        more = [cell for a in live.values() if a.cell in graph.reached for cell in parameter_cells(a)]
+        if set(more) <= set(targets):
+            break
+        targets = list(dict.fromkeys(targets + more))
+    reached = tuple(a for a in live.values() if a.cell in graph.reached)
+    idle = tuple(a for a in definitions.assumptions if a.cell not in graph.reached)
+    return Scene(graph, _stages(graph, reached), idle)
+
+
+def parameter_cells(assumption: Assumption) -> Iterator[Cell]:
+    """The cells that an assumption's parameters and cutoffs stand in."""
+    for parameter in (*assumption.parameters.values(), assumption.lower_cutoff, assumption.upper_cutoff):
+        if isinstance(parameter, Cell):
+            yield parameter
+
+
+def filter_limits(filter_: Filter) -> list[tuple[str, float | Cell]]:
+    """The limits of a filter as (relation, bound)."""
+    limits = [(">=", filter_.at_least), ("<=", filter_.at_most), (">", filter_.above), ("<", filter_.below)]
+    return [(relation, bound) for relation, bound in limits if bound is not None]
+
+
+def condition(filter_: Filter) -> ir.Expression:
+    """What a filter asks, as a formula. Its cell is taken as a number, so that a text is `#VALUE!`, not "large"."""
+    number = ir.Binary("+", filter_.cell, ir.Number(0.0))
+    limits = filter_limits(filter_)
+    if not limits:
+        return ir.Binary("<>", number, ir.Number(0.0))
+    parts = tuple(ir.Binary(relation, number, _bound(bound)) for relation, bound in limits)
+    return parts[0] if len(parts) == 1 else ir.Call("AND", parts)
+
+
+def _bound(bound: float | Cell) -> ir.Expression:
+    return ir.Binary("+", bound, ir.Number(0.0)) if isinstance(bound, Cell) else ir.Number(bound)
+
+
+def _stages(graph: Graph, reached: tuple[Assumption, ...]) -> tuple[tuple[Assumption, ...], ...]:
+    waiting = {a.cell: _upstream(graph, a) for a in reached}
+    stages: list[tuple[Assumption, ...]] = []
+    while waiting:
+        ready = tuple(a for a in reached if a.cell in waiting and not waiting[a.cell] & waiting.keys())
+        if not ready:
+            raise _circle([a for a in reached if a.cell in waiting], waiting)
+        stages.append(ready)
+        for assumption in ready:
+            del waiting[assumption.cell]
+    return tuple(stages)
+
+
+def _upstream(graph: Graph, assumption: Assumption) -> set[Cell]:
+    """The cells that an assumption's parameters depend on."""
+    found: set[Cell] = set()
+    open_ = list(parameter_cells(assumption))
+    while open_:
+        cell = open_.pop()
+        if cell not in found:
+            found.add(cell)
+            open_ += graph.needs.get(cell, ())
+    return found
+
+
+def _circle(among: list[Assumption], waiting: dict[Cell, set[Cell]]) -> DefinitionError:
+    """Follow needs until an assumption comes up again: from there on it is the circle."""
+    trail = [among[0]]
+    while True:
+        following = next(a for a in among if a.cell in waiting[trail[-1].cell])
+        if following in trail:
+            circle = [*trail[trail.index(following) :], following]
+            break
+        trail.append(following)
+    names = " → ".join(repr(a.name) for a in circle)
+    return DefinitionError(
+        f"parameters of assumptions need each other in a circle: {names}",
+        where=circle[0].row,
+        hint="give one of them parameters that are numbers",
+    )

@@ -1,0 +1,169 @@
+"""The result of a run: accepted trials, counts, statistics."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc import statistics
+from xlmc.blocks import FilterTally
+from xlmc.definitions import Forecast, Settings
+from xlmc.definitions.model import name_key
+from xlmc.statistics import Description, Estimate
+
+if TYPE_CHECKING:
+    import pandas
+
+    from xlmc.model import Model
+
+__all__ = ["ERROR_SHARE", "ForecastResult", "Simulation"]
+
+ERROR_SHARE: Final = 0.001
+"""Above this share of error trials the answer must not be used as it stands."""
+
+Floats = NDArray[np.float64]
+
+
+class ForecastResult:
+    """One forecast's accepted trials and their statistics. Estimates carry their standard error.
+
+    Attributes:
+        values: `(m,)` accepted trials in which it is a number.
+        faults: error, `text` or `blank` -> accepted trials in which it is none.
+    """
+
+    def __init__(self, definition: Forecast, values: Floats, faults: Counter[str]) -> None:
+        self.definition, self.values, self.faults = definition, values[~np.isnan(values)], faults
+
+    def __repr__(self) -> str:
+        return f"<{self.definition.name}: {self.values.size} accepted trials>"
+
+    @cached_property
+    def statistics(self) -> Description:
+        """Every statistic at once."""
+        d = self.definition
+        return statistics.describe(self.values, central=d.central, threshold=d.threshold)
+
+    @property
+    def mean(self) -> Estimate:
+        return statistics.mean(self.values)
+
+    @property
+    def median(self) -> Estimate:
+        return statistics.median(self.values)
+
+    @property
+    def standard_deviation(self) -> Estimate:
+        return statistics.standard_deviation(self.values)
+
+    def percentile(self, percent: float) -> Estimate:
+        """The value that `percent` (0 to 100) of the trials do not exceed, as Excel's PERCENTILE.INC."""
+        return statistics.percentile(self.values, percent)
+
+    def central(self, share: float | None = None) -> tuple[Estimate, Estimate]:
+        """Both ends of the central range that holds `share` of the trials; the forecast's own share by default."""
+        return statistics.central_interval(self.values, self.definition.central if share is None else share)
+
+    def probability_above(self, threshold: float) -> Estimate:
+        """P(forecast > threshold)."""
+        return statistics.probability_above(self.values, threshold)
+
+
+@dataclass(frozen=True, eq=False)
+class Simulation:
+    """A finished run.
+
+    Attributes:
+        model, settings, block: what it is a function of.
+        trials: how many were run.
+        trial_index: `(m,)` the accepted ones, counted from 0.
+        inputs: assumption -> `(m,)` its accepted draws.
+        prior: assumption -> its draws before filtering, of the first trials.
+        forecasts: forecast -> `(m,)`, NaN where it has no number.
+        faults: forecast -> fault -> accepted trials in which it has no number.
+        tally: what the filters rejected.
+        invalid: assumption key -> trials in which its parameters were no distribution.
+    """
+
+    model: Model
+    settings: Settings
+    block: int
+    trials: int
+    trial_index: NDArray[np.int64]
+    inputs: Mapping[str, Floats]
+    prior: Mapping[str, Floats]
+    forecasts: Mapping[str, Floats]
+    faults: Mapping[str, Counter[str]]
+    tally: FilterTally
+    invalid: Counter[str]
+
+    def __getitem__(self, name: str) -> ForecastResult:
+        """The result of a forecast, by name whatever its case.
+
+        Raises:
+            KeyError: there is no such forecast.
+        """
+        for definition in self.model.forecasts:
+            if name_key(definition.name) == name_key(name):
+                return self.results[definition.name]
+        raise KeyError(f"there is no forecast {name!r}; there are {', '.join(map(repr, self.forecasts))}")
+
+    def __repr__(self) -> str:
+        return f"<Simulation: {self.accepted} of {self.trials} trials accepted>"
+
+    @cached_property
+    def results(self) -> dict[str, ForecastResult]:
+        """Every forecast's result, in the order of the workbook."""
+        return {
+            f.name: ForecastResult(f, self.forecasts[f.name], self.faults[f.name]) for f in self.model.forecasts
+        }
+
+    @property
+    def accepted(self) -> int:
+        return int(self.trial_index.size)
+
+    @property
+    def acceptance(self) -> Estimate:
+        """The share of accepted trials."""
+        return statistics.proportion(self.accepted, self.trials)
+
+    @property
+    def error_trials(self) -> int:
+        """Trials lost to errors: undecided by a filter, drawn from no distribution, or without a forecast."""
+        lost = max((sum(faults.values()) for faults in self.faults.values()), default=0)
+        return self.tally.by_error + sum(self.invalid.values()) + lost
+
+    @property
+    def warnings(self) -> list[str]:
+        """Why the answer must not be used as it stands; empty when it may be."""
+        found = []
+        if self.accepted == 0:
+            found.append("no trial was accepted: the filters contradict the assumptions")
+        if self.error_trials > ERROR_SHARE * self.trials:
+            share = self.error_trials / self.trials
+            found.append(f"{self.error_trials:,} trials ({share:.2%}) were lost to errors in cells")
+        return found
+
+    def frame(self) -> pandas.DataFrame:
+        """Accepted trials, one a row, indexed by trial: assumptions, then forecasts."""
+        import pandas
+
+        columns = {**self.inputs, **self.forecasts}
+        return pandas.DataFrame(columns, index=pandas.Index(self.trial_index, name="Trial"))
+
+    def save(self, path: str | Path) -> None:
+        """Write the workbook with result sheets.
+
+        Raises:
+            WorkbookError: the file cannot be written.
+        """
+        from xlmc.report import save
+
+        save(self, Path(path))

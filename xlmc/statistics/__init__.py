@@ -1,0 +1,51 @@
+"""Statistics of accepted trials, each with its standard error and interval.
+
+Pure functions of (values, weights=None, replicate=None). Errors come from independent trials, weighted trials or
+independent replicates (Latin hypercube, scrambled Sobol), and are Monte Carlo error only, not reconstruction error.
+"""
+
+from xlmc.statistics.describe import Description, describe
+from xlmc.statistics.digits import format_estimate, supported_digits
+from xlmc.statistics.estimate import Estimate
+from xlmc.statistics.extremes import maximum, minimum, range_width
+from xlmc.statistics.mode import mode
+from xlmc.statistics.proportions import probability_above, proportion, replicated_proportion, share
+from xlmc.statistics.quantiles import central_interval, median, percentile, percentiles
+from xlmc.statistics.sample import Sample
+from xlmc.statistics.smooth import (
+    coefficient_of_variation,
+    kurtosis,
+    mean,
+    mean_standard_error,
+    skewness,
+    standard_deviation,
+    variance,
+)
+
+__all__ = [
+    "Description",
+    "Estimate",
+    "Sample",
+    "central_interval",
+    "coefficient_of_variation",
+    "describe",
+    "format_estimate",
+    "kurtosis",
+    "maximum",
+    "mean",
+    "mean_standard_error",
+    "median",
+    "minimum",
+    "mode",
+    "percentile",
+    "percentiles",
+    "probability_above",
+    "proportion",
+    "range_width",
+    "replicated_proportion",
+    "share",
+    "skewness",
+    "standard_deviation",
+    "supported_digits",
+    "variance",
+]

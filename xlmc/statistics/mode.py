@@ -1,0 +1,113 @@
+"""The mode: where the trials lie closest.
+
+**Value.** Half-sample mode (Robertson & Cryer 1974, Bickel 2002): keep the half of the trials that lies in the shortest
+interval, then the densest half of those, until two or three are left. There is no bandwidth to choose, and outliers do
+not matter. It is meant for continuous forecasts.
+
+**Error.** In a window of width h about a rounded peak the noise of a count, √(nh), hides the curvature, nh³, until h
+is about n^(−1/5): the mode converges no faster, and the bootstrap fails for such statistics. Subsampling does not
+(Politis & Romano 1994). So: the trials are dealt by a fixed shuffle into 32 equal groups (fewer if one would hold under
+8 trials), the mode of each group is taken, and the groups' standard deviation is scaled from the group's size to n by
+the fifth-root law. With replicates the groups are the replicates. At a peak with a kink or an edge the mode converges
+as n^(−1/3) and this error is up to about twice too large. It is one of spread: the pull of a skewed peak, which shrinks
+with n as well, is not in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from xlmc.statistics.estimate import Estimate, with_error
+from xlmc.statistics.sample import Sample, Values
+
+__all__ = ["mode"]
+
+Floats = NDArray[np.float64]
+
+GROUPS = 32
+LEAST_IN_A_GROUP = 8
+MOST_IN_A_GROUP = 10_000  # more would cost time and not improve the spread of 32 numbers
+SHUFFLE_SEED = 1974
+CONVERGENCE = 0.2
+
+
+def mode(
+    values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None, *, confidence: float = 0.95
+) -> Estimate:
+    """Half-sample mode of (n,) values; without an error below 16 trials or two replicates.
+
+    >>> mode([1.0, 4.0, 4.1, 4.2, 9.0]).value
+    4.1
+    """
+    sample = Sample.of(values, weights, replicate)
+    if sample.n == 0:
+        return Estimate(np.nan)
+    value = half_sample_mode(sample)
+    sizes_and_modes = [(group.n, half_sample_mode(group)) for group in _dealt(sample)]
+    if len(sizes_and_modes) < 2:
+        return Estimate(value, n=sample.n)
+    sizes, modes = np.array(sizes_and_modes).T
+    error = float(np.std(modes, ddof=1) * (np.mean(sizes) / sample.n) ** CONVERGENCE)
+    return with_error(value, error, modes.size - 1.0, confidence, sample.n)
+
+
+def half_sample_mode(sample: Sample) -> float:
+    """The mode of at least one ascending value, weighted or not."""
+    x, w = sample.x, sample.w
+    while x.size > 3:
+        half = _densest_half(x) if w is None else _densest_weighted_half(x, w)
+        x, w = x[half], None if w is None else w[half]
+        if x[0] == x[-1]:
+            return float(x[0])
+    return _mode_of_three(x, np.ones(x.size) if w is None else w)
+
+
+def _densest_half(x: Floats) -> slice:
+    size = (x.size + 1) // 2
+    start = _middle_smallest(x[size - 1 :] - x[: x.size - size + 1])
+    return slice(start, start + size)
+
+
+def _densest_weighted_half(x: Floats, w: Floats) -> slice:
+    """The run of trials with half the weight or just over that is shortest for the weight it holds."""
+    reached = np.concatenate([[0.0], np.cumsum(w)])
+    needed = reached[:-1] + reached[-1] / 2.0 * (1.0 - 1e-12)  # rounding must not ask for one trial more
+    stops = np.searchsorted(reached, needed)
+    stops = stops[stops <= x.size]
+    starts = np.arange(stops.size)
+    start = _middle_smallest((x[stops - 1] - x[starts]) / (reached[stops] - reached[starts]))
+    return slice(start, int(stops[start]))
+
+
+def _middle_smallest(widths: Floats) -> int:
+    """Where the smallest stands; of several the middle one, so that evenly spaced values give their centre."""
+    smallest = np.flatnonzero(widths == widths.min())
+    return int(smallest[(smallest.size - 1) // 2])
+
+
+def _mode_of_three(x: Floats, w: Floats) -> float:
+    """One value; the mean of two; of three the mean of the closer pair, or the middle one if neither is closer."""
+    if x.size == 3:
+        left, right = (x[1] - x[0]) / (w[0] + w[1]), (x[2] - x[1]) / (w[1] + w[2])
+        if left == right:
+            return float(x[1])
+        pair = slice(0, 2) if left < right else slice(1, 3)
+        x, w = x[pair], w[pair]
+    return float(x[0] + np.sum(w * (x - x[0])) / np.sum(w))
+
+
+def _dealt(sample: Sample) -> Iterator[Sample]:
+    """The sample's independent parts: its replicates, or groups dealt by rank, whatever the order of the trials was."""
+    if sample.group is not None:
+        yield from (sample.replicate(each) for each in range(sample.groups))
+        return
+    groups = min(GROUPS, sample.n // LEAST_IN_A_GROUP)
+    if groups < 2:
+        return
+    size = min(sample.n // groups, MOST_IN_A_GROUP)
+    shuffle = np.random.Generator(np.random.PCG64DXSM(SHUFFLE_SEED))
+    dealt = np.sort(shuffle.choice(sample.n, (groups, size), replace=False), axis=1)
+    yield from (sample.part(places) for places in dealt)

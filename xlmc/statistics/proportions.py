@@ -1,0 +1,149 @@
+"""Shares of trials: acceptance, certainty, the probability above a threshold.
+
+**Interval.** Wilson's, or Clopper and Pearson's, which never covers less than asked and is wider. With weights or
+replicates the share counts as that of the number of independent trials that would give the same error, reduced for the
+quantile of Student's t (Korn & Graubard 1998).
+
+**Error.** √(p(1 − p)/n), or the spread between weighted trials or replicates (ratio estimate: replicates may differ in
+size). It is never less than that of a share of 0 in n trials, Wilson's half width over 1.96: no trial seen is no proof
+of none, so a share is never 0 ± 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from xlmc.statistics.estimate import LEAST_DOF, Estimate, t_quantile
+from xlmc.statistics.sample import Sample, Values
+
+__all__ = ["Method", "probability_above", "proportion", "replicated_proportion", "share"]
+
+Floats = NDArray[np.float64]
+Method = Literal["wilson", "clopper-pearson"]
+
+
+def proportion(successes: int, trials: int, *, confidence: float = 0.95, method: Method = "wilson") -> Estimate:
+    """Successes of independent trials, as accepted of all.
+
+    Raises:
+        ValueError: successes outside 0 … trials.
+
+    >>> proportion(1, 4).value
+    0.25
+    >>> proportion(0, 1000).error > 0
+    True
+    """
+    if not 0 <= successes <= trials:
+        raise ValueError(f"{successes} successes of {trials} trials")
+    if trials == 0:
+        return Estimate(np.nan)
+    p = successes / trials
+    error = max((p * (1.0 - p) / trials) ** 0.5, _least_error(trials))
+    return Estimate(p, error, _INTERVALS[method](p, float(trials), confidence), trials)
+
+
+def replicated_proportion(
+    successes: ArrayLike, trials: ArrayLike, *, confidence: float = 0.95, method: Method = "wilson"
+) -> Estimate:
+    """Successes of trials pooled over R independent replicates, both (R,) counts; the error is that between replicates.
+
+    Raises:
+        ValueError: successes outside 0 … trials in a replicate, or counts of different length.
+    """
+    hits, totals = np.asarray(successes, dtype=np.float64), np.asarray(trials, dtype=np.float64)
+    if hits.ndim != 1 or hits.shape != totals.shape or not np.all((hits >= 0.0) & (hits <= totals)):
+        raise ValueError("successes and trials must be counts per replicate, 0 ≤ successes ≤ trials")
+    n = float(totals.sum())
+    if n == 0.0:
+        return Estimate(np.nan)
+    return _pooled(hits, totals, n, hits.size - 1.0, int(n), confidence, method)
+
+
+def share(
+    hits: ArrayLike,
+    weights: ArrayLike | None = None,
+    replicate: ArrayLike | None = None,
+    *,
+    confidence: float = 0.95,
+    method: Method = "wilson",
+) -> Estimate:
+    """The share of (n,) trials that are TRUE."""
+    return probability_above(hits, 0.5, weights, replicate, confidence=confidence, method=method)
+
+
+def probability_above(
+    values: Values,
+    threshold: float,
+    weights: ArrayLike | None = None,
+    replicate: ArrayLike | None = None,
+    *,
+    confidence: float = 0.95,
+    method: Method = "wilson",
+) -> Estimate:
+    """P(value > threshold) among (n,) values.
+
+    >>> probability_above([1.0, 2.0, 3.0, 4.0], 3.0).value
+    0.25
+    """
+    sample = Sample.of(values, weights, replicate)
+    first = int(np.searchsorted(sample.x, threshold, side="right"))
+    if sample.w is None and sample.group is None:
+        return proportion(sample.n - first, sample.n, confidence=confidence, method=method)
+    if sample.n == 0:
+        return Estimate(np.nan)
+    w = np.ones(sample.n) if sample.w is None else sample.w
+    hits = np.where(np.arange(sample.n) >= first, w, 0.0)
+    return _pooled(
+        sample.per_unit(hits), sample.per_unit(w), sample.effective, sample.dof, sample.n, confidence, method
+    )
+
+
+def _pooled(
+    hits: Floats, totals: Floats, effective: float, dof: float, n: int, confidence: float, method: Method
+) -> Estimate:
+    """The ratio of two sums over independent units, each (units,), worth `effective` equal trials."""
+    p = float(hits.sum() / totals.sum())
+    if dof < LEAST_DOF:
+        return Estimate(p, n=n)
+    spread = np.sum(((hits - p * totals) / totals.sum()) ** 2) * (dof + 1.0) / dof
+    error = max(float(spread) ** 0.5, _least_error(effective))
+    if p in (0.0, 1.0):
+        return Estimate(p, error, _INTERVALS[method](p, effective, confidence), n)
+    widening = t_quantile(dof, confidence) / t_quantile(np.inf, confidence)
+    equal_trials = p * (1.0 - p) / (error * widening) ** 2
+    return Estimate(p, error, _INTERVALS[method](p, equal_trials, confidence), n)
+
+
+def _least_error(trials: float) -> float:
+    """The error of a share of 0: half of Wilson's 95 % interval over 1.96."""
+    z = t_quantile(np.inf, 0.95)
+    return z / (2.0 * (trials + z * z))
+
+
+def _wilson(p: float, trials: float, confidence: float) -> tuple[float, float]:
+    z = t_quantile(np.inf, confidence)
+    pull = z * z / trials
+    centre = (p + pull / 2.0) / (1.0 + pull)
+    half = (pull * (p * (1.0 - p) + pull / 4.0)) ** 0.5 / (1.0 + pull)
+    # At 0 and 1 one end is the share itself; rounding must not say otherwise.
+    return 0.0 if p == 0.0 else centre - half, 1.0 if p == 1.0 else centre + half
+
+
+def _clopper_pearson(p: float, trials: float, confidence: float) -> tuple[float, float]:
+    from scipy.special import betaincinv
+
+    tail, hits = (1.0 - confidence) / 2.0, p * trials
+    misses = trials - hits
+    low = 0.0 if p == 0.0 else float(betaincinv(hits, misses + 1.0, tail))
+    high = 1.0 if p == 1.0 else float(betaincinv(hits + 1.0, misses, 1.0 - tail))
+    return low, high
+
+
+_INTERVALS: dict[Method, Callable[[float, float, float], tuple[float, float]]] = {
+    "wilson": _wilson,
+    "clopper-pearson": _clopper_pearson,
+}

@@ -1,0 +1,138 @@
+"""What xlmc knows of a workbook: cells with formulas and cached values, names, tables. No file is touched here."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from xlmc.address import Area, Cell
+from xlmc.errors import ErrorCode, Notice
+
+__all__ = ["CellContent", "CellValue", "DefinedName", "Formula", "Sheet", "Table", "Workbook"]
+
+CellValue = float | bool | str | ErrorCode | None
+"""A number, a logical, a text, an error or nothing, as a cell holds it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Formula:
+    """A cell's formula as the file holds it.
+
+    Attributes:
+        text: the formula without its leading `=`.
+        row, column: the cell `text` is written for. A shared formula's children carry their master's text and place,
+            and mean it shifted to themselves.
+        array: the area an array formula (`t="array"`) fills; None for a plain formula.
+        dynamic: a dynamic-array formula (`cm` names the XLDAPR metadata): it spills.
+    """
+
+    text: str
+    row: int
+    column: int
+    array: Area | None = None
+    dynamic: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class CellContent:
+    """One cell: its value (typed in, or as Excel cached it) and its formula, if any."""
+
+    value: CellValue = None
+    formula: Formula | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """One worksheet. `cells` holds only what the file holds; everything else is blank."""
+
+    name: str
+    part: str
+    cells: Mapping[tuple[int, int], CellContent]
+    merged: tuple[Area, ...] = ()
+    visible: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class DefinedName:
+    """A defined name. `sheet` is None for the whole workbook; `text` is what it stands for, without `=`."""
+
+    name: str
+    text: str
+    sheet: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """An Excel table. `area` includes header and totals rows."""
+
+    name: str
+    area: Area
+    columns: tuple[str, ...]
+    header_rows: int = 1
+    totals_rows: int = 0
+
+    @property
+    def body(self) -> Area:
+        """The data rows."""
+        a = self.area
+        return Area(a.sheet, a.top + self.header_rows, a.left, a.bottom - self.totals_rows, a.right)
+
+
+@dataclass(frozen=True)
+class Workbook:
+    """A workbook as read: nothing evaluated, nothing changed.
+
+    Attributes:
+        sheets: worksheets in tab order, by name as written.
+        parts: every part of the zip package in its order, name -> bytes, as in the file.
+        sha256: of the file.
+        parts_sha256: of the sorted original parts, so that a result workbook can be checked too.
+    """
+
+    name: str
+    sheets: Mapping[str, Sheet]
+    names: tuple[DefinedName, ...] = ()
+    tables: tuple[Table, ...] = ()
+    date1904: bool = False
+    notices: tuple[Notice, ...] = ()
+    parts: Mapping[str, bytes] = field(default_factory=dict, repr=False)
+    sha256: str = ""
+    parts_sha256: str = ""
+
+    @cached_property
+    def _folded(self) -> dict[str, str]:
+        return {name.casefold(): name for name in self.sheets}
+
+    @cached_property
+    def _tables(self) -> dict[str, Table]:
+        return {table.name.casefold(): table for table in self.tables}
+
+    @cached_property
+    def _names(self) -> dict[tuple[str | None, str], DefinedName]:
+        return {(n.sheet and n.sheet.casefold(), n.name.casefold()): n for n in self.names}
+
+    def sheet_named(self, name: str) -> Sheet | None:
+        """The sheet of that name, whatever its case."""
+        found = self._folded.get(name.casefold())
+        return None if found is None else self.sheets[found]
+
+    def table_named(self, name: str) -> Table | None:
+        """The table of that name, whatever its case."""
+        return self._tables.get(name.casefold())
+
+    def defined_name(self, name: str, sheet: str | None = None) -> DefinedName | None:
+        """The name as `sheet` sees it: its own first, then the workbook's."""
+        if sheet is not None:
+            local = self._names.get((sheet.casefold(), name.casefold()))
+            if local is not None:
+                return local
+        return self._names.get((None, name.casefold()))
+
+    def content(self, cell: Cell) -> CellContent:
+        """What the cell holds; blank where the file holds nothing or has no such sheet."""
+        sheet = self.sheets.get(cell.sheet)
+        return _BLANK if sheet is None else sheet.cells.get((cell.row, cell.column), _BLANK)
+
+
+_BLANK = CellContent()

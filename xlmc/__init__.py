@@ -1,3 +1,31 @@
-"""xlmc: Monte Carlo simulation of Excel workbooks, without Excel."""
+"""xlmc: Monte Carlo simulation of Excel workbooks, without Excel.
+
+>>> import xlmc
+>>> model = xlmc.load("examples/intersection.xlsx")
+>>> run = model.simulate(trials=20_000, seed=1)
+>>> round(run["Chevrolet delta-V"].mean.value)
+12
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from xlmc.model import Model, load
+    from xlmc.simulation import ForecastResult, Simulation
+
+__all__ = ["ForecastResult", "Model", "Simulation", "__version__", "load"]
 
 __version__ = "0.1.0"
+
+_HOMES = {"ForecastResult": "simulation", "Model": "model", "Simulation": "simulation", "load": "model"}
+
+
+def __getattr__(name: str) -> Any:
+    """Import the public names when they are first used, so that `xlmc --help` answers at once."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'xlmc' has no attribute {name!r}")
+    from importlib import import_module
+
+    return getattr(import_module(f"xlmc.{_HOMES[name]}"), name)

@@ -109,13 +109,19 @@ def _pooled(
     p = float(hits.sum() / totals.sum())
     if dof < LEAST_DOF:
         return Estimate(p, n=n)
-    spread = np.sum(((hits - p * totals) / totals.sum()) ** 2) * (dof + 1.0) / dof
-    error = max(float(spread) ** 0.5, _least_error(effective))
+    error = error_of_share(hits, totals, effective)
     if p in (0.0, 1.0):
         return Estimate(p, error, _INTERVALS[method](p, effective, confidence), n)
     widening = t_quantile(dof, confidence) / t_quantile(np.inf, confidence)
     equal_trials = p * (1.0 - p) / (error * widening) ** 2
     return Estimate(p, error, _INTERVALS[method](p, equal_trials, confidence), n)
+
+
+def error_of_share(hits: Floats, totals: Floats, effective: float) -> float:
+    """Standard error of Σhits/Σtotals over at least two independent units, worth `effective` equal trials in all."""
+    units = hits.size
+    apart = (hits - hits.sum() / totals.sum() * totals) / totals.sum()
+    return max(float(np.sum(apart**2) * units / (units - 1)) ** 0.5, _least_error(effective))
 
 
 def _least_error(trials: float) -> float:

@@ -12,7 +12,9 @@ equals that of the weighted share below the quantile (Woodruff 1952, Korn & Grau
 
 **Error.** The half width of the 95 % interval over 1.96.
 
-**Replicates.** Delete-one-replicate jackknife of the value itself, Student's t with R − 1 degrees of freedom.
+**Replicates.** The error above, times how much the share of trials below the quantile varies between replicates against
+how much it would between independent trials; Student's t with R − 1 degrees of freedom. (A delete-one-replicate jackknife
+of the value itself covers 75 to 93 % where this covers 92 to 100 %: a handful of trials about the quantile decides it.)
 """
 
 from __future__ import annotations
@@ -23,11 +25,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from xlmc.statistics.estimate import Estimate, t_quantile, with_error
+from xlmc.statistics.proportions import error_of_share
 from xlmc.statistics.sample import Sample, Values, positions_of
 
 __all__ = ["central_interval", "median", "percentile", "percentiles"]
 
 Floats = NDArray[np.float64]
+
+LEAST_SHARE = 1e-12
+"""No sample has a trial beyond such a percentile, and the binomial distribution is not computed further out."""
 
 
 def percentiles(
@@ -136,7 +142,7 @@ def _rank_intervals(sample: Sample, p: Floats, confidence: float) -> Floats:
     """(len(p), 2) ends; infinite where the binomial count asks for a trial beyond the outermost."""
     from scipy.special import bdtrik
 
-    n = _binomial_trials(sample, p)
+    n, p = _binomial_trials(sample, p), p.clip(LEAST_SHARE, 1.0 - LEAST_SHARE)
     tail = (1.0 - confidence) / 2.0
     low, high = bdtrik(tail, n, p), bdtrik(1.0 - tail, n, p)  # ranks counted from 0
     open_below, open_above = (1.0 - p) ** n > tail, p**n > tail
@@ -159,15 +165,21 @@ def _binomial_trials(sample: Sample, p: Floats) -> Floats:
 
 
 def _by_replicate(sample: Sample, p: Floats, points: Floats, confidence: float) -> list[Estimate]:
-    """Jackknife; each deviation is scaled by the share left, which makes replicates of unequal size count rightly."""
-    if sample.groups < 2:
-        return [Estimate(float(point), n=sample.n) for point in points]
-    squares = np.zeros(p.shape)
-    for left_out in range(sample.groups):
-        share, rest = sample.without(left_out)
-        squares += (share * (_quantile(rest, p) - points)) ** 2
-    errors = np.sqrt(squares * sample.groups / (sample.groups - 1))
+    """Replicates: the error of independent trials, times what stratification saves or clustering costs."""
+    errors = [each.error for each in _by_rank(sample, p, points, confidence)]
+    factors = _against_independent_trials(sample, p)
     return [
-        with_error(float(point), float(error), sample.dof, confidence, sample.n)
-        for point, error in zip(points, errors, strict=True)
+        Estimate(float(point), n=sample.n)
+        if error is None
+        else with_error(float(point), error * float(factor), sample.dof, confidence, sample.n)
+        for point, error, factor in zip(points, errors, factors, strict=True)
     ]
+
+
+def _against_independent_trials(sample: Sample, p: Floats) -> Floats:
+    """(len(p),) the error of the share below the quantile, over that of independent trials (root design effect)."""
+    w = np.ones(sample.n) if sample.w is None else sample.w
+    totals = sample.per_unit(w)
+    below = [sample.per_unit(np.where(sample.positions <= each, w, 0.0)) for each in p]
+    errors = np.array([error_of_share(hits, totals, sample.effective) for hits in below])
+    return np.asarray(errors / np.sqrt(p * (1.0 - p) / _binomial_trials(sample, p)))

@@ -19,7 +19,7 @@ LEAST_WEIGHT = 1e-30
 """Of the largest weight; less counts as none, for no sum could show it and its powers would overflow."""
 
 MOST_GROUPS = 64
-"""More replicates than this are joined: 63 degrees of freedom lose nothing, and deleting one at a time stays cheap."""
+"""More replicates than this are joined: 63 degrees of freedom lose nothing, and the work for each stays small."""
 
 
 @dataclass(frozen=True)
@@ -105,11 +105,6 @@ class Sample:
     def replicate(self, number: int) -> Sample:
         """One replicate alone."""
         return self.part(np.flatnonzero(self.group == number))
-
-    def without(self, number: int) -> tuple[float, Sample]:
-        """What is left without one replicate, and its share of the whole."""
-        where = np.flatnonzero(self.group != number)
-        return where.size / self.n if self.w is None else float(self.w[where].sum()), self.part(where)
 
 
 Values = ArrayLike | Sample

@@ -53,8 +53,8 @@ def variance(
 
     Error from the fourth moment, for independent trials Var(s²) ≈ (m₄ − s⁴(n − 3)/(n − 1))/n. One trial has none: nan.
 
-    >>> variance([1.0, 2.0, 3.0]).value
-    1.0
+    >>> round(variance([1.0, 2.0, 4.0]).value, 12)
+    2.333333333333
     """
     sample = Sample.of(values, weights, replicate)
     value = _deviation(sample) * _deviation(sample)
@@ -137,5 +137,5 @@ def _relative_error_of_variance(sample: Sample) -> float:
     """The delta method, and what estimating the mean adds to it: negligible but for a handful of trials."""
     if sample.dof < LEAST_DOF:
         return float("nan")
-    about_the_mean = _error(sample, (1.0, 0.0, 0.0, 0.0)) ** 4 * 2.0 * sample.units / sample.dof
+    about_the_mean = _error(sample, (1.0, 0.0, 0.0, 0.0)) ** 4 * 2.0 * sample.dof / sample.units
     return float(np.hypot(_error(sample, (0.0, 1.0, 0.0, 0.0)), about_the_mean**0.5))

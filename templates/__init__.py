@@ -1,0 +1,1 @@
+"""The workbooks people start from, and the scripts that build them."""

@@ -1,0 +1,44 @@
+"""Sheet `Guide`: how to use the workbook, when not to, published data, departures from the source."""
+
+from __future__ import annotations
+
+from xlsxwriter.worksheet import Worksheet
+
+from templates.description import GuideSection, Template
+from templates.writer.page import begin_sheet, fit_row
+from templates.writer.styles import LEGEND, Styles
+
+__all__ = ["draw_guide"]
+
+_WIDTHS = (44, 108)
+
+
+def draw_guide(sheet: Worksheet, styles: Styles, template: Template) -> None:
+    """Write the sheet: section titles in the margin, text beside them."""
+    begin_sheet(sheet, styles, template.title, "Guide", _WIDTHS)
+    row = _draw_legend(sheet, styles, 3)
+    for section in template.guide:
+        row = _draw_section(sheet, styles, section, row)
+
+
+def _draw_legend(sheet: Worksheet, styles: Styles, row: int) -> int:
+    """Write what the colours mean from `row` on; the first free row, after a blank one, is returned."""
+    sheet.write_string(row, 0, "Colours", styles("margin"))
+    for number, (look, colour, meaning) in enumerate(LEGEND, row + 1):
+        sheet.write_string(number, 0, colour, styles(look, centred=True))
+        sheet.write_string(number, 1, meaning, styles("text"))
+    return row + len(LEGEND) + 2
+
+
+def _draw_section(sheet: Worksheet, styles: Styles, section: GuideSection, row: int) -> int:
+    sheet.write_string(row, 0, section.title, styles("margin"))
+    for number, paragraph in enumerate(section.paragraphs):
+        sheet.write_string(row, 1, paragraph, styles("paragraph"))
+        fit_row(sheet, row, [(paragraph, _WIDTHS[1]), ("" if number else section.title, _WIDTHS[0] - 4)])
+        row += 1
+    for number, texts in enumerate(section.rows):
+        for column, text in enumerate(texts):
+            sheet.write_string(row, column, text, styles("text" if number else "header"))
+        fit_row(sheet, row, list(zip(texts, _WIDTHS, strict=True)))
+        row += 1
+    return row + 1

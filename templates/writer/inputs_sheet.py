@@ -1,0 +1,110 @@
+"""Sheet `Inputs`: the assumptions table, and the inputs that are held fixed."""
+
+from __future__ import annotations
+
+from xlsxwriter.worksheet import Worksheet
+
+from templates.description import PARAMETER_COLUMNS, Input, Template
+from templates.writer.page import add_table, begin_sheet, fit_row, repeat_header
+from templates.writer.places import HEADER_ROW, VALUE_COLUMN, Place
+from templates.writer.styles import Styles
+
+__all__ = ["draw_inputs"]
+
+_DISTRIBUTIONS = ("Uniform", "Normal", "Triangular", "Trapezoid")
+_BEFORE = ("Name", "Symbol", "Cell name", "Value", "Units", "Distribution")
+_HEADERS = (*_BEFORE, *PARAMETER_COLUMNS, "Frozen", "Source")
+_SOURCE_WIDTH = 70
+_WIDTHS = (38, 8, 13, 10, 11, 13, *(10 for _ in PARAMETER_COLUMNS), 9, _SOURCE_WIDTH)
+_ALWAYS_SHOWN = 2
+"""Of the parameter columns, Low and High; the others fold away until a distribution needs them."""
+_FROZEN = len(_HEADERS) - 2
+
+
+def draw_inputs(
+    sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: dict[str, float | bool]
+) -> None:
+    """Write the sheet; `values` are the base values by symbol."""
+    begin_sheet(sheet, styles, template.title, template.subtitle, _WIDTHS)
+    _draw_status(sheet, styles, template, bool(values[template.all_checks]))
+    _fold_columns(sheet)
+    sheet.set_row(HEADER_ROW, 32)
+    add_table(sheet, styles, "xlmc_assumptions", HEADER_ROW, _HEADERS, len(template.assumptions))
+    for given in template.assumptions:
+        _draw_assumption(sheet, styles, given, at[given.symbol][1])
+    _guard_table(sheet, styles, HEADER_ROW + 1, HEADER_ROW + len(template.assumptions))
+    _draw_fixed(sheet, styles, template.constants, at)
+    repeat_header(sheet, HEADER_ROW, 1)
+
+
+def _fold_columns(sheet: Worksheet) -> None:
+    first, last = len(_BEFORE) + _ALWAYS_SHOWN, _FROZEN - 1
+    sheet.set_column(first, last, _WIDTHS[first], None, {"level": 1, "hidden": True})
+    sheet.set_column(_FROZEN, _FROZEN, _WIDTHS[_FROZEN], None, {"collapsed": True})
+
+
+def _draw_status(sheet: Worksheet, styles: Styles, template: Template, holds: bool) -> None:
+    good, bad = "All physics checks hold at the base case", "A physics check fails at the base case: see sheet Model"
+    formula = f'=IF(IFERROR({template.all_checks},FALSE),"{good}","{bad}")'
+    sheet.write_formula(2, 0, formula, styles("status"), good if holds else bad)
+    rule = {"type": "formula", "criteria": f"=NOT(IFERROR({template.all_checks},FALSE))", "format": styles("wrong")}
+    sheet.conditional_format(2, 0, 2, 0, rule)
+
+
+def _draw_assumption(sheet: Worksheet, styles: Styles, given: Input, row: int) -> None:
+    shown = given.number_format
+    _draw_name(sheet, styles, given, row)
+    sheet.write_number(row, VALUE_COLUMN, given.base, styles("assumption", shown))
+    sheet.write_string(row, 5, given.distribution, styles("centred"))
+    for column, header in enumerate(PARAMETER_COLUMNS, len(_BEFORE)):
+        value = given.parameters.get(header)
+        if value is None:
+            sheet.write_blank(row, column, None, styles("number", shown))
+        else:
+            sheet.write_number(row, column, value, styles("number", shown))
+    sheet.write_blank(row, _FROZEN, None, styles("centred"))
+    sheet.write_string(row, _FROZEN + 1, given.source, styles("text"))
+    fit_row(sheet, row, [(given.name, _WIDTHS[0]), (given.source, _SOURCE_WIDTH)])
+
+
+def _draw_name(sheet: Worksheet, styles: Styles, given: Input, row: int) -> None:
+    sheet.write_string(row, 0, given.name, styles("text"))
+    sheet.write_string(row, 1, given.notation, styles("centred"))
+    sheet.write_string(row, 2, given.symbol, styles("centred"))
+    sheet.write_string(row, 4, given.unit, styles("centred"))
+
+
+def _guard_table(sheet: Worksheet, styles: Styles, first: int, last: int) -> None:
+    """Drop-down lists, and red for a base value outside its range."""
+    sheet.data_validation(first, 5, last, 5, {
+        "validate": "list",
+        "source": list(_DISTRIBUTIONS),
+        "input_title": "Distribution",
+        "input_message": "Uniform: Low, High. Normal: Mean, Std dev. Triangular: Low, Likeliest, High. Trapezoid: Low, "
+        "Low likeliest, High likeliest, High. Further columns open with the + above the headings.",
+        "error_type": "warning",
+        "error_title": "Distribution",
+        "error_message": "Not in the list. Leave it only if your version of xlmc knows this distribution.",
+    })
+    sheet.data_validation(first, _FROZEN, last, _FROZEN, {
+        "validate": "list",
+        "source": ["TRUE", "FALSE"],
+        "input_title": "Frozen",
+        "input_message": "TRUE holds this input at its green value. Blank is FALSE.",
+    })
+    value, low, high = (f"${column}{first + 1}" for column in "DGH")
+    outside = f"=OR(AND(ISNUMBER({low}),{value}<{low}),AND(ISNUMBER({high}),{value}>{high}))"
+    rule = {"type": "formula", "criteria": outside, "format": styles("wrong")}
+    sheet.conditional_format(first, VALUE_COLUMN, last, VALUE_COLUMN, rule)
+
+
+def _draw_fixed(sheet: Worksheet, styles: Styles, constants: tuple[Input, ...], at: dict[str, Place]) -> None:
+    top = at[constants[0].symbol][1]
+    sheet.write_string(top - 2, 0, "Held fixed", styles("heading"))
+    for column, header in enumerate((*_BEFORE[:5], "Source")):
+        sheet.write_string(top - 1, column, header, styles("header"))
+    for given in constants:
+        row = at[given.symbol][1]
+        _draw_name(sheet, styles, given, row)
+        sheet.write_number(row, VALUE_COLUMN, given.base, styles("fixed", given.number_format))
+        sheet.write_string(row, 5, given.source, styles("remark"))

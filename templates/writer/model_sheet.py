@@ -1,0 +1,65 @@
+"""Sheet `Model`: the equations, one to a row, each with its value, unit, printed form and source."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from xlsxwriter.worksheet import Worksheet
+
+from templates.description import Equation, Role, Template
+from templates.notation import printed
+from templates.writer.page import begin_sheet, fit_row, repeat_header
+from templates.writer.places import HEADER_ROW, VALUE_COLUMN, Place
+from templates.writer.styles import Styles
+
+__all__ = ["draw_model"]
+
+_HEADERS = ("Quantity", "Symbol", "Cell name", "Value", "Units", "Equation", "Source", "Note")
+_WIDTHS = (46, 11, 17, 13, 10, 58, 21, 60)
+_TEXT_COLUMNS = (0, 5, 6, 7)
+_LOOK = {Role.STEP: "step", Role.ANSWER: "answer", Role.CHECK: "check"}
+_SUBTITLE = (
+    "Each value is a named cell. The Equation column prints its formula as the paper would; "
+    "a prime marks an equation rewritten to keep its digits."
+)
+
+
+def draw_model(
+    sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: dict[str, float | bool]
+) -> None:
+    """Write the sheet; `values` are what the formulas give at the base case, by symbol."""
+    begin_sheet(sheet, styles, template.title, _SUBTITLE, _WIDTHS)
+    for column, header in enumerate(_HEADERS):
+        sheet.write_string(HEADER_ROW, column, header, styles("header"))
+    notation = {quantity.symbol: quantity.notation for quantity in (*template.inputs, *template.equations)}
+    for section in template.sections:
+        _draw_band(sheet, styles, section.title, at[section.equations[0].symbol][1] - 1)
+        for equation in section.equations:
+            _draw_equation(sheet, styles, equation, at[equation.symbol][1], values[equation.symbol])
+            _draw_words(sheet, styles, equation, at[equation.symbol][1], notation)
+    repeat_header(sheet, HEADER_ROW, 1)
+
+
+def _draw_band(sheet: Worksheet, styles: Styles, title: str, row: int) -> None:
+    sheet.set_row(row, 20)
+    sheet.write_string(row, 0, title, styles("band"))
+    for column in range(1, len(_HEADERS)):
+        sheet.write_blank(row, column, None, styles("band"))
+
+
+def _draw_equation(sheet: Worksheet, styles: Styles, equation: Equation, row: int, value: float | bool) -> None:
+    style = styles(_LOOK[equation.role], equation.number_format)
+    sheet.write_formula(row, VALUE_COLUMN, f"={equation.formula}", style, value)
+    if equation.role is Role.CHECK:
+        rule = {"type": "cell", "criteria": "==", "value": "FALSE", "format": styles("wrong")}
+        sheet.conditional_format(row, VALUE_COLUMN, row, VALUE_COLUMN, rule)
+
+
+def _draw_words(sheet: Worksheet, styles: Styles, equation: Equation, row: int, notation: Mapping[str, str]) -> None:
+    texts = equation.name, printed(equation.formula, notation), equation.reference, equation.note
+    for column, text in zip(_TEXT_COLUMNS, texts, strict=True):
+        sheet.write_string(row, column, text, styles("text"))
+    fit_row(sheet, row, [(text, _WIDTHS[column]) for column, text in zip(_TEXT_COLUMNS, texts, strict=True)])
+    sheet.write_string(row, 1, equation.notation, styles("centred"))
+    sheet.write_string(row, 2, equation.symbol, styles("centred"))
+    sheet.write_string(row, 4, equation.unit, styles("centred"))

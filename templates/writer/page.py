@@ -1,0 +1,58 @@
+"""What all sheets share: title, columns, page set-up, tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from textwrap import wrap
+
+from xlsxwriter.worksheet import Worksheet
+
+from templates.writer.styles import Styles
+
+__all__ = ["add_table", "begin_sheet", "fit_row", "repeat_header"]
+
+_LINE = 15.0
+"""Height of a line of text, in points."""
+_LETTERS = 1.12
+"""Letters of running text in one unit of column width, which is the width of a digit."""
+
+
+def begin_sheet(sheet: Worksheet, styles: Styles, title: str, subtitle: str, widths: Sequence[float]) -> None:
+    """Title and subtitle in A1 and A2, column widths, and a landscape page one sheet wide."""
+    sheet.hide_gridlines(2)
+    for column, width in enumerate(widths):
+        sheet.set_column(column, column, width)
+    sheet.set_row(0, 24)
+    sheet.write_string(0, 0, title, styles("title"))
+    sheet.write_string(1, 0, subtitle, styles("subtitle"))
+    sheet.set_landscape()
+    sheet.set_paper(1)
+    sheet.fit_to_pages(1, 0)
+    sheet.set_margins(left=0.5, right=0.5, top=0.75, bottom=0.7)
+    sheet.set_header(f"&L{title.replace('&', '&&')}&R&A")
+    sheet.set_footer("&L&F&CPage &P of &N&R&D")
+
+
+def fit_row(sheet: Worksheet, row: int, texts: Sequence[tuple[str, float]]) -> None:
+    """Make the row as high as its wrapped texts need; each comes with the width of its column.
+
+    LibreOffice does not do so by itself when it opens the file.
+    """
+    lines = max(len(wrap(text, int(_LETTERS * width) - 1)) for text, width in texts)
+    sheet.set_row(row, _LINE * max(lines, 1) + 2)
+
+
+def repeat_header(sheet: Worksheet, row: int, frozen_columns: int) -> None:
+    """Keep everything down to `row` in sight when scrolling, and print that row on every page."""
+    sheet.freeze_panes(row + 1, frozen_columns)
+    sheet.repeat_rows(row)
+
+
+def add_table(sheet: Worksheet, styles: Styles, name: str, top: int, headers: Sequence[str], rows: int) -> None:
+    """Declare an Excel table of that many rows under its header row `top`; its cells are written by the caller.
+
+    No built-in style and no filter buttons: the cells carry their own look, which LibreOffice shows too.
+    """
+    columns = [{"header": header, "header_format": styles("header")} for header in headers]
+    place = (top, 0, top + rows, len(headers) - 1)
+    sheet.add_table(*place, {"name": name, "columns": columns, "style": None, "autofilter": False})

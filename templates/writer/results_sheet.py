@@ -1,0 +1,134 @@
+"""Sheet `Results wanted`: forecasts, filters, correlations, settings.
+
+All tables begin in column A and none is wider than the one above it: Excel can then insert rows into any of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from xlsxwriter.worksheet import Worksheet
+
+from templates.description import FilterRow, ForecastRow, Template
+from templates.writer.page import add_table, begin_sheet, fit_row
+from templates.writer.places import Place, reference
+from templates.writer.styles import Styles
+
+__all__ = ["draw_results_wanted"]
+
+_FORECASTS = ("Name", "Cell", "Units", "Range %", "Threshold", "Symbol", "Note")
+_FILTERS = ("Name", "Cell", "At least", "At most", "Above", "Below", "Because")
+_CORRELATIONS = ("First", "Second", "Correlation")
+_SETTINGS = ("Setting", "Value")
+_WIDTHS = (38, 22, 12, 12, 12, 12, 76)
+_SUBTITLE = "What a run collects, which trials it keeps, how many it makes. The Cell columns point into sheet Model."
+_ROOM = 3
+"""Blank rows below a table, into which Excel lets it grow by typing."""
+
+Values = dict[str, float | bool]
+
+
+def draw_results_wanted(
+    sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values
+) -> None:
+    """Write the sheet; `values` are the base values by symbol."""
+    begin_sheet(sheet, styles, template.title, _SUBTITLE, _WIDTHS)
+    row = _draw_forecasts(sheet, styles, template, at, values, 3)
+    row = _draw_filters(sheet, styles, template, at, values, row + _ROOM)
+    row = _draw_correlations(sheet, styles, template.correlation_note, row + _ROOM)
+    _draw_settings(sheet, styles, template.settings, row + _ROOM)
+
+
+def _head(sheet: Worksheet, styles: Styles, row: int, title: str, remark: str) -> None:
+    sheet.write_string(row, 0, title, styles("heading"))
+    sheet.write_string(row, 1, remark, styles("remark"))
+
+
+def _draw_forecasts(
+    sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values, top: int
+) -> int:
+    """Write the table under its heading in row `top`; the row below it is returned, here and in the others."""
+    remark = "Range % is the central range reported; a Threshold also reports the probability of exceeding it."
+    _head(sheet, styles, top, "Forecasts", remark)
+    add_table(sheet, styles, "xlmc_forecasts", top + 1, _FORECASTS, len(template.forecasts))
+    equations = {equation.symbol: equation for equation in template.equations}
+    for row, forecast in enumerate(template.forecasts, top + 2):
+        _draw_forecast(sheet, styles, forecast, row, equations[forecast.symbol].notation)
+        shown = styles("answer", equations[forecast.symbol].number_format)
+        sheet.write_formula(row, 1, f"={reference(at[forecast.symbol])}", shown, values[forecast.symbol])
+    return top + 2 + len(template.forecasts)
+
+
+def _draw_forecast(sheet: Worksheet, styles: Styles, forecast: ForecastRow, row: int, notation: str) -> None:
+    sheet.write_string(row, 0, forecast.name, styles("text"))
+    sheet.write_string(row, 2, forecast.unit, styles("centred"))
+    _number(sheet, styles, row, 3, forecast.central_percent)
+    _number(sheet, styles, row, 4, forecast.threshold)
+    sheet.write_string(row, 5, notation, styles("centred"))
+    sheet.write_blank(row, 6, None, styles("text"))
+
+
+def _draw_filters(
+    sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values, top: int
+) -> int:
+    remark = "A trial is kept when every row holds. Red: the base case itself would be rejected."
+    _head(sheet, styles, top, "Filters", remark)
+    add_table(sheet, styles, "xlmc_filters", top + 1, _FILTERS, len(template.filters))
+    formats = {equation.symbol: equation.number_format for equation in template.equations}
+    for row, kept in enumerate(template.filters, top + 2):
+        _draw_filter(sheet, styles, kept, row)
+        shown = styles("step", formats[kept.symbol])
+        sheet.write_formula(row, 1, f"={reference(at[kept.symbol])}", shown, values[kept.symbol])
+    last = top + 1 + len(template.filters)
+    rule = {"type": "formula", "criteria": _rejected(top + 3), "format": styles("wrong")}
+    sheet.conditional_format(top + 2, 1, last, 1, rule)
+    return last + 1
+
+
+def _draw_filter(sheet: Worksheet, styles: Styles, kept: FilterRow, row: int) -> None:
+    sheet.write_string(row, 0, kept.name, styles("text"))
+    for column, limit in enumerate((kept.at_least, kept.at_most, kept.above, kept.below), 2):
+        _number(sheet, styles, row, column, limit)
+    sheet.write_string(row, 6, kept.because, styles("text"))
+    fit_row(sheet, row, [(kept.name, _WIDTHS[0]), (kept.because, _WIDTHS[6])])
+
+
+def _rejected(excel_row: int) -> str:
+    """A conditional-format formula: the value in column B breaks a limit in C to F."""
+    broken = (
+        f"AND(ISNUMBER(${column}{excel_row}),$B{excel_row}{sign}${column}{excel_row})"
+        for column, sign in (("C", "<"), ("D", ">"), ("E", "<="), ("F", ">="))
+    )
+    return f"=OR({','.join(broken)})"
+
+
+def _draw_correlations(sheet: Worksheet, styles: Styles, note: str, top: int) -> int:
+    _head(sheet, styles, top, "Correlations", note)
+    add_table(sheet, styles, "xlmc_correlations", top + 1, _CORRELATIONS, 1)
+    sheet.set_row(top + 2, 32)
+    for column, look in enumerate(("text", "text", "number")):
+        sheet.write_blank(top + 2, column, None, styles(look))
+    sheet.data_validation(top + 2, 2, top + 2, 2, {
+        "validate": "decimal",
+        "criteria": "between",
+        "minimum": -1,
+        "maximum": 1,
+        "error_title": "Correlation",
+        "error_message": "A rank correlation lies between -1 and 1.",
+    })
+    return top + 3
+
+
+def _draw_settings(sheet: Worksheet, styles: Styles, settings: Sequence[tuple[str, float]], top: int) -> None:
+    _head(sheet, styles, top, "Settings", "The same workbook and the same seed give the same answers.")
+    add_table(sheet, styles, "xlmc_settings", top + 1, _SETTINGS, len(settings))
+    for row, (setting, value) in enumerate(settings, top + 2):
+        sheet.write_string(row, 0, setting, styles("text"))
+        sheet.write_number(row, 1, value, styles("number", "0" if setting == "Seed" else "#,##0"))
+
+
+def _number(sheet: Worksheet, styles: Styles, row: int, column: int, value: float | None) -> None:
+    if value is None:
+        sheet.write_blank(row, column, None, styles("number"))
+    else:
+        sheet.write_number(row, column, value, styles("number"))

@@ -1,0 +1,116 @@
+from __future__ import annotations
+
+import pytest
+
+from xlmc.definitions.findings import Findings
+from xlmc.definitions.tables import as_text, definition_tables, rows_of
+from xlmc.errors import ErrorCode
+
+HEADINGS = ["Name", " CELL ", "At_Least", "Comment"]
+
+
+def names_of(book, tables, known=("Name", "Cell", "At least")):
+    findings = Findings()
+    found = definition_tables(book, findings)[tables]
+    return [row.content("name").value for row in rows_of(book, found, ("Name",), known, findings)], findings
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["xlmc_filters", "XLMC_Filters", "xlmc_filters3", "xlmc_filters_2", "xlmc_filters_chevy"],
+)
+def test_names_that_are_read(make_book, blocks, name):
+    book = make_book(blocks("S!B2", [HEADINGS, ["a"], ["b"]]), [(name, "S!B2:E4")])
+    names, findings = names_of(book, "xlmc_filters")
+    assert names == ["a", "b"]
+    assert findings.notices == findings.problems == []
+
+
+@pytest.mark.parametrize("name", ["Table1", "my_xlmc_filters_of_old", "xlmc", "filters"])
+def test_names_that_are_not_read(make_book, blocks, name):
+    book = make_book(blocks("S!B2", [HEADINGS, ["a"]]), [(name, "S!B2:E3")])
+    findings = Findings()
+    assert not any(definition_tables(book, findings).values())
+    assert findings.problems == []
+
+
+def test_a_slip_in_a_tables_name_is_pointed_out(make_book, blocks):
+    book = make_book(blocks("S!B2", [HEADINGS, ["a"]]), [("xlmc_filter", "S!B2:E3")])
+    _, findings = names_of(book, "xlmc_filters")
+    assert [str(notice) for notice in findings.notices] == [
+        "S!B2: The table xlmc_filter is not read: did you mean xlmc_filters?"
+    ]
+
+
+def test_totals_and_blank_rows_are_left_out(make_book, blocks):
+    rows = [HEADINGS, ["a"], [None], ["  "], [None, None, None, "x"], ["b"], ["Total"]]
+    book = make_book(blocks("S!B2", rows), [("xlmc_filters", "S!B2:E8", 1)])
+    assert names_of(book, "xlmc_filters")[0] == ["a", None, "b"]
+
+
+def test_a_row_with_an_uncalculated_formula_is_not_blank(make_book, blocks):
+    rows = [HEADINGS, [None, "=S!A1"], [None, ("=A1&A2", "")]]
+    book = make_book(blocks("S!B2", rows), [("xlmc_filters", "S!B2:E4")])
+    assert len(names_of(book, "xlmc_filters")[0]) == 1
+
+
+@pytest.mark.parametrize("heading", ["at least", "AT LEAST", " At-Least ", "at_least", "AtLeast"])
+def test_any_spelling_of_a_heading(make_book, blocks, heading):
+    book = make_book(blocks("S!B2", [HEADINGS, ["a", None, 5]]), [("xlmc_filters", "S!B2:E3")])
+    findings = Findings()
+    tables = definition_tables(book, findings)["xlmc_filters"]
+    (row,) = rows_of(book, tables, (), ("Name",), findings)
+    assert row.content(heading).value == 5
+    assert str(row.cell(heading)) == "S!D3"
+    assert row.heading(heading) == "At_Least"
+
+
+def test_notes_are_the_columns_nobody_reads(make_book, blocks):
+    headings = ["Name", "Comment", "Marked", "Error", "Empty"]
+    cells = blocks("S!A1", [headings, ["a", 0.1, True, ErrorCode.NA, None]])
+    book = make_book(cells, [("xlmc_filters", "S!A1:E2")])
+    findings = Findings()
+    (row,) = rows_of(book, definition_tables(book, findings)["xlmc_filters"], (), ("name",), findings)
+    assert row.notes(("Name",)) == {"Comment": "0.1", "Marked": "TRUE", "Error": "#N/A"}
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(None, ""), (True, "TRUE"), (12.0, "12"), (0.1, "0.1"), (" a ", "a"), (ErrorCode.DIV0, "#DIV/0!")],
+)
+def test_values_as_text(value, text):
+    assert as_text(value) == text
+
+
+def test_two_headings_that_are_one(only_problem):
+    only_problem(
+        "Inputs!P1",
+        "The table xlmc_assumptions has two columns 'Std dev' and 'STD_DEV'",
+        "Rename or delete one",
+        {"Inputs!P1": "STD_DEV"},
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "where", "message", "hint"),
+    [
+        ({"Answers!A1": "Nmae"}, "Answers!A1", "xlmc_forecasts has no column Name", "Rename the column 'Nmae' to Name"),
+        ({"Answers!A1": "Answer"}, "Answers!A1", "xlmc_forecasts has no column Name", "Add a column Name"),
+        ({"Answers!A10": "Test"}, "Answers!A10", "xlmc_filters has no column Name", "Add a column Name"),
+        ({"Answers!B20": "Other"}, "Answers!A20", "xlmc_correlations has no column Second", "Add a column Second"),
+        ({"Answers!B30": "Valeu"}, "Answers!A30", "xlmc_settings has no column Value", "Rename the column 'Valeu'"),
+    ],
+)
+def test_a_required_column_is_missing(read, changes, where, message, hint):
+    problems = read(changes).problems
+    assert [problem.where for problem in problems] == [where]
+    assert message in problems[0].message
+    assert hint in problems[0].hint
+
+
+def test_a_slip_in_a_heading_is_pointed_out(read):
+    found = read({"Answers!C10": "At lest"})
+    assert [str(notice) for notice in found.notices] == [
+        "Answers!C10: The column 'At lest' is kept as a note only: did you mean At least?"
+    ]
+    assert found.filters[0].notes == {"At lest": "0"}

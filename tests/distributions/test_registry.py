@@ -1,0 +1,64 @@
+from __future__ import annotations
+
+import sys
+from subprocess import run
+
+import pytest
+
+from xlmc.address import Cell
+from xlmc.distributions import FAMILIES, family_named
+from xlmc.distributions.naming import plain
+from xlmc.errors import DefinitionError
+
+
+@pytest.mark.parametrize(
+    ("typed", "name"),
+    [
+        ("Uniform", "Uniform"),
+        (" uniform ", "Uniform"),
+        ("NORMAL", "Normal"),
+        ("gaussian", "Normal"),
+        ("Triangular", "Triangular"),
+        ("triangle", "Triangular"),
+        ("Triang", "Triangular"),
+        ("Trapezoid", "Trapezoid"),
+        ("trapezoidal", "Trapezoid"),
+    ],
+)
+def test_names_people_type(typed, name):
+    assert family_named(typed) is FAMILIES[name]
+
+
+@pytest.mark.parametrize(
+    ("typed", "hint"),
+    [
+        ("Unifrom", "Did you mean Uniform?"),
+        ("Trapezium", "Did you mean Trapezoid?"),
+        ("Weibull", "Use one of Uniform, Normal, Triangular, Trapezoid"),
+    ],
+)
+def test_unknown_name(typed, hint):
+    with pytest.raises(DefinitionError) as caught:
+        family_named(typed, where=Cell("Inputs", 4, 3))
+    assert caught.value.message == f"'{typed}' is not a distribution of this version"
+    assert caught.value.where == "Inputs!C4"
+    assert caught.value.hint == hint
+
+
+def test_keys_and_headings_are_consistent_across_families():
+    meaning = {}
+    for family in FAMILIES.values():
+        for spec in family.parameters:
+            for heading in spec.headings:
+                assert meaning.setdefault(plain(heading), spec.key) == spec.key
+    assert meaning["min"] == "low"
+    assert meaning["standarddeviation"] == "std_dev"
+
+
+def test_scipy_is_imported_only_when_needed():
+    code = (
+        "import sys; from xlmc.distributions import FAMILIES as F; F['Uniform'].ppf(.5, 0, 1);"
+        "assert not any(m.startswith('scipy') for m in sys.modules);"
+        "F['Normal'].ppf(.5, 0, 1); assert 'scipy.special' in sys.modules and 'scipy.stats' not in sys.modules"
+    )
+    assert run([sys.executable, "-c", code], check=False, capture_output=True, text=True).stderr == ""

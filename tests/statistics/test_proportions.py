@@ -1,0 +1,153 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import stats
+
+from xlmc.statistics import mean, probability_above, proportion, replicated_proportion, share
+
+EXAMPLES = settings(max_examples=50, deadline=None)
+
+counts = st.integers(1, 5000).flatmap(lambda n: st.tuples(st.integers(0, n), st.just(n)))
+
+
+@pytest.mark.parametrize(("method", "theirs"), [("wilson", "wilson"), ("clopper-pearson", "exact")])
+@pytest.mark.parametrize("confidence", [0.8, 0.95, 0.99])
+@EXAMPLES
+@given(case=counts)
+def test_intervals_are_scipys(method, theirs, confidence, case):
+    hits, trials = case
+    expected = stats.binomtest(hits, trials).proportion_ci(confidence, method=theirs)
+    found = proportion(hits, trials, confidence=confidence, method=method).interval
+    assert found == pytest.approx((expected.low, expected.high), rel=1e-9, abs=1e-12)
+
+
+@EXAMPLES
+@given(counts)
+def test_a_proportion_is_never_0_plus_minus_0(case):
+    hits, trials = case
+    estimate = proportion(hits, trials)
+    low, high = estimate.interval
+    assert estimate.value == hits / trials
+    assert estimate.n == trials
+    assert estimate.error > 0
+    assert 0 <= low <= estimate.value <= high <= 1
+    assert low < high
+
+
+def test_the_error_is_the_binomial_one():
+    assert proportion(30, 120).error == pytest.approx(math.sqrt(0.25 * 0.75 / 120))
+
+
+def test_no_success_has_half_of_wilsons_interval_as_error():
+    z = 1.959963984540054
+    estimate = proportion(0, 1000)
+    assert estimate.error == pytest.approx(estimate.interval[1] / 2 / z)
+    assert proportion(1000, 1000).error == pytest.approx(estimate.error)
+    assert proportion(0, 1000, confidence=0.5).error == estimate.error
+
+
+def test_no_trials_give_nan():
+    for estimate in (proportion(0, 0), replicated_proportion([0, 0], [0, 0]), share([]), share([], [], [])):
+        assert math.isnan(estimate.value)
+        assert (estimate.error, estimate.interval, estimate.n) == (None, None, 0)
+
+
+@pytest.mark.parametrize(("hits", "trials"), [(-1, 4), (5, 4)])
+def test_impossible_counts_are_refused(hits, trials):
+    with pytest.raises(ValueError, match="successes"):
+        proportion(hits, trials)
+    with pytest.raises(ValueError, match="successes"):
+        replicated_proportion([hits, 1], [trials, 4])
+
+
+def test_counts_must_pair():
+    with pytest.raises(ValueError, match="per replicate"):
+        replicated_proportion([1, 2], [4])
+
+
+def test_share_counts_trials_that_are_true():
+    hits = np.array([True, False, True, True])
+    assert share(hits) == proportion(3, 4)
+    assert share(hits, [1.0, 3.0, 1.0, 1.0]).value == pytest.approx(0.5)
+
+
+@EXAMPLES
+@given(st.lists(st.integers(0, 9), min_size=1, max_size=50), st.integers(-1, 10))
+def test_above_means_strictly_above(values, threshold):
+    assert probability_above(values, threshold) == proportion(sum(x > threshold for x in values), len(values))
+
+
+def test_the_weighted_error_is_that_of_a_weighted_mean():
+    rng = np.random.default_rng(1)
+    x, w = rng.normal(size=500), rng.uniform(0.2, 3, 500)
+    indicator = mean((x > 0.3).astype(float), w)
+    estimate = probability_above(x, 0.3, w)
+    assert estimate.value == pytest.approx(indicator.value)
+    assert estimate.error == pytest.approx(indicator.error)
+    assert estimate.interval == pytest.approx(indicator.interval, abs=0.003)  # symmetric there, Wilson's here
+
+
+@pytest.mark.parametrize("method", ["wilson", "clopper-pearson"])
+def test_equal_weights_are_nearly_no_weights(method):
+    """The error divides by n − 1 and the interval takes Student's t: at 400 trials below 1 %."""
+    x = np.random.default_rng(2).normal(size=400)
+    plain = probability_above(x, 1.0, method=method)
+    weighted = probability_above(x, 1.0, np.full(400, 2.0), method=method)
+    assert weighted.error == pytest.approx(plain.error, rel=0.01)
+    assert weighted.interval == pytest.approx(plain.interval, rel=0.01)
+
+
+def test_replicated_counts_and_trials_with_ids_agree():
+    rng = np.random.default_rng(3)
+    ids = rng.integers(0, 12, 900)
+    hits = rng.random(900) < 0.2 + 0.02 * ids
+    by_trial = share(hits, replicate=ids)
+    by_count = replicated_proportion(np.bincount(ids, weights=hits), np.bincount(ids))
+    assert by_trial.value == pytest.approx(by_count.value)
+    assert by_trial.error == pytest.approx(by_count.error)
+    assert by_trial.interval == pytest.approx(by_count.interval)
+    assert by_trial.n == by_count.n == 900
+
+
+def test_the_replicated_error_is_the_spread_between_replicates():
+    hits, trials = np.array([20, 30, 25, 37]), np.full(4, 100)
+    estimate = replicated_proportion(hits, trials)
+    assert estimate.value == 0.28
+    assert estimate.error == pytest.approx(np.std(hits / 100, ddof=1) / 2)
+
+
+def test_a_narrow_replicated_interval_is_students():
+    hits, trials = np.array([5012, 4991, 5003, 4987, 5021]), np.full(5, 10_000)
+    estimate = replicated_proportion(hits, trials)
+    half = stats.t.ppf(0.975, 4) * np.std(hits / 10_000, ddof=1) / math.sqrt(5)
+    assert estimate.interval == pytest.approx((estimate.value - half, estimate.value + half), rel=1e-4)
+
+
+def test_replicates_that_all_agree_still_leave_an_error():
+    estimate = replicated_proportion([24, 24, 24], [100, 100, 100])
+    assert estimate.error == proportion(0, 300).error > 0
+    assert estimate.interval[0] < 0.24 < estimate.interval[1]
+
+
+@pytest.mark.parametrize("hits", [0, 100])
+def test_replicates_without_success_or_failure_have_the_interval_of_independent_trials(hits):
+    pooled, plain = replicated_proportion([hits] * 3, [100] * 3), proportion(3 * hits, 300)
+    assert (pooled.error, pooled.interval) == (plain.error, plain.interval)
+
+
+def test_weighted_trials_without_success_still_leave_an_error():
+    estimate = probability_above([1.0, 2.0, 3.0], 9.0, [1.0, 2.0, 1.0])
+    assert estimate.value == 0.0
+    assert estimate.error > 0
+    assert estimate.interval[0] == 0.0 < estimate.interval[1]
+
+
+def test_one_replicate_gives_a_value_without_an_error():
+    estimate = replicated_proportion([39], [40])
+    assert (estimate.value, estimate.error, estimate.interval) == (0.975, None, None)
+    assert share([True, False], replicate=[1, 1]).error is None

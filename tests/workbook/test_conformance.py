@@ -1,0 +1,88 @@
+"""Our reader against openpyxl's on workbooks that Excel saved: every formula, every cached value."""
+
+import warnings
+from datetime import date, time, timedelta
+from pathlib import Path
+
+import openpyxl
+import pytest
+from openpyxl.formula.translate import Translator
+from openpyxl.utils.datetime import to_excel
+from openpyxl.utils.escape import unescape
+from openpyxl.worksheet.formula import ArrayFormula, DataTableFormula
+
+from xlmc.address import column_letters
+from xlmc.errors import ErrorCode, WorkbookError
+from xlmc.workbook import read_workbook
+
+FOLDER = Path(__file__).parents[3] / "shared" / "conformance" / "workbooks"
+BOOKS = sorted(FOLDER.glob("*.xls[xm]"))
+
+pytestmark = pytest.mark.skipif(not BOOKS, reason=f"no workbooks saved by Excel in {FOLDER}")
+
+DAMAGED = "apache__clusterfuzz-testcase-minimized-POIXSSFFuzzer-5937385319563264.xlsx"
+UNREADABLE_BY_OPENPYXL = {"ClosedXML__formats.xlsx", DAMAGED}
+
+
+def value_of(cell, epoch):
+    """The type and value that openpyxl reads, in our terms."""
+    if isinstance(cell.value, date | time | timedelta):  # what it makes of numbers formatted so, to a millisecond
+        return float, pytest.approx(to_excel(cell.value, epoch), abs=2e-8)
+    if cell.data_type == "e":
+        return ErrorCode, ErrorCode.from_text(cell.value)
+    if isinstance(cell.value, str):
+        return str, unescape(cell.value)
+    return (bool, cell.value) if isinstance(cell.value, bool) else (float, float(cell.value))
+
+
+def formula_of(cell):
+    """A cell's formula as openpyxl reads it, or None."""
+    if isinstance(cell.value, DataTableFormula) or cell.data_type != "f":
+        return None
+    text = cell.value.text if isinstance(cell.value, ArrayFormula) else cell.value
+    return (text or "").removeprefix("=") or None
+
+
+def written(content, place):
+    """Our formula as the cell itself would write it, translated from its master's place by openpyxl."""
+    formula = content.formula
+    if formula is None or (formula.row, formula.column) == place:
+        return formula and formula.text
+    origin, target = (f"{column_letters(column)}{row}" for row, column in ((formula.row, formula.column), place))
+    return Translator(f"={formula.text}", origin=origin).translate_formula(target).removeprefix("=")
+
+
+def filled(sheet):
+    """Place -> cell, for the cells that hold something."""
+    return {(cell.row, cell.column): cell for row in sheet.iter_rows() for cell in row if cell.value not in (None, "")}
+
+
+def loaded(path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of extensions that openpyxl would lose on saving
+        return openpyxl.load_workbook(path), openpyxl.load_workbook(path, data_only=True)
+
+
+@pytest.mark.parametrize("path", [p for p in BOOKS if p.name not in UNREADABLE_BY_OPENPYXL], ids=lambda path: path.name)
+def test_formulas_and_values_as_openpyxl_reads_them(path):
+    book = read_workbook(path)
+    formulas, values = loaded(path)
+    assert list(book.sheets) == [sheet.title for sheet in formulas.worksheets]
+    for sheet in formulas.worksheets:
+        cells = book.sheets[sheet.title].cells
+        theirs, cached = filled(sheet), filled(values[sheet.title])
+        found = {place: written(content, place) for place, content in cells.items() if written(content, place)}
+        assert found == {place: formula_of(cell) for place, cell in theirs.items() if formula_of(cell)}
+        # An empty text is now blank, now a text to openpyxl.
+        found = {place: (type(c.value), c.value) for place, c in cells.items() if c.value not in (None, "")}
+        assert found == {place: value_of(cell, values.epoch) for place, cell in cached.items()}
+
+
+@pytest.mark.parametrize("name", sorted(UNREADABLE_BY_OPENPYXL))
+def test_books_that_openpyxl_cannot_read_are_read_or_refused_with_a_reason(name):
+    if name == DAMAGED:
+        with pytest.raises(WorkbookError, match="Bad CRC-32"):
+            read_workbook(FOLDER / name)
+    else:
+        book = read_workbook(FOLDER / name)
+        assert any(book.sheets[sheet].cells for sheet in book.sheets)

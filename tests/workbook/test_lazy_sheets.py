@@ -1,0 +1,56 @@
+import pickle
+
+import pytest
+
+from xlmc.address import Cell
+from xlmc.errors import WorkbookError
+
+NUMBER = '<sheetData><row r="1"><c r="A1"><v>5</v></c></row></sheetData>'
+BROKEN = "<sheetData><row"
+
+
+def test_tabs_in_order(book):
+    sheets = book({"Zebra": NUMBER, "Ant": ""}).sheets
+    assert list(sheets) == ["Zebra", "Ant"]
+    assert len(sheets) == 2
+    assert repr(sheets) == "<sheets Zebra, Ant>"
+
+
+def test_a_sheet_is_parsed_once(book):
+    sheets = book({"One": NUMBER}).sheets
+    assert sheets["One"] is sheets["One"]
+
+
+def test_a_broken_sheet_complains_when_asked_for_and_not_before(book):
+    found = book({"Good": NUMBER, "Broken": BROKEN})
+    assert "Broken" in found.sheets
+    assert found.content(Cell("Good", 1, 1)).value == 5.0
+    with pytest.raises(WorkbookError, match=r"sheet2\.xml is not well-formed XML") as caught:
+        found.content(Cell("Broken", 1, 1))
+    assert caught.value.where == "book.xlsx"
+
+
+def test_a_cell_that_complains_keeps_its_place(book):
+    found = book({"One": NUMBER.replace("5", "five")})
+    with pytest.raises(WorkbookError, match="holds 'five'") as caught:
+        found.sheet_named("one")
+    assert caught.value.where == "One!A1"
+
+
+def test_unknown_sheets(book):
+    found = book({"One": NUMBER})
+    assert "Two" not in found.sheets
+    assert found.sheets.get("Two") is None
+    assert found.sheet_named("Two") is None
+    assert found.content(Cell("Two", 1, 1)).value is None
+
+
+def test_shared_strings_are_read_when_a_sheet_is(book):
+    found = book({"One": NUMBER}, strings=["<t>a"])
+    with pytest.raises(WorkbookError, match=r"sharedStrings\.xml is not well-formed"):
+        found.sheets["One"]
+
+
+def test_it_can_go_to_another_process(book):
+    found = pickle.loads(pickle.dumps(book({"One": NUMBER}).sheets))
+    assert found["One"].cells[1, 1].value == 5.0

@@ -1,0 +1,55 @@
+"""The command line: `xlmc new`, `xlmc check`, `xlmc simulate`.
+
+Exit codes: 0 done; 1 the run finished but its answer must not be used as it stands; 2 bad input, with the cell and what
+to do. Modules here import what costs time inside their functions.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import click
+
+from xlmc import __version__
+from xlmc.cli.check import check
+from xlmc.cli.new import new
+from xlmc.cli.simulate import simulate
+from xlmc.errors import XlmcError
+
+__all__ = ["main", "xlmc"]
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(__version__, prog_name="xlmc")
+def xlmc() -> None:
+    """Monte Carlo simulation of Excel workbooks, without Excel."""
+
+
+for _command in (new, check, simulate):
+    xlmc.add_command(_command)
+
+
+def main() -> None:
+    """Run the command line; a mistake in the input is a message and exit code 2."""
+    try:
+        xlmc.main(standalone_mode=False)
+    except click.exceptions.Exit as asked:
+        sys.exit(asked.exit_code)
+    except click.ClickException as error:
+        error.show()
+        sys.exit(BAD_INPUT)
+    except XlmcError as error:
+        click.echo(f"xlmc: {error}", err=True)
+        sys.exit(BAD_INPUT)
+    except (click.Abort, KeyboardInterrupt):
+        click.echo("xlmc: interrupted; nothing was written.", err=True)
+        sys.exit(INTERRUPTED)
+    except BrokenPipeError:  # the reader of our output has gone: there is nobody to tell
+        sys.stderr.close()
+        sys.exit(0)
+    except MemoryError:
+        click.echo("xlmc: out of memory. Ask for fewer trials.", err=True)
+        sys.exit(BAD_INPUT)

@@ -1,0 +1,79 @@
+"""`xlmc check`: what a workbook asks for, as understood, and what is wrong with it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from xlmc.definitions import Definitions
+    from xlmc.model import Model
+    from xlmc.workbook import Workbook
+
+__all__ = ["check"]
+
+
+@click.command()
+@click.argument("book", type=click.Path(path_type=Path))
+def check(book: Path) -> None:
+    """Show the assumptions, forecasts and filters of BOOK as understood, and every problem with its cell."""
+    from xlmc.cli.printing import notices
+    from xlmc.definitions import read_definitions
+    from xlmc.errors import XlmcError
+    from xlmc.model import Model
+    from xlmc.workbook import read_workbook
+
+    workbook = read_workbook(book)
+    definitions = read_definitions(workbook)
+    _show_definitions(definitions)
+    problems: list[XlmcError] = list(definitions.problems)
+    if not problems:
+        try:
+            model = Model(workbook, definitions, book)
+            _show_need(model, workbook)
+            notices(model.notices)
+        except XlmcError as error:
+            problems.append(error)
+    else:
+        notices((*workbook.notices, *definitions.notices))
+    for problem in problems:
+        click.echo(f"problem: {problem}", err=True)
+    if problems:
+        click.echo(f"{len(problems)} problem{'s' * (len(problems) > 1)} found; nothing can be run yet.", err=True)
+        raise click.exceptions.Exit(2)
+    click.echo("No problem found.")
+
+
+def _show_definitions(definitions: Definitions) -> None:
+    from xlmc.cli.printing import table
+    from xlmc.wording import distribution_text, limits_text, share_text
+
+    table(
+        "Assumptions",
+        ("Name", "Cell", "Units", "Distribution", ""),
+        [(a.name, str(a.cell), a.units, distribution_text(a), "frozen" * a.frozen) for a in definitions.assumptions],
+    )
+    table(
+        "Forecasts",
+        ("Name", "Cell", "Units", "Central range"),
+        [(f.name, str(f.cell), f.units, share_text(f.central)) for f in definitions.forecasts],
+    )
+    if definitions.filters:
+        rows = [(f.name, str(f.cell), limits_text(f), f.because) for f in definitions.filters]
+        table("Filters", ("Name", "Cell", "Keeps", "Because"), rows)
+    if definitions.correlations:
+        pairs = [(c.first, c.second, f"{c.value:g}") for c in definitions.correlations]
+        table("Correlations", ("First", "Second", "Spearman"), pairs, right=(2,))
+
+
+def _show_need(model: Model, workbook: Workbook) -> None:
+    formulas = sum(c.formula is not None for sheet in workbook.sheets.values() for c in sheet.cells.values())
+    needed, varying = model.scene.graph.formulas, model.scene.graph.varying
+    click.echo(
+        f"Of {formulas} formula cells the forecasts and filters need {len(needed)}; "
+        f"{sum(cell in varying for cell in needed)} vary with an assumption."
+    )
+    if model.scene.idle:
+        click.echo("Not needed by the scene: " + ", ".join(a.name for a in model.scene.idle) + ".")

@@ -1,0 +1,94 @@
+"""`xlmc simulate`: run a workbook, print the answers, write them into a copy of it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from xlmc.simulate import Progress
+    from xlmc.simulation import Simulation
+
+__all__ = ["simulate"]
+
+NOT_TO_BE_USED = 1
+
+
+@click.command()
+@click.argument("book", type=click.Path(path_type=Path))
+@click.option("-n", "--trials", type=click.IntRange(1), help="Trials to run.  [default: the book's, else 200000]")
+@click.option("--seed", type=click.IntRange(0), help="Seed of the random streams.  [default: the book's, else 999]")
+@click.option(
+    "--engine",
+    type=click.Choice(["numpy", "formulas"]),
+    help="numpy, or formulas: the slow reference.  [default: the book's, else numpy]",
+)
+@click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads; same result.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Result workbook.  [default: BOOK-results.xlsx]")
+@click.option("--in-place", is_flag=True, help="Write the result sheets into BOOK itself.")
+@click.option("--quiet", is_flag=True, help="Print no progress bar and no notes.")
+def simulate(
+    book: Path,
+    trials: int | None,
+    seed: int | None,
+    engine: str | None,
+    jobs: int,
+    output: Path | None,
+    in_place: bool,
+    quiet: bool,
+) -> None:
+    """Run BOOK, print the summary, and write result sheets and charts into a copy of it."""
+    from xlmc.cli.printing import notices
+    from xlmc.model import load
+    from xlmc.report import save
+    from xlmc.workbook.writer import refuse_if_open
+
+    if in_place and output is not None:
+        raise click.UsageError("--in-place and --output exclude each other.")
+    target = book if in_place else output or book.with_name(f"{book.stem}-results{book.suffix}")
+    refuse_if_open(target)
+    model = load(book)
+    if not quiet:
+        notices(model.notices)
+    with _progress(trials or model.definitions.settings.trials, quiet) as progress:
+        run = model.simulate(trials, seed, engine=engine, jobs=jobs, progress=progress)
+    save(run, target)
+    _show(run)
+    click.echo(f"Results are in {target}")
+    for warning in run.warnings:
+        click.echo(f"warning: {warning}; the answer must not be used as it stands.", err=True)
+    if run.warnings:
+        raise click.exceptions.Exit(NOT_TO_BE_USED)
+
+
+@contextmanager
+def _progress(trials: int, quiet: bool) -> Iterator[Progress | None]:
+    """A bar on stderr while the trials run, where there is a terminal to draw it on."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    accepted = TextColumn("{task.completed:,.0f} of {task.total:,.0f} trials, {task.fields[accepted]:,} accepted")
+    with Progress(BarColumn(), accepted, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("trials", total=trials, accepted=0)
+        yield lambda done, kept: bar.update(task, completed=done, accepted=kept)
+
+
+def _show(run: Simulation) -> None:
+    """Print the paper's table, the acceptance and what each filter rejected."""
+    from xlmc.cli.printing import table
+    from xlmc.report.summary import acceptance_text, filter_rows, forecast_rows
+
+    headings, rows = forecast_rows(run)
+    table("Accepted trials", headings, rows, right=range(2, len(headings)))
+    click.echo(acceptance_text(run))
+    if run.model.filters:
+        headings, rows = filter_rows(run)
+        table("Filters", headings, rows, right=range(2, len(headings)))

@@ -1,0 +1,96 @@
+"""The rows of `xlmc_assumptions`: uncertain inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from xlmc.address import Cell
+from xlmc.definitions.computed import Computed
+from xlmc.definitions.fields import logical, number_in, optional_text
+from xlmc.definitions.findings import Findings
+from xlmc.definitions.identity import Claims, identify
+from xlmc.definitions.model import Assumption
+from xlmc.definitions.parameters import CUTOFFS, PARAMETER_HEADINGS, given_parameters, remark_on_range, rules_kept
+from xlmc.definitions.tables import DefinitionTable, Row, is_blank, rows_of
+from xlmc.distributions import FAMILIES, Family, family_named
+from xlmc.errors import DefinitionError
+from xlmc.workbook.model import Workbook
+
+__all__ = ["read_assumptions"]
+
+_FIXED = ("Name", "Value", "Cell", "Distribution", *CUTOFFS.values(), "Units", "Source", "Frozen")
+_KNOWN = (*_FIXED, *PARAMETER_HEADINGS)
+
+
+def read_assumptions(
+    workbook: Workbook, tables: Iterable[DefinitionTable], computed: Computed, claims: Claims, findings: Findings
+) -> tuple[Assumption, ...]:
+    """The assumptions without a mistake, in the order of the rows.
+
+    Args:
+        workbook: where they are read.
+        tables: the tables that hold them.
+        computed: which cells have formulas; an assumption must not.
+        claims: takes their names and cells.
+        findings: takes mistakes and remarks.
+    """
+    rows = rows_of(workbook, tables, ("Name",), _KNOWN, findings)
+    found = [_assumption(row, computed, claims, findings) for row in rows]
+    return tuple(each for each in found if each is not None)
+
+
+def _assumption(row: Row, computed: Computed, claims: Claims, findings: Findings) -> Assumption | None:
+    before = len(findings.problems)
+    identity = identify(row, claims, findings)
+    frozen = findings.attempt(logical, row, "Frozen") or False
+    base = None if identity is None else findings.attempt(_base, row.workbook, computed, identity[1], frozen, findings)
+    family = findings.attempt(_family, row)
+    given = None if family is None else given_parameters(row, family, findings)
+    units = findings.attempt(optional_text, row, "Units") or ""
+    source = findings.attempt(optional_text, row, "Source") or ""
+    if len(findings.problems) == before and family and given:
+        findings.attempt(rules_kept, family, given)
+    if len(findings.problems) > before or not (identity and family and given):
+        return None
+    name, cell = identity
+    remark_on_range(family, given, base, cell, findings)
+    return Assumption(
+        name=name,
+        cell=cell,
+        distribution=family.name,
+        parameters={key: given.values[key] for key in family.keys},
+        row=row.where,
+        base=base,
+        lower_cutoff=given.values.get("lower_cutoff"),
+        upper_cutoff=given.values.get("upper_cutoff"),
+        units=units,
+        source=source,
+        frozen=frozen,
+        notes=row.notes(_KNOWN),
+    )
+
+
+def _family(row: Row) -> Family:
+    typed = optional_text(row, "Distribution")
+    return family_named(typed, where=row.cell("Distribution")) if typed else FAMILIES["Uniform"]
+
+
+def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, findings: Findings) -> float | None:
+    """The assumption cell's own value; None, with a notice, where it is blank.
+
+    Raises:
+        DefinitionError: the cell holds a formula or anything but a number, or is blank and frozen.
+    """
+    content = workbook.content(cell)
+    if computed.by_formula(cell):
+        message = "The assumption cell holds a formula, which every draw would overwrite"
+        raise DefinitionError(
+            message, where=cell, hint="Replace the formula by its value (Copy, Paste Special ▸ Values)"
+        )
+    if not is_blank(content):
+        return number_in("The assumption cell", content, cell)
+    if frozen:
+        message = "The assumption is frozen, and its cell is blank"
+        raise DefinitionError(message, where=cell, hint="Type the value to hold it at")
+    findings.notice("The assumption cell is blank, so there is no base case", cell)
+    return None

@@ -1,0 +1,41 @@
+"""Which cells get their value from something: a formula, an array formula that reaches them, or a draw."""
+
+from __future__ import annotations
+
+from collections.abc import Container
+
+from xlmc.address import Area, Cell
+from xlmc.workbook.model import Workbook
+
+__all__ = ["Computed"]
+
+
+class Computed:
+    """Knows of each cell of a workbook what gives it its value.
+
+    Args:
+        workbook: whose cells are asked about.
+        drawn: the assumption cells; it may grow.
+    """
+
+    def __init__(self, workbook: Workbook, drawn: Container[Cell]) -> None:
+        self._workbook = workbook
+        self._drawn = drawn
+        self._arrays: dict[str, list[Area]] = {}
+
+    def by_formula(self, cell: Cell) -> bool:
+        """Whether a formula does: its own, or an array formula of another cell that fills it."""
+        if self._workbook.content(cell).formula is not None:
+            return True
+        if cell.sheet not in self._arrays:  # only the sheets that are asked about need to be read
+            self._arrays[cell.sheet] = _array_areas(self._workbook, cell.sheet)
+        return any(cell in area for area in self._arrays[cell.sheet])
+
+    def at_all(self, cell: Cell) -> bool:
+        """Whether anything does; otherwise the cell is a constant."""
+        return cell in self._drawn or self.by_formula(cell)
+
+
+def _array_areas(workbook: Workbook, sheet: str) -> list[Area]:
+    formulas = (content.formula for content in workbook.sheets[sheet].cells.values())
+    return [formula.array for formula in formulas if formula is not None and formula.array is not None]

@@ -1,0 +1,176 @@
+"""The reserved tables of a workbook, their headings and their rows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from xlmc.address import Cell
+from xlmc.definitions.findings import Findings
+from xlmc.distributions.naming import nearest, plain
+from xlmc.errors import ErrorCode
+from xlmc.workbook.model import CellContent, CellValue, Table, Workbook
+
+__all__ = ["KINDS", "DefinitionTable", "Row", "as_text", "definition_tables", "holds_rows", "is_blank", "rows_of"]
+
+KINDS = ("xlmc_assumptions", "xlmc_forecasts", "xlmc_filters", "xlmc_correlations", "xlmc_settings")
+"""What the names of the tables start with; a copied sheet's `xlmc_assumptions3` counts too."""
+
+_NEAR_MISS = 0.8  # likeness above which an unknown name is taken for a slip
+
+
+@dataclass(frozen=True, slots=True)
+class DefinitionTable:
+    """A reserved table. `columns` maps the plain spelling of a heading to the heading as written and its column."""
+
+    kind: str
+    table: Table
+    columns: Mapping[str, tuple[str, int]]
+
+    @property
+    def where(self) -> Cell:
+        return Cell(self.table.area.sheet, self.table.area.top, self.table.area.left)
+
+    def heading_cell(self, column: int) -> Cell:
+        return Cell(self.table.area.sheet, self.table.area.top, column)
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row of a reserved table; columns go by any spelling of their heading."""
+
+    workbook: Workbook
+    table: DefinitionTable
+    number: int
+
+    def has(self, heading: str) -> bool:
+        """Whether the table has the column at all."""
+        return plain(heading) in self.table.columns
+
+    def filled(self, heading: str) -> bool:
+        """Whether the table has the column and the row holds something in it."""
+        return self.has(heading) and not is_blank(self.content(heading))
+
+    def heading(self, heading: str) -> str:
+        """The heading as this table writes it."""
+        return self.table.columns[plain(heading)][0]
+
+    def cell(self, heading: str) -> Cell:
+        """The table's own cell in that column."""
+        return Cell(self.table.table.area.sheet, self.number, self.table.columns[plain(heading)][1])
+
+    def content(self, heading: str) -> CellContent:
+        """What the table's own cell holds; blank where the table has no such column."""
+        return self.workbook.content(self.cell(heading)) if self.has(heading) else CellContent()
+
+    @property
+    def where(self) -> Cell:
+        """The cell that stands for the row: its first."""
+        return Cell(self.table.table.area.sheet, self.number, self.table.table.area.left)
+
+    def notes(self, known: Iterable[str]) -> dict[str, str]:
+        """The filled cells of the columns that nobody else reads, heading as written -> text."""
+        spellings = {plain(heading) for heading in known}
+        return {
+            written: as_text(self.content(written).value)
+            for spelling, (written, _) in self.table.columns.items()
+            if spelling not in spellings and self.filled(written)
+        }
+
+
+def is_blank(content: CellContent) -> bool:
+    """Nothing to see: no value and no formula, or text of blanks."""
+    if isinstance(content.value, str):
+        return not content.value.strip()
+    return content.value is None and content.formula is None
+
+
+def as_text(value: CellValue) -> str:
+    """A value as Excel shows it in a cell of general format."""
+    match value:
+        case None:
+            return ""
+        case bool():
+            return "TRUE" if value else "FALSE"
+        case ErrorCode():
+            return value.text
+        case str():
+            return value.strip()
+        case _:
+            return format(value, ".15g")
+
+
+def definition_tables(workbook: Workbook, findings: Findings) -> dict[str, list[DefinitionTable]]:
+    """The reserved tables of every sheet by kind, each kind present."""
+    found: dict[str, list[DefinitionTable]] = {kind: [] for kind in KINDS}
+    for table in workbook.tables:
+        kind = next((kind for kind in KINDS if table.name.casefold().startswith(kind)), None)
+        if kind is not None:
+            found[kind].append(_with_headings(kind, table, findings))
+        elif slip := nearest(table.name, KINDS, _NEAR_MISS):
+            where = Cell(table.area.sheet, table.area.top, table.area.left)
+            findings.notice(f"The table {table.name} is not read: did you mean {slip}?", where)
+    return found
+
+
+def rows_of(
+    workbook: Workbook,
+    tables: Iterable[DefinitionTable],
+    required: Iterable[str],
+    known: Iterable[str],
+    findings: Findings,
+) -> Iterator[Row]:
+    """The rows of these tables that hold anything, without header and totals.
+
+    A table that lacks a required column is a problem and gives no rows. A heading that nobody reads but that looks
+    like a known one is pointed out, because its column is kept as a note only.
+    """
+    required, known = tuple(required), tuple(known)
+    for table in tables:
+        _point_out_slips(table, known, findings)
+        if _complete(table, required, findings):
+            yield from _filled_rows(workbook, table)
+
+
+def holds_rows(workbook: Workbook, table: DefinitionTable) -> bool:
+    """Whether any row of the table holds anything."""
+    return next(_filled_rows(workbook, table), None) is not None
+
+
+def _with_headings(kind: str, table: Table, findings: Findings) -> DefinitionTable:
+    columns: dict[str, tuple[str, int]] = {}
+    for number, heading in enumerate(table.columns, start=table.area.left):
+        spelling = plain(heading)
+        if spelling in columns:
+            message = f"The table {table.name} has two columns {columns[spelling][0]!r} and {heading!r}"
+            where = Cell(table.area.sheet, table.area.top, number)
+            findings.problem(message, where, "Rename or delete one of them")
+        else:
+            columns[spelling] = heading, number
+    return DefinitionTable(kind, table, columns)
+
+
+def _complete(table: DefinitionTable, required: tuple[str, ...], findings: Findings) -> bool:
+    missing = [heading for heading in required if plain(heading) not in table.columns]
+    for heading in missing:
+        slip = nearest(heading, (written for written, _ in table.columns.values()))
+        hint = f"Rename the column {slip!r} to {heading}" if slip else f"Add a column {heading}"
+        findings.problem(f"The table {table.table.name} has no column {heading}", table.where, hint)
+    return not missing
+
+
+def _point_out_slips(table: DefinitionTable, known: tuple[str, ...], findings: Findings) -> None:
+    spellings = {plain(heading) for heading in known}
+    for spelling, (written, number) in table.columns.items():
+        slip = None if spelling in spellings else nearest(written, known, _NEAR_MISS)
+        if slip:
+            message = f"The column {written!r} is kept as a note only: did you mean {slip}?"
+            findings.notice(message, table.heading_cell(number))
+
+
+def _filled_rows(workbook: Workbook, table: DefinitionTable) -> Iterator[Row]:
+    body = table.table.body
+    for number in range(body.top, body.bottom + 1):
+        row = Row(workbook, table, number)
+        if any(row.filled(written) for written, _ in table.columns.values()):
+            yield row

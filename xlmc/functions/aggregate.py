@@ -1,0 +1,208 @@
+"""One number from many. Letters: n trials, k numbers of a trial.
+
+Sums and products run from left to right, each trial by itself: the same bits for any number of trials at once, and the
+same as the fold of the row's `ufunc`. A cell given as an argument comes as a range of one, so that a text, logical or
+blank in it does not count; given directly it does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.errors import ErrorCode
+from xlmc.functions.registry import Cells, Number, Numbers, excel
+from xlmc.functions.values import BLANK, DIV0, NUM, NUMBER, TEXT, Bools, Codes, Floats, Value, constant
+
+__all__: list[str] = []
+
+Places = NDArray[np.intp]
+
+
+def _total(x: Floats) -> Floats:
+    """Sums of the rows: (n, k) -> (n,)."""
+    return np.asarray(np.add.accumulate(x, axis=1)[:, -1])
+
+
+@excel("SUM", Numbers, ufunc=np.add)
+def sum_(x: Floats, counts: Bools) -> Floats:
+    """Sum."""
+    return _total(np.where(counts, x, 0.0))
+
+
+@excel("PRODUCT", Numbers, ufunc=np.multiply)
+def product(x: Floats, counts: Bools) -> Floats:
+    """Product; 0 of nothing."""
+    result = np.multiply.accumulate(np.where(counts, x, 1.0), axis=1)[:, -1]
+    return np.where(counts.any(axis=1), result, 0.0)
+
+
+@excel("MIN", Numbers, ufunc=np.minimum)
+def minimum(x: Floats, counts: Bools) -> Floats:
+    """Smallest; 0 of nothing."""
+    return np.where(counts.any(axis=1), np.where(counts, x, np.inf).min(axis=1), 0.0)
+
+
+@excel("MAX", Numbers, ufunc=np.maximum)
+def maximum(x: Floats, counts: Bools) -> Floats:
+    """Largest; 0 of nothing."""
+    return np.where(counts.any(axis=1), np.where(counts, x, -np.inf).max(axis=1), 0.0)
+
+
+@excel("AVERAGE", Numbers)
+def average(x: Floats, counts: Bools) -> Floats:
+    """Mean; `#DIV/0!` of nothing."""
+    k = counts.sum(axis=1)
+    return np.where(k > 0, sum_(x, counts) / k, DIV0)
+
+
+@excel("MEDIAN", Numbers)
+def median(x: Floats, counts: Bools) -> Floats:
+    """Middle number, or mean of the two in the middle; `#NUM!` of nothing."""
+    ordered, k = _ordered(x, counts)
+    low, high = (_picked(ordered, place[:, None])[:, 0] for place in ((k - 1) // 2, k // 2))
+    return np.where(k > 0, (low + high) / 2, NUM)
+
+
+def _ordered(x: Floats, counts: Bools) -> tuple[Floats, Places]:
+    """The numbers of each trial in rising order, what does not count behind them, and how many do: (n, k), (n,)."""
+    return np.sort(np.where(counts, x, np.inf), axis=1), counts.sum(axis=1)
+
+
+def _picked(ordered: Floats, places: Places) -> Floats:
+    """The numbers at `places` (n, m) of each trial; at some place where there is none."""
+    return np.asarray(np.take_along_axis(ordered, np.clip(places, 0, ordered.shape[1] - 1), axis=1))
+
+
+def _variance(x: Floats, counts: Bools, lost: int) -> tuple[Floats, Bools]:
+    """Mean squared distance from the mean, by k - `lost`, and whether there are enough numbers for it: (n,), (n,)."""
+    k = counts.sum(axis=1)
+    distance = np.where(counts, x - (sum_(x, counts) / k)[:, None], 0.0)
+    return _total(distance * distance) / (k - lost), k > lost
+
+
+@excel("VAR.S", Numbers, aliases=("VAR",))
+def sample_variance(x: Floats, counts: Bools) -> Floats:
+    """Variance, estimated from a sample; `#DIV/0!` of fewer than two."""
+    variance, enough = _variance(x, counts, 1)
+    return np.where(enough, variance, DIV0)
+
+
+@excel("VAR.P", Numbers, aliases=("VARP",))
+def population_variance(x: Floats, counts: Bools) -> Floats:
+    """Variance of the numbers themselves; `#DIV/0!` of nothing."""
+    variance, enough = _variance(x, counts, 0)
+    return np.where(enough, variance, DIV0)
+
+
+@excel("STDEV.S", Numbers, aliases=("STDEV",))
+def sample_deviation(x: Floats, counts: Bools) -> Floats:
+    """Standard deviation, estimated from a sample; `#DIV/0!` of fewer than two."""
+    variance, enough = _variance(x, counts, 1)
+    return np.where(enough, np.sqrt(variance), DIV0)
+
+
+@excel("STDEV.P", Numbers, aliases=("STDEVP",))
+def population_deviation(x: Floats, counts: Bools) -> Floats:
+    """Standard deviation of the numbers themselves; `#DIV/0!` of nothing."""
+    variance, enough = _variance(x, counts, 0)
+    return np.where(enough, np.sqrt(variance), DIV0)
+
+
+def _rows(array: NDArray[Any], value: Value) -> NDArray[Any]:
+    """An array that broadcasts to `value`, one row per trial: (n,) or (n, r, c) -> (n, k)."""
+    return np.broadcast_to(array, value.shape).reshape(value.shape[0], -1)
+
+
+def _numbers(value: Value) -> tuple[Floats, Bools, Codes]:
+    """The numbers of a range, or what is given directly as one; which places count; their errors: (n, k) each."""
+    in_range = value.numbers.ndim == 3
+    x, errors = (value.numbers, value.errors) if in_range else value.to_numbers()
+    counts = value.kinds == NUMBER if in_range else errors == 0
+    return _rows(x, value), _rows(counts, value), _rows(errors, value)
+
+
+def _how_many(parts: Iterable[Bools]) -> Floats:
+    """In how many places each trial counts: (n, k), (n, k'), … -> (n,)."""
+    total = np.zeros(1)
+    for counts in parts:
+        total = total + counts.sum(axis=1)
+    return total
+
+
+@excel("COUNT", Cells(repeat=True))
+def count(*values: Value) -> Floats:
+    """How many are numbers; given directly, also logicals and the texts of numbers. Errors do not count."""
+    return _how_many(_numbers(value)[1] for value in values)
+
+
+@excel("COUNTA", Cells(repeat=True))
+def count_anything(*values: Value) -> Floats:
+    """How many are not blank; an argument left out between commas counts, as in Excel."""
+    return _how_many(_rows((value.kinds != BLANK) | (value.numbers.ndim < 3), value) for value in values)
+
+
+@excel("COUNTBLANK", Cells)
+def count_blank(cells: Value) -> Floats:
+    """How many are blank or hold an empty text."""
+    empty = np.asarray(cells.kinds == BLANK)
+    if cells.texts is not None:
+        empty = empty | ((cells.kinds == TEXT) & (cells.texts == ""))
+    return _how_many([_rows(empty, cells)])
+
+
+def _first(errors: Iterable[Codes]) -> Codes:
+    """The first error of each trial, 0 for none: (n, k), (n, k'), … -> (n,)."""
+    first = np.zeros(1, np.uint8)
+    for codes in errors:
+        found = np.take_along_axis(codes, (codes > 0).argmax(axis=1, keepdims=True), axis=1)[:, 0]
+        first = np.where(first > 0, first, found)
+    return first
+
+
+@excel("SUMPRODUCT", Cells(repeat=True))
+def sum_product(*values: Value) -> Value:
+    """Sum of the products of the cells in one place; what is not a number is 0; `#VALUE!` for unequal shapes.
+
+    Where the ranges are of one cell each, a text is `#VALUE!`, as Excel has it.
+    """
+    ranges = [value.as_range() for value in values]
+    shapes = {cells.shape[1:] for cells in ranges}
+    if len(shapes) > 1:
+        return constant(ErrorCode.VALUE)
+    products = np.ones(1)
+    errors = []
+    for cells in ranges:
+        products = products * np.where(cells.kinds == NUMBER, cells.numbers, 0.0)
+        refused = (cells.kinds == TEXT) & (shapes == {(1, 1)})
+        errors.append(_rows(np.where(refused, np.uint8(ErrorCode.VALUE), cells.errors), cells))
+    return Value.of_numbers(_total(products.reshape(products.shape[0], -1)), _first(errors))
+
+
+def _ranked(values: Value, rank: Value, place: Callable[[Floats, Places], Floats]) -> Value:
+    """The numbers at `place(rank, k)` in rising order, in the shape of `rank`; `#NUM!` where there is none."""
+    x, counts, own = _numbers(values)
+    ordered, k = _ordered(x, counts)
+    ranks, errors = (_rows(array, rank) for array in rank.to_numbers())
+    places = place(ranks, k[:, None])
+    inside = (places >= 0) & (places < k[:, None])
+    result = np.where(inside, _picked(ordered, np.where(inside, places, 0).astype(np.intp)), NUM)
+    first = _first([own])[:, None]
+    errors = np.broadcast_to(np.where(first > 0, first, errors), result.shape)
+    shape = (result.shape[0], *rank.shape[1:])
+    return Value.of_numbers(result.reshape(shape), errors.reshape(shape))
+
+
+@excel("LARGE", Cells, Number)
+def large(values: Value, rank: Value) -> Value:
+    """The number of a rank, the largest being 1; a fraction of a rank rounds up."""
+    return _ranked(values, rank, lambda ranks, k: k - np.ceil(ranks))
+
+
+@excel("SMALL", Cells, Number)
+def small(values: Value, rank: Value) -> Value:
+    """The number of a rank, the smallest being 1; a fraction of a rank rounds down."""
+    return _ranked(values, rank, lambda ranks, k: np.floor(ranks) - 1)

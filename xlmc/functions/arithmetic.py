@@ -1,0 +1,66 @@
+"""Signs, roots, powers, logarithms and remainders."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from xlmc.functions.registry import Number, Numbers, excel
+from xlmc.functions.values import DIV0, NUM, Bools, Floats
+
+__all__: list[str] = []
+
+_FACTORIALS: Final = np.array([float(math.factorial(n)) for n in range(171)])
+
+excel("ABS", Number, ufunc=np.absolute)(np.absolute)
+excel("SIGN", Number, ufunc=np.sign)(np.sign)
+excel("SQRT", Number, ufunc=np.sqrt)(np.sqrt)
+excel("EXP", Number, ufunc=np.exp)(np.exp)
+excel("LN", Number, ufunc=np.log)(np.log)
+excel("LOG10", Number, ufunc=np.log10)(np.log10)
+
+
+@excel("SQRTPI", Number)
+def sqrt_pi(x: Floats) -> Floats:
+    """Square root of `x` times π."""
+    return np.asarray(np.sqrt(x * np.pi))
+
+
+@excel("LOG", Number, Number(default=10.0))
+def log(x: Floats, base: Floats) -> Floats:
+    """Logarithm to a base; `#NUM!` unless both are above 0, `#DIV/0!` to base 1.
+
+    Bases 10 and 2 have logarithms of their own, so that `LOG(1000)` is 3 and not one bit less.
+    """
+    result = np.where(base == 10, np.log10(x), np.where(base == 2, np.log2(x), np.log(x) / np.log(base)))
+    return np.where((x <= 0) | (base <= 0), NUM, np.where(base == 1, DIV0, result))
+
+
+@excel("MOD", Number, Number, ufunc=np.remainder)
+def mod(x: Floats, divisor: Floats) -> Floats:
+    """Remainder, with the sign of the divisor; `#DIV/0!` by zero.
+
+    It is that of the doubles, as in Excel since 2010: `MOD(10, 0.1)` is nearly 0.1, for 0.1 is a little more than that.
+    """
+    return np.where(divisor == 0, DIV0, np.remainder(x, divisor))
+
+
+@excel("QUOTIENT", Number, Number)
+def quotient(x: Floats, divisor: Floats) -> Floats:
+    """Whole part of the quotient, towards zero; `#DIV/0!` by zero."""
+    return np.where(divisor == 0, DIV0, np.trunc(x / divisor))
+
+
+@excel("FACT", Number)
+def fact(x: Floats) -> Floats:
+    """Factorial of the whole part; `#NUM!` below 0 and above 170."""
+    outside = (x < 0) | (x >= _FACTORIALS.size)
+    return np.where(outside, NUM, _FACTORIALS[np.where(outside, 0, x).astype(np.intp)])
+
+
+@excel("SUMSQ", Numbers)
+def sum_of_squares(x: Floats, counts: Bools) -> Floats:
+    """Sum of the squares, from left to right."""
+    return np.asarray(np.add.accumulate(np.where(counts, x * x, 0.0), axis=1)[:, -1])

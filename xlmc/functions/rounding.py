@@ -1,0 +1,155 @@
+"""Rounding to digits and to multiples.
+
+Excel rounds the number that it shows, which has 15 significant digits, not the double behind it: `ROUND(1.005, 2)` is
+1.01 and `INT(880000000*0.00849/3)` is 2490400, although both doubles lie just below. So a number that stands less than
+half a unit of its 15th digit below a boundary counts as on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from xlmc.functions.registry import Number, excel
+from xlmc.functions.values import DIV0, NUM, Bools, Floats
+
+__all__: list[str] = []
+
+_TENS: Final = np.array([float(f"1e{n}") for n in range(309)])
+_DECADES: Final = np.array([float(f"1e{n}") for n in range(-290, 309)])
+_HALF_OF_15TH_DIGIT: Final = np.array([0.0, *(float(f"5e{n - 15}") for n in range(-290, 309))])
+
+_FIFTEEN_DIGITS: Final = 1e14
+_NO_FRACTION: Final = 2.0**52
+"""From here on doubles are whole: more digits than these cannot be rounded away."""
+
+
+class _Grid:
+    """A size, 0 or more, among the multiples of 10^-digits.
+
+    A multiple is one division or multiplication of a whole number by a power of ten: the nearest double to it, for up
+    to 22 digits.
+
+    Attributes:
+        n: how many whole steps Excel sees in the size.
+        coarse: whether a step is more than the 15th digit.
+        fine: whether a step is less than the double can hold.
+    """
+
+    def __init__(self, size: Floats, digits: Floats) -> None:
+        whole = np.clip(np.trunc(digits), -308, 308).astype(np.intp)
+        self._up, self._down = _TENS[np.maximum(whole, 0)], _TENS[np.maximum(-whole, 0)]
+        self._size = size
+        seen = _HALF_OF_15TH_DIGIT[np.searchsorted(_DECADES, size, side="right")]
+        self._tolerance = np.minimum(seen, self.multiple(np.asarray(0.5)))
+        place = size * self._up / self._down
+        self.coarse, self.fine = place < _FIFTEEN_DIGITS, place >= _NO_FRACTION
+        self.n = np.floor(place)
+        self.n = np.where(self.reaches(self.n + 1), self.n + 1, self.n)
+
+    def multiple(self, n: Floats) -> Floats:
+        """The n-th multiple."""
+        return np.asarray(n / self._up * self._down)
+
+    def reaches(self, n: Floats) -> Bools:
+        """Whether the size is seen at the n-th multiple or above it."""
+        return np.asarray(self.multiple(n) - self._size <= self._tolerance)
+
+    def passes(self) -> Bools:
+        """Whether the size is seen above its n-th multiple."""
+        return np.asarray(self._size - self.multiple(self.n) >= self._tolerance) & (self._size > 0)
+
+
+def _rounded(x: Floats, digits: Floats, further: Callable[[_Grid], Bools]) -> Floats:
+    """`x` to so many digits, towards zero, or one step further from zero where `further(grid)` says so."""
+    grid = _Grid(np.abs(x), digits)
+    result = np.copysign(grid.multiple(grid.n + further(grid)), x) + 0.0
+    return np.where(grid.fine, x, result)
+
+
+@excel("ROUND", Number, Number)
+def round_(x: Floats, digits: Floats) -> Floats:
+    """To so many digits after the point (before it, if negative), halves away from zero."""
+    return _rounded(x, digits, lambda grid: grid.coarse & grid.reaches(grid.n + 0.5))
+
+
+@excel("ROUNDUP", Number, Number)
+def round_up(x: Floats, digits: Floats) -> Floats:
+    """To so many digits, away from zero."""
+    return _rounded(x, digits, _Grid.passes)
+
+
+def _round_down(x: Floats, digits: Floats) -> Floats:
+    """To so many digits, towards zero."""
+    return _rounded(x, digits, lambda _: np.asarray(False))
+
+
+excel("ROUNDDOWN", Number, Number)(_round_down)
+excel("TRUNC", Number, Number(default=0.0))(_round_down)
+
+
+@excel("INT", Number)
+def int_(x: Floats) -> Floats:
+    """Down to a whole number."""
+    return _rounded(x, np.asarray(0.0), lambda grid: (x < 0) & grid.passes())
+
+
+def _down(x: Floats, multiple: Floats) -> Floats:
+    """Down to a multiple, or up to one if that is negative; 0 for multiples of 0."""
+    return np.asarray(int_(x / np.where(multiple == 0, 1.0, multiple)) * multiple + 0.0)
+
+
+def _up(x: Floats, multiple: Floats) -> Floats:
+    """Up to a multiple, or down to one if that is negative; 0 for multiples of 0."""
+    return -_down(-x, multiple) + 0.0
+
+
+@excel("CEILING", Number, Number)
+def ceiling(x: Floats, multiple: Floats) -> Floats:
+    """Up to a multiple; away from zero when both are negative; `#NUM!` for a negative multiple of a positive number."""
+    return np.where((x > 0) & (multiple < 0), NUM, _up(x, multiple))
+
+
+@excel("FLOOR", Number, Number)
+def floor(x: Floats, multiple: Floats) -> Floats:
+    """Down to a multiple; towards zero when both are negative; `#NUM!` as for CEILING, `#DIV/0!` for multiples of 0."""
+    result = np.where((multiple == 0) & (x != 0), DIV0, _down(x, multiple))
+    return np.where((x > 0) & (multiple < 0), NUM, result)
+
+
+@excel("CEILING.MATH", Number, Number(default=1.0), Number(default=0.0))
+def ceiling_math(x: Floats, multiple: Floats, mode: Floats) -> Floats:
+    """Up to a multiple, whatever its sign; a negative number away from zero when `mode` is not 0."""
+    size = np.abs(multiple)
+    return np.where((x < 0) & (mode != 0), _down(x, size), _up(x, size))
+
+
+@excel("FLOOR.MATH", Number, Number(default=1.0), Number(default=0.0))
+def floor_math(x: Floats, multiple: Floats, mode: Floats) -> Floats:
+    """Down to a multiple, whatever its sign; a negative number towards zero when `mode` is not 0."""
+    size = np.abs(multiple)
+    return np.where((x < 0) & (mode != 0), _up(x, size), _down(x, size))
+
+
+@excel("MROUND", Number, Number)
+def mround(x: Floats, multiple: Floats) -> Floats:
+    """To the nearest multiple, halves away from zero; `#NUM!` when the signs differ.
+
+    This one takes the doubles as they are, as Excel does: `MROUND(6.05, 0.1)` is 6, `MROUND(7.05, 0.1)` is 7.1.
+    """
+    quotient = x / np.where(multiple == 0, 1.0, multiple)
+    return np.where(np.sign(x) * np.sign(multiple) < 0, NUM, np.floor(quotient + 0.5) * multiple)
+
+
+@excel("EVEN", Number)
+def even(x: Floats) -> Floats:
+    """To the next even whole number, away from zero."""
+    return np.asarray(np.copysign(np.ceil(np.abs(x) / 2) * 2, x) + 0.0)
+
+
+@excel("ODD", Number)
+def odd(x: Floats) -> Floats:
+    """To the next odd whole number, away from zero; 0 to 1."""
+    return np.asarray(np.copysign(np.ceil((np.abs(x) + 1) / 2) * 2 - 1, x + 0.0))

@@ -1,0 +1,97 @@
+"""Read XML from an untrusted file: no document types, no entities, no traceback.
+
+The parts of a workbook need neither, so any declaration of them is refused before it can do harm. Parts are fed to
+the parser piece by piece: a refusal in one piece means that the next is never looked at.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import NoReturn
+from xml.etree import ElementTree
+from xml.parsers import expat
+
+from xlmc.errors import WorkbookError
+
+__all__ = ["REPAIR", "attribute", "expat_parser", "feed", "is_true", "tree", "whole_number"]
+
+REPAIR = "Open it in Excel, let Excel repair it, and save it again"
+"""The hint for a package that is damaged inside."""
+
+_PIECE = 1 << 16
+_DIGITS = re.compile("[0-9]{1,9}")
+_NOT_XML = (expat.ExpatError, ElementTree.ParseError, ValueError, LookupError)
+
+
+def tree(xml: bytes, part: str) -> ElementTree.Element:
+    """The part's root element; names are `{namespace}local`, and `{*}local` finds them in any namespace.
+
+    Raises:
+        WorkbookError: the part is not XML, or declares a document type.
+    """
+    parser = ElementTree.XMLParser(target=_Builder())
+    with _told_of(part):
+        for start in range(0, len(xml), _PIECE):
+            parser.feed(xml[start : start + _PIECE])
+        root: ElementTree.Element = parser.close()
+        return root
+
+
+def expat_parser() -> expat.XMLParserType:
+    """A parser for one pass over a large part; names arrive as `namespace local`."""
+    parser = expat.ParserCreate(namespace_separator=" ")
+    parser.buffer_size = _PIECE
+    parser.buffer_text = True
+    parser.StartDoctypeDeclHandler = _refuse
+    parser.EntityDeclHandler = _refuse
+    return parser
+
+
+def feed(parser: expat.XMLParserType, xml: bytes, part: str) -> None:
+    """Run the parser over the whole part.
+
+    Raises:
+        WorkbookError: the part is not XML, or declares a document type.
+    """
+    with _told_of(part):
+        for start in range(0, len(xml), _PIECE):
+            parser.Parse(xml[start : start + _PIECE])
+        parser.Parse(b"", True)
+
+
+def attribute(element: ElementTree.Element, local: str) -> str | None:
+    """The element's attribute of that local name in any namespace but none, such as `id` for `r:id`."""
+    return next((value for key, value in element.items() if key.endswith("}" + local)), None)
+
+
+def is_true(text: str | None) -> bool:
+    """An XML boolean; absent is false."""
+    return text in ("1", "true", "on")
+
+
+def whole_number(text: str | None) -> int | None:
+    """A count or position as XML writes it; None where it is absent, none, or longer than any in a workbook."""
+    return int(text) if text is not None and _DIGITS.fullmatch(text) else None
+
+
+class _Builder(ElementTree.TreeBuilder):
+    def doctype(self, *_: object) -> None:
+        _refuse()
+
+
+def _refuse(*_: object) -> NoReturn:
+    raise WorkbookError("it declares a document type or entities, which no workbook needs")
+
+
+@contextmanager
+def _told_of(part: str) -> Iterator[None]:
+    try:
+        yield
+    except WorkbookError as error:
+        if error.where is not None:
+            raise
+        raise WorkbookError(f"{part}: {error.message}", hint=error.hint or REPAIR) from None
+    except _NOT_XML as error:
+        raise WorkbookError(f"{part} is not well-formed XML ({error})", hint=REPAIR) from error

@@ -1,0 +1,198 @@
+"""One worksheet's XML to its cells, merged areas and data tables, in one pass."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_number
+from xlmc.errors import WorkbookError
+from xlmc.workbook.model import CellContent, CellValue, Formula, Sheet
+from xlmc.workbook.reference import area_of
+from xlmc.workbook.safe_xml import REPAIR, expat_parser, feed
+from xlmc.workbook.strings import decode, run_text
+from xlmc.workbook.structure import SheetEntry
+from xlmc.workbook.values import CellContext, convert
+
+__all__ = ["ParsedSheet", "parse_sheet"]
+
+_NAMESPACES = (
+    "http://schemas.openxmlformats.org/spreadsheetml/2006/main",
+    "http://purl.oclc.org/ooxml/spreadsheetml/main",  # strict
+)
+_SPACE = "http://www.w3.org/XML/1998/namespace space"
+_ROW = re.compile("[1-9][0-9]{0,6}")
+_A1 = re.compile("([A-Z]{1,3})([1-9][0-9]{0,6})")
+
+_Attributes = Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class ParsedSheet:
+    """A worksheet, and the areas that Excel's what-if data tables fill on it."""
+
+    sheet: Sheet
+    data_tables: tuple[Area, ...]
+
+
+def parse_sheet(xml: bytes, entry: SheetEntry, context: CellContext) -> ParsedSheet:
+    """Read the worksheet of one tab.
+
+    Raises:
+        WorkbookError: the part is not XML, or a cell holds what no cell can; told of the cell.
+    """
+    reading = _Pass(entry.name, context)
+    parser = expat_parser()
+    parser.StartElementHandler = reading.start
+    parser.EndElementHandler = reading.end
+    parser.CharacterDataHandler = reading.text.append
+    feed(parser, xml, entry.part)
+    sheet = Sheet(entry.name, entry.part, reading.cells, tuple(reading.merged), entry.visible)
+    return ParsedSheet(sheet, tuple(reading.data_tables))
+
+
+class _Pass:
+    """Where the pass is, the cell it is in, and what it has found."""
+
+    def __init__(self, sheet: str, context: CellContext) -> None:
+        self.cells: dict[tuple[int, int], CellContent] = {}
+        self.merged: list[Area] = []
+        self.data_tables: list[Area] = []
+        self.text: list[str] = []  # pieces of the text at hand
+        self._sheet = sheet
+        self._context = context
+        self._row = self._column = 0
+        self._cell: _Attributes = {}
+        self._raw: str | None = None
+        self._formula: Formula | None = None
+        self._attributes: _Attributes = {}  # of the element last opened; `v`, `f` and `t` hold no others
+        self._masters: dict[str | None, Formula] = {}
+        self._runs: list[str] = []
+        self._phonetic = False
+
+    def start(self, tag: str, attributes: _Attributes) -> None:
+        self._attributes = attributes
+        self.text.clear()
+        handle = _STARTS.get(tag)
+        if handle is not None:
+            handle(self)
+
+    def end(self, tag: str) -> None:
+        handle = _ENDS.get(tag)
+        if handle is not None:
+            handle(self)
+
+    def start_row(self) -> None:
+        self._column = 0
+        number = self._attributes.get("r")
+        if number is None:
+            self._row += 1
+        elif _ROW.fullmatch(number):
+            self._row = int(number)
+        else:
+            raise WorkbookError(f"a row of sheet {self._sheet!r} has the number {number!r}", hint=REPAIR)
+
+    def start_cell(self) -> None:
+        self._cell = self._attributes
+        self._raw = self._formula = None
+        reference = self._cell.get("r")
+        if reference is None:
+            self._column += 1
+        else:
+            self._go_to(reference)
+        if not (0 < self._row <= MAX_ROW and self._column <= MAX_COLUMN):
+            raise WorkbookError(f"a cell of sheet {self._sheet!r} lies outside the sheet", hint=REPAIR)
+
+    def end_cell(self) -> None:
+        place = (self._row, self._column)
+        if self._raw is None and self._formula is None:
+            return  # a blank cell with a style
+        if place in self.cells:
+            raise self._faulty("stands in the file twice")
+        self.cells[place] = CellContent(None if self._raw is None else self._value(self._raw), self._formula)
+
+    def end_value(self) -> None:
+        self._raw = "".join(self.text)
+
+    def end_run(self) -> None:
+        if not self._phonetic:
+            keep_space = self._attributes.get(_SPACE) == "preserve"
+            self._runs.append(run_text("".join(self.text), keep_space))
+
+    def end_inline(self) -> None:
+        self._raw = "".join(self._runs)
+        self._runs.clear()
+
+    def start_phonetic(self) -> None:
+        self._phonetic = True
+
+    def end_phonetic(self) -> None:
+        self._phonetic = False
+
+    def end_formula(self) -> None:
+        kind = self._attributes.get("t", "normal")
+        text = decode("".join(self.text)).removeprefix("=")
+        if kind == "dataTable":
+            self.data_tables.append(area_of(self._attributes.get("ref"), self._sheet, "a data table"))
+        elif kind == "shared":
+            self._formula = self._shared(text)
+        elif text:
+            self._formula = self._array(text) if kind == "array" else Formula(text, self._row, self._column)
+
+    def start_merged(self) -> None:
+        self.merged.append(area_of(self._attributes.get("ref"), self._sheet, "a merged cell"))
+
+    def _go_to(self, reference: str) -> None:
+        found = _A1.fullmatch(reference)
+        if found is None:
+            raise WorkbookError(f"a cell of sheet {self._sheet!r} has the address {reference!r}", hint=REPAIR)
+        self._column = column_number(found[1])
+        self._row = int(found[2])
+
+    def _value(self, raw: str) -> CellValue:
+        try:
+            return convert(self._cell.get("t", "n"), raw, self._context)
+        except ValueError as error:
+            raise self._faulty(str(error)) from None
+
+    def _shared(self, text: str) -> Formula:
+        """A master brings text and the area it is shared over; a child's own text, if any, does not count."""
+        index = self._attributes.get("si")
+        if text and ("ref" in self._attributes or index not in self._masters):
+            self._masters[index] = Formula(text, self._row, self._column)
+        if index not in self._masters:
+            raise self._faulty(f"shares formula {index}, which no earlier cell holds")
+        return self._masters[index]
+
+    def _array(self, text: str) -> Formula:
+        area = area_of(self._attributes.get("ref"), self._sheet, "an array formula")
+        dynamic = self._cell.get("cm") in self._context.dynamic_marks
+        return Formula(text, self._row, self._column, area, dynamic)
+
+    def _faulty(self, what: str) -> WorkbookError:
+        return WorkbookError(f"the cell {what}", where=Cell(self._sheet, self._row, self._column), hint=REPAIR)
+
+
+def _in_each_namespace(handlers: Mapping[str, Callable[[_Pass], None]]) -> dict[str, Callable[[_Pass], None]]:
+    return {f"{space} {local}": handle for space in _NAMESPACES for local, handle in handlers.items()}
+
+
+_STARTS = _in_each_namespace(
+    {
+        "row": _Pass.start_row,
+        "c": _Pass.start_cell,
+        "rPh": _Pass.start_phonetic,
+        "mergeCell": _Pass.start_merged,
+    }
+)
+_ENDS = _in_each_namespace(
+    {
+        "c": _Pass.end_cell,
+        "v": _Pass.end_value,
+        "f": _Pass.end_formula,
+        "t": _Pass.end_run,
+        "is": _Pass.end_inline,
+        "rPh": _Pass.end_phonetic,
+    }
+)

@@ -1,0 +1,104 @@
+"""The text a cell's value is written as, to the value: one small function for each cell type."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+from xlmc.errors import ErrorCode
+from xlmc.workbook.model import CellValue
+from xlmc.workbook.safe_xml import whole_number
+from xlmc.workbook.strings import decode
+
+__all__ = ["CellContext", "convert"]
+
+_LOGICAL = {"1": True, "0": False, "true": True, "false": False}
+
+
+@dataclass(frozen=True, slots=True)
+class CellContext:
+    """What the cells of a sheet need from the rest of the workbook.
+
+    Attributes:
+        strings: the shared string table.
+        dynamic_marks: the values of `cm` that mark a dynamic-array formula.
+        date1904: dates count from 1904 instead of 1900.
+    """
+
+    strings: Sequence[str] = ()
+    dynamic_marks: frozenset[str] = frozenset()
+    date1904: bool = False
+
+
+def convert(kind: str, raw: str, context: CellContext) -> CellValue:
+    """The value that `raw` stands for in a cell of type `kind` (the attribute `t`).
+
+    Raises:
+        ValueError: `raw` is no value of that type, or there is no such type.
+    """
+    converter = _CONVERTERS.get(kind)
+    if converter is None:
+        raise ValueError(f"is of the unknown type {kind!r}")
+    return converter(raw, context)
+
+
+def _number(raw: str, _: CellContext) -> CellValue:
+    if not raw:
+        return None
+    try:
+        value = float(raw)
+    except ValueError:
+        value = float("nan")
+    if not isfinite(value):
+        raise ValueError(f"holds {raw!r} where a number should be")
+    return value
+
+
+def _logical(raw: str, _: CellContext) -> CellValue:
+    if raw not in _LOGICAL:
+        raise ValueError(f"holds {raw!r} where TRUE (1) or FALSE (0) should be")
+    return _LOGICAL[raw]
+
+
+def _error(raw: str, _: CellContext) -> CellValue:
+    # Excel has error values without a number of their own (#FIELD!, #BUSY!, #PYTHON!): for a model all are #VALUE!.
+    try:
+        return ErrorCode.from_text(raw)
+    except ValueError:
+        return ErrorCode.VALUE
+
+
+def _shared(raw: str, context: CellContext) -> CellValue:
+    number = whole_number(raw)
+    if number is None or number >= len(context.strings):
+        raise ValueError(f"holds a text that the workbook does not (number {raw!r} of {len(context.strings)})")
+    return context.strings[number]
+
+
+def _date(raw: str, context: CellContext) -> CellValue:
+    from openpyxl.utils.datetime import MAC_EPOCH, WINDOWS_EPOCH, from_ISO8601, to_excel  # slow to import
+
+    try:
+        return float(to_excel(from_ISO8601(raw), MAC_EPOCH if context.date1904 else WINDOWS_EPOCH))
+    except (ValueError, TypeError, OverflowError):
+        raise ValueError(f"holds {raw!r} where a date should be") from None
+
+
+def _text(raw: str, _: CellContext) -> CellValue:
+    return decode(raw)
+
+
+def _inline(raw: str, _: CellContext) -> CellValue:
+    return raw  # its runs were decoded one by one
+
+
+_CONVERTERS: dict[str, Callable[[str, CellContext], CellValue]] = {
+    "n": _number,
+    "b": _logical,
+    "e": _error,
+    "s": _shared,
+    "str": _text,
+    "inlineStr": _inline,
+    "d": _date,
+}

@@ -135,7 +135,7 @@ def _filtered(columns: Sequence[Column], block: int, trials: int) -> tuple[Bools
 
 
 def _fails(column: Column) -> Bools:
-    fails = column.values == 0
+    fails: Bools = column.values == 0
     return fails if column.codes is None else fails | (column.codes > 0)
 
 

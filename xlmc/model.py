@@ -19,7 +19,8 @@ from xlmc.scene import condition, survey
 from xlmc.workbook import Workbook, read_workbook
 
 if TYPE_CHECKING:
-    from xlmc.simulate import Progress, Simulation
+    from xlmc.simulate import Progress
+    from xlmc.simulation import Simulation
 
 __all__ = ["Model", "load"]
 

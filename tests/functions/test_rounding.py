@@ -37,6 +37,10 @@ DIGITS = [
     ("ROUND", (1e300, 2), 1e300),
     ("ROUND", (123.456, 400), 123.456),
     ("ROUND", (123.456, -400), 0),
+    ("ROUND", (123456789012345.25, 0), 123456789012345),
+    ("ROUND", (123456789012345.5, 0), 123456789012346),
+    ("ROUND", (1234567890123456.25, 0), 1234567890123456),
+    ("ROUNDUP", (123456789012345.25, 0), 123456789012345),  # the step is the 15th digit: all round to it
     ("ROUND", (0, 3), 0),
     ("ROUND", ("2.345", "2"), 2.35),
     ("ROUND", (True, None), 1),
@@ -194,7 +198,9 @@ def test_rounds_the_fifteen_digits_that_excel_shows(name, x, digits):
 @given(numbers)
 @settings(max_examples=300, deadline=None)
 def test_int_goes_down_from_the_fifteen_digits_that_excel_shows(x):
-    expected = float(_as_excel_sees(x).to_integral_value(ROUND_FLOOR))
+    seen = _as_excel_sees(x)
+    assume(seen.adjusted() < 14)
+    expected = float(seen.to_integral_value(ROUND_FLOOR))
     assert function_named("INT").body(np.array([x]))[0] == expected
 
 

@@ -35,9 +35,7 @@ for _command in (new, check, simulate):
 def main() -> None:
     """Run the command line; a mistake in the input is a message and exit code 2."""
     try:
-        xlmc.main(standalone_mode=False)
-    except click.exceptions.Exit as asked:
-        sys.exit(asked.exit_code)
+        sys.exit(xlmc.main(standalone_mode=False) or 0)  # a command that asks for an exit code returns it
     except click.ClickException as error:
         error.show()
         sys.exit(BAD_INPUT)

@@ -48,7 +48,8 @@ def check(book: Path) -> None:
 
 def _show_definitions(definitions: Definitions) -> None:
     from xlmc.cli.printing import table
-    from xlmc.wording import distribution_text, limits_text, share_text
+    from xlmc.record.wording import distribution_text, limits_text
+    from xlmc.report.summary import percent
 
     table(
         "Assumptions",
@@ -58,7 +59,7 @@ def _show_definitions(definitions: Definitions) -> None:
     table(
         "Forecasts",
         ("Name", "Cell", "Units", "Central range"),
-        [(f.name, str(f.cell), f.units, share_text(f.central)) for f in definitions.forecasts],
+        [(f.name, str(f.cell), f.units, percent(f.central)) for f in definitions.forecasts],
     )
     if definitions.filters:
         rows = [(f.name, str(f.cell), limits_text(f), f.because) for f in definitions.filters]

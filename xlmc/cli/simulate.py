@@ -84,11 +84,21 @@ def _progress(trials: int, quiet: bool) -> Iterator[Progress | None]:
 def _show(run: Simulation) -> None:
     """Print the paper's table, the acceptance and what each filter rejected."""
     from xlmc.cli.printing import table
-    from xlmc.report.summary import acceptance_text, filter_rows, forecast_rows
+    from xlmc.report.summary import ERROR_SENTENCE, summarise, summary_text
+    from xlmc.statistics import format_estimate
 
-    headings, rows = forecast_rows(run)
-    table("Accepted trials", headings, rows, right=range(2, len(headings)))
-    click.echo(acceptance_text(run))
+    headings, rows = summary_text(summarise(run))
+    table(f"{run.model.workbook.name}: accepted trials", headings, rows, right=range(2, len(headings)))
+    share = run.acceptance
+    percent = format_estimate(100 * share.value, 100 * (share.error or 0))
+    click.echo(f"Accepted {run.accepted:,} of {run.trials:,} trials, {percent} %; seed {run.settings.seed}.\n")
     if run.model.filters:
-        headings, rows = filter_rows(run)
-        table("Filters", headings, rows, right=range(2, len(headings)))
+        table("Trials rejected", ("Filter", "Keeps", "Rejected", "Only by it"), _rejections(run), right=(2, 3))
+    click.echo(click.wrap_text(ERROR_SENTENCE, width=100))
+
+
+def _rejections(run: Simulation) -> list[tuple[str, ...]]:
+    from xlmc.record.wording import limits_text
+
+    counts = zip(run.model.filters, run.tally.rejected, run.tally.only, strict=True)
+    return [(f.name, limits_text(f), f"{rejected:,}", f"{only:,}") for f, rejected, only in counts]

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from difflib import get_close_matches
 from typing import assert_never
 
+import numpy as np
+
 from xlmc.address import Area, Cell
 from xlmc.compile.dag import Apply, Constant, Dag, Range, Rescue, Select
 from xlmc.compile.engine import Target
@@ -15,6 +17,10 @@ from xlmc.functions import REGISTRY, Function, Kind, function_named
 from xlmc.functions.values import BLANK, Value, constant
 
 __all__ = ["Lowering"]
+
+
+_FACTORS = {"RADIANS": np.pi / 180, "DEGREES": 180 / np.pi}
+"""Functions that are a multiplication, to the last bit; NumPy's own are several times slower."""
 
 
 class Lowering:
@@ -151,6 +157,8 @@ class Lowering:
         if function.name in ("IFERROR", "IFNA"):
             value, instead = (self._zero_if_blank(place) for place in places)
             return self.dag.add(Rescue(value, instead, function.name == "IFNA"))
+        if function.name in _FACTORS:
+            return self._call("*", (places[0], self._number(_FACTORS[function.name])))
         return self.dag.add(Apply(function, places))
 
     def _zero_if_blank(self, place: int) -> int:
@@ -178,6 +186,8 @@ class Lowering:
     def _call(self, name: str, places: tuple[int, ...]) -> int:
         if name == "+" and places[1] == self._number(0.0) and self.dag.types[places[0]] is Kind.NUMBER:
             return places[0]
+        if name == "^" and places[1] == self._number(2.0):
+            return self._call("*", (places[0], places[0]))
         return self.dag.add(Apply(REGISTRY[name], places))
 
 

@@ -199,7 +199,7 @@ def _ranked(values: Value, rank: Value, place: Callable[[Floats, Places], Floats
 @excel("LARGE", Cells, Number)
 def large(values: Value, rank: Value) -> Value:
     """The number of a rank, the largest being 1; a fraction of a rank rounds up."""
-    return _ranked(values, rank, lambda ranks, k: k - np.ceil(ranks))
+    return _ranked(values, rank, lambda ranks, k: -np.ceil(ranks) + k)
 
 
 @excel("SMALL", Cells, Number)

@@ -31,7 +31,8 @@ def choose(condition: Bools, yes: Value, no: Value, errors: Codes | None = None)
         condition = condition if condition.ndim == 3 else condition.reshape(-1, 1, 1)
     kinds = np.where(condition, yes.kinds, no.kinds)
     if errors is not None and errors.any():
-        kinds = np.where(errors > 0, errors.reshape(errors.shape[0], *[1] * (kinds.ndim - 1)) + np.uint8(ERROR), kinds)
+        errors = errors if errors.ndim == kinds.ndim else errors.reshape(-1, 1, 1)
+        kinds = np.where(errors > 0, errors + np.uint8(ERROR), kinds)
     texts = None
     if yes.texts is not None or no.texts is not None:
         texts = np.where(condition, _texts(yes), _texts(no))

@@ -52,10 +52,10 @@ def joined(x: Objects, y: Objects) -> Objects:
 
 def compare(relation: Callable[[Any, Any], Any], x: Value, y: Value) -> Value:
     """Excel's order: numbers before texts before logicals; texts without case; a blank is 0, "" or FALSE."""
-    if x.plain and y.plain and not _mixed(x, y):
-        return Value.of_logicals(np.atleast_1d(relation(x.numbers, y.numbers)))
     if x.numbers.ndim != y.numbers.ndim:
         x, y = x.as_range(), y.as_range()
+    if x.plain and y.plain and not _mixed(x, y):
+        return Value.of_logicals(np.atleast_1d(relation(x.numbers, y.numbers)))
     errors = np.where(x.errors > 0, x.errors, y.errors).astype(np.uint8)
     rank_x, rank_y = _ranks(x, y), _ranks(y, x)
     by_rank = relation(rank_x, rank_y)

@@ -52,13 +52,18 @@ def with_relative_error(value: float, error: float, dof: float, confidence: floa
 
 
 def t_quantile(dof: float, confidence: float) -> float:
-    """The two-sided quantile of Student's t; with infinite `dof` that of the normal distribution.
+    """The two-sided quantile of Student's t; with infinite `dof` that of the normal distribution."""
+    from scipy.special import stdtrit
+
+    return float(stdtrit(dof, 1.0 - one_tail(confidence)))
+
+
+def one_tail(confidence: float) -> float:
+    """The probability left on either side.
 
     Raises:
         ValueError: the confidence is not between 0 and 1.
     """
-    from scipy.special import stdtrit
-
     if not 0.0 < confidence < 1.0:
         raise ValueError(f"a confidence lies between 0 and 1, not at {confidence}")
-    return float(stdtrit(dof, 0.5 + confidence / 2.0))
+    return (1.0 - confidence) / 2.0

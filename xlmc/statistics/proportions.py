@@ -11,13 +11,14 @@ of none, so a share is never 0 ± 0.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from xlmc.statistics.estimate import LEAST_DOF, Estimate, t_quantile
+from xlmc.statistics.estimate import LEAST_DOF, Estimate, one_tail, t_quantile
 from xlmc.statistics.sample import Sample, Values
 
 __all__ = ["Method", "probability_above", "proportion", "replicated_proportion", "share"]
@@ -109,7 +110,7 @@ def _pooled(
     p = float(hits.sum() / totals.sum())
     if dof < LEAST_DOF:
         return Estimate(p, n=n)
-    error = error_of_share(hits, totals, effective)
+    error = error_of_share(hits, totals, effective, dof)
     if p in (0.0, 1.0):
         return Estimate(p, error, _INTERVALS[method](p, effective, confidence), n)
     widening = t_quantile(dof, confidence) / t_quantile(np.inf, confidence)
@@ -117,11 +118,10 @@ def _pooled(
     return Estimate(p, error, _INTERVALS[method](p, equal_trials, confidence), n)
 
 
-def error_of_share(hits: Floats, totals: Floats, effective: float) -> float:
-    """Standard error of Σhits/Σtotals over at least two independent units, worth `effective` equal trials in all."""
-    units = hits.size
+def error_of_share(hits: Floats, totals: Floats, effective: float, dof: float) -> float:
+    """Standard error of Σhits/Σtotals, two sums over independent units worth `effective` equal trials in all."""
     apart = (hits - hits.sum() / totals.sum() * totals) / totals.sum()
-    return max(float(np.sum(apart**2) * units / (units - 1)) ** 0.5, _least_error(effective))
+    return max(math.sqrt(np.sum(apart**2) * (dof + 1.0) / dof), _least_error(effective))
 
 
 def _least_error(trials: float) -> float:
@@ -142,7 +142,7 @@ def _wilson(p: float, trials: float, confidence: float) -> tuple[float, float]:
 def _clopper_pearson(p: float, trials: float, confidence: float) -> tuple[float, float]:
     from scipy.special import betaincinv
 
-    tail, hits = (1.0 - confidence) / 2.0, p * trials
+    tail, hits = one_tail(confidence), p * trials
     misses = trials - hits
     low = 0.0 if p == 0.0 else float(betaincinv(hits, misses + 1.0, tail))
     high = 1.0 if p == 1.0 else float(betaincinv(hits + 1.0, misses, 1.0 - tail))

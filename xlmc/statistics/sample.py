@@ -91,6 +91,15 @@ class Sample:
         """(n,) the probability each trial stands at on the quantile curve: 0 for the first, 1 for the last."""
         return np.linspace(0.0, 1.0, self.n) if self.w is None else positions_of(self.w)
 
+    def quantile(self, p: Floats) -> Floats:
+        """The quantile curve at probabilities p: straight lines between the trials at their positions."""
+        if self.w is not None and self.n > 1:
+            return np.interp(p, self.positions, self.x)
+        rank = p * (self.n - 1)
+        low = np.floor(rank).astype(np.intp)
+        left, right = self.x[low], self.x[np.minimum(low + 1, self.n - 1)]
+        return np.asarray(left + (right - left) * (rank - low))
+
     def per_unit(self, amounts: Floats) -> Floats:
         """Sums of (n,) amounts over each independent unit: (replicates,), or (n,) as they are."""
         if self.group is None:

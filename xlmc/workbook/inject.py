@@ -47,8 +47,8 @@ def inject(host: Mapping[str, bytes], sheets: bytes, *, replace: bool = True) ->
 
     Args:
         host: all parts of the user's workbook, as `read_parts` gives them.
-        sheets: a workbook built by XlsxWriter that holds the result sheets and nothing else. Its defined names belong
-            to one sheet each; it has no dynamic array formulas and no pictures in cells.
+        sheets: a workbook built by XlsxWriter that holds the result sheets and nothing else. All are worksheets, its
+            defined names belong to one each, and it has no dynamic array formulas and no pictures in cells.
         replace: take out the result sheets of earlier runs first.
 
     Raises:

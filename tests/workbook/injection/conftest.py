@@ -59,7 +59,8 @@ def _fill_results(book, mean=31.5):
     red = book.add_format({"font_color": "#9C0006", "num_format": "0.0000"})
     results.conditional_format("B2:B4", {"type": "cell", "criteria": ">", "value": 20, "format": red})
     results.conditional_format("B2:B4", {"type": "data_bar", "data_bar_2010": True})
-    results.insert_image("H2", "mark.png", {"image_data": io.BytesIO(_png())})
+    picture = {"image_data": io.BytesIO(_png()), "url": "internal:Results!B2"}
+    results.insert_image("H2", "mark.png", picture)
     rows = [[1, 30.5], [2, 31.0], [3, 31.5]]
     columns = [{"header": "Trial"}, {"header": "Chevy ΔV", "format": number}]
     trials.add_table("A1:B4", {"name": "Trials", "columns": columns, "data": rows})

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from xlmc.workbook.injection.result_sheet import shared_items
 from xlmc.workbook.injection.roles import roles
 from xlmc.workbook.injection.spans import Element, parse_spans
-from xlmc.workbook.package import relationships
+from xlmc.workbook.package import Relationship, relationships
 
 __all__ = ["BuiltBook", "BuiltSheet", "SheetName", "read_built"]
 
@@ -24,7 +24,7 @@ class SheetName:
 
 @dataclass(frozen=True, slots=True)
 class BuiltSheet:
-    """A sheet as built. `type` is the relationship type that leads to it, `state` is None where it is visible."""
+    """A worksheet as built. `type` is the relationship type that leads to it, `state` is None where it is visible."""
 
     name: str
     part: str
@@ -47,7 +47,8 @@ def read_built(parts: Mapping[str, bytes]) -> BuiltBook:
     """The built workbook of a package.
 
     Raises:
-        ValueError: it has names for the whole workbook, which might be the user's own.
+        ValueError: it has names for the whole workbook, which might be the user's own, or chart sheets, to which no
+            name can belong.
     """
     role = roles(parts)
     assert role.styles is not None  # XlsxWriter always writes styles
@@ -58,25 +59,24 @@ def read_built(parts: Mapping[str, bytes]) -> BuiltBook:
     strings = next((parts[pointer.target] for pointer in pointers.values() if pointer.kind == "sharedStrings"), None)
     return BuiltBook(
         parts=parts,
-        sheets=tuple(
-            BuiltSheet(
-                name=element.attributes["name"],
-                part=pointers[element.foreign("id") or ""].target,
-                type=pointers[element.foreign("id") or ""].type,
-                state=element.attributes.get("state"),
-                names=tuple(_names_of(names, position)),
-            )
-            for position, element in enumerate(sheets.children)
-        ),
+        sheets=tuple(_sheet(element, place, names, pointers) for place, element in enumerate(sheets.children)),
         styles=parts[role.styles],
         strings=tuple(shared_items(strings)),
     )
 
 
-def _names_of(names: Element | None, position: int) -> Iterator[SheetName]:
+def _sheet(element: Element, place: int, names: Element | None, pointers: Mapping[str, Relationship]) -> BuiltSheet:
+    name, pointer = element.attributes["name"], pointers[element.foreign("id") or ""]
+    if pointer.kind != "worksheet":
+        raise ValueError(f"the result sheet {name!r} must be a worksheet")
+    state = element.attributes.get("state")
+    return BuiltSheet(name, pointer.target, pointer.type, state, tuple(_names_of(names, place)))
+
+
+def _names_of(names: Element | None, place: int) -> Iterator[SheetName]:
     for element in names.children if names else ():
         attributes = element.attributes
         if "localSheetId" not in attributes:
             raise ValueError(f"the name {attributes['name']!r} must belong to one result sheet")
-        if attributes["localSheetId"] == str(position):
+        if attributes["localSheetId"] == str(place):
             yield SheetName(attributes["name"], element.text, hidden=attributes.get("hidden") == "1")

@@ -41,7 +41,7 @@ class Carrier:
     def _rewritten(self, part: str) -> bytes:
         xml = self.built.parts[part]
         match self.types[part].rpartition(".")[2]:
-            case "worksheet+xml" | "chartsheet+xml":
+            case "worksheet+xml":
                 return renamed_in(at_home(xml, self.built.strings, self.styles), self.renames)
             case "table+xml":
                 return renamed_in(with_differential(self._table(part), self.styles), self.renames)

@@ -46,7 +46,7 @@ def at_home(xml: bytes, strings: Sequence[bytes], styles: StyleMap) -> bytes:
     """The sheet with its styles in the user's numbers, its texts inline, and its tab not selected.
 
     Args:
-        xml: a worksheet or chart sheet as XlsxWriter writes it.
+        xml: a worksheet as XlsxWriter writes it.
         strings: the built workbook's `shared_items`.
         styles: where the built styles are now.
 

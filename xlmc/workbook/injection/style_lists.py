@@ -57,7 +57,7 @@ class StyleList:
         self._new: list[StyleEntry] = []
         entries = style_entries(document.root, name)
         self._size = len(entries)
-        self._places = {StyleEntry.of(entry).key(): place for place, entry in reversed(list(enumerate(entries)))}
+        self._places = {StyleEntry.of(entry).key(): place for place, entry in enumerate(entries)}
 
     def place(self, entry: StyleEntry) -> int:
         """Where the entry is, added if it is new."""

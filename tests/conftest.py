@@ -1,0 +1,110 @@
+"""Workbooks without files: `cells` are address -> value, addresses without a sheet lie on `S`.
+
+A value is what a cell holds; a text that begins with `=` is a formula, and a pair is a formula and the value Excel
+cached for it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from xlmc.address import Area, parse_address
+from xlmc.definitions import Assumption, Correlation, Definitions, Filter, Forecast
+from xlmc.model import Model
+from xlmc.workbook.model import CellContent, DefinedName, Formula, Sheet, Table, Workbook
+
+
+def _content(value, row, column):
+    if isinstance(value, CellContent):
+        return value
+    value, cached = value if isinstance(value, tuple) else (value, None)
+    if isinstance(value, str) and value.startswith("="):
+        return CellContent(cached, Formula(value[1:], row, column))
+    return CellContent(value)
+
+
+def _workbook(cells, names=None, tables=(), sheets=()):
+    laid = {sheet: {} for sheet in ("S", *sheets)}
+    for address, value in cells.items():
+        cell = parse_address(address, "S")
+        laid.setdefault(cell.sheet, {})[cell.row, cell.column] = _content(value, cell.row, cell.column)
+    defined = [(*key.rpartition("!")[::2], text) for key, text in (names or {}).items()]
+    return Workbook(
+        "book.xlsx",
+        {name: Sheet(name, f"xl/worksheets/{name}.xml", held) for name, held in laid.items()},
+        tuple(DefinedName(name, text, sheet or None) for sheet, name, text in defined),
+        tuple(tables),
+    )
+
+
+def _parameter(value):
+    return parse_address(value, "S") if isinstance(value, str) else float(value)
+
+
+def _assumption(name, given, workbook):
+    given = dict(given)
+    cell = parse_address(given.pop("cell"), "S")
+    fixed = {key: given.pop(key) for key in ("distribution", "frozen") if key in given}
+    given = {key: _parameter(value) for key, value in given.items()}
+    cutoffs = {key: given.pop(key) for key in ("lower_cutoff", "upper_cutoff") if key in given}
+    fixed = {"distribution": "Uniform", **fixed, **cutoffs}
+    return Assumption(name, cell, parameters=given, row=cell, base=workbook.content(cell).value, **fixed)
+
+
+def _filter(name, given):
+    given = {"cell": given} if isinstance(given, str) else dict(given)
+    cell = parse_address(given.pop("cell"), "S")
+    return Filter(name, cell, cell, **{key: _parameter(value) for key, value in given.items()})
+
+
+def _definitions(workbook, assumptions, forecasts, filters, correlations):
+    places = {name: parse_address(address, "S") for name, address in forecasts.items()}
+    return Definitions(
+        tuple(_assumption(name, given, workbook) for name, given in assumptions.items()),
+        tuple(Forecast(name, cell, cell) for name, cell in places.items()),
+        tuple(_filter(name, given) for name, given in filters.items()),
+        tuple(Correlation(*pair, value, parse_address("A1", "Correlations")) for pair, value in correlations.items()),
+    )
+
+
+@pytest.fixture(scope="session")
+def workbook():
+    """`workbook(cells, names={"Rate": "S!$A$1", "Data!Rate": …}, tables=…, sheets=…)`: a `Workbook`."""
+    return _workbook
+
+
+@pytest.fixture(scope="session")
+def table():
+    """`table("Table1", "S!A1:B3", "Low", "High")`: a `Table`."""
+
+    def make(name, address, *columns, **rows):
+        area = parse_address(address, "S")
+        assert isinstance(area, Area)
+        return Table(name, area, columns, **rows)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def definitions():
+    """`definitions(workbook, assumptions, forecasts, filters, correlations)`; see `book` for what these are."""
+    return _definitions
+
+
+@pytest.fixture(scope="session")
+def book():
+    """A `Model` from cells and definitions, each by name.
+
+    An assumption is `{"cell": "A1", "low": 0, "high": 1}`, with `distribution`, `frozen` and cutoffs if need be; a
+    parameter that is an address is a dynamic one. A forecast is an address. A filter is an address, or
+    `{"cell": "A1", "below": 1}`. A correlation is `{("a", "b"): 0.5}`.
+    """
+
+    def make(cells, assumptions=None, forecasts=None, filters=None, correlations=None, **of_workbook):
+        held = _workbook(cells, **of_workbook)
+        found = _definitions(held, assumptions or {}, forecasts or {}, filters or {}, correlations or {})
+        return Model(held, found, Path("book.xlsx"))
+
+    return make

@@ -1,0 +1,153 @@
+"""The whole registry at once: trials do not mix, ufuncs keep their promise, bodies raise no flag without cause."""
+
+from __future__ import annotations
+
+import struct
+from functools import reduce
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from xlmc.errors import ErrorCode
+from xlmc.functions import REGISTRY, Function, Kind, function_named
+from xlmc.functions.registry import Logical, Number, Numbers, excel
+from xlmc.functions.values import Value, from_objects
+
+ROWS = {function.name: function for function in REGISTRY.values()}
+FAST = {name: function for name, function in ROWS.items() if function.ufunc is not None}
+
+SQUARED = {"^"}
+"""NumPy squares by a multiplication where the exponent is one number for all trials, and by `pow` elsewhere."""
+
+EDGES = [0.0, -0.0, 0.5, 1.0, 2.0, 2.5, -1.0, 170.0, 2.0**27, -(2.0**53), 1e15, 1e-320, -1e300, 1.7e308]
+plain_numbers = (
+    st.sampled_from(EDGES)
+    | st.integers(-20, 20).map(float)
+    | st.floats(-1e3, 1e3)
+    | st.floats(allow_nan=False, allow_infinity=False)
+)
+texts = st.sampled_from(["", "abc", "ABC", "TRUE", "false", "12.5", " 7 %", "1e3", "#N/A"])
+objects = plain_numbers | st.booleans() | texts | st.none() | st.sampled_from(list(ErrorCode))
+
+
+@st.composite
+def arguments_of(draw: st.DrawFn, function: Function, n: int) -> list[Value]:
+    """Arguments of n trials or one, scalars or, all of one size, ranges."""
+    fewest, most = function.arity()
+    size = draw(st.sampled_from([(1, 1), (1, 3), (2, 2)]))
+    values = []
+    for _ in range(draw(st.integers(fewest, min(most, fewest + 2)))):
+        shape = (draw(st.sampled_from([1, n])), *draw(st.sampled_from([(), (), size])))
+        items = np.empty(shape, object)
+        items.ravel()[:] = draw(st.lists(objects, min_size=items.size, max_size=items.size))
+        values.append(from_objects(items))
+    return values
+
+
+def _bits(item: object) -> object:
+    return struct.pack("d", item) if isinstance(item, float) else item
+
+
+def _same(name: str, found: object, expected: object) -> bool:
+    if name in SQUARED and isinstance(found, float) and isinstance(expected, float):
+        return abs(found - expected) <= np.spacing(abs(expected))
+    return type(found) is type(expected) and _bits(found) == _bits(expected)
+
+
+@pytest.mark.parametrize("name", ROWS)
+@given(data=st.data())
+@settings(max_examples=25, deadline=None)
+def test_trials_together_are_the_trials_alone(name, data):
+    function = ROWS[name]
+    n = data.draw(st.integers(2, 5))
+    arguments = data.draw(arguments_of(function, n))
+    together = function(arguments).objects()
+    for i in range(n):
+        alone = function([argument.take(np.array([i])) for argument in arguments]).objects()[0]
+        found = together[i if together.shape[0] == n else 0]
+        pairs = zip(np.ravel(found).tolist(), np.ravel(alone).tolist(), strict=True)
+        assert all(_same(name, *pair) for pair in pairs), f"trial {i}: {found} together, {alone} alone"
+
+
+def _as_body_takes_them(function: Function, columns: list[np.ndarray]) -> list[np.ndarray]:
+    return [x != 0 if function.parameter(i).kind is Kind.LOGICAL else x for i, x in enumerate(columns)]
+
+
+@pytest.mark.parametrize("name", FAST)
+@given(data=st.data())
+@settings(max_examples=50, deadline=None)
+def test_the_ufunc_is_the_function_where_no_flag_is_raised_and_the_guard_holds(name, data):
+    function = FAST[name]
+    n = data.draw(st.integers(1, 9))
+    k = data.draw(st.sampled_from([1, 2, 12])) if function.takes_sets else function.arity()[1]
+    columns = [np.array(data.draw(st.lists(plain_numbers, min_size=n, max_size=n))) for _ in range(k)]
+    arrays = _as_body_takes_them(function, columns)
+    if function.guard is not None and not function.guard(*arrays):
+        return
+    try:
+        with np.errstate(divide="raise", over="raise", invalid="raise"):
+            found = reduce(function.ufunc, arrays) if function.takes_sets else function.ufunc(*arrays)
+    except FloatingPointError:
+        return
+    expected = function([Value.of_numbers(x) for x in columns])
+    assert not expected.has_errors
+    zero = 0.0  # the sign of a zero is no value of Excel's, and MIN and MAX may take either
+    assert np.array_equal(np.float64(found) + zero, expected.numbers + zero)
+
+
+@pytest.mark.parametrize("name", [name for name in ROWS if not ROWS[name].takes_values])
+def test_ordinary_numbers_raise_no_flag(name):
+    """A flag would send the block to the slow path."""
+    function = ROWS[name]
+    if Kind.TEXT in {parameter.kind for parameter in function.parameters}:
+        return
+    columns = [np.array([0.25, 0.75]), np.array([0.5, 2.0]), np.array([1.0, 0.0])][: len(function.parameters)]
+    if name == "ACOSH":
+        columns = [1 + column for column in columns]
+    with np.errstate(divide="raise", over="raise", invalid="raise"):
+        if function.takes_sets:
+            (x,) = _as_body_takes_them(function, [np.array([[1.5, 2.0, 4.0], [7.0, -1.0, 0.0]])])
+            function.body(x, np.array([[True, True, True], [True, False, True]]))
+        else:
+            function.body(*_as_body_takes_them(function, columns))
+
+
+@pytest.mark.parametrize("name", [name for name in ROWS if name[0].isalpha() and name not in ("u-", "u+")])
+def test_every_function_is_documented_and_named_in_capitals(name):
+    assert name == name.upper()
+    assert ROWS[name].body.__doc__
+
+
+@pytest.mark.parametrize(
+    ("alias", "name"),
+    [("POWER", "^"), ("STDEV", "STDEV.S"), ("STDEVP", "STDEV.P"), ("VAR", "VAR.S"), ("VARP", "VAR.P")],
+)
+def test_aliases_are_the_same_row(alias, name):
+    assert function_named(alias) is function_named(name)
+
+
+def test_unknown_functions_are_none():
+    assert function_named("SINN") is None
+
+
+def test_a_name_cannot_be_registered_twice():
+    with pytest.raises(ValueError, match="SIN is registered twice"):
+        excel("SIN", Number)(np.sin)
+
+
+@pytest.mark.parametrize(
+    ("name", "fewest", "most"),
+    [("PI", 0, 0), ("SIN", 1, 1), ("LOG", 1, 2), ("IF", 2, 3), ("SUM", 1, 255), ("CEILING.MATH", 1, 3)],
+)
+def test_arity(name, fewest, most):
+    assert function_named(name).arity() == (fewest, most)
+
+
+def test_the_last_parameters_repeat():
+    function = Function("TEST", (Number, Logical, Number(repeat=True), Logical(repeat=True)), np.add, Kind.NUMBER)
+    kinds = [function.parameter(position).kind for position in range(6)]
+    assert kinds == [Kind.NUMBER, Kind.LOGICAL] * 3
+    assert not function.takes_sets
+    assert Function("TEST", (Numbers,), np.add, Kind.NUMBER).takes_sets

@@ -1,0 +1,144 @@
+from __future__ import annotations
+
+import errno
+import io
+import os
+import stat
+import zipfile
+
+import pytest
+
+from xlmc.errors import WorkbookError
+from xlmc.workbook import writer
+from xlmc.workbook.package import read_parts
+from xlmc.workbook.writer import package_bytes, refuse_if_open, write_workbook
+
+PARTS = {
+    "xl/workbook.xml": b"<w/>",
+    "_rels/.rels": b"<r/>",
+    "[Content_Types].xml": b"<t/>",
+    "docs/Ünï.xml": b"\xe9",
+}
+
+
+def test_a_package_reads_back_content_types_first():
+    packed = package_bytes(PARTS)
+    assert read_parts(packed) == PARTS
+    assert list(read_parts(packed)) == ["[Content_Types].xml", "_rels/.rels", "xl/workbook.xml", "docs/Ünï.xml"]
+
+
+def test_a_package_knows_neither_time_nor_machine():
+    with zipfile.ZipFile(io.BytesIO(package_bytes(PARTS))) as package:
+        for entry in package.infolist():
+            assert entry.date_time == (1980, 1, 1, 0, 0, 0)
+            assert (entry.create_system, entry.external_attr, entry.extra) == (0, 0o600 << 16, b"")
+            assert entry.compress_type == zipfile.ZIP_DEFLATED
+
+
+def test_the_same_parts_give_the_same_bytes():
+    assert package_bytes(PARTS) == package_bytes(dict(PARTS))
+
+
+def test_a_new_file_is_written_and_nothing_else(tmp_path):
+    write_workbook(tmp_path / "book.xlsx", b"data")
+    assert [(path.name, path.read_bytes()) for path in tmp_path.iterdir()] == [("book.xlsx", b"data")]
+
+
+def test_an_existing_file_is_replaced_and_keeps_its_permissions(tmp_path):
+    path = tmp_path / "book.xlsx"
+    path.write_bytes(b"old")
+    path.chmod(0o640)
+    write_workbook(str(path), b"new")
+    assert path.read_bytes() == b"new"
+    assert stat.S_IMODE(path.stat().st_mode) == 0o640
+
+
+def test_a_link_keeps_pointing_at_its_file(tmp_path):
+    (tmp_path / "real.xlsx").write_bytes(b"old")
+    link = tmp_path / "link.xlsx"
+    link.symlink_to("real.xlsx")
+    write_workbook(link, b"new")
+    assert link.is_symlink()
+    assert (tmp_path / "real.xlsx").read_bytes() == b"new"
+
+
+@pytest.mark.parametrize(
+    ("code", "message"),
+    [
+        (errno.ENOSPC, "the disk is full"),
+        (errno.EDQUOT, "the disk is full"),
+        (errno.EACCES, "in use or may not be written"),
+        (errno.EPERM, "in use or may not be written"),
+        (errno.EROFS, "in use or may not be written"),
+        (errno.EIO, "cannot be written"),
+    ],
+)
+@pytest.mark.parametrize("step", ["_write_synced", "os.replace"])
+def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path, monkeypatch, step, code, message):
+    path = tmp_path / "book.xlsx"
+    path.write_bytes(b"old")
+
+    def fail(*_):
+        raise OSError(code, os.strerror(code))
+
+    monkeypatch.setattr(f"{writer.__name__}.{step}", fail)
+    with pytest.raises(WorkbookError, match=message) as caught:
+        write_workbook(path, b"new")
+    assert caught.value.where == str(path)
+    assert [(left.name, left.read_bytes()) for left in tmp_path.iterdir()] == [("book.xlsx", b"old")]
+
+
+def test_an_interrupted_write_leaves_the_old_file_and_no_other(tmp_path, monkeypatch):
+    path = tmp_path / "book.xlsx"
+    path.write_bytes(b"old")
+
+    def interrupt(_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "fsync", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        write_workbook(path, b"new")
+    assert [(left.name, left.read_bytes()) for left in tmp_path.iterdir()] == [("book.xlsx", b"old")]
+
+
+def test_a_missing_folder_is_named(tmp_path):
+    with pytest.raises(WorkbookError, match="there is no folder") as caught:
+        write_workbook(tmp_path / "nowhere" / "book.xlsx", b"")
+    assert str(tmp_path / "nowhere") in caught.value.message
+
+
+def test_a_file_in_place_of_the_folder_is_no_folder(tmp_path):
+    (tmp_path / "file").write_bytes(b"")
+    with pytest.raises(WorkbookError, match="there is no folder"):
+        write_workbook(tmp_path / "file" / "book.xlsx", b"")
+
+
+def test_a_folder_is_not_overwritten(tmp_path):
+    (tmp_path / "book.xlsx").mkdir()
+    with pytest.raises(WorkbookError, match="this is a folder"):
+        write_workbook(tmp_path / "book.xlsx", b"")
+    assert [path.name for path in tmp_path.iterdir()] == ["book.xlsx"]
+
+
+def test_a_read_only_file_is_respected(tmp_path, monkeypatch):
+    path = tmp_path / "book.xlsx"
+    path.write_bytes(b"old")
+    monkeypatch.setattr(os, "access", lambda *_: False)  # an administrator may write anything, and tests may run as one
+    with pytest.raises(WorkbookError, match="may not be written"):
+        write_workbook(path, b"new")
+    assert path.read_bytes() == b"old"
+
+
+@pytest.mark.parametrize(("owner", "program"), [("~$book.xlsx", "Excel"), (".~lock.book.xlsx#", "LibreOffice")])
+def test_an_open_workbook_is_refused(tmp_path, owner, program):
+    path = tmp_path / "book.xlsx"
+    refuse_if_open(path)
+    (tmp_path / owner).write_bytes(b"\x05A. Person")
+    with pytest.raises(WorkbookError, match=f"{program} holds the workbook open") as caught:
+        refuse_if_open(path)
+    assert owner in caught.value.hint
+
+
+def test_another_workbook_may_be_open(tmp_path):
+    (tmp_path / "~$other.xlsx").write_bytes(b"")
+    refuse_if_open(tmp_path / "book.xlsx")

@@ -1,0 +1,31 @@
+"""The software and the processor of a run: what may move the last bit of a result."""
+
+from __future__ import annotations
+
+import platform
+from importlib.metadata import version
+
+__all__ = ["LIBRARIES", "processor", "versions"]
+
+LIBRARIES = ("numpy", "scipy", "formulas", "XlsxWriter", "openpyxl")
+
+
+def versions() -> dict[str, str]:
+    """Name -> version of xlmc, of Python and of the libraries a result depends on."""
+    import xlmc
+
+    own = {"xlmc": xlmc.__version__, "python": platform.python_version()}
+    return own | {name: version(name) for name in LIBRARIES}
+
+
+def processor() -> dict[str, str]:
+    """The kind of machine and the vector instructions NumPy found: its sine may differ between them in the last bit."""
+    import numpy
+
+    found: dict[str, list[str]] = numpy.show_config(mode="dicts")["SIMD Extensions"]  # type: ignore[assignment]
+    features = [*found.get("baseline", []), *found.get("found", [])]
+    return {
+        "machine": platform.machine(),
+        "system": platform.system(),
+        "vector_instructions": " ".join(features) or "none",
+    }

@@ -1,0 +1,143 @@
+"""Make the record of a finished run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from xlmc.record.definition_tables import (
+    assumption_section,
+    correlation_section,
+    filter_section,
+    forecast_section,
+    plain,
+)
+from xlmc.record.environment import processor, versions
+from xlmc.record.errors_met import errors_met
+from xlmc.record.fingerprint import fingerprint
+from xlmc.record.model import Entry, Record, RecordTable, Section
+from xlmc.record.repeat import repeat_command
+from xlmc.sampling.streams import GENERATOR
+from xlmc.workbook.inject import original_hash
+
+if TYPE_CHECKING:
+    from xlmc.simulation import Simulation
+
+__all__ = ["METHODS", "make_record"]
+
+METHODS = {"mc": "Monte Carlo: independent trials"}
+"""Sampling methods by their name in the settings."""
+
+_STREAMS = f"{GENERATOR}: a stream for each assumption, seeded by (seed, name), positioned by trial number"
+
+_CONVENTIONS = (
+    ("percentiles", "Percentiles", "linear between trials, as Excel's PERCENTILE.INC"),
+    ("central_range", "Central range", "as many trials lie below it as above it; it is not the shortest such range"),
+    ("variance", "Variance", "of a sample: divided by n − 1, as Excel's VAR.S"),
+    ("kurtosis", "Kurtosis", "3 for the normal distribution"),
+    ("mode", "Mode", "half-sample mode"),
+    ("errors", "Standard errors (±)", "Monte Carlo error alone"),
+    ("shares", "Intervals of shares", "Wilson, 95 %"),
+    ("trial_numbers", "Trial numbers", "counted from 0"),
+    ("logicals", "Logicals", "TRUE counts as 1, FALSE as 0"),
+)
+
+
+def make_record(simulation: Simulation, command: str | None = None) -> Record:
+    """The record of a run; the same run on the same machine has the same record.
+
+    Args:
+        simulation: the finished run.
+        command: what the person typed; None for a run from Python.
+    """
+    return Record(
+        (
+            _run(simulation, command),
+            _file(simulation),
+            _counts(simulation),
+            _sampling(simulation),
+            forecast_section(simulation),
+            filter_section(simulation),
+            assumption_section(simulation),
+            correlation_section(simulation),
+            _messages("warnings", "Warnings", simulation.warnings),
+            _messages("notices", "Notices", [str(notice) for notice in simulation.model.notices]),
+            _errors(simulation),
+            Section("conventions", "Conventions", tuple(Entry(*convention) for convention in _CONVENTIONS)),
+            Section("software", "Software", _entries(versions())),
+            Section("processor", "Processor", _entries(processor())),
+        )
+    )
+
+
+def _run(simulation: Simulation, command: str | None) -> Section:
+    given = () if command is None else (Entry("command", "Command that was given", command),)
+    entries = (
+        Entry("repeat", "Command that repeats it", repeat_command(simulation)),
+        *given,
+        Entry("fingerprint", "SHA-256 of the accepted trials", fingerprint(simulation)),
+    )
+    return Section("run", "This run", entries)
+
+
+def _file(simulation: Simulation) -> Section:
+    book = simulation.model.workbook
+    entries = (
+        Entry("name", "Name", book.name),
+        Entry("sha256", "SHA-256 of the file", book.sha256 or None),
+        # Result sheets do not change this one, so a result workbook can be checked against the book it came from.
+        Entry("original_sha256", "SHA-256 of its own parts", original_hash(book.parts) if book.parts else None),
+    )
+    return Section("file", "Workbook", entries)
+
+
+def _counts(simulation: Simulation) -> Section:
+    entries = (
+        Entry("trials", "Trials", simulation.trials),
+        Entry("accepted", "Accepted", simulation.accepted),
+        Entry("acceptance", "Share accepted", plain(simulation.acceptance.value)),
+        Entry("acceptance_error", "Its standard error", plain(simulation.acceptance.error)),
+        Entry("error_trials", "Lost to errors", simulation.error_trials),
+        Entry("undecided", "Not decided by a filter", simulation.tally.by_error),
+        Entry("invalid", "With parameters that are no distribution", sum(simulation.invalid.values())),
+    )
+    return Section("counts", "Trials", entries)
+
+
+def _sampling(simulation: Simulation) -> Section:
+    settings = simulation.settings
+    entries = (
+        Entry("trials", "Trials", simulation.trials),
+        Entry("seed", "Seed", settings.seed),
+        Entry("method", "Method", settings.sampling),
+        Entry("method_in_words", "In words", METHODS.get(settings.sampling, settings.sampling)),
+        Entry("generator", "Generator", _STREAMS),
+        Entry("engine", "Engine", settings.engine),
+        Entry("block", "Trials in a block", simulation.block),
+    )
+    return Section("sampling", "Sampling", entries)
+
+
+def _errors(simulation: Simulation) -> Section:
+    columns = (("kind", "In a"), ("name", "Name"), ("cell", "Cell"), ("error", "Error"), ("trials", "Trials"))
+    rows = tuple((met.kind, met.name, str(met.cell), met.error, met.trials) for met in errors_met(simulation))
+    return Section("errors", "Errors in cells", table=RecordTable(columns, rows))
+
+
+def _messages(key: str, title: str, messages: Sequence[str]) -> Section:
+    rows = tuple((message,) for message in messages)
+    return Section(key, title, table=RecordTable((("message", "Message"),), rows))
+
+
+def _entries(found: Mapping[str, str]) -> tuple[Entry, ...]:
+    return tuple(Entry(key, _LABELS.get(key, key), text) for key, text in found.items())
+
+
+_LABELS = {
+    "python": "Python",
+    "numpy": "NumPy",
+    "scipy": "SciPy",
+    "machine": "Machine",
+    "system": "System",
+    "vector_instructions": "Vector instructions",
+}

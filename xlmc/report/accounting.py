@@ -1,0 +1,92 @@
+"""The part of Results that says what each filter asks, why, and which trials it rejected; and the errors met."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from xlmc.record.errors_met import errors_met
+from xlmc.record.wording import limits_text
+from xlmc.report import cells
+from xlmc.report.cells import Shown
+from xlmc.statistics import proportion
+
+if TYPE_CHECKING:
+    from xlmc.report.page import Page
+    from xlmc.simulation import Simulation
+
+__all__ = ["write_accounting"]
+
+_REASON = 4
+"""The column that reasons begin in."""
+
+
+def write_accounting(page: Page, simulation: Simulation, last: int) -> None:
+    """Write the filters, what they rejected, and the errors.
+
+    Args:
+        page: the sheet.
+        simulation: the run.
+        last: the column that wide texts reach to.
+    """
+    page.heading("Filters: a trial is accepted when all hold")
+    if not simulation.model.filters:
+        page.wide("The workbook has no filters: every trial is accepted.", "paragraph", last)
+    else:
+        _write_filters(page, simulation, last)
+        page.heading("Trials rejected by the filters")
+        _write_rejections(page, simulation)
+    _write_errors(page, simulation)
+
+
+def _write_filters(page: Page, simulation: Simulation, last: int) -> None:
+    page.spread(["Filter", "Cell", "Must be", "Because"], (0, 1, 3, _REASON + 1), last, "header left")
+    for number, filter_ in enumerate(simulation.model.filters, 1):
+        texts = [f"{number}. {filter_.name}", str(filter_.cell), limits_text(filter_), filter_.because]
+        page.spread(texts, (0, 1, 3, _REASON + 1), last, "text")
+
+
+def _write_rejections(page: Page, simulation: Simulation) -> None:
+    tally, filters = simulation.tally, simulation.model.filters
+    pairs = len(filters) if len(filters) > 1 else 0
+    headers = ["Filter", "Error in it", "Rejected", "Share", "±", "Only by it", "Share", "±"]
+    page.table(
+        [*headers, *(f"Also by {other}" for other in range(1, pairs + 1))],
+        [
+            [
+                cells.text(f"{place + 1}. {filter_.name}", "name"),
+                cells.count(sum(tally.errors[place].values())),
+                *_counted(int(tally.rejected[place]), simulation.trials),
+                *_counted(int(tally.only[place]), simulation.trials),
+                *(_pair(simulation, place, other) for other in range(pairs)),
+            ]
+            for place, filter_ in enumerate(filters)
+        ],
+    )
+
+
+def _pair(simulation: Simulation, place: int, other: int) -> Shown:
+    return cells.text("") if place == other else cells.count(int(simulation.tally.together[place, other]))
+
+
+def _counted(trials: int, of: int) -> list[Shown]:
+    return [cells.count(trials), *cells.share(proportion(trials, of))]
+
+
+def _write_errors(page: Page, simulation: Simulation) -> None:
+    found = errors_met(simulation)
+    if not found:
+        return
+    page.heading("Errors in cells")
+    page.table(
+        ["Name", "In a", "Cell", "Error", "Trials", "Share", "±"],
+        [
+            [
+                cells.text(met.name, "name"),
+                cells.text(met.kind),
+                cells.text(str(met.cell)),
+                cells.text(met.error),
+                *_counted(met.trials, simulation.trials),
+            ]
+            for met in found
+        ],
+    )

@@ -1,0 +1,89 @@
+"""What the filters did to an assumption: its accepted draws beside those it began with.
+
+Filtering is conditioning: only the combinations that agree with the evidence are left, so an input that the evidence
+speaks about is distributed differently afterwards, though its range has not changed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc import statistics
+from xlmc.statistics import Estimate
+
+__all__ = ["PERCENTS", "Conditioning", "Marginal", "conditioning", "marginal"]
+
+PERCENTS = (5.0, 50.0, 95.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Marginal:
+    """An assumption's draws on their own."""
+
+    trials: int
+    mean: Estimate
+    standard_deviation: Estimate
+    percentiles: Mapping[float, Estimate]
+
+
+@dataclass(frozen=True, slots=True)
+class Conditioning:
+    """An assumption before and after filtering.
+
+    Attributes:
+        shift: of the mean, in standard deviations of the prior.
+        narrowing: the accepted standard deviation over that of the prior.
+    """
+
+    prior: Marginal
+    accepted: Marginal
+    shift: Estimate
+    narrowing: Estimate
+
+
+def marginal(draws: NDArray[np.float64]) -> Marginal:
+    """The marginal of `(n,)` draws; NaN, a trial whose parameters were no distribution, is left out."""
+    sample = statistics.Sample.of(draws[~np.isnan(draws)])
+    return Marginal(
+        trials=sample.n,
+        mean=statistics.mean(sample),
+        standard_deviation=statistics.standard_deviation(sample),
+        percentiles=statistics.percentiles(sample, PERCENTS),
+    )
+
+
+def conditioning(prior: NDArray[np.float64], accepted: NDArray[np.float64]) -> Conditioning:
+    """Compare `(n,)` draws before filtering with the `(m,)` accepted ones.
+
+    Errors are those of independent samples; that the accepted draws may be among the others makes them a little
+    large.
+    """
+    before, after = marginal(prior), marginal(accepted)
+    return Conditioning(before, after, _shift(before, after), _narrowing(before, after))
+
+
+def _shift(before: Marginal, after: Marginal) -> Estimate:
+    spread = before.standard_deviation
+    if not spread.value > 0.0:  # a constant, or a single trial
+        return Estimate(math.nan)
+    value = (after.mean.value - before.mean.value) / spread.value
+    errors = (after.mean.error, before.mean.error, spread.error)
+    if any(error is None for error in errors):
+        return Estimate(value)
+    of_after, of_before, of_spread = (error / spread.value for error in errors if error is not None)
+    return Estimate(value, math.hypot(of_after, of_before, value * of_spread))
+
+
+def _narrowing(before: Marginal, after: Marginal) -> Estimate:
+    spread, left = before.standard_deviation, after.standard_deviation
+    if not spread.value > 0.0:
+        return Estimate(math.nan)
+    value = left.value / spread.value
+    if left.error is None or spread.error is None or not left.value > 0.0:
+        return Estimate(value)
+    return Estimate(value, value * math.hypot(left.error / left.value, spread.error / spread.value))

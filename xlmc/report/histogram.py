@@ -1,0 +1,137 @@
+"""Trials counted in bins of a round width, for a chart with readable numbers.
+
+**Width.** Freedman and Diaconis, 2·IQR·n^(−1/3), kept to 10 to 60 bins over the range shown and rounded to 1, 2, 2.5
+or 5 times a power of ten; 1 where all trials are whole numbers that allow it. Bins begin at multiples of their width,
+so that a limit such as 0 or 0.25 falls between two bins, not into one, and hold their lower end but not their upper.
+
+**Range shown.** All trials, unless some lie more than five interquartile ranges outside the quartiles; those are not
+drawn, for they would leave the rest in one bar, but counted as below and above.
+
+**Central range.** Its ends fall where they fall. Each bin's trials are counted inside and outside it apart, so a bin
+that straddles an end is shown as both, and the inside parts add up to exactly the trials of the range.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Histogram", "histogram"]
+
+Floats = NDArray[np.float64]
+
+_FEWEST, _MOST = 10, 60
+_ROUND = (1.0, 2.0, 2.5, 5.0, 10.0)
+_ROUND_LABELS = (1.0, 2.0, 2.5, 5.0)
+_STEPS = (1, 2, 4, 5, 10, 20)
+_MOST_LABELS = 12
+_FENCE = 5.0
+_FINEST = 1e-9
+"""Of the largest value: a finer bin would show rounding."""
+
+
+@dataclass(frozen=True, slots=True)
+class Histogram:
+    """Counts of trials in `b` bins of equal width.
+
+    Attributes:
+        edges: `(b,)` lower ends.
+        inside, outside: `(b,)` trials inside and outside the central range.
+        below, above: trials that are not drawn.
+        step: bins from one label to the next; the first bin has one.
+        decimals: of the width.
+    """
+
+    edges: Floats
+    width: float
+    inside: NDArray[np.int64]
+    outside: NDArray[np.int64]
+    below: int
+    above: int
+    step: int
+    decimals: int
+
+    @property
+    def upper_edges(self) -> Floats:
+        return np.round(self.edges + self.width, self.decimals)
+
+    @property
+    def label_decimals(self) -> int:
+        """Decimals that the labelled edges need."""
+        return _decimals(self.width * self.step)
+
+
+def histogram(values: Floats, low: float, high: float) -> Histogram | None:
+    """Count `(n,)` finite values, apart for those in [low, high]; None where there are none."""
+    if values.size == 0:
+        return None
+    first, last = _shown(values)
+    width = _width(values, first, last)
+    start, stop = math.floor(first / width), math.floor(last / width) + 1
+    step = _step(width, stop - start)
+    start, stop = step * math.floor(start / step), step * math.ceil(stop / step)
+    decimals = _decimals(width)
+    edges = np.round(np.arange(start, stop + 1) * width, decimals)
+    place = np.searchsorted(edges, values, side="right") - 1
+    drawn = (place >= 0) & (place < edges.size - 1)
+    central = (values >= low) & (values <= high)
+    return Histogram(
+        edges=edges[:-1],
+        width=width,
+        inside=np.bincount(place[drawn & central], minlength=edges.size - 1),
+        outside=np.bincount(place[drawn & ~central], minlength=edges.size - 1),
+        below=int(np.count_nonzero(place < 0)),
+        above=int(np.count_nonzero(place >= edges.size - 1)),
+        step=step,
+        decimals=decimals,
+    )
+
+
+def _shown(values: Floats) -> tuple[float, float]:
+    """The smallest and largest value inside the fences."""
+    lower, upper = np.percentile(values, [25.0, 75.0])
+    reach = _FENCE * (upper - lower)
+    if reach == 0.0:
+        return float(values.min()), float(values.max())
+    near = values[(values >= lower - reach) & (values <= upper + reach)]
+    return float(near.min()), float(near.max())
+
+
+def _width(values: Floats, first: float, last: float) -> float:
+    span, largest = last - first, max(abs(first), abs(last))
+    if span <= _FINEST * largest or span == 0.0:
+        return _rounded(0.01 * largest) if largest else 1.0
+    if span <= _MOST and bool(np.all(values == np.floor(values))):
+        return 1.0
+    lower, upper = np.percentile(values, [25.0, 75.0])
+    wanted = 2.0 * (upper - lower) * values.size ** (-1.0 / 3.0)
+    return _rounded(float(np.clip(wanted, span / _MOST, span / _FEWEST)))
+
+
+def _rounded(width: float) -> float:
+    """The round number that is nearest by ratio."""
+    power = 10.0 ** math.floor(math.log10(width))
+    nearest = min(_ROUND, key=lambda factor: abs(math.log(factor * power / width)))
+    return float(f"{nearest * power:.3g}")  # 0.1, not 0.1 and a rounding error
+
+
+def _step(width: float, bins: int) -> int:
+    """The fewest bins from one label to the next that keep labels round and apart."""
+    for step in _STEPS:
+        if bins <= step * _MOST_LABELS and _is_round(width * step):
+            return step
+    return _STEPS[-1]
+
+
+def _is_round(number: float) -> bool:
+    mantissa = float(f"{number:.6e}".partition("e")[0])
+    return mantissa in _ROUND_LABELS
+
+
+def _decimals(width: float) -> int:
+    """Decimals that write a round width in full: 0.25 -> 2, 10 -> 0."""
+    mantissa, _, exponent = f"{width:.2e}".partition("e")
+    return max(len(mantissa.rstrip("0").partition(".")[2]) - int(exponent), 0)

@@ -1,0 +1,89 @@
+"""A histogram as Excel draws it: stacked columns whose cells the sheet holds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from xlmc.report.histogram import Histogram
+from xlmc.report.styles import DARK, GRID, INK, LIGHT
+
+if TYPE_CHECKING:
+    from xlsxwriter.chart_column import ChartColumn
+    from xlsxwriter.workbook import Workbook
+
+__all__ = ["SIZE", "BinsAt", "histogram_chart"]
+
+SIZE = (560, 320)
+"""In pixels."""
+
+_AXIS: dict[str, Any] = {"color": "#8994A1", "width": 0.75}
+_FONT: dict[str, Any] = {"size": 9, "color": INK}
+
+
+@dataclass(frozen=True, slots=True)
+class BinsAt:
+    """Where a table of bins stands; rows and columns are counted from 0.
+
+    Attributes:
+        title, axis: the cells that hold the chart's title and the axis's.
+        header: the row of column headings.
+        first, last: the rows of the first and the last bin.
+        left: the column of the lower ends; inside and outside counts are two and three to its right.
+    """
+
+    title: tuple[int, int]
+    axis: tuple[int, int]
+    header: int
+    first: int
+    last: int
+    left: int
+
+
+def histogram_chart(book: Workbook, sheet: str, at: BinsAt, bins: Histogram) -> ChartColumn:
+    """The chart. Its texts are references to cells, so that none of them can be taken for a formula."""
+    chart = book.add_chart({"type": "column", "subtype": "stacked"})
+    for column, colour in ((2, DARK), (3, LIGHT)):
+        chart.add_series(
+            {
+                "name": [sheet, at.header, at.left + column],
+                "categories": [sheet, at.first, at.left, at.last, at.left],
+                "values": [sheet, at.first, at.left + column, at.last, at.left + column],
+                "fill": {"color": colour},
+                "border": {"none": True},
+                "gap": 4,
+            }
+        )
+    chart.set_title({"name": [sheet, *at.title], "name_font": {"size": 12, "bold": True, "color": INK}, "overlay": False})
+    chart.set_x_axis(_across(sheet, at, bins))
+    chart.set_y_axis(_upwards())
+    chart.set_legend({"position": "bottom", "font": _FONT})
+    chart.set_size({"width": SIZE[0], "height": SIZE[1]})
+    chart.set_chartarea({"border": {"color": GRID}})
+    return chart
+
+
+def _across(sheet: str, at: BinsAt, bins: Histogram) -> dict[str, Any]:
+    return {
+        "name": [sheet, *at.axis],
+        "name_font": {**_FONT, "bold": False},
+        "num_font": _FONT,
+        "num_format": "0" + ("." + "0" * bins.label_decimals if bins.label_decimals else ""),
+        "interval_unit": bins.step,
+        "interval_tick": bins.step,
+        "label_position": "low",
+        "line": _AXIS,
+        "major_tick_mark": "outside",
+    }
+
+
+def _upwards() -> dict[str, Any]:
+    return {
+        "name": "Accepted trials",
+        "name_font": {**_FONT, "bold": False},
+        "num_font": _FONT,
+        "num_format": "#,##0",
+        "min": 0,
+        "line": {"none": True},
+        "major_gridlines": {"visible": True, "line": {"color": GRID, "width": 0.5}},
+    }

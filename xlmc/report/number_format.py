@@ -1,0 +1,78 @@
+"""Excel number formats that show no more decimals than a standard error supports.
+
+A cell keeps its full number; only what it shows is cut. Excel cannot show a number rounded to tens, so one whose error
+is larger than a unit shows its units too, with the error beside it.
+"""
+
+from __future__ import annotations
+
+import math
+
+from xlmc.statistics import Estimate, supported_digits
+
+__all__ = ["COUNT", "alone", "exact", "paired", "share_alone", "share_paired"]
+
+COUNT = "#,##0"
+
+_DIGITS = 6
+"""Significant digits where no error limits them."""
+
+_LARGEST, _SMALLEST = 1e9, 1e-4
+"""Beyond these a number is shown with a power of ten."""
+
+
+def paired(estimate: Estimate) -> str:
+    """For a value with its error in a cell of its own: two digits of the error, as `format_estimate` prints them."""
+    return _format(estimate.value, _paired_decimals(estimate))
+
+
+def alone(estimate: Estimate) -> str:
+    """For a value shown without its error: the last digit is good to ± 1 with 95 % confidence."""
+    return _format(estimate.value, supported_digits(estimate))
+
+
+def share_paired(estimate: Estimate) -> str:
+    """`paired` for a share, in percent."""
+    return _percent(_paired_decimals(estimate))
+
+
+def share_alone(estimate: Estimate) -> str:
+    """`alone` for a share, in percent."""
+    return _percent(supported_digits(estimate))
+
+
+def exact(spread: float) -> str:
+    """For single trials: four digits of their spread."""
+    return _format(spread, None if not _usable(spread) else 3 - _exponent(spread))
+
+
+def _paired_decimals(estimate: Estimate) -> int | None:
+    return 1 - _exponent(estimate.error) if estimate.error and _usable(estimate.error) else None
+
+
+def _format(value: float, decimals: int | None) -> str:
+    if decimals is None:
+        if not _usable(value):
+            return "0"
+        decimals = _DIGITS - 1 - _exponent(value)
+    size = max(abs(value), 10.0**-decimals)
+    if not _SMALLEST <= size < _LARGEST:
+        return "0" + _fraction(min(max(decimals + _exponent(size), 0), _DIGITS)) + "E+00"
+    return "#,##0" + _fraction(max(decimals, 0))
+
+
+def _percent(decimals: int | None) -> str:
+    return "0" + _fraction(max((4 if decimals is None else decimals) - 2, 0)) + "%"
+
+
+def _fraction(decimals: int) -> str:
+    return "." + "0" * decimals if decimals else ""
+
+
+def _usable(number: float) -> bool:
+    return number != 0.0 and math.isfinite(number)
+
+
+def _exponent(number: float) -> int:
+    """The power of ten of a number rounded to two digits: 0.00996 -> -2."""
+    return int(f"{number:.1e}".partition("e")[2])

@@ -1,0 +1,130 @@
+"""The sheet Results: the answer first, then how many trials it rests on and what the filters did."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from xlmc.report import cells
+from xlmc.report.accounting import write_accounting
+from xlmc.report.base_case import base_case
+from xlmc.report.cells import Shown
+from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, range_heading, summarise
+from xlmc.statistics import proportion
+
+if TYPE_CHECKING:
+    from xlmc.report.page import Page
+    from xlmc.simulation import Simulation
+
+__all__ = ["LAST", "WIDTHS", "write_results"]
+
+WIDTHS = (30, 9, *[10] * 10)
+LAST = len(WIDTHS) - 1
+
+
+def write_results(page: Page, simulation: Simulation) -> None:
+    """Write the sheet."""
+    book = simulation.model.workbook.name
+    settings = simulation.settings
+    page.title("Results of the simulation", f"{book}, seed {settings.seed}, {simulation.trials:,} trials")
+    for warning in simulation.warnings:
+        page.wide(f"Do not use these results as they stand: {warning}", "warning", LAST)
+    _write_answers(page, simulation)
+    _write_trials(page, simulation)
+    write_accounting(page, simulation, LAST)
+    _write_notices(page, simulation)
+    page.printed(book)
+
+
+def _write_answers(page: Page, simulation: Simulation) -> None:
+    rows = summarise(simulation)
+    page.heading("Answers, from the accepted trials")
+    page.table(_headers(rows), [_answer(row, rows) for row in rows])
+    page.row += 1
+    for sentence in (ERROR_SENTENCE, *_range_sentences(rows), *_base_sentences(simulation)):
+        page.wide(sentence, "remark", LAST)
+
+
+def _headers(rows: Sequence[SummaryRow]) -> list[str]:
+    heads = ["Forecast", "Units", "Accepted trials", "Mean", "±", "Standard deviation", "±"]
+    heads += [f"{range_heading(rows)} from", "±", "to", "±", "Base case"]
+    if any(row.threshold is not None for row in rows):
+        heads += ["Threshold", "P(above)", "±", "95 % from", "to"]
+    return heads if len({row.share for row in rows}) < 2 else [*heads, "Range holds"]
+
+
+def _answer(row: SummaryRow, rows: Sequence[SummaryRow]) -> list[Shown]:
+    shown = [
+        cells.text(row.name, "name"),
+        cells.text(row.units),
+        cells.count(row.trials),
+        *cells.estimate(row.mean, "answer"),
+        *cells.estimate(row.standard_deviation, "answer"),
+        *cells.estimate(row.low, "answer"),
+        *cells.estimate(row.high, "answer"),
+        cells.exact(row.base, cells.digits_of(row.mean)),
+    ]
+    if any(other.threshold is not None for other in rows):
+        shown += _above(row)
+    return shown if len({other.share for other in rows}) < 2 else [*shown, cells.text(percent(row.share))]
+
+
+def _above(row: SummaryRow) -> list[Shown]:
+    if row.above is None:
+        return [cells.BLANK] * 5
+    return [cells.exact(row.threshold), *cells.share(row.above), *cells.interval(row.above, percent=True)]
+
+
+def _range_sentences(rows: Sequence[SummaryRow]) -> list[str]:
+    shares = {row.share for row in rows}
+    if len(shares) != 1:
+        return ["Central ranges leave out as many accepted trials below as above."]
+    share = shares.pop()
+    outside = percent((1 - share) / 2)
+    return [f"The {percent(share)} range is central: {outside} of the accepted trials lie below it, {outside} above."]
+
+
+def _base_sentences(simulation: Simulation) -> list[str]:
+    found = base_case(simulation)
+    if found is None:
+        return ["There is no base case: the cell of an assumption is blank."]
+    meaning = "The base case has every assumption at the value in its cell"
+    if not found.rejected_by:
+        return [f"{meaning}."]
+    return [f"{meaning}. As a trial it would be rejected by: {', '.join(found.rejected_by)}."]
+
+
+def _write_trials(page: Page, simulation: Simulation) -> None:
+    page.heading("Trials")
+    headers = ["", "", "Trials", "Share", "±", "95 % from", "to"]
+    total, errors = simulation.trials, simulation.error_trials
+    acceptance = simulation.acceptance
+    lost = proportion(min(errors, total), total)
+    page.table(
+        headers,
+        [
+            [cells.text("Run", "name"), cells.BLANK, cells.count(total)],
+            [
+                cells.text("Accepted", "name"),
+                cells.BLANK,
+                cells.count(simulation.accepted),
+                *cells.share(acceptance),
+                *cells.interval(acceptance, percent=True),
+            ],
+            [
+                cells.text("Lost to errors in cells", "name"),
+                cells.BLANK,
+                cells.count(errors),
+                *cells.share(lost),
+                *cells.interval(lost, percent=True),
+            ],
+        ],
+    )
+
+
+def _write_notices(page: Page, simulation: Simulation) -> None:
+    if not simulation.model.notices:
+        return
+    page.heading("Notices")
+    for notice in simulation.model.notices:
+        page.wide(str(notice), "notice", LAST)

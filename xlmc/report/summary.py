@@ -1,0 +1,127 @@
+"""The answer in a few lines, as the paper's Table 2 gives it: the same numbers for the command line and the sheets."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from xlmc.report.base_case import base_case
+from xlmc.statistics import Estimate, format_estimate, supported_digits
+
+if TYPE_CHECKING:
+    from xlmc.simulation import Simulation
+
+__all__ = ["ERROR_SENTENCE", "SummaryRow", "percent", "range_heading", "summarise", "summary_text", "supported_text"]
+
+ERROR_SENTENCE = (
+    "± is the standard error of a number that comes from a limited number of trials (Monte Carlo error): with infinitely "
+    "many trials it would lie within 2 of them with about 95 % confidence. Monte Carlo error is not reconstruction "
+    "error: it does not say whether the model fits the crash or whether the ranges of the assumptions are right."
+)
+"""What no table of results may be without."""
+
+
+@dataclass(frozen=True, slots=True)
+class SummaryRow:
+    """The answer of one forecast, in its units.
+
+    Attributes:
+        trials: accepted trials in which it is a number.
+        share: of the trials, held by the central range from `low` to `high`.
+        base: at the assumptions' base values; None where that is no number.
+        threshold, above: P(forecast > threshold), where one was asked for.
+    """
+
+    name: str
+    units: str
+    trials: int
+    mean: Estimate
+    standard_deviation: Estimate
+    share: float
+    low: Estimate
+    high: Estimate
+    base: float | None
+    threshold: float | None
+    above: Estimate | None
+
+
+def summarise(simulation: Simulation) -> list[SummaryRow]:
+    """One row a forecast, in the order of the workbook."""
+    base = base_case(simulation)
+    return [
+        SummaryRow(
+            name=name,
+            units=result.definition.units,
+            trials=result.statistics.trials,
+            mean=result.statistics.mean,
+            standard_deviation=result.statistics.standard_deviation,
+            share=result.definition.central,
+            low=result.statistics.central[0],
+            high=result.statistics.central[1],
+            base=None if base is None else base.forecasts[name],
+            threshold=result.definition.threshold,
+            above=result.statistics.probability_above,
+        )
+        for name, result in simulation.results.items()
+    ]
+
+
+def summary_text(rows: Sequence[SummaryRow]) -> tuple[list[str], list[list[str]]]:
+    """Headings and rows of text, ready to be printed; columns that no forecast fills are left out.
+
+    Every number has its standard error and no more digits than that supports.
+    """
+    heading = range_heading(rows)
+    lines = [_line(row, heading) for row in rows]
+    headings = list(lines[0]) if lines else ["Forecast"]
+    used = [name for name in headings if name == "Forecast" or any(line[name] for line in lines)]
+    return used, [[line[name] for name in used] for line in lines]
+
+
+def _line(row: SummaryRow, heading: str) -> dict[str, str]:
+    threshold = "" if row.threshold is None else f"{row.threshold:g}"
+    return {
+        "Forecast": row.name,
+        "Units": row.units,
+        "Mean": _text(row.mean),
+        "SD": _text(row.standard_deviation),
+        heading: "" if math.isnan(row.low.value) else f"{_text(row.low)} to {_text(row.high)}",
+        "Range": "" if heading != MIXED else percent(row.share),
+        "Base case": "" if row.base is None else f"{row.base:.6g}",
+        "Threshold": threshold,
+        "P(above)": "" if row.above is None else _percent_text(row.above),
+    }
+
+
+MIXED = "Central range"
+
+
+def range_heading(rows: Sequence[SummaryRow]) -> str:
+    """`51 % range`, or `Central range` where forecasts have different ones."""
+    shares = {row.share for row in rows}
+    return f"{percent(shares.pop())} range" if len(shares) == 1 else MIXED
+
+
+def percent(share: float) -> str:
+    """`0.51 -> 51 %`."""
+    return f"{100.0 * share:.6g} %"
+
+
+def supported_text(estimate: Estimate) -> str:
+    """The value alone, its last digit good to ± 1 with 95 % confidence: `11.8`."""
+    decimals = supported_digits(estimate)
+    if decimals is None or not math.isfinite(estimate.value):
+        return f"{estimate.value:.6g}"
+    return f"{round(estimate.value, decimals) + 0.0:,.{max(decimals, 0)}f}"
+
+
+def _text(estimate: Estimate) -> str:
+    return "" if math.isnan(estimate.value) else format_estimate(estimate.value, estimate.error)
+
+
+def _percent_text(estimate: Estimate) -> str:
+    if math.isnan(estimate.value) or estimate.error is None:
+        return ""
+    return f"{format_estimate(100.0 * estimate.value, 100.0 * estimate.error)} %"

@@ -1,0 +1,80 @@
+"""The sheet Trials: accepted trials, one a row, with every assumption and forecast, to be checked or keyed in again."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.report import number_format
+from xlmc.report.cells import Shown
+
+if TYPE_CHECKING:
+    from xlmc.report.page import Page
+    from xlmc.simulation import Simulation
+
+__all__ = ["HEADER", "MOST_ROWS", "TRIAL_ROWS", "WIDTHS", "write_trials"]
+
+TRIAL_ROWS = 10_000
+"""Accepted trials on the sheet, unless asked otherwise: more make the file slow to open."""
+
+WIDTHS = (9,)
+HEADER = 3
+"""The row of the headings, counted from 0."""
+
+MOST_ROWS = 1_048_576 - HEADER - 1
+"""What a sheet has room for."""
+
+_WIDTH = 13
+
+
+def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> None:
+    """Write the sheet with the first `rows` accepted trials, and say so where there are more."""
+    shown = max(0, min(rows, simulation.accepted, MOST_ROWS))
+    name = simulation.model.workbook.name
+    page.title("Accepted trials", f"{name}, seed {simulation.settings.seed}. Trials are numbered from 0.")
+    page.line([_said(shown, simulation.accepted)])
+    page.row = HEADER
+    columns = _columns(simulation)
+    page.sheet.set_column(1, max(1, len(columns)), _WIDTH)
+    page.sheet.set_row(HEADER, 48)
+    page.line([Shown("Trial", look="header"), *(Shown(heading, look="header") for heading, _ in columns)])
+    _write_values(page, simulation.trial_index[:shown], [values[:shown] for _, values in columns])
+    page.sheet.freeze_panes(HEADER + 1, 1)
+    page.sheet.autofilter(HEADER, 0, HEADER + shown, len(columns))
+    page.printed(name, repeat=HEADER)
+
+
+def _said(shown: int, accepted: int) -> Shown:
+    if shown == accepted:
+        return Shown(f"All {accepted:,} accepted trials." if accepted else "No trial was accepted.", look="subtitle")
+    return Shown(f"Only the first {shown:,} of {accepted:,} accepted trials stand here.", look="warning line")
+
+
+def _columns(simulation: Simulation) -> list[tuple[str, NDArray[np.float64]]]:
+    """Headings with units, and `(m,)` values."""
+    units = {a.name: a.units for a in simulation.model.live}
+    found = [(_heading(name, units[name]), values) for name, values in simulation.inputs.items()]
+    for name, result in simulation.results.items():
+        found.append((_heading(name, result.definition.units), simulation.forecasts[name]))
+    return found
+
+
+def _heading(name: str, units: str) -> str:
+    return f"{name} ({units})" if units else name
+
+
+def _write_values(page: Page, index: NDArray[np.int64], columns: list[NDArray[np.float64]]) -> None:
+    for row, trial in enumerate(index.tolist(), page.row):
+        page.put(row, 0, Shown(trial, "0", "trial"))
+    for place, values in enumerate(columns, 1):
+        digits = number_format.exact(_spread(values))
+        for row, value in enumerate(values.tolist(), page.row):
+            page.put(row, place, Shown(value, digits))
+    page.row += index.size
+
+
+def _spread(values: NDArray[np.float64]) -> float:
+    known = values[~np.isnan(values)]
+    return float(np.ptp(known)) if known.size > 1 else 0.0

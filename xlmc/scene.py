@@ -48,7 +48,7 @@ def survey(workbook: Workbook, definitions: Definitions) -> Scene:
     """
     live = {a.cell: a for a in definitions.assumptions if not a.frozen}
     held = frozenset(a.cell for a in definitions.assumptions if a.frozen)
-    resolver = Resolver(workbook)
+    resolver = Resolver(workbook, [*live, *held])
     targets = [f.cell for f in definitions.forecasts]
     for filter_ in definitions.filters:
         targets += [filter_.cell, *(bound for _, bound in filter_limits(filter_) if isinstance(bound, Cell))]

@@ -10,6 +10,7 @@ from xlmc.address import Area, Cell
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
 from xlmc.formula.resolve import Resolver
+from xlmc.formula.spills import Spills
 from xlmc.workbook.model import Workbook
 
 __all__ = ["Graph", "build_graph", "references"]
@@ -20,7 +21,8 @@ class Graph:
     """The needed part of a workbook.
 
     Attributes:
-        formulas: resolved trees of the needed formula cells, each after the cells it needs.
+        formulas: resolved trees of the needed formula cells, each after the cells it needs. A cell that an array
+            formula in another cell fills has that other cell for a tree.
         needs: every formula cell's own direct precedents that hold a formula or are inputs.
         varying: the cells among `formulas` and the inputs that depend on an input.
         reached: the inputs and held cells that something needs.
@@ -57,12 +59,12 @@ def build_graph(
             reached.add(cell)
         elif cell in trail:
             raise _cycle([*trail][[*trail].index(cell) :])
-        elif cell not in formulas and (formula := workbook.content(cell).formula) is not None:
-            trees[cell] = resolver.formula(cell, formula)
-            needs[cell] = tuple(_precedents(workbook, trees[cell], given))
+        elif cell not in formulas and (tree := _tree(resolver, spills, cell)) is not None:
+            trees[cell] = tree
+            needs[cell] = tuple(_precedents(workbook, spills, tree, given))
             trail[cell] = iter(needs[cell])
 
-    workbook, given = resolver.workbook, inputs | held
+    workbook, spills, given = resolver.workbook, Spills(resolver.workbook), inputs | held
     for target in targets:
         enter(target)
         while trail:
@@ -72,14 +74,21 @@ def build_graph(
                 enter(following)
             else:
                 formulas[cell] = trees[cell]
-                del trail[cell]
+                trail.popitem()
     return Graph(workbook, formulas, needs, _varying(formulas, needs, reached & inputs), frozenset(reached))
 
 
-def _precedents(workbook: Workbook, tree: ir.Expression, inputs: frozenset[Cell]) -> Iterator[Cell]:
+def _tree(resolver: Resolver, spills: Spills, cell: Cell) -> ir.Expression | None:
+    formula = resolver.workbook.content(cell).formula
+    return spills.anchor(cell) if formula is None else resolver.formula(cell, formula)
+
+
+def _precedents(
+    workbook: Workbook, spills: Spills, tree: ir.Expression, inputs: frozenset[Cell]
+) -> Iterator[Cell]:
     for place in dict.fromkeys(references(tree)):
         for cell in (place,) if isinstance(place, Cell) else _held(workbook, place, inputs):
-            if cell in inputs or workbook.content(cell).formula is not None:
+            if cell in inputs or workbook.content(cell).formula is not None or spills.anchor(cell) is not None:
                 yield cell
 
 
@@ -101,9 +110,11 @@ def references(tree: ir.Expression) -> Iterator[Cell | Area]:
             yield tree
         case ir.Unary(_, operand):
             yield from references(operand)
-        case ir.Binary(_, left, right):
-            yield from references(left)
-            yield from references(right)
+        case ir.Binary():
+            first, rest = ir.chain(tree)
+            yield from references(first)
+            for _, right in rest:
+                yield from references(right)
         case ir.Call(_, arguments):
             for part in arguments:
                 yield from references(part)

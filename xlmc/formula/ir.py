@@ -26,6 +26,7 @@ __all__ = [
     "TableReference",
     "Text",
     "Unary",
+    "chain",
 ]
 
 
@@ -150,3 +151,15 @@ Expression = (
     | Call
     | Array
 )
+
+
+def chain(tree: Expression) -> tuple[Expression, list[tuple[str, Expression]]]:
+    """`a + b - c` as `a` and `[("+", b), ("-", c)]`; anything but a binary operation as itself and nothing.
+
+    Long sums lean to the left, one level a term: passes walk them in a loop, and recurse only into brackets.
+    """
+    rest: list[tuple[str, Expression]] = []
+    while isinstance(tree, Binary):
+        rest.append((tree.operator, tree.right))
+        tree = tree.left
+    return tree, rest[::-1]

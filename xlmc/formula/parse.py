@@ -7,7 +7,8 @@ r"""Formula text to tree, through the tokenizer and the shunting-yard of `formul
 
 `formulas` reads tokens by a list of classes and hands the postfix stream to a builder; both are class attributes of its
 `Parser`. Our classes stand in for those of its tokens that lose something (`--x`, `1E5`, `5%%`, `Data!Rate`,
-`Table1[Low]`, line breaks in texts), and our builder makes tree nodes. The stack machine is theirs.
+`Table1[Low]`, line breaks in texts) or that let two operands stand side by side (`(1)(2)`, `SUM(A1;B1)`), and our
+builder makes tree nodes. The stack machine is theirs.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from formulas.tokens.operator import Intersect, Operator, OperatorToken, Separat
 from formulas.tokens.parenthesis import Parenthesis, _update_n_args
 from schedula import EMPTY
 
-from xlmc.address import column_number
+from xlmc.address import MAX_COLUMN, MAX_ROW, column_number
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
 from xlmc.formula.table_reference import TABLE_REFERENCE, parse_table_reference
@@ -41,12 +42,23 @@ _PREFIX = rf"(?:'(?P<quoted>(?:[^']|'')+)'|(?P<book>\[[^\[\]]+\])?(?P<sheet>{_SH
 _CELL = r"\$?[A-Za-z]{1,3}\$?[1-9][0-9]{0,6}"
 _BODY = rf"(?P<name>{_CELL}(?::{_CELL})?|\$?[A-Za-z]{{1,3}}:\$?[A-Za-z]{{1,3}}|\$?[1-9][0-9]*:\$?[1-9][0-9]*)"
 _NAME = r"(?P<name>[^\W\d][\w.\\?]*|\\[\w.\\?]*)"
-_LINE_BREAK_IN_TEXT = "\ue00a"
+_LINE_BREAK_IN_TEXT = "\0"  # no XML holds it, so no text of a workbook does
+_BLANKS = str.maketrans("\t\r\n", "   ")
 _CORNER = re.compile(r"(?P<cf>\$?)(?P<c>[A-Za-z]{1,3})?(?P<rf>\$?)(?P<r>[0-9]+)?")
+
+
+def _follow(tokens: list[Any], *, an_operand: bool) -> None:
+    """Pass on a token that may only stand behind an operand, or only elsewhere; a blank there may be an operator."""
+    if bool(tokens and _ends_an_operand(tokens[-1])) is not an_operand:
+        raise TokenError
 
 
 class _Leaf(Operand):  # type: ignore[misc]  # formulas has no types
     """An operand that knows its tree node."""
+
+    def ast(self, tokens: list[Any], stack: list[Any], builder: Any) -> None:
+        _follow(tokens, an_operand=False)
+        super().ast(tokens, stack, builder)
 
     @property
     def node(self) -> ir.Expression:
@@ -58,7 +70,10 @@ class _Number(_Leaf):
 
     @property
     def node(self) -> ir.Expression:
-        return ir.Number(float(self.name))
+        value = float(self.name)
+        if value == float("inf"):
+            raise ForeignFormulaError
+        return ir.Number(value)
 
 
 class _Logical(_Leaf):
@@ -74,11 +89,15 @@ class _Text(_Leaf):
 
     @property
     def node(self) -> ir.Expression:
-        return ir.Text(self.name.replace('""', '"').replace(_LINE_BREAK_IN_TEXT, "\n"))
+        text = self.name.replace('""', '"').replace("\r" + _LINE_BREAK_IN_TEXT, "\n")
+        return ir.Text(text.replace(_LINE_BREAK_IN_TEXT, "\n"))
 
 
 class _Error(_Leaf):
-    _re = re.compile(rf"\s*(?:{_PREFIX})?(?P<name>#(?:NULL!|DIV/0!|VALUE!|REF!|NAME\?|NUM!|N/A|SPILL!|CALC!))", re.I)
+    """Also `#REF!$B$7`, what is left of a reference whose sheet was deleted."""
+
+    _names = r"#(?:NULL!|DIV/0!|VALUE!|REF!|NAME\?|NUM!|N/A|SPILL!|CALC!|GETTING_DATA)"
+    _re = re.compile(rf"\s*(?:{_PREFIX})?(?P<name>{_names})(?:(?<=#REF!)(?:#REF!|{_CELL}(?::{_CELL})?))?", re.I)
 
     @property
     def node(self) -> ir.Expression:
@@ -90,8 +109,15 @@ class _Reference(_Leaf):
 
     @property
     def node(self) -> ir.Expression:
-        first, _, last = self.attr["name"].partition(":")
-        return ir.Reference(_corner(first), _corner(last) if last else None, *_place(self.attr))
+        text = self.attr["name"]
+        first, _, last = text.partition(":")
+        corners = _corner(first), _corner(last) if last else None
+        if all(corner is None or _on_the_sheet(corner) for corner in corners):
+            return ir.Reference(*corners, *_place(self.attr))
+        if last or "$" in text:
+            raise ForeignFormulaError
+        sheet, _, book = _place(self.attr)
+        return ir.Name(text, sheet, book)  # no cell, so a name may look like it: `YAW1`
 
 
 class _Name(_Leaf):
@@ -108,7 +134,10 @@ class _TableReference(_Leaf):
 
     @property
     def node(self) -> ir.Expression:
-        return parse_table_reference(self.attr.get("table"), self.attr["name"])
+        try:
+            return parse_table_reference(self.attr.get("table"), self.attr["name"])
+        except ValueError:
+            raise ForeignFormulaError from None
 
 
 class _Operator(OperatorToken):  # type: ignore[misc]
@@ -128,6 +157,7 @@ class _Operator(OperatorToken):  # type: ignore[misc]
 
     def ast(self, tokens: list[Any], stack: list[Any], builder: Any) -> None:
         if self.name not in "+-@" or (tokens and _ends_an_operand(tokens[-1])):
+            _follow(tokens, an_operand=True)
             super().ast(tokens, stack, builder)
             return
         if self.name != "@":
@@ -137,8 +167,42 @@ class _Operator(OperatorToken):  # type: ignore[misc]
         stack.append(self)
 
 
+class _Intersect(Intersect):  # type: ignore[misc]
+    _re = re.compile(r"\s+")
+
+    def process(self, match: re.Match[str], context: object = None, parser: object = None) -> dict[str, str]:
+        return {"name": " "}
+
+    def ast(self, tokens: list[Any], stack: list[Any], builder: Any) -> None:
+        _follow(tokens, an_operand=True)
+        super().ast(tokens, stack, builder)
+
+
+class _Separator(Separator):  # type: ignore[misc]
+    def ast(self, tokens: list[Any], stack: list[Any], builder: Any) -> None:
+        _refuse_open_operator(tokens)
+        super().ast(tokens, stack, builder)
+
+
 class _Function(FunctionToken):  # type: ignore[misc]
     _re = re.compile(rf"\s*(?:{_PREFIX})?(?P<name>[^\W\d][\w.]*)\(\s*(?P<call>\))?")
+
+    def ast(self, tokens: list[Any], stack: list[Any], builder: Any, *rest: Any) -> None:
+        _follow(tokens, an_operand=False)
+        super().ast(tokens, stack, builder, *rest)
+
+
+class _Array(ArrayToken):  # type: ignore[misc]
+    """`{`, `;` and `}`; the last two only within an array, for `;` parts arguments in other languages of Excel."""
+
+    def ast(self, tokens: list[Any], stack: list[Any], builder: Any, *rest: Any) -> None:
+        if self.has_start:
+            _follow(tokens, an_operand=False)
+        elif not _within_array(stack):
+            raise ForeignFormulaError
+        else:
+            _refuse_open_operator(tokens)
+        super().ast(tokens, stack, builder, *rest)
 
 
 class _Parenthesis(Parenthesis):  # type: ignore[misc]
@@ -149,6 +213,31 @@ class _Parenthesis(Parenthesis):  # type: ignore[misc]
     def process(self, match: re.Match[str], context: object = None, parser: object = None) -> dict[str, str]:
         groups = {key: text for key, text in match.groupdict().items() if text is not None}
         return groups | {"name": groups["name"].strip()}
+
+    def ast(self, tokens: list[Any], stack: list[Any], builder: Any) -> None:
+        if self.has_start:
+            _follow(tokens, an_operand=False)
+        elif _within_array(stack):
+            raise ForeignFormulaError
+        else:
+            _refuse_open_operator(tokens)
+        super().ast(tokens, stack, builder)
+
+
+def _refuse_open_operator(tokens: list[Any]) -> None:
+    """What ends an operand must not follow an operator that still waits for one."""
+    if tokens and isinstance(tokens[-1], _Operator | _Intersect) and not _ends_an_operand(tokens[-1]):
+        raise ForeignFormulaError
+
+
+def _within_array(stack: list[Any]) -> bool:
+    """Whether the innermost open bracket is a `{`, which `formulas` makes a call of its own class."""
+    opened = [place for place, token in enumerate(stack) if isinstance(token, Parenthesis)]
+    return bool(opened and opened[-1] and _opens_array(stack[opened[-1] - 1]))
+
+
+def _opens_array(token: Any) -> bool:
+    return type(token) is FunctionToken
 
 
 def _ends_an_operand(token: Any) -> bool:
@@ -176,6 +265,10 @@ def _corner(text: str) -> ir.Corner:
     if column is None:  # a whole row, `$3`: the `$` was read as the column's
         return ir.Corner(int(row), None, bool(found["cf"] or found["rf"]), False)
     return ir.Corner(int(row) if row else None, column_number(column), bool(found["rf"]), bool(found["cf"]))
+
+
+def _on_the_sheet(corner: ir.Corner) -> bool:
+    return (corner.row or 1) <= MAX_ROW and (corner.column or 1) <= MAX_COLUMN
 
 
 class _TreeBuilder:
@@ -214,15 +307,25 @@ class _TreeBuilder:
 
 
 def _call(token: Any, arguments: tuple[ir.Expression, ...]) -> ir.Expression:
-    name = re.sub(r"^(_xlfn\.|_xlws\.|_xll\.|_xludf\.)+", "", token.name, flags=re.IGNORECASE).upper()
-    if name != "ARRAY":
-        return ir.Call(name, arguments)
+    if not _opens_array(token):
+        name = re.sub(r"^(_xlfn\.|_xlws\.|_xll\.|_xludf\.)+", "", token.name, flags=re.IGNORECASE)
+        return ir.Call(name.upper(), arguments)
     if arguments and isinstance(arguments[0], ir.Array):  # the outer of the two nested ARRAY( that `formulas` makes
         return ir.Array(tuple(row for part in arguments if isinstance(part, ir.Array) for row in part.rows))
+    if not all(_is_constant(element) for element in arguments):
+        raise ForeignFormulaError
     return ir.Array((arguments,))
 
 
+def _is_constant(element: ir.Expression) -> bool:
+    if isinstance(element, ir.Unary) and element.operator in "+-":
+        return isinstance(element.operand, ir.Number)
+    return isinstance(element, ir.Number | ir.Text | ir.Logical | ir.ErrorLiteral)
+
+
 def _operation(operator: str, operands: tuple[ir.Expression, ...]) -> ir.Expression:
+    if any(isinstance(operand, ir.Missing) for operand in operands):
+        raise ForeignFormulaError
     if operator in ("@", "#"):
         return ir.Call("SINGLE" if operator == "@" else "ANCHORARRAY", operands)
     if len(operands) == 1:
@@ -254,11 +357,11 @@ _TOKENS: list[Callable[..., Any]] = [
     _Name,
     _TableReference,
     _Operator,
-    Separator,
+    _Separator,
     _Function,
-    ArrayToken,
+    _Array,
     _Parenthesis,
-    Intersect,
+    _Intersect,
 ]
 
 
@@ -286,11 +389,11 @@ def parse(text: str) -> ir.Expression:
 
 
 def _without_line_breaks(text: str) -> str:
-    """Line breaks between tokens are blanks to Excel; inside texts they are kept."""
-    if "\n" not in text and "\r" not in text:
+    """Line breaks and tabs between tokens are blanks to Excel; inside texts they are kept. The length stays."""
+    if not any(blank in text for blank in "\n\r\t"):
         return text
-    pieces = re.split(r"""("(?:[^"]|"")*"|'(?:[^']|'')*')""", text.replace("\r\n", "\n"))
-    kept = [p.replace("\n", _LINE_BREAK_IN_TEXT if i % 2 else " ").replace("\r", " ") for i, p in enumerate(pieces)]
+    pieces = re.split(r"""("(?:[^"]|"")*"|'(?:[^']|'')*')""", text)
+    kept = [p.replace("\n", _LINE_BREAK_IN_TEXT) if i % 2 else p.translate(_BLANKS) for i, p in enumerate(pieces)]
     return "".join(kept)
 
 

@@ -6,8 +6,9 @@ blank have become areas.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from difflib import get_close_matches
-from typing import assert_never
+from typing import Final, assert_never
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.errors import ErrorCode, FormulaError
@@ -20,14 +21,26 @@ __all__ = ["Resolver"]
 _REF = ir.ErrorLiteral(ErrorCode.REF)
 _NULL = ir.ErrorLiteral(ErrorCode.NULL)
 
+_DEEPEST: Final = 200
+"""Levels of brackets, calls and names in a formula; Excel stops at 64 calls."""
+
+_LONGEST: Final = 100_000
+"""Parts of a formula with its names written out; Excel stops at 8192 characters. Names of names can double it on."""
+
 
 class Resolver:
-    """Resolves the formulas of one workbook."""
+    """Resolves the formulas of one workbook.
 
-    def __init__(self, workbook: Workbook) -> None:
+    Args:
+        inputs: cells that count as used although the file may hold nothing there.
+    """
+
+    def __init__(self, workbook: Workbook, inputs: Iterable[Cell] = ()) -> None:
         self.workbook = workbook
+        self._inputs = tuple(inputs)
         self._used: dict[str, tuple[int, int]] = {}
         self._open_names: list[str] = []
+        self._depth = self._parts = 0
 
     def formula(self, cell: Cell, formula: Formula) -> ir.Expression:
         """The tree of a cell's formula.
@@ -35,6 +48,7 @@ class Resolver:
         Raises:
             FormulaError: told of the cell; the formula cannot be read, or names something that is not there.
         """
+        self._depth = self._parts = 0
         try:
             return self._resolve(parse(formula.text), cell, (formula.row, formula.column))
         except FormulaError as error:
@@ -42,6 +56,16 @@ class Resolver:
             raise complete.at(cell) from None
 
     def _resolve(self, tree: ir.Expression, host: Cell, origin: tuple[int, int]) -> ir.Expression:
+        self._depth += 1
+        self._parts += 1
+        if self._depth > _DEEPEST or self._parts > _LONGEST:
+            size = f"nested deeper than {_DEEPEST} levels" if self._depth > _DEEPEST else "too long"
+            raise FormulaError(f"with its names written out, the formula is {size}", hint="split it over several cells")
+        resolved = self._resolved(tree, host, origin)
+        self._depth -= 1
+        return resolved
+
+    def _resolved(self, tree: ir.Expression, host: Cell, origin: tuple[int, int]) -> ir.Expression:
         match tree:
             case ir.Reference():
                 return self._reference(tree, host, origin)
@@ -51,9 +75,10 @@ class Resolver:
                 return self._table(tree, host)
             case ir.Unary(operator, operand):
                 return ir.Unary(operator, self._resolve(operand, host, origin))
-            case ir.Binary(operator, left, right):
-                parts = self._resolve(left, host, origin), self._resolve(right, host, origin)
-                return _combined(operator, *parts)
+            case ir.Binary():
+                return self._chain(tree, host, origin)
+            case ir.Call("LET" | "LAMBDA" as name, _):
+                raise FormulaError(f"{name} is not supported in this version")
             case ir.Call(name, arguments):
                 return ir.Call(name, tuple(self._resolve(part, host, origin) for part in arguments))
             case ir.Array(rows):
@@ -63,14 +88,22 @@ class Resolver:
             case _:
                 assert_never(tree)
 
+    def _chain(self, tree: ir.Binary, host: Cell, origin: tuple[int, int]) -> ir.Expression:
+        first, rest = ir.chain(tree)
+        resolved = self._resolve(first, host, origin)
+        for operator, right in rest:
+            resolved = _combined(operator, resolved, self._resolve(right, host, origin))
+        return resolved
+
     def _reference(self, tree: ir.Reference, host: Cell, origin: tuple[int, int]) -> ir.Expression:
         _refuse_other_books(tree.book)
         if tree.last_sheet is not None:
             raise FormulaError("a reference over several sheets is not supported in this version")
         sheet = self._sheet(tree.sheet, host)
-        first = _place(tree.first, host, origin)
-        last = first if tree.last is None else _place(tree.last, host, origin)
-        if first is None or last is None:
+        first, last = (_place(corner, host, origin) for corner in (tree.first, tree.last or tree.first))
+        if self._open_names:  # in a name, relative references go around the edge of the sheet
+            first, last = _wrapped(first), _wrapped(last)
+        if not (_inside(first) and _inside(last)):
             return _REF
         rows, columns = _sorted(first[0], last[0]), _sorted(first[1], last[1])
         used = self._used_range(sheet)
@@ -89,7 +122,8 @@ class Resolver:
     def _used_range(self, sheet: str) -> tuple[int, int]:
         """Last row and column that hold anything: a whole column ends there."""
         if sheet not in self._used:
-            cells = self.workbook.sheets[sheet].cells
+            cells = [(cell.row, cell.column) for cell in self._inputs if cell.sheet == sheet]
+            cells += self.workbook.sheets[sheet].cells
             self._used[sheet] = (max((r for r, _ in cells), default=1), max((c for _, c in cells), default=1))
         return self._used[sheet]
 
@@ -147,15 +181,27 @@ def _did_you_mean(name: str, known: object) -> str | None:
     return f"did you mean {close[0]!r}?" if close else None
 
 
-def _place(corner: ir.Corner, host: Cell, origin: tuple[int, int]) -> tuple[int | None, int | None] | None:
-    """Row and column of a corner as the host sees it; None when it falls off the sheet."""
+_Place = tuple[int | None, int | None]
+
+
+def _place(corner: ir.Corner, host: Cell, origin: tuple[int, int]) -> _Place:
+    """Row and column of a corner as the host sees it; it may lie off the sheet."""
     row, column = corner.row, corner.column
     if row is not None and not corner.row_fixed:
         row += host.row - origin[0]
     if column is not None and not corner.column_fixed:
         column += host.column - origin[1]
-    inside = (row is None or 1 <= row <= MAX_ROW) and (column is None or 1 <= column <= MAX_COLUMN)
-    return (row, column) if inside else None
+    return row, column
+
+
+def _inside(place: _Place) -> bool:
+    row, column = place
+    return (row is None or 1 <= row <= MAX_ROW) and (column is None or 1 <= column <= MAX_COLUMN)
+
+
+def _wrapped(place: _Place) -> _Place:
+    row, column = place
+    return row and (row - 1) % MAX_ROW + 1, column and (column - 1) % MAX_COLUMN + 1
 
 
 def _sorted(first: int | None, last: int | None) -> tuple[int, int] | None:

@@ -30,8 +30,10 @@ def formula_text(tree: ir.Expression, name: Callable[[Cell | Area], str] = str) 
             return f"({formula_text(operand, name)}%)"
         case ir.Unary(operator, operand):
             return f"({operator}({formula_text(operand, name)}))"
-        case ir.Binary(operator, left, right):
-            return f"({formula_text(left, name)}{operator}{formula_text(right, name)})"
+        case ir.Binary():
+            first, rest = ir.chain(tree)
+            terms = [f"{operator}{formula_text(right, name)})" for operator, right in rest]
+            return "(" * len(terms) + formula_text(first, name) + "".join(terms)
         case ir.Call(function, arguments):
             return f"{function}({','.join(formula_text(part, name) for part in arguments)})"
         case ir.Array(rows):

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 __all__ = ["write_accounting"]
 
-_REASON = 4
-"""The column that reasons begin in."""
+_STARTS = (0, 1, 3, 5)
+"""The columns that a filter, its cell, its limits and its reason begin in."""
 
 
 def write_accounting(page: Page, simulation: Simulation, last: int) -> None:
@@ -39,10 +39,12 @@ def write_accounting(page: Page, simulation: Simulation, last: int) -> None:
 
 
 def _write_filters(page: Page, simulation: Simulation, last: int) -> None:
-    page.spread(["Filter", "Cell", "Must be", "Because"], (0, 1, 3, _REASON + 1), last, "header left")
+    headers = ("Filter", "Cell", "Must be", "Because")
+    page.spread([cells.text(header, "header left") for header in headers], _STARTS, last)
     for number, filter_ in enumerate(simulation.model.filters, 1):
-        texts = [f"{number}. {filter_.name}", str(filter_.cell), limits_text(filter_), filter_.because]
-        page.spread(texts, (0, 1, 3, _REASON + 1), last, "text")
+        texts = (str(filter_.cell), limits_text(filter_), filter_.because or cells.NONE)
+        name = cells.text(f"{number}. {filter_.name}", "name")
+        page.spread([name, *(cells.text(text) for text in texts)], _STARTS, last)
 
 
 def _write_rejections(page: Page, simulation: Simulation) -> None:

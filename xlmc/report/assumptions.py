@@ -1,4 +1,8 @@
-"""The sheet Assumptions: what each one is, why, and how the filters changed it."""
+"""The sheet Assumptions: what each one is and why, and beside it how the filters changed it.
+
+Two lines each: name, cell, distribution and the draws before filtering; below them units, base case, source and the
+accepted draws.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +11,7 @@ from typing import TYPE_CHECKING
 from xlmc.record.wording import distribution_text, status
 from xlmc.report import cells
 from xlmc.report.cells import Shown
-from xlmc.report.conditioning import Marginal, conditioning
+from xlmc.report.conditioning import Conditioning, Marginal, conditioning
 from xlmc.statistics import Estimate
 
 if TYPE_CHECKING:
@@ -15,18 +19,23 @@ if TYPE_CHECKING:
     from xlmc.report.page import Page
     from xlmc.simulation import Simulation
 
-__all__ = ["WIDTHS", "write_assumptions"]
+__all__ = ["HEADER", "WIDTHS", "write_assumptions"]
 
-WIDTHS = (34, 11, 10, *[9.5] * 14)
-_LAST = len(WIDTHS) - 1
-_STARTS = (0, 1, 2, 3, 5, 6, 10)
+HEADER = 3
+"""The row of the headings, counted from 0."""
+
+_STATISTICS = 14
+WIDTHS = (36, 12, 44, 10, 8, *[9] * _STATISTICS)
+_READABLE = 10
+"""The column that paragraphs reach to, so that they can be read without scrolling."""
+
 _MOVED, _NARROWED = 0.5, 0.8
 
 _MEANING = (
     "Filters keep only the combinations that agree with the evidence. That is conditioning: an assumption that the "
-    "evidence speaks about is distributed differently among the accepted trials, although its range is the same. A "
-    "mean that moves by half a standard deviation or more, or a standard deviation that shrinks to 0.8 or less, is "
-    "marked. An assumption that does not change is one the filters say nothing about."
+    "evidence speaks about is distributed differently among the accepted trials, although its range is the same. "
+    f"Marked: a mean that moved by {_MOVED:g} standard deviations or more; a standard deviation that shrank to "
+    f"{_NARROWED:g} of what it was or less."
 )
 
 
@@ -34,30 +43,61 @@ def write_assumptions(page: Page, simulation: Simulation) -> None:
     """Write the sheet."""
     name = simulation.model.workbook.name
     page.title("Assumptions", f"{name}: {simulation.accepted:,} of {simulation.trials:,} trials accepted")
-    _write_definitions(page, simulation)
-    _write_marginals(page, simulation)
-    page.printed(name)
-
-
-def _write_definitions(page: Page, simulation: Simulation) -> None:
-    page.heading("As defined")
-    headers = ("Assumption", "Cell", "Units", "Base case", "Status", "Distribution", "Source")
-    page.spread(headers, _STARTS, _LAST, "header left")
-    for assumption in simulation.model.assumptions:
-        page.spread(_definition(simulation, assumption), _STARTS, _LAST, "text")
+    page.row = HEADER
+    page.table(_headers(), [line for a in simulation.model.assumptions for line in _lines(simulation, a)])
+    page.sheet.freeze_panes(HEADER + 1, 1)
     _write_correlations(page, simulation)
+    page.heading("What this shows")
+    page.wide(_MEANING, "paragraph", _READABLE)
+    early = max((values.size for values in simulation.prior.values()), default=0)
+    page.wide(f"Before filtering: the first {early:,} trials. ± is the standard error.", "paragraph", _READABLE)
+    page.printed(name, repeat=HEADER)
 
 
-def _definition(simulation: Simulation, assumption: Assumption) -> list[str]:
+def _headers() -> list[str]:
+    heads = ["Assumption and its units", "Cell and base case", "Distribution and source", "Draws", "Trials"]
+    heads += ["Mean", "±", "Standard deviation", "±", "5 %", "±", "50 %", "±", "95 %", "±"]
+    return [*heads, "Shift of mean in SDs", "±", "SD accepted / before", "±"]
+
+
+def _lines(simulation: Simulation, assumption: Assumption) -> list[list[Shown]]:
+    base = cells.NONE if assumption.base is None else assumption.base
+    first = [cells.text(assumption.name, "name"), cells.text(str(assumption.cell))]
+    second = [cells.text(assumption.units, "second"), Shown(base, look="second number")]
+    first.append(cells.text(distribution_text(assumption)))
+    second.append(cells.text(assumption.source or cells.NONE, "second"))
+    if assumption.name not in simulation.inputs:
+        why = cells.text(status(simulation.model, assumption))
+        return [[*first, why, *_blank(_STATISTICS + 1)], [*second, *_blank(_STATISTICS + 2, "second")]]
+    found = conditioning(simulation.prior[assumption.name], simulation.inputs[assumption.name])
+    return [[*first, *_before(found)], [*second, *_accepted(found)]]
+
+
+def _before(found: Conditioning) -> list[Shown]:
+    return [cells.text("before"), cells.count(found.prior.trials), *_marginal(found.prior), *_blank(4)]
+
+
+def _accepted(found: Conditioning) -> list[Shown]:
     return [
-        assumption.name,
-        str(assumption.cell),
-        assumption.units,
-        cells.NONE if assumption.base is None else f"{assumption.base:.10g}",
-        status(simulation.model, assumption),
-        distribution_text(assumption),
-        assumption.source,
+        cells.text("accepted", "second"),
+        Shown(found.accepted.trials, cells.count(0).format, "second number"),
+        *_marginal(found.accepted, "second number", "second error"),
+        *_change(found.shift, abs(found.shift.value) >= _MOVED),
+        *_change(found.narrowing, found.narrowing.value <= _NARROWED),
     ]
+
+
+def _marginal(found: Marginal, look: str = "number", error_look: str = "error") -> list[Shown]:
+    estimates = (found.mean, found.standard_deviation, *found.percentiles.values())
+    return [shown for estimate in estimates for shown in cells.estimate(estimate, look, error_look)]
+
+
+def _change(found: Estimate, marked: bool) -> list[Shown]:
+    return cells.estimate(found, "moved" if marked else "second number", "second error")
+
+
+def _blank(columns: int, look: str = "number") -> list[Shown]:
+    return [Shown(None, look=look)] * columns
 
 
 def _write_correlations(page: Page, simulation: Simulation) -> None:
@@ -65,47 +105,7 @@ def _write_correlations(page: Page, simulation: Simulation) -> None:
     if not pairs:
         return
     page.heading("Rank correlations")
-    page.spread(["First", "Second", "Correlation"], (0, 1, 5), 6, "header left")
+    starts, last = (0, 1, 3), 3
+    page.spread([cells.text(header, "header left") for header in ("First", "Second", "Correlation")], starts, last)
     for pair in pairs:
-        page.spread([pair.first, pair.second, f"{pair.value:.10g}"], (0, 1, 5), 6, "text")
-
-
-def _write_marginals(page: Page, simulation: Simulation) -> None:
-    page.heading("Before and after filtering")
-    page.wide(_MEANING, "paragraph", _LAST)
-    page.row += 1
-    page.table(_headers(), [line for name in simulation.inputs for line in _pair(simulation, name)])
-    early = max((values.size for values in simulation.prior.values()), default=0)
-    page.row += 1
-    page.wide(f"Before filtering: the first {early:,} trials. ± is the standard error.", "remark", _LAST)
-
-
-def _headers() -> list[str]:
-    heads = ["Assumption", "", "Trials", "Mean", "±", "Standard deviation", "±", "5 %", "±", "50 %", "±", "95 %", "±"]
-    return [*heads, "Shift of mean in SDs", "±", "SD after / before", "±"]
-
-
-def _pair(simulation: Simulation, name: str) -> list[list[Shown]]:
-    """The line of the draws before filtering, and that of the accepted ones with what has changed."""
-    units = next(a.units for a in simulation.model.live if a.name == name)
-    found = conditioning(simulation.prior[name], simulation.inputs[name])
-    before = [cells.text(name, "name"), cells.text("before"), cells.count(found.prior.trials), *_marginal(found.prior)]
-    after = [
-        cells.text(units, "accepted text"),
-        cells.text("accepted", "accepted text"),
-        Shown(found.accepted.trials, "#,##0", "accepted"),
-        *_marginal(found.accepted, "accepted"),
-        *_change(found.shift, abs(found.shift.value) >= _MOVED),
-        *_change(found.narrowing, found.narrowing.value <= _NARROWED),
-    ]
-    return [[*before, *[cells.BLANK] * 4], after]
-
-
-def _marginal(found: Marginal, look: str = "number") -> list[Shown]:
-    error = "error" if look == "number" else f"{look} error"
-    estimates = (found.mean, found.standard_deviation, *found.percentiles.values())
-    return [shown for estimate in estimates for shown in cells.estimate(estimate, look, error)]
-
-
-def _change(found: Estimate, marked: bool) -> list[Shown]:
-    return cells.estimate(found, "moved" if marked else "accepted", "accepted error")
+        page.spread([cells.text(pair.first), cells.text(pair.second), cells.exact(pair.value)], starts, last)

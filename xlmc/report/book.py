@@ -1,4 +1,4 @@
-"""All result sheets as one workbook, built in memory."""
+"""All result sheets as a workbook of their own, built in memory: the same run gives the same bytes."""
 
 from __future__ import annotations
 
@@ -6,20 +6,43 @@ import io
 from datetime import datetime
 from typing import TYPE_CHECKING, Final
 
-from xlmc.report.results import WIDTHS, write_results
+from xlmc.record import make_record
+from xlmc.report import assumptions, charts, record_sheet, results, statistics_sheet, trials
 from xlmc.report.page import Page
 from xlmc.report.styles import Styles
 
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
 
+__all__ = ["build_sheets"]
 
-def build_sheets(simulation: Simulation, *, command: str | None = None, rows: int = 10000) -> bytes:
+_CREATED: Final = datetime(2000, 1, 1)
+"""No clock: XlsxWriter would write today's date."""
+
+
+def build_sheets(simulation: Simulation, *, command: str | None = None, rows: int = trials.TRIAL_ROWS) -> bytes:
+    """The result sheets of a run: Results, Charts, Statistics, Assumptions, Trials, Record.
+
+    Args:
+        simulation: the finished run.
+        command: what the person typed, for the record.
+        rows: the most accepted trials to write out.
+    """
     from xlsxwriter import Workbook
 
-    buffer = io.BytesIO()
-    with Workbook(buffer, {"in_memory": True}) as book:
-        book.set_properties({"created": datetime(2000, 1, 1)})
+    packed = io.BytesIO()
+    with Workbook(packed, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as book:
+        book.set_properties({"created": _CREATED})
         styles = Styles(book)
-        write_results(Page(book.add_worksheet("Results"), styles, WIDTHS), simulation)
-    return buffer.getvalue()
+
+        def page(name: str, widths: tuple[float, ...]) -> Page:
+            return Page(book.add_worksheet(name), styles, widths)
+
+        results.write_results(page("Results", results.WIDTHS), simulation)
+        charts.write_charts(page("Charts", charts.WIDTHS), book, simulation)
+        statistics_sheet.write_statistics(page("Statistics", statistics_sheet.WIDTHS), simulation)
+        assumptions.write_assumptions(page("Assumptions", assumptions.WIDTHS), simulation)
+        trials.write_trials(page("Trials", trials.WIDTHS), simulation, rows)
+        record = make_record(simulation, command)
+        record_sheet.write_record(page("Record", record_sheet.WIDTHS), record, simulation.model.workbook.name)
+    return packed.getvalue()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from xlmc.report import number_format
 from xlmc.statistics import Estimate
 
-__all__ = ["BLANK", "NONE", "Shown", "alone", "count", "digits_of", "estimate", "exact", "interval", "share", "text"]
+__all__ = ["BLANK", "NONE", "Shown", "count", "digits_of", "estimate", "exact", "interval", "share", "text"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,9 +40,11 @@ def count(value: int) -> Shown:
     return Shown(value, number_format.COUNT)
 
 
-def estimate(found: Estimate, look: str = "number", error_look: str = "error") -> list[Shown]:
-    """Two cells: the value, and its standard error in the same digits."""
-    digits = number_format.paired(found)
+def estimate(
+    found: Estimate, look: str = "number", error_look: str = "error", *, like: Estimate | None = None
+) -> list[Shown]:
+    """Two cells: the value, and its standard error in the same digits; without an error, in those of `like`."""
+    digits = number_format.paired(like if found.error is None and like is not None else found)
     return [Shown(found.value, digits, look), _error(found.error, digits, error_look)]
 
 
@@ -62,11 +64,6 @@ def interval(found: Estimate, *, percent: bool = False) -> list[Shown]:
 def digits_of(found: Estimate) -> str:
     """The number format of a value beside its error, for numbers to be compared with it."""
     return number_format.paired(found)
-
-
-def alone(found: Estimate, look: str = "number") -> Shown:
-    """One cell: the value in no more digits than its error supports."""
-    return Shown(found.value, number_format.alone(found), look)
 
 
 def _error(value: float | None, digits: str, look: str) -> Shown:

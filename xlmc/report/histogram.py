@@ -1,8 +1,9 @@
 """Trials counted in bins of a round width, for a chart with readable numbers.
 
-**Width.** Freedman and Diaconis, 2·IQR·n^(−1/3), kept to 10 to 60 bins over the range shown and rounded to 1, 2, 2.5
-or 5 times a power of ten; 1 where all trials are whole numbers that allow it. Bins begin at multiples of their width,
-so that a limit such as 0 or 0.25 falls between two bins, not into one, and hold their lower end but not their upper.
+**Width.** Freedman and Diaconis, 2·IQR·n^(−1/3), made round (1, 2, 2.5 or 5 times a power of ten) downwards, but no
+more than 60 bins over the range shown and about 10 at least; 1 where all trials are whole numbers that allow it. Bins
+begin at multiples of their width, so that a limit such as 0 or 0.25 falls between two bins, not into one, and hold
+their lower end but not their upper.
 
 **Range shown.** All trials, unless some lie more than five interquartile ranges outside the quartiles; those are not
 drawn, for they would leave the rest in one bar, but counted as below and above.
@@ -24,8 +25,8 @@ __all__ = ["Histogram", "histogram"]
 Floats = NDArray[np.float64]
 
 _FEWEST, _MOST = 10, 60
-_ROUND = (1.0, 2.0, 2.5, 5.0, 10.0)
-_ROUND_LABELS = (1.0, 2.0, 2.5, 5.0)
+_ROUND = (1.0, 2.0, 2.5, 5.0)
+_ROUND_LABELS = (1.0, 2.0, 5.0)
 _STEPS = (1, 2, 4, 5, 10, 20)
 _MOST_LABELS = 12
 _FENCE = 5.0
@@ -59,9 +60,15 @@ class Histogram:
         return np.round(self.edges + self.width, self.decimals)
 
     @property
-    def label_decimals(self) -> int:
-        """Decimals that the labelled edges need."""
-        return _decimals(self.width * self.step)
+    def labels(self) -> list[str]:
+        """The lower end in text for every `step`-th bin, nothing for the others."""
+        decimals = _decimals(self.width * self.step)
+        return ["" if i % self.step else f"{edge:.{decimals}f}" for i, edge in enumerate(self.edges)]
+
+    @property
+    def edge_format(self) -> str:
+        """The Excel number format that writes edges in full."""
+        return "0" + ("." + "0" * self.decimals if self.decimals else "")
 
 
 def histogram(values: Floats, low: float, high: float) -> Histogram | None:
@@ -103,32 +110,39 @@ def _shown(values: Floats) -> tuple[float, float]:
 def _width(values: Floats, first: float, last: float) -> float:
     span, largest = last - first, max(abs(first), abs(last))
     if span <= _FINEST * largest or span == 0.0:
-        return _rounded(0.01 * largest) if largest else 1.0
+        return _round_below(0.01 * largest) if largest else 1.0
     if span <= _MOST and bool(np.all(values == np.floor(values))):
         return 1.0
     lower, upper = np.percentile(values, [25.0, 75.0])
-    wanted = 2.0 * (upper - lower) * values.size ** (-1.0 / 3.0)
-    return _rounded(float(np.clip(wanted, span / _MOST, span / _FEWEST)))
+    wanted = min(2.0 * (upper - lower) * values.size ** (-1.0 / 3.0), span / _FEWEST)
+    width = _round_below(max(wanted, span / _MOST))
+    return width if span <= _MOST * width else _round_above(width)
 
 
-def _rounded(width: float) -> float:
-    """The round number that is nearest by ratio."""
-    power = 10.0 ** math.floor(math.log10(width))
-    nearest = min(_ROUND, key=lambda factor: abs(math.log(factor * power / width)))
-    return float(f"{nearest * power:.3g}")  # 0.1, not 0.1 and a rounding error
+def _round_below(width: float) -> float:
+    """The largest round number that is no larger."""
+    return _scaled(max(factor for factor in _ROUND if factor <= _mantissa(width)), width)
+
+
+def _round_above(width: float) -> float:
+    """The smallest round number that is larger."""
+    return _scaled(min(factor for factor in (*_ROUND, 10.0) if factor > _mantissa(width)), width)
+
+
+def _mantissa(number: float) -> float:
+    return float(f"{number:.6e}".partition("e")[0])
+
+
+def _scaled(factor: float, like: float) -> float:
+    return float(f"{factor}e{f'{like:.6e}'.partition('e')[2]}")  # 0.1, not 0.1 and a rounding error
 
 
 def _step(width: float, bins: int) -> int:
     """The fewest bins from one label to the next that keep labels round and apart."""
     for step in _STEPS:
-        if bins <= step * _MOST_LABELS and _is_round(width * step):
+        if bins <= step * _MOST_LABELS and _mantissa(width * step) in _ROUND_LABELS:
             return step
     return _STEPS[-1]
-
-
-def _is_round(number: float) -> bool:
-    mantissa = float(f"{number:.6e}".partition("e")[0])
-    return mantissa in _ROUND_LABELS
 
 
 def _decimals(width: float) -> int:

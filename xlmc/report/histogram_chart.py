@@ -12,9 +12,10 @@ if TYPE_CHECKING:
     from xlsxwriter.chart_column import ChartColumn
     from xlsxwriter.workbook import Workbook
 
-__all__ = ["SIZE", "BinsAt", "histogram_chart"]
+__all__ = ["COUNTS", "SIZE", "BinsAt", "histogram_chart"]
 
-SIZE = (560, 320)
+COUNTS = (3, 4)
+SIZE = (560, 360)
 """In pixels."""
 
 _AXIS: dict[str, Any] = {"color": "#8994A1", "width": 0.75}
@@ -29,7 +30,7 @@ class BinsAt:
         title, axis: the cells that hold the chart's title and the axis's.
         header: the row of column headings.
         first, last: the rows of the first and the last bin.
-        left: the column of the lower ends; inside and outside counts are two and three to its right.
+        left: the column of the labels; inside and outside counts stand `COUNTS` to its right.
     """
 
     title: tuple[int, int]
@@ -43,7 +44,7 @@ class BinsAt:
 def histogram_chart(book: Workbook, sheet: str, at: BinsAt, bins: Histogram) -> ChartColumn:
     """The chart. Its texts are references to cells, so that none of them can be taken for a formula."""
     chart = book.add_chart({"type": "column", "subtype": "stacked"})
-    for column, colour in ((2, DARK), (3, LIGHT)):
+    for column, colour in zip(COUNTS, (DARK, LIGHT), strict=True):
         chart.add_series(
             {
                 "name": [sheet, at.header, at.left + column],
@@ -54,7 +55,9 @@ def histogram_chart(book: Workbook, sheet: str, at: BinsAt, bins: Histogram) -> 
                 "gap": 4,
             }
         )
-    chart.set_title({"name": [sheet, *at.title], "name_font": {"size": 12, "bold": True, "color": INK}, "overlay": False})
+    chart.set_title(
+        {"name": [sheet, *at.title], "name_font": {"size": 12, "bold": True, "color": INK}, "overlay": False}
+    )
     chart.set_x_axis(_across(sheet, at, bins))
     chart.set_y_axis(_upwards())
     chart.set_legend({"position": "bottom", "font": _FONT})
@@ -68,7 +71,6 @@ def _across(sheet: str, at: BinsAt, bins: Histogram) -> dict[str, Any]:
         "name": [sheet, *at.axis],
         "name_font": {**_FONT, "bold": False},
         "num_font": _FONT,
-        "num_format": "0" + ("." + "0" * bins.label_decimals if bins.label_decimals else ""),
         "interval_unit": bins.step,
         "interval_tick": bins.step,
         "label_position": "low",

@@ -1,4 +1,4 @@
-"""Excel number formats that show no more decimals than a standard error supports.
+"""Excel number formats that show no more decimals than a standard error supports, as `format_estimate` prints them.
 
 A cell keeps its full number; only what it shows is cut. Excel cannot show a number rounded to tens, so one whose error
 is larger than a unit shows its units too, with the error beside it.
@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 
-from xlmc.statistics import Estimate, supported_digits
+from xlmc.statistics import Estimate
 
-__all__ = ["COUNT", "alone", "exact", "paired", "share_alone", "share_paired"]
+__all__ = ["COUNT", "exact", "paired", "share_paired"]
 
 COUNT = "#,##0"
 
@@ -26,19 +26,9 @@ def paired(estimate: Estimate) -> str:
     return _format(estimate.value, _paired_decimals(estimate))
 
 
-def alone(estimate: Estimate) -> str:
-    """For a value shown without its error: the last digit is good to ± 1 with 95 % confidence."""
-    return _format(estimate.value, supported_digits(estimate))
-
-
 def share_paired(estimate: Estimate) -> str:
     """`paired` for a share, in percent."""
     return _percent(_paired_decimals(estimate))
-
-
-def share_alone(estimate: Estimate) -> str:
-    """`alone` for a share, in percent."""
-    return _percent(supported_digits(estimate))
 
 
 def exact(spread: float) -> str:

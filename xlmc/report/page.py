@@ -13,12 +13,16 @@ if TYPE_CHECKING:
 
     from xlmc.report.styles import Styles
 
-__all__ = ["LONGEST_TEXT", "Page", "cut"]
+__all__ = ["LONGEST_TEXT", "ROW", "Page", "cut"]
 
 LONGEST_TEXT = 32_767
 """Characters in a cell, Excel's limit."""
 
-_LINE = 15.5
+ROW = 17.0
+"""The height of a row, in points."""
+
+_LINE = 15.0
+_HIGHEST = 409.0
 _WIDTH = 8.43
 
 
@@ -30,16 +34,16 @@ class Page:
     """
 
     def __init__(self, sheet: Worksheet, styles: Styles, widths: Sequence[float]) -> None:
-        self.sheet, self.styles, self._widths = sheet, styles, list(widths)
+        self.sheet, self._styles, self._widths = sheet, styles, list(widths)
         self.row = 0
         for column, width in enumerate(widths):
             sheet.set_column(column, column, width)
+        sheet.set_default_row(ROW)
         sheet.hide_gridlines(2)
 
     def put(self, row: int, column: int, shown: Shown) -> None:
         """Write one cell."""
-        style = self.styles(shown.look, shown.format)
-        value = shown.value
+        style, value = self._styles(shown.look, shown.format), shown.value
         if value is None:
             self.sheet.write_blank(row, column, None, style)
         elif isinstance(value, str):
@@ -50,74 +54,74 @@ class Page:
             self.sheet.write_string(row, column, _in_words(value), style)
 
     def line(self, cells: Iterable[Shown], column: int = 0) -> None:
-        """Write cells side by side, and go to the next row."""
-        for place, shown in enumerate(cells, column):
-            self.put(self.row, place, shown)
-        self.row += 1
+        """Write cells side by side, in a row as high as their texts need, and go to the next row."""
+        cells = list(cells)
+        self.spread(cells, range(column, column + len(cells)), column + len(cells) - 1)
 
-    def table(self, headers: Sequence[str], rows: Iterable[Sequence[Shown]], column: int = 0) -> None:
-        """Write a table: its header, and a row as high as its texts need."""
-        looks = ["header left", *["header"] * (len(headers) - 1)]
-        self.fitted([Shown(header, look=look) for header, look in zip(headers, looks, strict=True)], column)
-        for cells in rows:
-            self.fitted(cells, column)
-
-    def fitted(self, cells: Sequence[Shown], column: int = 0) -> None:
-        """Write cells side by side in a row as high as their texts need."""
-        widths = [self._width(place, place) for place in range(column, column + len(cells))]
-        texts = [(c.value, width) for c, width in zip(cells, widths, strict=True) if isinstance(c.value, str)]
-        self._heighten(max((_lines(value, width) for value, width in texts), default=1))
-        self.line(cells, column)
-
-    def spread(self, texts: Sequence[str], starts: Sequence[int], last: int, look: str) -> None:
-        """Write texts side by side, each across the columns from its start to the next one's."""
+    def spread(self, cells: Sequence[Shown], starts: Sequence[int], last: int) -> None:
+        """As `line`, but each cell reaches from its start to the next one's, the last one to `last`."""
         ends = [*(start - 1 for start in starts[1:]), last]
         lines = 1
-        for value, first, end in zip(texts, starts, ends, strict=True):
-            self._across(value, look, first, end)
-            lines = max(lines, _lines(value, self._width(first, end)))
-        self._heighten(lines)
+        for shown, first, end in zip(cells, starts, ends, strict=True):
+            if end > first:
+                self.sheet.merge_range(self.row, first, self.row, end, "", self._styles(shown.look, shown.format))
+            self.put(self.row, first, shown)
+            if isinstance(shown.value, str):
+                lines = max(lines, self._lines(shown, first, end))
+        # Said for every row, or LibreOffice finds heights of its own.
+        self.sheet.set_row(self.row, ROW if lines == 1 else min(_LINE * lines + 3.0, _HIGHEST))
         self.row += 1
 
     def wide(self, value: str, look: str, last: int, first: int = 0) -> None:
-        """Write a text across columns, in a row as high as it needs, and go to the next row."""
-        self.spread([value], [first], last, look)
+        """Write a text across columns, and go to the next row."""
+        self.spread([Shown(value, look=look)], [first], last)
 
-    def title(self, value: str, below: str) -> None:
+    def table(self, headers: Sequence[str], rows: Iterable[Sequence[Shown]], column: int = 0) -> None:
+        """Write a table with its header."""
+        looks = ["header left", *["header"] * (len(headers) - 1)]
+        self.line([Shown(header, look=look) for header, look in zip(headers, looks, strict=True)], column)
+        for cells in rows:
+            self.line(cells, column)
+
+    def title(self, value: str, below: str, column: int = 0) -> None:
         """Write the sheet's title and the line below it."""
         self.sheet.set_row(self.row, 26)
-        self.line([Shown(value, look="title")])
-        self.line([Shown(below, look="subtitle")])
+        self.put(self.row, column, Shown(value, look="title"))
+        self.put(self.row + 1, column, Shown(below, look="subtitle"))
+        self.row += 2
 
-    def heading(self, value: str) -> None:
+    def heading(self, value: str, column: int = 0) -> None:
         """Write the heading of a section, with space above it."""
-        self.row += 1
-        self.sheet.set_row(self.row, 20)
-        self.line([Shown(value, look="heading")])
+        self.sheet.set_row(self.row + 1, 21)
+        self.put(self.row + 1, column, Shown(value, look="heading"))
+        self.row += 2
 
-    def printed(self, name: str, *, landscape: bool = True, repeat: int | None = None) -> None:
-        """Make it print one page wide, with `repeat` as the last row to stand on top of every page."""
-        if landscape:
-            self.sheet.set_landscape()
-        self.sheet.fit_to_pages(1, 0)
+    def printed(self, name: str, *, repeat: int | None = None, breaks: Sequence[int] = (), scale: int = 80) -> None:
+        """Make it print one page wide.
+
+        Args:
+            name: of the workbook, for the foot of the page.
+            repeat: the row to stand on top of every page, counted from 0.
+            breaks: the rows that begin a new page, counted from 0.
+            scale: in percent; only where there are breaks, for Excel does not heed them on pages fitted to a width.
+        """
+        self.sheet.set_landscape()
+        if breaks:
+            self.sheet.set_print_scale(scale)
+            self.sheet.set_h_pagebreaks(list(breaks))
+        else:
+            self.sheet.fit_to_pages(1, 0)
         self.sheet.set_margins(left=0.5, right=0.5, top=0.6, bottom=0.7)
         self.sheet.set_footer(f"&L&9{name.replace('&', '&&')[:120]}&C&9&A&R&9Page &P of &N")
         if repeat is not None:
             self.sheet.repeat_rows(repeat)
 
-    def _across(self, value: str, look: str, first: int, last: int) -> None:
-        style = self.styles(look)
-        if last > first:
-            self.sheet.merge_range(self.row, first, self.row, last, "", style)
-        self.sheet.write_string(self.row, first, cut(value), style)
-
-    def _width(self, first: int, last: int) -> float:
+    def _lines(self, shown: Shown, first: int, last: int) -> int:
+        """How many lines a text takes, of letters somewhat narrower than the digits that widths are counted in."""
         own = self._widths[first : last + 1]
-        return sum(own) + _WIDTH * (last - first + 1 - len(own))
-
-    def _heighten(self, lines: int) -> None:
-        if lines > 1:
-            self.sheet.set_row(self.row, min(_LINE * lines + 3, 409))
+        width = sum(own) + _WIDTH * (last - first + 1 - len(own))
+        room = max(1.1 * width - (1.0 if shown.look == "header" else 3.0), 1.0)
+        return sum(max(1, math.ceil(len(part) / room)) for part in str(shown.value).split("\n"))
 
 
 def cut(value: str) -> str:
@@ -129,9 +133,3 @@ def _in_words(value: float) -> str:
     if math.isnan(value):
         return NONE
     return "∞" if value > 0 else "−∞"
-
-
-def _lines(value: str, width: float) -> int:
-    """How many lines a text takes; words do not fill lines, hence the margin."""
-    room = max(width * 0.95 - 1, 1)
-    return sum(max(1, math.ceil(len(part) / room)) for part in value.split("\n"))

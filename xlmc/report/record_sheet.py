@@ -1,7 +1,7 @@
 """The sheet Record: what the run was a function of, for people to read and programs to read back.
 
-Column A, folded away, holds the keys of `Record`: `file.sha256` beside an entry, `forecasts` beside a table's title,
-and for a table `name`, `cell`, … in a hidden row above its headings.
+Column A, folded away, holds the keys of `Record`: `file.sha256` beside an entry, `forecasts` beside a section's title,
+`forecasts[0]` beside the first row of its table. The hidden row above a table's headings holds the columns' keys.
 """
 
 from __future__ import annotations
@@ -9,16 +9,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from xlmc.record import Entry, Record, RecordTable, Value
-from xlmc.report.cells import Shown
+from xlmc.record import Entry, Record, RecordTable, Section, Value
+from xlmc.report.cells import NONE, Shown
 
 if TYPE_CHECKING:
     from xlmc.report.page import Page
 
 __all__ = ["WIDTHS", "write_record"]
 
-WIDTHS = (22, 34, 16, 22, 34, *[14] * 6)
-_LAST = len(WIDTHS) - 1
+_UNIT = 12.0
+_UNITS = 13
+WIDTHS = (24, 34, *[_UNIT] * _UNITS)
+_FIRST, _LAST = 1, len(WIDTHS) - 1
+_SPANS = {"limits": 2, "because": 5, "parameters": 2, "source": 3, "notes": 2, "error": 3, "message": 14, "first": 3}
+"""How many columns of the sheet a column of a table takes; all others take one."""
+
 _CODE = frozenset({"repeat", "command", "fingerprint", "sha256", "original_sha256"})
 
 
@@ -26,22 +31,54 @@ def write_record(page: Page, record: Record, name: str) -> None:
     """Write the sheet."""
     page.sheet.set_column(0, 0, WIDTHS[0], None, {"level": 1, "hidden": True})
     page.sheet.set_column(1, 1, WIDTHS[1], None, {"collapsed": True})
-    page.title("", "")
-    page.row = 0
-    page.line([Shown("Record of the run", look="title")], 1)
-    page.line([Shown(f"{name}: everything the numbers depend on, and how to repeat them", look="subtitle")], 1)
+    page.title("Record of the run", f"{name}: what the numbers depend on, and how to repeat them", _FIRST)
     for section in record.sections:
-        page.heading(section.title, 1, key=section.key)
-        for entry in section.entries:
-            _write_entry(page, section.key, entry)
-        if section.table is not None:
-            _write_table(page, section.table)
-    page.sheet.print_area(0, 1, page.row, _LAST)
+        _write_section(page, section)
+    page.sheet.print_area(0, _FIRST, page.row, _LAST)
     page.printed(name)
 
 
+def _write_section(page: Page, section: Section) -> None:
+    page.heading(section.title, _FIRST)
+    _write_key(page, page.row - 1, section.key)
+    for entry in section.entries:
+        _write_entry(page, section.key, entry)
+    if section.table is not None and section.table.rows:
+        _write_table(page, section.key, section.table)
+    elif section.table is not None:
+        page.wide("None", "text", _LAST, _FIRST)
+
+
 def _write_entry(page: Page, section: str, entry: Entry) -> None:
-    page.put(page.row, 0, Shown(f"{section}.{entry.key}", look="key"))
-    page.put(page.row, 1, Shown(entry.label, look="label"))
+    _write_key(page, page.row, f"{section}.{entry.key}")
     look = "code" if entry.key in _CODE else "text"
-    page.across(_shown(entry.value, look), 2, _LAST)
+    page.spread([Shown(entry.label, look="label"), _shown(entry.value, look)], (_FIRST, _FIRST + 1), _LAST)
+
+
+def _write_table(page: Page, section: str, table: RecordTable) -> None:
+    starts, last = _placed([key for key, _ in table.columns])
+    page.spread([Shown(key, look="key") for key, _ in table.columns], starts, last)
+    page.sheet.set_row(page.row - 1, None, None, {"hidden": True})
+    page.spread([Shown(label, look="header left") for _, label in table.columns], starts, last)
+    for number, row in enumerate(table.rows):
+        _write_key(page, page.row, f"{section}[{number}]")
+        page.spread([_shown(value, "text") for value in row], starts, last)
+
+
+def _placed(keys: Sequence[str]) -> tuple[list[int], int]:
+    """Where each column of a table starts, and where the last one ends."""
+    starts, place = [], _FIRST
+    for key in keys:
+        starts.append(place)
+        place += _SPANS.get(key, 1)
+    return starts, place - 1
+
+
+def _write_key(page: Page, row: int, key: str) -> None:
+    page.put(row, 0, Shown(key, look="key"))
+
+
+def _shown(value: Value, look: str) -> Shown:
+    if value is None or value == "":
+        return Shown(NONE, look=look)
+    return Shown(value, look=look)

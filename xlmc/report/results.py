@@ -10,7 +10,7 @@ from xlmc.report.accounting import write_accounting
 from xlmc.report.base_case import base_case
 from xlmc.report.cells import Shown
 from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, range_heading, summarise
-from xlmc.statistics import proportion
+from xlmc.statistics import Estimate, proportion
 
 if TYPE_CHECKING:
     from xlmc.report.page import Page
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 __all__ = ["LAST", "WIDTHS", "write_results"]
 
-WIDTHS = (30, 9, *[10] * 10)
-LAST = len(WIDTHS) - 1
+WIDTHS = (30, 9, *[10] * 16)
+LAST = 11
 
 
 def write_results(page: Page, simulation: Simulation) -> None:
@@ -72,7 +72,7 @@ def _answer(row: SummaryRow, rows: Sequence[SummaryRow]) -> list[Shown]:
 def _above(row: SummaryRow) -> list[Shown]:
     if row.above is None:
         return [cells.BLANK] * 5
-    return [cells.exact(row.threshold), *cells.share(row.above), *cells.interval(row.above, percent=True)]
+    return [cells.exact(row.threshold), *_share(row.above)]
 
 
 def _range_sentences(rows: Sequence[SummaryRow]) -> list[str]:
@@ -96,30 +96,21 @@ def _base_sentences(simulation: Simulation) -> list[str]:
 
 def _write_trials(page: Page, simulation: Simulation) -> None:
     page.heading("Trials")
-    headers = ["", "", "Trials", "Share", "±", "95 % from", "to"]
-    total, errors = simulation.trials, simulation.error_trials
-    acceptance = simulation.acceptance
-    lost = proportion(min(errors, total), total)
-    page.table(
-        headers,
-        [
-            [cells.text("Run", "name"), cells.BLANK, cells.count(total)],
-            [
-                cells.text("Accepted", "name"),
-                cells.BLANK,
-                cells.count(simulation.accepted),
-                *cells.share(acceptance),
-                *cells.interval(acceptance, percent=True),
-            ],
-            [
-                cells.text("Lost to errors in cells", "name"),
-                cells.BLANK,
-                cells.count(errors),
-                *cells.share(lost),
-                *cells.interval(lost, percent=True),
-            ],
-        ],
-    )
+    total = simulation.trials
+    lost = proportion(min(simulation.error_trials, total), total)
+    headers = ("", "Trials", "Share", "±", "95 % from", "to")
+    starts = (0, 2, 3, 4, 5, 6)
+    page.spread([cells.text(header, "header") for header in headers], starts, 6)
+    for line in (
+        [cells.text("Run", "name"), cells.count(total), *[cells.BLANK] * 4],
+        [cells.text("Accepted", "name"), cells.count(simulation.accepted), *_share(simulation.acceptance)],
+        [cells.text("Lost to errors in cells", "name"), cells.count(simulation.error_trials), *_share(lost)],
+    ):
+        page.spread(line, starts, 6)
+
+
+def _share(found: Estimate) -> list[Shown]:
+    return [*cells.share(found), *cells.interval(found, percent=True)]
 
 
 def _write_notices(page: Page, simulation: Simulation) -> None:

@@ -15,10 +15,13 @@ if TYPE_CHECKING:
 
 __all__ = ["WIDTHS", "write_statistics"]
 
-_BLOCK = (26, 10, 12, 11, 11, 11)
-WIDTHS = (*_BLOCK, 3, 14, 12, 11, 11, 11)
+_BLOCK = (26, 9, 11, 10, 10, 10)
+WIDTHS = (*_BLOCK, 2, 18, 11, 10, 10, 10)
 _RIGHT = len(_BLOCK) + 1
 _LAST = len(WIDTHS) - 1
+_ON_A_PAGE, _SCALE = 2, 66
+"""Forecasts, and the percentage at which so many fit."""
+
 _ENDS = ["Value", "±", "95 % from", "to"]
 
 
@@ -26,10 +29,14 @@ def write_statistics(page: Page, simulation: Simulation) -> None:
     """Write the sheet."""
     name = simulation.model.workbook.name
     page.title("Statistics of the accepted trials", f"{name}: {simulation.accepted:,} accepted trials")
+    page.row += 1
     page.wide(ERROR_SENTENCE, "remark", _LAST)
-    for result in simulation.results.values():
+    breaks = []
+    for number, result in enumerate(simulation.results.values()):
+        if number and number % _ON_A_PAGE == 0:
+            breaks.append(page.row)
         _write_forecast(page, result)
-    page.printed(name)
+    page.printed(name, breaks=breaks, scale=_SCALE)
 
 
 def _write_forecast(page: Page, result: ForecastResult) -> None:
@@ -58,15 +65,16 @@ def _statistics(result: ForecastResult) -> list[list[Shown]]:
         ("Range width", units, found.range_width),
         ("Mean standard error", units, found.mean_standard_error),
     ):
-        rows.append([cells.text(label), cells.text(unit), *_with_interval(estimate)])
+        rows.append([cells.text(label), cells.text(unit), *_with_interval(estimate, found.mean)])
     return rows
 
 
 def _percentiles(result: ForecastResult) -> list[list[Shown]]:
     found, definition = result.statistics, result.definition
-    rows = [[cells.text(f"{p:g} %"), *_with_interval(estimate)] for p, estimate in found.percentiles.items()]
-    for end, estimate in zip(("from", "to"), found.central, strict=True):
-        rows.append([cells.text(f"{percent(definition.central)} range {end}", "name"), *_with_interval(estimate)])
+    labels = [cells.text(f"{percentile:g} %") for percentile in found.percentiles]
+    labels += [cells.text(f"{percent(definition.central)} range {end}", "name") for end in ("from", "to")]
+    estimates = (*found.percentiles.values(), *found.central)
+    rows = [[label, *_with_interval(each, found.mean)] for label, each in zip(labels, estimates, strict=True)]
     if found.probability_above is not None:
         above = found.probability_above
         shown = [*cells.share(above), *cells.interval(above, percent=True)]
@@ -74,8 +82,8 @@ def _percentiles(result: ForecastResult) -> list[list[Shown]]:
     return rows
 
 
-def _with_interval(estimate: Estimate) -> list[Shown]:
-    return [*cells.estimate(estimate), *cells.interval(estimate)]
+def _with_interval(estimate: Estimate, like: Estimate) -> list[Shown]:
+    return [*cells.estimate(estimate, like=like), *cells.interval(estimate)]
 
 
 def _squared(units: str) -> str:

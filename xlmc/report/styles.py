@@ -21,15 +21,18 @@ _GREY = "#52606D"
 _CELL: dict[str, Any] = {"valign": "vcenter", "border": 1, "border_color": GRID}
 _TEXT: dict[str, Any] = _CELL | {"align": "left", "indent": 1}
 _NUMBER: dict[str, Any] = _CELL | {"align": "right"}
+_SECOND: dict[str, Any] = {"bg_color": "#EEF4FA"}
+_HEADER: dict[str, Any] = _CELL | {"bold": True, "font_color": INK, "align": "center", "text_wrap": True}
 _PARAGRAPH: dict[str, Any] = {"text_wrap": True, "valign": "top", "align": "left"}
 
 _LOOKS: dict[str, dict[str, Any]] = {
     "title": {"bold": True, "font_size": 16, "font_color": INK},
     "subtitle": {"font_color": _GREY},
     "heading": {"bold": True, "font_size": 12, "font_color": INK},
-    "header": _CELL
-    | {"bold": True, "font_color": "#FFFFFF", "bg_color": INK, "align": "center", "text_wrap": True},
+    "header": _CELL | {"bold": True, "font_color": "#FFFFFF", "bg_color": INK, "align": "center", "text_wrap": True},
     "header left": _TEXT | {"bold": True, "font_color": "#FFFFFF", "bg_color": INK, "text_wrap": True},
+    "header assumption": _HEADER | {"bg_color": "#C6E7B5"},
+    "header forecast": _HEADER | {"bg_color": "#BBDDF7"},
     "name": _TEXT | {"bold": True, "font_color": INK, "text_wrap": True},
     "text": _TEXT | {"text_wrap": True},
     "label": _TEXT | {"font_color": _GREY, "text_wrap": True},
@@ -38,11 +41,13 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "number": _NUMBER,
     "answer": _NUMBER | {"bold": True, "bg_color": "#BBDDF7"},
     "error": _NUMBER | {"font_color": _GREY},
-    "accepted": _NUMBER | {"bg_color": "#EEF4FA"},
-    "accepted error": _NUMBER | {"bg_color": "#EEF4FA", "font_color": _GREY},
-    "accepted text": _TEXT | {"bg_color": "#EEF4FA"},
+    "second": _TEXT | _SECOND | {"text_wrap": True},
+    "second number": _NUMBER | _SECOND,
+    "second error": _NUMBER | _SECOND | {"font_color": _GREY},
     "moved": _NUMBER | {"bg_color": "#FCE4B6", "bold": True},
     "trial": _NUMBER | {"font_color": _GREY},
+    "caption": {"text_wrap": True, "valign": "top", "font_size": 10, "font_color": INK},
+    "warning line": {"bold": True, "font_color": "#9C0006"},
     "paragraph": _PARAGRAPH,
     "remark": _PARAGRAPH | {"font_color": _GREY, "italic": True},
     "notice": _PARAGRAPH | {"bg_color": "#FFF6DD", "indent": 1, "valign": "vcenter"},

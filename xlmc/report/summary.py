@@ -8,17 +8,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from xlmc.report.base_case import base_case
-from xlmc.statistics import Estimate, format_estimate, supported_digits
+from xlmc.statistics import Estimate, format_estimate
 
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
 
-__all__ = ["ERROR_SENTENCE", "SummaryRow", "percent", "range_heading", "summarise", "summary_text", "supported_text"]
+__all__ = ["ERROR_SENTENCE", "SummaryRow", "estimate_text", "percent", "range_heading", "summarise", "summary_text"]
 
 ERROR_SENTENCE = (
-    "± is the standard error of a number that comes from a limited number of trials (Monte Carlo error): with infinitely "
-    "many trials it would lie within 2 of them with about 95 % confidence. Monte Carlo error is not reconstruction "
-    "error: it does not say whether the model fits the crash or whether the ranges of the assumptions are right."
+    "± is the standard error that comes from a limited number of trials (Monte Carlo error): infinitely many trials "
+    "would give a number within twice ± of the one shown, with about 95 % confidence. Monte Carlo error is not "
+    "reconstruction error: it does not say whether the model fits the crash, or whether the ranges of the assumptions "
+    "are right."
 )
 """What no table of results may be without."""
 
@@ -85,9 +86,9 @@ def _line(row: SummaryRow, heading: str) -> dict[str, str]:
     return {
         "Forecast": row.name,
         "Units": row.units,
-        "Mean": _text(row.mean),
-        "SD": _text(row.standard_deviation),
-        heading: "" if math.isnan(row.low.value) else f"{_text(row.low)} to {_text(row.high)}",
+        "Mean": estimate_text(row.mean),
+        "SD": estimate_text(row.standard_deviation),
+        heading: "" if math.isnan(row.low.value) else f"{estimate_text(row.low)} to {estimate_text(row.high)}",
         "Range": "" if heading != MIXED else percent(row.share),
         "Base case": "" if row.base is None else f"{row.base:.6g}",
         "Threshold": threshold,
@@ -109,15 +110,8 @@ def percent(share: float) -> str:
     return f"{100.0 * share:.6g} %"
 
 
-def supported_text(estimate: Estimate) -> str:
-    """The value alone, its last digit good to ± 1 with 95 % confidence: `11.8`."""
-    decimals = supported_digits(estimate)
-    if decimals is None or not math.isfinite(estimate.value):
-        return f"{estimate.value:.6g}"
-    return f"{round(estimate.value, decimals) + 0.0:,.{max(decimals, 0)}f}"
-
-
-def _text(estimate: Estimate) -> str:
+def estimate_text(estimate: Estimate) -> str:
+    """`11.799 ± 0.013`; empty where there is no number."""
     return "" if math.isnan(estimate.value) else format_estimate(estimate.value, estimate.error)
 
 

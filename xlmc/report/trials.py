@@ -34,12 +34,14 @@ def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> 
     shown = max(0, min(rows, simulation.accepted, MOST_ROWS))
     name = simulation.model.workbook.name
     page.title("Accepted trials", f"{name}, seed {simulation.settings.seed}. Trials are numbered from 0.")
-    page.line([_said(shown, simulation.accepted)])
+    page.put(page.row, 0, _said(shown, simulation.accepted))
     page.row = HEADER
     columns = _columns(simulation)
     page.sheet.set_column(1, max(1, len(columns)), _WIDTH)
-    page.sheet.set_row(HEADER, 48)
-    page.line([Shown("Trial", look="header"), *(Shown(heading, look="header") for heading, _ in columns)])
+    page.sheet.set_row(HEADER, 64)
+    for place, heading in enumerate([Shown("Trial", look="header"), *(heading for heading, _ in columns)]):
+        page.put(HEADER, place, heading)
+    page.row = HEADER + 1
     _write_values(page, simulation.trial_index[:shown], [values[:shown] for _, values in columns])
     page.sheet.freeze_panes(HEADER + 1, 1)
     page.sheet.autofilter(HEADER, 0, HEADER + shown, len(columns))
@@ -52,17 +54,16 @@ def _said(shown: int, accepted: int) -> Shown:
     return Shown(f"Only the first {shown:,} of {accepted:,} accepted trials stand here.", look="warning line")
 
 
-def _columns(simulation: Simulation) -> list[tuple[str, NDArray[np.float64]]]:
-    """Headings with units, and `(m,)` values."""
-    units = {a.name: a.units for a in simulation.model.live}
-    found = [(_heading(name, units[name]), values) for name, values in simulation.inputs.items()]
-    for name, result in simulation.results.items():
-        found.append((_heading(name, result.definition.units), simulation.forecasts[name]))
-    return found
+def _columns(simulation: Simulation) -> list[tuple[Shown, NDArray[np.float64]]]:
+    """Headings with units, green for assumptions and blue for forecasts, and `(m,)` values."""
+    live, forecasts = simulation.model.live, simulation.model.forecasts
+    inputs = [(_heading(a.name, a.units, "header assumption"), simulation.inputs[a.name]) for a in live]
+    outputs = [(_heading(f.name, f.units, "header forecast"), simulation.forecasts[f.name]) for f in forecasts]
+    return inputs + outputs
 
 
-def _heading(name: str, units: str) -> str:
-    return f"{name} ({units})" if units else name
+def _heading(name: str, units: str, look: str) -> Shown:
+    return Shown(f"{name} ({units})" if units else name, look=look)
 
 
 def _write_values(page: Page, index: NDArray[np.int64], columns: list[NDArray[np.float64]]) -> None:

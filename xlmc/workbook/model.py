@@ -87,7 +87,6 @@ class Workbook:
         sheets: worksheets in tab order, by name as written.
         parts: every part of the zip package in its order, name -> bytes, as in the file.
         sha256: of the file.
-        parts_sha256: of the sorted original parts, so that a result workbook can be checked too.
     """
 
     name: str
@@ -98,7 +97,6 @@ class Workbook:
     notices: tuple[Notice, ...] = ()
     parts: Mapping[str, bytes] = field(default_factory=dict, repr=False)
     sha256: str = ""
-    parts_sha256: str = ""
 
     @cached_property
     def _folded(self) -> dict[str, str]:

@@ -10,7 +10,7 @@ from xlmc.workbook.blame import told_of
 from xlmc.workbook.lazy_sheets import LazySheets
 from xlmc.workbook.model import Workbook
 from xlmc.workbook.notices import data_table_notices, workbook_notices
-from xlmc.workbook.package import LIMITS, SMALLER, hash_parts, read_parts
+from xlmc.workbook.package import LIMITS, SMALLER, read_parts
 from xlmc.workbook.structure import read_structure
 from xlmc.workbook.tables import tables_of
 
@@ -49,7 +49,6 @@ def _read(data: bytes, name: str, place: str) -> Workbook:
             notices=(*workbook_notices(parts, structure, name), *data_table_notices(sheets.data_tables())),
             parts=parts,
             sha256=hashlib.sha256(data).hexdigest(),
-            parts_sha256=hash_parts(parts),
         )
 
 

@@ -67,12 +67,6 @@ class SplicedXml:
         at = element.inner - (2 if self.xml[element.inner - 2 : element.inner] == b"/>" else 1)
         self._edits.append((at, at, b" " + attribute.encode() + b"=" + quoted))
 
-    def unset(self, element: Element, attribute: str) -> None:
-        """Take an attribute without a prefix out."""
-        for match in self._attributes(element):
-            if match["name"] == attribute.encode():
-                self._edits.append((*match.span(), b""))
-
     def prefix(self, element: Element) -> str:
         """The element's own prefix with its colon, as the part writes it; empty for the default namespace."""
         name = self._tag_name(element).decode()

@@ -1,0 +1,81 @@
+from __future__ import annotations
+
+import openpyxl
+import pytest
+
+
+def test_shows_what_was_understood(xlmc, case_study):
+    outcome = xlmc("check", case_study)
+    assert outcome.code == 0
+    assert "Uniform: Low 181, High 191" in outcome.out
+    assert "at least 0 and at most 0.25" in outcome.out
+    assert "Model!D54" in outcome.out
+    assert "No problem found." in outcome.out
+    assert outcome.err == ""
+
+
+@pytest.fixture
+def spoiled(case_study, tmp_path):
+    """The case study with one cell changed, as a person would."""
+
+    def change(sheet: str, cell: str, value: object):
+        book = openpyxl.load_workbook(case_study)
+        book[sheet][cell] = value
+        book.save(tmp_path / "spoiled.xlsx")
+        return tmp_path / "spoiled.xlsx"
+
+    return change
+
+
+def test_lists_every_problem_with_its_cell(xlmc, case_study, tmp_path):
+    book = openpyxl.load_workbook(case_study)
+    sheet = book["Inputs"]
+    headings = {cell.value: cell.column_letter for row in sheet.iter_rows(max_row=8) for cell in row if cell.value}
+    sheet[f"{headings['Distribution']}7"] = "Unifrom"
+    sheet[f"{headings['Low']}8"] = 500
+    book.save(tmp_path / "spoiled.xlsx")
+    outcome = xlmc("check", tmp_path / "spoiled.xlsx")
+    assert outcome.code == 2
+    assert f"Inputs!{headings['Distribution']}7" in outcome.err
+    assert "Did you mean Uniform?" in outcome.err
+    assert f"Inputs!{headings['Low']}8" in outcome.err
+    assert "2 problems found" in outcome.err
+
+
+@pytest.mark.parametrize(
+    ("formula", "message"),
+    [
+        ("=SQRTT(Inputs!D6)", "did you mean SQRT?"),
+        ("=SQRT(Inputs!D6", "cannot be read"),
+        ("=Inptus!D6", "there is no sheet 'Inptus'"),
+        ("=weihgt_1", "there is no name 'weihgt_1'"),
+        ("=Model!D54*2", "in a circle: Model!D54"),
+        ("=SQRT(1,2)", "SQRT has 2 arguments; it takes 1"),
+    ],
+)
+def test_a_formula_that_cannot_be_computed_is_named_with_its_cell(xlmc, spoiled, formula, message):
+    outcome = xlmc("check", spoiled("Model", "D54", formula))
+    assert outcome.code == 2
+    assert "Model!D54" in outcome.err
+    assert message in outcome.err
+
+
+def test_a_file_that_is_no_workbook(xlmc, tmp_path):
+    (tmp_path / "book.xlsx").write_bytes(b"no zip")
+    outcome = xlmc("check", tmp_path / "book.xlsx")
+    assert outcome.code == 2
+    assert "book.xlsx" in outcome.err
+    assert "Traceback" not in outcome.err
+
+
+def test_a_file_that_is_not_there(xlmc):
+    outcome = xlmc("check", "nowhere.xlsx")
+    assert outcome.code == 2
+    assert "nowhere.xlsx" in outcome.err
+
+
+def test_a_workbook_without_tables_is_told_how_to_begin(xlmc, tmp_path):
+    openpyxl.Workbook().save(tmp_path / "plain.xlsx")
+    outcome = xlmc("check", tmp_path / "plain.xlsx")
+    assert outcome.code == 2
+    assert "xlmc_assumptions" in outcome.err

@@ -1,0 +1,115 @@
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import zipfile
+
+import openpyxl
+import pytest
+
+EDITED = {
+    "[Content_Types].xml",
+    "docProps/app.xml",
+    "xl/_rels/workbook.xml.rels",
+    "xl/styles.xml",
+    "xl/workbook.xml",
+}
+
+
+@pytest.fixture
+def book(case_study, tmp_path):
+    return shutil.copy(case_study, tmp_path / "case.xlsx")
+
+
+def parts(path):
+    with zipfile.ZipFile(path) as package:
+        return {name: package.read(name) for name in package.namelist()}
+
+
+def test_prints_the_papers_table_and_writes_a_copy(xlmc, book, tmp_path):
+    outcome = xlmc("simulate", book, "--trials", 20_000)
+    assert outcome.code == 0
+    for words in ("Chevrolet delta-V", "51 % range", "of 20,000 trials", "seed 999", "Restitution, tangential"):
+        assert words in outcome.out
+    assert "Results are in" in outcome.out.replace("\n", " ")
+    before, after = parts(book), parts(tmp_path / "case-results.xlsx")
+    assert {name for name, data in before.items() if after[name] != data} <= EDITED
+
+
+def test_the_command_line_wins_over_the_settings_table(xlmc, book):
+    assert "Accepted" in (default := xlmc("simulate", book, "-n", 5_000)).out
+    assert xlmc("simulate", book, "-n", 5_000, "--seed", 1).out != default.out
+    assert xlmc("simulate", book, "-n", 5_000, "--seed", 999).out == default.out
+
+
+def test_threads_change_nothing(xlmc, book):
+    assert xlmc("simulate", book, "-n", 30_000, "-j", 2).out == xlmc("simulate", book, "-n", 30_000).out
+
+
+def test_in_place_replaces_its_own_sheets_and_nothing_else(xlmc, book):
+    before = parts(book)
+    assert xlmc("simulate", book, "-n", 20_000, "--in-place").code == 0
+    once = parts(book)
+    assert xlmc("simulate", book, "-n", 20_000, "--in-place").code == 0
+    twice = parts(book)
+    changed = [name for name, data in once.items() if twice.get(name) != data]
+    assert set(once) == set(twice)
+    assert [b"SHA-256" in twice[name] for name in changed] == [True]  # the record: it names the file that was read
+    assert {name for name, data in before.items() if once[name] != data} <= EDITED
+
+
+def test_in_place_and_output_exclude_each_other(xlmc, book):
+    assert xlmc("simulate", book, "--in-place", "-o", "other.xlsx").code == 2
+
+
+def test_refuses_a_workbook_that_excel_holds_open(xlmc, book, tmp_path):
+    (tmp_path / "~$case.xlsx").write_bytes(b"")
+    outcome = xlmc("simulate", book, "--in-place")
+    assert outcome.code == 2
+    assert "Excel holds the workbook open" in outcome.err
+
+
+def test_no_accepted_trial_is_exit_code_1_and_still_written(xlmc, book, tmp_path):
+    workbook = openpyxl.load_workbook(book)
+    sheet = workbook["Results wanted"]
+    filters = sheet.tables["xlmc_filters"].ref
+    headings = {cell.value: cell.column_letter for cell in sheet[filters][0]}
+    row = sheet[filters][-1][0].row
+    sheet[f"{headings['Above']}{row}"] = 1e6
+    workbook.save(book)
+    outcome = xlmc("simulate", book, "-n", 5_000)
+    assert outcome.code == 1
+    assert "no trial was accepted" in outcome.err
+    assert (tmp_path / "case-results.xlsx").exists()
+
+
+def test_one_trial(xlmc, book):
+    assert xlmc("simulate", book, "-n", 1).code in (0, 1)
+
+
+@pytest.mark.parametrize("option", [("--trials", "0"), ("--trials", "many"), ("--seed", "-1"), ("--jobs", "0")])
+def test_options_out_of_range(xlmc, book, option):
+    outcome = xlmc("simulate", book, *option)
+    assert outcome.code == 2
+    assert option[0] in outcome.err
+
+
+def test_an_output_folder_that_is_not_there_loses_nothing(xlmc, book, tmp_path):
+    outcome = xlmc("simulate", book, "-n", 1_000, "-o", tmp_path / "nowhere" / "out.xlsx")
+    assert outcome.code == 2
+    assert "nowhere" in outcome.err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["case.xlsx"]
+
+
+def test_the_reference_engine_gives_the_same_answer(xlmc, book):
+    """The table prints 4 digits or so; both engines agree to 1e-12."""
+    fast, slow = (xlmc("simulate", book, "-n", 200, "--engine", engine).out for engine in ("numpy", "formulas"))
+    assert fast == slow
+
+
+def test_help_imports_no_numerical_library():
+    program = "import sys; sys.argv = ['xlmc', '--help']; import xlmc.cli\ntry: xlmc.cli.main()\nexcept SystemExit: pass\n"
+    program += "print([m for m in ('numpy', 'scipy', 'pandas', 'openpyxl', 'rich', 'formulas') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
+    assert done.stdout.splitlines()[-1] == "[]"

@@ -1,0 +1,67 @@
+"""The documents say what the program does: their commands, options, functions and Python run here."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import click
+import pytest
+
+from xlmc.cli import xlmc
+from xlmc.functions import REGISTRY
+
+ROOT = Path(__file__).resolve().parents[1]
+README = (ROOT / "README.md").read_text()
+COMMAND_LINE = (ROOT / "docs" / "command-line.md").read_text()
+WORKBOOKS = (ROOT / "docs" / "workbooks.md").read_text()
+
+
+@pytest.mark.parametrize("name", sorted(xlmc.commands))
+def test_every_command_and_option_is_documented(name):
+    section = COMMAND_LINE.partition(f"## `xlmc {name}")[2].partition("\n## ")[0]
+    assert section, name
+    for parameter in xlmc.commands[name].params:
+        if isinstance(parameter, click.Option):
+            for option in parameter.opts:
+                assert f"`{option}`" in section, option
+
+
+def test_every_function_is_documented():
+    listed = set(re.findall(r"[A-Z][A-Z0-9.]*", WORKBOOKS.partition("<!-- functions -->")[2].partition("<!-- end -->")[0]))
+    assert listed == {name for name in REGISTRY if name[0].isalpha() and name.isupper()}
+
+
+def test_ci_runs_the_readmes_test_command():
+    command = next(line for line in README.splitlines() if "pytest" in line and "venv" in line)
+    assert command in (ROOT / ".ci" / "run").read_text().splitlines()
+
+
+def test_readme_python_runs(tmp_path, monkeypatch):
+    block = re.search(r"```python\n(.*?)```", README, re.DOTALL)
+    assert block is not None
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    subprocess.run([sys.executable, "-c", block[1]], check=True, cwd=tmp_path)
+    assert (tmp_path / "intersection-results.xlsx").exists()
+
+
+def test_readme_shows_the_output_of_its_command(tmp_path):
+    shown = README.partition("```text\n")[2].partition("```")[0]
+    printed = subprocess.run(
+        [sys.executable, "-m", "xlmc", "simulate", "examples/intersection.xlsx", "-o", str(tmp_path / "results.xlsx")],
+        check=True,
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    ).stdout
+    table = [line.rstrip() for line in printed.splitlines() if "results.xlsx" not in line]
+    assert [line.rstrip() for line in shown.splitlines() if "results.xlsx" not in line] == table
+
+
+def test_links_between_documents_lead_somewhere():
+    for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
+        for target in re.findall(r"\]\((?!http)([^)#]+)", page.read_text()):
+            assert (page.parent / target).exists(), f"{page.name}: {target}"

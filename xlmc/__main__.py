@@ -1,0 +1,5 @@
+"""`python -m xlmc` is `xlmc`."""
+
+from xlmc.cli import main
+
+main()

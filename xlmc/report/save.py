@@ -1,0 +1,58 @@
+"""Write a run's result sheets into a copy of its workbook, or into the workbook itself."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from xlmc.errors import WorkbookError
+from xlmc.report.book import build_sheets
+from xlmc.report.trials import TRIAL_ROWS
+from xlmc.workbook.inject import inject
+from xlmc.workbook.writer import package_bytes, refuse_if_open, write_workbook
+
+if TYPE_CHECKING:
+    from xlmc.simulation import Simulation
+
+__all__ = ["save"]
+
+
+def save(simulation: Simulation, path: Path, *, command: str | None = None, rows: int = TRIAL_ROWS) -> Path:
+    """Write the workbook with result sheets behind its own; those of an earlier run are replaced.
+
+    Args:
+        simulation: the finished run.
+        path: where to; an existing file is replaced.
+        command: what the person typed, for the record.
+        rows: the most accepted trials to write out.
+
+    Returns:
+        The path.
+
+    Raises:
+        WorkbookError: the file cannot be written, is open in a program, has another ending than the workbook, or is
+            the workbook itself and has changed since it was read.
+    """
+    _check_ending(path, simulation.model.path)
+    refuse_if_open(path)
+    _refuse_changed(simulation, path)
+    sheets = build_sheets(simulation, command=command, rows=rows)
+    write_workbook(path, package_bytes(inject(simulation.model.workbook.parts, sheets)))
+    return path
+
+
+def _check_ending(path: Path, source: Path) -> None:
+    # Excel opens no file whose ending says that it has macros when it has none, or the other way round.
+    if path.suffix.casefold() != source.suffix.casefold():
+        hint = f"Name it {path.with_suffix(source.suffix).name!r}"
+        raise WorkbookError(f"the results of a {source.suffix} workbook are one too", where=path, hint=hint)
+
+
+def _refuse_changed(simulation: Simulation, path: Path) -> None:
+    """Refuse to write the workbook as it was read over one that a person has changed meanwhile."""
+    if not path.exists() or not path.samefile(simulation.model.path):
+        return
+    if hashlib.sha256(path.read_bytes()).hexdigest() != simulation.model.workbook.sha256:
+        hint = "Run again, or write to another file"
+        raise WorkbookError("the workbook has changed since it was read", where=path, hint=hint)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, assert_never
 
@@ -65,39 +65,65 @@ class Range:
 Node = Constant | Input | Apply | Select | Rescue | Range
 
 
+Size = tuple[int, ...] | None
+"""Rows and columns of a value that is many cells; None for a single one."""
+
+
 class Dag:
-    """Nodes in an order in which each comes after those it uses; a node is known by its place."""
+    """Nodes in an order in which each comes after those it uses; a node is known by its place.
+
+    Attributes:
+        nodes: by place.
+        types: what each gives where it is no error; ANY where that is not known before the run, or is many cells.
+        sizes: of each.
+    """
 
     def __init__(self) -> None:
         self.nodes: list[Node] = []
         self.types: list[Kind] = []
+        self.sizes: list[Size] = []
         self._known: dict[object, int] = {}
 
     def constant(self, value: Value) -> int:
         """The node of a known value."""
-        return self._place(_constant_key(value), Constant(value), _constant_type(value))
+        return self._place(_constant_key(value), Constant(value), _constant_type(value), value.shape[1:] or None)
 
     def input(self, name: str) -> int:
         """The node of an assumption."""
         node = Input(name)
-        return self._place(node, node, Kind.NUMBER)
+        return self._place(node, node, Kind.NUMBER, None)
 
     def add(self, node: Apply | Select | Rescue | Range) -> int:
-        """The node's place; a node whose parts are all constant becomes a constant at once."""
+        """The node's place; a node whose parts are all constant becomes a constant at once.
+
+        Raises:
+            ValueError: parts of many cells have sizes that do not go together.
+        """
         if node in self._known:
             return self._known[node]
+        size = self._size(node)
         known = {p: part.value for p in uses(node) if isinstance(part := self.nodes[p], Constant)}
         if len(known) == len(set(uses(node))) and not _volatile(node):
             place = self.constant(evaluated(node, known))
             self._known[node] = place
             return place
-        return self._place(node, node, self._type(node))
+        return self._place(node, node, self._type(node) if size is None else Kind.ANY, size)
 
-    def _place(self, key: object, node: Node, kind: Kind) -> int:
+    def _size(self, node: Apply | Select | Rescue | Range) -> Size:
+        if isinstance(node, Range):
+            return len(node.rows), len(node.rows[0])
+        parts = list(uses(node))
+        if isinstance(node, Apply):  # what takes a range whole makes one value of it
+            parts = [part for i, part in enumerate(parts) if not node.function.parameter(i).ranged]
+        sizes = [size for part in parts if (size := self.sizes[part]) is not None]
+        return np.broadcast_shapes(*sizes) if sizes else None
+
+    def _place(self, key: object, node: Node, kind: Kind, size: Size) -> int:
         if key not in self._known:
             self._known[key] = len(self.nodes)
             self.nodes.append(node)
             self.types.append(kind)
+            self.sizes.append(size)
         return self._known[key]
 
     def _type(self, node: Apply | Select | Rescue | Range) -> Kind:
@@ -116,12 +142,13 @@ class Dag:
     def _common_type(self, left: int, right: int) -> Kind:
         return self.types[left] if self.types[left] is self.types[right] else Kind.ANY
 
-    def upstream(self, targets: Sequence[int]) -> list[int]:
-        """The varying nodes that the targets need, in order."""
+    def upstream(self, targets: Sequence[int], reads: Callable[[int], Sequence[int]] | None = None) -> list[int]:
+        """The varying nodes that the targets need, in order; `reads` says what a node needs, if not all it uses."""
         needed = {place for place in targets if not isinstance(self.nodes[place], Constant)}
         for place in range(max(needed, default=-1), -1, -1):
             if place in needed:
-                needed.update(p for p in uses(self.nodes[place]) if not isinstance(self.nodes[p], Constant))
+                read = uses(self.nodes[place]) if reads is None else reads(place)
+                needed.update(p for p in read if not isinstance(self.nodes[p], Constant))
         return sorted(needed)
 
 
@@ -169,7 +196,7 @@ def _rescued(value: Value, instead: Value, only_na: bool) -> Value:
 
 def _stacked(rows: list[list[Value]]) -> Value:
     cells = [value for row in rows for value in row]
-    n = max(value.shape[0] for value in cells)
+    (n,) = np.broadcast_shapes(*(value.shape for value in cells))
     size = (n, len(rows), len(rows[0]))
     texts = None
     if any(value.texts is not None for value in cells):

@@ -14,13 +14,27 @@ from xlmc.compile.engine import Target
 from xlmc.errors import ErrorCode, FormulaError, Notice
 from xlmc.formula import Graph, ir
 from xlmc.functions import REGISTRY, Function, Kind, function_named
-from xlmc.functions.values import BLANK, Value, constant
+from xlmc.functions.registry import Cells
+from xlmc.functions.values import BLANK, ERROR, TEXT, Value, constant
 
 __all__ = ["Lowering"]
 
 
 _FACTORS = {"RADIANS": np.pi / 180, "DEGREES": 180 / np.pi}
 """Functions that are a multiplication, to the last bit; NumPy's own are several times slower."""
+
+_OVER_ARRAYS = {"SUMPRODUCT"}
+"""Functions that evaluate their arguments cell by cell, as an array formula does; all others have Excel pick the cell
+of a range that stands beside the formula."""
+
+
+def _first_cell(value: Value) -> Value:
+    """What a plain formula shows of many cells: the first. (n, r, c) -> (n,)."""
+    picked = [None if a is None else np.broadcast_to(a, value.shape)[:, 0, 0] for a in (value.numbers, value.texts)]
+    return Value(picked[0], np.broadcast_to(value.kinds, value.shape)[:, 0, 0], picked[1])  # type: ignore[arg-type]
+
+
+_FIRST_CELL = Function("first cell", (Cells,), _first_cell, Kind.ANY)
 
 
 class Lowering:
@@ -33,6 +47,7 @@ class Lowering:
 
     Attributes:
         graph, inputs, held: as given.
+        saved: the cells that xlmc cannot compute and no assumption reaches, with the values that Excel saved.
         dag: the nodes.
         notices: what the person should know.
     """
@@ -40,6 +55,7 @@ class Lowering:
     def __init__(self, graph: Graph, inputs: Mapping[Cell, str], held: Mapping[Cell, float]) -> None:
         self.dag = Dag()
         self.notices: list[Notice] = []
+        self.saved: dict[Cell, object] = {}
         self.inputs, self.held = inputs, held
         self.graph = graph
         self._cells: dict[Cell, int] = {cell: self.dag.input(name) for cell, name in inputs.items()}
@@ -55,7 +71,7 @@ class Lowering:
 
     def target(self, target: Target) -> int:
         """The node of a target."""
-        return self._lower(target.tree, target.cell)
+        return self._single(self._lower(target.tree, target.cell))
 
     def known(self, target: Target) -> Value | None:
         """The target's value where no input reaches it; None where one does."""
@@ -66,9 +82,13 @@ class Lowering:
         return self.dag.constant(constant(value))
 
     def _formula_cell(self, cell: Cell, tree: ir.Expression) -> int:
+        formula = self.graph.workbook.content(cell).formula
+        if formula is None:  # filled by an array formula, which was refused or saved before
+            return self._saved(cell)
         try:
-            self._refuse_arrays(cell)
-            place = self._lower(tree, cell)
+            if formula.array is not None or formula.dynamic:
+                raise FormulaError("array formulas are not supported in this version")
+            place = self._single(self._lower(tree, cell))
         except FormulaError as error:
             text = self.graph.text(cell)
             complete = FormulaError(error.message, where=cell, hint=error.hint, text=text, span=error.span)
@@ -83,12 +103,14 @@ class Lowering:
         if value is None:
             raise error
         self.notices.append(Notice(f"{error.message}; Excel's saved value is used (no assumption reaches it)", cell))
-        return self.dag.constant(constant(value))
+        return self._saved(cell)
 
-    def _refuse_arrays(self, cell: Cell) -> None:
-        formula = self.graph.workbook.content(cell).formula
-        if formula is not None and (formula.array is not None or formula.dynamic):
-            raise FormulaError("array formulas are not supported in this version")
+    def _saved(self, cell: Cell) -> int:
+        self.saved[cell] = self.graph.workbook.content(cell).value
+        return self._held_cell(cell)
+
+    def _single(self, place: int) -> int:
+        return place if self.dag.sizes[place] is None else self.dag.add(Apply(_FIRST_CELL, (place,)))
 
     def _held_cell(self, cell: Cell) -> int:
         return self.dag.constant(constant(self.graph.workbook.content(cell).value))
@@ -97,7 +119,8 @@ class Lowering:
         node = self.dag.nodes[place]
         return isinstance(node, Constant) and node.value.numbers.ndim == 1 and int(node.value.kinds[0]) == BLANK
 
-    def _lower(self, tree: ir.Expression, host: Cell) -> int:
+    def _lower(self, tree: ir.Expression, host: Cell | None) -> int:
+        """The node of a tree in the formula of `host`; None where ranges are taken cell by cell, not beside a host."""
         match tree:
             case ir.Number(value) | ir.Text(value) | ir.Logical(value):
                 return self.dag.constant(constant(value))
@@ -108,13 +131,15 @@ class Lowering:
             case Cell():
                 return self.cell(tree)
             case Area():
-                return self._intersected(tree, host)
+                return self._range(tree) if host is None else self._intersected(tree, host)
             case ir.Array(rows):
-                return self._lower(rows[0][0], host)
+                return self.dag.add(Range(tuple(tuple(self._lower(part, host) for part in row) for row in rows)))
+            case ir.Unary("+", operand):
+                return self._lower(operand, host)
             case ir.Unary(operator, operand):
-                return self._call(_prefixed(operator), (self._lower(operand, host),))
-            case ir.Binary(operator, left, right):
-                return self._operation(operator, left, right, host)
+                return self._call("%" if operator == "%" else "u-", (self._lower(operand, host),))
+            case ir.Binary():
+                return self._chain(tree, host)
             case ir.Call(name, arguments):
                 return self._function_call(name, arguments, host)
             case ir.Reference() | ir.Name() | ir.TableReference():
@@ -122,10 +147,14 @@ class Lowering:
             case _:
                 assert_never(tree)
 
-    def _operation(self, operator: str, left: ir.Expression, right: ir.Expression, host: Cell) -> int:
-        if operator == ",":
-            raise FormulaError("several areas joined by commas stand where one value is needed")
-        return self._call(operator, (self._lower(left, host), self._lower(right, host)))
+    def _chain(self, tree: ir.Binary, host: Cell | None) -> int:
+        first, rest = ir.chain(tree)
+        place = self._lower(first, host)
+        for operator, right in rest:
+            if operator == ",":
+                raise FormulaError("several areas joined by commas stand where one value is needed")
+            place = self._call(operator, (place, self._lower(right, host)))
+        return place
 
     def _intersected(self, area: Area, host: Cell) -> int:
         """The cell of a one-column (one-row) area in the host's row (column), as a plain formula takes it."""
@@ -135,9 +164,9 @@ class Lowering:
             return self.cell(Cell(area.sheet, area.top, host.column))
         return self.dag.constant(constant(ErrorCode.VALUE))
 
-    def _function_call(self, name: str, arguments: tuple[ir.Expression, ...], host: Cell) -> int:
+    def _function_call(self, name: str, arguments: tuple[ir.Expression, ...], host: Cell | None) -> int:
         if name == "SINGLE":
-            return self._lower(arguments[0], host)
+            return self._picked(arguments[0], host)
         function = function_named(name)
         if function is None:
             raise _unknown_function(name)
@@ -146,35 +175,58 @@ class Lowering:
             raise FormulaError(f"{name} has {len(arguments)} arguments; it takes {_count(fewest, most)}")
         places: list[int] = []
         for position, argument in enumerate(arguments):
-            whole = function.parameter(position).ranged
-            places += self._whole(argument, host) if whole else [self._lower(argument, host)]
+            whole, beside = function.parameter(position).ranged, None if name in _OVER_ARRAYS else host
+            places += self._whole(argument, beside) if whole else [self._lower(argument, host)]
+        if host is None and name in ("IF", "IFERROR", "IFNA") and any(self.dag.sizes[place] for place in places):
+            raise FormulaError(f"{name} over a range works in array formulas only, which are not supported")
         return self._made(function, tuple(places))
+
+    def _picked(self, tree: ir.Expression, host: Cell | None) -> int:
+        """`@tree`: the cell of a range beside the formula."""
+        if host is None:
+            raise FormulaError("@ is not supported here")
+        return self._single(self._lower(tree, host))
 
     def _made(self, function: Function, places: tuple[int, ...]) -> int:
         if function.name == "IF":
-            no = places[2] if len(places) == 3 else self.dag.constant(constant(False))
-            return self.dag.add(Select(places[0], self._zero_if_blank(places[1]), self._zero_if_blank(no)))
+            return self._selected(*places)
         if function.name in ("IFERROR", "IFNA"):
             value, instead = (self._zero_if_blank(place) for place in places)
             return self.dag.add(Rescue(value, instead, function.name == "IFNA"))
         if function.name in _FACTORS:
             return self._call("*", (places[0], self._number(_FACTORS[function.name])))
-        return self.dag.add(Apply(function, places))
+        return self._added(Apply(function, places))
+
+    def _selected(self, condition: int, yes: int, no: int | None = None) -> int:
+        yes = self._zero_if_blank(yes)
+        no = self.dag.constant(constant(False)) if no is None else self._zero_if_blank(no)
+        known = self.dag.nodes[condition]
+        if isinstance(known, Constant) and known.value.shape == (1,) and int(known.value.kinds[0]) not in _NO_TRUTH:
+            return yes if known.value.numbers[0] else no
+        return self._added(Select(condition, yes, no))
+
+    def _added(self, node: Apply | Select) -> int:
+        try:
+            return self.dag.add(node)
+        except ValueError:
+            raise FormulaError("arrays of different sizes meet", hint="give them as many rows and columns") from None
 
     def _zero_if_blank(self, place: int) -> int:
         return self._number(0.0) if self._is_blank(place) else place
 
-    def _whole(self, tree: ir.Expression, host: Cell) -> list[int]:
-        """An argument that may be a range: ranges whole, joined areas one by one, anything else as one value."""
+    def _whole(self, tree: ir.Expression, host: Cell | None) -> list[int]:
+        """An argument that may be a range: ranges whole, joined areas one by one, anything else as it computes."""
         match tree:
             case Cell():
                 return [self.dag.add(Range(((self.cell(tree),),)))]
             case Area():
                 return [self._range(tree)]
-            case ir.Binary(",", left, right):
-                return self._whole(left, host) + self._whole(right, host)
-            case ir.Array(rows):
-                return [self.dag.add(Range(tuple(tuple(self._lower(part, host) for part in row) for row in rows)))]
+            case ir.Binary(",", _, _):
+                first, rest = ir.chain(tree)
+                return [place for part in (first, *(part for _, part in rest)) for place in self._whole(part, host)]
+            case ir.Call("IF") if _gives_area(tree):
+                hint = "move the function into the branches of the IF"
+                raise FormulaError("an IF that gives a whole range is not supported in this version", hint=hint)
             case _:
                 return [self._lower(tree, host)]
 
@@ -188,11 +240,18 @@ class Lowering:
             return places[0]
         if name == "^" and places[1] == self._number(2.0):
             return self._call("*", (places[0], places[0]))
-        return self.dag.add(Apply(REGISTRY[name], places))
+        return self._added(Apply(REGISTRY[name], places))
 
 
-def _prefixed(operator: str) -> str:
-    return operator if operator == "%" else f"u{operator}"
+_NO_TRUTH = {TEXT, *(ERROR + int(code) for code in ErrorCode)}
+"""Kinds of value that a condition cannot be taken by at sight."""
+
+
+def _gives_area(tree: ir.Expression) -> bool:
+    """Whether an `IF` has a range for a branch, its own or that of an `IF` within."""
+    if isinstance(tree, ir.Call) and tree.name == "IF":
+        return any(_gives_area(branch) for branch in tree.arguments[1:])
+    return isinstance(tree, Area)
 
 
 def _count(fewest: int, most: int) -> str:

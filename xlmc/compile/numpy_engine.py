@@ -32,10 +32,11 @@ class NumpyProgram:
     def __init__(
         self, lowering: Lowering, filters: Sequence[Target], forecasts: Sequence[Target], may_err: frozenset[str]
     ) -> None:
-        self._dag, self._may_err = lowering.dag, may_err
+        self._dag = lowering.dag
         self._filters = [lowering.target(target) for target in filters]
         self._forecasts = [lowering.target(target) for target in forecasts]
         self._plan = Plan(self._dag, self._filters, self._forecasts)
+        self._may_err = may_err & self._plan.inputs
 
     def evaluator(self, block: int) -> Evaluator:
         """See `Program`."""
@@ -52,7 +53,7 @@ class _NumpyEvaluator:
 
     def filters(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:
         self._inputs, self._n = inputs, n
-        self._departed = any(np.isnan(inputs[name]).any() for name in self._may_err)
+        self._departed = not all(np.isfinite(inputs[name]).all() for name in self._may_err)
         if not self._departed:
             try:
                 with np.errstate(divide="raise", over="raise", invalid="raise"):

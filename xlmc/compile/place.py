@@ -8,58 +8,106 @@ no error is not worth its own context and is evaluated with its parent.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Final
 
-from xlmc.compile.dag import Apply, Dag, Rescue, Select, uses
+from xlmc.compile.dag import Apply, Constant, Dag, Input, Select
+from xlmc.compile.steps import reads
 from xlmc.functions import Kind
 
-__all__ = ["ROOT", "SURVIVORS", "Context", "place"]
+__all__ = ["ROOT", "SURVIVORS", "Context", "Placement"]
 
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """One set of trials: `select` and `branch` (1 yes, 0 no, -1 rescue) say which of the parent's."""
+    """One set of trials: `select` and `branch` (1 yes, 0 no) say which of the parent's."""
 
     parent: Context | None
     select: int
     branch: int
-
-    @property
-    def depth(self) -> int:
-        return 0 if self.parent is None else self.parent.depth + 1
+    depth: int = 0
 
 
 ROOT = Context(None, -1, 1)
-SURVIVORS = Context(ROOT, -1, 1)
-NEVER = -1
+SURVIVORS = Context(ROOT, -1, 1, 1)
+
+_DEEPEST: Final = 8
+"""Branches within branches; below, both branches are evaluated on the trials of the one around them."""
+
 _SAFE = {"+", "-", "*", "u-", "u+", "%", "=", "<>", "<", "<=", ">", ">=", "NOT", "ABS", "SIGN", "MIN", "MAX", "SUM"}
 
 
-def place(dag: Dag, first: Sequence[int], late: Sequence[int]) -> dict[int, Context]:
-    """The context of every varying node that `first` (all trials) and `late` (survivors) need."""
+class Placement:
+    """The context of every varying node that `first` (all trials) and `late` (survivors) need on the fast path."""
+
+    def __init__(self, dag: Dag, first: Sequence[int], late: Sequence[int]) -> None:
+        self._dag = dag
+        self._members: defaultdict[Context, list[int]] = defaultdict(list)
+        contexts = _without_safe_branches(dag, _contexts(dag, first, late))
+        for node, context in sorted(contexts.items()):
+            self._members[context].append(node)
+        self._inner: defaultdict[Context, list[Context]] = defaultdict(list)
+        self._branches: defaultdict[int, list[Context]] = defaultdict(list)
+        for context in {outer for context in self._members for outer in _outwards(context)} - {ROOT, SURVIVORS}:
+            if context.parent is not None:
+                self._inner[context.parent].append(context)
+                self._branches[context.select].append(context)
+
+    def members(self, context: Context) -> list[int]:
+        """The nodes of a context itself, in order."""
+        return self._members.get(context, [])
+
+    def branches(self, place: int) -> list[Context]:
+        """The branches of an `IF` that hold nodes of their own."""
+        return self._branches.get(place, [])
+
+    def externals(self, context: Context, results: Iterable[int]) -> list[int]:
+        """The varying nodes that a context, its inner contexts included, takes from outside it."""
+        inside = set(self._inside(context))
+        read = {used for node in inside for used in reads(self._dag, node)} | set(results)
+        return sorted(node for node in read - inside if not isinstance(self._dag.nodes[node], Constant))
+
+    def _inside(self, context: Context) -> Iterator[int]:
+        yield from self.members(context)
+        for inner in self._inner.get(context, ()):
+            yield from self._inside(inner)
+
+
+def _contexts(dag: Dag, first: Sequence[int], late: Sequence[int]) -> dict[int, Context]:
     contexts: dict[int, Context] = {}
-    _use(contexts, first, ROOT)
-    _use(contexts, late, SURVIVORS)
-    for node in reversed(dag.upstream([*first, *late])):
+    _use(dag, contexts, first, ROOT)
+    _use(dag, contexts, late, SURVIVORS)
+    needed = dag.upstream([*first, *late], lambda node: reads(dag, node))
+    for node in reversed(needed):
         for used, context in _edges(dag, node, contexts[node]):
-            _use(contexts, [used], context)
-    return _without_safe_branches(dag, {node: contexts[node] for node in dag.upstream([*first, *late])})
+            _use(dag, contexts, [used], context)
+    return {node: contexts[node] for node in needed}
 
 
 def _edges(dag: Dag, place: int, context: Context) -> list[tuple[int, Context]]:
     match dag.nodes[place]:
-        case Select(condition, yes, no):
-            return [(condition, context), (yes, Context(context, place, 1)), (no, Context(context, place, 0))]
-        case Rescue(value, instead, _):
-            return [(value, context), (instead, Context(context, place, NEVER))]
-        case node:
-            return [(used, context) for used in uses(node)]
+        case Select(condition, yes, no) if _divides(dag, place, condition, context):
+            return [(condition, context), (yes, _branch(context, place, 1)), (no, _branch(context, place, 0))]
+        case _:
+            return [(used, context) for used in reads(dag, place)]
 
 
-def _use(contexts: dict[int, Context], places: Sequence[int], context: Context) -> None:
+def _branch(parent: Context, select: int, branch: int) -> Context:
+    return Context(parent, select, branch, parent.depth + 1)
+
+
+def _divides(dag: Dag, place: int, condition: int, context: Context) -> bool:
+    """Whether the trials can be parted by the condition at sight, and the results put together again."""
+    return {dag.types[place], dag.types[condition]} <= {Kind.NUMBER, Kind.LOGICAL} and context.depth < _DEEPEST
+
+
+def _use(dag: Dag, contexts: dict[int, Context], places: Sequence[int], context: Context) -> None:
     for used in places:
-        contexts[used] = _common(contexts[used], context) if used in contexts else context
+        wanted = context
+        while isinstance(dag.nodes[used], Input) and wanted.select >= 0 and wanted.parent is not None:
+            wanted = wanted.parent  # draws are there for all trials
+        contexts[used] = _common(contexts[used], wanted) if used in contexts else wanted
 
 
 def _common(a: Context, b: Context) -> Context:
@@ -71,30 +119,26 @@ def _common(a: Context, b: Context) -> Context:
     return a
 
 
+def _outwards(context: Context) -> Iterator[Context]:
+    inner: Context | None = context
+    while inner is not None:
+        yield inner
+        inner = inner.parent
+
+
 def _without_safe_branches(dag: Dag, contexts: dict[int, Context]) -> dict[int, Context]:
-    members: defaultdict[Context, list[int]] = defaultdict(list)
+    kept = {ROOT, SURVIVORS}
     for node, context in contexts.items():
-        inner: Context | None = context
-        while inner is not None:
-            members[inner].append(node)
-            inner = inner.parent
-    safe = {c for c, nodes in members.items() if c.select >= 0 and c.branch != NEVER and _is_hoisted(dag, c, nodes)}
-    return {node: _hoisted(context, safe) for node, context in contexts.items()}
+        if context not in kept and not _is_safe(dag, node):
+            kept.update(_outwards(context))
+    return {node: _hoisted(context, kept) for node, context in contexts.items()}
 
 
-def _hoisted(context: Context, safe: set[Context]) -> Context:
-    """The nearest context that is kept, its own parents kept too."""
-    if context.parent is None:
-        return context
-    parent = _hoisted(context.parent, safe)
-    if context in safe:
-        return parent
-    return Context(parent, context.select, context.branch) if context != SURVIVORS else context
-
-
-def _is_hoisted(dag: Dag, context: Context, nodes: list[int]) -> bool:
-    """Whether a branch raises no error anywhere, or is of mixed kinds and left to the careful path."""
-    return dag.types[context.select] not in (Kind.NUMBER, Kind.LOGICAL) or all(_is_safe(dag, node) for node in nodes)
+def _hoisted(context: Context, kept: set[Context]) -> Context:
+    """The nearest context around that is kept."""
+    while context not in kept and context.parent is not None:
+        context = context.parent
+    return context
 
 
 def _is_safe(dag: Dag, place: int) -> bool:

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.compile.branches import branch_step, externals, members, own_contexts
+from xlmc.compile.branches import branch_step
 from xlmc.compile.buffers import Buffers
-from xlmc.compile.dag import Dag, Input, Select, constants, uses
+from xlmc.compile.dag import Dag, Input, constants
 from xlmc.compile.engine import Column, column_of
-from xlmc.compile.place import ROOT, SURVIVORS, Context, place
-from xlmc.compile.steps import Frame, Step, is_elementwise_ufunc, make_step, plain_constant
+from xlmc.compile.place import ROOT, SURVIVORS, Context, Placement
+from xlmc.compile.steps import Frame, Step, is_elementwise_ufunc, make_step, plain_constant, reads
 from xlmc.functions import Kind
 from xlmc.functions.values import Floats, Value
 
@@ -21,56 +21,52 @@ __all__ = ["Plan", "Space"]
 
 
 class Plan:
-    """How to run a graph of nodes: which steps, on which trials, into which buffers."""
+    """How to run a graph of nodes: which steps, on which trials, into which buffers.
+
+    Attributes:
+        inputs: the names of those it reads.
+    """
 
     def __init__(self, dag: Dag, filters: Sequence[int], forecasts: Sequence[int]) -> None:
         self._dag, self._filters, self._forecasts = dag, filters, forecasts
-        self._contexts = place(dag, filters, forecasts)
+        self._placement = Placement(dag, filters, forecasts)
         self._template: list[Any] = [None] * len(dag.nodes)
         for node, value in constants(dag):
             self._template[node] = plain_constant(value)
-        first, late = (members(self._contexts, context) for context in (ROOT, SURVIVORS))
-        self._carried = externals(dag, self._contexts, SURVIVORS, forecasts)
-        self._early_inputs, self._late_inputs = self._inputs(first), self._inputs(late)
+        self._carried = self._placement.externals(SURVIVORS, forecasts)
+        self._early_inputs, self._late_inputs = self._inputs(ROOT), self._inputs(SURVIVORS)
+        self.inputs = frozenset(name for _, name in self._early_inputs + self._late_inputs)
         self.buffers = Buffers(dag)
-        self._first = self._steps(first, {*filters, *self._carried}, free_at_end=filters)
+        self._first = self._steps(ROOT, {*filters, *self._carried}, free_at_end=filters)
         self._gathers = [(node, self._carry(node)) for node in self._carried]
         self.buffers.free(self._carried)
-        self._late = self._steps(late, set(forecasts), free_at_end=())
+        self._late = self._steps(SURVIVORS, set(forecasts), free_at_end=())
 
-    def _inputs(self, places: list[int]) -> list[tuple[int, str]]:
-        found = [(node, self._dag.nodes[node]) for node in places]
+    def _inputs(self, context: Context) -> list[tuple[int, str]]:
+        found = [(node, self._dag.nodes[node]) for node in self._placement.members(context)]
         return [(node, input_.name) for node, input_ in found if isinstance(input_, Input)]
 
-    def _steps(self, places: list[int], keep: set[int], free_at_end: Sequence[int]) -> list[Step]:
+    def _steps(self, context: Context, keep: set[int], free_at_end: Sequence[int]) -> list[Step]:
         """The steps of one context; `keep` outlives them."""
-        computed = [node for node in places if not isinstance(self._dag.nodes[node], Input)]
-        reads = {node: self._reads(node) for node in computed}
-        last = {read: node for node in computed for read in reads[node]}
+        members = self._placement.members(context)
+        computed = [node for node in members if not isinstance(self._dag.nodes[node], Input)]
+        read = {node: self._reads(node) for node in computed}
+        last = {needed: node for node in computed for needed in read[node]}
         steps = []
         for node in computed:
-            done = [read for read in dict.fromkeys(reads[node]) if last[read] == node and read not in keep]
-            steps.append(self._step(node, done))
+            done = [needed for needed in dict.fromkeys(read[node]) if last[needed] == node and needed not in keep]
+            steps.append(self._step(node, done, context))
         self.buffers.free(node for node in free_at_end if node not in self._carried)
         return steps
 
     def _reads(self, node: int) -> tuple[int, ...]:
-        branches = self._branches(node)
-        outside = [read for b in branches for read in externals(self._dag, self._contexts, b, self._results(node, b))]
-        return (*uses(self._dag.nodes[node]), *outside)
+        outside = [read for b in self._placement.branches(node) for read in self._placement.externals(b, ())]
+        return (*reads(self._dag, node), *outside)
 
-    def _branches(self, node: int) -> list[Context]:
-        return own_contexts(self._contexts, node)
-
-    def _results(self, node: int, branch: Context) -> tuple[int]:
-        select = self._dag.nodes[node]
-        assert isinstance(select, Select)
-        return (select.yes if branch.branch else select.no,)
-
-    def _step(self, node: int, done: list[int]) -> Step:
-        if self._branches(node):
+    def _step(self, node: int, done: list[int], context: Context) -> Step:
+        if self._placement.branches(node):
             self.buffers.free(done)
-            return branch_step(self._dag, self._contexts, node)
+            return branch_step(self._dag, self._placement, node, context)
         early = is_elementwise_ufunc(self._dag, node)
         if early:
             self.buffers.free(done)

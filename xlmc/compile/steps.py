@@ -17,7 +17,7 @@ from xlmc.compile.dag import Apply, Constant, Dag, Range, Rescue, Select, evalua
 from xlmc.functions import Function, Kind
 from xlmc.functions.values import BLANK, LOGICAL, NUMBER, Value
 
-__all__ = ["Departure", "Frame", "Step", "make_step", "plain_constant"]
+__all__ = ["Departure", "Frame", "Step", "is_elementwise_ufunc", "make_step", "plain_constant", "reads"]
 
 
 class Departure(Exception):  # noqa: N818 - it is no error: the block leaves the fast path
@@ -45,6 +45,18 @@ def plain_constant(value: Value) -> Any:
         if kind == LOGICAL:
             return bool(value.numbers[0])
     return value
+
+
+def reads(dag: Dag, place: int) -> tuple[int, ...]:
+    """The nodes whose values the step of a node needs: of a range that is folded its cells, of a rescue what it rescues.
+
+    Where that turns out to be an error the block departs, so that what stands in instead is not needed here.
+    """
+    node = dag.nodes[place]
+    if isinstance(node, Rescue):
+        return (node.value,)
+    folded = _folded(dag, node) if isinstance(node, Apply) else None
+    return uses(node) if folded is None else tuple(folded)
 
 
 def make_step(dag: Dag, place: int, buffer: int | None) -> Step:
@@ -75,8 +87,10 @@ def is_elementwise_ufunc(dag: Dag, place: int) -> bool:
 def _apply(dag: Dag, place: int, function: Function, arguments: tuple[int, ...], buffer: int | None) -> Step:
     node = Apply(function, arguments)
     if function.takes_sets:
-        operands = _fold_operands(dag, node)
-        return _valued(dag, place) if operands is None else _fold(function, place, operands, buffer)
+        folded = _folded(dag, node)
+        if folded is None:
+            return _valued(dag, place)
+        return _fold(function, place, _readers(dag, folded, function.parameters[0].kind), buffer)
     readers = [_reader(dag, argument, _wanted(dag, function, p)) for p, argument in enumerate(arguments)]
     if any(reader is None for reader in readers):
         return _valued(dag, place)
@@ -159,32 +173,26 @@ def _body(function: Function, place: int, readers: list[Reader]) -> Step:
     return step
 
 
-def _fold_operands(dag: Dag, node: Apply) -> list[Reader] | None:
+def _folded(dag: Dag, node: Apply) -> list[int] | None:
     """What a set function folds, ranges flattened and what does not count left out; None for the careful way."""
     function = node.function
-    if function.ufunc is None or function.parameters[0].kind not in (Kind.NUMBER, Kind.LOGICAL):
+    if not function.takes_sets or function.ufunc is None:
         return None
-    operands: list[Reader] = []
+    kind = function.parameters[0].kind
+    folded: list[int] = []
     for argument in node.arguments:
-        found = _operands_of(dag, argument, function.parameters[0].kind)
-        if found is None:
-            return None
-        operands += found
-    return operands or None
+        part = dag.nodes[argument]
+        cells = [cell for row in part.rows for cell in row] if isinstance(part, Range) else [argument]
+        folded += [cell for cell in cells if not isinstance(part, Range) or _counts(dag, cell, kind)]
+    return folded if folded and all(_foldable(dag, cell, kind) for cell in folded) else None
 
 
-def _operands_of(dag: Dag, argument: int, kind: Kind) -> list[Reader] | None:
-    node = dag.nodes[argument]
-    if not isinstance(node, Range):
-        reader = None if _is_block(node) else _reader(dag, argument, kind)
-        return None if reader is None else [reader]
-    counted = [cell for row in node.rows for cell in row if _counts(dag, cell, kind)]
-    readers = [_reader(dag, cell, kind) for cell in counted]
-    return [reader for reader in readers if reader is not None] if all(readers) else None
+def _foldable(dag: Dag, place: int, kind: Kind) -> bool:
+    return dag.sizes[place] is None and kind in (Kind.NUMBER, Kind.LOGICAL) and _reader(dag, place, kind) is not None
 
 
-def _is_block(node: object) -> bool:
-    return isinstance(node, Constant) and node.value.numbers.ndim == 3
+def _readers(dag: Dag, places: Sequence[int], kind: Kind) -> list[Reader]:
+    return [reader for place in places if (reader := _reader(dag, place, kind)) is not None]
 
 
 def _counts(dag: Dag, cell: int, kind: Kind) -> bool:

@@ -201,7 +201,10 @@ def _inside(place: _Place) -> bool:
 
 def _wrapped(place: _Place) -> _Place:
     row, column = place
-    return row and (row - 1) % MAX_ROW + 1, column and (column - 1) % MAX_COLUMN + 1
+    return (
+        None if row is None else (row - 1) % MAX_ROW + 1,
+        None if column is None else (column - 1) % MAX_COLUMN + 1,
+    )
 
 
 def _sorted(first: int | None, last: int | None) -> tuple[int, int] | None:

@@ -90,6 +90,7 @@ class Function:
         ufunc: see the module; with set arguments it folds them from left to right.
         guard: takes the body's float arrays, says whether all of them lie where `ufunc` and Excel agree.
         volatile: its value changes without its arguments.
+        dated: the body takes `date1904`, keyword only: whether serial dates count from 1904.
     """
 
     name: str
@@ -99,6 +100,7 @@ class Function:
     ufunc: np.ufunc | None = None
     guard: Callable[..., bool] | None = None
     volatile: bool = False
+    dated: bool = False
 
     @property
     def takes_values(self) -> bool:
@@ -213,11 +215,12 @@ def excel(
     ufunc: np.ufunc | None = None,
     guard: Callable[..., bool] | None = None,
     volatile: bool = False,
+    dated: bool = False,
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Register a body as the Excel function `name`."""
 
     def register(body: Callable[..., Any]) -> Callable[..., Any]:
-        row = Function(name, parameters, body, returns, ufunc, guard, volatile)
+        row = Function(name, parameters, body, returns, ufunc, guard, volatile, dated)
         for key in (name, *aliases):
             if key in REGISTRY:
                 raise ValueError(f"{key} is registered twice")

@@ -7,7 +7,8 @@ from datetime import datetime
 from typing import TYPE_CHECKING, Final
 
 from xlmc.record import make_record
-from xlmc.report import assumptions, charts, record_sheet, results, statistics_sheet, trials
+from xlmc.report import assumptions, bins, charts, record_sheet, results, statistics_sheet, trials
+from xlmc.report.figure import figures_of
 from xlmc.report.page import Page
 from xlmc.report.styles import Styles
 
@@ -21,7 +22,7 @@ _CREATED: Final = datetime(2000, 1, 1)
 
 
 def build_sheets(simulation: Simulation, *, command: str | None = None, rows: int = trials.TRIAL_ROWS) -> bytes:
-    """The result sheets of a run: Results, Charts, Statistics, Assumptions, Trials, Record.
+    """The result sheets of a run: Results, Charts, Statistics, Assumptions, Trials, Bins, Record.
 
     Args:
         simulation: the finished run.
@@ -39,10 +40,12 @@ def build_sheets(simulation: Simulation, *, command: str | None = None, rows: in
             return Page(book.add_worksheet(name), styles, widths)
 
         results.write_results(page("Results", results.WIDTHS), simulation)
-        charts.write_charts(page("Charts", charts.WIDTHS), book, simulation)
+        drawing = page("Charts", charts.WIDTHS)
         statistics_sheet.write_statistics(page("Statistics", statistics_sheet.WIDTHS), simulation)
         assumptions.write_assumptions(page("Assumptions", assumptions.WIDTHS), simulation)
         trials.write_trials(page("Trials", trials.WIDTHS), simulation, rows)
-        record = make_record(simulation, command)
-        record_sheet.write_record(page("Record", record_sheet.WIDTHS), record, simulation.model.workbook.name)
+        figures, name = figures_of(simulation), simulation.model.workbook.name
+        places = bins.write_bins(page("Bins", ()), figures, name)
+        charts.write_charts(drawing, book, simulation, figures, places)
+        record_sheet.write_record(page("Record", record_sheet.WIDTHS), make_record(simulation, command), name)
     return packed.getvalue()

@@ -27,38 +27,41 @@ class BinsAt:
     """Where a table of bins stands; rows and columns are counted from 0.
 
     Attributes:
-        title, axis: the cells that hold the chart's title and the axis's.
-        header: the row of column headings.
-        first, last: the rows of the first and the last bin.
-        left: the column of the labels; inside and outside counts stand `COUNTS` to its right.
+        header: the row of column headings; the bins follow it, and above it stand the chart's title and its axis's.
+        last: the row of the last bin.
+        left: the column of the labels and of both titles; the counts stand `COUNTS` to its right.
     """
 
-    title: tuple[int, int]
-    axis: tuple[int, int]
+    sheet: str
     header: int
-    first: int
     last: int
     left: int
 
+    def cell(self, row: int, column: int = 0) -> list[str | int]:
+        """A reference to one cell, its column counted from `left`."""
+        return [self.sheet, row, self.left + column]
 
-def histogram_chart(book: Workbook, sheet: str, at: BinsAt, bins: Histogram) -> ChartColumn:
+    def column(self, column: int) -> list[str | int]:
+        """A reference to the bins of one column."""
+        return [self.sheet, self.header + 1, self.left + column, self.last, self.left + column]
+
+
+def histogram_chart(book: Workbook, at: BinsAt, bins: Histogram) -> ChartColumn:
     """The chart. Its texts are references to cells, so that none of them can be taken for a formula."""
     chart = book.add_chart({"type": "column", "subtype": "stacked"})
     for column, colour in zip(COUNTS, (DARK, LIGHT), strict=True):
         chart.add_series(
             {
-                "name": [sheet, at.header, at.left + column],
-                "categories": [sheet, at.first, at.left, at.last, at.left],
-                "values": [sheet, at.first, at.left + column, at.last, at.left + column],
+                "name": at.cell(at.header, column),
+                "categories": at.column(0),
+                "values": at.column(column),
                 "fill": {"color": colour},
                 "border": {"none": True},
                 "gap": 4,
             }
         )
-    chart.set_title(
-        {"name": [sheet, *at.title], "name_font": {"size": 12, "bold": True, "color": INK}, "overlay": False}
-    )
-    chart.set_x_axis(_across(sheet, at, bins))
+    chart.set_title({"name": at.cell(at.header - 2), "name_font": {"size": 12, "bold": True, "color": INK}})
+    chart.set_x_axis(_across(at, bins))
     chart.set_y_axis(_upwards())
     chart.set_legend({"position": "bottom", "font": _FONT})
     chart.set_size({"width": SIZE[0], "height": SIZE[1]})
@@ -66,9 +69,9 @@ def histogram_chart(book: Workbook, sheet: str, at: BinsAt, bins: Histogram) -> 
     return chart
 
 
-def _across(sheet: str, at: BinsAt, bins: Histogram) -> dict[str, Any]:
+def _across(at: BinsAt, bins: Histogram) -> dict[str, Any]:
     return {
-        "name": [sheet, *at.axis],
+        "name": at.cell(at.header - 1),
         "name_font": {**_FONT, "bold": False},
         "num_font": _FONT,
         "interval_unit": bins.step,

@@ -17,23 +17,29 @@ COUNT = "#,##0"
 _DIGITS = 6
 """Significant digits where no error limits them."""
 
-_LARGEST, _SMALLEST = 1e9, 1e-4
+_ROOM = 9
+"""Characters that columns have room for; fewer decimals are shown rather than `###`."""
+
+_LARGEST, _SMALLEST = 1e7, 1e-4
 """Beyond these a number is shown with a power of ten."""
 
 
 def paired(estimate: Estimate) -> str:
-    """For a value with its error in a cell of its own: two digits of the error, as `format_estimate` prints them."""
+    """For a value with its error in a cell of its own: two digits of the error."""
+    if estimate.error == 0.0:
+        return "General"
     return _format(estimate.value, _paired_decimals(estimate))
 
 
 def share_paired(estimate: Estimate) -> str:
     """`paired` for a share, in percent."""
-    return _percent(_paired_decimals(estimate))
+    decimals = _paired_decimals(estimate)
+    return "0" + _fraction(max((4 if decimals is None else decimals) - 2, 0)) + "%"
 
 
 def exact(spread: float) -> str:
     """For single trials: four digits of their spread."""
-    return _format(spread, None if not _usable(spread) else 3 - _exponent(spread))
+    return _format(spread, 3 - _exponent(spread)) if _usable(spread) else "General"
 
 
 def _paired_decimals(estimate: Estimate) -> int | None:
@@ -41,18 +47,15 @@ def _paired_decimals(estimate: Estimate) -> int | None:
 
 
 def _format(value: float, decimals: int | None) -> str:
+    if not math.isfinite(value):
+        return "General"
     if decimals is None:
-        if not _usable(value):
-            return "0"
-        decimals = _DIGITS - 1 - _exponent(value)
+        decimals = _DIGITS - 1 - (_exponent(value) if value else 0)
     size = max(abs(value), 10.0**-decimals)
     if not _SMALLEST <= size < _LARGEST:
-        return "0" + _fraction(min(max(decimals + _exponent(size), 0), _DIGITS)) + "E+00"
-    return "#,##0" + _fraction(max(decimals, 0))
-
-
-def _percent(decimals: int | None) -> str:
-    return "0" + _fraction(max((4 if decimals is None else decimals) - 2, 0)) + "%"
+        return "0" + _fraction(min(max(decimals + _exponent(size), 0), 3)) + "E+00"
+    room = _ROOM - len(f"{value:,.0f}") - 1
+    return "#,##0" + _fraction(max(min(decimals, room), 0))
 
 
 def _fraction(decimals: int) -> str:

@@ -47,7 +47,7 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "moved": _NUMBER | {"bg_color": "#FCE4B6", "bold": True},
     "trial": _NUMBER | {"font_color": _GREY},
     "caption": {"text_wrap": True, "valign": "top", "font_size": 10, "font_color": INK},
-    "warning line": {"bold": True, "font_color": "#9C0006"},
+    "alarm": {"bold": True, "font_color": "#9C0006"},
     "paragraph": _PARAGRAPH,
     "remark": _PARAGRAPH | {"font_color": _GREY, "italic": True},
     "notice": _PARAGRAPH | {"bg_color": "#FFF6DD", "indent": 1, "valign": "vcenter"},

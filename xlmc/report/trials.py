@@ -51,7 +51,7 @@ def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> 
 def _said(shown: int, accepted: int) -> Shown:
     if shown == accepted:
         return Shown(f"All {accepted:,} accepted trials." if accepted else "No trial was accepted.", look="subtitle")
-    return Shown(f"Only the first {shown:,} of {accepted:,} accepted trials stand here.", look="warning line")
+    return Shown(f"Only the first {shown:,} of {accepted:,} accepted trials stand here.", look="alarm")
 
 
 def _columns(simulation: Simulation) -> list[tuple[Shown, NDArray[np.float64]]]:

@@ -1,4 +1,4 @@
-"""One block of trials: drawn, evaluated, filtered, counted. Whole blocks are evaluated and then cut at the trial count."""
+"""One block of trials: drawn, evaluated, filtered, counted. Whole blocks are evaluated, then cut at the trial count."""
 
 from __future__ import annotations
 
@@ -65,6 +65,7 @@ class Block:
         forecasts: one a forecast, `(m,)`, NaN where it has no number.
         faults: per forecast, fault -> accepted trials in which it has no number.
         invalid: assumption -> trials in which its parameters were no distribution.
+        lost: trials with an error of any kind: in a draw, in an undecided filter, in a forecast that counts.
         prior: assumption -> `(n,)` draws of all trials; None when not asked for.
     """
 
@@ -75,6 +76,7 @@ class Block:
     faults: list[Counter[str]]
     tally: FilterTally
     invalid: Counter[str]
+    lost: int
     prior: dict[str, Floats] | None
 
 
@@ -82,25 +84,31 @@ class Worker:
     """Runs blocks, one after another, in one thread.
 
     Args:
+        forecasts: how many the evaluator gives.
         fallible: the assumptions whose draws may be errors.
     """
 
-    def __init__(self, sampler: MonteCarlo, evaluator: Evaluator, block: int, fallible: frozenset[str]) -> None:
+    def __init__(
+        self, sampler: MonteCarlo, evaluator: Evaluator, block: int, forecasts: int, fallible: frozenset[str]
+    ) -> None:
         self._sampler, self._evaluator, self._block = sampler, evaluator, block
-        self._fallible = fallible
+        self._width, self._fallible = forecasts, fallible
 
     def run(self, start: int, trials: int, keep_prior: bool) -> Block:
         """The trials from `start` on, a whole block of them, cut to the first `trials`."""
         draws = self._sampler.draw(start)
         columns = self._evaluator.filters(draws, self._block)
-        invalid = {name: np.isnan(draws[name]) for name in self._fallible}
-        kept, tally = _filtered(columns, self._block, trials)
-        for bad in invalid.values():
-            kept &= ~bad
+        invalid = {name: np.isnan(draws[name]) for name in sorted(self._fallible)}
+        kept = ~_any([*map(_fails, columns), *invalid.values()], self._block)
+        tally, undecided = _tally(columns, trials), _undecided(columns, trials)
         survivors = np.flatnonzero(kept)
-        forecasts = self._evaluator.forecasts(survivors)
+        forecasts = self._forecasts(survivors)
         survivors = survivors[: np.searchsorted(survivors, trials)]
+        lost = _any([undecided, *(bad[:trials] for bad in invalid.values())], trials)
         m = survivors.size
+        for column in forecasts:
+            if column.codes is not None:
+                lost[survivors] |= column.codes[:m] > 0
         return Block(
             trials,
             survivors + start,
@@ -109,29 +117,36 @@ class Worker:
             [_faults(column, m) for column in forecasts],
             tally,
             Counter({name: int(np.count_nonzero(bad[:trials])) for name, bad in invalid.items() if bad[:trials].any()}),
+            int(np.count_nonzero(lost)),
             {name: values[:trials].copy() for name, values in draws.items()} if keep_prior else None,
         )
 
+    def _forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
+        """The bodies of functions need not know what to make of no trials at all."""
+        if survivors.size:
+            return self._evaluator.forecasts(survivors)
+        return [Column(np.empty(0)) for _ in range(self._width)]
 
-def _filtered(columns: Sequence[Column], block: int, trials: int) -> tuple[Bools, FilterTally]:
-    """Which of the whole block's trials all filters keep, and the tally of its first `trials`."""
-    fails = [_fails(column) for column in columns]
+
+def _any(masks: Sequence[Bools], n: int) -> Bools:
+    return np.asarray(np.logical_or.reduce([np.zeros(n, bool), *masks]))
+
+
+def _tally(columns: Sequence[Column], trials: int) -> FilterTally:
+    """What the filters reject of a block's first `trials`."""
+    fails = [_fails(column)[:trials] for column in columns]
     tally = FilterTally.empty(len(columns))
-    kept = np.ones(block, bool)
-    for rejected in fails:
-        kept &= ~rejected
     count = np.zeros(trials, np.uint16)
     for rejected in fails:
-        count += rejected[:trials]
-    for i, rejected in enumerate(fails):
-        mine = rejected[:trials]
+        count += rejected
+    for i, mine in enumerate(fails):
         tally.rejected[i] = np.count_nonzero(mine)
         tally.only[i] = np.count_nonzero(mine & (count == 1))
         for j in range(i + 1):
-            tally.together[i, j] = tally.together[j, i] = np.count_nonzero(mine & fails[j][:trials])
+            tally.together[i, j] = tally.together[j, i] = np.count_nonzero(mine & fails[j])
         tally.errors[i] = _faults(columns[i], trials)
-    tally.by_error = _rejected_by_error(columns, trials)
-    return kept, tally
+    tally.by_error = int(np.count_nonzero(_undecided(columns, trials)))
+    return tally
 
 
 def _fails(column: Column) -> Bools:
@@ -139,15 +154,18 @@ def _fails(column: Column) -> Bools:
     return fails if column.codes is None else fails | (column.codes > 0)
 
 
-def _rejected_by_error(columns: Sequence[Column], trials: int) -> int:
-    if all(column.codes is None for column in columns):
-        return 0
-    found, false = np.zeros(trials, bool), np.zeros(trials, bool)
-    for column in columns:
-        bad = np.zeros(trials, bool) if column.codes is None else column.codes[:trials] > 0
-        found |= bad
-        false |= (column.values[:trials] == 0) & ~bad
-    return int(np.count_nonzero(found & ~false))
+def _undecided(columns: Sequence[Column], trials: int) -> Bools:
+    """The trials that no filter finds FALSE but some filter cannot decide."""
+    errors = [column.codes[:trials] > 0 for column in columns if column.codes is not None]
+    if not errors:
+        return np.zeros(trials, bool)
+    found, false = _any(errors, trials), [_false(column)[:trials] for column in columns]
+    return found & ~_any(false, trials)
+
+
+def _false(column: Column) -> Bools:
+    false: Bools = column.values == 0
+    return false if column.codes is None else false & (column.codes == 0)
 
 
 def _faults(column: Column, trials: int) -> Counter[str]:

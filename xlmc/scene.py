@@ -11,7 +11,7 @@ from xlmc.errors import DefinitionError, Notice
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.workbook import Workbook
 
-__all__ = ["Scene", "condition", "filter_limits", "parameter_cells", "survey"]
+__all__ = ["Scene", "condition", "filter_limits", "parameter_cells", "survey", "targets_of"]
 
 
 @dataclass(frozen=True)
@@ -49,9 +49,7 @@ def survey(workbook: Workbook, definitions: Definitions) -> Scene:
     live = {a.cell: a for a in definitions.assumptions if not a.frozen}
     held = frozenset(a.cell for a in definitions.assumptions if a.frozen)
     resolver = Resolver(workbook, [*live, *held])
-    targets = [f.cell for f in definitions.forecasts]
-    for filter_ in definitions.filters:
-        targets += [filter_.cell, *(bound for _, bound in filter_limits(filter_) if isinstance(bound, Cell))]
+    targets = targets_of(definitions)
     while True:  # the parameters of needed assumptions may need more cells, and these more assumptions
         graph = build_graph(resolver, targets, frozenset(live), held)
         more = [cell for a in live.values() if a.cell in graph.reached for cell in parameter_cells(a)]
@@ -61,6 +59,14 @@ def survey(workbook: Workbook, definitions: Definitions) -> Scene:
     reached = tuple(a for a in live.values() if a.cell in graph.reached)
     idle = tuple(a for a in definitions.assumptions if a.cell not in graph.reached)
     return Scene(graph, _stages(graph, reached), idle)
+
+
+def targets_of(definitions: Definitions) -> list[Cell]:
+    """The cells of the forecasts and filters, and those that hold the filters' limits."""
+    targets = [forecast.cell for forecast in definitions.forecasts]
+    for filter_ in definitions.filters:
+        targets += [filter_.cell, *(bound for _, bound in filter_limits(filter_) if isinstance(bound, Cell))]
+    return targets
 
 
 def parameter_cells(assumption: Assumption) -> Iterator[Cell]:

@@ -47,23 +47,24 @@ def simulate(
     if jobs < 1:
         raise SimulationError(f"{jobs} threads were asked for", hint="give 1 or more")
     program = model.program(settings.engine)
-    starts = range(0, settings.trials, BLOCK)
+    block = min(BLOCK, program.largest_block)
+    starts = range(0, settings.trials, block)
     workers = min(jobs, len(starts))
     idle: SimpleQueue[Worker] = SimpleQueue()
     for _ in range(workers):
-        sampler = model.sampler(settings.seed, BLOCK)
-        idle.put(Worker(sampler, program.evaluator(BLOCK), BLOCK, model.fallible))
+        sampler, evaluator = model.sampler(settings.seed, block), program.evaluator(block)
+        idle.put(Worker(sampler, evaluator, block, len(model.forecasts), model.fallible))
 
     def run(start: int) -> Block:
         worker = idle.get()
         try:
-            return worker.run(start, min(BLOCK, settings.trials - start), start < PRIOR_TRIALS)
+            return worker.run(start, min(block, settings.trials - start), start < PRIOR_TRIALS)
         finally:
             idle.put(worker)
 
-    gathered = _Gathered(model)
-    for block in _in_order(run, starts, workers):
-        gathered.add(block)
+    gathered = _Gathered(model, block)
+    for finished in _in_order(run, starts, workers):
+        gathered.add(finished)
         if progress is not None:
             progress(gathered.trials, gathered.accepted)
     return gathered.simulation(settings)
@@ -96,13 +97,13 @@ def _in_order(run: Callable[[int], Block], starts: range, workers: int) -> Itera
 class _Gathered:
     """The blocks so far."""
 
-    def __init__(self, model: Model) -> None:
-        self._model = model
+    def __init__(self, model: Model, block: int) -> None:
+        self._model, self._block = model, block
         self._blocks: list[Block] = []
         self._tally = FilterTally.empty(len(model.filters))
         self._invalid: Counter[str] = Counter()
         self._faults: list[Counter[str]] = [Counter() for _ in model.forecasts]
-        self.trials = self.accepted = 0
+        self.trials = self.accepted = self.lost = 0
 
     def add(self, block: Block) -> None:
         self._blocks.append(block)
@@ -112,6 +113,7 @@ class _Gathered:
             mine.update(theirs)
         self.trials += block.trials
         self.accepted += block.accepted.size
+        self.lost += block.lost
 
     def simulation(self, settings: Settings) -> Simulation:
         names = [a.name for a in self._model.live]
@@ -123,7 +125,7 @@ class _Gathered:
         return Simulation(
             model=self._model,
             settings=settings,
-            block=BLOCK,
+            block=self._block,
             trials=self.trials,
             trial_index=np.concatenate([block.accepted for block in self._blocks]),
             inputs={name: kept[name_key(name)] for name in names},
@@ -132,4 +134,5 @@ class _Gathered:
             faults={f.name: counts for f, counts in zip(self._model.forecasts, self._faults, strict=True)},
             tally=self._tally,
             invalid=self._invalid,
+            error_trials=self.lost,
         )

@@ -90,6 +90,8 @@ class Simulation:
         faults: forecast -> fault -> accepted trials in which it has no number.
         tally: what the filters rejected.
         invalid: assumption key -> trials in which its parameters were no distribution.
+        error_trials: trials lost to errors: undecided by a filter, drawn from no distribution, or accepted without a
+            number in some forecast. Each counts once.
     """
 
     model: Model
@@ -103,6 +105,7 @@ class Simulation:
     faults: Mapping[str, Counter[str]]
     tally: FilterTally
     invalid: Counter[str]
+    error_trials: int
 
     def __getitem__(self, name: str) -> ForecastResult:
         """The result of a forecast, by name whatever its case.
@@ -133,12 +136,6 @@ class Simulation:
     def acceptance(self) -> Estimate:
         """The share of accepted trials."""
         return statistics.proportion(self.accepted, self.trials)
-
-    @property
-    def error_trials(self) -> int:
-        """Trials lost to errors: undecided by a filter, drawn from no distribution, or without a forecast."""
-        lost = max((sum(faults.values()) for faults in self.faults.values()), default=0)
-        return self.tally.by_error + sum(self.invalid.values()) + lost
 
     @property
     def warnings(self) -> list[str]:

@@ -55,7 +55,13 @@ class Evaluator(Protocol):
 
 
 class Program(Protocol):
-    """A compiled workbook. Evaluators are for one thread each."""
+    """A compiled workbook. Evaluators are for one thread each.
+
+    Attributes:
+        largest_block: more trials than these at once bring nothing.
+    """
+
+    largest_block: int
 
     def evaluator(self, block: int) -> Evaluator:
         """An evaluator for blocks of up to `block` trials."""

@@ -15,7 +15,7 @@ from xlmc.errors import ErrorCode, FormulaError, Notice
 from xlmc.formula import Graph, ir
 from xlmc.functions import REGISTRY, Function, Kind, function_named
 from xlmc.functions.registry import Cells
-from xlmc.functions.values import BLANK, ERROR, TEXT, Value, constant
+from xlmc.functions.values import BLANK, ERROR, Value, constant
 
 __all__ = ["Lowering"]
 
@@ -75,8 +75,7 @@ class Lowering:
 
     def known(self, target: Target) -> Value | None:
         """The target's value where no input reaches it; None where one does."""
-        node = self.dag.nodes[self.target(target)]
-        return node.value if isinstance(node, Constant) else None
+        return self._known_cell(self.target(target))
 
     def _number(self, value: float) -> int:
         return self.dag.constant(constant(value))
@@ -116,8 +115,8 @@ class Lowering:
         return self.dag.constant(constant(self.graph.workbook.content(cell).value))
 
     def _is_blank(self, place: int) -> bool:
-        node = self.dag.nodes[place]
-        return isinstance(node, Constant) and node.value.numbers.ndim == 1 and int(node.value.kinds[0]) == BLANK
+        known = self._known_cell(place)
+        return known is not None and int(known.kinds[0]) == BLANK
 
     def _lower(self, tree: ir.Expression, host: Cell | None) -> int:
         """The node of a tree in the formula of `host`; None where ranges are taken cell by cell, not beside a host."""
@@ -142,6 +141,8 @@ class Lowering:
                 return self._chain(tree, host)
             case ir.Call(name, arguments):
                 return self._function_call(name, arguments, host)
+            case ir.Variable() | ir.Let() | ir.Lambda() | ir.Invoke():
+                raise FormulaError("LET and LAMBDA are not supported in this version")
             case ir.Reference() | ir.Name() | ir.TableReference():
                 raise TypeError(f"not resolved: {tree}")
             case _:
@@ -191,8 +192,7 @@ class Lowering:
         if function.name == "IF":
             return self._selected(*places)
         if function.name in ("IFERROR", "IFNA"):
-            value, instead = (self._zero_if_blank(place) for place in places)
-            return self.dag.add(Rescue(value, instead, function.name == "IFNA"))
+            return self._rescued(*places, only_na=function.name == "IFNA")
         if function.name in _FACTORS:
             return self._call("*", (places[0], self._number(_FACTORS[function.name])))
         return self._added(Apply(function, places))
@@ -200,12 +200,25 @@ class Lowering:
     def _selected(self, condition: int, yes: int, no: int | None = None) -> int:
         yes = self._zero_if_blank(yes)
         no = self.dag.constant(constant(False)) if no is None else self._zero_if_blank(no)
-        known = self.dag.nodes[condition]
-        if isinstance(known, Constant) and known.value.shape == (1,) and int(known.value.kinds[0]) not in _NO_TRUTH:
-            return yes if known.value.numbers[0] else no
+        known = self._known_cell(condition)
+        if known is not None and known.plain:
+            return yes if known.numbers[0] else no
         return self._added(Select(condition, yes, no))
 
-    def _added(self, node: Apply | Select) -> int:
+    def _rescued(self, value: int, instead: int, *, only_na: bool) -> int:
+        value, instead = self._zero_if_blank(value), self._zero_if_blank(instead)
+        known = self._known_cell(value)
+        if known is None:
+            return self._added(Rescue(value, instead, only_na))
+        kind = int(known.kinds[0])
+        return instead if kind == ERROR + ErrorCode.NA or (kind >= ERROR and not only_na) else value
+
+    def _known_cell(self, place: int) -> Value | None:
+        """The value of a single constant."""
+        node = self.dag.nodes[place]
+        return node.value if isinstance(node, Constant) and self.dag.sizes[place] is None else None
+
+    def _added(self, node: Apply | Select | Rescue) -> int:
         try:
             return self.dag.add(node)
         except ValueError:
@@ -241,10 +254,6 @@ class Lowering:
         if name == "^" and places[1] == self._number(2.0):
             return self._call("*", (places[0], places[0]))
         return self._added(Apply(REGISTRY[name], places))
-
-
-_NO_TRUTH = {TEXT, *(ERROR + int(code) for code in ErrorCode)}
-"""Kinds of value that a condition cannot be taken by at sight."""
 
 
 def _gives_area(tree: ir.Expression) -> bool:

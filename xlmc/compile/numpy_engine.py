@@ -29,6 +29,8 @@ class NumpyProgram:
         may_err: the inputs whose draws may be errors (NaNs), which raise no flag.
     """
 
+    largest_block = 1 << 20
+
     def __init__(
         self, lowering: Lowering, filters: Sequence[Target], forecasts: Sequence[Target], may_err: frozenset[str]
     ) -> None:

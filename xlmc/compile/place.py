@@ -49,7 +49,7 @@ class Placement:
             self._members[context].append(node)
         self._inner: defaultdict[Context, list[Context]] = defaultdict(list)
         self._branches: defaultdict[int, list[Context]] = defaultdict(list)
-        for context in {outer for context in self._members for outer in _outwards(context)} - {ROOT, SURVIVORS}:
+        for context in {outer for inner in self._members for outer in _outwards(inner)} - {ROOT, SURVIVORS}:
             if context.parent is not None:
                 self._inner[context.parent].append(context)
                 self._branches[context.select].append(context)

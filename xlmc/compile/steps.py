@@ -6,7 +6,7 @@ constant), a LOGICAL node a bool array (or a bool), any other node a `Value`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from xlmc.compile.dag import Apply, Constant, Dag, Range, Rescue, Select, evaluated, uses
 from xlmc.functions import Function, Kind
-from xlmc.functions.values import BLANK, LOGICAL, NUMBER, Value
+from xlmc.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value
 
 __all__ = ["Departure", "Frame", "Step", "is_elementwise_ufunc", "make_step", "plain_constant", "reads"]
 
@@ -48,15 +48,17 @@ def plain_constant(value: Value) -> Any:
 
 
 def reads(dag: Dag, place: int) -> tuple[int, ...]:
-    """The nodes whose values the step of a node needs: of a range that is folded its cells, of a rescue what it rescues.
+    """The nodes whose values the step of a node needs.
 
-    Where that turns out to be an error the block departs, so that what stands in instead is not needed here.
+    Of a range that is folded these are its cells. Of a rescue it is what it rescues: where that turns out to be an
+    error the block departs, so that what stands in instead is never needed here.
     """
     node = dag.nodes[place]
     if isinstance(node, Rescue):
         return (node.value,)
-    folded = _folded(dag, node) if isinstance(node, Apply) else None
-    return uses(node) if folded is None else tuple(folded)
+    if isinstance(node, Apply) and _folded(dag, node) is not None:
+        return tuple(cell for cell, _ in _cells(dag, node))  # also what does not count: it may turn out an error
+    return uses(node)
 
 
 def make_step(dag: Dag, place: int, buffer: int | None) -> Step:
@@ -179,12 +181,18 @@ def _folded(dag: Dag, node: Apply) -> list[int] | None:
     if not function.takes_sets or function.ufunc is None:
         return None
     kind = function.parameters[0].kind
-    folded: list[int] = []
+    folded = [cell for cell, in_range in _cells(dag, node) if not in_range or _counts(dag, cell, kind)]
+    return folded if folded and all(_foldable(dag, cell, kind) for cell in folded) else None
+
+
+def _cells(dag: Dag, node: Apply) -> Iterator[tuple[int, bool]]:
+    """The arguments, ranges cell by cell, and whether each is a range's."""
     for argument in node.arguments:
         part = dag.nodes[argument]
-        cells = [cell for row in part.rows for cell in row] if isinstance(part, Range) else [argument]
-        folded += [cell for cell in cells if not isinstance(part, Range) or _counts(dag, cell, kind)]
-    return folded if folded and all(_foldable(dag, cell, kind) for cell in folded) else None
+        if isinstance(part, Range):
+            yield from ((cell, True) for row in part.rows for cell in row)
+        else:
+            yield argument, False
 
 
 def _foldable(dag: Dag, place: int, kind: Kind) -> bool:
@@ -196,11 +204,14 @@ def _readers(dag: Dag, places: Sequence[int], kind: Kind) -> list[Reader]:
 
 
 def _counts(dag: Dag, cell: int, kind: Kind) -> bool:
-    """Whether a range's cell may count; one whose kind is not known until the run may, and has no reader."""
+    """Whether a range's cell may count; one whose kind is not known until the run may, and has no reader.
+
+    Nor has a text that varies: it never counts, but may be an error.
+    """
     node, found = dag.nodes[cell], dag.types[cell]
-    if isinstance(node, Constant) and int(node.value.kinds.flat[0]) == BLANK:
+    if isinstance(node, Constant) and int(node.value.kinds.flat[0]) in (BLANK, TEXT):
         return False
-    return found is not Kind.TEXT and not (kind is Kind.NUMBER and found is Kind.LOGICAL)
+    return not (kind is Kind.NUMBER and found is Kind.LOGICAL)
 
 
 def _fold(function: Function, place: int, operands: list[Reader], buffer: int | None) -> Step:

@@ -26,6 +26,7 @@ class Graph:
         needs: every formula cell's own direct precedents that hold a formula or are inputs.
         varying: the cells among `formulas` and the inputs that depend on an input.
         reached: the inputs and held cells that something needs.
+        faults: formula cells that cannot be read or need themselves, where that was allowed.
     """
 
     workbook: Workbook
@@ -33,6 +34,7 @@ class Graph:
     needs: Mapping[Cell, tuple[Cell, ...]]
     varying: frozenset[Cell]
     reached: frozenset[Cell]
+    faults: Mapping[Cell, FormulaError]
 
     def text(self, cell: Cell) -> str:
         """The formula of a cell as the file holds it."""
@@ -41,9 +43,17 @@ class Graph:
 
 
 def build_graph(
-    resolver: Resolver, targets: Iterable[Cell], inputs: frozenset[Cell], held: frozenset[Cell] = frozenset()
+    resolver: Resolver,
+    targets: Iterable[Cell],
+    inputs: frozenset[Cell],
+    held: frozenset[Cell] = frozenset(),
+    *,
+    strict: bool = True,
 ) -> Graph:
     """Walk upstream from `targets`; an input is taken as given, whatever its cell holds, and so is a held cell.
+
+    Args:
+        strict: raise at the first faulty formula; collect the faults otherwise.
 
     Raises:
         FormulaError: a needed formula cannot be read, or the needed cells form a cycle.
@@ -53,16 +63,29 @@ def build_graph(
     reached: set[Cell] = set()
     trail: dict[Cell, Iterator[Cell]] = {}
     trees: dict[Cell, ir.Expression] = {}
+    faults: dict[Cell, FormulaError] = {}
 
     def enter(cell: Cell) -> None:
         if cell in given:
             reached.add(cell)
         elif cell in trail:
-            raise _cycle([*trail][[*trail].index(cell) :])
-        elif cell not in formulas and (tree := _tree(resolver, spills, cell)) is not None:
+            loop = [*trail][[*trail].index(cell) :]
+            if strict:
+                raise _cycle(loop)
+            faults.update({member: _cycle(loop) for member in loop})
+        elif cell not in formulas and (tree := read(cell)) is not None:
             trees[cell] = tree
             needs[cell] = tuple(_precedents(workbook, spills, tree, given))
             trail[cell] = iter(needs[cell])
+
+    def read(cell: Cell) -> ir.Expression | None:
+        try:
+            return _tree(resolver, spills, cell)
+        except FormulaError as error:
+            if strict:
+                raise
+            faults[cell] = error
+            return ir.Missing()
 
     workbook, spills, given = resolver.workbook, Spills(resolver.workbook), inputs | held
     for target in targets:
@@ -75,7 +98,7 @@ def build_graph(
             else:
                 formulas[cell] = trees[cell]
                 trail.popitem()
-    return Graph(workbook, formulas, needs, _varying(formulas, needs, reached & inputs), frozenset(reached))
+    return Graph(workbook, formulas, needs, _varying(formulas, needs, reached & inputs), frozenset(reached), faults)
 
 
 def _tree(resolver: Resolver, spills: Spills, cell: Cell) -> ir.Expression | None:
@@ -83,9 +106,7 @@ def _tree(resolver: Resolver, spills: Spills, cell: Cell) -> ir.Expression | Non
     return spills.anchor(cell) if formula is None else resolver.formula(cell, formula)
 
 
-def _precedents(
-    workbook: Workbook, spills: Spills, tree: ir.Expression, inputs: frozenset[Cell]
-) -> Iterator[Cell]:
+def _precedents(workbook: Workbook, spills: Spills, tree: ir.Expression, inputs: frozenset[Cell]) -> Iterator[Cell]:
     for place in dict.fromkeys(references(tree)):
         for cell in (place,) if isinstance(place, Cell) else _held(workbook, place, inputs):
             if cell in inputs or workbook.content(cell).formula is not None or spills.anchor(cell) is not None:
@@ -118,11 +139,21 @@ def references(tree: ir.Expression) -> Iterator[Cell | Area]:
         case ir.Call(_, arguments):
             for part in arguments:
                 yield from references(part)
+        case ir.Let(bindings, body):
+            for _, value in bindings:
+                yield from references(value)
+            yield from references(body)
+        case ir.Lambda(_, body):
+            yield from references(body)
+        case ir.Invoke(function, arguments):
+            yield from references(function)
+            for part in arguments:
+                yield from references(part)
         case ir.Array(rows):
             for row in rows:
                 for part in row:
                     yield from references(part)
-        case ir.Number() | ir.Text() | ir.Logical() | ir.ErrorLiteral() | ir.Missing():
+        case ir.Variable() | ir.Number() | ir.Text() | ir.Logical() | ir.ErrorLiteral() | ir.Missing():
             return
         case ir.Reference() | ir.Name() | ir.TableReference():
             raise TypeError(f"not resolved: {tree}")

@@ -18,6 +18,9 @@ __all__ = [
     "Corner",
     "ErrorLiteral",
     "Expression",
+    "Invoke",
+    "Lambda",
+    "Let",
     "Logical",
     "Missing",
     "Name",
@@ -26,6 +29,7 @@ __all__ = [
     "TableReference",
     "Text",
     "Unary",
+    "Variable",
     "chain",
 ]
 
@@ -129,6 +133,37 @@ class Call:
 
 
 @dataclass(frozen=True, slots=True)
+class Variable:
+    """A name that `LET` or `LAMBDA` binds, folded."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Let:
+    """`LET(x, 1, y, x+1, body)`: each binding sees those before it."""
+
+    bindings: tuple[tuple[str, Expression], ...]
+    body: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Lambda:
+    """`LAMBDA(x, y, body)`."""
+
+    parameters: tuple[str, ...]
+    body: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Invoke:
+    """A `LAMBDA`, or a variable or name that stands for one, called with arguments."""
+
+    function: Expression
+    arguments: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Array:
     """`{1,2;3,4}`."""
 
@@ -149,6 +184,10 @@ Expression = (
     | Unary
     | Binary
     | Call
+    | Variable
+    | Let
+    | Lambda
+    | Invoke
     | Array
 )
 

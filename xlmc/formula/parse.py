@@ -89,8 +89,7 @@ class _Text(_Leaf):
 
     @property
     def node(self) -> ir.Expression:
-        text = self.name.replace('""', '"').replace("\r" + _LINE_BREAK_IN_TEXT, "\n")
-        return ir.Text(text.replace(_LINE_BREAK_IN_TEXT, "\n"))
+        return ir.Text(_with_line_breaks(self.name.replace('""', '"')))
 
 
 class _Error(_Leaf):
@@ -135,7 +134,7 @@ class _TableReference(_Leaf):
     @property
     def node(self) -> ir.Expression:
         try:
-            return parse_table_reference(self.attr.get("table"), self.attr["name"])
+            return parse_table_reference(self.attr.get("table"), _with_line_breaks(self.attr["name"]))
         except ValueError:
             raise ForeignFormulaError from None
 
@@ -189,6 +188,19 @@ class _Function(FunctionToken):  # type: ignore[misc]
 
     def ast(self, tokens: list[Any], stack: list[Any], builder: Any, *rest: Any) -> None:
         _follow(tokens, an_operand=False)
+        super().ast(tokens, stack, builder, *rest)
+
+
+class _Invocation(FunctionToken):  # type: ignore[misc]
+    """The second `(` of `LAMBDA(x, x+1)(2)`: a call of what stands before it."""
+
+    _re = re.compile(r"(?P<name>\()\s*(?P<call>\))?")
+
+    def ast(self, tokens: list[Any], stack: list[Any], builder: Any, *rest: Any) -> None:
+        if not (tokens and isinstance(tokens[-1], Parenthesis) and tokens[-1].has_end):
+            raise TokenError
+        if stack and isinstance(stack[-1], Parenthesis) and stack[-1].has_start:
+            stack[-1].n_args -= 1  # what is called was counted as an operand of its own
         super().ast(tokens, stack, builder, *rest)
 
 
@@ -294,6 +306,11 @@ class _TreeBuilder:
             return token.node
         if isinstance(token, Empty):
             return ir.Missing()
+        if isinstance(token, _Invocation):
+            called, *arguments = self._take(token.get_n_args + 1)
+            if not isinstance(called, ir.Call | ir.Invoke):
+                raise ForeignFormulaError
+            return ir.Invoke(called, tuple(arguments))
         operands = self._take(token.get_n_args)
         return _call(token, operands) if isinstance(token, FunctionToken) else _operation(token.name, operands)
 
@@ -360,6 +377,7 @@ _TOKENS: list[Callable[..., Any]] = [
     _Separator,
     _Function,
     _Array,
+    _Invocation,
     _Parenthesis,
     _Intersect,
 ]
@@ -389,12 +407,18 @@ def parse(text: str) -> ir.Expression:
 
 
 def _without_line_breaks(text: str) -> str:
-    """Line breaks and tabs between tokens are blanks to Excel; inside texts they are kept. The length stays."""
+    """Line breaks and tabs between tokens are blanks to Excel; inside texts and brackets they are kept."""
     if not any(blank in text for blank in "\n\r\t"):
         return text
-    pieces = re.split(r"""("(?:[^"]|"")*"|'(?:[^']|'')*')""", text)
+    pieces = re.split(
+        r"""("(?:[^"]|"")*"|'(?:[^']|'')*'|\[(?:'.|[^\[\]']|\[(?:'.|[^\[\]'])*\])*\])""", text, flags=re.DOTALL
+    )
     kept = [p.replace("\n", _LINE_BREAK_IN_TEXT) if i % 2 else p.translate(_BLANKS) for i, p in enumerate(pieces)]
     return "".join(kept)
+
+
+def _with_line_breaks(text: str) -> str:
+    return text.replace("\r" + _LINE_BREAK_IN_TEXT, "\n").replace(_LINE_BREAK_IN_TEXT, "\n")
 
 
 def compile_with_formulas(text: str) -> Callable[[Mapping[str, Any]], object]:

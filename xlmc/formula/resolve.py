@@ -6,6 +6,7 @@ blank have become areas.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Final, assert_never
@@ -14,12 +15,16 @@ from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
 from xlmc.formula.parse import parse
+from xlmc.formula.shape import Shapes
 from xlmc.workbook.model import Formula, Table, Workbook
 
 __all__ = ["Resolver"]
 
 _REF = ir.ErrorLiteral(ErrorCode.REF)
 _NULL = ir.ErrorLiteral(ErrorCode.NULL)
+
+_PARAMETER: Final = re.compile(r"_xl[po][mp]\.", re.IGNORECASE)
+_LAMBDA: Final = re.compile(r"\s*(_xlfn\.)?LAMBDA\(", re.IGNORECASE)
 
 _DEEPEST: Final = 200
 """Levels of brackets, calls and names in a formula; Excel stops at 64 calls."""
@@ -33,13 +38,17 @@ class Resolver:
 
     Args:
         inputs: cells that count as used although the file may hold nothing there.
+        strict: whether a name that is not there is a mistake to tell of; `#NAME?` otherwise, as in Excel.
     """
 
-    def __init__(self, workbook: Workbook, inputs: Iterable[Cell] = ()) -> None:
+    def __init__(self, workbook: Workbook, inputs: Iterable[Cell] = (), *, strict: bool = True) -> None:
         self.workbook = workbook
+        self._strict = strict
         self._inputs = tuple(inputs)
         self._used: dict[str, tuple[int, int]] = {}
+        self._shapes = Shapes()
         self._open_names: list[str] = []
+        self._variables: frozenset[str] = frozenset()
         self._depth = self._parts = 0
 
     def formula(self, cell: Cell, formula: Formula) -> ir.Expression:
@@ -49,8 +58,10 @@ class Resolver:
             FormulaError: told of the cell; the formula cannot be read, or names something that is not there.
         """
         self._depth = self._parts = 0
+        self._variables = frozenset()
         try:
-            return self._resolve(parse(formula.text), cell, (formula.row, formula.column))
+            tree, origin = self._shapes.parse(formula.text, formula.row, formula.column)
+            return self._resolve(tree, cell, origin)
         except FormulaError as error:
             complete = error if error.text is not None else _about(error, formula.text)
             raise complete.at(cell) from None
@@ -77,16 +88,55 @@ class Resolver:
                 return ir.Unary(operator, self._resolve(operand, host, origin))
             case ir.Binary():
                 return self._chain(tree, host, origin)
-            case ir.Call("LET" | "LAMBDA" as name, _):
-                raise FormulaError(f"{name} is not supported in this version")
+            case ir.Call("LET", arguments):
+                return self._let(arguments, host, origin)
+            case ir.Call("LAMBDA", arguments):
+                return self._lambda(arguments, host, origin)
             case ir.Call(name, arguments):
-                return ir.Call(name, tuple(self._resolve(part, host, origin) for part in arguments))
+                resolved = tuple(self._resolve(part, host, origin) for part in arguments)
+                called = self._called(name, host)
+                return ir.Call(name, resolved) if called is None else ir.Invoke(called, resolved)
+            case ir.Invoke(function, arguments):
+                called = self._resolve(function, host, origin)
+                return ir.Invoke(called, tuple(self._resolve(part, host, origin) for part in arguments))
             case ir.Array(rows):
                 return ir.Array(tuple(tuple(self._resolve(part, host, origin) for part in row) for row in rows))
             case ir.Number() | ir.Text() | ir.Logical() | ir.ErrorLiteral() | ir.Missing() | Cell() | Area():
                 return tree
+            case ir.Variable() | ir.Let() | ir.Lambda():
+                raise TypeError(f"resolved twice: {tree}")
             case _:
                 assert_never(tree)
+
+    def _let(self, arguments: tuple[ir.Expression, ...], host: Cell, origin: tuple[int, int]) -> ir.Expression:
+        if len(arguments) < 3 or len(arguments) % 2 == 0:
+            raise FormulaError("LET takes pairs of a name and a value, and then a calculation")
+        outer, bindings = self._variables, []
+        for name, value in zip(arguments[:-1:2], arguments[1::2], strict=True):
+            resolved = self._resolve(value, host, origin)
+            bindings.append((_variable(name, "LET"), resolved))
+            self._variables = self._variables | {bindings[-1][0]}
+        body = self._resolve(arguments[-1], host, origin)
+        self._variables = outer
+        return ir.Let(tuple(bindings), body)
+
+    def _lambda(self, arguments: tuple[ir.Expression, ...], host: Cell, origin: tuple[int, int]) -> ir.Expression:
+        if not arguments:
+            raise FormulaError("LAMBDA takes at least a calculation")
+        parameters = tuple(_variable(name, "LAMBDA") for name in arguments[:-1])
+        outer, self._variables = self._variables, self._variables | set(parameters)
+        body = self._resolve(arguments[-1], host, origin)
+        self._variables = outer
+        return ir.Lambda(parameters, body)
+
+    def _called(self, name: str, host: Cell) -> ir.Expression | None:
+        """What a call calls when it is no function of Excel: a variable, or a defined name that holds a LAMBDA."""
+        if _folded(name) in self._variables:
+            return ir.Variable(_folded(name))
+        found = self.workbook.defined_name(name, host.sheet)
+        if found is None or not _LAMBDA.match(found.text):
+            return None
+        return self._name(ir.Name(name), host)
 
     def _chain(self, tree: ir.Binary, host: Cell, origin: tuple[int, int]) -> ir.Expression:
         first, rest = ir.chain(tree)
@@ -98,7 +148,7 @@ class Resolver:
     def _reference(self, tree: ir.Reference, host: Cell, origin: tuple[int, int]) -> ir.Expression:
         _refuse_other_books(tree.book)
         if tree.last_sheet is not None:
-            raise FormulaError("a reference over several sheets is not supported in this version")
+            return self._over_sheets(tree, host, origin)
         sheet = self._sheet(tree.sheet, host)
         first, last = (_place(corner, host, origin) for corner in (tree.first, tree.last or tree.first))
         if self._open_names:  # in a name, relative references go around the edge of the sheet
@@ -110,6 +160,19 @@ class Resolver:
         top, bottom = rows or (1, used[0])
         left, right = columns or (1, used[1])
         return _area(sheet, top, left, bottom, right)
+
+    def _over_sheets(self, tree: ir.Reference, host: Cell, origin: tuple[int, int]) -> ir.Expression:
+        """`Jan:Dec!A1` as the areas of each sheet between the two tabs, joined."""
+        tabs = list(self.workbook.sheets)
+        ends = sorted(tabs.index(self._sheet(name, host)) for name in (tree.sheet, tree.last_sheet))
+        parts = [
+            self._resolve(ir.Reference(tree.first, tree.last, sheet), host, origin)
+            for sheet in tabs[ends[0] : ends[1] + 1]
+        ]
+        joined = parts[0]
+        for part in parts[1:]:
+            joined = ir.Binary(",", joined, part)
+        return joined
 
     def _sheet(self, name: str | None, host: Cell) -> str:
         if name is None:
@@ -128,9 +191,13 @@ class Resolver:
         return self._used[sheet]
 
     def _name(self, tree: ir.Name, host: Cell) -> ir.Expression:
+        if _folded(tree.name) in self._variables and tree.sheet is None:
+            return ir.Variable(_folded(tree.name))
         _refuse_other_books(tree.book)
         scope = host.sheet if tree.sheet is None else self._sheet(tree.sheet, host)
         found = self.workbook.defined_name(tree.name, scope)
+        if found is None and not self._strict:
+            return ir.ErrorLiteral(ErrorCode.NAME)
         if found is None:
             known = (name.name for name in self.workbook.names)
             raise FormulaError(f"there is no name {tree.name!r}", hint=_did_you_mean(tree.name, known))
@@ -138,10 +205,12 @@ class Resolver:
         if key in self._open_names:
             raise FormulaError(f"the name {found.name!r} is defined by itself")
         self._open_names.append(key)
+        outer, self._variables = self._variables, frozenset()
         try:  # a name's relative references are written as seen from A1
             return self._resolve(parse(found.text), Cell(scope, host.row, host.column), (1, 1))
         finally:
             self._open_names.pop()
+            self._variables = outer
 
     def _table(self, tree: ir.TableReference, host: Cell) -> ir.Expression:
         table = self._named_table(tree.table, host)
@@ -163,6 +232,17 @@ class Resolver:
             known = (table.name for table in self.workbook.tables)
             raise FormulaError(f"there is no table {name!r}", hint=_did_you_mean(name, known))
         return found
+
+
+def _variable(name: ir.Expression, of: str) -> str:
+    if not isinstance(name, ir.Name) or name.sheet is not None or name.book is not None:
+        raise FormulaError(f"{of} needs a name where it has something else", hint="a name that looks like no cell")
+    return _folded(name.name)
+
+
+def _folded(name: str) -> str:
+    """A variable's name without the prefix that files give it."""
+    return _PARAMETER.sub("", name).casefold()
 
 
 def _about(error: FormulaError, text: str) -> FormulaError:
@@ -224,6 +304,8 @@ def _combined(operator: str, left: ir.Expression, right: ir.Expression) -> ir.Ex
         if isinstance(part, ir.ErrorLiteral):
             return part
     if not isinstance(left, Cell | Area) or not isinstance(right, Cell | Area):
+        if all(isinstance(part, Cell | Area | ir.Call | ir.Variable) for part in (left, right)):
+            return ir.Binary(operator, left, right)  # OFFSET(…):B9 is known only when its arguments are
         name = "range (:)" if operator == ":" else "intersection (a blank)"
         raise FormulaError(f"the {name} operator needs references on both sides", hint="is an operator missing?")
     a, b = _as_area(left), _as_area(right)

@@ -13,7 +13,7 @@ __all__ = ["TABLE_REFERENCE", "parse_table_reference"]
 
 _PLAIN = r"(?:'.|[^\[\]'])*"
 _INNER = rf"(?:{_PLAIN}(?:\[{_PLAIN}\]{_PLAIN})*)"
-TABLE_REFERENCE = re.compile(rf"\s*(?P<table>[^\W\d][\w.\\]*)?\[(?P<name>{_INNER})\](?![\w!])", re.DOTALL)
+TABLE_REFERENCE = re.compile(rf"\s*(?P<table>(?:[^\W\d]|\\)[\w.\\]*)?\[(?P<name>{_INNER})\](?![\w!])", re.DOTALL)
 """Matches a whole structured reference: `table` may be absent, `name` is what stands in the outer brackets."""
 
 _PIECE = re.compile(rf"\s*(?:\[(?P<name>{_PLAIN})\]|(?P<sign>[,:]))\s*", re.DOTALL)

@@ -36,6 +36,15 @@ def formula_text(tree: ir.Expression, name: Callable[[Cell | Area], str] = str) 
             return "(" * len(terms) + formula_text(first, name) + "".join(terms)
         case ir.Call(function, arguments):
             return f"{function}({','.join(formula_text(part, name) for part in arguments)})"
+        case ir.Variable(variable):
+            return variable
+        case ir.Let(bindings, body):
+            pairs = (f"{bound},{formula_text(value, name)}" for bound, value in bindings)
+            return f"LET({','.join(pairs)},{formula_text(body, name)})"
+        case ir.Lambda(parameters, body):
+            return f"LAMBDA({','.join([*parameters, formula_text(body, name)])})"
+        case ir.Invoke(called, arguments):
+            return f"{formula_text(called, name)}({','.join(formula_text(part, name) for part in arguments)})"
         case ir.Array(rows):
             return "{" + ";".join(",".join(formula_text(part, name) for part in row) for row in rows) + "}"
         case ir.Reference() | ir.Name() | ir.TableReference():

@@ -31,13 +31,15 @@ def build_sheets(simulation: Simulation, *, command: str | None = None, rows: in
     """
     from xlsxwriter import Workbook
 
+    from xlmc.report.exact_sheet import ExactSheet
+
     packed = io.BytesIO()
     with Workbook(packed, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as book:
         book.set_properties({"created": _CREATED})
         styles = Styles(book)
 
         def page(name: str, widths: tuple[float, ...]) -> Page:
-            return Page(book.add_worksheet(name), styles, widths)
+            return Page(book.add_worksheet(name, ExactSheet), styles, widths)
 
         results.write_results(page("Results", results.WIDTHS), simulation)
         drawing = page("Charts", charts.WIDTHS)

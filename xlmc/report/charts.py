@@ -20,7 +20,10 @@ __all__ = ["WIDTHS", "write_charts"]
 _ACROSS, _COLUMNS = 2, 9
 """Figures side by side, and the columns of the sheet that each takes."""
 
-_CHART_ROWS, _GAP = 16, 2
+_ON_A_PAGE, _SCALE = 4, 60
+"""Figures, and the percentage at which so many fit."""
+
+_CHART_ROWS = 16
 _FIRST = 3
 WIDTHS = (8.43,) * (_ACROSS * _COLUMNS)
 
@@ -34,16 +37,22 @@ def write_charts(
     page.row = _FIRST
     if not figures:
         page.put(page.row, 0, cells.text("No forecast has a number in an accepted trial: nothing to draw.", "alarm"))
+    breaks = []
     for start in range(0, len(figures), _ACROSS):
+        if start and start % _ON_A_PAGE == 0:
+            breaks.append(page.row)
         _write_row(page, book, figures[start : start + _ACROSS], places[start : start + _ACROSS])
-    page.printed(name)
+    page.printed(name, scale=_SCALE, breaks=breaks)
 
 
 def _write_row(page: Page, book: Workbook, figures: Sequence[Figure], places: Sequence[BinsAt]) -> None:
+    starts, captions = [], []
     for column, (figure, place) in enumerate(zip(figures, places, strict=True)):
+        left = column * _COLUMNS
         options = {"object_position": 1, "description": figure.caption}
-        page.sheet.insert_chart(page.row, column * _COLUMNS, histogram_chart(book, place, figure.bins), options)
+        page.sheet.insert_chart(page.row, left, histogram_chart(book, place, figure.bins), options)
+        starts += [left, left + _COLUMNS - 1]
+        captions += [cells.text(figure.caption, "caption"), cells.text("", "caption")]
     page.row += _CHART_ROWS
-    starts = [column * _COLUMNS for column in range(len(figures))]
-    page.spread([cells.text(figure.caption, "caption") for figure in figures], starts, starts[-1] + _COLUMNS - 1)
-    page.row += _GAP
+    page.spread(captions, starts, starts[-1])
+    page.row += 1

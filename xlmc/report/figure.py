@@ -33,7 +33,7 @@ class Figure:
     @property
     def axis(self) -> str:
         """What stands below the bars: the units, and what a bar covers."""
-        bars = f"bars {self.bins.width:.{self.bins.decimals}f} wide, each labelled at its lower end"
+        bars = f"bars {self.bins.width:g} wide, each labelled at its lower end"
         return f"{self.answer.units} ({bars})" if self.answer.units else f"B{bars[1:]}"
 
     @property

@@ -29,7 +29,10 @@ _ROUND = (1.0, 2.0, 2.5, 5.0)
 _ROUND_LABELS = (1.0, 2.0, 5.0)
 _STEPS = (1, 2, 4, 5, 10, 20)
 _MOST_LABELS = 12
-_FENCE = 5.0
+_FENCE, _VAST = 5.0, 1e300
+_MOST_DECIMALS, _LONGEST = 6, 1e7
+"""Beyond these a label has a power of ten."""
+
 _FINEST = 1e-9
 """Of the largest value: a finer bin would show rounding."""
 
@@ -57,31 +60,40 @@ class Histogram:
 
     @property
     def upper_edges(self) -> Floats:
-        return np.round(self.edges + self.width, self.decimals)
+        return _multiples(self.width, round(float(self.edges[0] / self.width)) + 1, self.edges.size)
 
     @property
     def labels(self) -> list[str]:
         """The lower end in text for every `step`-th bin, nothing for the others."""
         decimals = _decimals(self.width * self.step)
-        return ["" if i % self.step else f"{edge:.{decimals}f}" for i, edge in enumerate(self.edges)]
+        return ["" if i % self.step else self._text(edge, decimals) for i, edge in enumerate(self.edges)]
 
     @property
     def edge_format(self) -> str:
-        """The Excel number format that writes edges in full."""
+        """The Excel number format that writes edges in full, if there is room."""
+        if not self._short:
+            return "General"
         return "0" + ("." + "0" * self.decimals if self.decimals else "")
+
+    def _text(self, edge: float, decimals: int) -> str:
+        return f"{edge:.{decimals}f}" if self._short else f"{edge:.4g}"
+
+    @property
+    def _short(self) -> bool:
+        return self.decimals <= _MOST_DECIMALS and bool(np.max(np.abs(self.upper_edges)) < _LONGEST)
 
 
 def histogram(values: Floats, low: float, high: float) -> Histogram | None:
     """Count `(n,)` finite values, apart for those in [low, high]; None where there are none."""
     if values.size == 0:
         return None
-    first, last = _shown(values)
-    width = _width(values, first, last)
+    sane = values.clip(-_VAST, _VAST)
+    first, last = _shown(sane)
+    width = _width(sane, first, last)
     start, stop = math.floor(first / width), math.floor(last / width) + 1
     step = _step(width, stop - start)
     start, stop = step * math.floor(start / step), step * math.ceil(stop / step)
-    decimals = _decimals(width)
-    edges = np.round(np.arange(start, stop + 1) * width, decimals)
+    edges = _multiples(width, start, stop - start + 1)
     place = np.searchsorted(edges, values, side="right") - 1
     drawn = (place >= 0) & (place < edges.size - 1)
     central = (values >= low) & (values <= high)
@@ -93,7 +105,7 @@ def histogram(values: Floats, low: float, high: float) -> Histogram | None:
         below=int(np.count_nonzero(place < 0)),
         above=int(np.count_nonzero(place >= edges.size - 1)),
         step=step,
-        decimals=decimals,
+        decimals=_decimals(width),
     )
 
 
@@ -109,8 +121,8 @@ def _shown(values: Floats) -> tuple[float, float]:
 
 def _width(values: Floats, first: float, last: float) -> float:
     span, largest = last - first, max(abs(first), abs(last))
-    if span <= _FINEST * largest or span == 0.0:
-        return _round_below(0.01 * largest) if largest else 1.0
+    if span <= max(_FINEST * largest, 1.0 / _VAST):
+        return _round_below(0.01 * largest) if largest > 1.0 / _VAST else 1.0
     if span <= _MOST and bool(np.all(values == np.floor(values))):
         return 1.0
     lower, upper = np.percentile(values, [25.0, 75.0])
@@ -143,6 +155,11 @@ def _step(width: float, bins: int) -> int:
         if bins <= step * _MOST_LABELS and _mantissa(width * step) in _ROUND_LABELS:
             return step
     return _STEPS[-1]
+
+
+def _multiples(width: float, first: int, count: int) -> Floats:
+    """(count,) multiples of a round width, as people write them: 0.3, not 0.30000000000000004."""
+    return np.array([float(f"{multiple * width:.13g}") for multiple in range(first, first + count)])
 
 
 def _decimals(width: float) -> int:

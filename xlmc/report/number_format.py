@@ -50,7 +50,9 @@ def _format(value: float, decimals: int | None) -> str:
     if not math.isfinite(value):
         return "General"
     if decimals is None:
-        decimals = _DIGITS - 1 - (_exponent(value) if value else 0)
+        if value == 0.0:
+            return "General"
+        decimals = _DIGITS - 1 - _exponent(value)
     size = max(abs(value), 10.0**-decimals)
     if not _SMALLEST <= size < _LARGEST:
         return "0" + _fraction(min(max(decimals + _exponent(size), 0), 3)) + "E+00"

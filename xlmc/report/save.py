@@ -46,12 +46,13 @@ def _check_ending(path: Path, source: Path) -> None:
     # Excel opens no file whose ending says that it has macros when it has none, or the other way round.
     if path.suffix.casefold() != source.suffix.casefold():
         hint = f"Name it {path.with_suffix(source.suffix).name!r}"
-        raise WorkbookError(f"the results of a {source.suffix} workbook are one too", where=path, hint=hint)
+        raise WorkbookError(f"results of a {source.suffix} workbook must end in {source.suffix}", where=path, hint=hint)
 
 
 def _refuse_changed(simulation: Simulation, path: Path) -> None:
     """Refuse to write the workbook as it was read over one that a person has changed meanwhile."""
-    if not path.exists() or not path.samefile(simulation.model.path):
+    source = simulation.model.path
+    if not (path.exists() and source.exists() and path.samefile(source)):
         return
     if hashlib.sha256(path.read_bytes()).hexdigest() != simulation.model.workbook.sha256:
         hint = "Run again, or write to another file"

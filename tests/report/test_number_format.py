@@ -1,0 +1,60 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from xlmc.report.number_format import exact, paired, share_paired
+from xlmc.statistics import Estimate, format_estimate, proportion
+
+PAIRED = [
+    (11.79946, 0.01256, "#,##0.000"),
+    (48211.3, 870.0, "#,##0"),
+    (70178.2, 12.3, "#,##0"),
+    (0.05403, 0.00051, "#,##0.00000"),
+    (-0.021, 0.013, "#,##0.000"),
+    (0.0, 0.3, "#,##0.00"),
+    (5.469e11, 2.177e9, "0.000E+00"),
+    (2.5e-7, 1.2e-9, "0.000E+00"),
+    (7.0, 0.0, "General"),
+    (math.nan, None, "General"),
+    (math.inf, None, "General"),
+    (17.02134, None, "#,##0.0000"),
+    (0.0, None, "General"),
+    (6760.846, 0.0023, "#,##0.000"),  # as many decimals as there is room for
+]
+
+
+@pytest.mark.parametrize(("value", "error", "expected"), PAIRED)
+def test_formats_of_a_value_beside_its_error(value, error, expected):
+    assert paired(Estimate(value, error)) == expected
+
+
+@given(st.floats(1e-2, 9e3), st.floats(1e-3, 1e2))
+def test_the_sheet_shows_the_digits_that_the_command_line_prints(value, error):
+    decimals = paired(Estimate(value, error)).partition(".")[2].count("0")
+    printed = format_estimate(value, error).split(" ")[0].partition(".")[2]
+    room = 9 - len(f"{value:,.0f}") - 1
+    assert decimals == min(len(printed), max(room, 0))
+
+
+@pytest.mark.parametrize(
+    ("estimate", "expected"),
+    [
+        (proportion(3542, 200_000), "0.000%"),
+        (proportion(0, 200_000), "0.00000%"),
+        (proportion(1, 2), "0%"),
+        (Estimate(math.nan), "0.00%"),
+    ],
+)
+def test_formats_of_shares(estimate, expected):
+    assert share_paired(estimate) == expected
+
+
+@pytest.mark.parametrize(
+    ("spread", "expected"), [(200.0, "#,##0.0"), (0.35, "#,##0.0000"), (4e8, "0.000E+00"), (0.0, "General")]
+)
+def test_formats_of_single_trials_follow_their_spread(spread, expected):
+    assert exact(spread) == expected

@@ -1,0 +1,76 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from xlmc.report.summary import ERROR_SENTENCE, estimate_text, percent, range_heading, summarise, summary_text
+from xlmc.statistics import Estimate, format_estimate
+
+
+def test_rows_are_the_simulations_own_numbers(run):
+    rows = summarise(run)
+    assert [row.name for row in rows] == ["area", "difference"]
+    area = rows[0]
+    found = run["area"].statistics
+    assert (area.mean, area.standard_deviation, (area.low, area.high)) == (
+        found.mean,
+        found.standard_deviation,
+        found.central,
+    )
+    assert (area.units, area.trials, area.share, area.base, area.threshold) == ("ft", run.accepted, 0.51, 16.0, 16.0)
+    assert area.above == run["area"].probability_above(16.0)
+    assert rows[1].above is None
+
+
+def test_the_text_prints_each_number_with_its_error(run):
+    headings, lines = summary_text(summarise(run))
+    assert headings == ["Forecast", "Units", "Mean", "SD", "51 % range", "Base case", "Threshold", "P(above)"]
+    found = run["area"].statistics
+    low, high = (format_estimate(end.value, end.error) for end in found.central)
+    above = found.probability_above
+    assert lines[0] == [
+        "area",
+        "ft",
+        format_estimate(found.mean.value, found.mean.error),
+        format_estimate(found.standard_deviation.value, found.standard_deviation.error),
+        f"{low} to {high}",
+        "16",
+        "16",
+        f"{format_estimate(100 * above.value, 100 * above.error)} %",
+    ]
+    assert lines[1][-2:] == ["", ""]
+
+
+def test_columns_that_nothing_fills_are_left_out(none_accepted):
+    headings, lines = summary_text(summarise(none_accepted))
+    assert headings == ["Forecast", "Base case", "Threshold"]
+    assert lines == [["x", "1", "1"]]
+
+
+def test_different_ranges_are_told_apart(make):
+    run = make.simulate(
+        {"A1": 0.5, "B1": "=A1"},
+        [make.uniform("a", "A1", 0.0, 1.0, base=0.5)],
+        [make.forecast("x", "B1"), make.forecast("y", "A1", central=0.95)],
+    )
+    headings, lines = summary_text(summarise(run))
+    assert headings[-3:] == ["Central range", "Range", "Base case"]
+    assert [line[-2] for line in lines] == ["51 %", "95 %"]
+    assert range_heading(summarise(run)) == "Central range"
+
+
+@pytest.mark.parametrize(
+    ("share", "text"), [(0.51, "51 %"), (0.245, "24.5 %"), ((1 - 0.51) / 2, "24.5 %"), (1.0, "100 %")]
+)
+def test_shares_in_percent(share, text):
+    assert percent(share) == text
+
+
+def test_no_number_is_no_text():
+    assert estimate_text(Estimate(math.nan)) == ""
+    assert estimate_text(Estimate(17.0213, 0.0023)) == "17.0213 ± 0.0023"
+
+
+def test_the_sentence_says_what_monte_carlo_error_is_not():
+    assert "not reconstruction error" in ERROR_SENTENCE

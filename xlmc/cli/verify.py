@@ -1,0 +1,97 @@
+"""`xlmc verify`: recomputed values against the ones Excel saved."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from xlmc.verify import CellCheck, Verification
+
+__all__ = ["verify"]
+
+DIFFERS = 1
+_SHOWN = 50
+
+
+@click.command()
+@click.argument("book", type=click.Path(path_type=Path))
+@click.option("--all", "everything", is_flag=True, help="Check every formula cell, not only the needed ones.")
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+def verify(book: Path, everything: bool, as_json: bool) -> None:
+    """Recompute the formulas of BOOK at their base values and compare with the values Excel saved."""
+    from xlmc.definitions import read_definitions
+    from xlmc.verify import Status
+    from xlmc.verify import verify as check
+    from xlmc.workbook import read_workbook
+
+    workbook = read_workbook(book)
+    definitions = None if everything else read_definitions(workbook)
+    if definitions is not None and not definitions.forecasts and not definitions.filters:
+        raise click.UsageError(f"{book} has no forecasts and no filters; give --all to check every formula cell.")
+    found = check(workbook, definitions)
+    if as_json:
+        click.echo(json.dumps(_as_json(found), indent=2))
+    else:
+        _show(found)
+    if found.count(Status.DIFFERING):
+        raise click.exceptions.Exit(DIFFERS)
+
+
+def _as_json(found: Verification) -> dict[str, object]:
+    from xlmc.verify import Status
+
+    counts = {status.value.replace(" ", "_"): found.count(status) for status in Status}
+    listed = [_entry(cell) for cell in found.cells if cell.status is not Status.MATCHED]
+    return {"formula_cells": len(found.cells), **counts, "cells": listed}
+
+
+def _entry(cell: CellCheck) -> dict[str, object]:
+    entry = {
+        "cell": str(cell.cell),
+        "formula": cell.formula,
+        "status": cell.status.value,
+        "expected": _plain(cell.expected),
+        "got": _plain(cell.got),
+        "relative_difference": cell.difference,
+        "reason": cell.reason,
+    }
+    return {key: value for key, value in entry.items() if value not in (None, "")}
+
+
+def _plain(value: object) -> object:
+    from xlmc.errors import ErrorCode
+
+    return value.text if isinstance(value, ErrorCode) else value
+
+
+def _show(found: Verification) -> None:
+    from xlmc.cli.printing import table
+    from xlmc.verify import Status, groups
+
+    counts = [f"{found.count(status):,} {status.value}" for status in Status if found.count(status)]
+    click.echo(f"{len(found.cells):,} formula cells: {', '.join(counts) or 'nothing to check'}.")
+    differing = found.of(Status.DIFFERING)
+    if differing:
+        rows = [
+            (str(c.cell), f"={c.formula}", str(_plain(c.expected)), str(_plain(c.got)), _percent(c.difference))
+            for c in differing[:_SHOWN]
+        ]
+        table("Differing", ("Cell", "Formula", "Excel saved", "xlmc", "Relative"), rows, right=(4,))
+        _say_how_many_more(len(differing))
+    for reason, cells in groups(found.of(Status.UNSUPPORTED)):
+        places = ", ".join(str(cell.cell) for cell in cells[:5])
+        more = f" and {len(cells) - 5:,} more" if len(cells) > 5 else ""
+        click.echo(f"unsupported: {reason} ({places}{more})")
+
+
+def _percent(difference: float | None) -> str:
+    return "" if difference is None else f"{difference:.2g}"
+
+
+def _say_how_many_more(count: int) -> None:
+    if count > _SHOWN:
+        click.echo(f"… and {count - _SHOWN:,} more; --json lists them all.")

@@ -1,0 +1,145 @@
+"""Recompute a workbook's formulas and compare with the values that Excel saved: an audit, and our conformance test."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final
+
+from xlmc.address import Cell
+from xlmc.compile import Lowering
+from xlmc.definitions import Definitions
+from xlmc.errors import ErrorCode
+from xlmc.formula import Resolver, build_graph
+from xlmc.scene import targets_of
+from xlmc.workbook import CellValue, Workbook
+
+__all__ = ["TOLERANCE", "CellCheck", "Status", "Verification", "verify"]
+
+TOLERANCE: Final = 1e-9
+"""Relative difference up to which two numbers match."""
+
+ROUND_OFF: Final = 1e-13
+"""Where Excel saved 0, a number up to this matches: Excel makes a difference that cancels to 15 digits 0."""
+
+
+class Status(Enum):
+    """What came of a formula cell."""
+
+    MATCHED = "matched"
+    DIFFERING = "differing"
+    UNSUPPORTED = "unsupported"
+    NOT_CACHED = "not cached"
+    VOLATILE = "volatile"
+
+
+@dataclass(frozen=True, slots=True)
+class CellCheck:
+    """One formula cell.
+
+    Attributes:
+        expected: what Excel saved.
+        got: what xlmc computes; None where it computes nothing.
+        reason: why it is unsupported.
+    """
+
+    cell: Cell
+    formula: str
+    status: Status
+    expected: CellValue
+    got: object = None
+    reason: str = ""
+
+    @property
+    def difference(self) -> float | None:
+        """Relative difference of two numbers; None where one is none."""
+        if not _is_number(self.expected) or not _is_number(self.got):
+            return None
+        return _relative(float(self.expected), float(self.got))  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True, slots=True)
+class Verification:
+    """The formula cells of a workbook, checked."""
+
+    cells: tuple[CellCheck, ...]
+
+    def count(self, status: Status) -> int:
+        """How many cells have that status."""
+        return sum(cell.status is status for cell in self.cells)
+
+    def of(self, status: Status) -> list[CellCheck]:
+        """The cells that have that status."""
+        return [cell for cell in self.cells if cell.status is status]
+
+
+def verify(workbook: Workbook, definitions: Definitions | None = None) -> Verification:
+    """Recompute formula cells at their base values.
+
+    Args:
+        definitions: checks only what its forecasts and filters need; every formula cell when None.
+    """
+    wanted = _all_formulas(workbook) if definitions is None else targets_of(definitions)
+    graph = build_graph(Resolver(workbook, strict=False), wanted, frozenset(), strict=False)
+    lowering = Lowering(graph, {}, {}, strict=False)
+    checked = sorted(graph.formulas) if definitions is not None else sorted(_all_formulas(workbook))
+    return Verification(tuple(_checked(lowering, cell) for cell in checked if _has_formula(workbook, cell)))
+
+
+def _all_formulas(workbook: Workbook) -> list[Cell]:
+    return [
+        Cell(sheet.name, row, column)
+        for sheet in workbook.sheets.values()
+        for (row, column), content in sheet.cells.items()
+        if content.formula is not None
+    ]
+
+
+def _has_formula(workbook: Workbook, cell: Cell) -> bool:
+    return workbook.content(cell).formula is not None
+
+
+def _checked(lowering: Lowering, cell: Cell) -> CellCheck:
+    content = lowering.graph.workbook.content(cell)
+    text = "" if content.formula is None else content.formula.text
+
+    def made(status: Status, got: object = None, reason: str = "") -> CellCheck:
+        return CellCheck(cell, text, status, content.value, got, reason)
+
+    fault = lowering.faults.get(cell)
+    if fault is not None:
+        return made(Status.UNSUPPORTED, reason=fault.message)
+    value = lowering.value(cell)
+    if value is None:
+        return made(Status.VOLATILE)
+    got = value.objects().ravel()[0]
+    if content.value is None:
+        return made(Status.NOT_CACHED, got)
+    return made(Status.MATCHED if _same(content.value, got) else Status.DIFFERING, got)
+
+
+def _same(expected: CellValue, got: object) -> bool:
+    if _is_number(expected) and _is_number(got):
+        if expected == 0 and abs(float(got)) <= ROUND_OFF:  # type: ignore[arg-type]
+            return True
+        return _relative(float(expected), float(got)) <= TOLERANCE  # type: ignore[arg-type]
+    if isinstance(expected, str) and got is None:
+        return expected == ""
+    return type(expected) is type(got) and expected == got
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool | ErrorCode)
+
+
+def _relative(expected: float, got: float) -> float:
+    return abs(expected - got) / max(abs(expected), abs(got), 5e-324)
+
+
+def groups(cells: Iterable[CellCheck]) -> list[tuple[str, Sequence[CellCheck]]]:
+    """Unsupported cells by reason, the most frequent first."""
+    found: dict[str, list[CellCheck]] = {}
+    for cell in cells:
+        found.setdefault(cell.reason, []).append(cell)
+    return sorted(found.items(), key=lambda item: -len(item[1]))

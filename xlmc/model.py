@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from xlmc.address import Cell
 from xlmc.compile import ENGINES, Lowering, Program, Target
 from xlmc.definitions import Assumption, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key
 from xlmc.drawing import correlated_groups, draw_of, dynamic_parameters
 from xlmc.errors import DefinitionError, Notice, SimulationError
 from xlmc.sampling import MonteCarlo, Stage
-from xlmc.scene import condition, survey
+from xlmc.scene import Scene, condition, survey
 from xlmc.workbook import Workbook, read_workbook
 
 if TYPE_CHECKING:
@@ -44,6 +45,20 @@ def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:
     return problems[0] if len(problems) == 1 else DefinitionError("\n".join(str(p) for p in problems).rstrip("."))
 
 
+def _understood(workbook: Workbook, definitions: Definitions) -> tuple[Scene, Lowering]:
+    """What is needed, lowered; again and wider as long as OFFSET and its like lead to cells that were not."""
+    inputs = {a.cell: name_key(a.name) for a in definitions.assumptions if not a.frozen}
+    held = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
+    more: dict[Cell, set[Cell]] = {}
+    while True:
+        scene = survey(workbook, definitions, more)
+        lowering = Lowering(scene.graph, inputs, held)
+        if not lowering.more:
+            return scene, lowering
+        for cell, needed in lowering.more.items():
+            more.setdefault(cell, set()).update(needed)
+
+
 class Model:
     """A workbook's assumptions, forecasts and filters, and the function that computes them.
 
@@ -56,10 +71,8 @@ class Model:
 
     def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
         self.workbook, self.definitions, self.path = workbook, definitions, path
-        self.scene = survey(workbook, definitions)
+        self.scene, self._lowering = _understood(workbook, definitions)
         self.live: tuple[Assumption, ...] = self.scene.live
-        held = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
-        self._lowering = Lowering(self.scene.graph, {a.cell: name_key(a.name) for a in self.live}, held)
         self._draws = {a.name: draw_of(a, self._lowering) for a in self.live}
         self._groups = correlated_groups(definitions.correlations, [a.name for a in self.live])
         self._check_targets()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from xlmc.address import Cell
@@ -39,8 +39,13 @@ class Scene:
         return tuple(Notice(f"no forecast or filter needs the assumption {a.name!r}", a.cell) for a in self.idle)
 
 
-def survey(workbook: Workbook, definitions: Definitions) -> Scene:
+def survey(workbook: Workbook, definitions: Definitions, more: Mapping[Cell, Iterable[Cell]] | None = None) -> Scene:
     """Find what the forecasts and filters need.
+
+    Args:
+        workbook: to look through.
+        definitions: what it asks for.
+        more: cells that a formula cell turned out to need beside those its formula names.
 
     Raises:
         FormulaError: a needed formula cannot be read, or needed cells form a circle.
@@ -51,11 +56,11 @@ def survey(workbook: Workbook, definitions: Definitions) -> Scene:
     resolver = Resolver(workbook, [*live, *held])
     targets = targets_of(definitions)
     while True:  # the parameters of needed assumptions may need more cells, and these more assumptions
-        graph = build_graph(resolver, targets, frozenset(live), held)
-        more = [cell for a in live.values() if a.cell in graph.reached for cell in parameter_cells(a)]
-        if set(more) <= set(targets):
+        graph = build_graph(resolver, targets, frozenset(live), held, more=more)
+        wanted = [cell for a in live.values() if a.cell in graph.reached for cell in parameter_cells(a)]
+        if set(wanted) <= set(targets):
             break
-        targets = list(dict.fromkeys(targets + more))
+        targets = list(dict.fromkeys(targets + wanted))
     reached = tuple(a for a in live.values() if a.cell in graph.reached)
     idle = tuple(a for a in definitions.assumptions if a.cell not in graph.reached)
     return Scene(graph, _stages(graph, reached), idle)

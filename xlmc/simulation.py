@@ -124,9 +124,7 @@ class Simulation:
     @cached_property
     def results(self) -> dict[str, ForecastResult]:
         """Every forecast's result, in the order of the workbook."""
-        return {
-            f.name: ForecastResult(f, self.forecasts[f.name], self.faults[f.name]) for f in self.model.forecasts
-        }
+        return {f.name: ForecastResult(f, self.forecasts[f.name], self.faults[f.name]) for f in self.model.forecasts}
 
     @property
     def accepted(self) -> int:

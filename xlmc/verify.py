@@ -78,13 +78,25 @@ def verify(workbook: Workbook, definitions: Definitions | None = None) -> Verifi
     """Recompute formula cells at their base values.
 
     Args:
+        workbook: to check.
         definitions: checks only what its forecasts and filters need; every formula cell when None.
     """
     wanted = _all_formulas(workbook) if definitions is None else targets_of(definitions)
-    graph = build_graph(Resolver(workbook, strict=False), wanted, frozenset(), strict=False)
-    lowering = Lowering(graph, {}, {}, strict=False)
-    checked = sorted(graph.formulas) if definitions is not None else sorted(_all_formulas(workbook))
+    lowering = _lowered(workbook, wanted)
+    checked = sorted(wanted if definitions is None else lowering.graph.formulas)
     return Verification(tuple(_checked(lowering, cell) for cell in checked if _has_formula(workbook, cell)))
+
+
+def _lowered(workbook: Workbook, wanted: Sequence[Cell]) -> Lowering:
+    resolver = Resolver(workbook, strict=False)
+    more: dict[Cell, set[Cell]] = {}
+    while True:
+        graph = build_graph(resolver, wanted, frozenset(), more=more, strict=False)
+        lowering = Lowering(graph, {}, {}, strict=False)
+        if not lowering.more:
+            return lowering
+        for cell, needed in lowering.more.items():
+            more.setdefault(cell, set()).update(needed)
 
 
 def _all_formulas(workbook: Workbook) -> list[Cell]:

@@ -2,17 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, assert_never
+from typing import Any, Final, assert_never
 
 import numpy as np
 
+from xlmc.compile.ragged import Ragged, by_trial
 from xlmc.functions import Function, Kind
 from xlmc.functions.logical import if_, if_error, if_na
-from xlmc.functions.values import LOGICAL, NUMBER, TEXT, Value
+from xlmc.functions.values import LOGICAL, NUMBER, TEXT, ShapeVaries, Value
 
-__all__ = ["Apply", "Constant", "Dag", "Input", "Node", "Range", "Rescue", "Select", "constants", "evaluated", "uses"]
+__all__ = [
+    "MANY",
+    "Apply",
+    "Constant",
+    "Dag",
+    "Input",
+    "Node",
+    "Range",
+    "Rescue",
+    "Select",
+    "constants",
+    "evaluated",
+    "uses",
+]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,6 +82,45 @@ Node = Constant | Input | Apply | Select | Rescue | Range
 Size = tuple[int, ...] | None
 """Rows and columns of a value that is many cells; None for a single one."""
 
+MANY: Final = (-1, -1)
+"""The size of a value that may be many cells, how many being known only during the run."""
+
+_SPILLING: Final = frozenset(
+    {
+        "CHOOSECOLS",
+        "CHOOSEROWS",
+        "DROP",
+        "EXPAND",
+        "FILTER",
+        "FREQUENCY",
+        "GROWTH",
+        "HSTACK",
+        "LINEST",
+        "LOGEST",
+        "MINVERSE",
+        "MMULT",
+        "MODE.MULT",
+        "MUNIT",
+        "SEQUENCE",
+        "SORT",
+        "SORTBY",
+        "TAKE",
+        "TEXTSPLIT",
+        "TOCOL",
+        "TOROW",
+        "TRANSPOSE",
+        "TREND",
+        "UNIQUE",
+        "VSTACK",
+        "WRAPCOLS",
+        "WRAPROWS",
+        "INDEX",
+        "XLOOKUP",
+        "RANDARRAY",
+    }
+)
+"""Functions that give many cells, or may."""
+
 
 class Dag:
     """Nodes in an order in which each comes after those it uses; a node is known by its place.
@@ -116,6 +169,8 @@ class Dag:
         if isinstance(node, Apply):  # what takes a range whole makes one value of it
             parts = [part for i, part in enumerate(parts) if not node.function.parameter(i).ranged]
         sizes = [size for part in parts if (size := self.sizes[part]) is not None]
+        if MANY in sizes or (isinstance(node, Apply) and node.function.name in _SPILLING):
+            return MANY
         return np.broadcast_shapes(*sizes) if sizes else None
 
     def _place(self, key: object, node: Node, kind: Kind, size: Size) -> int:
@@ -169,8 +224,18 @@ def uses(node: Node) -> tuple[int, ...]:
             assert_never(node)
 
 
-def evaluated(node: Apply | Select | Rescue | Range, values: dict[int, Value]) -> Value:
+def evaluated(node: Apply | Select | Rescue | Range, values: Mapping[int, Value]) -> Value:
     """The node's value with everything Excel minds: the reference path, and how constants fold."""
+    needed = {place: values[place] for place in uses(node)}
+    if not any(isinstance(value, Ragged) for value in needed.values()):
+        try:
+            return _evaluated(node, needed)
+        except ShapeVaries:
+            pass  # trial by trial, then
+    return by_trial(lambda trial: _evaluated(node, trial), needed)
+
+
+def _evaluated(node: Apply | Select | Rescue | Range, values: Mapping[int, Value]) -> Value:
     match node:
         case Apply(function, arguments):
             return function([values[place] for place in arguments])

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from difflib import get_close_matches
+from functools import cached_property
 from typing import assert_never
 
 import numpy as np
 
 from xlmc.address import Area, Cell
-from xlmc.compile.dag import Apply, Constant, Dag, Range, Rescue, Select
+from xlmc.compile import choices, lambdas, places
+from xlmc.compile.arrays import cell_by_cell, element
+from xlmc.compile.dag import Apply, Constant, Dag, Range
+from xlmc.compile.dated import dated
 from xlmc.compile.engine import Target
+from xlmc.compile.scope import Scope
 from xlmc.errors import ErrorCode, FormulaError, Notice
-from xlmc.formula import Graph, ir
+from xlmc.formula import Graph, Resolver, ir
 from xlmc.functions import REGISTRY, Function, Kind, function_named
-from xlmc.functions.registry import Cells
-from xlmc.functions.values import BLANK, ERROR, Value, constant
+from xlmc.functions.values import BLANK, Value, constant
 
 __all__ = ["Lowering"]
 
@@ -23,18 +27,9 @@ __all__ = ["Lowering"]
 _FACTORS = {"RADIANS": np.pi / 180, "DEGREES": 180 / np.pi}
 """Functions that are a multiplication, to the last bit; NumPy's own are several times slower."""
 
-_OVER_ARRAYS = {"SUMPRODUCT"}
+_OVER_ARRAYS = {"SUMPRODUCT", "MMULT", "MDETERM", "MINVERSE", "LOOKUP", "FREQUENCY"}
 """Functions that evaluate their arguments cell by cell, as an array formula does; all others have Excel pick the cell
 of a range that stands beside the formula."""
-
-
-def _first_cell(value: Value) -> Value:
-    """What a plain formula shows of many cells: the first. (n, r, c) -> (n,)."""
-    picked = [None if a is None else np.broadcast_to(a, value.shape)[:, 0, 0] for a in (value.numbers, value.texts)]
-    return Value(picked[0], np.broadcast_to(value.kinds, value.shape)[:, 0, 0], picked[1])  # type: ignore[arg-type]
-
-
-_FIRST_CELL = Function("first cell", (Cells,), _first_cell, Kind.ANY)
 
 
 class Lowering:
@@ -44,20 +39,28 @@ class Lowering:
         graph: the needed cells, in dependency order.
         inputs: the assumption cells and the names of their inputs; any other cell that holds a value is constant.
         held: cells held at a value of their own: frozen assumptions.
+        strict: raise where a cell that an input reaches cannot be computed; use what Excel saved otherwise.
 
     Attributes:
         graph, inputs, held: as given.
-        saved: the cells that xlmc cannot compute and no assumption reaches, with the values that Excel saved.
+        saved: the cells that xlmc cannot compute, with the values that Excel saved.
+        faults: why it cannot.
+        more: formula cell -> cells that OFFSET and its like turned out to need and the graph does not hold. Where there
+            are any, the graph must be built again with them.
         dag: the nodes.
         notices: what the person should know.
     """
 
-    def __init__(self, graph: Graph, inputs: Mapping[Cell, str], held: Mapping[Cell, float]) -> None:
+    def __init__(
+        self, graph: Graph, inputs: Mapping[Cell, str], held: Mapping[Cell, float], *, strict: bool = True
+    ) -> None:
         self.dag = Dag()
         self.notices: list[Notice] = []
         self.saved: dict[Cell, object] = {}
-        self.inputs, self.held = inputs, held
-        self.graph = graph
+        self.faults: dict[Cell, FormulaError] = {}
+        self.more: dict[Cell, set[Cell]] = {}
+        self.inputs, self.held, self.graph, self._strict = inputs, held, graph, strict
+        self._arrays: dict[Cell, int] = {}
         self._cells: dict[Cell, int] = {cell: self.dag.input(name) for cell, name in inputs.items()}
         self._cells |= {cell: self.dag.constant(constant(value)) for cell, value in held.items()}
         for cell, tree in graph.formulas.items():
@@ -69,198 +72,210 @@ class Lowering:
             self._cells[cell] = self._held_cell(cell)
         return self._cells[cell]
 
+    def array(self, cell: Cell) -> int:
+        """The node of all that an array formula in a cell gives."""
+        return self._arrays.get(cell, self.cell(cell))
+
     def target(self, target: Target) -> int:
         """The node of a target."""
-        return self._single(self._lower(target.tree, target.cell))
+        return self.single(self.lower(target.tree, Scope(target.cell)))
 
     def known(self, target: Target) -> Value | None:
         """The target's value where no input reaches it; None where one does."""
-        return self._known_cell(self.target(target))
+        return self.known_single(self.target(target))
 
-    def _number(self, value: float) -> int:
+    def value(self, cell: Cell) -> Value | None:
+        """A cell's value where it is constant; None where it is not."""
+        return self.known_single(self.cell(cell))
+
+    def awaits(self, cell: Cell) -> bool:
+        """Whether a cell must be lowered before it can be referred to, and was not."""
+        if cell in self.inputs:
+            return cell not in self.graph.reached
+        return cell not in self._cells and self.graph.workbook.content(cell).formula is not None
+
+    @cached_property
+    def resolver(self) -> Resolver:
+        """Reads the references in texts."""
+        return Resolver(self.graph.workbook, self.inputs, strict=False)
+
+    def number(self, value: float) -> int:
+        """The node of a number."""
         return self.dag.constant(constant(value))
+
+    def error(self, code: ErrorCode) -> int:
+        """The node of an error."""
+        return self.dag.constant(constant(code))
 
     def _formula_cell(self, cell: Cell, tree: ir.Expression) -> int:
         formula = self.graph.workbook.content(cell).formula
-        if formula is None:  # filled by an array formula, which was refused or saved before
-            return self._saved(cell)
         try:
-            if formula.array is not None or formula.dynamic:
-                raise FormulaError("array formulas are not supported in this version")
-            place = self._single(self._lower(tree, cell))
+            if cell in self.graph.faults:
+                raise self.graph.faults[cell]
+            if formula is None:
+                return self._filled_cell(cell, tree)
+            place = self.lower(tree, Scope(cell, array=formula.array is not None or formula.dynamic))
+            self._arrays[cell] = place
+            place = self.single(place)
+        except places.NotYetNeeded as needed:
+            self.more.setdefault(cell, set()).update(needed.cells)
+            return self._held_cell(cell)  # only until the graph is built again
         except FormulaError as error:
-            text = self.graph.text(cell)
-            complete = FormulaError(error.message, where=cell, hint=error.hint, text=text, span=error.span)
-            if cell in self.graph.varying:
-                raise complete from None
-            return self._cached(cell, complete)
-        return self._number(0.0) if self._is_blank(place) else place
+            return self._uncomputed(cell, error)
+        return self.number(0.0) if self._is_blank(place) else place
 
-    def _cached(self, cell: Cell, error: FormulaError) -> int:
+    def _filled_cell(self, cell: Cell, anchor: ir.Expression) -> int:
+        """A cell that the array formula of another fills."""
+        assert isinstance(anchor, Cell)
+        if anchor in self.saved:
+            return self._saved(cell, self.faults[anchor])
+        place = element(self.dag, self.array(anchor), cell.row - anchor.row, cell.column - anchor.column)
+        return self.number(0.0) if self._is_blank(place) else place
+
+    def _uncomputed(self, cell: Cell, error: FormulaError) -> int:
         """Excel's own value stands in for what we cannot compute, as long as no assumption reaches it."""
-        value = self.graph.workbook.content(cell).value
-        if value is None:
-            raise error
+        text = self.graph.text(cell)
+        complete = FormulaError(error.message, where=cell, hint=error.hint, text=text, span=error.span)
+        saved = self.graph.workbook.content(cell).value
+        if self._strict and (cell in self.graph.varying or saved is None):
+            raise complete from None
         self.notices.append(Notice(f"{error.message}; Excel's saved value is used (no assumption reaches it)", cell))
-        return self._saved(cell)
+        return self._saved(cell, complete)
 
-    def _saved(self, cell: Cell) -> int:
+    def _saved(self, cell: Cell, fault: FormulaError) -> int:
         self.saved[cell] = self.graph.workbook.content(cell).value
+        self.faults[cell] = fault
         return self._held_cell(cell)
 
-    def _single(self, place: int) -> int:
-        return place if self.dag.sizes[place] is None else self.dag.add(Apply(_FIRST_CELL, (place,)))
+    def single(self, place: int) -> int:
+        """One cell of a value: the first of many."""
+        return element(self.dag, place, 0, 0)
 
     def _held_cell(self, cell: Cell) -> int:
         return self.dag.constant(constant(self.graph.workbook.content(cell).value))
 
+    def known_single(self, place: int) -> Value | None:
+        """The value of a single constant."""
+        node = self.dag.nodes[place]
+        return node.value if isinstance(node, Constant) and self.dag.sizes[place] is None else None
+
     def _is_blank(self, place: int) -> bool:
-        known = self._known_cell(place)
+        known = self.known_single(place)
         return known is not None and int(known.kinds[0]) == BLANK
 
-    def _lower(self, tree: ir.Expression, host: Cell | None) -> int:
-        """The node of a tree in the formula of `host`; None where ranges are taken cell by cell, not beside a host."""
+    def zero_if_blank(self, place: int) -> int:
+        """What a formula gives for an empty cell."""
+        return self.number(0.0) if self._is_blank(place) else place
+
+    def lower(self, tree: ir.Expression, scope: Scope) -> int:
+        """The node of a tree."""
         match tree:
             case ir.Number(value) | ir.Text(value) | ir.Logical(value):
                 return self.dag.constant(constant(value))
             case ir.ErrorLiteral(code):
-                return self.dag.constant(constant(code))
+                return self.error(code)
             case ir.Missing():
                 return self.dag.constant(constant(None))
             case Cell():
                 return self.cell(tree)
             case Area():
-                return self._range(tree) if host is None else self._intersected(tree, host)
+                return self.range(tree) if scope.array else self._intersected(tree, scope.cell)
             case ir.Array(rows):
-                return self.dag.add(Range(tuple(tuple(self._lower(part, host) for part in row) for row in rows)))
+                return self.dag.add(Range(tuple(tuple(self.lower(part, scope) for part in row) for row in rows)))
             case ir.Unary("+", operand):
-                return self._lower(operand, host)
+                return self.lower(operand, scope)
             case ir.Unary(operator, operand):
-                return self._call("%" if operator == "%" else "u-", (self._lower(operand, host),))
+                return self.call("%" if operator == "%" else "u-", (self.lower(operand, scope),))
             case ir.Binary():
-                return self._chain(tree, host)
+                return self._chain(tree, scope)
             case ir.Call(name, arguments):
-                return self._function_call(name, arguments, host)
+                return self._function_call(name, arguments, scope)
             case ir.Variable() | ir.Let() | ir.Lambda() | ir.Invoke():
-                raise FormulaError("LET and LAMBDA are not supported in this version")
+                return lambdas.lower(self, tree, scope)
             case ir.Reference() | ir.Name() | ir.TableReference():
                 raise TypeError(f"not resolved: {tree}")
             case _:
                 assert_never(tree)
 
-    def _chain(self, tree: ir.Binary, host: Cell | None) -> int:
+    def _chain(self, tree: ir.Binary, scope: Scope) -> int:
+        if tree.operator in (",", ":", " "):
+            return self._joined(tree, scope)
         first, rest = ir.chain(tree)
-        place = self._lower(first, host)
+        place = self.lower(first, scope)
         for operator, right in rest:
-            if operator == ",":
-                raise FormulaError("several areas joined by commas stand where one value is needed")
-            place = self._call(operator, (place, self._lower(right, host)))
+            place = self.call(operator, (place, self.lower(right, scope)))
         return place
+
+    def _joined(self, tree: ir.Binary, scope: Scope) -> int:
+        """References put together, where one value is wanted."""
+        areas = places.areas_of(self, tree, scope)
+        if areas is None or len(areas) != 1:
+            raise FormulaError("several areas joined by commas stand where one value is needed")
+        return self.lower(areas[0], scope)
 
     def _intersected(self, area: Area, host: Cell) -> int:
         """The cell of a one-column (one-row) area in the host's row (column), as a plain formula takes it."""
+        if area.rows == area.columns == 1:
+            return self.cell(Cell(area.sheet, area.top, area.left))
         if area.left == area.right and area.top <= host.row <= area.bottom:
             return self.cell(Cell(area.sheet, host.row, area.left))
         if area.top == area.bottom and area.left <= host.column <= area.right:
             return self.cell(Cell(area.sheet, area.top, host.column))
-        return self.dag.constant(constant(ErrorCode.VALUE))
+        return self.error(ErrorCode.VALUE)
 
-    def _function_call(self, name: str, arguments: tuple[ir.Expression, ...], host: Cell | None) -> int:
-        if name == "SINGLE":
-            return self._picked(arguments[0], host)
+    def _function_call(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int:
+        for special in (choices.CHOICES, places.PLACES, lambdas.LAMBDAS):
+            if name in special:
+                made = special[name](self, arguments, scope)
+                if made is not None:
+                    return made
         function = function_named(name)
         if function is None:
             raise _unknown_function(name)
         fewest, most = function.arity()
         if not fewest <= len(arguments) <= most:
             raise FormulaError(f"{name} has {len(arguments)} arguments; it takes {_count(fewest, most)}")
-        places: list[int] = []
+        beside = scope.over_arrays() if name in _OVER_ARRAYS else scope
+        found: list[int] = []
         for position, argument in enumerate(arguments):
-            whole, beside = function.parameter(position).ranged, None if name in _OVER_ARRAYS else host
-            places += self._whole(argument, beside) if whole else [self._lower(argument, host)]
-        if host is None and name in ("IF", "IFERROR", "IFNA") and any(self.dag.sizes[place] for place in places):
-            raise FormulaError(f"{name} over a range works in array formulas only, which are not supported")
-        return self._made(function, tuple(places))
+            whole = function.parameter(position).ranged
+            found += self.whole(argument, beside) if whole else [self.lower(argument, scope)]
+        return self.made(dated(function, self.graph.workbook.date1904), tuple(found))
 
-    def _picked(self, tree: ir.Expression, host: Cell | None) -> int:
-        """`@tree`: the cell of a range beside the formula."""
-        if host is None:
-            raise FormulaError("@ is not supported here")
-        return self._single(self._lower(tree, host))
-
-    def _made(self, function: Function, places: tuple[int, ...]) -> int:
-        if function.name == "IF":
-            return self._selected(*places)
-        if function.name in ("IFERROR", "IFNA"):
-            return self._rescued(*places, only_na=function.name == "IFNA")
+    def made(self, function: Function, arguments: tuple[int, ...]) -> int:
+        """The node of a function of nodes, cell by cell where it takes single values and is given many."""
         if function.name in _FACTORS:
-            return self._call("*", (places[0], self._number(_FACTORS[function.name])))
-        return self._added(Apply(function, places))
+            return self.call("*", (arguments[0], self.number(_FACTORS[function.name])))
+        loose = tuple(p for i, p in enumerate(arguments) if not function.parameter(i).ranged)
+        spread = cell_by_cell(self.dag, loose, lambda picked: self.made(function, _merged(function, arguments, picked)))
+        return self.dag.add(Apply(function, arguments)) if spread is None else spread
 
-    def _selected(self, condition: int, yes: int, no: int | None = None) -> int:
-        yes = self._zero_if_blank(yes)
-        no = self.dag.constant(constant(False)) if no is None else self._zero_if_blank(no)
-        known = self._known_cell(condition)
-        if known is not None and known.plain:
-            return yes if known.numbers[0] else no
-        return self._added(Select(condition, yes, no))
-
-    def _rescued(self, value: int, instead: int, *, only_na: bool) -> int:
-        value, instead = self._zero_if_blank(value), self._zero_if_blank(instead)
-        known = self._known_cell(value)
-        if known is None:
-            return self._added(Rescue(value, instead, only_na))
-        kind = int(known.kinds[0])
-        return instead if kind == ERROR + ErrorCode.NA or (kind >= ERROR and not only_na) else value
-
-    def _known_cell(self, place: int) -> Value | None:
-        """The value of a single constant."""
-        node = self.dag.nodes[place]
-        return node.value if isinstance(node, Constant) and self.dag.sizes[place] is None else None
-
-    def _added(self, node: Apply | Select | Rescue) -> int:
-        try:
-            return self.dag.add(node)
-        except ValueError:
-            raise FormulaError("arrays of different sizes meet", hint="give them as many rows and columns") from None
-
-    def _zero_if_blank(self, place: int) -> int:
-        return self._number(0.0) if self._is_blank(place) else place
-
-    def _whole(self, tree: ir.Expression, host: Cell | None) -> list[int]:
+    def whole(self, tree: ir.Expression, scope: Scope) -> list[int]:
         """An argument that may be a range: ranges whole, joined areas one by one, anything else as it computes."""
-        match tree:
-            case Cell():
-                return [self.dag.add(Range(((self.cell(tree),),)))]
-            case Area():
-                return [self._range(tree)]
-            case ir.Binary(",", _, _):
-                first, rest = ir.chain(tree)
-                return [place for part in (first, *(part for _, part in rest)) for place in self._whole(part, host)]
-            case ir.Call("IF") if _gives_area(tree):
-                hint = "move the function into the branches of the IF"
-                raise FormulaError("an IF that gives a whole range is not supported in this version", hint=hint)
-            case _:
-                return [self._lower(tree, host)]
+        areas = places.areas_of(self, tree, scope)
+        if areas is None:
+            return [self.lower(tree, scope)]
+        return [self.range(area) for area in areas]
 
-    def _range(self, area: Area) -> int:
+    def range(self, area: Area) -> int:
+        """The node of all cells of an area."""
         rows = range(area.top, area.bottom + 1)
         columns = range(area.left, area.right + 1)
         return self.dag.add(Range(tuple(tuple(self.cell(Cell(area.sheet, r, c)) for c in columns) for r in rows)))
 
-    def _call(self, name: str, places: tuple[int, ...]) -> int:
-        if name == "+" and places[1] == self._number(0.0) and self.dag.types[places[0]] is Kind.NUMBER:
-            return places[0]
-        if name == "^" and places[1] == self._number(2.0):
-            return self._call("*", (places[0], places[0]))
-        return self._added(Apply(REGISTRY[name], places))
+    def call(self, name: str, arguments: tuple[int, ...]) -> int:
+        """The node of an operator, or of a function that takes single values."""
+        if name == "+" and arguments[1] == self.number(0.0) and self.dag.types[arguments[0]] is Kind.NUMBER:
+            return arguments[0]
+        if name == "^" and arguments[1] == self.number(2.0):
+            return self.call("*", (arguments[0], arguments[0]))
+        return self.made(REGISTRY[name], arguments)
 
 
-def _gives_area(tree: ir.Expression) -> bool:
-    """Whether an `IF` has a range for a branch, its own or that of an `IF` within."""
-    if isinstance(tree, ir.Call) and tree.name == "IF":
-        return any(_gives_area(branch) for branch in tree.arguments[1:])
-    return isinstance(tree, Area)
+def _merged(function: Function, arguments: tuple[int, ...], picked: tuple[int, ...]) -> tuple[int, ...]:
+    """The arguments with those that take single values replaced, in order."""
+    singles = iter(picked)
+    return tuple(p if function.parameter(i).ranged else next(singles) for i, p in enumerate(arguments))
 
 
 def _count(fewest: int, most: int) -> str:

@@ -48,11 +48,17 @@ def build_graph(
     inputs: frozenset[Cell],
     held: frozenset[Cell] = frozenset(),
     *,
+    more: Mapping[Cell, Iterable[Cell]] | None = None,
     strict: bool = True,
 ) -> Graph:
     """Walk upstream from `targets`; an input is taken as given, whatever its cell holds, and so is a held cell.
 
     Args:
+        resolver: of the workbook.
+        targets: the cells wanted.
+        inputs: cells that vary.
+        held: cells that do not, whatever they hold.
+        more: cells that a formula cell turned out to need beside those its formula names.
         strict: raise at the first faulty formula; collect the faults otherwise.
 
     Raises:
@@ -72,10 +78,10 @@ def build_graph(
             loop = [*trail][[*trail].index(cell) :]
             if strict:
                 raise _cycle(loop)
-            faults.update({member: _cycle(loop) for member in loop})
+            faults.update(dict.fromkeys(loop, _cycle(loop)))  # one message: it is as long as the loop
         elif cell not in formulas and (tree := read(cell)) is not None:
             trees[cell] = tree
-            needs[cell] = tuple(_precedents(workbook, spills, tree, given))
+            needs[cell] = (*_precedents(workbook, spills, tree, given), *(more or {}).get(cell, ()))
             trail[cell] = iter(needs[cell])
 
     def read(cell: Cell) -> ir.Expression | None:

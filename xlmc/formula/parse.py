@@ -145,7 +145,7 @@ class _Operator(OperatorToken):  # type: ignore[misc]
     _re = re.compile(r"\s*(?P<name><=|>=|<>|[-+*/^&=<>:@%]|\#)\s*")
     _re_process = None
     _n_args: ClassVar[dict[str, int]] = {"u-": 1, "u+": 1, "@": 1, "%": 1, "#": 1}
-    _precedences = Operator._precedences | {"#": 9}
+    _precedences = Operator._precedences | {"#": 10, ":": 9}  # `:` before the blank that intersects
 
     def process(self, match: re.Match[str], context: object = None, parser: object = None) -> dict[str, str]:
         return match.groupdict()
@@ -155,11 +155,13 @@ class _Operator(OperatorToken):  # type: ignore[misc]
         return self._n_args.get(self.name, 2)
 
     def ast(self, tokens: list[Any], stack: list[Any], builder: Any) -> None:
-        if self.name not in "+-@" or (tokens and _ends_an_operand(tokens[-1])):
+        if self.name == "@":
+            _follow(tokens, an_operand=False)
+        elif self.name not in "+-" or (tokens and _ends_an_operand(tokens[-1])):
             _follow(tokens, an_operand=True)
             super().ast(tokens, stack, builder)
             return
-        if self.name != "@":
+        else:
             self.attr["name"] = "u" + self.name
         tokens.append(self)
         _update_n_args(stack)

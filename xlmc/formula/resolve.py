@@ -66,6 +66,16 @@ class Resolver:
             complete = error if error.text is not None else _about(error, formula.text)
             raise complete.at(cell) from None
 
+    def tree(self, tree: ir.Expression, host: Cell) -> ir.Expression:
+        """A tree as read, resolved as if it stood in a cell.
+
+        Raises:
+            FormulaError: it names something that is not there.
+        """
+        self._depth = self._parts = 0
+        self._variables = frozenset()
+        return self._resolve(tree, host, (host.row, host.column))
+
     def _resolve(self, tree: ir.Expression, host: Cell, origin: tuple[int, int]) -> ir.Expression:
         self._depth += 1
         self._parts += 1
@@ -191,7 +201,7 @@ class Resolver:
         return self._used[sheet]
 
     def _name(self, tree: ir.Name, host: Cell) -> ir.Expression:
-        if _folded(tree.name) in self._variables and tree.sheet is None:
+        if _folded(tree.name) in self._variables and tree.sheet is None and tree.book is None:
             return ir.Variable(_folded(tree.name))
         _refuse_other_books(tree.book)
         scope = host.sheet if tree.sheet is None else self._sheet(tree.sheet, host)

@@ -11,10 +11,10 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.functions.values import Bools, Floats
-
 __all__ = ["SECONDS_A_DAY", "in_calendar", "last_serial", "parts_of", "serial_of", "time_of", "weekday_of"]
 
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 Whole = NDArray[np.int64]
 
 SECONDS_A_DAY: Final = 86400

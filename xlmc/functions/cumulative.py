@@ -13,7 +13,7 @@ __all__ = ["by_form"]
 
 
 def by_form(cumulative: Bools, probability: Callable[[], Any], density: Callable[[], Any]) -> Floats:
-    """The probability up to a point where `cumulative`, else the density there; what no trial asks for is not computed."""
+    """The probability up to a point where `cumulative`, else the density at it; neither is computed for nothing."""
     below = probability() if np.any(cumulative) else 0.0
     at = 0.0 if np.all(cumulative) else density()
     return np.where(cumulative, below, at)

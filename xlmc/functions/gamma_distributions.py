@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
-
 import numpy as np
 
 from xlmc.functions.cumulative import by_form
+from xlmc.functions.freedom import degrees_of_freedom
 from xlmc.functions.registry import Logical, Number, excel
 from xlmc.functions.saddle_point import poisson_mass
 from xlmc.functions.values import NUM, Bools, Floats
 
 __all__ = ["chi_square_above"]
-
-_MOST_FREEDOM: Final = 1e10
 
 
 @excel("GAMMA", Number)
@@ -42,7 +39,7 @@ def gamma_dist(x: Floats, shape: Floats, scale: Floats, cumulative: Bools) -> Fl
     return np.where(inside, by_form(cumulative, lambda: _below(a, y), lambda: _density(a, y) / b), NUM)
 
 
-def _below(a: Any, y: Any) -> Floats:
+def _below(a: Floats, y: Floats) -> Floats:
     from scipy.special import gammainc
 
     return np.asarray(gammainc(a, y))
@@ -62,39 +59,33 @@ def gamma_inv(p: Floats, shape: Floats, scale: Floats) -> Floats:
     return np.where(inside, gammaincinv(np.where(inside, shape, 1.0), np.where(inside, p, 0.0)) * scale, NUM)
 
 
-def _freedom(given: Floats) -> tuple[Bools, Floats]:
-    """Whether these are degrees of freedom, and half of their whole number."""
-    valid = (np.asarray(given) >= 1) & (given <= _MOST_FREEDOM)
-    return valid, np.floor(np.where(valid, given, 1.0)) / 2
-
-
 @excel("CHISQ.DIST", Number, Number, Logical)
 def chisq_dist(x: Floats, freedom: Floats, cumulative: Bools) -> Floats:
     """Chi-square distribution."""
-    valid, half = _freedom(freedom)
-    return np.where(valid, gamma_dist(x, half, np.asarray(2.0), cumulative), NUM)
+    valid, k = degrees_of_freedom(freedom)
+    return np.where(valid, gamma_dist(x, k / 2, np.asarray(2.0), cumulative), NUM)
 
 
-def chi_square_above(x: Floats, half: Floats) -> Floats:
-    """Probability of more than x, 0 or more, with twice `half` degrees of freedom; arrays that broadcast."""
+def chi_square_above(x: Floats, freedom: Floats) -> Floats:
+    """Probability that a chi-square number is above x, 0 or more; arrays that broadcast."""
     from scipy.special import gammaincc
 
-    return np.asarray(gammaincc(half, x / 2))
+    return np.asarray(gammaincc(freedom / 2, x / 2))
 
 
 @excel("CHISQ.DIST.RT", Number, Number, aliases=("CHIDIST",))
 def chisq_dist_rt(x: Floats, freedom: Floats) -> Floats:
     """Probability that a chi-square number is above x."""
-    valid, half = _freedom(freedom)
+    valid, k = degrees_of_freedom(freedom)
     inside = valid & (x >= 0)
-    return np.where(inside, chi_square_above(np.where(inside, x, 0.0), half), NUM)
+    return np.where(inside, chi_square_above(np.where(inside, x, 0.0), k), NUM)
 
 
 @excel("CHISQ.INV", Number, Number)
 def chisq_inv(p: Floats, freedom: Floats) -> Floats:
     """The chi-square number that a probability lies below."""
-    valid, half = _freedom(freedom)
-    return np.where(valid, gamma_inv(p, half, np.asarray(2.0)), NUM)
+    valid, k = degrees_of_freedom(freedom)
+    return np.where(valid, gamma_inv(p, k / 2, np.asarray(2.0)), NUM)
 
 
 @excel("CHISQ.INV.RT", Number, Number, aliases=("CHIINV",))
@@ -102,9 +93,9 @@ def chisq_inv_rt(p: Floats, freedom: Floats) -> Floats:
     """The chi-square number that a probability lies above."""
     from scipy.special import gammainccinv
 
-    valid, half = _freedom(freedom)
+    valid, k = degrees_of_freedom(freedom)
     inside = valid & (p > 0) & (p <= 1)
-    return np.where(inside, gammainccinv(half, np.where(inside, p, 1.0)) * 2, NUM)
+    return np.where(inside, gammainccinv(k / 2, np.where(inside, p, 1.0)) * 2, NUM)
 
 
 @excel("EXPON.DIST", Number, Number, Logical, aliases=("EXPONDIST",))

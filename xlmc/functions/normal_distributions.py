@@ -99,7 +99,7 @@ def lognorm_dist(x: Floats, mean: Floats, deviation: Floats, cumulative: Bools) 
 @excel("LOGNORMDIST", Number, Number, Number)
 def lognormdist(x: Floats, mean: Floats, deviation: Floats) -> Floats:
     """Probability that a lognormal number is at most x."""
-    return lognorm_dist(x, mean, deviation, np.asarray(True))
+    return np.asarray(lognorm_dist(x, mean, deviation, np.asarray(True)))
 
 
 @excel("LOGNORM.INV", Number, Number, Number, aliases=("LOGINV",))

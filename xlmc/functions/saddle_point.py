@@ -9,7 +9,7 @@ that the densities of the gamma, beta, F and t distributions come from the same 
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -28,8 +28,8 @@ _DEVIANCE_TERMS: Final = 9
 _LOG_2PI: Final = float(np.log(2 * np.pi))
 
 
-def stirling_error(x: Any) -> Floats:
-    """ln Γ(x + 1) less Stirling's formula for it, x above 0; any shape -> the same."""
+def stirling_error(x: Floats) -> Floats:
+    """Logarithm of Γ(x + 1) less Stirling's formula for it, x above 0; any shape -> the same."""
     from scipy.special import gammaln
 
     large = np.maximum(x, _SERIES_FROM)
@@ -42,7 +42,7 @@ def stirling_error(x: Any) -> Floats:
     return np.where(x < _SERIES_FROM, exact, series / large)
 
 
-def deviance(x: Any, mean: Any) -> Floats:
+def deviance(x: Floats, mean: Floats) -> Floats:
     """x·ln(x/mean) + mean - x, x and mean above 0: no digits are lost where x is near the mean."""
     v = (x - mean) / (x + mean)
     near = np.abs(v) < _NEAR
@@ -54,7 +54,7 @@ def deviance(x: Any, mean: Any) -> Floats:
     return np.where(near, close, x * np.log(np.divide(x, mean)) + mean - x)
 
 
-def poisson_mass(x: Any, mean: Any) -> Floats:
+def poisson_mass(x: Floats, mean: Floats) -> Floats:
     """mean^x·e^-mean / Γ(x + 1), x and mean 0 or more; arrays that broadcast."""
     from scipy.special import gammaln, xlogy
 
@@ -66,16 +66,15 @@ def poisson_mass(x: Any, mean: Any) -> Floats:
     return np.where(x < _SERIES_FROM, direct, np.where(np.asarray(mean) > 0, expansion, 0.0))
 
 
-def binomial_mass(x: Any, n: Any, p: Any, q: Any) -> Floats:
-    """Γ(n+1)/(Γ(x+1)·Γ(n-x+1))·p^x·q^(n-x), 0 <= x <= n, q = 1 - p given as it is most exact; arrays that broadcast."""
+def binomial_mass(x: Floats, y: Floats, p: Floats, q: Floats) -> Floats:
+    """Γ(x+y+1)/(Γ(x+1)·Γ(y+1))·p^x·q^y, x and y 0 or more, p + q = 1, each as exact as it is known; they broadcast."""
     from scipy.special import xlog1py, xlogy
 
-    inside = (x > 0) & (x < n) & (p > 0) & (q > 0)
-    size = np.where(inside, n, 2.0)
-    hits, odds, against = np.where(inside, x, 1.0), np.where(inside, p, 0.5), np.where(inside, q, 0.5)
-    misses = size - hits
-    log_mass = stirling_error(size) - stirling_error(hits) - stirling_error(misses)
-    log_mass = log_mass - deviance(hits, size * odds) - deviance(misses, size * against)
-    log_mass = log_mass - (_LOG_2PI + np.log(hits) + np.log1p(-hits / size)) / 2
-    powers = xlogy(x, p) + np.where(np.asarray(q) > 0.5, xlog1py(n - x, -np.minimum(p, 0.5)), xlogy(n - x, q))
-    return np.exp(np.where(inside, log_mass, powers))
+    inside = (x > 0) & (y > 0) & (p > 0) & (q > 0)
+    hits, misses = np.where(inside, x, 1.0), np.where(inside, y, 1.0)
+    odds, against, n = np.where(inside, p, 0.5), np.where(inside, q, 0.5), hits + misses
+    log_mass = stirling_error(n) - stirling_error(hits) - stirling_error(misses)
+    log_mass = log_mass - deviance(hits, n * odds) - deviance(misses, n * against)
+    log_mass = log_mass - (_LOG_2PI + np.log(hits) + np.log(misses / n)) / 2
+    powers = xlogy(x, p) + np.where(np.asarray(q) > 0.5, xlog1py(y, -np.minimum(p, 0.5)), xlogy(y, q))
+    return np.asarray(np.exp(np.where(inside, log_mass, powers)))

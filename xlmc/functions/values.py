@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.number_text import general_text, parse_number
 
 __all__ = [
     "BLANK",
@@ -29,6 +30,7 @@ __all__ = [
     "Codes",
     "Floats",
     "Objects",
+    "ShapeVaries",
     "Value",
     "boxed_codes",
     "constant",
@@ -73,6 +75,10 @@ def boxed_codes(x: Floats) -> Codes:
     payload = (np.ascontiguousarray(x).view(np.uint64) & np.uint64(0xFF)).astype(np.uint8)
     carried = np.isnan(x) & (payload > 0)
     return np.where(bad, np.where(carried, payload, np.uint8(ErrorCode.NUM)), np.uint8(0))
+
+
+class ShapeVaries(Exception):  # noqa: N818 - it is no error: a body asks to be called otherwise
+    """The result's shape differs between trials: evaluate trial by trial."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -139,17 +145,18 @@ class Value:
         """The trials of `index`; a constant stays as it is."""
         if self.shape[0] == 1:
             return self
-        pick = [None if a is None else (a if a.shape[0] == 1 else a[index]) for a in self._arrays()]
+        pick = [None if a is None else (a if a.shape[0] == 1 else a[index]) for a in self.arrays()]
         return Value(pick[0], pick[1], pick[2])  # type: ignore[arg-type]  # only texts may be None
 
-    def _arrays(self) -> tuple[NDArray[Any] | None, ...]:
+    def arrays(self) -> tuple[NDArray[Any] | None, ...]:
+        """Numbers, kinds and texts."""
         return self.numbers, self.kinds, self.texts
 
     def as_range(self) -> Value:
         """A scalar `(n,)` as the range `(n, 1, 1)`; a range as it is."""
         if self.numbers.ndim == 3:
             return self
-        parts = [None if a is None else a.reshape(-1, 1, 1) for a in self._arrays()]
+        parts = [None if a is None else a.reshape(-1, 1, 1) for a in self.arrays()]
         return Value(parts[0], parts[1], parts[2])  # type: ignore[arg-type]  # only texts may be None
 
     def to_numbers(self) -> tuple[Floats, Codes]:
@@ -241,32 +248,6 @@ def constant(item: object) -> Value:
     box = np.empty(1, object)
     box[0] = item
     return from_objects(box)
-
-
-def parse_number(text: str) -> float | None:
-    """The number a text stands for in arithmetic; None when it is not one."""
-    stripped = text.strip()
-    percent = stripped.endswith("%")
-    body = stripped.removesuffix("%").replace(",", "")
-    try:
-        number = float(body)
-    except ValueError:
-        return None
-    if not np.isfinite(number) or "_" in body:
-        return None
-    return number / 100 if percent else number
-
-
-def general_text(number: float) -> str:
-    """A number as Excel's General format writes it into a text: up to 15 significant digits."""
-    if number == int(number) and abs(number) < 1e20:
-        digits = f"{number:.15g}"
-        return f"{int(float(digits))}"
-    text = f"{number:.15g}"
-    mantissa, mark, exponent = text.partition("e")
-    if mark:
-        return f"{mantissa}E{exponent[0]}{exponent[1:].lstrip('0').zfill(2)}"
-    return text
 
 
 def shapes(values: Iterable[Value]) -> tuple[int, ...]:

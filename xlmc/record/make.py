@@ -86,7 +86,11 @@ def _file(simulation: Simulation) -> Section:
         Entry("name", "Name", book.name),
         Entry("sha256", "SHA-256 of the file", book.sha256 or None),
         # Result sheets do not change this one, so a result workbook can be checked against the book it came from.
-        Entry("original_sha256", "SHA-256 of its own parts", original_hash(book.parts) if book.parts else None),
+        Entry(
+            "original_sha256",
+            "SHA-256 of its parts without result sheets",
+            original_hash(book.parts) if book.parts else None,
+        ),
     )
     return Section("file", "Workbook", entries)
 

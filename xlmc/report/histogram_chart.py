@@ -85,7 +85,7 @@ def _across(at: BinsAt, bins: Histogram) -> dict[str, Any]:
 def _upwards() -> dict[str, Any]:
     return {
         "name": "Accepted trials",
-        "name_font": {**_FONT, "bold": False},
+        "name_font": {**_FONT, "bold": False, "rotation": -90},
         "num_font": _FONT,
         "num_format": "#,##0",
         "min": 0,

@@ -113,7 +113,7 @@ class Page:
         else:
             self.sheet.fit_to_pages(1, 0)
         self.sheet.set_margins(left=0.5, right=0.5, top=0.6, bottom=0.7)
-        self.sheet.set_footer(f"&L&9{name.replace('&', '&&')[:120]}&C&9&A&R&9Page &P of &N")
+        self.sheet.set_footer(f"&L{name.replace('&', '&&')[:120]}&C&A&RPage &P of &N")
         if repeat is not None:
             self.sheet.repeat_rows(repeat)
 

@@ -1,0 +1,209 @@
+"""What uneven payments are worth, and the rates at which they are worth nothing.
+
+Letters: n trials, k payments of a trial. Of ranges only the numbers count, in their order, rows first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.errors import ErrorCode
+from xlmc.functions.registry import Anything, Cells, excel
+from xlmc.functions.roots import growth_root
+from xlmc.functions.toolpak import first_error, strict_numbers
+from xlmc.functions.toolpak_rows import whole_days
+from xlmc.functions.values import BLANK, NUMBER, Bools, Codes, Floats, Value
+
+__all__: list[str] = []
+
+
+def _rows(array: NDArray[Any], value: Value) -> NDArray[Any]:
+    """One row per trial: (n,) or (n, r, c) -> (n, k)."""
+    return np.broadcast_to(array, value.shape).reshape(value.shape[0], -1)
+
+
+def _either(*codes: Codes) -> Codes:
+    """The first that is an error, trial by trial."""
+    result = codes[0]
+    for other in codes[1:]:
+        result = np.where(result > 0, result, other)
+    return result.astype(np.uint8)
+
+
+def _raised(wrong: Bools, code: ErrorCode) -> Codes:
+    return np.where(wrong, np.uint8(code), np.uint8(0)).astype(np.uint8)
+
+
+def _single(value: Value) -> tuple[Floats, Codes]:
+    """A number per trial, and its error: (n,) each."""
+    x, errors = value.to_numbers()
+    return _rows(x, value)[:, 0], _rows(errors, value)[:, 0]
+
+
+def _flows(values: Sequence[Value]) -> tuple[Floats, Bools, Codes]:
+    """The payments, which of them count, and the first error: (n, k), (n, k), (n,)."""
+    parts = []
+    for value in values:
+        in_range = value.numbers.ndim == 3
+        x, errors = (value.numbers, value.errors) if in_range else value.to_numbers()
+        counts = (value.kinds == NUMBER) if in_range else (errors == 0)
+        parts.append((_rows(x, value), _rows(counts, value), _rows(errors, value)))
+    n = max(x.shape[0] for x, _, _ in parts)
+    x, counts, errors = (
+        np.concatenate([np.broadcast_to(part[i], (n, part[i].shape[1])) for part in parts], axis=1) for i in range(3)
+    )
+    return x, counts, first_error(errors)
+
+
+def _discounted(rate: Floats, flows: Floats, counts: Bools) -> Floats:
+    """Present value, the first payment one period from now: (n,), (n, k) -> (n,)."""
+    total = np.zeros(1)
+    factor = np.ones(1)
+    for column in range(flows.shape[1]):
+        factor = np.where(counts[:, column], factor / (1 + rate), factor)
+        total = total + np.where(counts[:, column], flows[:, column] * factor, 0.0)
+    return total
+
+
+@excel("NPV", Anything, Cells(repeat=True))
+def net_present_value(rate: Value, *values: Value) -> Value:
+    """Present value of payments at the ends of the periods to come; `#DIV/0!` at a rate of -100 %."""
+    r, r_errors = rate.to_numbers()
+    flows, counts, errors = _flows(values)
+    if r.ndim == 3:
+        cells = [_discounted(r[:, i, j], flows, counts) for i, j in np.ndindex(*r.shape[1:])]
+        result = np.stack(np.broadcast_arrays(*cells), axis=1).reshape(-1, *r.shape[1:])
+        errors = errors.reshape(-1, 1, 1)
+    else:
+        result = _discounted(r, flows, counts)
+    return Value.of_numbers(result, _either(r_errors, errors, _raised(r == -1, ErrorCode.DIV0)))
+
+
+def _packed(flows: Floats, counts: Bools) -> tuple[Floats, NDArray[np.intp]]:
+    """Each trial's payments from the first to the last that is not zero, at the left, and how many these are."""
+    alive = counts & (flows != 0)
+    begun = np.logical_or.accumulate(alive, axis=1)
+    to_come = np.logical_or.accumulate(alive[:, ::-1], axis=1)[:, ::-1]
+    kept = counts & begun & to_come
+    order = np.argsort(~kept, axis=1, kind="stable")
+    return np.take_along_axis(np.where(kept, flows, 0.0), order, axis=1), kept.sum(axis=1)
+
+
+def _has_both_signs(flows: Floats, counts: Bools) -> Bools:
+    return np.asarray((counts & (flows > 0)).any(axis=1) & (counts & (flows < 0)).any(axis=1))
+
+
+@excel("IRR", Cells, Anything(default=None))
+def internal_rate(values: Value, guess: Value | None = None) -> Value:
+    """Rate at which the payments are worth nothing; of several, the one nearest to the guess (10 %).
+
+    `#NUM!` where there is none or the payments are all of one sign.
+    """
+    flows, counts, errors = _flows([values.as_range()])
+    start, start_errors = _guess(guess)
+    n = max(flows.shape[0], start.shape[0])
+    packed, how_many = _packed(flows, counts)
+    k = packed.shape[1]
+
+    def worth(x: Floats) -> Floats:
+        """At the first payment for positive rates, at the last for negative ones, so that nothing grows."""
+        step = np.exp(-np.abs(x))
+        at_first = at_last = np.zeros(1)
+        for column in range(k):
+            at_last = np.where(column < how_many, at_last * step + packed[:, column], at_last)
+            at_first = at_first * step + packed[:, k - 1 - column]
+        return np.where(x >= 0, at_first, at_last)
+
+    rate = growth_root(worth, np.broadcast_to(start, (n,)))
+    rate = np.where(_has_both_signs(flows, counts), rate, np.nan)
+    return Value.of_numbers(rate, _either(np.broadcast_to(errors, (n,)), start_errors))
+
+
+def _guess(guess: Value | None) -> tuple[Floats, Codes]:
+    return (np.full(1, 0.1), np.zeros(1, np.uint8)) if guess is None else _single(guess)
+
+
+@excel("MIRR", Cells, Anything, Anything)
+def modified_rate(values: Value, finance: Value, reinvest: Value) -> Value:
+    """Rate when what is paid is borrowed at one rate and what is received is invested at another.
+
+    `#DIV/0!` unless there are payments of both signs.
+    """
+    flows, counts, errors = _flows([values.as_range()])
+    (borrowed, borrowed_errors), (invested, invested_errors) = _single(finance), _single(reinvest)
+    paid = _discounted(borrowed, np.minimum(flows, 0.0), counts) * (1 + borrowed)
+    k = counts.sum(axis=1)
+    received = _discounted(invested, np.maximum(flows, 0.0), counts) * (1 + invested) ** k
+    usable = _has_both_signs(flows, counts)
+    ratio = np.where(usable, -received / np.where(paid == 0, np.nan, paid), 1.0)
+    rate = np.power(ratio, 1.0 / np.where(k > 1, k - 1, 1)) - 1
+    one_sided = _raised(~usable | (k < 2), ErrorCode.DIV0)
+    return Value.of_numbers(rate, _either(errors, borrowed_errors, invested_errors, one_sided))
+
+
+def _dated(values: Value, dates: Value, date1904: bool) -> tuple[Floats, Floats, Codes]:
+    """Payments and years after the first: (n, k) each; and errors (n,).
+
+    `#NUM!` for a date before the first, for dates and payments of unequal number, and where there are none.
+    """
+    flows, how_many, errors = _filled(values)
+    serials, how_many_dates, date_errors = _filled(dates)
+    k = min(flows.shape[1], serials.shape[1])
+    dated = np.arange(k) < how_many_dates[:, None]
+    days, valid = whole_days(np.where(dated, serials[:, :k], serials[:, :1]), date1904)
+    years = (days - days[:, :1]) / 365
+    wrong = (how_many != how_many_dates) | (how_many == 0) | ~valid.all(axis=1) | (years < 0).any(axis=1)
+    return flows[:, :k], np.maximum(years, 0.0), _either(errors, date_errors, _raised(wrong, ErrorCode.NUM))
+
+
+def _filled(value: Value) -> tuple[Floats, NDArray[np.intp], Codes]:
+    """The numbers of all cells but blank ones, at the left, with zeros behind; how many; the first error."""
+    x, errors = strict_numbers(value)
+    filled = _rows(value.kinds != BLANK, value)
+    order = np.argsort(~filled, axis=1, kind="stable")
+    packed = np.take_along_axis(np.where(filled, _rows(x, value), 0.0), order, axis=1)
+    return packed, filled.sum(axis=1), first_error(_rows(errors, value))
+
+
+@excel("XNPV", Anything, Cells, Cells, dated=True)
+def dated_present_value(rate: Value, values: Value, dates: Value, *, date1904: bool = False) -> Value:
+    """Worth, on the first date, of payments on dates, by years of 365 days; `#NUM!` unless the rate is above 0."""
+    r, rate_errors = (_rows(a, rate)[:, 0] for a in strict_numbers(rate))
+    flows, years, errors = _dated(values, dates, date1904)
+    lost = r <= 0
+    log_growth = np.log1p(np.where(lost, 0.0, r))
+    total = np.zeros(1)
+    for column in range(flows.shape[1]):
+        total = total + flows[:, column] * np.exp(-years[:, column] * log_growth)
+    return Value.of_numbers(total, _either(rate_errors, errors, _raised(lost, ErrorCode.NUM)))
+
+
+@excel("XIRR", Cells, Cells, Anything(default=None), dated=True)
+def dated_rate(values: Value, dates: Value, guess: Value | None = None, *, date1904: bool = False) -> Value:
+    """Rate at which payments on dates are worth nothing; of several, the one nearest to the guess (10 %).
+
+    `#NUM!` where there is none or the payments are all of one sign.
+    """
+    flows, years, errors = _dated(values, dates, date1904)
+    start, start_errors = _guess(guess)
+    n = max(flows.shape[0], years.shape[0], start.shape[0])
+    alive = flows != 0
+    first = np.where(alive, years, np.inf).min(axis=1, keepdims=True)
+    last = np.where(alive, years, -np.inf).max(axis=1, keepdims=True)
+
+    def worth(x: Floats) -> Floats:
+        """On the first day for positive rates, on the last for negative ones, so that nothing grows."""
+        total = np.zeros(1)
+        for column in range(flows.shape[1]):
+            since, until = years[:, column] - first[:, 0], last[:, 0] - years[:, column]
+            factor = np.exp(-np.abs(x) * np.where(x >= 0, since, until))
+            total = total + np.where(alive[:, column], flows[:, column] * factor, 0.0)
+        return total
+
+    usable = _has_both_signs(flows, np.ones_like(alive)) & (errors == 0)
+    rate = growth_root(worth, np.broadcast_to(start, (n,)))
+    return Value.of_numbers(np.where(usable, rate, np.nan), _either(np.broadcast_to(errors, (n,)), start_errors))

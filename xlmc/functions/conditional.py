@@ -1,0 +1,147 @@
+"""Sums, counts, means and extremes of the cells whose neighbours meet criteria. See `criteria` for these.
+
+A criterion may differ between trials, and so may any cell. A criterion that is many cells in an array formula gives as
+many results. Letters: n trials, k cells of a range.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.errors import ErrorCode
+from xlmc.functions.aggregate import average, maximum, minimum, sum_
+from xlmc.functions.criteria import met
+from xlmc.functions.picking import cell_of, direct_errors, each_part, earliest, first_errors, side_by_side, with_errors
+from xlmc.functions.portions import by_portions
+from xlmc.functions.registry import Anything, Cells, excel
+from xlmc.functions.values import BLANK, NUMBER, Bools, Floats, Value, constant
+
+__all__ = ["Reduce", "numbers_held"]
+
+Reduce = Callable[[Value, Bools], Value]
+"""One number per trial, from a range (n, r, c) and which of its cells, (n, k), meet all criteria."""
+
+
+def _count(cells: Value, held: Bools) -> Value:
+    return Value.of_numbers(held.sum(axis=1).astype(np.float64))
+
+
+def numbers_held(fold: Callable[[Floats, Bools], Floats]) -> Reduce:
+    """A fold of the numbers among the cells; an error among them is the result."""
+
+    def reduce(cells: Value, held: Bools) -> Value:
+        counts = held & (_flat(cells.kinds, cells) == NUMBER)
+        errors = np.where(held, _flat(cells.errors, cells), np.uint8(0))
+        return Value.of_numbers(fold(_flat(cells.numbers, cells), counts), first_errors(errors))
+
+    return reduce
+
+
+def _flat(part: NDArray[Any], cells: Value) -> NDArray[Any]:
+    return np.broadcast_to(part, cells.shape).reshape(cells.shape[0], -1)
+
+
+_SUM: Final = numbers_held(sum_)
+_AVERAGE: Final = numbers_held(average)
+_MAXIMUM: Final = numbers_held(maximum)
+_MINIMUM: Final = numbers_held(minimum)
+
+
+def _conditional(values: Value, pairs: Sequence[Value], reduce: Reduce) -> Value:
+    """Reduce the cells of `values` where each range of `pairs` meets the criterion behind it."""
+    criteria = pairs[1::2]
+    everything = (values, *pairs[::2])
+    cells = [value.as_range() for value in everything]
+    errors = earliest(*(direct_errors(value) for value in everything))
+    if len({value.shape[1:] for value in cells}) > 1 or len(pairs) % 2:
+        return with_errors(constant(ErrorCode.VALUE), errors)
+    places = np.broadcast_shapes(*(criterion.shape[1:] for criterion in criteria))
+    width = cells[0].shape[1] * cells[0].shape[2]
+
+    def compute(values: Value, *others: Value) -> Value:
+        ranges, criteria = others[: len(cells) - 1], others[len(cells) - 1 :]
+        held = np.ones((1, width), bool)
+        for cells_, criterion in zip(ranges, criteria, strict=True):
+            held = held & met(criterion, cells_)
+        return reduce(values, held)
+
+    if not places:
+        return with_errors(by_portions(compute, [*cells, *criteria], width), errors)
+    results = [
+        by_portions(compute, [*cells, *(cell_of(criterion, *place) for criterion in criteria)], width)
+        for place in np.ndindex(*places)
+    ]
+    return with_errors(side_by_side(results, *places), errors.reshape(-1, 1, 1))
+
+
+def _resized(values: Value | None, cells: Value) -> Value:
+    """The range to add up, in the size of the range of the criterion.
+
+    Excel takes it from its top left cell in that size, whatever its own size: the caller gives it so resized. What then
+    lacks lies outside the used part of the sheet, and is empty.
+    """
+    if values is None:
+        return cells
+    if values.numbers.ndim == 1 and direct_errors(values).any():
+        return values
+    _, rows, columns = cells.as_range().shape
+    values = values.as_range()
+    _, r, c = values.shape
+    cut = each_part(values, lambda part: part[:, :rows, :columns])
+    if r >= rows and c >= columns:
+        return cut
+    edges = ((0, 0), (0, max(0, rows - r)), (0, max(0, columns - c)))
+    texts = None if cut.texts is None else np.pad(cut.texts, edges, constant_values="")
+    return Value(np.pad(cut.numbers, edges), np.pad(cut.kinds, edges, constant_values=BLANK), texts)
+
+
+@excel("COUNTIF", Cells, Anything)
+def count_if(cells: Value, criterion: Value) -> Value:
+    """How many cells meet the criterion."""
+    return _conditional(cells, (cells, criterion), _count)
+
+
+@excel("COUNTIFS", Cells(repeat=True), Anything(repeat=True))
+def count_ifs(*pairs: Value) -> Value:
+    """In how many places all ranges meet the criteria behind them."""
+    return _conditional(pairs[0], pairs, _count)
+
+
+@excel("SUMIF", Cells, Anything, Cells(default=None))
+def sum_if(cells: Value, criterion: Value, values: Value | None = None) -> Value:
+    """Sum of the numbers beside the cells that meet the criterion, or of these cells."""
+    return _conditional(_resized(values, cells), (cells, criterion), _SUM)
+
+
+@excel("SUMIFS", Cells, Cells(repeat=True), Anything(repeat=True))
+def sum_ifs(values: Value, *pairs: Value) -> Value:
+    """Sum of the numbers where all ranges meet the criteria behind them."""
+    return _conditional(values, pairs, _SUM)
+
+
+@excel("AVERAGEIF", Cells, Anything, Cells(default=None))
+def average_if(cells: Value, criterion: Value, values: Value | None = None) -> Value:
+    """Mean of the numbers beside the cells that meet the criterion, or of these cells; `#DIV/0!` of none."""
+    return _conditional(_resized(values, cells), (cells, criterion), _AVERAGE)
+
+
+@excel("AVERAGEIFS", Cells, Cells(repeat=True), Anything(repeat=True))
+def average_ifs(values: Value, *pairs: Value) -> Value:
+    """Mean of the numbers where all ranges meet the criteria behind them; `#DIV/0!` of none."""
+    return _conditional(values, pairs, _AVERAGE)
+
+
+@excel("MAXIFS", Cells, Cells(repeat=True), Anything(repeat=True))
+def maximum_ifs(values: Value, *pairs: Value) -> Value:
+    """Largest number where all ranges meet the criteria behind them; 0 of none."""
+    return _conditional(values, pairs, _MAXIMUM)
+
+
+@excel("MINIFS", Cells, Cells(repeat=True), Anything(repeat=True))
+def minimum_ifs(values: Value, *pairs: Value) -> Value:
+    """Smallest number where all ranges meet the criteria behind them; 0 of none."""
+    return _conditional(values, pairs, _MINIMUM)

@@ -1,0 +1,141 @@
+"""Criteria, as `COUNTIF` and its kin take them: `5`, `">=5"`, `"<>"`, `"b*"`, `TRUE`, `#N/A`, or an empty cell.
+
+A criterion of one trial is held against the cells of the same trial. Letters: n trials, k cells.
+
+* Without an operator, or with `=`, a number meets equal numbers and the texts that read as one; a text meets texts,
+  with wildcards and whatever their case; a logical or an error meets its like. An empty cell as criterion is the number
+  0.
+* `<>` is the opposite in every cell, be it empty or an error.
+* `<`, `<=`, `>` and `>=` meet cells of the operand's kind only.
+* `""` meets what is empty or an empty text, `"="` what is empty, `"<>"` what is not.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any, Final
+
+import numpy as np
+
+from xlmc.errors import ErrorCode
+from xlmc.functions.ordering import Ordered, ordered
+from xlmc.functions.picking import if_blank
+from xlmc.functions.values import BLANK, ERROR, NUMBER, TEXT, Bools, Floats, Objects, Value, from_objects, parse_number
+from xlmc.functions.patterns import is_pattern, pattern_of
+
+__all__ = ["met"]
+
+_OPERATOR: Final = re.compile(r"(<=|>=|<>|<|>|=|)(.*)", re.DOTALL)
+_BEGINS: Final = "begins"
+_LOGICALS: Final = {"true": True, "false": False}
+_RELATIONS: Final[dict[str, Callable[[Any, Any], Any]]] = {
+    "<": np.less,
+    "<=": np.less_equal,
+    ">": np.greater,
+    ">=": np.greater_equal,
+}
+
+
+def met(criterion: Value, cells: Value, *, begins: bool = False) -> Bools:
+    """Which cells meet the criterion.
+
+    Args:
+        criterion: (n,).
+        cells: (n, r, c).
+        begins: a text without an operator meets the texts that begin with it: so it is in database functions.
+
+    Returns:
+        (n, k), the cells row by row.
+    """
+    operators, operand = _parsed(criterion, _BEGINS if begins else "=")
+    wanted, found = ordered(operand, cells)
+    present = sorted(set(operators.tolist()))
+    result = _holds(present[0], wanted, found)
+    for operator in present[1:]:
+        result = np.where((operators == operator)[:, None], _holds(operator, wanted, found), result)
+    return result
+
+
+def _parsed(criterion: Value, plain: str) -> tuple[Objects, Value]:
+    """The operator and the operand of each criterion; `plain` is the operator of a text without one."""
+    operand = if_blank(criterion)
+    operators = np.full(1, "=", object)
+    if criterion.texts is None:
+        return operators, operand
+    distinct = list(dict.fromkeys(criterion.texts.tolist()))
+    place_of = {text: place for place, text in enumerate(distinct)}
+    places = np.array([place_of[text] for text in criterion.texts.tolist()])
+    pairs = [_split(text, plain) for text in distinct]
+    box = np.empty(len(pairs), object)
+    box[:] = [item for _, item in pairs]
+    read = from_objects(box)
+    is_text = operand.kinds == TEXT
+    operators = np.where(is_text, np.array([operator for operator, _ in pairs], object)[places], "=")
+    texts = None if read.texts is None else read.texts[places]
+    numbers = np.where(is_text, read.numbers[places], operand.numbers)
+    return operators, Value(numbers, np.where(is_text, read.kinds[places], operand.kinds), texts)
+
+
+def _split(text: str, plain: str) -> tuple[str, object]:
+    """`">=5"` as `>=` and 5."""
+    found = _OPERATOR.fullmatch(text)
+    assert found is not None
+    operator, rest = found.groups()
+    if not rest:
+        return (operator, None) if operator else ("=", "")
+    return operator or plain, _operand(rest)
+
+
+def _operand(text: str) -> object:
+    number = parse_number(text)
+    if number is not None:
+        return number
+    folded = text.strip().casefold()
+    if folded in _LOGICALS:
+        return _LOGICALS[folded]
+    try:
+        return ErrorCode.from_text(folded)
+    except ValueError:
+        return text
+
+
+def _holds(operator: str, wanted: Ordered, found: Ordered) -> Bools:
+    if operator in _RELATIONS:
+        comparable = (found.kinds == wanted.kinds) & (found.kinds != BLANK) & (found.kinds < ERROR)
+        return np.asarray(comparable & _RELATIONS[operator](found.order, wanted.order))
+    equal = _equal(wanted, found, operator == _BEGINS)
+    return ~equal if operator == "<>" else equal
+
+
+def _equal(wanted: Ordered, found: Ordered, begins: bool) -> Bools:
+    result = (found.kinds == wanted.kinds) & (found.order == wanted.order)
+    is_number, is_text = wanted.kinds == NUMBER, wanted.kinds == TEXT
+    if is_number.any() and (found.kinds == TEXT).any():
+        result = result | (is_number & (_text_numbers(found) == wanted.order))
+    for place in np.unique(wanted.order[is_text]).astype(np.intp):
+        text = wanted.texts[place]
+        if not text or begins or is_pattern(text):
+            fitting = found.kinds == BLANK if not text else _fitting(found, text, begins)
+            result = np.where(is_text & (wanted.order == place), result | fitting if not text else fitting, result)
+    return np.asarray(result)
+
+
+def _text_numbers(found: Ordered) -> Floats:
+    """The number each text reads as; NaN where it is none, or is no text."""
+    numbers = [parse_number(text) for text in found.texts]
+    table = np.array([np.nan if number is None else number for number in numbers])
+    return np.asarray(_by_text(found, table, np.nan))
+
+
+def _fitting(found: Ordered, pattern: str, begins: bool) -> Bools:
+    fits = pattern_of(pattern, begins).fits
+    present = set(np.unique(found.order[found.kinds == TEXT]).astype(np.intp).tolist())
+    table = np.array([place in present and fits(text) for place, text in enumerate(found.texts)])
+    return np.asarray(_by_text(found, table, False))
+
+
+def _by_text(found: Ordered, table: Any, otherwise: Any) -> Any:
+    """What a table says of each text; something else where there is none."""
+    is_text = found.kinds == TEXT
+    return np.where(is_text, table[np.where(is_text, found.order, 0).astype(np.intp)], otherwise)

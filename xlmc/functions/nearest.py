@@ -1,0 +1,108 @@
+"""Positions of keys in vectors: the equal value, or else the next smaller or larger one, wherever it stands.
+
+A key finds values of its own kind only, texts whatever their case. Letters: n trials, m keys and k values of a trial.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from xlmc.functions.ordering import Ordered, ordered
+from xlmc.functions.patterns import is_pattern, pattern_of
+from xlmc.functions.picking import Places
+from xlmc.functions.values import ERROR, TEXT, Bools, Floats, Value
+
+__all__ = ["EXACT", "LARGER", "SMALLER", "nearest"]
+
+SMALLER: Final = -1
+EXACT: Final = 0
+LARGER: Final = 1
+
+
+def nearest(keys: Value, vector: Value, side: int = EXACT, *, last: bool = False, wildcards: bool = False) -> Places:
+    """Where each key stands in the vector, counted from 0; -1 where nothing is found.
+
+    Args:
+        keys: (n,) or, in an array formula, (n, r, c).
+        vector: (n, k, 1) or (n, 1, k).
+        side: where nothing is equal, the largest value that is `SMALLER` or the smallest that is `LARGER`; or `EXACT`.
+        last: the last of equal values rather than the first.
+        wildcards: a text with wildcards finds the texts that fit.
+
+    Returns:
+        The shape of `keys`, with the trials of both.
+    """
+    wanted, found = ordered(keys, vector)
+    n, m = max(keys.shape[0], vector.shape[0]), wanted.order.shape[1]
+    result = np.empty((n, m), np.intp)
+    if vector.shape[0] == 1:
+        flat = Ordered(wanted.kinds.reshape(-1, 1), wanted.order.reshape(-1, 1), wanted.texts)
+        result[:] = _in_constant(flat, found, side, last).reshape(-1, m)
+    else:
+        for j in range(m):
+            result[:, j] = _in_varying(wanted.column(j), found, side, last)
+    if wildcards:
+        _overlay_patterns(result, wanted, found, last)
+    return result.reshape(n, *keys.shape[1:])
+
+
+def _in_constant(keys: Ordered, vector: Ordered, side: int, last: bool) -> Places:
+    """(m, 1) keys in (1, k) values -> (m,): by bisection of the values in order."""
+    result = np.full(keys.order.shape[0], -1)
+    kinds, order = vector.kinds[0], vector.order[0]
+    for kind in np.unique(kinds[kinds < ERROR]):
+        places = np.flatnonzero(kinds == kind)
+        places = places[np.argsort(order[places], kind="stable")]
+        mine = keys.kinds[:, 0] == kind
+        result[mine] = _bisected(order[places], places, keys.order[mine, 0], side, last)
+    return result
+
+
+def _bisected(rising: Floats, places: Places, keys: Floats, side: int, last: bool) -> Places:
+    """The places of the values that the keys find among `rising` ones."""
+    if side == SMALLER:
+        at = np.searchsorted(rising, keys, "right") - 1
+    else:
+        at = np.searchsorted(rising, keys, "left")
+    inside = (at >= 0) & (at < rising.size)
+    value = rising[np.where(inside, at, 0)]
+    if side == EXACT:
+        inside &= value == keys
+    chosen = np.searchsorted(rising, value, "right") - 1 if last else np.searchsorted(rising, value, "left")
+    return np.where(inside, places[chosen], -1)
+
+
+def _in_varying(keys: Ordered, vector: Ordered, side: int, last: bool) -> Places:
+    """(n, 1) keys, each in its own trial of (n, k) values -> (n,)."""
+    same_kind = (vector.kinds == keys.kinds) & (vector.kinds < ERROR)
+    if side == EXACT:
+        return _place_of(same_kind & (vector.order == keys.order), last)
+    allowed = same_kind & (vector.order <= keys.order if side == SMALLER else vector.order >= keys.order)
+    worst = -np.inf if side == SMALLER else np.inf
+    within = np.where(allowed, vector.order, worst)
+    best = within.max(axis=1, keepdims=True) if side == SMALLER else within.min(axis=1, keepdims=True)
+    return _place_of(allowed & (vector.order == best), last)
+
+
+def _place_of(hits: Bools, last: bool) -> Places:
+    """The first hit of each row, or the last; -1 where there is none."""
+    place = hits.shape[1] - 1 - hits[:, ::-1].argmax(axis=1) if last else hits.argmax(axis=1)
+    return np.where(hits.any(axis=1), place, -1)
+
+
+def _overlay_patterns(result: Places, keys: Ordered, vector: Ordered, last: bool) -> None:
+    """Write the places that keys with wildcards find over what they found as plain texts."""
+    for rank in np.unique(keys.order[keys.kinds == TEXT]).astype(np.intp):
+        if is_pattern(keys.texts[rank]):
+            found = _place_of(_fitting(vector, keys.texts[rank]), last)
+            mine = (keys.kinds == TEXT) & (keys.order == rank)
+            result[:] = np.where(mine, found[:, None], result)
+
+
+def _fitting(vector: Ordered, pattern: str) -> Bools:
+    is_text = vector.kinds == TEXT
+    fits = pattern_of(pattern).fits
+    fitting = [rank for rank in np.unique(vector.order[is_text]).tolist() if fits(vector.texts[int(rank)])]
+    return np.asarray(is_text & np.isin(vector.order, fitting))

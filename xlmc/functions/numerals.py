@@ -1,0 +1,123 @@
+"""Numbers written another way: Roman, or in a base from 2 to 36."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from xlmc.errors import ErrorCode
+from xlmc.functions.per_element import per_element
+from xlmc.functions.registry import Anything, Kind, Number, Text, excel
+from xlmc.functions.toolpak import number_of, per_object
+
+__all__ = ["digits_of"]
+
+_ROMAN: Final = {"I": 1, "V": 5, "X": 10, "L": 50, "C": 100, "D": 500, "M": 1000}
+_LONGEST: Final = 255
+"""Longer texts are not read or written as numerals."""
+
+_DIGITS: Final = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+_EXACT: Final = 2.0**53
+
+
+@excel("ROMAN", Anything, Anything(default=None), returns=Kind.TEXT)
+@per_object
+def roman(number: object, form: object = 0.0) -> str | ErrorCode:
+    """Roman numeral, from the classic form 0 (also TRUE) to the shortest, 4 (also FALSE); `#VALUE!` above 3999."""
+    value = float(number) if isinstance(number, bool) else number_of(number)
+    level = (0.0 if form else 4.0) if isinstance(form, bool) else number_of(form)
+    for found in (value, level):
+        if isinstance(found, ErrorCode):
+            return found
+    if not 0 <= value < 4000 or not 0 <= level < 5:
+        return ErrorCode.VALUE
+    return _numeral(int(value), int(level))
+
+
+def _numeral(value: int, form: int) -> str:
+    text = ""
+    while value:
+        letters, amount = _next_letters(value, form)
+        text, value = text + letters, value - amount
+    return text
+
+
+def _next_letters(value: int, form: int) -> tuple[str, int]:
+    """The letter, or the pair of one less another, that comes first in the numeral, and what it counts.
+
+    The letter that is subtracted is classically the next power of ten below; each further form allows one letter
+    smaller, and the smallest that still brings the large one down to the value is taken.
+    """
+    names = list(_ROMAN)
+    for large in reversed(range(len(names))):
+        amount = _ROMAN[names[large]]
+        if amount <= value:
+            return names[large], amount
+        power_of_ten = (large - 1) // 2 * 2
+        smaller = [s for s in range(power_of_ten, max(power_of_ten - form, 0) - 1, -1)] if large else []
+        reached = [s for s in smaller if amount - _ROMAN[names[s]] <= value]
+        if reached:
+            small = reached[-1]
+            return names[small] + names[large], amount - _ROMAN[names[small]]
+    raise ValueError(f"{value} has no Roman numeral")
+
+
+@excel("ARABIC", Anything)
+@per_object
+def arabic(numeral: object) -> float | ErrorCode:
+    """Number of a Roman numeral, however written: a letter left of a larger one counts against; "" is 0."""
+    if numeral is None:
+        return 0.0
+    if not isinstance(numeral, str) or len(numeral) > _LONGEST:
+        return ErrorCode.VALUE
+    text = numeral.strip(" ").upper()
+    letters = text.removeprefix("-")
+    if not set(letters) <= set(_ROMAN):
+        return ErrorCode.VALUE
+    if text == "-":
+        return ErrorCode.NUM
+    return -_total(letters) if text != letters else _total(letters)
+
+
+def _total(letters: str) -> float:
+    total = largest = 0
+    for letter in reversed(letters):
+        value = _ROMAN[letter]
+        largest = max(largest, value)
+        total += value if value == largest else -value
+    return float(total)
+
+
+def digits_of(number: int, base: int) -> str:
+    """A whole number, 0 or more, in a base from 2 to 36; 0 has no digits."""
+    text = ""
+    while number:
+        number, digit = divmod(number, base)
+        text = _DIGITS[digit] + text
+    return text
+
+
+@excel("BASE", Number, Number, Number(default=1.0), returns=Kind.TEXT)
+@per_element
+def base(number: float, radix: float, length: float) -> str | ErrorCode:
+    """Digits in a base, zeros before them up to a length; `#NUM!` below 0 and from 2^53 on."""
+    if not (0 <= number < _EXACT and 2 <= radix < 37 and 0 <= length < _LONGEST + 1):
+        return ErrorCode.NUM
+    return digits_of(int(number), int(radix)).zfill(int(length))
+
+
+@excel("DECIMAL", Text, Number)
+@per_element
+def decimal(text: str, radix: float) -> float | ErrorCode:
+    """Number that digits in a base stand for; `#NUM!` for others than digits of that base."""
+    if len(text) > _LONGEST:
+        return ErrorCode.VALUE
+    if not 2 <= radix < 37:
+        return ErrorCode.NUM
+    digits = text.lstrip(" ").upper()
+    allowed = _DIGITS[: int(radix)]
+    if any(digit not in allowed for digit in digits):
+        return ErrorCode.NUM
+    try:
+        return float(int(digits or "0", int(radix)))
+    except OverflowError:
+        return ErrorCode.NUM

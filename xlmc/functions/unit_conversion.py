@@ -1,0 +1,48 @@
+"""CONVERT: a measurement in another unit of the same kind."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.functions.registry import Anything, excel
+from xlmc.functions.toolpak import aligned, strict_numbers
+from xlmc.functions.units import Unit, unit_named
+from xlmc.functions.values import NA, Floats, Value
+
+__all__: list[str] = []
+
+_UNKNOWN = Unit("", 1.0)
+
+
+def _units(value: Value) -> NDArray[Any]:
+    """The unit that each text names, `_UNKNOWN` where it names none."""
+    names, _ = value.to_texts()
+    units = np.empty(names.shape, object)
+    for place in np.ndindex(*names.shape):
+        units[place] = unit_named(names[place]) or _UNKNOWN
+    return units
+
+
+def _part(units: NDArray[Any], attribute: str) -> Floats:
+    return np.array([getattr(unit, attribute) for unit in units.ravel()], np.float64).reshape(units.shape)
+
+
+def _groups(units: NDArray[Any]) -> NDArray[Any]:
+    return np.array([unit.group for unit in units.ravel()], object).reshape(units.shape)
+
+
+@excel("CONVERT", Anything, Anything, Anything)
+def convert(number: Value, source: Value, target: Value) -> Value:
+    """A measurement in another unit; `#N/A` for units that are unknown or measure different things."""
+    number, source, target = aligned([number, source, target])
+    x, errors = strict_numbers(number)
+    for value in (source, target):
+        errors = np.where(errors > 0, errors, value.errors).astype(np.uint8)
+    old, new = _units(source), _units(target)
+    base = (x * _part(old, "prefix") - _part(old, "zero")) * _part(old, "scale")
+    result = (base / _part(new, "scale") + _part(new, "zero")) / _part(new, "prefix")
+    groups = _groups(old)
+    return Value.of_numbers(np.where((groups == _groups(new)) & (groups != ""), result, NA), errors)

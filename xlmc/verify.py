@@ -75,7 +75,7 @@ class Verification:
 
 
 def verify(workbook: Workbook, definitions: Definitions | None = None) -> Verification:
-    """Recompute formula cells at their base values.
+    """Recompute formula cells at their base values, each from what Excel saved in the cells it needs.
 
     Args:
         workbook: to check.
@@ -92,7 +92,7 @@ def _lowered(workbook: Workbook, wanted: Sequence[Cell]) -> Lowering:
     more: dict[Cell, set[Cell]] = {}
     while True:
         graph = build_graph(resolver, wanted, frozenset(), more=more, strict=False)
-        lowering = Lowering(graph, {}, {}, strict=False)
+        lowering = Lowering(graph, {}, {}, audit=True)
         if not lowering.more:
             return lowering
         for cell, needed in lowering.more.items():

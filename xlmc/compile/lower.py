@@ -39,7 +39,8 @@ class Lowering:
         graph: the needed cells, in dependency order.
         inputs: the assumption cells and the names of their inputs; any other cell that holds a value is constant.
         held: cells held at a value of their own: frozen assumptions.
-        strict: raise where a cell that an input reaches cannot be computed; use what Excel saved otherwise.
+        audit: every formula sees what Excel saved in the cells it needs, so that each is checked on its own; one that
+            cannot be computed is a fault, not an exception.
 
     Attributes:
         graph, inputs, held: as given.
@@ -52,19 +53,22 @@ class Lowering:
     """
 
     def __init__(
-        self, graph: Graph, inputs: Mapping[Cell, str], held: Mapping[Cell, float], *, strict: bool = True
+        self, graph: Graph, inputs: Mapping[Cell, str], held: Mapping[Cell, float], *, audit: bool = False
     ) -> None:
         self.dag = Dag()
         self.notices: list[Notice] = []
         self.saved: dict[Cell, object] = {}
         self.faults: dict[Cell, FormulaError] = {}
         self.more: dict[Cell, set[Cell]] = {}
-        self.inputs, self.held, self.graph, self._strict = inputs, held, graph, strict
+        self.inputs, self.held, self.graph, self._audit = inputs, held, graph, audit
+        self._computed: dict[Cell, int] = {}
         self._arrays: dict[Cell, int] = {}
         self._cells: dict[Cell, int] = {cell: self.dag.input(name) for cell, name in inputs.items()}
         self._cells |= {cell: self.dag.constant(constant(value)) for cell, value in held.items()}
         for cell, tree in graph.formulas.items():
-            self._cells[cell] = self._formula_cell(cell, tree)
+            self._computed[cell] = place = self._formula_cell(cell, tree)
+            saved = graph.workbook.content(cell).value if audit else None
+            self._cells[cell] = place if saved is None else self._held_cell(cell)
 
     def cell(self, cell: Cell) -> int:
         """The node of a cell's value."""
@@ -85,8 +89,8 @@ class Lowering:
         return self.known_single(self.target(target))
 
     def value(self, cell: Cell) -> Value | None:
-        """A cell's value where it is constant; None where it is not."""
-        return self.known_single(self.cell(cell))
+        """What a formula cell computes where that is constant; None where it is not."""
+        return self.known_single(self._computed[cell])
 
     def awaits(self, cell: Cell) -> bool:
         """Whether a cell must be lowered before it can be referred to, and was not."""
@@ -137,7 +141,7 @@ class Lowering:
         text = self.graph.text(cell)
         complete = FormulaError(error.message, where=cell, hint=error.hint, text=text, span=error.span)
         saved = self.graph.workbook.content(cell).value
-        if self._strict and (cell in self.graph.varying or saved is None):
+        if not self._audit and (cell in self.graph.varying or saved is None):
             raise complete from None
         self.notices.append(Notice(f"{error.message}; Excel's saved value is used (no assumption reaches it)", cell))
         return self._saved(cell, complete)
@@ -254,7 +258,7 @@ class Lowering:
         """An argument that may be a range: ranges whole, joined areas one by one, anything else as it computes."""
         areas = places.areas_of(self, tree, scope)
         if areas is None:
-            return [self.lower(tree, scope)]
+            return [self.lower(tree, scope.over_arrays() if _gives_area(tree) else scope)]
         return [self.range(area) for area in areas]
 
     def range(self, area: Area) -> int:
@@ -270,6 +274,13 @@ class Lowering:
         if name == "^" and arguments[1] == self.number(2.0):
             return self.call("*", (arguments[0], arguments[0]))
         return self.made(REGISTRY[name], arguments)
+
+
+def _gives_area(tree: ir.Expression) -> bool:
+    """Whether a choice that varies is one between ranges, which it then gives whole."""
+    if isinstance(tree, ir.Call) and tree.name in choices.CHOICES:
+        return any(_gives_area(branch) for branch in tree.arguments[1:])
+    return isinstance(tree, Area)
 
 
 def _merged(function: Function, arguments: tuple[int, ...], picked: tuple[int, ...]) -> tuple[int, ...]:

@@ -142,7 +142,7 @@ class _TableReference(_Leaf):
 class _Operator(OperatorToken):  # type: ignore[misc]
     """One operator at a time; a prefix waits on the stack for its operand, so that `--x` is two of them."""
 
-    _re = re.compile(r"\s*(?P<name><=|>=|<>|[-+*/^&=<>:@%]|\#)\s*")
+    _re = re.compile(r"\s*(?P<name><=|>=|<>|[-+*/^&=<>:@%]|\#(?![A-Za-z]))\s*")
     _re_process = None
     _n_args: ClassVar[dict[str, int]] = {"u-": 1, "u+": 1, "@": 1, "%": 1, "#": 1}
     _precedences = Operator._precedences | {"#": 10, ":": 9}  # `:` before the blank that intersects

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import assert_never
+from typing import Final, assert_never
 
 from xlmc.address import Area, Cell
 from xlmc.formula import ir
 
 __all__ = ["formula_text"]
+
+_PARAMETER: Final = "_xlpm."
+"""What files put before a variable: without it, `x:y` would be two columns."""
 
 
 def formula_text(tree: ir.Expression, name: Callable[[Cell | Area], str] = str) -> str:
@@ -37,12 +40,13 @@ def formula_text(tree: ir.Expression, name: Callable[[Cell | Area], str] = str) 
         case ir.Call(function, arguments):
             return f"{function}({','.join(formula_text(part, name) for part in arguments)})"
         case ir.Variable(variable):
-            return variable
+            return _PARAMETER + variable
         case ir.Let(bindings, body):
-            pairs = (f"{bound},{formula_text(value, name)}" for bound, value in bindings)
+            pairs = (f"{_PARAMETER}{bound},{formula_text(value, name)}" for bound, value in bindings)
             return f"LET({','.join(pairs)},{formula_text(body, name)})"
         case ir.Lambda(parameters, body):
-            return f"LAMBDA({','.join([*parameters, formula_text(body, name)])})"
+            bound = (_PARAMETER + parameter for parameter in parameters)
+            return f"LAMBDA({','.join([*bound, formula_text(body, name)])})"
         case ir.Invoke(called, arguments):
             return f"{formula_text(called, name)}({','.join(formula_text(part, name) for part in arguments)})"
         case ir.Array(rows):

@@ -1,6 +1,24 @@
 """Excel's functions: `registry` holds one row each, the modules beside it one category each."""
 
-from xlmc.functions import aggregate, arithmetic, logical, operators, rounding, trigonometry
+from xlmc.functions import (
+    aggregate,
+    arithmetic,
+    base_conversion,
+    bits,
+    complex_functions,
+    logical,
+    matrices,
+    number_theory,
+    numerals,
+    operators,
+    paired_sums,
+    precise_rounding,
+    reciprocal_trigonometry,
+    rounding,
+    special_functions,
+    trigonometry,
+    unit_conversion,
+)
 from xlmc.functions.registry import REGISTRY, Function, Kind, function_named
 
 __all__ = [
@@ -9,9 +27,20 @@ __all__ = [
     "Kind",
     "aggregate",
     "arithmetic",
+    "base_conversion",
+    "bits",
+    "complex_functions",
     "function_named",
     "logical",
+    "matrices",
+    "number_theory",
+    "numerals",
     "operators",
+    "paired_sums",
+    "precise_rounding",
+    "reciprocal_trigonometry",
     "rounding",
+    "special_functions",
     "trigonometry",
+    "unit_conversion",
 ]

@@ -1,4 +1,4 @@
-"""BIN2DEC and its eleven like: ten digits at most, of which the largest half are negative numbers (two's complement)."""
+"""BIN2DEC and its like: ten digits at most; the larger half of what they can count stands for negative numbers."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Final
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.numerals import digits_of
+from xlmc.functions.numerals import digits_of, read_digits
 from xlmc.functions.registry import Anything, Kind, excel
 from xlmc.functions.toolpak import number_of, per_object
 from xlmc.functions.values import general_text
@@ -23,11 +23,8 @@ def _read(item: object, base: int) -> int | ErrorCode:
     if isinstance(item, bool):
         return ErrorCode.VALUE
     text = general_text(item) if isinstance(item, float) else str(item or "")
-    if len(text) > _PLACES or not text.isascii() or (text and not text.isalnum()):
-        return ErrorCode.NUM
-    try:
-        number = int(text or "0", base)
-    except ValueError:
+    number = read_digits(text, base) if len(text) <= _PLACES else None
+    if number is None:
         return ErrorCode.NUM
     return number if number < base**_PLACES // 2 else number - int(base**_PLACES)
 
@@ -37,7 +34,7 @@ def _whole(item: object) -> int | ErrorCode:
     return number if isinstance(number, ErrorCode) else int(number)
 
 
-def _length(places: object) -> int | None | ErrorCode:
+def _length(places: object) -> int | ErrorCode | None:
     """How many digits are asked for; None if none are; `#NUM!` for fewer than 1 or more than 10."""
     if places is _ANY_LENGTH:
         return None

@@ -6,7 +6,7 @@ period what is lost runs evenly.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from xlmc.functions.registry import Logical, Number, excel
 from xlmc.functions.values import DIV0, NUM, Bools, Floats
 
 __all__: list[str] = []
+
+_MOST_PERIODS: Final = 2.0**53
+"""So many a double can count."""
 
 
 @excel("SLN", Number, Number, Number)
@@ -125,28 +128,32 @@ class _Declining:
     def _switch(self) -> Floats:
         """The first end of a period from which on equal losses are more than declining ones; the end of life if none.
 
-        With V(t) the declining value, equal losses are more where factor·(1 - t/L) + S/V(t) < 1. As long as V is above
-        S the left side is convex in t, so that it falls up to its lowest point: before that, halving finds the place.
+        With V(t) the declining value, equal losses are more where factor·(1 - t/L) + S/V(t) < 1. The left side is convex
+        in t, so that up to its lowest point it falls, and halving finds the place.
         """
-        periods = np.ceil(self._life - self._part)
-        low, high = np.full(np.shape(periods), -1.0), np.minimum(periods, self._lowest())
-        from_start = self._is_even(np.zeros(1), self._cost)
-        reached = self._is_even(self._part + high, self._after(high))
+        last = np.clip(np.ceil(self._life - self._part) - 1, 0.0, _MOST_PERIODS)
+        lowest = np.minimum(self._lowest(), last)
+        beside = np.minimum(lowest + 1, last)
+        high = np.where(self._even_is_more(lowest), lowest, np.where(self._even_is_more(beside), beside, last))
+        ever, low = self._even_is_more(high), np.full(high.shape, -1.0)
         while (high - low > 1).any():
             middle = np.floor((low + high) / 2)
-            below = self._is_even(self._part + middle, self._after(middle))
-            low, high = np.where(below, low, middle), np.where(below, middle, high)
-        return np.where(from_start, 0.0, np.where(reached, np.minimum(self._part + high, self._life), self._life))
+            more = self._even_is_more(middle)
+            low, high = np.where(more, low, middle), np.where(more, middle, high)
+        at_once = self._is_less(np.asarray(self._cost), self._life)
+        return np.where(at_once, 0.0, np.where(ever, np.minimum(self._part + high, self._life), self._life))
 
-    def _is_even(self, time: Floats, value: Floats) -> Bools:
-        ahead = self._life - time
-        return np.asarray((value - self._salvage > self._loss(value) * ahead) & (ahead > 0))
+    def _even_is_more(self, periods: Floats) -> Bools:
+        return self._is_less(self._after(periods), self._life - self._part - periods)
+
+    def _is_less(self, value: Floats, ahead: Floats) -> Bools:
+        """Whether a value loses less by declining than in equal parts over the time ahead."""
+        return np.asarray((self._loss(value) * ahead < value - self._salvage) & (ahead > 0))
 
     def _lowest(self) -> Floats:
-        """The whole number of periods at which the convex function of `_switch` is lowest, or where V meets S."""
-        log_kept = np.log(np.maximum(1 - self._rate, np.finfo(float).tiny))
-        some = (self._salvage > 0) & (self._after_part > self._salvage)
-        height = np.where(some, self._after_part * self._rate / np.where(some, self._salvage * -log_kept, 1.0), 1.0)
-        meets = np.log(np.where(some, self._salvage / self._after_part, 1.0)) / log_kept
-        lowest = np.minimum(np.log(np.maximum(height, 1.0)) / -log_kept, meets)
-        return np.where(some, np.ceil(lowest), np.where(self._salvage > 0, 0.0, np.inf))
+        """How many whole periods lie before the lowest point of the convex function of `_switch`."""
+        pace = -np.log1p(-np.minimum(self._rate, 1 - np.finfo(float).epsneg))
+        value, some = self._after_part, (self._salvage > 0) & (self._after_part > 0)
+        ratio = np.where(some, value, 1.0) * self._rate / (np.where(some, self._salvage, 1.0) * pace)
+        place = np.floor(np.log(np.maximum(ratio, 1.0)) / pace)
+        return np.where(some, place, np.where(self._salvage > 0, 0.0, np.inf))

@@ -1,7 +1,4 @@
-"""Matrices, one of each trial: (n, r, c). A cell that is no number, a blank too, makes the result `#VALUE!`.
-
-The result is the same size in every trial, so that `MUNIT` wants one size for all.
-"""
+"""Matrices, one of each trial: (n, r, c). A cell that is no number, a blank too, makes the result `#VALUE!`."""
 
 from __future__ import annotations
 
@@ -9,10 +6,10 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.errors import ErrorCode, FormulaError
-from xlmc.functions.registry import Cells, Kind, Number, excel
-from xlmc.functions.toolpak import first_error
-from xlmc.functions.values import ERROR, NUM, NUMBER, VALUE, Codes, Floats, Value, constant
+from xlmc.errors import ErrorCode
+from xlmc.functions import picking
+from xlmc.functions.registry import Anything, Cells, Kind, excel
+from xlmc.functions.values import ERROR, NUM, NUMBER, Codes, Floats, Value, constant
 
 __all__: list[str] = []
 
@@ -26,7 +23,7 @@ def _matrix(value: Value) -> tuple[Floats, Codes]:
     other = np.where(cells.kinds >= ERROR, cells.kinds - np.uint8(ERROR), np.uint8(ErrorCode.VALUE))
     codes = np.where(cells.kinds == NUMBER, np.uint8(0), other).astype(np.uint8)
     rows = np.broadcast_to(codes, cells.shape).reshape(cells.shape[0], -1)
-    return np.broadcast_to(cells.numbers, cells.shape), first_error(rows)[:, None, None]
+    return np.broadcast_to(cells.numbers, cells.shape), picking.first_errors(rows)[:, None, None]
 
 
 @excel("MMULT", Cells, Cells, returns=Kind.ANY)
@@ -64,24 +61,21 @@ def inverse(matrix: Value) -> Value:
     return Value.of_numbers(np.where(regular, found, NUM), errors)
 
 
-@excel("MUNIT", Number, returns=Kind.ANY)
-def unit_matrix(dimension: Floats) -> Floats:
+@excel("MUNIT", Anything, returns=Kind.ANY)
+def unit_matrix(dimension: Value) -> Value:
     """Unit matrix; `#VALUE!` of no rows, or of more than a sheet has columns.
 
     Raises:
-        FormulaError: the size is not the same in every trial.
+        ShapeVaries: the size is not the same in every trial.
     """
-    sizes = np.unique(np.trunc(dimension))
-    if sizes.size > 1:
-        raise FormulaError("MUNIT has not the same size in every trial", hint="give it a constant size")
-    if not 1 <= sizes[0] <= _WIDEST:
-        return np.full(1, VALUE)
-    return np.eye(int(sizes[0]))[None]
+    size, errors = picking.whole_numbers(picking.cell_of(dimension, 0, 0))
+    outside = picking.where_wrong((size < 1) | (size > _WIDEST), ErrorCode.VALUE)
+    refused = picking.earliest(errors, outside)
+    size = picking.same_in_all_trials(np.where(refused > 0, 0.0, size))
+    return Value.of_numbers(np.eye(int(size))[None] if size else np.zeros(refused.shape), refused if not size else None)
 
 
 @excel("TRANSPOSE", Cells, returns=Kind.ANY)
-def transposed(cells: Value) -> Value:
+def transpose(cells: Value) -> Value:
     """Rows as columns: (n, r, c) -> (n, c, r)."""
-    value = cells.as_range()
-    numbers, kinds = (array.transpose(0, 2, 1) for array in (value.numbers, value.kinds))
-    return Value(numbers, kinds, None if value.texts is None else value.texts.transpose(0, 2, 1))
+    return picking.transposed(cells.as_range())

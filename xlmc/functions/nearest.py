@@ -1,6 +1,6 @@
 """Positions of keys in vectors: the equal value, or else the next smaller or larger one, wherever it stands.
 
-A key finds values of its own kind only, texts whatever their case. Letters: n trials, m keys and k values of a trial.
+A key finds values of its own kind only, texts whatever their case. Letters: m keys, k values.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.functions.ordering import Ordered, ordered
+from xlmc.functions.ordering import Ordered, searched
 from xlmc.functions.patterns import is_pattern, pattern_of
 from xlmc.functions.picking import Places
 from xlmc.functions.values import ERROR, TEXT, Bools, Floats, Value
@@ -34,21 +34,15 @@ def nearest(keys: Value, vector: Value, side: int = EXACT, *, last: bool = False
     Returns:
         The shape of `keys`, with the trials of both.
     """
-    wanted, found = ordered(keys, vector)
-    n, m = max(keys.shape[0], vector.shape[0]), wanted.order.shape[1]
-    result = np.empty((n, m), np.intp)
-    if vector.shape[0] == 1:
-        flat = Ordered(wanted.kinds.reshape(-1, 1), wanted.order.reshape(-1, 1), wanted.texts)
-        result[:] = _in_constant(flat, found, side, last).reshape(-1, m)
-    else:
-        for j in range(m):
-            result[:, j] = _in_varying(wanted.column(j), found, side, last)
-    if wildcards:
-        _overlay_patterns(result, wanted, found, last)
-    return result.reshape(n, *keys.shape[1:])
+
+    def find(keys: Ordered, vector: Ordered) -> Places:
+        result = _in_one(keys, vector, side, last) if len(vector.order) == 1 else _in_many(keys, vector, side, last)
+        return _patterns_over(result, keys, vector, last) if wildcards else result
+
+    return searched(keys, vector, find)
 
 
-def _in_constant(keys: Ordered, vector: Ordered, side: int, last: bool) -> Places:
+def _in_one(keys: Ordered, vector: Ordered, side: int, last: bool) -> Places:
     """(m, 1) keys in (1, k) values -> (m,): by bisection of the values in order."""
     result = np.full(keys.order.shape[0], -1)
     kinds, order = vector.kinds[0], vector.order[0]
@@ -74,8 +68,8 @@ def _bisected(rising: Floats, places: Places, keys: Floats, side: int, last: boo
     return np.where(inside, places[chosen], -1)
 
 
-def _in_varying(keys: Ordered, vector: Ordered, side: int, last: bool) -> Places:
-    """(n, 1) keys, each in its own trial of (n, k) values -> (n,)."""
+def _in_many(keys: Ordered, vector: Ordered, side: int, last: bool) -> Places:
+    """(m, 1) keys, each in its own row of (m, k) values -> (m,)."""
     same_kind = (vector.kinds == keys.kinds) & (vector.kinds < ERROR)
     if side == EXACT:
         return _place_of(same_kind & (vector.order == keys.order), last)
@@ -92,13 +86,14 @@ def _place_of(hits: Bools, last: bool) -> Places:
     return np.where(hits.any(axis=1), place, -1)
 
 
-def _overlay_patterns(result: Places, keys: Ordered, vector: Ordered, last: bool) -> None:
-    """Write the places that keys with wildcards find over what they found as plain texts."""
-    for rank in np.unique(keys.order[keys.kinds == TEXT]).astype(np.intp):
+def _patterns_over(result: Places, keys: Ordered, vector: Ordered, last: bool) -> Places:
+    """What keys with wildcards find, over what they found as plain texts: (m,)."""
+    is_text, order = keys.kinds[:, 0] == TEXT, keys.order[:, 0]
+    for rank in np.unique(order[is_text]).astype(np.intp):
         if is_pattern(keys.texts[rank]):
             found = _place_of(_fitting(vector, keys.texts[rank]), last)
-            mine = (keys.kinds == TEXT) & (keys.order == rank)
-            result[:] = np.where(mine, found[:, None], result)
+            result = np.where(is_text & (order == rank), found, result)
+    return result
 
 
 def _fitting(vector: Ordered, pattern: str) -> Bools:

@@ -8,8 +8,9 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.picking import first_errors
 from xlmc.functions.registry import Anything, Cells, Kind, Number, excel
-from xlmc.functions.toolpak import first_error, flattened, numbers_only
+from xlmc.functions.toolpak import flattened, numbers_only
 from xlmc.functions.values import NUM, Bools, Codes, Floats, Value
 
 __all__: list[str] = []
@@ -34,7 +35,7 @@ _DOUBLE_FACTORIALS: Final = np.array([_double_factorial(n) for n in range(-1, 30
 def _refused(x: Floats, errors: Codes, bad: Bools) -> Codes:
     """The first error of each trial, `#NUM!` where a number is bad: (n, k) -> (n,)."""
     found = np.where((errors == 0) & bad, np.uint8(ErrorCode.NUM), errors).astype(np.uint8)
-    return first_error(found)
+    return first_errors(found)
 
 
 @excel("GCD", Cells(repeat=True))

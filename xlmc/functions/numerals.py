@@ -9,7 +9,7 @@ from xlmc.functions.per_element import per_element
 from xlmc.functions.registry import Anything, Kind, Number, Text, excel
 from xlmc.functions.toolpak import number_of, per_object
 
-__all__ = ["digits_of"]
+__all__ = ["digits_of", "read_digits"]
 
 _ROMAN: Final = {"I": 1, "V": 5, "X": 10, "L": 50, "C": 100, "D": 500, "M": 1000}
 _LONGEST: Final = 255
@@ -53,7 +53,7 @@ def _next_letters(value: int, form: int) -> tuple[str, int]:
         if amount <= value:
             return names[large], amount
         power_of_ten = (large - 1) // 2 * 2
-        smaller = [s for s in range(power_of_ten, max(power_of_ten - form, 0) - 1, -1)] if large else []
+        smaller = range(power_of_ten, max(power_of_ten - form, 0) - 1, -1)
         reached = [s for s in smaller if amount - _ROMAN[names[s]] <= value]
         if reached:
             small = reached[-1]
@@ -96,6 +96,13 @@ def digits_of(number: int, base: int) -> str:
     return text
 
 
+def read_digits(text: str, base: int) -> int | None:
+    """The whole number that digits in a base stand for, 0 for none; None when a character is no such digit."""
+    if any(digit not in _DIGITS[:base] for digit in text.upper()):
+        return None
+    return int(text or "0", base)
+
+
 @excel("BASE", Number, Number, Number(default=1.0), returns=Kind.TEXT)
 @per_element
 def base(number: float, radix: float, length: float) -> str | ErrorCode:
@@ -113,11 +120,8 @@ def decimal(text: str, radix: float) -> float | ErrorCode:
         return ErrorCode.VALUE
     if not 2 <= radix < 37:
         return ErrorCode.NUM
-    digits = text.lstrip(" ").upper()
-    allowed = _DIGITS[: int(radix)]
-    if any(digit not in allowed for digit in digits):
-        return ErrorCode.NUM
+    number = read_digits(text.lstrip(" "), int(radix))
     try:
-        return float(int(digits or "0", int(radix)))
+        return ErrorCode.NUM if number is None else float(number)
     except OverflowError:
         return ErrorCode.NUM

@@ -6,6 +6,7 @@ whatever its case. Letters: n trials, k values of a trial.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,9 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.functions.collation import order_key
+from xlmc.functions.picking import Places
 from xlmc.functions.values import ERROR, TEXT, Codes, Floats, Objects, Value
 
-__all__ = ["Ordered", "ordered"]
+__all__ = ["Ordered", "ordered", "searched"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,9 +34,14 @@ class Ordered:
     order: Floats
     texts: tuple[str, ...]
 
-    def column(self, place: int) -> Ordered:
-        """The values at one place: (n, 1)."""
-        return Ordered(self.kinds[:, place : place + 1], self.order[:, place : place + 1], self.texts)
+    def column(self, place: int, n: int) -> Ordered:
+        """The values at one place, in n trials: (n, 1)."""
+        kinds, order = (np.broadcast_to(part[:, place : place + 1], (n, 1)) for part in (self.kinds, self.order))
+        return Ordered(kinds, order, self.texts)
+
+    def flat(self) -> Ordered:
+        """All values as trials of their own: (n·k, 1)."""
+        return Ordered(self.kinds.reshape(-1, 1), self.order.reshape(-1, 1), self.texts)
 
 
 def ordered(*values: Value) -> list[Ordered]:
@@ -45,6 +52,25 @@ def ordered(*values: Value) -> list[Ordered]:
     places = {text: float(place) for place, text in enumerate(texts)}
     ranks = {text: places[text.casefold()] for text in written}
     return [_ordered(value, ranks, texts) for value in values]
+
+
+def searched(keys: Value, vector: Value, find: Callable[[Ordered, Ordered], Places]) -> Places:
+    """Where each key stands in the vector of its trial.
+
+    Args:
+        keys: (n,) or, in an array formula, (n, r, c).
+        vector: (n, k, 1) or (n, 1, k).
+        find: takes keys (m, 1) and values, either (m, k) or (1, k) for all keys; gives positions (m,).
+
+    Returns:
+        The shape of `keys`, with the trials of both.
+    """
+    wanted, found = ordered(keys, vector)
+    n = max(keys.shape[0], vector.shape[0])
+    if vector.shape[0] == 1:
+        return find(wanted.flat(), found).reshape(keys.shape)
+    columns = [find(wanted.column(j, n), found) for j in range(wanted.order.shape[1])]
+    return np.stack(columns, axis=1).reshape(n, *keys.shape[1:])
 
 
 def _ordered(value: Value, ranks: dict[str, float], texts: tuple[str, ...]) -> Ordered:

@@ -7,8 +7,9 @@ from collections.abc import Callable
 import numpy as np
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.picking import earliest, first_errors, leveled
 from xlmc.functions.registry import Anything, Cells, excel
-from xlmc.functions.toolpak import aligned, first_error, strict_numbers
+from xlmc.functions.toolpak import strict_numbers
 from xlmc.functions.values import BLANK, DIV0, ERROR, NUMBER, Codes, Floats, Value, constant
 
 __all__: list[str] = []
@@ -16,8 +17,8 @@ __all__: list[str] = []
 
 def _cells(value: Value) -> tuple[Floats, Codes]:
     """The numbers and kinds of a range, or of one value, cell by cell: (n, k), (n, k)."""
-    numbers, kinds = (np.broadcast_to(array, value.shape) for array in (value.numbers, value.kinds))
-    return numbers.reshape(value.shape[0], -1), kinds.reshape(value.shape[0], -1)
+    size = (value.shape[0], -1)
+    return np.broadcast_to(value.numbers, value.shape).reshape(size), np.broadcast_to(value.kinds, value.shape).reshape(size)
 
 
 def _over_pairs(x: Value, y: Value, term: Callable[[Floats, Floats], Floats]) -> Value:
@@ -28,7 +29,7 @@ def _over_pairs(x: Value, y: Value, term: Callable[[Floats, Floats], Floats]) ->
     counts = (left_kinds == NUMBER) & (right_kinds == NUMBER)
     total = np.add.accumulate(np.where(counts, term(left, right), 0.0), axis=1)[:, -1]
     kinds = np.concatenate(np.broadcast_arrays(left_kinds, right_kinds), axis=1)
-    errors = first_error(np.where(kinds >= ERROR, kinds - np.uint8(ERROR), np.uint8(0)).astype(np.uint8))
+    errors = first_errors(np.where(kinds >= ERROR, kinds - np.uint8(ERROR), np.uint8(0)).astype(np.uint8))
     return Value.of_numbers(np.where(counts.any(axis=1), total, DIV0), errors)
 
 
@@ -53,16 +54,13 @@ def sum_of_squares_of_differences(x: Value, y: Value) -> Value:
 @excel("SERIESSUM", Anything, Anything, Anything, Cells)
 def series_sum(x: Value, first: Value, step: Value, coefficients: Value) -> Value:
     """Sum of a·x^first + b·x^(first + step) + …, the coefficients read row by row; a blank one is 0."""
-    values = aligned([x, first, step])
+    values = leveled(x, first, step)
     (base, _), (power, _), (more, _) = numbers = [strict_numbers(value) for value in values]
     factors, kinds = _cells(coefficients)
     other = np.where(kinds >= ERROR, kinds - np.uint8(ERROR), np.uint8(ErrorCode.VALUE))
-    refused = first_error(np.where((kinds == NUMBER) | (kinds == BLANK), np.uint8(0), other).astype(np.uint8))
+    refused = first_errors(np.where((kinds == NUMBER) | (kinds == BLANK), np.uint8(0), other).astype(np.uint8))
     spread = (-1,) + (1,) * (values[0].numbers.ndim - 1)
     total = np.zeros(spread[1:] or 1)
     for i in range(factors.shape[1]):
         total = total + factors[:, i].reshape(spread) * np.float_power(base, power + i * more)
-    errors = np.zeros(1, np.uint8)
-    for found in (*(codes for _, codes in numbers), refused.reshape(spread)):
-        errors = np.where(errors > 0, errors, found).astype(np.uint8)
-    return Value.of_numbers(total, errors)
+    return Value.of_numbers(total, earliest(*(codes for _, codes in numbers), refused.reshape(spread)))

@@ -26,7 +26,7 @@ def erf_between(lower: Floats, upper: Floats | None = None) -> Floats:
         return np.asarray(erf(lower))
     side = np.sign(lower) * (np.sign(lower) == np.sign(upper))
     apart = side * (erfc(side * lower) - erfc(side * upper))
-    return np.where(side == 0, erf(upper) - erf(lower), apart)
+    return np.asarray(np.where(side == 0, erf(upper) - erf(lower), apart))
 
 
 @excel("ERF.PRECISE", Anything)

@@ -14,16 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.picking import earliest, leveled
 from xlmc.functions.values import LOGICAL, Codes, Floats, Value, from_objects, parse_number
 
-__all__ = ["aligned", "first_error", "flattened", "number_of", "numbers_only", "per_object", "strict_numbers"]
-
-
-def aligned(values: Sequence[Value]) -> list[Value]:
-    """The values so that they broadcast: all of them ranges where one is."""
-    if any(value.numbers.ndim == 3 for value in values):
-        return [value.as_range() for value in values]
-    return list(values)
+__all__ = ["flattened", "number_of", "numbers_only", "per_object", "strict_numbers"]
 
 
 def strict_numbers(value: Value) -> tuple[Floats, Codes]:
@@ -53,13 +47,9 @@ def numbers_only(body: Callable[..., Any]) -> Callable[..., Value]:
 
     @wraps(body)
     def strict(*values: Value) -> Value:
-        errors = np.zeros(1, np.uint8)
-        arrays = []
-        for value in aligned(values):
-            numbers, found = strict_numbers(value)
-            arrays.append(numbers)
-            errors = np.where(errors > 0, errors, found).astype(np.uint8)
-        result = np.atleast_1d(body(*arrays))
+        pairs = [strict_numbers(value) for value in leveled(*values)]
+        result = np.atleast_1d(body(*(numbers for numbers, _ in pairs)))
+        errors = earliest(*(found for _, found in pairs))
         return Value.of_logicals(result, errors) if result.dtype == bool else Value.of_numbers(result, errors)
 
     return strict
@@ -74,7 +64,7 @@ def per_object(function: Callable[..., object]) -> Callable[..., Value]:
 
     @wraps(function)
     def body(*values: Value) -> Value:
-        arguments = [value.objects() for value in aligned(values)]
+        arguments = [value.objects() for value in leveled(*values)]
         shape = np.broadcast_shapes(*(items.shape for items in arguments))
         spread = [np.broadcast_to(items, shape) for items in arguments]
         out = np.empty(shape, object)
@@ -99,9 +89,3 @@ def flattened(values: Sequence[Value]) -> tuple[Floats, Codes]:
 def _rows(array: NDArray[Any], value: Value, n: int) -> NDArray[Any]:
     rows = np.broadcast_to(array, value.shape).reshape(value.shape[0], -1)
     return np.broadcast_to(rows, (n, rows.shape[1]))
-
-
-def first_error(codes: Codes) -> Codes:
-    """The first error of each trial, 0 for none: (n, k) -> (n,)."""
-    place = (codes > 0).argmax(axis=1, keepdims=True)
-    return np.take_along_axis(codes, place, axis=1)[:, 0]

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.functions.picking import earliest, leveled
 from xlmc.functions.registry import Anything, excel
-from xlmc.functions.toolpak import aligned, strict_numbers
+from xlmc.functions.toolpak import strict_numbers
 from xlmc.functions.units import Unit, unit_named
 from xlmc.functions.values import NA, Floats, Value
 
@@ -22,7 +23,7 @@ def _units(value: Value) -> NDArray[Any]:
     names, _ = value.to_texts()
     units = np.empty(names.shape, object)
     for place in np.ndindex(*names.shape):
-        units[place] = unit_named(names[place]) or _UNKNOWN
+        units[place] = unit_named(str(names[place])) or _UNKNOWN
     return units
 
 
@@ -37,12 +38,11 @@ def _groups(units: NDArray[Any]) -> NDArray[Any]:
 @excel("CONVERT", Anything, Anything, Anything)
 def convert(number: Value, source: Value, target: Value) -> Value:
     """A measurement in another unit; `#N/A` for units that are unknown or measure different things."""
-    number, source, target = aligned([number, source, target])
+    number, source, target = leveled(number, source, target)
     x, errors = strict_numbers(number)
-    for value in (source, target):
-        errors = np.where(errors > 0, errors, value.errors).astype(np.uint8)
     old, new = _units(source), _units(target)
     base = (x * _part(old, "prefix") - _part(old, "zero")) * _part(old, "scale")
     result = (base / _part(new, "scale") + _part(new, "zero")) / _part(new, "prefix")
     groups = _groups(old)
-    return Value.of_numbers(np.where((groups == _groups(new)) & (groups != ""), result, NA), errors)
+    found = np.where((groups == _groups(new)) & (groups != ""), result, NA)
+    return Value.of_numbers(found, earliest(errors, source.errors, target.errors))

@@ -91,11 +91,11 @@ _UNITS: Final = _TEMPERATURES | {
     for name in names.split()
 }  # fmt: skip
 
-_METRIC: Final = set(
-    "g u m ang ly parsec pc sec s Pa p atm at mmHg N dyn dy pond J e c cal eV ev Wh wh W w T ga K kel l L lt ar bit "
-    "byte m/h m/hr m/s m/sec ang2 ang^2 m2 m^2 ang3 ang^3 m3 m^3".split()
-)
-"""The units that take prefixes."""
+_METRIC: Final = """
+g u m ang ly parsec pc sec s Pa p atm at mmHg N dyn dy pond J e c cal eV ev Wh wh W w T ga K kel l L lt ar bit byte
+m/h m/hr m/s m/sec ang2 ang^2 m2 m^2 ang3 ang^3 m3 m^3
+"""
+_TAKE_PREFIXES: Final = frozenset(_METRIC.split())
 
 _POWERS: Final = {"2": 2, "3": 3}
 """A prefix of a square or a cube is of its side: km2 are squares of a kilometre."""
@@ -119,7 +119,7 @@ def unit_named(name: str) -> Unit | None:
 def _with_prefix(name: str) -> Iterator[Unit]:
     for length in (1, 2):
         prefix, rest = name[:length], name[length:]
-        if rest not in _METRIC:
+        if rest not in _TAKE_PREFIXES:
             continue
         if prefix in _PREFIXES:
             yield replace(_UNITS[rest], prefix=_PREFIXES[prefix] ** _POWERS.get(rest[-1], 1))

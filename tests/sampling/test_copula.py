@@ -1,0 +1,86 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from xlmc.sampling import GaussianCopula
+
+N = 200_000
+
+
+def matrix(k, **pairs):
+    found = np.eye(k)
+    for pair, value in pairs.items():
+        i, j = int(pair[1]), int(pair[2])
+        found[i, j] = found[j, i] = value
+    return found
+
+
+def uniforms(k, n=N):
+    return np.random.default_rng(20010311).random((k, n))
+
+
+TARGETS = {
+    "strong": matrix(2, r01=0.9),
+    "negative": matrix(2, r01=-0.6),
+    "none": matrix(2),
+    "three": matrix(3, r01=0.5, r02=-0.3, r12=0.2),
+    "four": matrix(4, r01=0.7, r12=0.7, r23=0.7, r02=0.5, r13=0.5, r03=0.3),
+}
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_spearman_correlations_are_those_asked_for(name):
+    target = TARGETS[name]
+    u = uniforms(len(target))
+    GaussianCopula(target).join(u)
+    seen = np.atleast_2d(np.corrcoef(stats.rankdata(u, axis=1)))
+    error = (1 - target**2) * np.sqrt((1 + target**2 / 2) / (N - 3))  # Bonett and Wright 2000, back from Fisher's z
+    assert np.all(np.abs(seen - target) <= 4 * error + 1e-12)
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_margins_stay_uniform_and_the_first_keeps_its_draws(name):
+    target = TARGETS[name]
+    u = uniforms(len(target))
+    first = u[0].copy()
+    GaussianCopula(target).join(u)
+    assert np.array_equal(u[0], first)
+    for row in u:
+        assert ((row >= 0) & (row < 1)).all()
+        assert stats.kstest(row, "uniform").statistic < 1.95 / np.sqrt(N)
+
+
+def test_a_trial_depends_on_its_own_uniforms_alone():
+    copula, u = GaussianCopula(TARGETS["three"]), uniforms(3, 1000)
+    whole, part = u.copy(), u[:, 400:700].copy()
+    copula.join(whole)
+    copula.join(part)
+    assert np.array_equal(part, whole[:, 400:700])
+
+
+def test_the_ends_of_the_grid():
+    u = np.array([[0.0, 1 - 2.0**-53, 0.0], [0.0, 1 - 2.0**-53, 1 - 2.0**-53]])
+    GaussianCopula(TARGETS["strong"]).join(u)
+    assert ((u >= 0) & (u < 1)).all()
+
+
+@pytest.mark.parametrize("value", [1.0, -1.0])
+def test_full_correlation_of_two(value):
+    u = uniforms(2, 1000)
+    GaussianCopula(matrix(2, r01=value)).join(u)
+    assert np.allclose(u[1], u[0] if value > 0 else 1 - u[0], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "target",
+    [
+        matrix(3, r01=0.9, r12=0.9, r02=-0.9),
+        matrix(3, r01=0.9, r02=0.9),
+        matrix(3, r01=1.0, r02=-1.0, r12=1.0),
+    ],
+)
+def test_contradictions_are_refused(target):
+    with pytest.raises(ValueError, match="these correlations contradict each other"):
+        GaussianCopula(target)

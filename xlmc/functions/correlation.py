@@ -1,0 +1,105 @@
+"""Pairs of numbers and the line through them. Letters: n trials, k pairs of a trial.
+
+Of two ranges, only those places count where both hold numbers.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from xlmc.functions.picking import earliest
+from xlmc.functions.registry import Cells, Number, excel
+from xlmc.functions.samples import laid_out, mean_of, of_pairs, pairs_of, places_of, row_sums
+from xlmc.functions.values import DIV0, NA, Bools, Floats, Value
+
+__all__: list[str] = []
+
+
+def _joint(x: Floats, y: Floats, counts: Bools) -> tuple[Floats, Floats, Floats, Floats]:
+    """The sums of squared distances of x and of y, that of their products, and how many pairs: (n,) each."""
+    (_, dx, k), (_, dy, _) = mean_of(x, counts), mean_of(y, counts)
+    return row_sums(dx * dx), row_sums(dy * dy), row_sums(dx * dy), k
+
+
+def _ratio(above: Floats, below: Floats) -> Floats:
+    return np.where(below > 0, above / np.where(below > 0, below, 1.0), DIV0)
+
+
+@excel("CORREL", Cells, Cells, aliases=("PEARSON",))
+@of_pairs
+def correlation(x: Floats, y: Floats, counts: Bools) -> Floats:
+    """Pearson's correlation; `#DIV/0!` where one side does not vary."""
+    xx, yy, xy, _ = _joint(x, y, counts)
+    return _ratio(xy, np.sqrt(xx) * np.sqrt(yy))
+
+
+@excel("RSQ", Cells, Cells)
+@of_pairs
+def determination(y: Floats, x: Floats, counts: Bools) -> Floats:
+    """Square of Pearson's correlation; `#DIV/0!` where one side does not vary."""
+    xx, yy, xy, _ = _joint(x, y, counts)
+    root = np.sqrt(xx) * np.sqrt(yy)
+    r = xy / np.where(root > 0, root, 1.0)
+    return np.where(root > 0, r * r, DIV0)
+
+
+@excel("COVARIANCE.P", Cells, Cells, aliases=("COVAR",))
+@of_pairs
+def population_covariance(x: Floats, y: Floats, counts: Bools) -> Floats:
+    """Covariance of the pairs themselves; `#DIV/0!` of nothing."""
+    _, _, xy, k = _joint(x, y, counts)
+    return _ratio(xy, k)
+
+
+@excel("COVARIANCE.S", Cells, Cells)
+@of_pairs
+def sample_covariance(x: Floats, y: Floats, counts: Bools) -> Floats:
+    """Covariance, estimated from a sample; `#DIV/0!` of fewer than two pairs."""
+    _, _, xy, k = _joint(x, y, counts)
+    return _ratio(xy, k - 1)
+
+
+@excel("SLOPE", Cells, Cells)
+@of_pairs
+def slope(y: Floats, x: Floats, counts: Bools) -> Floats:
+    """Slope of the line of least squares; `#DIV/0!` where x does not vary."""
+    xx, _, xy, _ = _joint(x, y, counts)
+    return _ratio(xy, xx)
+
+
+def _line(y: Floats, x: Floats, counts: Bools) -> tuple[Floats, Floats, Floats, Bools]:
+    """The means of x and y, the slope, and whether x varies: (n,) each."""
+    (mean_x, dx, _), (mean_y, dy, _) = mean_of(x, counts), mean_of(y, counts)
+    xx = row_sums(dx * dx)
+    return mean_x, mean_y, row_sums(dx * dy) / np.where(xx > 0, xx, 1.0), xx > 0
+
+
+@excel("INTERCEPT", Cells, Cells)
+@of_pairs
+def intercept(y: Floats, x: Floats, counts: Bools) -> Floats:
+    """Where the line of least squares meets x = 0; `#DIV/0!` where x does not vary."""
+    mean_x, mean_y, steepness, varies = _line(y, x, counts)
+    return np.where(varies, mean_y - steepness * mean_x, DIV0)
+
+
+@excel("STEYX", Cells, Cells)
+@of_pairs
+def standard_error(y: Floats, x: Floats, counts: Bools) -> Floats:
+    """Standard error of y about the line; `#DIV/0!` of fewer than three pairs, or where x does not vary."""
+    (_, dx, k), (_, dy, _) = mean_of(x, counts), mean_of(y, counts)
+    _, _, steepness, varies = _line(y, x, counts)
+    off = dy - steepness[:, None] * dx
+    return np.where(varies & (k > 2), np.sqrt(row_sums(off * off) / np.maximum(k - 2, 1.0)), DIV0)
+
+
+@excel("FORECAST.LINEAR", Number, Cells, Cells, aliases=("FORECAST",))
+def forecast(at: Value, ys: Value, xs: Value) -> Value:
+    """The line of least squares at a place; `#DIV/0!` where x does not vary, `#N/A` for ranges of unequal size."""
+    (places,), codes, shape = places_of(at)
+    pairs = pairs_of(ys, xs)
+    if pairs is None:
+        return laid_out(np.full((1, 1), NA), codes[0], shape)
+    y, x, counts, errors = pairs
+    mean_x, mean_y, steepness, varies = (part[:, None] for part in _line(y, x, counts))
+    result = np.where(varies, mean_y + steepness * (places - mean_x), DIV0)
+    return laid_out(result, earliest(codes[0], errors[:, None]), shape)

@@ -1,0 +1,163 @@
+"""Vulgar fractions: `# ?/?`, `??/??`, `# ?/8`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from xlmc.functions.number_format.placeholders import count_digits, fill_whole, settle_commas
+from xlmc.functions.number_format.plain import Written
+from xlmc.functions.number_format.tokens import FormatError, Mark, Token
+
+__all__ = ["FractionLayout", "fraction_layout"]
+
+_EXACT: Final = 5e-10
+"""A remainder below this ends the continued fraction."""
+
+
+@dataclass(frozen=True, slots=True)
+class FractionLayout:
+    """A fraction, after a whole number or without one.
+
+    Attributes:
+        whole: the tokens up to the last digit of the whole number; None without one.
+        gap: what stands between the whole number and the fraction.
+        stroke: what stands between the numerator and the denominator.
+        fixed: the denominator, where the format gives it.
+        rest: what stands behind the denominator.
+    """
+
+    whole: tuple[Token, ...] | None
+    grouped: bool
+    gap: str
+    numerator: tuple[Token, ...]
+    stroke: str
+    denominator: tuple[Token, ...]
+    fixed: int | None
+    rest: tuple[Token, ...]
+
+    def write(self, size: float, date1904: bool = False) -> Written:
+        n, d = self._approximated(size)
+        if self.whole is None:
+            return f"{self.gap}{self._fraction(n, d)}{self._rest()}", False
+        units, n = divmod(n, d)
+        return f"{self._mixed(self.whole, units, n, d)}{self._rest()}", False
+
+    def _approximated(self, size: float) -> tuple[int, int]:
+        if self.fixed is None:
+            return approximated(size, 10 ** count_digits(self.denominator) - 1)
+        units = math.floor(size)
+        return units * self.fixed + math.floor((size - units) * self.fixed + 0.5), self.fixed
+
+    def _mixed(self, whole: tuple[Token, ...], units: int, n: int, d: int) -> str:
+        if n == 0 and "0" not in _places(self.numerator):
+            return self._whole(whole, str(units)) + self._no_fraction(whole)
+        if units == 0 and n > 0 and "0" not in _places(whole):
+            return f"{self._whole(whole, '')}{self._narrowed_gap(whole)}{self._fraction(n, d)}"
+        if units == 0 and n == 0 and not set(_places(whole)) & {"0", "?"}:
+            return f"{self._whole(whole, '')}{self._narrowed_gap(whole)}{self._fraction(n, d)}"
+        return f"{self._whole(whole, str(units))}{self.gap}{self._fraction(n, d)}"
+
+    def _whole(self, whole: tuple[Token, ...], digits: str) -> str:
+        return fill_whole(whole, digits, self.grouped)
+
+    def _fraction(self, n: int, d: int) -> str:
+        return f"{fill_whole(self.numerator, str(n))}{self.stroke}{self._denominator(d)}"
+
+    def _denominator(self, d: int) -> str:
+        """Digits to the left, then the empty places; with zeros first if the format has them."""
+        places = _places(self.denominator)
+        digits = str(d)
+        if places[:1] == "0":
+            return digits.zfill(len(places))
+        return digits + places[len(digits) :].replace("?", " ").replace("#", "")
+
+    def _no_fraction(self, whole: tuple[Token, ...]) -> str:
+        """A fraction of 0 is left out; where anything is aligned by `?`, it leaves its room."""
+        room = len(self.gap) + len(self.numerator) + len(self.stroke) + len(self.denominator)
+        aligned = "?" in _places(whole) + _places(self.numerator) + _places(self.denominator)
+        return " " * room if aligned else ""
+
+    def _narrowed_gap(self, whole: tuple[Token, ...]) -> str:
+        """The gap behind a whole number that is left out."""
+        return " " * len(self.gap) if "?" in _places(whole) + _places(self.numerator) else ""
+
+    def _rest(self) -> str:
+        return fill_whole(self.rest, "")
+
+
+def _places(tokens: Sequence[Token]) -> str:
+    return "".join(token.text for token in tokens if token.mark in (Mark.DIGIT, Mark.NUMERAL))
+
+
+def approximated(x: float, largest: int) -> tuple[int, int]:
+    """Numerator and denominator, at most `largest`: the last convergent of the continued fraction of `x`.
+
+    Excel takes convergents only, and in doubles: 0.3 in ninths and less is 2/7, 1.3 is 4/3.
+    """
+    n, d, n_before, d_before = 1, 0, 0, 1
+    remainder = x
+    while True:
+        term = math.floor(remainder)
+        n, d, n_before, d_before = term * n + n_before, term * d + d_before, n, d
+        if d > largest:
+            return n_before, d_before
+        if remainder - term < _EXACT:
+            return n, d
+        remainder = 1 / (remainder - term)
+
+
+def fraction_layout(tokens: Sequence[Token]) -> FractionLayout:
+    """The layout of a section with places for digits and a stroke.
+
+    Raises:
+        FormatError: the numerator or the denominator is missing.
+    """
+    slash = next(index for index, token in enumerate(tokens) if token.mark is Mark.SLASH)
+    top = _end_of_digits(tokens[:slash])
+    start = _start_of_run(tokens[:top])
+    whole_end = _end_of_digits(tokens[:start])
+    bottom, rest = _denominator(tokens[slash + 1 :])
+    between = tokens[slash + 1 : len(tokens) - len(bottom) - len(rest)]
+    whole, grouped, _ = settle_commas(tokens[:whole_end])
+    if start == top or not bottom:
+        raise FormatError("a fraction has a numerator and a denominator")
+    return FractionLayout(
+        whole=tuple(whole) if whole_end else None,
+        grouped=grouped,
+        gap=_text(tokens[whole_end:start]),
+        numerator=tuple(tokens[start:top]),
+        stroke=f"{_text(tokens[top:slash])}/{_text(between)}",
+        denominator=tuple(bottom),
+        fixed=int(_places(bottom)) if bottom[0].mark is Mark.NUMERAL else None,
+        rest=tuple(rest),
+    )
+
+
+def _end_of_digits(tokens: Sequence[Token]) -> int:
+    """Where the last place for a digit ends; 0 without one."""
+    return max((index + 1 for index, token in enumerate(tokens) if token.mark is Mark.DIGIT), default=0)
+
+
+def _start_of_run(tokens: Sequence[Token]) -> int:
+    """Where the run of places for digits at the end starts."""
+    start = len(tokens)
+    while start and tokens[start - 1].mark is Mark.DIGIT:
+        start -= 1
+    return start
+
+
+def _denominator(tokens: Sequence[Token]) -> tuple[list[Token], list[Token]]:
+    """The first run of places or numerals, and what stands behind it."""
+    marks = (Mark.DIGIT, Mark.NUMERAL)
+    start = next((index for index, token in enumerate(tokens) if token.mark in marks), len(tokens))
+    end = start
+    while end < len(tokens) and tokens[end].mark in marks:
+        end += 1
+    return list(tokens[start:end]), list(tokens[end:])
+
+
+def _text(tokens: Sequence[Token]) -> str:
+    return "".join(token.text for token in tokens)

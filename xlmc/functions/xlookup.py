@@ -1,0 +1,125 @@
+"""XMATCH and XLOOKUP: lookups that ask for no order of the values.
+
+A key that is an empty cell finds an empty cell. Arguments left empty take their defaults.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from xlmc.errors import ErrorCode
+from xlmc.functions.logical import choose
+from xlmc.functions.nearest import EXACT, LARGER, SMALLER, nearest
+from xlmc.functions.picking import (
+    Places,
+    direct_errors,
+    earliest,
+    if_blank,
+    leveled,
+    picked,
+    same_in_all_trials,
+    transposed,
+    where_wrong,
+    whole_numbers,
+    with_errors,
+)
+from xlmc.functions.portions import by_portions, width_of
+from xlmc.functions.registry import Anything, Cells, Kind, Number, excel
+from xlmc.functions.values import BLANK, Codes, Value, constant
+
+__all__: list[str] = []
+
+_WILDCARDS: Final = 2
+_MODES: Final = (EXACT, SMALLER, LARGER, _WILDCARDS)
+_FROM_THE_END: Final = -1
+_DIRECTIONS: Final = (1, _FROM_THE_END, 2, -2)
+"""From end to end, or by halves of values in order (2, -2): there a search from end to end finds the same."""
+
+
+def _places(key: Value, vector: Value, mode: Value, direction: Value) -> tuple[Places, Codes]:
+    """The key's place, counted from 0, or -1; and the errors of the last two arguments."""
+    (modes, wrong), (directions, wrong_too) = whole_numbers(if_blank(mode)), whole_numbers(if_blank(direction, 1.0))
+    known = np.isin(modes, _MODES) & np.isin(directions, _DIRECTIONS)
+    known = known & ~((modes == _WILDCARDS) & (np.abs(directions) == 2))
+    result = np.full(1, -1)
+    for wanted in _MODES:
+        for last in (False, True):
+            chosen = (modes == wanted) & ((directions == _FROM_THE_END) == last)
+            if chosen.any():
+                by_pattern = wanted == _WILDCARDS
+                found = nearest(key, vector, EXACT if by_pattern else wanted, last=last, wildcards=by_pattern)
+                result = np.where(chosen, found, result)
+    return result, earliest(wrong, wrong_too, where_wrong(~known, ErrorCode.VALUE))
+
+
+@excel("XMATCH", Anything, Cells, Number(default=0.0), Number(default=1.0))
+def xmatch(key: Value, cells: Value, mode: Value | None = None, direction: Value | None = None) -> Value:
+    """Place of the key in a row or column: its equal, or the next smaller (-1) or larger (1); 2 for wildcards."""
+    modes, directions = constant(None) if mode is None else mode, constant(None) if direction is None else direction
+    return by_portions(_xmatch, [key, cells, modes, directions], width_of(cells))
+
+
+def _xmatch(key: Value, cells: Value, mode: Value, direction: Value) -> Value:
+    key, mode, direction = leveled(key, mode, direction)
+    errors = earliest(key.errors, direct_errors(cells, key))
+    vector = cells.as_range()
+    if 1 not in vector.shape[1:]:
+        return with_errors(constant(ErrorCode.VALUE), errors)
+    places, wrong = _places(key, vector, mode, direction)
+    return Value.of_numbers(places + 1.0, earliest(errors, wrong, where_wrong(places < 0, ErrorCode.NA)))
+
+
+@excel(
+    "XLOOKUP", Anything, Cells, Cells, Anything(default=None), Number(default=0.0), Number(default=1.0), returns=Kind.ANY
+)
+def xlookup(
+    key: Value,
+    cells: Value,
+    results: Value,
+    instead: Value | None = None,
+    mode: Value | None = None,
+    direction: Value | None = None,
+) -> Value:
+    """What stands in `results` where the key stands in `cells`, else `instead`: a cell, or the whole row or column.
+
+    Raises:
+        ShapeVaries: the result is a row or column, and not found in some of the trials.
+    """
+    absent = constant(None)
+    options = [absent if value is None else value for value in (instead, mode, direction)]
+    return by_portions(_xlookup, [key, cells, results, *options], width_of(cells, results))
+
+
+def _xlookup(key: Value, cells: Value, results: Value, instead: Value, mode: Value, direction: Value) -> Value:
+    key, instead, mode, direction = leveled(key, instead, mode, direction)
+    instead = with_errors(instead, where_wrong(instead.kinds == BLANK, ErrorCode.NA))
+    errors = earliest(key.errors, direct_errors(cells, key), direct_errors(results, key))
+    vector, grid = cells.as_range(), results.as_range()
+    if _goes_down(vector, grid):
+        return _found(key, vector, grid, instead, mode, direction, errors)
+    if _goes_down(transposed(vector), transposed(grid)):
+        row = _found(key, transposed(vector), transposed(grid), instead, mode, direction, errors)
+        return row if row.shape[1:] == key.shape[1:] else transposed(row)
+    return with_errors(constant(ErrorCode.VALUE), errors)
+
+
+def _goes_down(vector: Value, results: Value) -> bool:
+    """Whether the vector is a column, as long as the results."""
+    return vector.shape[2] == 1 and vector.shape[1] == results.shape[1]
+
+
+def _found(
+    key: Value, vector: Value, results: Value, instead: Value, mode: Value, direction: Value, errors: Codes
+) -> Value:
+    """A single key finds a whole row of `results`, keys in an array formula the first cell of theirs."""
+    places, wrong = _places(key, vector, mode, direction)
+    errors = earliest(errors, wrong)
+    found = (places >= 0) & (errors == 0)
+    rows = np.where(found, places, 0)
+    if results.shape[2] == 1 or places.ndim == 3:
+        return choose(found, picked(results, rows, np.zeros(1, np.intp)), with_errors(instead, errors))
+    if not same_in_all_trials(found):
+        return with_errors(instead, errors)
+    return picked(results, rows[:, None, None], np.arange(results.shape[2])[None, None, :])

@@ -9,9 +9,10 @@ from typing import Any, Final, assert_never
 import numpy as np
 
 from xlmc.compile.ragged import Ragged, by_trial
+from xlmc.errors import ErrorCode
 from xlmc.functions import Function, Kind
 from xlmc.functions.logical import if_, if_error, if_na
-from xlmc.functions.values import LOGICAL, NUMBER, TEXT, ShapeVaries, Value
+from xlmc.functions.values import BLANK, ERROR, LOGICAL, NUMBER, TEXT, ShapeVaries, Value, constant
 
 __all__ = [
     "MANY",
@@ -154,6 +155,9 @@ class Dag:
         """
         if node in self._known:
             return self._known[node]
+        settled = self._settled(node)
+        if settled is not None:
+            return settled
         size = self._size(node)
         known = {p: part.value for p in uses(node) if isinstance(part := self.nodes[p], Constant)}
         if len(known) == len(set(uses(node))) and not _volatile(node):
@@ -161,6 +165,30 @@ class Dag:
             self._known[node] = place
             return place
         return self._place(node, node, self._type(node) if size is None else Kind.ANY, size)
+
+    def _settled(self, node: Apply | Select | Rescue | Range) -> int | None:
+        """The part that an `IF` or a rescue gives, where that is known before the run: steps take no single constant."""
+        match node:
+            case Select(condition, yes, no):
+                known = self._single_constant(condition)
+                return None if known is None or not known.plain else self._not_blank(yes if known.numbers[0] else no)
+            case Rescue(value, instead, only_na):
+                known = self._single_constant(value)
+                if known is None:
+                    return None
+                kind = int(known.kinds[0])
+                lost = kind == ERROR + ErrorCode.NA or (kind >= ERROR and not only_na)
+                return self._not_blank(instead if lost else value)
+            case _:
+                return None
+
+    def _single_constant(self, place: int) -> Value | None:
+        node = self.nodes[place]
+        return node.value if isinstance(node, Constant) and self.sizes[place] is None else None
+
+    def _not_blank(self, place: int) -> int:
+        known = self._single_constant(place)
+        return self.constant(constant(0.0)) if known is not None and int(known.kinds[0]) == BLANK else place
 
     def _size(self, node: Apply | Select | Rescue | Range) -> Size:
         if isinstance(node, Range):

@@ -142,7 +142,7 @@ class _TableReference(_Leaf):
 class _Operator(OperatorToken):  # type: ignore[misc]
     """One operator at a time; a prefix waits on the stack for its operand, so that `--x` is two of them."""
 
-    _re = re.compile(r"\s*(?P<name><=|>=|<>|[-+*/^&=<>:@%]|\#(?![A-Za-z]))\s*")
+    _re = re.compile(r"\s*(?P<name><=|>=|<>|[-+*/^&=<>:@%]|\#(?![A-Za-z]))(?:(?<![%#])\s+)?")  # `A1# B:B` intersects
     _re_process = None
     _n_args: ClassVar[dict[str, int]] = {"u-": 1, "u+": 1, "@": 1, "%": 1, "#": 1}
     _precedences = Operator._precedences | {"#": 10, ":": 9}  # `:` before the blank that intersects
@@ -153,6 +153,9 @@ class _Operator(OperatorToken):  # type: ignore[misc]
     @property
     def get_n_args(self) -> int:
         return self._n_args.get(self.name, 2)
+
+    def update_name(self, tokens: list[Any], stack: list[Any]) -> None:
+        """`ast` below tells prefixes apart; `formulas` would take the `-` of `A1#-1` for one."""
 
     def ast(self, tokens: list[Any], stack: list[Any], builder: Any) -> None:
         if self.name == "@":

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.picking import earliest, first_errors, where_wrong
 from xlmc.functions.registry import Anything, Cells, excel
 from xlmc.functions.roots import growth_root
-from xlmc.functions.toolpak import first_error, strict_numbers
+from xlmc.functions.toolpak import strict_numbers
 from xlmc.functions.toolpak_rows import whole_days
 from xlmc.functions.values import BLANK, NUMBER, Bools, Codes, Floats, Value
 
@@ -24,18 +25,6 @@ __all__: list[str] = []
 def _rows(array: NDArray[Any], value: Value) -> NDArray[Any]:
     """One row per trial: (n,) or (n, r, c) -> (n, k)."""
     return np.broadcast_to(array, value.shape).reshape(value.shape[0], -1)
-
-
-def _either(*codes: Codes) -> Codes:
-    """The first that is an error, trial by trial."""
-    result = codes[0]
-    for other in codes[1:]:
-        result = np.where(result > 0, result, other)
-    return result.astype(np.uint8)
-
-
-def _raised(wrong: Bools, code: ErrorCode) -> Codes:
-    return np.where(wrong, np.uint8(code), np.uint8(0)).astype(np.uint8)
 
 
 def _single(value: Value) -> tuple[Floats, Codes]:
@@ -56,7 +45,7 @@ def _flows(values: Sequence[Value]) -> tuple[Floats, Bools, Codes]:
     x, counts, errors = (
         np.concatenate([np.broadcast_to(part[i], (n, part[i].shape[1])) for part in parts], axis=1) for i in range(3)
     )
-    return x, counts, first_error(errors)
+    return x, counts, first_errors(errors)
 
 
 def _discounted(rate: Floats, flows: Floats, counts: Bools) -> Floats:
@@ -80,7 +69,7 @@ def net_present_value(rate: Value, *values: Value) -> Value:
         errors = errors.reshape(-1, 1, 1)
     else:
         result = _discounted(r, flows, counts)
-    return Value.of_numbers(result, _either(r_errors, errors, _raised(r == -1, ErrorCode.DIV0)))
+    return Value.of_numbers(result, earliest(r_errors, errors, where_wrong(r == -1, ErrorCode.DIV0)))
 
 
 def _packed(flows: Floats, counts: Bools) -> tuple[Floats, NDArray[np.intp]]:
@@ -120,7 +109,7 @@ def internal_rate(values: Value, guess: Value | None = None) -> Value:
 
     rate = growth_root(worth, np.broadcast_to(start, (n,)))
     rate = np.where(_has_both_signs(flows, counts), rate, np.nan)
-    return Value.of_numbers(rate, _either(np.broadcast_to(errors, (n,)), start_errors))
+    return Value.of_numbers(rate, earliest(np.broadcast_to(errors, (n,)), start_errors))
 
 
 def _guess(guess: Value | None) -> tuple[Floats, Codes]:
@@ -141,8 +130,8 @@ def modified_rate(values: Value, finance: Value, reinvest: Value) -> Value:
     usable = _has_both_signs(flows, counts)
     ratio = np.where(usable, -received / np.where(paid == 0, np.nan, paid), 1.0)
     rate = np.power(ratio, 1.0 / np.where(k > 1, k - 1, 1)) - 1
-    one_sided = _raised(~usable | (k < 2), ErrorCode.DIV0)
-    return Value.of_numbers(rate, _either(errors, borrowed_errors, invested_errors, one_sided))
+    one_sided = where_wrong(~usable | (k < 2), ErrorCode.DIV0)
+    return Value.of_numbers(rate, earliest(errors, borrowed_errors, invested_errors, one_sided))
 
 
 def _dated(values: Value, dates: Value, date1904: bool) -> tuple[Floats, Floats, Codes]:
@@ -157,7 +146,7 @@ def _dated(values: Value, dates: Value, date1904: bool) -> tuple[Floats, Floats,
     days, valid = whole_days(np.where(dated, serials[:, :k], serials[:, :1]), date1904)
     years = (days - days[:, :1]) / 365
     wrong = (how_many != how_many_dates) | (how_many == 0) | ~valid.all(axis=1) | (years < 0).any(axis=1)
-    return flows[:, :k], np.maximum(years, 0.0), _either(errors, date_errors, _raised(wrong, ErrorCode.NUM))
+    return flows[:, :k], np.maximum(years, 0.0), earliest(errors, date_errors, where_wrong(wrong, ErrorCode.NUM))
 
 
 def _filled(value: Value) -> tuple[Floats, NDArray[np.intp], Codes]:
@@ -166,7 +155,7 @@ def _filled(value: Value) -> tuple[Floats, NDArray[np.intp], Codes]:
     filled = _rows(value.kinds != BLANK, value)
     order = np.argsort(~filled, axis=1, kind="stable")
     packed = np.take_along_axis(np.where(filled, _rows(x, value), 0.0), order, axis=1)
-    return packed, filled.sum(axis=1), first_error(_rows(errors, value))
+    return packed, filled.sum(axis=1), first_errors(_rows(errors, value))
 
 
 @excel("XNPV", Anything, Cells, Cells, dated=True)
@@ -179,7 +168,7 @@ def dated_present_value(rate: Value, values: Value, dates: Value, *, date1904: b
     total = np.zeros(1)
     for column in range(flows.shape[1]):
         total = total + flows[:, column] * np.exp(-years[:, column] * log_growth)
-    return Value.of_numbers(total, _either(rate_errors, errors, _raised(lost, ErrorCode.NUM)))
+    return Value.of_numbers(total, earliest(rate_errors, errors, where_wrong(lost, ErrorCode.NUM)))
 
 
 @excel("XIRR", Cells, Cells, Anything(default=None), dated=True)
@@ -206,4 +195,4 @@ def dated_rate(values: Value, dates: Value, guess: Value | None = None, *, date1
 
     usable = _has_both_signs(flows, np.ones_like(alive)) & (errors == 0)
     rate = growth_root(worth, np.broadcast_to(start, (n,)))
-    return Value.of_numbers(np.where(usable, rate, np.nan), _either(np.broadcast_to(errors, (n,)), start_errors))
+    return Value.of_numbers(np.where(usable, rate, np.nan), earliest(np.broadcast_to(errors, (n,)), start_errors))

@@ -27,8 +27,8 @@ def _refused(cost: Any, salvage: Any, bought: Any, first: Any, period: Any, rate
 
 def _first_loss(cost: Any, bought: Any, first: Any, rate: Any, basis: Any) -> Floats:
     """Loss from the day of purchase to the end of the first period, at a rate a year; 0 where they are one day."""
-    leap = is_leap_year(parts_of(bought)[0])
-    year = by_basis(basis, lambda: 360.0, lambda: np.where(leap, 366.0, 365.0), lambda: 360.0, lambda: 365.0, lambda: 360.0)
+    true_year = np.where(is_leap_year(parts_of(bought)[0]), 366.0, 365.0)
+    year = by_basis(basis, lambda: 360.0, lambda: true_year, lambda: 360.0, lambda: 365.0, lambda: 360.0)
     days = days_between(_not_leap_day(bought, basis), _not_leap_day(first, basis), basis)
     return np.asarray(days / year * rate * cost)
 
@@ -88,10 +88,8 @@ def _degressed(value: Floats, salvage: Any, rate: Floats, life: Floats, period: 
 
     The value falls by the rate in each period until it lies below the salvage value, from when on nothing is lost.
     """
-    kept = np.maximum(1 - rate, 0.0)
-    half = life - 3  # the period in which half of the value goes
-    before = value * np.power(kept, np.clip(period - 1, 0.0, np.maximum(half - 1, 0.0)))
-    before = np.where(period > half, before * np.where(half >= 1, 0.5, 1.0), before)
-    share = np.where(period == half, 0.5, np.where((period > half) & (half >= 1), 1.0, rate))
-    last = (period > half + 1) & (half >= 1)
-    return np.where((period < 1) | (before < salvage) | last, 0.0, before * share)
+    half = life - 3  # the period in which half of the value goes: the last but one, of those after the first
+    declined = value * np.power(np.maximum(1 - rate, 0.0), np.clip(period - 1, 0.0, half - 1))
+    before = np.where(period > half, declined / 2, declined)
+    share = np.select([period < half, period == half, period == half + 1], [rate, 0.5, 1.0], 0.0)
+    return np.where((period < 1) | (before < salvage), 0.0, before * share)

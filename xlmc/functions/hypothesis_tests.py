@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.errors import ErrorCode
 from xlmc.functions.beta_distributions import f_above, f_below
 from xlmc.functions.gamma_distributions import chi_square_above
 from xlmc.functions.picking import earliest

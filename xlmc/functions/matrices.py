@@ -71,8 +71,10 @@ def unit_matrix(dimension: Value) -> Value:
     size, errors = picking.whole_numbers(picking.cell_of(dimension, 0, 0))
     outside = picking.where_wrong((size < 1) | (size > _WIDEST), ErrorCode.VALUE)
     refused = picking.earliest(errors, outside)
-    size = picking.same_in_all_trials(np.where(refused > 0, 0.0, size))
-    return Value.of_numbers(np.eye(int(size))[None] if size else np.zeros(refused.shape), refused if not size else None)
+    common = int(picking.same_in_all_trials(np.where(refused > 0, 0.0, size)))
+    if not common:
+        return Value.of_numbers(np.zeros(refused.shape), refused)
+    return Value.of_numbers(np.eye(common)[None])
 
 
 @excel("TRANSPOSE", Cells, returns=Kind.ANY)

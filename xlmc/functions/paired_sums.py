@@ -18,7 +18,8 @@ __all__: list[str] = []
 def _cells(value: Value) -> tuple[Floats, Codes]:
     """The numbers and kinds of a range, or of one value, cell by cell: (n, k), (n, k)."""
     size = (value.shape[0], -1)
-    return np.broadcast_to(value.numbers, value.shape).reshape(size), np.broadcast_to(value.kinds, value.shape).reshape(size)
+    numbers, kinds = np.broadcast_to(value.numbers, value.shape), np.broadcast_to(value.kinds, value.shape)
+    return numbers.reshape(size), kinds.reshape(size)
 
 
 def _over_pairs(x: Value, y: Value, term: Callable[[Floats, Floats], Floats]) -> Value:

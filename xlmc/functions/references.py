@@ -54,3 +54,30 @@ def address(
 
     Without `a1` in the style R1C1. An argument left empty takes its default, but an empty `sheet` leaves its `!`.
     """
+    row, column, *options = leveled(row, column, *(value for value in (fixed, a1, sheet) if value is not None))
+    fixed_, a1_, sheet_ = [*options, *[constant(None)] * (3 - len(options))]
+    numbers = [value.to_numbers() for value in (row, column, if_blank(fixed_, 1.0))]
+    style, unclear = if_blank(a1_, 1.0).to_logicals()
+    names, wrong = sheet_.to_texts()
+    parts = [*(array for array, _ in numbers), style, None if sheet is None else names]
+    return with_errors(per_element(_address)(*parts), earliest(*(found for _, found in numbers), unclear, wrong))
+
+
+def _address(row: float, column: float, fixed: float, a1: bool, sheet: str | None) -> str | ErrorCode:
+    row, column, fixed = int(row), int(column), int(fixed)
+    if not (1 <= row <= MAX_ROW and 1 <= column <= MAX_COLUMN and 1 <= fixed <= 4):
+        return ErrorCode.VALUE
+    row_fixed, column_fixed = fixed in (1, 2), fixed in (1, 3)
+    if a1:
+        place = f"{'$' * column_fixed}{column_letters(column)}{'$' * row_fixed}{row}"
+    else:
+        place = f"R{row if row_fixed else f'[{row}]'}C{column if column_fixed else f'[{column}]'}"
+    return place if sheet is None else f"{_quoted(sheet)}!{place}"
+
+
+def _quoted(sheet: str) -> str:
+    """The sheet's name as Excel writes it before an address; it may have its book's before it: `[Book1]Sheet1`."""
+    found = _BOOK.fullmatch(sheet)
+    book, name = found.groups() if found else ("", sheet)
+    plain = (not name or quote_sheet(name) == name) and (not book or _PLAIN_BOOK.fullmatch(book) is not None)
+    return sheet if plain else "'" + sheet.replace("'", "''") + "'"

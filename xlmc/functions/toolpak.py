@@ -15,9 +15,15 @@ from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.picking import earliest, leveled
+from xlmc.functions.picking import first_errors as first_error
 from xlmc.functions.values import LOGICAL, Codes, Floats, Value, from_objects, parse_number
 
-__all__ = ["flattened", "number_of", "numbers_only", "per_object", "strict_numbers"]
+__all__ = ["aligned", "first_error", "flattened", "number_of", "numbers_only", "per_object", "strict_numbers"]
+
+
+def aligned(values: Sequence[Value]) -> list[Value]:
+    """The values so that they broadcast: all of them ranges where one is."""
+    return leveled(*values)
 
 
 def strict_numbers(value: Value) -> tuple[Floats, Codes]:
@@ -47,7 +53,7 @@ def numbers_only(body: Callable[..., Any]) -> Callable[..., Value]:
 
     @wraps(body)
     def strict(*values: Value) -> Value:
-        pairs = [strict_numbers(value) for value in leveled(*values)]
+        pairs = [strict_numbers(value) for value in aligned(values)]
         result = np.atleast_1d(body(*(numbers for numbers, _ in pairs)))
         errors = earliest(*(found for _, found in pairs))
         return Value.of_logicals(result, errors) if result.dtype == bool else Value.of_numbers(result, errors)
@@ -64,7 +70,7 @@ def per_object(function: Callable[..., object]) -> Callable[..., Value]:
 
     @wraps(function)
     def body(*values: Value) -> Value:
-        arguments = [value.objects() for value in leveled(*values)]
+        arguments = [value.objects() for value in aligned(values)]
         shape = np.broadcast_shapes(*(items.shape for items in arguments))
         spread = [np.broadcast_to(items, shape) for items in arguments]
         out = np.empty(shape, object)

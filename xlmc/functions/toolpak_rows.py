@@ -14,8 +14,9 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.calendar import in_calendar
+from xlmc.functions.picking import leveled
 from xlmc.functions.registry import Kind, Parameter, excel
-from xlmc.functions.toolpak import aligned, strict_numbers
+from xlmc.functions.toolpak import strict_numbers
 from xlmc.functions.values import NUM, Bools, Floats, Value
 
 __all__ = ["DAYS_TO_1904", "Date", "toolpak", "whole_days"]
@@ -61,7 +62,7 @@ def _of_values(
 ) -> Value:
     arrays: list[Any] = []
     errors, all_valid = np.zeros(1, np.uint8), np.ones(1, bool)
-    for value, parameter in zip(aligned(values), parameters, strict=False):
+    for value, parameter in zip(leveled(*values), parameters, strict=False):
         x, found = strict_numbers(value)
         if isinstance(parameter, _DateParameter):
             x, valid = whole_days(x, date1904)

@@ -40,7 +40,7 @@ class DecimalLayout:
     def write(self, size: float, date1904: bool = False) -> Written:
         number = shown(size).scaleb(self.scale).quantize(Decimal(1).scaleb(-self.decimals), context=_WIDE)
         whole, _, decimals = f"{number:f}".partition(".")
-        return self.filled(whole.lstrip("0"), decimals), not number and bool(count_digits(self.before) or self.decimals)
+        return self.filled(whole.lstrip("0"), decimals), not number
 
     def filled(self, whole: str, decimals: str) -> str:
         """The digits in their places; without a place before the point, whole digits stand before it all the same."""
@@ -51,7 +51,7 @@ class DecimalLayout:
 
 
 def decimal_layout(tokens: Sequence[Token]) -> DecimalLayout:
-    """The layout of a section with places for digits, or with a point or a percent sign only."""
+    """The layout of a section with places for digits."""
     settled, grouped, thousands = settle_commas(tokens)
     percents = sum(token.mark is Mark.PERCENT for token in tokens)
     points = [index for index, token in enumerate(settled) if token.mark is Mark.POINT]

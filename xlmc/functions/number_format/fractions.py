@@ -16,6 +16,9 @@ __all__ = ["FractionLayout", "fraction_layout"]
 _EXACT: Final = 5e-10
 """A remainder below this ends the continued fraction."""
 
+_MOST_DIGITS: Final = 7
+"""Digits of a denominator that Excel looks for."""
+
 
 @dataclass(frozen=True, slots=True)
 class FractionLayout:
@@ -47,7 +50,7 @@ class FractionLayout:
 
     def _approximated(self, size: float) -> tuple[int, int]:
         if self.fixed is None:
-            return approximated(size, 10 ** count_digits(self.denominator) - 1)
+            return approximated(size, 10 ** min(count_digits(self.denominator), _MOST_DIGITS) - 1)
         units = math.floor(size)
         return units * self.fixed + math.floor((size - units) * self.fixed + 0.5), self.fixed
 

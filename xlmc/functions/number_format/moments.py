@@ -133,8 +133,13 @@ def _named(number: int, count: int, name: str) -> str:
 
 
 def is_moment(tokens: Sequence[Token]) -> bool:
-    """Whether a section writes dates, times or durations."""
-    return any(t.mark in (Mark.PART, Mark.ELAPSED, Mark.HALF) or _is_system(t) for t in tokens)
+    """Whether a section writes dates, times or durations. `e+` and `e-` are a year unless there are digits."""
+    year = not any(t.mark is Mark.DIGIT for t in tokens) and any(map(_is_year, tokens))
+    return year or any(t.mark in (Mark.PART, Mark.ELAPSED, Mark.HALF) or _is_system(t) for t in tokens)
+
+
+def _is_year(token: Token) -> bool:
+    return token.mark is Mark.EXPONENT and token.text[0] == "e"
 
 
 def _is_system(token: Token) -> bool:
@@ -166,8 +171,7 @@ def _with_years(tokens: Sequence[Token]) -> list[Token]:
     """`e+` and `e-` are a year and a sign here."""
     parts: list[Token] = []
     for token in tokens:
-        year = token.mark is Mark.EXPONENT and token.text[0] == "e"
-        parts += [Token(Mark.PART, "e"), literal(token.text[1])] if year else [token]
+        parts += [Token(Mark.PART, "e"), literal(token.text[1])] if _is_year(token) else [token]
     return parts
 
 

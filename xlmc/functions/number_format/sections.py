@@ -93,7 +93,7 @@ def _layout(tokens: Sequence[Token], conditional: bool) -> Layout:
         return exponent_layout(kept)
     if Mark.SLASH in marks:
         return fraction_layout(kept)
-    if count_digits(kept) or marks & {Mark.POINT, Mark.PERCENT}:
+    if count_digits(kept):
         return decimal_layout(kept)
     return BareLayout("".join(token.text for token in kept))
 

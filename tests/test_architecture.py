@@ -1,0 +1,97 @@
+"""The house of DESIGN §6: imports run downwards, and each door has one keeper."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).resolve().parents[1] / "xlmc"
+
+# From the ground up; what stands in one line does not import each other.
+FLOORS = [
+    {"errors"},
+    {"address"},
+    {"distributions", "statistics"},
+    {"workbook"},
+    {"definitions", "templates_folder"},
+    {"formula"},
+    {"functions"},
+    {"compile", "sampling"},
+    {"scene", "drawing"},
+    {"model", "verify"},
+    {"blocks"},
+    {"simulation"},
+    {"simulate"},
+    {"record"},
+    {"report"},
+    {"cli"},
+    {"__main__"},
+]
+FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
+MODULES = sorted(path for path in PACKAGE.rglob("*.py") if "templates" not in path.parts)
+
+
+def imported(path: Path, *, at_run_time_only: bool = True) -> set[str]:
+    """Full names of the modules a file imports at its top level, those for type checkers left out."""
+    tree = ast.parse(path.read_text())
+    nodes = tree.body if at_run_time_only else list(ast.walk(tree))
+    names: set[str] = set()
+    for node in nodes:
+        if isinstance(node, ast.Import):
+            names.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names.update({node.module, *(f"{node.module}.{alias.name}" for alias in node.names)})
+    return names
+
+
+def room_of(path: Path) -> str:
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+def test_every_room_has_a_floor():
+    assert {room_of(path) for path in MODULES} - {"__init__"} == set(FLOOR)
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_imports_run_downwards(path):
+    own = room_of(path)
+    if own == "__init__":
+        return
+    for name in imported(path):
+        first, _, rest = name.partition(".")
+        room = rest.partition(".")[0]
+        if first == "xlmc" and room in FLOOR and room != own:
+            assert FLOOR[room] < FLOOR[own], f"{path.name} imports {name}"
+
+
+def importers(*modules: str) -> set[str]:
+    """The files that import any of these modules, anywhere in them."""
+    found = set()
+    for path in MODULES:
+        names = imported(path, at_run_time_only=False)
+        if any(name == module or name.startswith(f"{module}.") for name in names for module in modules):
+            found.add(str(path.relative_to(PACKAGE)))
+    return found
+
+
+def test_one_door_to_formulas():
+    assert importers("formulas", "schedula") == {"formula/parse.py"}
+
+
+def test_rooms_that_must_not_see_each_other():
+    assert not {name for name in importers("xlmc.workbook") if name.startswith(("sampling", "functions", "statistics"))}
+    assert not {name for name in importers("xlmc.formula") if name.startswith(("report", "sampling", "statistics"))}
+
+
+def test_scipy_stats_is_never_imported():
+    assert importers("scipy.stats") == set()
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_no_text_is_run_as_code_and_only_the_command_line_prints(path):
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            assert node.func.id not in ("eval", "exec", "compile", "__import__"), f"{path}:{node.lineno}"
+            assert node.func.id != "print", f"{path}:{node.lineno}"

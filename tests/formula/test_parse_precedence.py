@@ -9,7 +9,8 @@ from xlmc.errors import ErrorCode
 from xlmc.formula import ir, parse
 
 UNION, COMPARISON, JOIN, SUM, PRODUCT, POWER, PERCENT, PREFIX, INTERSECTION, RANGE, SPILL = range(11)
-LEVELS = {",": UNION, "&": JOIN, "+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT, "^": POWER, " ": INTERSECTION, ":": RANGE}
+LEVELS = {",": UNION, "&": JOIN, "^": POWER, " ": INTERSECTION, ":": RANGE}
+LEVELS |= {"+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT}
 LEVELS |= dict.fromkeys(["=", "<", ">", "<=", ">=", "<>"], COMPARISON)
 
 

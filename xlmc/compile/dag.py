@@ -155,6 +155,8 @@ class Dag:
         """
         if node in self._known:
             return self._known[node]
+        if isinstance(node, Apply) and self._is_plain(node):
+            return self._place(node, node, node.function.returns, None)
         settled = self._settled(node)
         if settled is not None:
             return settled
@@ -166,8 +168,14 @@ class Dag:
             return place
         return self._place(node, node, self._type(node) if size is None else Kind.ANY, size)
 
+    def _is_plain(self, node: Apply) -> bool:
+        """Whether it makes one value of single ones, some of which vary: the case of nearly every node."""
+        if node.function.name in _SPILLING or any(self.sizes[part] is not None for part in node.arguments):
+            return False
+        return not all(isinstance(self.nodes[part], Constant) for part in node.arguments)
+
     def _settled(self, node: Apply | Select | Rescue | Range) -> int | None:
-        """The part that an `IF` or a rescue gives, where that is known before the run: steps take no single constant."""
+        """What an `IF` or a rescue gives where that is known before the run: steps take no single constant."""
         match node:
             case Select(condition, yes, no):
                 known = self._single_constant(condition)

@@ -63,6 +63,7 @@ class Lowering:
         self.inputs, self.held, self.graph, self._audit = inputs, held, graph, audit
         self._computed: dict[Cell, int] = {}
         self._arrays: dict[Cell, int] = {}
+        self._numbers: dict[float, int] = {}
         self._cells: dict[Cell, int] = {cell: self.dag.input(name) for cell, name in inputs.items()}
         self._cells |= {cell: self.dag.constant(constant(value)) for cell, value in held.items()}
         for cell, tree in graph.formulas.items():
@@ -105,7 +106,9 @@ class Lowering:
 
     def number(self, value: float) -> int:
         """The node of a number."""
-        return self.dag.constant(constant(value))
+        if value not in self._numbers:
+            self._numbers[value] = self.dag.constant(constant(value))
+        return self._numbers[value]
 
     def error(self, code: ErrorCode) -> int:
         """The node of an error."""
@@ -174,7 +177,9 @@ class Lowering:
     def lower(self, tree: ir.Expression, scope: Scope) -> int:
         """The node of a tree."""
         match tree:
-            case ir.Number(value) | ir.Text(value) | ir.Logical(value):
+            case ir.Number(value):
+                return self.number(value)
+            case ir.Text(value) | ir.Logical(value):
                 return self.dag.constant(constant(value))
             case ir.ErrorLiteral(code):
                 return self.error(code)
@@ -250,6 +255,8 @@ class Lowering:
         """The node of a function of nodes, cell by cell where it takes single values and is given many."""
         if function.name in _FACTORS:
             return self.call("*", (arguments[0], self.number(_FACTORS[function.name])))
+        if all(self.dag.sizes[place] is None for place in arguments):
+            return self.dag.add(Apply(function, arguments))
         loose = tuple(p for i, p in enumerate(arguments) if not function.parameter(i).ranged)
         spread = cell_by_cell(self.dag, loose, lambda picked: self.made(function, _merged(function, arguments, picked)))
         return self.dag.add(Apply(function, arguments)) if spread is None else spread

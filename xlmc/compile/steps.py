@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -87,6 +88,8 @@ def is_elementwise_ufunc(dag: Dag, place: int) -> bool:
 
 
 def _apply(dag: Dag, place: int, function: Function, arguments: tuple[int, ...], buffer: int | None) -> Step:
+    if _on_numbers(dag, function, arguments):
+        return _numeric(function, place, arguments, buffer)
     node = Apply(function, arguments)
     if function.takes_sets:
         folded = _folded(dag, node)
@@ -102,8 +105,36 @@ def _apply(dag: Dag, place: int, function: Function, arguments: tuple[int, ...],
     return _valued(dag, place) if function.takes_values else _body(function, place, found)
 
 
+def _on_numbers(dag: Dag, function: Function, arguments: tuple[int, ...]) -> bool:
+    """Whether all arguments are plain numbers for a ufunc: the case of nearly every node, told at sight."""
+    if not function.on_numbers or function.ufunc is None or len(arguments) != function.ufunc.nin:
+        return False
+    return all(dag.types[argument] is Kind.NUMBER for argument in arguments)
+
+
+def _numeric(function: Function, place: int, arguments: tuple[int, ...], buffer: int | None) -> Step:
+    ufunc, guard = function.ufunc, function.guard
+    assert ufunc is not None
+    first, last = arguments[0], arguments[-1]
+
+    def one(frame: Frame) -> None:
+        values = frame.values
+        values[place] = ufunc(values[first], out=None if buffer is None else frame.buffers[buffer])
+
+    def two(frame: Frame) -> None:
+        values = frame.values
+        values[place] = ufunc(values[first], values[last], out=None if buffer is None else frame.buffers[buffer])
+
+    if guard is None and len(arguments) < 3:
+        return one if len(arguments) == 1 else two
+    readers: list[Reader] = [itemgetter(argument) for argument in arguments]
+    return _ufunc(ufunc, guard, place, readers, buffer)
+
+
 def _fast_ufunc(dag: Dag, node: Apply) -> bool:
     function = node.function
+    if _on_numbers(dag, function, node.arguments):
+        return True
     if function.ufunc is None or len(node.arguments) != function.ufunc.nin or _compares_unlike_kinds(dag, node):
         return False
     wanted = [_reader(dag, a, _wanted(dag, function, p)) for p, a in enumerate(node.arguments)]

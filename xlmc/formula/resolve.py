@@ -124,8 +124,9 @@ class Resolver:
         outer, bindings = self._variables, []
         for name, value in zip(arguments[:-1:2], arguments[1::2], strict=True):
             resolved = self._resolve(value, host, origin)
-            bindings.append((_variable(name, "LET"), resolved))
-            self._variables = self._variables | {bindings[-1][0]}
+            variable = _variable(name, "LET")
+            bindings.append((_bare(variable), resolved))
+            self._variables = self._variables | {variable}
         body = self._resolve(arguments[-1], host, origin)
         self._variables = outer
         return ir.Let(tuple(bindings), body)
@@ -137,12 +138,12 @@ class Resolver:
         outer, self._variables = self._variables, self._variables | set(parameters)
         body = self._resolve(arguments[-1], host, origin)
         self._variables = outer
-        return ir.Lambda(parameters, body)
+        return ir.Lambda(tuple(_bare(parameter) for parameter in parameters), body)
 
     def _called(self, name: str, host: Cell) -> ir.Expression | None:
         """What a call calls when it is no function of Excel: a variable, or a defined name that holds a LAMBDA."""
-        if _folded(name) in self._variables:
-            return ir.Variable(_folded(name))
+        if name.casefold() in self._variables:
+            return ir.Variable(_bare(name))
         found = self.workbook.defined_name(name, host.sheet)
         if found is None or not _LAMBDA.match(found.text):
             return None
@@ -201,8 +202,8 @@ class Resolver:
         return self._used[sheet]
 
     def _name(self, tree: ir.Name, host: Cell) -> ir.Expression:
-        if _folded(tree.name) in self._variables and tree.sheet is None and tree.book is None:
-            return ir.Variable(_folded(tree.name))
+        if tree.name.casefold() in self._variables and tree.sheet is None and tree.book is None:
+            return ir.Variable(_bare(tree.name))
         _refuse_other_books(tree.book)
         scope = host.sheet if tree.sheet is None else self._sheet(tree.sheet, host)
         found = self.workbook.defined_name(tree.name, scope)
@@ -247,11 +248,11 @@ class Resolver:
 def _variable(name: ir.Expression, of: str) -> str:
     if not isinstance(name, ir.Name) or name.sheet is not None or name.book is not None:
         raise FormulaError(f"{of} needs a name where it has something else", hint="a name that looks like no cell")
-    return _folded(name.name)
+    return name.name.casefold()
 
 
-def _folded(name: str) -> str:
-    """A variable's name without the prefix that files give it."""
+def _bare(name: str) -> str:
+    """A variable's name without the prefix that files give it, and by which they tell `max` from `MAX(`."""
     return _PARAMETER.sub("", name).casefold()
 
 

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from xlmc.functions.picking import earliest, first_errors
+from xlmc.functions.arguments import earliest, first_errors
 from xlmc.functions.registry import Cells, excel
 from xlmc.functions.samples import mean_of, rows_of, spread_of
 from xlmc.functions.values import BLANK, DIV0, Bools, Codes, Floats, Value

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.picking import earliest, first_errors, where_wrong
+from xlmc.functions.arguments import earliest, first_errors, where_wrong
 from xlmc.functions.registry import Anything, Cells, excel
 from xlmc.functions.roots import growth_root
 from xlmc.functions.toolpak import strict_numbers

@@ -7,15 +7,15 @@ many results. Letters: n trials, k cells of a range.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.aggregate import average, maximum, minimum, sum_
+from xlmc.functions.arguments import direct_errors, earliest, first_errors, with_errors
 from xlmc.functions.criteria import met
-from xlmc.functions.picking import cell_of, direct_errors, each_part, earliest, first_errors, side_by_side, with_errors
+from xlmc.functions.picking import cell_of, each_part, flattened, side_by_side
 from xlmc.functions.portions import by_portions
 from xlmc.functions.registry import Anything, Cells, excel
 from xlmc.functions.values import BLANK, NUMBER, Bools, Floats, Value, constant
@@ -34,15 +34,11 @@ def numbers_held(fold: Callable[[Floats, Bools], Floats]) -> Reduce:
     """A fold of the numbers among the cells; an error among them is the result."""
 
     def reduce(cells: Value, held: Bools) -> Value:
-        counts = held & (_flat(cells.kinds, cells) == NUMBER)
-        errors = np.where(held, _flat(cells.errors, cells), np.uint8(0))
-        return Value.of_numbers(fold(_flat(cells.numbers, cells), counts), first_errors(errors))
+        counts = held & (flattened(cells.kinds, cells) == NUMBER)
+        errors = np.where(held, flattened(cells.errors, cells), np.uint8(0))
+        return Value.of_numbers(fold(flattened(cells.numbers, cells), counts), first_errors(errors))
 
     return reduce
-
-
-def _flat(part: NDArray[Any], cells: Value) -> NDArray[Any]:
-    return np.broadcast_to(part, cells.shape).reshape(cells.shape[0], -1)
 
 
 _SUM: Final = numbers_held(sum_)
@@ -78,23 +74,24 @@ def _conditional(values: Value, pairs: Sequence[Value], reduce: Reduce) -> Value
     return with_errors(side_by_side(results, *places), errors.reshape(-1, 1, 1))
 
 
-def _resized(values: Value | None, cells: Value) -> Value:
-    """The range to add up, in the size of the range of the criterion.
-
-    Excel takes it from its top left cell in that size, whatever its own size: the caller gives it so resized. What then
-    lacks lies outside the used part of the sheet, and is empty.
-    """
+def _beside(values: Value | None, cells: Value, criterion: Value, reduce: Reduce) -> Value:
+    """Reduce the range beside the cells, taken in their size; or the cells themselves."""
     if values is None:
-        return cells
-    if values.numbers.ndim == 1 and direct_errors(values).any():
-        return values
+        return _conditional(cells, (cells, criterion), reduce)
     _, rows, columns = cells.as_range().shape
-    values = values.as_range()
-    _, r, c = values.shape
+    result = _conditional(_resized(values.as_range(), rows, columns), (cells, criterion), reduce)
+    errors = earliest(direct_errors(cells), direct_errors(values))
+    return with_errors(result, errors if result.numbers.ndim == 1 else errors.reshape(-1, 1, 1))
+
+
+def _resized(values: Value, rows: int, columns: int) -> Value:
+    """A range from its top left cell in another size.
+
+    What it lacks is taken for empty: Excel goes on to the cells below and to the right, so that the caller gives the
+    range in its full size, as far as the used part of the sheet goes.
+    """
     cut = each_part(values, lambda part: part[:, :rows, :columns])
-    if r >= rows and c >= columns:
-        return cut
-    edges = ((0, 0), (0, max(0, rows - r)), (0, max(0, columns - c)))
+    edges = ((0, 0), (0, rows - cut.shape[1]), (0, columns - cut.shape[2]))
     texts = None if cut.texts is None else np.pad(cut.texts, edges, constant_values="")
     return Value(np.pad(cut.numbers, edges), np.pad(cut.kinds, edges, constant_values=BLANK), texts)
 
@@ -114,7 +111,7 @@ def count_ifs(*pairs: Value) -> Value:
 @excel("SUMIF", Cells, Anything, Cells(default=None))
 def sum_if(cells: Value, criterion: Value, values: Value | None = None) -> Value:
     """Sum of the numbers beside the cells that meet the criterion, or of these cells."""
-    return _conditional(_resized(values, cells), (cells, criterion), _SUM)
+    return _beside(values, cells, criterion, _SUM)
 
 
 @excel("SUMIFS", Cells, Cells(repeat=True), Anything(repeat=True))
@@ -126,7 +123,7 @@ def sum_ifs(values: Value, *pairs: Value) -> Value:
 @excel("AVERAGEIF", Cells, Anything, Cells(default=None))
 def average_if(cells: Value, criterion: Value, values: Value | None = None) -> Value:
     """Mean of the numbers beside the cells that meet the criterion, or of these cells; `#DIV/0!` of none."""
-    return _conditional(_resized(values, cells), (cells, criterion), _AVERAGE)
+    return _beside(values, cells, criterion, _AVERAGE)
 
 
 @excel("AVERAGEIFS", Cells, Cells(repeat=True), Anything(repeat=True))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.functions.picking import earliest
+from xlmc.functions.arguments import earliest
 from xlmc.functions.registry import Cells, Number, excel
 from xlmc.functions.samples import laid_out, mean_of, of_pairs, pairs_of, places_of, row_sums
 from xlmc.functions.values import DIV0, NA, Bools, Floats, Value

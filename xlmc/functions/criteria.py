@@ -19,10 +19,10 @@ from typing import Any, Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.arguments import if_blank
 from xlmc.functions.ordering import Ordered, ordered
-from xlmc.functions.picking import if_blank
-from xlmc.functions.values import BLANK, ERROR, NUMBER, TEXT, Bools, Floats, Objects, Value, from_objects, parse_number
 from xlmc.functions.patterns import is_pattern, pattern_of
+from xlmc.functions.values import BLANK, ERROR, NUMBER, TEXT, Bools, Floats, Objects, Value, from_objects, parse_number
 
 __all__ = ["met"]
 

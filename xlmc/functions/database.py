@@ -13,21 +13,12 @@ import numpy as np
 
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions import aggregate
+from xlmc.functions.arguments import direct_errors, earliest, refused, where_wrong, with_errors
 from xlmc.functions.conditional import Reduce, numbers_held
 from xlmc.functions.criteria import met
 from xlmc.functions.logical import choose
 from xlmc.functions.ordering import ordered
-from xlmc.functions.picking import (
-    Places,
-    cell_of,
-    direct_errors,
-    each_part,
-    earliest,
-    picked,
-    side_by_side,
-    where_wrong,
-    with_errors,
-)
+from xlmc.functions.picking import Places, cell_of, each_part, picked, side_by_side
 from xlmc.functions.portions import by_portions
 from xlmc.functions.registry import Anything, Cells, Kind, excel
 from xlmc.functions.values import BLANK, NUMBER, TEXT, Bools, Value, constant
@@ -86,7 +77,7 @@ def _of_records(database: Value, field: Value, criteria: Value, reduce: Reduce) 
     errors = earliest(direct_errors(database), direct_errors(criteria))
     cells, conditions = database.as_range(), criteria.as_range()
     if cells.shape[1] < 2 or conditions.shape[1] < 2:
-        return with_errors(constant(ErrorCode.VALUE), errors)
+        return refused(field, ErrorCode.VALUE, errors if field.numbers.ndim == 1 else errors.reshape(-1, 1, 1))
 
     def compute(cells: Value, field: Value, conditions: Value) -> Value:
         return with_errors(_reduced(cells, field, conditions, reduce), field.errors)

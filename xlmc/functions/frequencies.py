@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.picking import Places, earliest, first_errors, same_in_all_trials, where_wrong
+from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong
+from xlmc.functions.picking import Places
 from xlmc.functions.registry import Cells, Kind, Number, excel
 from xlmc.functions.samples import laid_out, pairs_of, places_of, row_sums, rows_of, sample_of
 from xlmc.functions.values import ERROR, NA, NUM, NUMBER, Bools, Codes, Floats, Value

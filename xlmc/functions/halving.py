@@ -21,11 +21,12 @@ __all__ = ["last_not_beyond"]
 
 
 def last_not_beyond(keys: Value, vector: Value, *, falling: bool = False) -> Places:
-    """Where each key, or else what comes before it, stands in a vector in rising (or falling) order; -1 for nowhere.
+    """Where each key, or else what comes before it, stands in a vector in order; -1 for nowhere.
 
     Args:
         keys: (n,) or, in an array formula, (n, r, c).
         vector: (n, k, 1) or (n, 1, k).
+        falling: the vector is in falling order.
 
     Returns:
         The shape of `keys`, with the trials of both, counted from 0.

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from xlmc.functions.arguments import earliest
 from xlmc.functions.beta_distributions import f_above, f_below
 from xlmc.functions.gamma_distributions import chi_square_above
-from xlmc.functions.picking import earliest
 from xlmc.functions.registry import Cells, Number, excel
 from xlmc.functions.samples import (
     Sample,

@@ -7,17 +7,16 @@ from typing import Any
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.picking import (
-    Places,
+from xlmc.functions.arguments import (
     direct_errors,
     earliest,
     leveled,
-    picked,
     same_in_all_trials,
     where_wrong,
     whole_numbers,
     with_errors,
 )
+from xlmc.functions.picking import Places, picked
 from xlmc.functions.registry import Cells, Kind, Number, excel
 from xlmc.functions.values import Codes, Floats, Value, constant
 

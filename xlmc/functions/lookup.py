@@ -11,21 +11,19 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.halving import last_not_beyond
-from xlmc.functions.nearest import EXACT, nearest
-from xlmc.functions.picking import (
-    Places,
+from xlmc.functions.arguments import (
     direct_errors,
-    each_part,
     earliest,
     if_blank,
     leveled,
-    picked,
-    transposed,
+    refused,
     where_wrong,
     whole_numbers,
     with_errors,
 )
+from xlmc.functions.halving import last_not_beyond
+from xlmc.functions.nearest import EXACT, nearest
+from xlmc.functions.picking import Places, each_part, picked, transposed
 from xlmc.functions.portions import by_portions, width_of
 from xlmc.functions.registry import Anything, Cells, Kind, Logical, Number, excel
 from xlmc.functions.values import Codes, Floats, Value, constant
@@ -40,7 +38,7 @@ def _is_vector(cells: Value) -> bool:
 
 
 def _classic_place(key: Value, vector: Value, order: Floats) -> Places:
-    """As MATCH searches: `order` is 1 for rising values, -1 for falling ones, 0 for the first equal one in any order."""
+    """As MATCH searches: `order` is 1 for rising values, -1 for falling ones, 0 for the first equal one of any."""
     key = if_blank(key)
     result = np.full(1, -1)
     for wanted in np.unique(order):
@@ -66,12 +64,12 @@ def _match(key: Value, cells: Value, order: Value) -> Value:
     numbers, wrong = order.to_numbers()
     errors = earliest(key.errors, direct_errors(cells, key), wrong)
     if not _is_vector(cells.as_range()):
-        return with_errors(constant(_NOT_FOUND), errors)
+        return refused(key, _NOT_FOUND, errors)
     return _counted_from_1(_classic_place(key, cells.as_range(), np.sign(numbers)), errors)
 
 
 def _counted_from_1(places: Places, errors: Codes) -> Value:
-    return Value.of_numbers(places + 1.0, earliest(errors, where_wrong(places < 0, _NOT_FOUND)))
+    return Value.of_numbers((places + 1).astype(np.float64), earliest(errors, where_wrong(places < 0, _NOT_FOUND)))
 
 
 @excel("VLOOKUP", Anything, Cells, Number, Logical(default=True), returns=Kind.ANY)
@@ -127,7 +125,7 @@ def _lookup_in_array(key: Value, cells: Value) -> Value:
 def _lookup_in_vector(key: Value, cells: Value, results: Value) -> Value:
     errors = earliest(key.errors, direct_errors(cells, key), direct_errors(results, key))
     if not (_is_vector(cells.as_range()) and _is_vector(results.as_range())):
-        return with_errors(constant(_NOT_FOUND), errors)
+        return refused(key, _NOT_FOUND, errors)
     return _beside(key, cells.as_range(), each_part(results.as_range(), _as_column), errors)
 
 

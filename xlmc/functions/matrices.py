@@ -47,18 +47,40 @@ def determinant(matrix: Value) -> Value:
     a, errors = _matrix(matrix)
     if a.shape[1] != a.shape[2]:
         return constant(ErrorCode.VALUE)
-    return Value.of_numbers(np.linalg.det(a), errors[:, 0, 0])
+    work, sign = _eliminated(a)
+    pivots = np.diagonal(work, axis1=1, axis2=2)
+    return Value.of_numbers(sign * np.multiply.accumulate(pivots, axis=1)[:, -1], errors[:, 0, 0])
 
 
 @excel("MINVERSE", Cells, returns=Kind.ANY)
 def inverse(matrix: Value) -> Value:
     """Inverse; `#VALUE!` unless the matrix is square, `#NUM!` where it is singular."""
     a, errors = _matrix(matrix)
-    if a.shape[1] != a.shape[2]:
+    size = a.shape[1]
+    if size != a.shape[2]:
         return constant(ErrorCode.VALUE)
-    regular = (np.linalg.slogdet(a).sign != 0)[:, None, None]
-    found = np.linalg.inv(np.where(regular, a, np.eye(a.shape[1])))
-    return Value.of_numbers(np.where(regular, found, NUM), errors)
+    work, _ = _eliminated(np.concatenate([a, np.broadcast_to(np.eye(size), a.shape)], axis=2))
+    pivots = np.diagonal(work, axis1=1, axis2=2)[:, :, None]
+    regular = (pivots != 0).all(axis=1, keepdims=True)
+    return Value.of_numbers(np.where(regular, work[:, :, size:] / pivots, NUM), errors)
+
+
+def _eliminated(matrix: Floats) -> tuple[Floats, Floats]:
+    """The matrix with its first columns made a diagonal, and the sign that exchanging rows brought: (n, r, c), (n,).
+
+    Gauss and Jordan's elimination; the pivot is the largest of its column, as in LAPACK.
+    """
+    work, sign = matrix.copy(), np.ones(matrix.shape[0])
+    trials = np.arange(matrix.shape[0])
+    for i in range(matrix.shape[1]):
+        best = i + np.abs(work[:, i:, i]).argmax(axis=1)
+        work[trials, i], work[trials, best] = work[trials, best], work[trials, i]
+        pivot = work[:, i, i]
+        factors = work[:, :, i] / np.where(pivot == 0, 1.0, pivot)[:, None]
+        factors[:, i] = 0.0
+        work = work - factors[:, :, None] * work[:, i : i + 1, :]
+        sign = np.where(best == i, sign, -sign)
+    return work, sign
 
 
 @excel("MUNIT", Anything, returns=Kind.ANY)

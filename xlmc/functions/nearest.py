@@ -56,10 +56,7 @@ def _in_one(keys: Ordered, vector: Ordered, side: int, last: bool) -> Places:
 
 def _bisected(rising: Floats, places: Places, keys: Floats, side: int, last: bool) -> Places:
     """The places of the values that the keys find among `rising` ones."""
-    if side == SMALLER:
-        at = np.searchsorted(rising, keys, "right") - 1
-    else:
-        at = np.searchsorted(rising, keys, "left")
+    at = np.searchsorted(rising, keys, "right") - 1 if side == SMALLER else np.searchsorted(rising, keys, "left")
     inside = (at >= 0) & (at < rising.size)
     value = rising[np.where(inside, at, 0)]
     if side == EXACT:

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.picking import first_errors
+from xlmc.functions.arguments import first_errors
 from xlmc.functions.registry import Anything, Cells, Kind, Number, excel
 from xlmc.functions.toolpak import flattened, numbers_only
 from xlmc.functions.values import NUM, Bools, Codes, Floats, Value

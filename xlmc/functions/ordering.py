@@ -8,13 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from xlmc.functions.collation import order_key
-from xlmc.functions.picking import Places
+from xlmc.functions.picking import Places, flattened
 from xlmc.functions.values import ERROR, TEXT, Codes, Floats, Objects, Value
 
 __all__ = ["Ordered", "ordered", "searched"]
@@ -36,8 +34,8 @@ class Ordered:
 
     def column(self, place: int, n: int) -> Ordered:
         """The values at one place, in n trials: (n, 1)."""
-        kinds, order = (np.broadcast_to(part[:, place : place + 1], (n, 1)) for part in (self.kinds, self.order))
-        return Ordered(kinds, order, self.texts)
+        kinds, order = self.kinds[:, place : place + 1], self.order[:, place : place + 1]
+        return Ordered(np.broadcast_to(kinds, (n, 1)), np.broadcast_to(order, (n, 1)), self.texts)
 
     def flat(self) -> Ordered:
         """All values as trials of their own: (n·k, 1)."""
@@ -77,12 +75,8 @@ def _ordered(value: Value, ranks: dict[str, float], texts: tuple[str, ...]) -> O
     order = np.where(value.kinds >= ERROR, 0.0, value.numbers)
     if value.texts is not None:
         order = np.where(value.kinds == TEXT, _looked_up(value.texts, ranks), order)
-    return Ordered(_two_axes(value.kinds, value), _two_axes(order, value), texts)
+    return Ordered(flattened(value.kinds, value), flattened(order, value), texts)
 
 
 def _looked_up(texts: Objects, ranks: dict[str, float]) -> Floats:
     return np.array([ranks[text] for text in texts.ravel().tolist()], np.float64).reshape(texts.shape)
-
-
-def _two_axes(array: NDArray[Any], value: Value) -> NDArray[Any]:
-    return np.broadcast_to(array, value.shape).reshape(value.shape[0], -1)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.picking import earliest, first_errors, leveled
+from xlmc.functions.arguments import earliest, first_errors, leveled
 from xlmc.functions.registry import Anything, Cells, excel
 from xlmc.functions.toolpak import strict_numbers
 from xlmc.functions.values import BLANK, DIV0, ERROR, NUMBER, Codes, Floats, Value, constant

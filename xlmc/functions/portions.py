@@ -8,8 +8,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.functions.picking import each_part
-from xlmc.functions.values import Objects, ShapeVaries, Value
+from xlmc.functions.picking import each_part, joined
+from xlmc.functions.values import ShapeVaries, Value
 
 __all__ = ["by_portions", "width_of"]
 
@@ -33,7 +33,10 @@ def by_portions(compute: Callable[..., Value], values: Sequence[Value], width: i
     if n <= size:
         return compute(*values)
     parts = [slice(start, min(start + size, n)) for start in range(0, n, size)]
-    return _joined([_tall(compute(*(_trials(v, part) for v in values)), part.stop - part.start) for part in parts])
+    results = [_tall(compute(*(_trials(v, part) for v in values)), part.stop - part.start) for part in parts]
+    if len({result.shape[1:] for result in results}) > 1:
+        raise ShapeVaries
+    return joined(results, axis=0)
 
 
 def _trials(value: Value, part: slice) -> Value:
@@ -48,17 +51,3 @@ def _some(array: NDArray[Any], part: slice) -> NDArray[Any]:
 
 def _tall(value: Value, n: int) -> Value:
     return each_part(value, lambda part: np.broadcast_to(part, (n, *part.shape[1:])))
-
-
-def _joined(portions: Sequence[Value]) -> Value:
-    if len({value.shape[1:] for value in portions}) > 1:
-        raise ShapeVaries
-    texts = None
-    if any(value.texts is not None for value in portions):
-        texts = np.concatenate([_texts(value) for value in portions])
-    numbers, kinds = (np.concatenate(parts) for parts in zip(*((v.numbers, v.kinds) for v in portions), strict=True))
-    return Value(numbers, kinds, texts)
-
-
-def _texts(value: Value) -> Objects:
-    return np.full(value.shape, "", object) if value.texts is None else value.texts

@@ -9,10 +9,10 @@ import numpy as np
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, column_letters, quote_sheet
 from xlmc.errors import ErrorCode
+from xlmc.functions.arguments import direct_errors, earliest, if_blank, leveled, with_errors
 from xlmc.functions.per_element import per_element
-from xlmc.functions.picking import direct_errors, earliest, if_blank, leveled, with_errors
 from xlmc.functions.registry import Anything, Cells, Kind, Number, Text, excel
-from xlmc.functions.values import BLANK, Floats, Value, constant
+from xlmc.functions.values import Value, constant
 
 __all__: list[str] = []
 

@@ -12,7 +12,7 @@ body's values. That is what the fast engine runs.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any, Final
 
@@ -91,6 +91,8 @@ class Function:
         guard: takes the body's float arrays, says whether all of them lie where `ufunc` and Excel agree.
         volatile: its value changes without its arguments.
         dated: the body takes `date1904`, keyword only: whether serial dates count from 1904.
+        takes_values, takes_sets: whether any argument is of `ANY` kind, or all are one set.
+        on_numbers: with arguments that are all numbers, the ufunc alone may be run.
     """
 
     name: str
@@ -101,14 +103,18 @@ class Function:
     guard: Callable[..., bool] | None = None
     volatile: bool = False
     dated: bool = False
+    takes_values: bool = field(init=False)
+    takes_sets: bool = field(init=False)
+    on_numbers: bool = field(init=False)
 
-    @property
-    def takes_values(self) -> bool:
-        return any(parameter.kind is Kind.ANY for parameter in self.parameters)
-
-    @property
-    def takes_sets(self) -> bool:
-        return any(parameter.as_set for parameter in self.parameters)
+    def __post_init__(self) -> None:
+        """Answer once what is asked of every node."""
+        values = any(parameter.kind is Kind.ANY for parameter in self.parameters)
+        sets = any(parameter.as_set for parameter in self.parameters)
+        kinds = {parameter.kind for parameter in self.parameters}
+        numbers = self.ufunc is not None and not sets and kinds <= {Kind.NUMBER, Kind.ANY}
+        for name, found in (("takes_values", values), ("takes_sets", sets), ("on_numbers", numbers)):
+            object.__setattr__(self, name, found)
 
     def parameter(self, position: int) -> Parameter:
         """The parameter of an argument; the last ones repeat where they may."""

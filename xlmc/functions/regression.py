@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong
 from xlmc.functions.least_squares import Fit, fit
-from xlmc.functions.picking import earliest, first_errors, same_in_all_trials, where_wrong
 from xlmc.functions.registry import Anything, Cells, Kind, excel
 from xlmc.functions.samples import rows_of
 from xlmc.functions.values import BLANK, ERROR, NA, NUM, NUMBER, Bools, Codes, Floats, Value, constant

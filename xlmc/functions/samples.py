@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.functions.picking import earliest, first_errors, leveled
+from xlmc.functions.arguments import earliest, first_errors, leveled
 from xlmc.functions.values import NA, NUMBER, Bools, Codes, Floats, Value
 
 __all__ = [

@@ -13,8 +13,8 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.arguments import whole_numbers, with_errors
 from xlmc.functions.logical import choose
-from xlmc.functions.picking import earliest, whole_numbers, with_errors
 from xlmc.functions.registry import REGISTRY, Cells, Number, excel
 from xlmc.functions.values import BLANK, ERROR, Value, constant
 

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.picking import earliest, leveled
-from xlmc.functions.picking import first_errors as first_error
+from xlmc.functions.arguments import earliest, leveled
+from xlmc.functions.arguments import first_errors as first_error
 from xlmc.functions.values import LOGICAL, Codes, Floats, Value, from_objects, parse_number
 
 __all__ = ["aligned", "first_error", "flattened", "number_of", "numbers_only", "per_object", "strict_numbers"]

@@ -13,8 +13,8 @@ from typing import Any, Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.arguments import leveled
 from xlmc.functions.calendar import in_calendar
-from xlmc.functions.picking import leveled
 from xlmc.functions.registry import Kind, Parameter, excel
 from xlmc.functions.toolpak import strict_numbers
 from xlmc.functions.values import NUM, Bools, Floats, Value
@@ -62,8 +62,9 @@ def _of_values(
 ) -> Value:
     arrays: list[Any] = []
     errors, all_valid = np.zeros(1, np.uint8), np.ones(1, bool)
+    x: Any
     for value, parameter in zip(leveled(*values), parameters, strict=False):
-        x, found = strict_numbers(value)
+        x, found = value.to_logicals() if parameter.kind is Kind.LOGICAL else strict_numbers(value)
         if isinstance(parameter, _DateParameter):
             x, valid = whole_days(x, date1904)
             all_valid = all_valid & valid

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.functions.picking import earliest, leveled
+from xlmc.functions.arguments import earliest, leveled
 from xlmc.functions.registry import Anything, excel
 from xlmc.functions.toolpak import strict_numbers
 from xlmc.functions.units import Unit, unit_named

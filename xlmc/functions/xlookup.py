@@ -10,21 +10,20 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.logical import choose
-from xlmc.functions.nearest import EXACT, LARGER, SMALLER, nearest
-from xlmc.functions.picking import (
-    Places,
+from xlmc.functions.arguments import (
     direct_errors,
     earliest,
     if_blank,
     leveled,
-    picked,
+    refused,
     same_in_all_trials,
-    transposed,
     where_wrong,
     whole_numbers,
     with_errors,
 )
+from xlmc.functions.logical import choose
+from xlmc.functions.nearest import EXACT, LARGER, SMALLER, nearest
+from xlmc.functions.picking import Places, picked, transposed
 from xlmc.functions.portions import by_portions, width_of
 from xlmc.functions.registry import Anything, Cells, Kind, Number, excel
 from xlmc.functions.values import BLANK, Codes, Value, constant
@@ -66,14 +65,17 @@ def _xmatch(key: Value, cells: Value, mode: Value, direction: Value) -> Value:
     errors = earliest(key.errors, direct_errors(cells, key))
     vector = cells.as_range()
     if 1 not in vector.shape[1:]:
-        return with_errors(constant(ErrorCode.VALUE), errors)
+        return refused(key, ErrorCode.VALUE, errors)
     places, wrong = _places(key, vector, mode, direction)
-    return Value.of_numbers(places + 1.0, earliest(errors, wrong, where_wrong(places < 0, ErrorCode.NA)))
+    return Value.of_numbers(
+        (places + 1).astype(np.float64), earliest(errors, wrong, where_wrong(places < 0, ErrorCode.NA))
+    )
 
 
-@excel(
-    "XLOOKUP", Anything, Cells, Cells, Anything(default=None), Number(default=0.0), Number(default=1.0), returns=Kind.ANY
-)
+_OPTIONS: Final = (Anything(default=None), Number(default=0.0), Number(default=1.0))
+
+
+@excel("XLOOKUP", Anything, Cells, Cells, *_OPTIONS, returns=Kind.ANY)
 def xlookup(
     key: Value,
     cells: Value,
@@ -102,7 +104,7 @@ def _xlookup(key: Value, cells: Value, results: Value, instead: Value, mode: Val
     if _goes_down(transposed(vector), transposed(grid)):
         row = _found(key, transposed(vector), transposed(grid), instead, mode, direction, errors)
         return row if row.shape[1:] == key.shape[1:] else transposed(row)
-    return with_errors(constant(ErrorCode.VALUE), errors)
+    return refused(key, ErrorCode.VALUE, errors)
 
 
 def _goes_down(vector: Value, results: Value) -> bool:

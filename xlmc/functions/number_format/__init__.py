@@ -8,6 +8,6 @@ section writes it, and whether a minus goes before, is for the format to say (`c
 from __future__ import annotations
 
 from xlmc.functions.number_format.choice import NumberFormat, parse_format
-from xlmc.functions.number_format.tokens import FormatError
+from xlmc.functions.number_format.tokens import FormatError, UnknownFormat
 
-__all__ = ["FormatError", "NumberFormat", "parse_format"]
+__all__ = ["FormatError", "NumberFormat", "UnknownFormat", "parse_format"]

@@ -87,12 +87,13 @@ def parse_format(text: str) -> NumberFormat:
 
     Raises:
         FormatError: Excel does not take it as one.
+        UnknownFormat: it asks for numerals or names that are not known here.
     """
     parts = tokenise(text)
     if len(parts) > 4:
         raise FormatError("a format has four sections at most")
     last = parts[-1]
-    has_texts = len(parts) == 4 or (any(token.mark is Mark.AT for token in last))
+    has_texts = len(parts) == 4 or any(token.mark is Mark.AT for token in last)
     sections = tuple(section_of(part) for part in (parts[:-1] if has_texts else parts))
     if any(section.condition for section in sections[2:]):
         raise FormatError("the first two sections alone have conditions")

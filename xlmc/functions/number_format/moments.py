@@ -11,7 +11,7 @@ from typing import Final
 from xlmc.functions.calendar import SECONDS_A_DAY, last_serial, parts_of, weekday_of
 from xlmc.functions.date_text import MONTHS
 from xlmc.functions.number_format.plain import Written
-from xlmc.functions.number_format.tokens import FormatError, Mark, Token, literal, tokenise
+from xlmc.functions.number_format.tokens import FormatError, Mark, Token, UnknownFormat, literal, tokenise
 
 __all__ = ["MomentLayout", "is_moment", "moment_layout"]
 
@@ -150,7 +150,8 @@ def moment_layout(tokens: Sequence[Token]) -> MomentLayout:
     """The layout of a section with parts of dates or times.
 
     Raises:
-        FormatError: it has places for digits as well, or asks for names in another language than English.
+        FormatError: it has places for digits as well.
+        UnknownFormat: it asks for names in another language than English.
     """
     for token in tokens:
         if _is_system(token):
@@ -159,7 +160,7 @@ def moment_layout(tokens: Sequence[Token]) -> MomentLayout:
     if any(token.mark in (Mark.DIGIT, Mark.AT, Mark.PERCENT, Mark.EXPONENT) for token in parts):
         raise FormatError("parts of a date stand beside places for digits")
     if any(_has_name(t) for t in parts) and any(_is_foreign(t) for t in parts):
-        raise FormatError("the names of months and days are known in English only")
+        raise UnknownFormat("the names of months and days are known in English only")
     return MomentLayout(tuple(_settled(token) for token in parts if token.mark is not Mark.LANGUAGE))
 
 

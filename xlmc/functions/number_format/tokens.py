@@ -14,11 +14,15 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Final
 
-__all__ = ["FormatError", "Mark", "Token", "literal", "tokenise"]
+__all__ = ["FormatError", "Mark", "Token", "UnknownFormat", "literal", "tokenise"]
 
 
 class FormatError(ValueError):
     """Excel does not take the text as a number format, or cannot show the number in it."""
+
+
+class UnknownFormat(Exception):  # noqa: N818 - the text is a number format; it is we who do not know it
+    """Excel takes the text as a number format, but it asks for what is not known here."""
 
 
 class Mark(Enum):
@@ -84,6 +88,7 @@ _TOKEN: Final = re.compile(
 )
 _COLOUR: Final = re.compile(r"black|blue|cyan|green|magenta|red|white|yellow|colou?r *[0-9]{1,2}", re.IGNORECASE)
 _ELAPSED: Final = re.compile(r"h+|m+|s+", re.IGNORECASE)
+_OTHER_NUMERALS: Final = re.compile(r"dbnum[0-9]|natnum[0-9]+", re.IGNORECASE)
 _CONDITION: Final = re.compile(r"(<=|>=|<>|<|>|=) *[+-]?[0-9.]+(E[+-]?[0-9]+)?", re.IGNORECASE)
 
 
@@ -91,7 +96,8 @@ def tokenise(text: str) -> list[list[Token]]:
     """The tokens of every section, at least one section.
 
     Raises:
-        FormatError: a quote or bracket is not closed, or what stands in a bracket is nothing that is known.
+        FormatError: a quote or bracket is not closed, or what stands in a bracket is nothing.
+        UnknownFormat: it asks for other numerals than ours.
     """
     sections: list[list[Token]] = [[]]
     for match in _TOKEN.finditer(text):
@@ -129,4 +135,6 @@ def _in_brackets(text: str) -> list[Token]:
         return [Token(Mark.CONDITION, text.replace(" ", ""))]
     if _COLOUR.fullmatch(text):
         return []
+    if _OTHER_NUMERALS.fullmatch(text):
+        raise UnknownFormat(f"the numerals of [{text}] are not known")
     raise FormatError(f"[{text}] is not known")

@@ -1,0 +1,115 @@
+"""Loading a large book of filled-down formulas: xlmc beside `formulas.ExcelModel`.
+
+`python benchmarks/loading.py` makes books of 200 formula shapes filled down, loads and compiles each with xlmc, and
+with `ExcelModel().loads(...).finish()` where that ends in reasonable time, every run in a process of its own. It prints
+seconds, the ratio at each size that both can do, and what `formulas` would need at the largest by its growth so far.
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from time import perf_counter
+
+SHAPES = 200
+SIZES = (400, 800, 1_600, 3_200, 50_000)
+LARGEST_FOR_FORMULAS = 3_200
+
+
+def make_book(path: Path, cells: int) -> None:
+    """A sheet of SHAPES formula columns, filled down: inputs in the first two columns."""
+    import xlsxwriter
+
+    rows = cells // SHAPES
+    book = xlsxwriter.Workbook(path)
+    sheet = book.add_worksheet("Model")
+    for row in range(rows):
+        sheet.write_number(row, 0, 1.0 + row)
+        sheet.write_number(row, 1, 2.0 + row)
+        for column in range(2, SHAPES + 2):
+            sheet.write_formula(row, column, formula(row + 1, column))
+    sheet.add_table(rows + 2, 0, rows + 3, 3, _table("xlmc_assumptions", "Name", "Cell", "Low", "High"))
+    sheet.write_row(rows + 3, 0, ["first"])
+    sheet.write_formula(rows + 3, 1, "=Model!A1")
+    sheet.write_row(rows + 3, 2, [0.5, 1.5])
+    sheet.add_table(rows + 6, 0, rows + 7, 1, _table("xlmc_forecasts", "Name", "Cell"))
+    sheet.write_row(rows + 7, 0, ["last"])
+    sheet.write_formula(rows + 7, 1, f"=Model!{letters(SHAPES + 1)}{rows}")
+    book.close()
+
+
+def _table(name: str, *headings: str) -> dict[str, object]:
+    return {"name": name, "columns": [{"header": heading} for heading in headings]}
+
+
+def formula(row: int, column: int) -> str:
+    """One of SHAPES shapes: each needs the cell left of it, two columns left, and the row above."""
+    left, further = letters(column - 1), letters(column - 2)
+    above = f"{letters(column)}{row - 1}" if row > 1 else "$A$1"
+    return f"=SIN({left}{row})*{column}+SQRT(ABS({further}{row}))/({column}+ABS({above}))"
+
+
+def letters(index: int) -> str:
+    """Column letters, counted from 0."""
+    from openpyxl.utils import get_column_letter
+
+    return str(get_column_letter(index + 1))
+
+
+def measure(contestant: str, path: str) -> float:
+    """Seconds to load and compile, imports not counted."""
+    if contestant == "xlmc":
+        import xlmc
+        from xlmc.model import load
+
+        start = perf_counter()
+        model = load(path)
+        model.program("numpy")
+        assert xlmc.__version__
+    else:
+        import formulas
+
+        start = perf_counter()
+        formulas.ExcelModel().loads(path).finish()
+    return perf_counter() - start
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description="Seconds to load a large book, beside formulas.")
+    parser.add_argument("--only", nargs=2, metavar=("CONTESTANT", "BOOK"), help="measure one, in this process")
+    chosen = parser.parse_args()
+    if chosen.only:
+        print(measure(*chosen.only))
+        return
+    print(f"{'formula cells':>14}{'xlmc, s':>12}{'formulas, s':>14}{'ratio':>10}")
+    slow: list[tuple[int, float]] = []
+    with tempfile.TemporaryDirectory() as folder:
+        for size in SIZES:
+            path = Path(folder) / f"{size}.xlsx"
+            make_book(path, size)
+            fast = _fresh("xlmc", path)
+            if size <= LARGEST_FOR_FORMULAS:
+                slow.append((size, _fresh("formulas", path)))
+                print(f"{size:>14,}{fast:>12.3f}{slow[-1][1]:>14.2f}{slow[-1][1] / fast:>10.0f}", flush=True)
+            else:
+                expected = _extrapolated(slow, size)
+                print(f"{size:>14,}{fast:>12.3f}{expected:>13.0f}*{expected / fast:>9.0f}*", flush=True)
+    print("* by a straight line through the last two sizes measured: less than it takes, for it grows faster")
+
+
+def _fresh(contestant: str, path: Path) -> float:
+    command = [sys.executable, __file__, "--only", contestant, str(path)]
+    return float(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+
+
+def _extrapolated(points: list[tuple[int, float]], size: int) -> float:
+    (x0, y0), (x1, y1) = points[-2:]
+    return y1 + (y1 - y0) / (x1 - x0) * (size - x1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,51 @@
+"""Functions that look at what kind of value they get: a body that calls Python once an element."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from xlmc.errors import ErrorCode
+from xlmc.functions.arguments import leveled
+from xlmc.functions.number_text import general_text
+from xlmc.functions.values import Value, from_objects
+
+__all__ = ["object_text", "per_object"]
+
+
+def per_object(function: Callable[..., object]) -> Callable[..., Value]:
+    """A body for `Anything` arguments from a function of floats, bools, strings and None, which it gets for a blank.
+
+    An error among the arguments is the result, the first of them first. The function returns what it may get, or an
+    `ErrorCode`.
+    """
+
+    def body(*values: Value, **options: object) -> Value:
+        columns = [value.objects() for value in leveled(*values)]
+        shape = np.broadcast_shapes(*(column.shape for column in columns))
+        spread = [np.broadcast_to(column, shape) for column in columns]
+        out = np.empty(shape, object)
+        for place in np.ndindex(*shape):
+            items = [column[place] for column in spread]
+            errors = [item for item in items if isinstance(item, ErrorCode)]
+            out[place] = errors[0] if errors else function(*items, **options)
+        return from_objects(out)
+
+    body.__doc__, body.__name__, body.__module__ = function.__doc__, function.__name__, function.__module__
+    return body
+
+
+def object_text(item: object) -> str:
+    """A value as `&` writes it; an error by its name."""
+    match item:
+        case None:
+            return ""
+        case ErrorCode():
+            return item.text
+        case bool():
+            return "TRUE" if item else "FALSE"
+        case float():
+            return general_text(item)
+        case _:
+            return str(item)

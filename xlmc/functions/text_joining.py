@@ -1,0 +1,116 @@
+"""Many values as one text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from xlmc.errors import ErrorCode
+from xlmc.functions.arguments import earliest, first_errors, with_errors
+from xlmc.functions.per_object import object_text, per_object
+from xlmc.functions.registry import Anything, Cells, Kind, Logical, Text, excel
+from xlmc.functions.utf16 import LONGEST, units
+from xlmc.functions.values import Codes, Objects, Value, constant, from_objects
+
+__all__: list[str] = []
+
+
+@excel("CONCATENATE", Text(repeat=True), returns=Kind.TEXT)
+def concatenate(*texts: Objects) -> Value:
+    """The texts, one after the other."""
+    joined = texts[0]
+    for text in texts[1:]:
+        joined = joined + text
+    return _cut_off(np.asarray(joined, dtype=object))
+
+
+@excel("CONCAT", Cells(repeat=True), returns=Kind.TEXT)
+def concat(*values: Value) -> Value:
+    """The texts of all cells, row by row."""
+    texts, errors = _side_by_side(values)
+    return with_errors(_of_trials("".join(row) for row in texts), errors)
+
+
+@excel("TEXTJOIN", Cells, Logical, Cells(repeat=True), returns=Kind.TEXT)
+def text_join(delimiters: Value, ignore_empty: Value, *values: Value) -> Value:
+    """The texts of all cells with a delimiter between each two, or several delimiters in turn; empty ones left out."""
+    between, wrong = _side_by_side([delimiters])
+    ignore, unclear = ignore_empty.to_logicals()
+    texts, errors = _side_by_side(values)
+    n = max(len(between), len(texts), ignore.shape[0])
+    rows = zip(_tall(between, n), _tall(texts, n), np.broadcast_to(ignore.reshape(-1), (n,)), strict=True)
+    result = _of_trials(_joined(list(delimiter), list(row), bool(skip)) for delimiter, row, skip in rows)
+    return with_errors(result, earliest(wrong, unclear.reshape(-1), errors))
+
+
+def _joined(delimiters: list[str], texts: list[str], ignore_empty: bool) -> str:
+    kept = [text for text in texts if text] if ignore_empty else texts
+    turns = [delimiters[index % len(delimiters)] for index in range(max(len(kept) - 1, 0))]
+    return "".join(text + delimiter for text, delimiter in zip(kept, [*turns, ""], strict=False))
+
+
+def _side_by_side(values: Iterable[Value]) -> tuple[Objects, Codes]:
+    """The texts of all cells, (n, k), and the first error of each trial."""
+    columns, codes = [], []
+    for value in values:
+        texts, errors = value.to_texts()
+        columns.append(texts.reshape(texts.shape[0], -1))
+        codes.append(np.broadcast_to(errors, texts.shape).reshape(texts.shape[0], -1))
+    n = max(column.shape[0] for column in columns)
+    texts, errors = (np.concatenate([_tall(part, n) for part in parts], axis=1) for parts in (columns, codes))
+    return texts, first_errors(errors)
+
+
+def _tall(rows: Objects, n: int) -> Objects:
+    return np.broadcast_to(rows, (n, rows.shape[1]))
+
+
+def _of_trials(texts: Iterable[str]) -> Value:
+    joined = list(texts)
+    box = np.empty(len(joined), object)
+    box[:] = joined
+    return _cut_off(box)
+
+
+def _cut_off(texts: Objects) -> Value:
+    """`#VALUE!` for texts longer than a cell holds."""
+    lengths = np.frompyfunc(lambda text: len(units(text)), 1, 1)(texts)
+    return Value.of_texts(texts, np.where(lengths > LONGEST, np.uint8(ErrorCode.VALUE), np.uint8(0)).astype(np.uint8))
+
+
+def _quoted(item: object) -> str:
+    """A value as a formula would have it: texts in quotes."""
+    return '"{}"'.format(item.replace('"', '""')) if isinstance(item, str) else object_text(item)
+
+
+@excel("VALUETOTEXT", Cells, Anything(default=0.0), returns=Kind.ANY)
+def value_to_text(value: Value, style: Value | None = None) -> Value:
+    """Any value as a text, errors too; in style 1 as a formula would have it."""
+    concise, strict = (np.asarray(np.frompyfunc(write, 1, 1)(value.objects())) for write in (object_text, _quoted))
+    return _styled(from_objects(concise), from_objects(strict), style)
+
+
+def _styled(concise: Value, strict: Value, style: Value | None) -> Value:
+    """One text or the other; `#VALUE!` for another style."""
+    return _in_style(concise, strict, constant(0.0) if style is None else style)
+
+
+@per_object
+def _in_style(concise: str, strict: str, style: float | bool | str | None) -> object:
+    if isinstance(style, str) or not 0 <= (style or 0) < 2:
+        return ErrorCode.VALUE
+    return strict if (style or 0) >= 1 else concise
+
+
+@excel("ARRAYTOTEXT", Cells, Anything(default=0.0), returns=Kind.TEXT)
+def array_to_text(cells: Value, style: Value | None = None) -> Value:
+    """All cells as one text, errors too; in style 1 as a formula would have it, in braces."""
+    tables = cells.as_range().objects()
+    concise = _of_trials(", ".join(map(object_text, table.ravel())) for table in tables)
+    strict = _of_trials(_braced(table) for table in tables)
+    return _styled(concise, strict, style)
+
+
+def _braced(table: Objects) -> str:
+    return "{{{}}}".format(";".join(",".join(map(_quoted, row)) for row in table))

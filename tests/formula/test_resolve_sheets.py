@@ -17,11 +17,11 @@ NAMES = {"Year": "Jan:Dec!$A$1", "Moving": "Jan:Dec!B2"}
 
 @pytest.fixture
 def read(workbook):
-    """The cells and areas that a formula in `Mar!B2` reads, one after another."""
+    """The cells and areas that a formula written for `Mar!B2` reads, one after another."""
 
-    def places(text, at=Cell("Mar", 2, 2), written_for=(2, 2)):
+    def places(text, row=2, column=2):
         resolver = Resolver(workbook(CELLS, names=NAMES, sheets=TABS))
-        return [str(place) for place in references(resolver.formula(at, Formula(text, *written_for)))]
+        return [str(place) for place in references(resolver.formula(Cell("Mar", row, column), Formula(text, 2, 2)))]
 
     return places
 
@@ -46,8 +46,8 @@ def test_a_reference_over_several_sheets(read, text, expected):
 
 
 def test_it_moves_with_a_shared_formula(read):
-    assert read("SUM(Jan:Dec!A1)", Cell("Mar", 5, 3)) == ["Jan!B4", "'It''s'!B4", "Dec!B4"]
-    assert read("SUM(Jan:Dec!$A$1)", Cell("Mar", 5, 3)) == ["Jan!A1", "'It''s'!A1", "Dec!A1"]
+    assert read("SUM(Jan:Dec!A1)", 5, 3) == ["Jan!B4", "'It''s'!B4", "Dec!B4"]
+    assert read("SUM(Jan:Dec!$A$1)", 5, 3) == ["Jan!A1", "'It''s'!A1", "Dec!A1"]
 
 
 def test_off_the_sheet_it_is_an_error_on_each(workbook):
@@ -63,8 +63,12 @@ def test_off_the_sheet_it_is_an_error_on_each(workbook):
     [
         ("SUM(Jan:Dez!A1)", "there is no sheet 'Dez'", "did you mean 'Dec'?"),
         ("SUM(Jam:Dec!A1)", "there is no sheet 'Jam'", "did you mean 'Jan'?"),
-        ("'Its'!A1", "there is no sheet 'Its'", "did you mean \"It's\"?"),
-        ("SUM([1]Jan:Dec!A1)", "refers to another workbook", "copy the value into this workbook; links are not followed"),
+        ("'Its'!A1", "there is no sheet 'Its'", 'did you mean "It\'s"?'),
+        (
+            "SUM([1]Jan:Dec!A1)",
+            "refers to another workbook",
+            "copy the value into this workbook; links are not followed",
+        ),
         ("Winter!Rate", "there is no sheet 'Winter'", None),
     ],
 )

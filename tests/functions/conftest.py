@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from xlmc.functions import function_named
-from xlmc.functions.values import Value, constant, from_objects
+from xlmc.functions.values import ERROR, Value, constant, from_objects
 
 
 def _value(item: object) -> Value:
@@ -53,3 +53,29 @@ def check() -> Callable[..., None]:
         assert same, f"{result!r} instead of {wanted!r}"
 
     return compare
+
+
+@pytest.fixture(scope="session")
+def shows() -> Callable[..., None]:
+    """Whether a result rounds to the digits that Excel's help prints: `shows("PHI", (0.75,), "0.301137432")`."""
+
+    def compare(name: str, arguments: tuple[object, ...], printed: str) -> None:
+        result = _evaluate(name, *arguments)
+        assert isinstance(result, float)
+        unit = 10.0 ** -len(printed.partition(".")[2])
+        assert abs(result - float(printed)) <= 0.5 * unit * (1 + 1e-6), f"{result!r} instead of {printed}"
+
+    return compare
+
+
+@pytest.fixture(scope="session")
+def over_trials() -> Callable[..., np.ndarray]:
+    """`over_trials("PHI", z)`: a function of numbers or arrays (n,), NaN for errors."""
+
+    def evaluate(name: str, *arguments: object) -> np.ndarray:
+        function = function_named(name)
+        assert function is not None
+        result = function([Value.of_numbers(np.atleast_1d(np.asarray(a, np.float64))) for a in arguments])
+        return np.where(result.kinds >= ERROR, np.nan, result.numbers)
+
+    return evaluate

@@ -56,7 +56,7 @@ def _same(name: str, found: object, expected: object) -> bool:
     return type(found) is type(expected) and _bits(found) == _bits(expected)
 
 
-@pytest.mark.parametrize("name", ROWS)
+@pytest.mark.parametrize("name", [name for name in ROWS if not ROWS[name].volatile])
 @given(data=st.data())
 @settings(max_examples=25, deadline=None)
 def test_trials_together_are_the_trials_alone(name, data):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from xlmc.address import Area, Cell, column_letters
 from xlmc.compile.engine import Column, Evaluator, Target, column_of
 from xlmc.compile.lower import Lowering
-from xlmc.errors import ErrorCode
+from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import compile_with_formulas, formula_text, ir
 from xlmc.formula.graph import references
 from xlmc.functions.values import Floats, from_objects
@@ -19,6 +19,8 @@ from xlmc.functions.values import Floats, from_objects
 __all__ = ["FormulasProgram"]
 
 Cells = dict[Cell, object]
+
+_OTHER_ENGINE = "use the engine `numpy`"
 
 
 class FormulasProgram:
@@ -33,9 +35,14 @@ class FormulasProgram:
         self.inputs = {cell: name for cell, name in lowering.inputs.items() if cell in graph.reached}
         self.content = lambda cell: graph.workbook.content(cell).value
         self.held: Cells = {**lowering.saved, **lowering.held}
-        self.cells = [(cell, _Compiled(tree)) for cell, tree in graph.formulas.items() if cell not in lowering.saved]
-        self.filters = [_Compiled(target.tree) for target in filters]
-        self.forecasts = [_Compiled(target.tree) for target in forecasts]
+        computed = {cell: tree for cell, tree in graph.formulas.items() if cell not in lowering.saved}
+        for cell in computed:
+            formula = graph.workbook.content(cell).formula
+            if formula is None or formula.array is not None or formula.dynamic:
+                raise FormulaError("the engine `formulas` has no array formulas", where=cell, hint=_OTHER_ENGINE)
+        self.cells = [(cell, _Compiled(tree, cell)) for cell, tree in computed.items()]
+        self.filters = [_Compiled(target.tree, target.cell) for target in filters]
+        self.forecasts = [_Compiled(target.tree, target.cell) for target in forecasts]
 
     def evaluator(self, block: int) -> Evaluator:
         """See `Program`."""
@@ -74,7 +81,8 @@ class _FormulasEvaluator:
 class _Compiled:
     """A tree compiled by `formulas`, its references under plain addresses: how sheets are written is then no matter."""
 
-    def __init__(self, tree: ir.Expression) -> None:
+    def __init__(self, tree: ir.Expression, cell: Cell) -> None:
+        self._cell = cell
         self._single = tree if isinstance(tree, Cell) else None
         self._names: dict[Cell | Area, str] = {}
         left = 1
@@ -83,7 +91,10 @@ class _Compiled:
             last = f":{column_letters(left + columns - 1)}{rows}" if rows * columns > 1 else ""
             self._names[place] = f"{column_letters(left)}1{last}"
             left += columns
-        self._call = compile_with_formulas(formula_text(tree, self._names.__getitem__))
+        try:
+            self._call = compile_with_formulas(formula_text(tree, self._names.__getitem__))
+        except FormulaError as error:
+            raise error.at(cell) from None
 
     def __call__(self, values: Cells, content: Callable[[Cell], object]) -> object:
         def value(cell: Cell) -> object:
@@ -91,7 +102,10 @@ class _Compiled:
 
         if self._single is not None:
             return value(self._single)
-        return self._call({name: _held(place, value) for place, name in self._names.items()})
+        try:
+            return self._call({name: _held(place, value) for place, name in self._names.items()})
+        except FormulaError as error:
+            raise error.at(self._cell) from None
 
 
 def _held(place: Cell | Area, value: Callable[[Cell], object]) -> Any:

@@ -28,7 +28,7 @@ from formulas.tokens.operand import Empty, Operand, XlError
 from formulas.tokens.operand import Error as ErrorToken
 from formulas.tokens.operator import Intersect, Operator, OperatorToken, Separator
 from formulas.tokens.parenthesis import Parenthesis, _update_n_args
-from schedula import EMPTY
+from schedula import EMPTY, DispatcherError
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, column_number
 from xlmc.errors import ErrorCode, FormulaError
@@ -435,12 +435,22 @@ def compile_with_formulas(text: str) -> Callable[[Mapping[str, Any]], object]:
     Returns:
         A callable. It takes the values of the references by name (`A1`, `B1:C3`): float, bool, str, `ErrorCode` or
         None, in an `(r, c)` object array for an area. It gives one such value.
+
+    Raises:
+        FormulaError: `formulas` cannot read the formula; from the callable, it cannot compute it.
     """
-    compiled = Parser().ast("=" + text)[1].compile()
+    refused = FormulaError("the engine `formulas` cannot compute this", hint="use the engine `numpy`", text=text)
+    try:
+        compiled = Parser().ast("=" + text)[1].compile()
+    except (ForeignFormulaError, DispatcherError):
+        raise refused from None
     names = list(compiled.inputs)
 
     def call(values: Mapping[str, Any]) -> object:
-        return _from_foreign(compiled(*(_to_foreign(values[name]) for name in names)))
+        try:
+            return _from_foreign(compiled(*(_to_foreign(values[name]) for name in names)))
+        except DispatcherError:
+            raise refused from None
 
     return call
 

@@ -59,15 +59,14 @@ class _Schedule:
         )
 
 
-@toolpak(
-    "ACCRINT", Date, Date, Date, Number, Number, Number, Number(default=0.0), Logical(default=True)
-)
+@toolpak("ACCRINT", Date, Date, Date, Number, Number, Number, Number(default=0.0), Logical(default=True))
 def accrued_interest(
     issue: Any, first: Any, settlement: Any, rate: Any, par: Any, frequency: Any, basis: Any, from_issue: Any
 ) -> Floats:
     """Interest accrued from issue to settlement, period by period.
 
-    Without `from_issue`, and settled after the first coupon, only from that on. `#NUM!` unless rate and par are above 0.
+    Without `from_issue`, and settled after the first coupon, only from that on. `#NUM!` unless rate and par are above
+    0.
     """
     wrong = np.greater_equal(issue, settlement) | ~is_frequency(frequency) | ~is_basis(basis)
     wrong = wrong | (np.asarray(rate) <= 0) | (np.asarray(par) <= 0)

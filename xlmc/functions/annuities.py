@@ -120,7 +120,8 @@ def interest_payment(rate: Any, per: Any, nper: Any, pv: Any, fv: Any, when: Any
 @excel("PPMT", Number, Number, Number, Number, Number(default=0.0), Number(default=0.0))
 def principal_payment(rate: Any, per: Any, nper: Any, pv: Any, fv: Any, when: Any) -> Floats:
     """What a payment pays back; `#NUM!` for a period outside 1 to `nper`."""
-    return payment(rate, nper, pv, fv, when) - interest_payment(rate, per, nper, pv, fv, when)
+    paid = payment(rate, nper, pv, fv, when)
+    return np.asarray(paid - interest_payment(rate, per, nper, pv, fv, when))
 
 
 @excel("ISPMT", Number, Number, Number, Number)

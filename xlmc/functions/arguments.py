@@ -91,7 +91,7 @@ def refused(like: Value, code: int, errors: Codes) -> Value:
 
 def with_errors(value: Value, errors: Codes) -> Value:
     """The value, but these errors where there are any."""
-    if not errors.any():
+    if not errors.any() and np.broadcast_shapes(errors.shape, value.shape) == value.shape:
         return value
     kinds = np.where(errors > 0, errors + np.uint8(ERROR), value.kinds).astype(np.uint8)
     return Value(np.where(errors > 0, 0.0, value.numbers), kinds, value.texts)

@@ -6,7 +6,7 @@ period, and p = 1 + yield/frequency is what one unit grows to in a period.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -19,14 +19,14 @@ from xlmc.functions.values import NUM, Floats
 
 __all__ = ["annuity"]
 
-_FIRST_GUESS = 0.05
+_FIRST_GUESS: Final = 0.05
 
 
 def annuity(log_growth: Floats, n: Any) -> Floats:
     """What n payments of one, the first of them now, are worth, when a unit grows by exp(log_growth) a period."""
     zero = log_growth == 0
     per_period = np.expm1(-np.where(zero, 1.0, log_growth))
-    return np.where(zero, n, np.expm1(-n * log_growth) / per_period)
+    return np.asarray(np.where(zero, n, np.expm1(-n * log_growth) / per_period))
 
 
 class _Bond:
@@ -45,7 +45,7 @@ class _Bond:
         payments = self.coupon * annuity(log_growth, self.n) * np.exp(-self.share * log_growth)
         redeemed = self.redemption * np.exp(-(self.n - 1 + self.share) * log_growth)
         last = (self.redemption + self.coupon) / (1 + self.share * np.expm1(log_growth))
-        return np.where(self.n == 1, last, payments + redeemed) - self.accrued
+        return np.asarray(np.where(self.n == 1, last, payments + redeemed) - self.accrued)
 
 
 @toolpak("PRICE", Date, Date, Number, Number, Number, Number, Number(default=0.0))
@@ -93,17 +93,13 @@ def _duration(
 
 
 @toolpak("DURATION", Date, Date, Number, Number, Number, Number(default=0.0))
-def macaulay_duration(
-    settlement: Any, maturity: Any, coupon: Any, yield_: Any, frequency: Any, basis: Any
-) -> Floats:
+def macaulay_duration(settlement: Any, maturity: Any, coupon: Any, yield_: Any, frequency: Any, basis: Any) -> Floats:
     """Macaulay duration, in years; `#NUM!` for negative rates."""
     return _duration(settlement, maturity, coupon, yield_, frequency, basis)[0]
 
 
 @toolpak("MDURATION", Date, Date, Number, Number, Number, Number(default=0.0))
-def modified_duration(
-    settlement: Any, maturity: Any, coupon: Any, yield_: Any, frequency: Any, basis: Any
-) -> Floats:
+def modified_duration(settlement: Any, maturity: Any, coupon: Any, yield_: Any, frequency: Any, basis: Any) -> Floats:
     """Macaulay duration by the growth of a period: how much of its price a bond loses as the yield rises."""
     duration, grown = _duration(settlement, maturity, coupon, yield_, frequency, basis)
     return duration / grown

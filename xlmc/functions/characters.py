@@ -4,45 +4,55 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from typing import Final
 from urllib.parse import quote
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.per_element import per_element
 from xlmc.functions.registry import Kind, Number, Text, excel
+from xlmc.functions.values import Floats, Objects, Value
 
 __all__: list[str] = []
 
-_WINDOWS: Final = "cp1252"
 _CONTROLS: Final = re.compile("[\x00-\x1f]")
 _SPACES: Final = re.compile(" +")
-_UNKNOWN: Final = 63
+_UNKNOWN: Final = 63.0
 """The code of the question mark."""
 
 
 @excel("CHAR", Number, returns=Kind.TEXT)
-@per_element
-def char(code: float) -> object:
-    """The character of a code from 1 to 255 in the Windows character set."""
-    number = math.trunc(code)
-    if not 1 <= number <= 255:
-        return ErrorCode.VALUE
-    try:
-        return bytes([number]).decode(_WINDOWS)
-    except UnicodeDecodeError:
-        return chr(number)  # five codes that the set leaves free
+def char(codes: Floats, *, macintosh: bool = False) -> Value:
+    """The character of a code from 1 to 255 in the character set of Windows, or of the Macintosh."""
+    return _CHARACTERS[macintosh](codes)
 
 
 @excel("CODE", Text)
-@per_element
-def code(text: str) -> object:
-    """The code of the first character in the Windows character set; 63 for what is not in it."""
-    if not text:
-        return ErrorCode.VALUE
-    try:
-        return float(text[0].encode(_WINDOWS)[0])
-    except UnicodeEncodeError:
-        return float(ord(text[0])) if 0x80 <= ord(text[0]) <= 0x9F else float(_UNKNOWN)
+def code(texts: Objects, *, macintosh: bool = False) -> Value:
+    """The code of the first character in the character set of Windows, or of the Macintosh; 63 if it is not there."""
+    return _CODES[macintosh](texts)
+
+
+def _of_set(characters: str) -> Callable[..., Value]:
+    """Codes to characters; `characters` stand in the order of their codes."""
+    return per_element(lambda code: characters[math.trunc(code)] if 1 <= code < 256 else ErrorCode.VALUE)
+
+
+def _in_set(characters: str) -> Callable[..., Value]:
+    """First characters to codes."""
+    codes = {character: float(number) for number, character in enumerate(characters)}
+    return per_element(lambda text: codes.get(text[0], _UNKNOWN) if text else ErrorCode.VALUE)
+
+
+def _character_set(codec: str) -> str:
+    """All 256 characters; a code that the set leaves free is the control character of that number."""
+    decoded = [bytes([number]).decode(codec, "replace") for number in range(256)]
+    return "".join(chr(number) if c == "\ufffd" else c for number, c in enumerate(decoded))
+
+
+_SETS: Final = (_character_set("cp1252"), _character_set("mac_roman"))
+_CHARACTERS: Final = tuple(map(_of_set, _SETS))
+_CODES: Final = tuple(map(_in_set, _SETS))
 
 
 @excel("UNICHAR", Number, returns=Kind.TEXT)

@@ -53,7 +53,7 @@ class Coupons:
         """How many coupons fall due after settlement."""
         (year, month, _), (last_year, last_month, _) = parts_of(self.settlement), parts_of(self.maturity)
         whole = np.floor(((last_year - year) * 12 + last_month - month) / self._step)
-        return np.maximum(whole + (self._before_maturity(whole) > self.settlement), 1.0)
+        return np.asarray(np.maximum(whole + (self._before_maturity(whole) > self.settlement), 1.0))
 
     @cached_property
     def previous(self) -> Floats:

@@ -3,8 +3,8 @@
 0: months of 30 days (US), years of 360; 1: true days and years; 2: true days, years of 360; 3: true days, years of 365;
 4: months of 30 days (European), years of 360. Dates are serials of the 1900 system.
 
-Sources: D. A. Wheeler, "YEARFRAC Incompatibilities between Excel 2007 and OOXML" (2008), for what Excel does; values that
-Excel computed, for the rest.
+Sources: D. A. Wheeler, "YEARFRAC Incompatibilities between Excel 2007 and OOXML" (2008), for what Excel does; values
+that Excel computed, for the rest.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """What an asset loses in value, period by period.
 
-Letters of the formulas: C cost, S salvage value, L life, r = factor/L the declining rate. Time runs from 0 to L; within a
-period what is lost runs evenly.
+Letters of the formulas: C cost, S salvage value, L life, r = factor/L the declining rate. Time runs from 0 to L; within
+a period what is lost runs evenly.
 """
 
 from __future__ import annotations
@@ -68,9 +68,7 @@ def double_declining(cost: Any, salvage: Any, life: Any, period: Any, factor: An
 
 
 @excel("VDB", Number, Number, Number, Number, Number, Number(default=2.0), Logical(default=False))
-def variable_declining(
-    cost: Any, salvage: Any, life: Any, start: Any, end: Any, factor: Any, no_switch: Any
-) -> Floats:
+def variable_declining(cost: Any, salvage: Any, life: Any, start: Any, end: Any, factor: Any, no_switch: Any) -> Floats:
     """Loss between two times, declining; unless `no_switch`, in equal parts as soon as these are more.
 
     With the switch, Excel counts whole periods from `start`: what comes before is a part of a first period and whole
@@ -128,8 +126,8 @@ class _Declining:
     def _switch(self) -> Floats:
         """The first end of a period from which on equal losses are more than declining ones; the end of life if none.
 
-        With V(t) the declining value, equal losses are more where factor·(1 - t/L) + S/V(t) < 1. The left side is convex
-        in t, so that up to its lowest point it falls, and halving finds the place.
+        With V(t) the declining value, equal losses are more where factor·(1 - t/L) + S/V(t) < 1. The left side is
+        convex in t, so that up to its lowest point it falls, and halving finds the place.
         """
         last = np.clip(np.ceil(self._life - self._part) - 1, 0.0, _MOST_PERIODS)
         lowest = np.minimum(self._lowest(), last)

@@ -102,11 +102,12 @@ def frequency(values: Value, bins: Value) -> Value:
     sample, given = sample_of(values), sample_of(bins)
     limits = given.x[:, same_in_all_trials(given.counts | (given.codes > 0))]
     order = np.argsort(limits, axis=1, kind="stable")
-    up_to = sample.how_many(np.less_equal, np.take_along_axis(limits, order, axis=1)) if limits.size else limits
-    each = np.diff(np.concatenate([np.zeros((up_to.shape[0], 1)), up_to], axis=1), axis=1)
-    back = np.broadcast_to(np.argsort(order, axis=1, kind="stable"), each.shape)
-    most = up_to[:, -1:] if limits.size else 0.0
-    result = np.concatenate([np.take_along_axis(each, back, axis=1), sample.size - most], axis=1)
+    rising = np.concatenate([np.take_along_axis(limits, order, axis=1), np.full((limits.shape[0], 1), np.inf)], axis=1)
+    up_to = sample.how_many(np.less_equal, rising)
+    each = np.diff(up_to, axis=1, prepend=0.0)
+    back = np.argsort(order, axis=1, kind="stable")
+    back = np.concatenate([back, np.full((back.shape[0], 1), back.shape[1])], axis=1)
+    result = np.take_along_axis(each, np.broadcast_to(back, each.shape), axis=1)
     errors = earliest(sample.errors, given.errors)
     return Value.of_numbers(result[:, :, None], errors[:, None, None])
 

@@ -7,7 +7,8 @@ from typing import Any, Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.registry import Cells, Number, excel
+from xlmc.functions.arguments import earliest, where_wrong
+from xlmc.functions.registry import Anything, Cells, Number, excel
 from xlmc.functions.toolpak import strict_numbers
 from xlmc.functions.toolpak_rows import toolpak
 from xlmc.functions.values import BLANK, DIV0, LOGICAL, NUM, TEXT, Floats, Value
@@ -51,19 +52,19 @@ def growth_periods(rate: Any, pv: Any, fv: Any) -> Floats:
     return np.where(wrong, NUM, (np.log(fv) - np.log(pv)) / np.log1p(rate))
 
 
-@excel("FVSCHEDULE", Cells, Cells)
+@excel("FVSCHEDULE", Anything, Cells)
 def scheduled_growth(principal: Value, schedule: Value) -> Value:
     """What a principal grows to at one rate after the other; blank rates are 0, texts and logicals `#VALUE!`."""
-    start, errors = (a.reshape(a.shape[0], -1)[:, 0] for a in strict_numbers(principal))
+    result, errors = strict_numbers(principal)
     rates = schedule.as_range()
-    wrong = (rates.kinds == TEXT) | (rates.kinds == LOGICAL)
-    found = np.where(wrong, np.uint8(ErrorCode.VALUE), rates.errors)
+    wrong = where_wrong((rates.kinds == TEXT) | (rates.kinds == LOGICAL), ErrorCode.VALUE)
+    codes = np.broadcast_to(np.where(wrong > 0, wrong, rates.errors), rates.shape)
     numbers = np.where(rates.kinds == BLANK, 0.0, rates.numbers)
+    per_trial = (-1,) + (1,) * (result.ndim - 1)
     for row, column in np.ndindex(*rates.shape[1:]):
-        start = start * (1 + numbers[:, row, column])
-        code = np.broadcast_to(found, rates.shape)[:, row, column]
-        errors = np.where(errors > 0, errors, code)
-    return Value.of_numbers(start, errors.astype(np.uint8))
+        result = result * (1 + numbers[:, row, column].reshape(per_trial))
+        errors = earliest(errors, codes[:, row, column].reshape(per_trial))
+    return Value.of_numbers(result, np.broadcast_to(errors, np.broadcast_shapes(result.shape, errors.shape)))
 
 
 def _hundredths(fraction: Any) -> tuple[Floats, Floats]:

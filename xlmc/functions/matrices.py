@@ -7,7 +7,8 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions import picking
+from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong, whole_numbers
+from xlmc.functions.picking import cell_of, flattened, transposed
 from xlmc.functions.registry import Anything, Cells, Kind, excel
 from xlmc.functions.values import ERROR, NUM, NUMBER, Codes, Floats, Value, constant
 
@@ -22,8 +23,7 @@ def _matrix(value: Value) -> tuple[Floats, Codes]:
     cells = value.as_range()
     other = np.where(cells.kinds >= ERROR, cells.kinds - np.uint8(ERROR), np.uint8(ErrorCode.VALUE))
     codes = np.where(cells.kinds == NUMBER, np.uint8(0), other).astype(np.uint8)
-    rows = np.broadcast_to(codes, cells.shape).reshape(cells.shape[0], -1)
-    return np.broadcast_to(cells.numbers, cells.shape), picking.first_errors(rows)[:, None, None]
+    return np.broadcast_to(cells.numbers, cells.shape), first_errors(flattened(codes, cells))[:, None, None]
 
 
 @excel("MMULT", Cells, Cells, returns=Kind.ANY)
@@ -90,10 +90,10 @@ def unit_matrix(dimension: Value) -> Value:
     Raises:
         ShapeVaries: the size is not the same in every trial.
     """
-    size, errors = picking.whole_numbers(picking.cell_of(dimension, 0, 0))
-    outside = picking.where_wrong((size < 1) | (size > _WIDEST), ErrorCode.VALUE)
-    refused = picking.earliest(errors, outside)
-    common = int(picking.same_in_all_trials(np.where(refused > 0, 0.0, size)))
+    size, errors = whole_numbers(cell_of(dimension, 0, 0))
+    outside = where_wrong((size < 1) | (size > _WIDEST), ErrorCode.VALUE)
+    refused = earliest(errors, outside)
+    common = int(same_in_all_trials(np.where(refused > 0, 0.0, size)))
     if not common:
         return Value.of_numbers(np.zeros(refused.shape), refused)
     return Value.of_numbers(np.eye(common)[None])
@@ -102,4 +102,4 @@ def unit_matrix(dimension: Value) -> Value:
 @excel("TRANSPOSE", Cells, returns=Kind.ANY)
 def transpose(cells: Value) -> Value:
     """Rows as columns: (n, r, c) -> (n, c, r)."""
-    return picking.transposed(cells.as_range())
+    return transposed(cells.as_range())

@@ -8,6 +8,7 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, leveled
+from xlmc.functions.picking import flattened
 from xlmc.functions.registry import Anything, Cells, excel
 from xlmc.functions.toolpak import strict_numbers
 from xlmc.functions.values import BLANK, DIV0, ERROR, NUMBER, Codes, Floats, Value, constant
@@ -17,9 +18,7 @@ __all__: list[str] = []
 
 def _cells(value: Value) -> tuple[Floats, Codes]:
     """The numbers and kinds of a range, or of one value, cell by cell: (n, k), (n, k)."""
-    size = (value.shape[0], -1)
-    numbers, kinds = np.broadcast_to(value.numbers, value.shape), np.broadcast_to(value.kinds, value.shape)
-    return numbers.reshape(size), kinds.reshape(size)
+    return flattened(value.numbers, value), flattened(value.kinds, value)
 
 
 def _over_pairs(x: Value, y: Value, term: Callable[[Floats, Floats], Floats]) -> Value:

@@ -41,7 +41,7 @@ def hyperlink(link: Value, shown: Value | None = None) -> Value:
     """What the cell of a link shows: its second argument, or else the link."""
     if shown is not None:
         link, shown = leveled(link, shown)
-        return with_errors(shown, link.errors)
+        return with_errors(shown, np.broadcast_to(link.errors, link.shape))
     texts, errors = link.to_texts()
     return Value.of_texts(texts, errors)
 

@@ -47,8 +47,9 @@ class _Known:
 
 def _given(value: Value | None) -> Value | None:
     """An argument, None for one left empty between commas."""
-    left_out = value is None or (value.numbers.ndim == 1 and bool((value.kinds == BLANK).all()))
-    return None if left_out else value
+    if value is None or value.numbers.ndim == 3:
+        return value
+    return None if same_in_all_trials(value.kinds == BLANK) else value
 
 
 def _numbers(value: Value) -> tuple[Floats, Codes]:
@@ -86,10 +87,11 @@ def _variables(x: Floats, in_row: bool, shape: tuple[int, ...]) -> Floats | None
 
 def _switch(value: Value | None, otherwise: bool) -> tuple[Bools, Codes]:
     """A condition that may be left out: (n,) each."""
-    if (given := _given(value)) is None:
+    if value is None:
         return np.full(1, otherwise), np.zeros(1, np.uint8)
-    truth, errors = given.to_logicals()
-    return rows_of(truth, given)[:, 0], rows_of(errors, given)[:, 0]
+    truth, errors = value.to_logicals()
+    truth = np.where((value.kinds == BLANK) & (value.numbers.ndim == 1), otherwise, truth)
+    return rows_of(truth, value)[:, 0], rows_of(errors, value)[:, 0]
 
 
 def _logarithms(known: _Known) -> _Known:

@@ -13,10 +13,11 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import whole_numbers, with_errors
+from xlmc.functions.arguments import leveled, refused, whole_numbers
 from xlmc.functions.logical import choose
+from xlmc.functions.picking import each_part, flattened
 from xlmc.functions.registry import REGISTRY, Cells, Number, excel
-from xlmc.functions.values import BLANK, ERROR, Value, constant
+from xlmc.functions.values import BLANK, ERROR, ShapeVaries, Value, constant
 
 __all__ = ["Skips", "aggregate", "aggregate_skips", "subtotal", "subtotal_skips"]
 
@@ -96,19 +97,26 @@ def _ranges(values: Sequence[Value]) -> list[Value]:
 
 def _without_errors(value: Value) -> Value:
     """Blanks in place of errors."""
-    return Value(
-        value.numbers, np.where(value.kinds >= ERROR, np.uint8(BLANK), value.kinds).astype(np.uint8), value.texts
-    )
+    kinds = np.where(value.kinds >= ERROR, np.uint8(BLANK), value.kinds)
+    return Value(value.numbers, kinds.astype(np.uint8), value.texts)
 
 
 def _by_number(number: Value, compute: Callable[[int], Value]) -> Value:
-    """`compute(number)`, should the number differ between trials, for each that occurs."""
+    """`compute(number)`, should the number differ between trials, for each that occurs.
+
+    Raises:
+        ShapeVaries: these are arrays of different shapes.
+    """
     numbers, errors = whole_numbers(number)
-    first, *others = np.unique(numbers[errors == 0] if (errors == 0).any() else np.zeros(1)).tolist()
-    result = compute(int(first))
-    for other in others:
-        result = choose(numbers == other, compute(int(other)), result)
-    return with_errors(result, errors if result.numbers.ndim == 1 else errors.reshape(-1, 1, 1))
+    result = refused(number, ErrorCode.VALUE, errors)
+    present = np.unique(flattened(numbers, number)[flattened(errors, number) == 0]).tolist()
+    found = {wanted: compute(int(wanted)) for wanted in present}
+    shapes = {value.shape[1:] for value in found.values()} | ({()} if errors.any() else set())
+    if number.numbers.ndim == 1 and len(shapes) > 1:
+        raise ShapeVaries
+    for wanted, value in found.items():
+        result = choose((numbers == wanted) & (errors == 0), value, result)
+    return result
 
 
 @excel("SUBTOTAL", Number, Cells(repeat=True))
@@ -120,4 +128,7 @@ def _subtotal(number: Value, *values: Value) -> Value:
 @excel("AGGREGATE", Number, Number, Cells(repeat=True))
 def _aggregate(number: Value, options: Value, *values: Value) -> Value:
     """A function by number of ranges, errors left out with options 2, 3, 6 and 7: as SUBTOTAL, and 12 MEDIAN to 19."""
+    number, options = leveled(number, options)
+    cells = np.broadcast_shapes(number.shape[1:], options.shape[1:])
+    number = each_part(number, lambda part: np.broadcast_to(part, (part.shape[0], *cells)))
     return _by_number(number, lambda chosen: _by_number(options, lambda wanted: aggregate(chosen, wanted, values)))

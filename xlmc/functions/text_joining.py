@@ -39,9 +39,13 @@ def text_join(delimiters: Value, ignore_empty: Value, *values: Value) -> Value:
     ignore, unclear = ignore_empty.to_logicals()
     texts, errors = _side_by_side(values)
     n = max(len(between), len(texts), ignore.shape[0])
-    rows = zip(_tall(between, n), _tall(texts, n), np.broadcast_to(ignore.reshape(-1), (n,)), strict=True)
-    result = _of_trials(_joined(list(delimiter), list(row), bool(skip)) for delimiter, row, skip in rows)
-    return with_errors(result, earliest(wrong, unclear.reshape(-1), errors))
+    marks, words = _tall(between, n), _tall(texts, n)
+    skip = np.broadcast_to(ignore, (n, *ignore.shape[1:]))
+    out = np.empty(skip.shape, object)
+    for place in np.ndindex(*skip.shape):
+        out[place] = _joined(list(marks[place[0]]), list(words[place[0]]), bool(skip[place]))
+    inner = (-1, *(1,) * (ignore.ndim - 1))
+    return with_errors(_cut_off(out), earliest(wrong.reshape(inner), unclear, errors.reshape(inner)))
 
 
 def _joined(delimiters: list[str], texts: list[str], ignore_empty: bool) -> str:

@@ -50,7 +50,7 @@ def _number_to_write(value: object, date1904: bool) -> float | None:
 @per_element
 def fixed(number: float, decimals: float, no_commas: bool) -> object:
     """A number rounded to so many decimals, with commas between thousands unless told otherwise."""
-    return _rounded(number, decimals, "0" if no_commas else "#,##0", "")
+    return _rounded(number, decimals, "0" if no_commas else "#,##0", "-{}")
 
 
 @excel("DOLLAR", Number, Number(default=2.0), returns=Kind.TEXT, aliases=("USDOLLAR",))
@@ -61,13 +61,13 @@ def dollar(number: float, decimals: float) -> object:
 
 
 def _rounded(number: float, decimals: float, whole: str, negative: str) -> object:
-    """The number in the format `whole` with decimals; in its own format if negative."""
-    places = math.trunc(decimals)
+    """The number in the format `whole` with decimals; if negative, with what goes around it."""
+    places = math.trunc(max(decimals, -400.0))
     if places > _MOST_DECIMALS:
         return ErrorCode.VALUE
-    size = shown(number).quantize(Decimal(1).scaleb(-max(places, -400)), context=_WIDE)
-    form = whole + "." * (places > 0) + "0" * places
-    return parse_format(f"{form};{negative.format(form) or f'-{form}'}").number(float(size))
+    size = shown(number).quantize(Decimal(1).scaleb(-places), context=_WIDE)
+    text = parse_format(whole + "." * (places > 0) + "0" * places).number(abs(float(size)))
+    return negative.format(text) if size < 0 else text
 
 
 @excel("VALUE", Anything, dated=True)

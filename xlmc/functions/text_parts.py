@@ -67,4 +67,6 @@ def replace(text: str, start: float, count: float, new: str) -> object:
 def repeat(text: str, count: float) -> object:
     """The text so many times over; `#VALUE!` beyond 32,767 characters."""
     times = math.trunc(count)
-    return text * times if 0 <= times * len(text) <= LONGEST and count >= 0 else ErrorCode.VALUE
+    if count < 0 or times * len(text) > LONGEST:
+        return ErrorCode.VALUE
+    return text * min(times, LONGEST)

@@ -37,7 +37,8 @@ def _edge(name: str, meaning: str, cut: Cut) -> None:
 
 def _marks(delimiters: Value, dimensions: int) -> Objects:
     """All delimiters of each trial as one tuple, (n,) or (n, 1, 1)."""
-    rows = [tuple(np.ravel(row)) for row in delimiters.objects()]
+    objects = delimiters.objects()
+    rows = [tuple(row) for row in objects.reshape(len(objects), -1)]
     box = np.empty(len(rows), object)
     box[:] = rows
     return box.reshape(-1, *(1,) * (dimensions - 1))
@@ -137,7 +138,7 @@ def text_split(text: Value, *options: Value) -> Value:
 def _trial(value: Value, index: int) -> list[object]:
     """The cells of one trial."""
     objects = value.objects()
-    return list(np.ravel(objects[index if len(objects) > 1 else 0]))
+    return list(objects[index : index + 1].ravel() if len(objects) > 1 else objects.ravel())
 
 
 def _first_pieces(arguments: list[Value]) -> Value:

@@ -15,15 +15,10 @@ from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, leveled
-from xlmc.functions.arguments import first_errors as first_error
+from xlmc.functions.picking import flattened as in_rows
 from xlmc.functions.values import LOGICAL, Codes, Floats, Value, from_objects, parse_number
 
-__all__ = ["aligned", "first_error", "flattened", "number_of", "numbers_only", "per_object", "strict_numbers"]
-
-
-def aligned(values: Sequence[Value]) -> list[Value]:
-    """The values so that they broadcast: all of them ranges where one is."""
-    return leveled(*values)
+__all__ = ["flattened", "number_of", "numbers_only", "per_object", "strict_numbers"]
 
 
 def strict_numbers(value: Value) -> tuple[Floats, Codes]:
@@ -53,7 +48,7 @@ def numbers_only(body: Callable[..., Any]) -> Callable[..., Value]:
 
     @wraps(body)
     def strict(*values: Value) -> Value:
-        pairs = [strict_numbers(value) for value in aligned(values)]
+        pairs = [strict_numbers(value) for value in leveled(*values)]
         result = np.atleast_1d(body(*(numbers for numbers, _ in pairs)))
         errors = earliest(*(found for _, found in pairs))
         return Value.of_logicals(result, errors) if result.dtype == bool else Value.of_numbers(result, errors)
@@ -70,7 +65,7 @@ def per_object(function: Callable[..., object]) -> Callable[..., Value]:
 
     @wraps(function)
     def body(*values: Value) -> Value:
-        arguments = [value.objects() for value in aligned(values)]
+        arguments = [value.objects() for value in leveled(*values)]
         shape = np.broadcast_shapes(*(items.shape for items in arguments))
         spread = [np.broadcast_to(items, shape) for items in arguments]
         out = np.empty(shape, object)
@@ -87,11 +82,10 @@ def flattened(values: Sequence[Value]) -> tuple[Floats, Codes]:
     """All cells of all arguments side by side as strict numbers, and their errors: (n, k), (n, k)."""
     parts = [(value, *strict_numbers(value)) for value in values]
     n = max(value.shape[0] for value in values)
-    numbers = np.concatenate([_rows(x, value, n) for value, x, _ in parts], axis=1)
-    errors = np.concatenate([_rows(codes, value, n) for value, _, codes in parts], axis=1)
+    numbers = np.concatenate([_tall(in_rows(x, value), n) for value, x, _ in parts], axis=1)
+    errors = np.concatenate([_tall(in_rows(codes, value), n) for value, _, codes in parts], axis=1)
     return numbers, errors
 
 
-def _rows(array: NDArray[Any], value: Value, n: int) -> NDArray[Any]:
-    rows = np.broadcast_to(array, value.shape).reshape(value.shape[0], -1)
+def _tall(rows: NDArray[Any], n: int) -> NDArray[Any]:
     return np.broadcast_to(rows, (n, rows.shape[1]))

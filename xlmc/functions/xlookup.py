@@ -5,6 +5,7 @@ A key that is an empty cell finds an empty cell. Arguments left empty take their
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Final
 
 import numpy as np
@@ -21,9 +22,11 @@ from xlmc.functions.arguments import (
     whole_numbers,
     with_errors,
 )
+from xlmc.functions.halving import last_not_beyond
 from xlmc.functions.logical import choose
 from xlmc.functions.nearest import EXACT, LARGER, SMALLER, nearest
-from xlmc.functions.picking import Places, picked, transposed
+from xlmc.functions.ordering import ordered
+from xlmc.functions.picking import Places, each_part, picked, transposed
 from xlmc.functions.portions import by_portions, width_of
 from xlmc.functions.registry import Anything, Cells, Kind, Number, excel
 from xlmc.functions.values import BLANK, Codes, Value, constant
@@ -32,25 +35,41 @@ __all__: list[str] = []
 
 _WILDCARDS: Final = 2
 _MODES: Final = (EXACT, SMALLER, LARGER, _WILDCARDS)
-_FROM_THE_END: Final = -1
-_DIRECTIONS: Final = (1, _FROM_THE_END, 2, -2)
-"""From end to end, or by halves of values in order (2, -2): there a search from end to end finds the same."""
+_FROM_THE_END, _RISING, _FALLING = -1, 2, -2
+_DIRECTIONS: Final = (1, _FROM_THE_END, _RISING, _FALLING)
+"""From end to end either way, or by halves of values in order."""
 
 
 def _places(key: Value, vector: Value, mode: Value, direction: Value) -> tuple[Places, Codes]:
     """The key's place, counted from 0, or -1; and the errors of the last two arguments."""
     (modes, wrong), (directions, wrong_too) = whole_numbers(if_blank(mode)), whole_numbers(if_blank(direction, 1.0))
-    known = np.isin(modes, _MODES) & np.isin(directions, _DIRECTIONS)
-    known = known & ~((modes == _WILDCARDS) & (np.abs(directions) == 2))
     result = np.full(1, -1)
-    for wanted in _MODES:
-        for last in (False, True):
-            chosen = (modes == wanted) & ((directions == _FROM_THE_END) == last)
-            if chosen.any():
-                by_pattern = wanted == _WILDCARDS
-                found = nearest(key, vector, EXACT if by_pattern else wanted, last=last, wildcards=by_pattern)
-                result = np.where(chosen, found, result)
+    known = np.zeros(1, bool)
+    for wanted, towards in product(_MODES, _DIRECTIONS):
+        chosen = (modes == wanted) & (directions == towards)
+        if chosen.any() and not (wanted == _WILDCARDS and abs(towards) == _RISING):
+            result = np.where(chosen, _found_place(key, vector, wanted, towards), result)
+            known = known | chosen
     return result, earliest(wrong, wrong_too, where_wrong(~known, ErrorCode.VALUE))
+
+
+def _found_place(key: Value, vector: Value, mode: int, direction: int) -> Places:
+    if abs(direction) == _RISING:
+        return _by_halves(key, vector, mode, direction == _FALLING)
+    by_pattern = mode == _WILDCARDS
+    return nearest(key, vector, EXACT if by_pattern else mode, last=direction == _FROM_THE_END, wildcards=by_pattern)
+
+
+def _by_halves(key: Value, vector: Value, side: int, falling: bool) -> Places:
+    """As MATCH searches; a neighbour that is asked for may be of any kind."""
+    before = last_not_beyond(key, vector, falling=falling)
+    if side == (LARGER if falling else SMALLER):
+        return before
+    column = each_part(vector, lambda part: part.reshape(part.shape[0], -1, 1))
+    wanted, found = ordered(key, picked(column, np.maximum(before, 0), np.zeros(1, np.intp)))
+    equal = ((wanted.kinds == found.kinds) & (wanted.order == found.order)).reshape(before.shape) & (before >= 0)
+    after = np.where(before + 1 < column.shape[1], before + 1, -1)
+    return np.where(equal, before, -1 if side == EXACT else after)
 
 
 @excel("XMATCH", Anything, Cells, Number(default=0.0), Number(default=1.0))

@@ -22,6 +22,8 @@ __all__ = ["NumberFormat", "parse_format"]
 _NO_SECTION: Final = "#" * 255
 """What Excel writes of a number that no section is for."""
 
+_LONGEST: Final = 255
+
 _GENERAL: Final = GeneralLayout("", "")
 
 
@@ -90,8 +92,8 @@ def parse_format(text: str) -> NumberFormat:
         UnknownFormat: it asks for numerals or names that are not known here.
     """
     parts = tokenise(text)
-    if len(parts) > 4:
-        raise FormatError("a format has four sections at most")
+    if len(parts) > 4 or len(text) > _LONGEST:
+        raise FormatError(f"a format has four sections and {_LONGEST} characters at most")
     last = parts[-1]
     has_texts = len(parts) == 4 or any(token.mark is Mark.AT for token in last)
     sections = tuple(section_of(part) for part in (parts[:-1] if has_texts else parts))

@@ -92,7 +92,7 @@ class FractionLayout:
 
 
 def _places(tokens: Sequence[Token]) -> str:
-    return "".join(token.text for token in tokens if token.mark in (Mark.DIGIT, Mark.NUMERAL))
+    return "".join(token.text for token in tokens if _is_place(token))
 
 
 def approximated(x: float, largest: int) -> tuple[int, int]:
@@ -153,13 +153,18 @@ def _start_of_run(tokens: Sequence[Token]) -> int:
 
 
 def _denominator(tokens: Sequence[Token]) -> tuple[list[Token], list[Token]]:
-    """The first run of places or numerals, and what stands behind it."""
-    marks = (Mark.DIGIT, Mark.NUMERAL)
-    start = next((index for index, token in enumerate(tokens) if token.mark in marks), len(tokens))
+    """The first run of places, or the first number, and what stands behind it."""
+    start = next((index for index, token in enumerate(tokens) if _is_place(token)), len(tokens))
+    fixed = start < len(tokens) and tokens[start].mark is Mark.NUMERAL
     end = start
-    while end < len(tokens) and tokens[end].mark in marks:
+    wanted = "0123456789" if fixed else "0#?"
+    while end < len(tokens) and _is_place(tokens[end]) and tokens[end].text in wanted:
         end += 1
     return list(tokens[start:end]), list(tokens[end:])
+
+
+def _is_place(token: Token) -> bool:
+    return token.mark in (Mark.DIGIT, Mark.NUMERAL)
 
 
 def _text(tokens: Sequence[Token]) -> str:

@@ -68,7 +68,7 @@ def section_of(tokens: Sequence[Token]) -> Section:
     rest = [token for token in tokens if token.mark is not Mark.CONDITION]
     if len(conditions) > 1:
         raise FormatError("a section has one condition")
-    return Section(_condition(conditions[0].text) if conditions else None, _layout(rest, bool(conditions)))
+    return Section(_condition(conditions[0].text) if conditions else None, _layout(rest))
 
 
 def _condition(text: str) -> Condition:
@@ -80,7 +80,7 @@ def _condition(text: str) -> Condition:
         raise FormatError(f"{match[2]} is not a number") from None
 
 
-def _layout(tokens: Sequence[Token], conditional: bool) -> Layout:
+def _layout(tokens: Sequence[Token]) -> Layout:
     if any(token.mark is Mark.GENERAL for token in tokens):
         return _general(tokens)
     if is_moment(tokens):

@@ -343,3 +343,11 @@ class TestTheSeam:
 def test_what_formulas_compiles_itself(text, values, expected):
     result = compile_with_formulas(text)(values)
     assert (type(result), result) == (type(expected), expected)
+
+
+@pytest.mark.parametrize(
+    ("text", "values"), [("NOSUCH(A1)", {"A1": 1.0}), ("#SPILL!", {}), ("(A1,B1)", {"A1": 1.0, "B1": 2.0})]
+)
+def test_what_formulas_cannot_compute(text, values):
+    with pytest.raises(FormulaError, match="the engine `formulas` cannot compute this"):
+        compile_with_formulas(text)(values)

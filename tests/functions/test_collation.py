@@ -8,7 +8,7 @@ RISING = ["", " ", "!", "#", "_", "~", "+", "=", "0", "9", "a", "A2", "ab", "é"
 
 
 def test_symbols_digits_letters():
-    assert sorted(reversed(RISING), key=order_key) == RISING
+    assert sorted(RISING[::2] + RISING[1::2], key=order_key) == RISING
 
 
 @pytest.mark.parametrize(("left", "right"), [("abc", "ABC"), ("É", "é")])

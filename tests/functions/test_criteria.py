@@ -143,13 +143,10 @@ def _meets(cell, criterion):
 
 
 cells = st.sampled_from([0.0, 1.0, 2.0, 2.5, "1", "2.5", "ab", "AB", "b", "bc", "", None, True, False, NA, DIV0])
-criteria = (
-    st.sampled_from([0.0, 1.0, 2.5, True, None, NA])
-    | st.tuples(
-        st.sampled_from(["", "=", "<>", "<", ">", "<=", ">="]),
-        st.sampled_from(["", "1", "2", "2.5", "ab", "b", "b*", "?b", "*", "TRUE", "false"]),
-    ).map("".join)
-)
+criteria = st.sampled_from([0.0, 1.0, 2.5, True, None, NA]) | st.tuples(
+    st.sampled_from(["", "=", "<>", "<", ">", "<=", ">="]),
+    st.sampled_from(["", "1", "2", "2.5", "ab", "b", "b*", "?b", "*", "TRUE", "false"]),
+).map("".join)
 
 
 @given(st.lists(st.tuples(criteria, cells, cells, cells), min_size=1, max_size=6), st.booleans())

@@ -11,11 +11,11 @@ import numpy as np
 
 from xlmc.address import Area, Cell
 from xlmc.compile import choices, lambdas, places
-from xlmc.compile.arrays import cell_by_cell, element
+from xlmc.compile.arrays import cell_by_cell, element, grid, size_of
 from xlmc.compile.dag import Apply, Constant, Dag, Range
-from xlmc.compile.dated import dated
 from xlmc.compile.engine import Target
 from xlmc.compile.scope import Scope
+from xlmc.compile.settings import as_set
 from xlmc.errors import ErrorCode, FormulaError, Notice
 from xlmc.formula import Graph, Resolver, ir
 from xlmc.functions import REGISTRY, Function, Kind, function_named
@@ -245,11 +245,23 @@ class Lowering:
         if not fewest <= len(arguments) <= most:
             raise FormulaError(f"{name} has {len(arguments)} arguments; it takes {_count(fewest, most)}")
         beside = scope.over_arrays() if name in _OVER_ARRAYS else scope
+        book = self.graph.workbook
         found: list[int] = []
         for position, argument in enumerate(arguments):
-            whole = function.parameter(position).ranged
-            found += self.whole(argument, beside) if whole else [self.lower(argument, scope)]
-        return self.made(dated(function, self.graph.workbook.date1904), tuple(found))
+            parameter = function.parameter(position)
+            part = self.whole(argument, beside) if parameter.ranged else [self.lower(argument, scope)]
+            found += part if parameter.repeat else [self._stacked(part)]
+        return self.made(as_set(function, book.date1904, book.macintosh), tuple(found))
+
+    def _stacked(self, parts: list[int]) -> int:
+        """Joined areas as one, for a function that takes a single range: their cells in one column."""
+        if len(parts) == 1:
+            return parts[0]
+        cells = []
+        for part in parts:
+            rows, columns = size_of(self.dag, part) or (1, 1)
+            cells += [element(self.dag, part, r, c) for r in range(rows) for c in range(columns)]
+        return grid(self.dag, len(cells), 1, lambda r, _: cells[r])
 
     def made(self, function: Function, arguments: tuple[int, ...]) -> int:
         """The node of a function of nodes, cell by cell where it takes single values and is given many."""

@@ -325,6 +325,8 @@ def _cell(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
     if what == "col":
         return lowering.number(float(cell.column))
     if what == "contents":
+        if lowering.awaits(cell):
+            raise NotYetNeeded([cell])
         return lowering.zero_if_blank(lowering.cell(cell))
     if what == "address":
         column, row = re.fullmatch(r"([A-Z]+)(\d+)", cell.a1).groups()  # type: ignore[union-attr]  # it is an address
@@ -355,7 +357,8 @@ def _without_subtotals(name: str) -> Callable[[Lowering, Arguments, Scope], int 
             if areas is None:
                 found.append(lowering.lower(argument, scope.over_arrays()))
             else:
-                found += [_left_in(lowering, area) for area in areas]
+                skipped = _skipped(lowering, name, found)
+                found += [_left_in(lowering, area, skipped) for area in areas]
         return lowering.dag.add(Apply(function, tuple(found)))
 
     return lower
@@ -364,14 +367,45 @@ def _without_subtotals(name: str) -> Callable[[Lowering, Arguments, Scope], int 
 _TOTAL = re.compile(r"\b(SUBTOTAL|AGGREGATE)\(", re.IGNORECASE)
 
 
-def _left_in(lowering: Lowering, area: Area) -> int:
+def _skipped(lowering: Lowering, name: str, options: list[int]) -> tuple[bool, bool]:
+    """Whether totals within the range are left out, and whether hidden rows are."""
+    known = [lowering.known_single(option) for option in options]
+    numbers = [int(value.numbers[0]) if value is not None and value.plain else 0 for value in known]
+    if name == "SUBTOTAL":
+        return True, numbers[0] > 100
+    return numbers[1] < 4, numbers[1] in (1, 3, 5, 7)
+
+
+def _left_in(lowering: Lowering, area: Area, skipped: tuple[bool, bool]) -> int:
+    totals, hidden = skipped
+    hidden_rows = lowering.graph.workbook.sheets[area.sheet].hidden_rows if hidden else frozenset()
+
     def node(cell: Cell) -> int:
-        if _TOTAL.search(lowering.graph.text(cell)):
+        if cell.row in hidden_rows or (totals and _TOTAL.search(lowering.graph.text(cell))):
             return lowering.dag.constant(constant(None))
         return lowering.cell(cell)
 
     rows, columns = range(area.top, area.bottom + 1), range(area.left, area.right + 1)
     return lowering.dag.add(Range(tuple(tuple(node(Cell(area.sheet, r, c)) for c in columns) for r in rows)))
+
+
+def _summed_beside(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
+    """SUMIF and AVERAGEIF take as much of the third argument as the first has rows and columns."""
+
+    def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+        if len(arguments) != 3:
+            return None
+        tested, summed = (areas_of(lowering, arguments[i], scope) for i in (0, 2))
+        if tested is None or summed is None or len(tested) != 1 or len(summed) != 1:
+            return None
+        same = summed[0].rows == tested[0].rows and summed[0].columns == tested[0].columns
+        if same:
+            return None
+        a, size = summed[0], tested[0]
+        wider = _needed(lowering, Area(a.sheet, a.top, a.left, a.top + size.rows - 1, a.left + size.columns - 1))
+        return lowering.lower(ir.Call(name, (arguments[0], arguments[1], wider)), scope)
+
+    return lower
 
 
 PLACES: Mapping[str, Callable[[Lowering, Arguments, Scope], int | None]] = {
@@ -383,6 +417,8 @@ PLACES: Mapping[str, Callable[[Lowering, Arguments, Scope], int | None]] = {
     "ROWS": _count("ROWS"),
     "COLUMNS": _count("COLUMNS"),
     "AREAS": _count("AREAS"),
+    "SUMIF": _summed_beside("SUMIF"),
+    "AVERAGEIF": _summed_beside("AVERAGEIF"),
     "ISREF": _is_reference,
     "ISFORMULA": _is_formula,
     "FORMULATEXT": _formula_text,

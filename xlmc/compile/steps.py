@@ -6,7 +6,7 @@ constant), a LOGICAL node a bool array (or a bool), any other node a `Value`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from operator import itemgetter
 from typing import Any
@@ -299,12 +299,21 @@ def _valued(dag: Dag, place: int) -> Step:
         arguments = {p: as_value(frame.values[p], dag.types[p]) for p in uses(node)}
         with np.errstate(all="ignore"):
             result = evaluated(node, arguments)
+        if isinstance(node, Apply):
+            result = _in_own_memory(result, arguments.values())
         if kind in (Kind.NUMBER, Kind.LOGICAL):
             frame.values[place] = np.broadcast_to(_plain(result, kind), (frame.n,))
         else:
             frame.values[place] = result
 
     return step
+
+
+def _in_own_memory(result: Value, arguments: Iterable[Value]) -> Value:
+    """What a function gives, apart from its arguments: the buffers that these lie in are soon written to again."""
+    if any(np.may_share_memory(result.numbers, argument.numbers) for argument in arguments):
+        return Value(result.numbers.copy(), result.kinds, result.texts)
+    return result
 
 
 def _plain(value: Value, kind: Kind) -> NDArray[Any]:

@@ -16,6 +16,22 @@ from xlmc.workbook.model import Workbook
 __all__ = ["Graph", "build_graph", "references"]
 
 
+_LOOKED_AT = {
+    "ROW",
+    "COLUMN",
+    "ROWS",
+    "COLUMNS",
+    "AREAS",
+    "SHEET",
+    "SHEETS",
+    "ISREF",
+    "ISFORMULA",
+    "FORMULATEXT",
+    "CELL",
+}
+"""Functions that ask where their arguments are, not what they hold."""
+
+
 @dataclass(frozen=True)
 class Graph:
     """The needed part of a workbook.
@@ -142,9 +158,11 @@ def references(tree: ir.Expression) -> Iterator[Cell | Area]:
             yield from references(first)
             for _, right in rest:
                 yield from references(right)
-        case ir.Call(_, arguments):
+        case ir.Call(name, arguments):
+            looked_at = name in _LOOKED_AT
             for part in arguments:
-                yield from references(part)
+                if not (looked_at and isinstance(part, Cell | Area)):
+                    yield from references(part)
         case ir.Let(bindings, body):
             for _, value in bindings:
                 yield from references(value)

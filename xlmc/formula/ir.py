@@ -195,10 +195,12 @@ Expression = (
 def chain(tree: Expression) -> tuple[Expression, list[tuple[str, Expression]]]:
     """`a + b - c` as `a` and `[("+", b), ("-", c)]`; anything but a binary operation as itself and nothing.
 
-    Long sums lean to the left, one level a term: passes walk them in a loop, and recurse only into brackets.
+    Long sums lean to the left, one level a term: passes walk them in a loop, and recurse only into brackets. Operators
+    that make references (`:`, blank, `,`) are never in one chain with others.
     """
     rest: list[tuple[str, Expression]] = []
-    while isinstance(tree, Binary):
+    joins = isinstance(tree, Binary) and tree.operator in ":, "
+    while isinstance(tree, Binary) and (tree.operator in ":, ") is joins:
         rest.append((tree.operator, tree.right))
         tree = tree.left
     return tree, rest[::-1]

@@ -447,6 +447,8 @@ def compile_with_formulas(text: str) -> Callable[[Mapping[str, Any]], object]:
     names = list(compiled.inputs)
 
     def call(values: Mapping[str, Any]) -> object:
+        if not values.keys() >= set(names):  # it reads `(A1,B1)` as one name
+            raise refused
         try:
             return _from_foreign(compiled(*(_to_foreign(values[name]) for name in names)))
         except DispatcherError:

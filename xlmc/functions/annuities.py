@@ -10,6 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from xlmc.functions.powers import powered
 from xlmc.functions.registry import Number, excel
 from xlmc.functions.roots import growth_root
 from xlmc.functions.toolpak_rows import toolpak
@@ -21,12 +22,8 @@ _SMALL_RATE: Final = 1e-4
 
 
 def growth(rate: Any, periods: Any) -> Floats:
-    """What one unit grows to, (1 + rate)^periods; NaN for rates below -1 unless the periods are whole.
-
-    The square is told apart because NumPy does so when the exponent is one number, and not otherwise.
-    """
-    base = 1.0 + np.asarray(rate)
-    return np.where(np.asarray(periods) == 2, base * base, np.power(base, periods))
+    """What one unit grows to, (1 + rate)^periods; NaN for rates below -1 unless the periods are whole."""
+    return powered(1.0 + np.asarray(rate), periods)
 
 
 def _accumulation(rate: Any, periods: Any) -> Floats:

@@ -38,7 +38,7 @@ def _filtered(grid: Value, test: Value, if_empty: Value | None) -> Value:
     truth, errors = test.to_logicals()
     refuse_errors(first_errors(np.broadcast_to(errors, test.shape)[:, :, 0]))
     mask = np.broadcast_to(truth, test.shape)[:, :, 0]
-    if if_empty is not None and not mask.any():
+    if not mask.any() and if_empty is not None and not (if_empty.kinds == BLANK).all():
         return if_empty.as_range()
     return _rows(grid, kept(mask))
 
@@ -126,11 +126,16 @@ def _unique(grid: Value, once: bool) -> Value:
 
 
 def _is_new(grid: Value, once: bool) -> Bools:
-    """Which rows occur not before, or nowhere else: (n, r)."""
+    """Which rows occur not before, or nowhere else: (n, r). Equal rows stand together once they are in order."""
     (cells,) = ordered(grid)
-    kinds, order = (part.reshape(grid.shape) for part in (cells.kinds, cells.order))
-    result = np.empty(grid.shape[:2], bool)
-    for row in range(grid.shape[1]):
-        same = ((kinds == kinds[:, row : row + 1]) & (order == order[:, row : row + 1])).all(axis=2)
-        result[:, row] = same.sum(axis=1) == 1 if once else ~same[:, :row].any(axis=1)
+    columns = [part.reshape(grid.shape)[:, :, c] for part in (cells.kinds, cells.order) for c in range(grid.shape[2])]
+    places = np.lexsort(columns, axis=-1)
+    differs = np.zeros((places.shape[0], places.shape[1] - 1), bool)
+    for column in columns:
+        in_order = np.take_along_axis(column, places, axis=1)
+        differs |= in_order[:, 1:] != in_order[:, :-1]
+    edge = np.ones((places.shape[0], 1), bool)
+    first, last = np.concatenate([edge, differs], axis=1), np.concatenate([differs, edge], axis=1)
+    result = np.empty(places.shape, bool)
+    np.put_along_axis(result, places, first & last if once else first, axis=1)
     return result

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.annuities import growth
 from xlmc.functions.arguments import earliest, first_errors, where_wrong
 from xlmc.functions.registry import Anything, Cells, excel
 from xlmc.functions.roots import growth_root
@@ -126,9 +127,9 @@ def modified_rate(values: Value, finance: Value, reinvest: Value) -> Value:
     (borrowed, borrowed_errors), (invested, invested_errors) = _single(finance), _single(reinvest)
     paid = _discounted(borrowed, np.minimum(flows, 0.0), counts) * (1 + borrowed)
     k = counts.sum(axis=1)
-    received = _discounted(invested, np.maximum(flows, 0.0), counts) * (1 + invested) ** k
+    received = _discounted(invested, np.maximum(flows, 0.0), counts) * growth(invested, k)
     usable = has_both_signs(flows, counts)
     ratio = np.where(usable, -received / np.where(paid == 0, np.nan, paid), 1.0)
-    rate = np.power(ratio, 1.0 / np.where(k > 1, k - 1, 1)) - 1
+    rate = np.expm1(np.log(ratio) / np.where(k > 1, k - 1, 1))
     one_sided = where_wrong(~usable | (k < 2), ErrorCode.DIV0)
     return Value.of_numbers(rate, earliest(errors, borrowed_errors, invested_errors, one_sided))

@@ -10,6 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from xlmc.functions.powers import powered
 from xlmc.functions.registry import Logical, Number, excel
 from xlmc.functions.values import DIV0, NUM, Bools, Floats
 
@@ -42,10 +43,10 @@ def fixed_declining(cost: Any, salvage: Any, life: Any, period: Any, month: Any)
     years = np.floor(life) + (months < 12)
     wrong = (cost < 0) | (salvage < 0) | (life <= 0) | (whole < 1) | (whole > years) | (months < 1) | (months > 12)
     gone = wrong | (cost == 0)
-    kept = np.power(salvage / np.where(gone, 1.0, cost), 1 / np.where(gone, 1.0, life))
+    kept = powered(salvage / np.where(gone, 1.0, cost), 1 / np.where(gone, 1.0, life))
     rate = np.floor((1 - kept) * 1000 + 0.5) / 1000
     first = cost * rate * months / 12
-    later = (cost - first) * np.power(1 - rate, np.maximum(whole - 2, 0.0)) * rate
+    later = (cost - first) * powered(1 - rate, np.maximum(whole - 2, 0.0)) * rate
     last = np.where(whole > life, (12 - months) / 12, 1.0)
     return np.where(wrong, NUM, np.where(gone, 0.0, np.where(whole == 1, first, later * last)))
 
@@ -104,7 +105,7 @@ class _Declining:
     def _after(self, periods: Floats) -> Floats:
         """The value at the end of the shortened period and so many whole ones."""
         kept = np.maximum(1 - self._rate, 0.0)
-        grown = self._after_part * np.where(periods == 2, kept * kept, np.power(kept, periods))
+        grown = self._after_part * powered(kept, periods)
         return np.where(self._after_part > self._salvage, np.maximum(grown, self._salvage), self._after_part)
 
     def left(self, time: Floats) -> Floats:

@@ -12,6 +12,7 @@ import numpy as np
 from xlmc.functions.calendar import parts_of
 from xlmc.functions.day_count import by_basis, days_between, is_basis
 from xlmc.functions.months import is_leap_year
+from xlmc.functions.powers import powered
 from xlmc.functions.registry import Number
 from xlmc.functions.toolpak_rows import Date, toolpak
 from xlmc.functions.values import NUM, Bools, Floats
@@ -89,7 +90,7 @@ def _degressed(value: Floats, salvage: Any, rate: Floats, life: Floats, period: 
     The value falls by the rate in each period until it lies below the salvage value, from when on nothing is lost.
     """
     half = life - 3  # the period in which half of the value goes: the last but one, of those after the first
-    declined = value * np.power(np.maximum(1 - rate, 0.0), np.clip(period - 1, 0.0, half - 1))
+    declined = value * powered(np.maximum(1 - rate, 0.0), np.clip(period - 1, 0.0, half - 1))
     before = np.where(period > half, declined / 2, declined)
     share = np.select([period < half, period == half, period == half + 1], [rate, 0.5, 1.0], 0.0)
     return np.where((period < 1) | (before < salvage), 0.0, before * share)

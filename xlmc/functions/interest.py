@@ -70,7 +70,7 @@ def scheduled_growth(principal: Value, schedule: Value) -> Value:
 def _hundredths(fraction: Any) -> tuple[Floats, Floats]:
     """The denominator, whole, and the power of ten that holds its digits."""
     whole = np.where(np.asarray(fraction) < 1, 1.0, np.floor(fraction))
-    return whole, _TENS[np.searchsorted(_TENS, whole)]
+    return whole, _TENS[np.minimum(np.searchsorted(_TENS, whole), _TENS.size - 1)]
 
 
 def _refused(fraction: Any, result: Floats) -> Floats:

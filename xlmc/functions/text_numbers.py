@@ -65,8 +65,10 @@ def _rounded(number: float, decimals: float, whole: str, negative: str) -> objec
     places = math.trunc(max(decimals, -400.0))
     if places > _MOST_DECIMALS:
         return ErrorCode.VALUE
-    size = shown(number).quantize(Decimal(1).scaleb(-places), context=_WIDE)
-    text = parse_format(whole + "." * (places > 0) + "0" * places).number(abs(float(size)))
+    size = float(shown(number).quantize(Decimal(1).scaleb(-places), context=_WIDE))
+    if math.isinf(size):
+        return ErrorCode.NUM
+    text = parse_format(whole + "." * (places > 0) + "0" * places).number(abs(size))
     return negative.format(text) if size < 0 else text
 
 

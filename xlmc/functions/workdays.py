@@ -90,7 +90,7 @@ def _by_weeks(rule: Rule, start: Value, other: Value, weekend: Value, holidays: 
     days_off, holiday_errors = _holidays(holidays, date1904)
     result, wrong = rule(Weeks(_cells(worked, (*shape, 7))), days_off, _cells(x, shape), _cells(y, shape))
     of_arguments = [_cells(errors, shape) for errors in (x_errors, y_errors, weekend_errors)]
-    errors = np.broadcast_to(earliest(*of_arguments, holiday_errors[:, None], wrong), result.shape)
+    result, errors = np.broadcast_arrays(result, earliest(*of_arguments, holiday_errors[:, None], wrong))
     return Value.of_numbers(result.reshape(-1, *shape[1:]), errors.reshape(-1, *shape[1:]))
 
 

@@ -51,6 +51,7 @@ class Sheet:
     cells: Mapping[tuple[int, int], CellContent]
     merged: tuple[Area, ...] = ()
     visible: bool = True
+    hidden_rows: frozenset[int] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +86,7 @@ class Workbook:
 
     Attributes:
         sheets: worksheets in tab order, by name as written.
+        macintosh: last saved by Excel for the Macintosh, whose CHAR and CODE use its own character set.
         parts: every part of the zip package in its order, name -> bytes, as in the file.
         sha256: of the file.
     """
@@ -94,6 +96,7 @@ class Workbook:
     names: tuple[DefinedName, ...] = ()
     tables: tuple[Table, ...] = ()
     date1904: bool = False
+    macintosh: bool = False
     notices: tuple[Notice, ...] = ()
     parts: Mapping[str, bytes] = field(default_factory=dict, repr=False)
     sha256: str = ""

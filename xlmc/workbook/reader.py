@@ -46,6 +46,7 @@ def _read(data: bytes, name: str, place: str) -> Workbook:
             names=structure.names,
             tables=tuple(tables),
             date1904=structure.date1904,
+            macintosh=b"Macintosh" in parts.get("docProps/app.xml", b""),
             notices=(*workbook_notices(parts, structure, name), *data_table_notices(sheets.data_tables())),
             parts=parts,
             sha256=hashlib.sha256(data).hexdigest(),

@@ -10,7 +10,7 @@ from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_number
 from xlmc.errors import WorkbookError
 from xlmc.workbook.model import CellContent, CellValue, Formula, Sheet
 from xlmc.workbook.reference import area_of
-from xlmc.workbook.safe_xml import REPAIR, expat_parser, feed
+from xlmc.workbook.safe_xml import REPAIR, expat_parser, feed, is_true
 from xlmc.workbook.strings import decode, run_text
 from xlmc.workbook.structure import SheetEntry
 from xlmc.workbook.values import CellContext, convert
@@ -48,7 +48,9 @@ def parse_sheet(xml: bytes, entry: SheetEntry, context: CellContext) -> ParsedSh
     parser.EndElementHandler = reading.end
     parser.CharacterDataHandler = reading.text.append
     feed(parser, xml, entry.part)
-    sheet = Sheet(entry.name, entry.part, reading.cells, tuple(reading.merged), entry.visible)
+    sheet = Sheet(
+        entry.name, entry.part, reading.cells, tuple(reading.merged), entry.visible, frozenset(reading.hidden_rows)
+    )
     return ParsedSheet(sheet, tuple(reading.data_tables))
 
 
@@ -59,6 +61,7 @@ class _Pass:
         self.cells: dict[tuple[int, int], CellContent] = {}
         self.merged: list[Area] = []
         self.data_tables: list[Area] = []
+        self.hidden_rows: set[int] = set()
         self.text: list[str] = []  # pieces of the text at hand
         self._sheet = sheet
         self._context = context
@@ -92,6 +95,8 @@ class _Pass:
             self._row = int(number)
         else:
             raise WorkbookError(f"a row of sheet {self._sheet!r} has the number {number!r}", hint=REPAIR)
+        if is_true(self._attributes.get("hidden", "0")):
+            self.hidden_rows.add(self._row)
 
     def start_cell(self) -> None:
         self._cell = self._attributes

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
+from xlmc.collecting import paused_collection
 from xlmc.compile import ENGINES, Lowering, Program, Target
 from xlmc.definitions import Assumption, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key
@@ -34,11 +35,12 @@ def load(path: str | Path) -> Model:
         DefinitionError: a definition is not what it must be; all faulty ones are listed.
         FormulaError: a needed cell cannot be computed.
     """
-    workbook = read_workbook(path)
-    definitions = read_definitions(workbook)
-    if definitions.problems:
-        raise _joined(definitions.problems)
-    return Model(workbook, definitions, Path(path))
+    with paused_collection():
+        workbook = read_workbook(path)
+        definitions = read_definitions(workbook)
+        if definitions.problems:
+            raise _joined(definitions.problems)
+        return Model(workbook, definitions, Path(path))
 
 
 def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:
@@ -131,18 +133,35 @@ class Model:
             Name of the forecast -> `(n,)`; NaN where the cell is an error, a text or blank.
 
         Raises:
-            SimulationError: an assumption is missing.
+            SimulationError: an assumption is missing, unknown or frozen, or the values are of different lengths.
         """
         given = {name_key(name): np.asarray(values, np.float64) for name, values in inputs.items()}
-        missing = [a.name for a in self.live if name_key(a.name) not in given]
-        if missing:
-            raise SimulationError(f"no values for the assumption {missing[0]!r}", hint="give every live assumption")
-        n = int(np.broadcast_shapes((1,), *(values.shape for values in given.values()))[0])
+        self._check_names(inputs)
+        sizes = {values.size for values in given.values() if values.ndim} - {1} or {1}
+        if len(sizes) > 1 or any(values.ndim > 1 for values in given.values()):
+            hint = "give lists of the same length"
+            raise SimulationError("an assumption takes one number or one list of numbers", hint=hint)
+        (n,) = sizes
+        if n == 0:
+            return {forecast.name: np.empty(0) for forecast in self.forecasts}
         full = {key: np.ascontiguousarray(np.broadcast_to(values, (n,))) for key, values in given.items()}
         needed = frozenset(name_key(a.name) for a in self.live)
         evaluator = ENGINES["numpy"](self._lowering, self._forecast_targets, [], needed).evaluator(n)
         columns = evaluator.filters(full, n)
         return {f.name: column.as_floats() for f, column in zip(self.forecasts, columns, strict=True)}
+
+    def _check_names(self, names: Collection[str]) -> None:
+        known = {name_key(a.name): a for a in self.assumptions}
+        for name in names:
+            if name_key(name) not in known:
+                hint = f"choose from {', '.join(repr(a.name) for a in self.live)}"
+                raise SimulationError(f"there is no assumption {name!r}", hint=hint)
+            if known[name_key(name)].frozen:
+                raise SimulationError(f"the assumption {name!r} is frozen", hint="it is held at its cell's own value")
+        given = {name_key(name) for name in names}
+        missing = [a.name for a in self.live if name_key(a.name) not in given]
+        if missing:
+            raise SimulationError(f"no values for the assumption {missing[0]!r}", hint="give every live assumption")
 
     def program(self, engine: str) -> Program:
         """The filters and forecasts, compiled for an engine.
@@ -152,7 +171,8 @@ class Model:
         """
         if engine not in ENGINES:
             raise SimulationError(f"there is no engine {engine!r}", hint=f"choose one of {', '.join(ENGINES)}")
-        return ENGINES[engine](self._lowering, self._filter_targets, self._forecast_targets, self.fallible)
+        with paused_collection():
+            return ENGINES[engine](self._lowering, self._filter_targets, self._forecast_targets, self.fallible)
 
     def sampler(self, seed: int, block: int) -> MonteCarlo:
         """The draws, block by block; for one thread."""

@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode
 from xlmc.functions import function_named
@@ -97,3 +99,25 @@ def test_many_trials_come_in_portions_and_in_their_order():
     assert found.shape == (1_000_000,)
     assert found.numbers[:4].tolist() == [3, 3, 1, 0]
     assert not found.numbers[4:].any()
+
+
+few = st.sampled_from([0.0, 1.0, 2.0, "a", "B", "2", "", True, None, DIV0])
+wanted = st.sampled_from([1.0, "a", ">0", "<>a", "*", "", "=", None, True, DIV0])
+
+
+@pytest.mark.parametrize("name", ["SUMIFS", "COUNTIFS", "AVERAGEIFS", "MAXIFS", "SUMIF"])
+@given(data=st.data())
+def test_trials_together_are_the_trials_alone(name, data):
+    def drawn(strategy, *shape):
+        box = np.empty((data.draw(st.sampled_from([1, 3])), *shape), object)
+        box.ravel()[:] = data.draw(st.lists(strategy, min_size=box.size, max_size=box.size))
+        return from_objects(box)
+
+    pairs = [drawn(few, 3, 1), drawn(wanted, *data.draw(st.sampled_from([(), (1, 2)])))]
+    more = [drawn(few, 3, 1), drawn(wanted)]
+    arguments = {"COUNTIFS": pairs + more, "SUMIF": [*pairs, drawn(few, 2, 2)]}.get(name, [drawn(few, 3, 1), *pairs])
+    function = function_named(name)
+    together = function(arguments).objects()
+    for i in range(3):
+        alone = function([argument.take(np.array([i])) for argument in arguments]).objects()[0]
+        assert np.array_equal(together[i if len(together) == 3 else 0], alone)

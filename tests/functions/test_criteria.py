@@ -91,6 +91,13 @@ def test_database_functions_ask_for_the_beginning_of_a_text(criterion, expected)
     assert _named([item for item, holds in zip(CELLS, held, strict=True) if holds]) == _named(expected)
 
 
+@pytest.mark.parametrize(("date1904", "expected"), [(False, [False, True, True]), (True, [True, False, True])])
+def test_dates_are_numbers(date1904, expected):
+    cells = _range([42369.0, 43831.0, "1/1/2020"])
+    assert met(constant("1/1/2020"), cells, date1904=date1904)[0].tolist() == expected
+    assert met(constant(">=1/1/2020"), _range([43830.0, 43831.0])).tolist() == [[False, True]]
+
+
 ORDERS = {"<=": operator.le, ">=": operator.ge, "<": operator.lt, ">": operator.gt}
 
 

@@ -60,8 +60,10 @@ class Plan:
         return steps
 
     def _reads(self, node: int) -> tuple[int, ...]:
-        outside = [read for b in self._placement.branches(node) for read in self._placement.externals(b, ())]
-        return (*reads(self._dag, node), *outside)
+        branches = self._placement.branches(node)
+        if not branches:
+            return reads(self._dag, node)
+        return (*reads(self._dag, node), *(read for b in branches for read in self._placement.externals(b, ())))
 
     def _step(self, node: int, done: list[int], context: Context) -> Step:
         if self._placement.branches(node):

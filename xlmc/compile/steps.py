@@ -55,6 +55,8 @@ def reads(dag: Dag, place: int) -> tuple[int, ...]:
     error the block departs, so that what stands in instead is never needed here.
     """
     node = dag.nodes[place]
+    if isinstance(node, Apply) and not node.function.takes_sets:
+        return node.arguments
     if isinstance(node, Rescue):
         return (node.value,)
     if isinstance(node, Apply) and _folded(dag, node) is not None:

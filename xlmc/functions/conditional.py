@@ -47,7 +47,7 @@ _MAXIMUM: Final = numbers_held(maximum)
 _MINIMUM: Final = numbers_held(minimum)
 
 
-def _conditional(values: Value, pairs: Sequence[Value], reduce: Reduce) -> Value:
+def _conditional(values: Value, pairs: Sequence[Value], reduce: Reduce, date1904: bool) -> Value:
     """Reduce the cells of `values` where each range of `pairs` meets the criterion behind it."""
     criteria = pairs[1::2]
     everything = (values, *pairs[::2])
@@ -62,7 +62,7 @@ def _conditional(values: Value, pairs: Sequence[Value], reduce: Reduce) -> Value
         ranges, criteria = others[: len(cells) - 1], others[len(cells) - 1 :]
         held = np.ones((1, width), bool)
         for cells_, criterion in zip(ranges, criteria, strict=True):
-            held = held & met(criterion, cells_)
+            held = held & met(criterion, cells_, date1904=date1904)
         return reduce(values, held)
 
     if not places:
@@ -74,12 +74,12 @@ def _conditional(values: Value, pairs: Sequence[Value], reduce: Reduce) -> Value
     return with_errors(side_by_side(results, *places), errors.reshape(-1, 1, 1))
 
 
-def _beside(values: Value | None, cells: Value, criterion: Value, reduce: Reduce) -> Value:
+def _beside(values: Value | None, cells: Value, criterion: Value, reduce: Reduce, date1904: bool) -> Value:
     """Reduce the range beside the cells, taken in their size; or the cells themselves."""
     if values is None:
-        return _conditional(cells, (cells, criterion), reduce)
+        return _conditional(cells, (cells, criterion), reduce, date1904)
     _, rows, columns = cells.as_range().shape
-    result = _conditional(_resized(values.as_range(), rows, columns), (cells, criterion), reduce)
+    result = _conditional(_resized(values.as_range(), rows, columns), (cells, criterion), reduce, date1904)
     errors = earliest(direct_errors(cells), direct_errors(values))
     return with_errors(result, errors if result.numbers.ndim == 1 else errors.reshape(-1, 1, 1))
 
@@ -96,49 +96,49 @@ def _resized(values: Value, rows: int, columns: int) -> Value:
     return Value(np.pad(cut.numbers, edges), np.pad(cut.kinds, edges, constant_values=BLANK), texts)
 
 
-@excel("COUNTIF", Cells, Anything)
-def count_if(cells: Value, criterion: Value) -> Value:
+@excel("COUNTIF", Cells, Anything, dated=True)
+def count_if(cells: Value, criterion: Value, *, date1904: bool = False) -> Value:
     """How many cells meet the criterion."""
-    return _conditional(cells, (cells, criterion), _count)
+    return _conditional(cells, (cells, criterion), _count, date1904)
 
 
-@excel("COUNTIFS", Cells(repeat=True), Anything(repeat=True))
-def count_ifs(*pairs: Value) -> Value:
+@excel("COUNTIFS", Cells(repeat=True), Anything(repeat=True), dated=True)
+def count_ifs(*pairs: Value, date1904: bool = False) -> Value:
     """In how many places all ranges meet the criteria behind them."""
-    return _conditional(pairs[0], pairs, _count)
+    return _conditional(pairs[0], pairs, _count, date1904)
 
 
-@excel("SUMIF", Cells, Anything, Cells(default=None))
-def sum_if(cells: Value, criterion: Value, values: Value | None = None) -> Value:
+@excel("SUMIF", Cells, Anything, Cells(default=None), dated=True)
+def sum_if(cells: Value, criterion: Value, values: Value | None = None, *, date1904: bool = False) -> Value:
     """Sum of the numbers beside the cells that meet the criterion, or of these cells."""
-    return _beside(values, cells, criterion, _SUM)
+    return _beside(values, cells, criterion, _SUM, date1904)
 
 
-@excel("SUMIFS", Cells, Cells(repeat=True), Anything(repeat=True))
-def sum_ifs(values: Value, *pairs: Value) -> Value:
+@excel("SUMIFS", Cells, Cells(repeat=True), Anything(repeat=True), dated=True)
+def sum_ifs(values: Value, *pairs: Value, date1904: bool = False) -> Value:
     """Sum of the numbers where all ranges meet the criteria behind them."""
-    return _conditional(values, pairs, _SUM)
+    return _conditional(values, pairs, _SUM, date1904)
 
 
-@excel("AVERAGEIF", Cells, Anything, Cells(default=None))
-def average_if(cells: Value, criterion: Value, values: Value | None = None) -> Value:
+@excel("AVERAGEIF", Cells, Anything, Cells(default=None), dated=True)
+def average_if(cells: Value, criterion: Value, values: Value | None = None, *, date1904: bool = False) -> Value:
     """Mean of the numbers beside the cells that meet the criterion, or of these cells; `#DIV/0!` of none."""
-    return _beside(values, cells, criterion, _AVERAGE)
+    return _beside(values, cells, criterion, _AVERAGE, date1904)
 
 
-@excel("AVERAGEIFS", Cells, Cells(repeat=True), Anything(repeat=True))
-def average_ifs(values: Value, *pairs: Value) -> Value:
+@excel("AVERAGEIFS", Cells, Cells(repeat=True), Anything(repeat=True), dated=True)
+def average_ifs(values: Value, *pairs: Value, date1904: bool = False) -> Value:
     """Mean of the numbers where all ranges meet the criteria behind them; `#DIV/0!` of none."""
-    return _conditional(values, pairs, _AVERAGE)
+    return _conditional(values, pairs, _AVERAGE, date1904)
 
 
-@excel("MAXIFS", Cells, Cells(repeat=True), Anything(repeat=True))
-def maximum_ifs(values: Value, *pairs: Value) -> Value:
+@excel("MAXIFS", Cells, Cells(repeat=True), Anything(repeat=True), dated=True)
+def maximum_ifs(values: Value, *pairs: Value, date1904: bool = False) -> Value:
     """Largest number where all ranges meet the criteria behind them; 0 of none."""
-    return _conditional(values, pairs, _MAXIMUM)
+    return _conditional(values, pairs, _MAXIMUM, date1904)
 
 
-@excel("MINIFS", Cells, Cells(repeat=True), Anything(repeat=True))
-def minimum_ifs(values: Value, *pairs: Value) -> Value:
+@excel("MINIFS", Cells, Cells(repeat=True), Anything(repeat=True), dated=True)
+def minimum_ifs(values: Value, *pairs: Value, date1904: bool = False) -> Value:
     """Smallest number where all ranges meet the criteria behind them; 0 of none."""
-    return _conditional(values, pairs, _MINIMUM)
+    return _conditional(values, pairs, _MINIMUM, date1904)

@@ -1,4 +1,4 @@
-"""Criteria, as `COUNTIF` and its kin take them: `5`, `">=5"`, `"<>"`, `"b*"`, `TRUE`, `#N/A`, or an empty cell.
+"""Criteria, as `COUNTIF` and its kin take them: `5`, `">=1/31/2024"`, `"b*"`, `TRUE`, `#N/A`, an empty cell.
 
 A criterion of one trial is held against the cells of the same trial. Letters: n trials, k cells.
 
@@ -14,17 +14,23 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import if_blank
+from xlmc.functions.logical import choose
+from xlmc.functions.number_text import parse_number
 from xlmc.functions.ordering import Ordered, ordered
 from xlmc.functions.patterns import is_pattern, pattern_of
-from xlmc.functions.values import BLANK, ERROR, NUMBER, TEXT, Bools, Floats, Objects, Value, from_objects, parse_number
+from xlmc.functions.values import BLANK, ERROR, NUMBER, TEXT, Bools, Floats, Objects, Value, from_objects
 
 __all__ = ["met"]
+
+Read = Callable[[str], float | None]
+"""How a text reads as a number."""
 
 _OPERATOR: Final = re.compile(r"(<=|>=|<>|<|>|=|)(.*)", re.DOTALL)
 _BEGINS: Final = "begins"
@@ -37,58 +43,55 @@ _RELATIONS: Final[dict[str, Callable[[Any, Any], Any]]] = {
 }
 
 
-def met(criterion: Value, cells: Value, *, begins: bool = False) -> Bools:
+def met(criterion: Value, cells: Value, *, begins: bool = False, date1904: bool = False) -> Bools:
     """Which cells meet the criterion.
 
     Args:
         criterion: (n,).
         cells: (n, r, c).
         begins: a text without an operator meets the texts that begin with it: so it is in database functions.
+        date1904: dates in texts count from 1904.
 
     Returns:
         (n, k), the cells row by row.
     """
-    operators, operand = _parsed(criterion, _BEGINS if begins else "=")
+    read = partial(parse_number, date1904=date1904)
+    operators, operand = _parsed(criterion, _BEGINS if begins else "=", read)
     wanted, found = ordered(operand, cells)
     present = sorted(set(operators.tolist()))
-    result = _holds(present[0], wanted, found)
+    result = _holds(present[0], wanted, found, read)
     for operator in present[1:]:
-        result = np.where((operators == operator)[:, None], _holds(operator, wanted, found), result)
+        result = np.where((operators == operator)[:, None], _holds(operator, wanted, found, read), result)
     return result
 
 
-def _parsed(criterion: Value, plain: str) -> tuple[Objects, Value]:
+def _parsed(criterion: Value, plain: str, read: Read) -> tuple[Objects, Value]:
     """The operator and the operand of each criterion; `plain` is the operator of a text without one."""
     operand = if_blank(criterion)
-    operators = np.full(1, "=", object)
     if criterion.texts is None:
-        return operators, operand
-    distinct = list(dict.fromkeys(criterion.texts.tolist()))
-    place_of = {text: place for place, text in enumerate(distinct)}
-    places = np.array([place_of[text] for text in criterion.texts.tolist()])
-    pairs = [_split(text, plain) for text in distinct]
-    box = np.empty(len(pairs), object)
-    box[:] = [item for _, item in pairs]
-    read = from_objects(box)
+        return np.full(1, "=", object), operand
+    written = criterion.texts.tolist()
+    pairs = {text: _split(text, plain, read) for text in dict.fromkeys(written)}
+    place_of = {text: place for place, text in enumerate(pairs)}
+    places = np.array([place_of[text] for text in written])
+    operators, items = np.empty((2, len(pairs)), object)
+    operators[:], items[:] = zip(*pairs.values(), strict=True)
     is_text = operand.kinds == TEXT
-    operators = np.where(is_text, np.array([operator for operator, _ in pairs], object)[places], "=")
-    texts = None if read.texts is None else read.texts[places]
-    numbers = np.where(is_text, read.numbers[places], operand.numbers)
-    return operators, Value(numbers, np.where(is_text, read.kinds[places], operand.kinds), texts)
+    return np.where(is_text, operators[places], "="), choose(is_text, from_objects(items).take(places), operand)
 
 
-def _split(text: str, plain: str) -> tuple[str, object]:
+def _split(text: str, plain: str, read: Read) -> tuple[str, object]:
     """`">=5"` as `>=` and 5."""
     found = _OPERATOR.fullmatch(text)
     assert found is not None
     operator, rest = found.groups()
     if not rest:
         return (operator, None) if operator else ("=", "")
-    return operator or plain, _operand(rest)
+    return operator or plain, _operand(rest, read)
 
 
-def _operand(text: str) -> object:
-    number = parse_number(text)
+def _operand(text: str, read: Read) -> object:
+    number = read(text)
     if number is not None:
         return number
     folded = text.strip().casefold()
@@ -100,19 +103,19 @@ def _operand(text: str) -> object:
         return text
 
 
-def _holds(operator: str, wanted: Ordered, found: Ordered) -> Bools:
+def _holds(operator: str, wanted: Ordered, found: Ordered, read: Read) -> Bools:
     if operator in _RELATIONS:
         comparable = (found.kinds == wanted.kinds) & (found.kinds != BLANK) & (found.kinds < ERROR)
         return np.asarray(comparable & _RELATIONS[operator](found.order, wanted.order))
-    equal = _equal(wanted, found, operator == _BEGINS)
+    equal = _equal(wanted, found, operator == _BEGINS, read)
     return ~equal if operator == "<>" else equal
 
 
-def _equal(wanted: Ordered, found: Ordered, begins: bool) -> Bools:
+def _equal(wanted: Ordered, found: Ordered, begins: bool, read: Read) -> Bools:
     result = (found.kinds == wanted.kinds) & (found.order == wanted.order)
     is_number, is_text = wanted.kinds == NUMBER, wanted.kinds == TEXT
     if is_number.any() and (found.kinds == TEXT).any():
-        result = result | (is_number & (_text_numbers(found) == wanted.order))
+        result = result | (is_number & (_text_numbers(found, read) == wanted.order))
     for place in np.unique(wanted.order[is_text]).astype(np.intp):
         text = wanted.texts[place]
         if not text or begins or is_pattern(text):
@@ -121,9 +124,9 @@ def _equal(wanted: Ordered, found: Ordered, begins: bool) -> Bools:
     return np.asarray(result)
 
 
-def _text_numbers(found: Ordered) -> Floats:
+def _text_numbers(found: Ordered, read: Read) -> Floats:
     """The number each text reads as; NaN where it is none, or is no text."""
-    numbers = [parse_number(text) for text in found.texts]
+    numbers = [read(text) for text in found.texts]
     table = np.array([np.nan if number is None else number for number in numbers])
     return np.asarray(_by_text(found, table, np.nan))
 

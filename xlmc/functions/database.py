@@ -26,18 +26,19 @@ from xlmc.functions.values import BLANK, NUMBER, TEXT, Bools, Value, constant
 __all__: list[str] = []
 
 
-def _meets(database: Value, criteria: Value) -> Bools:
+def _meets(database: Value, criteria: Value, date1904: bool) -> Bools:
     """Which records meet the criteria: (n, k)."""
     result = np.zeros((1, database.shape[1] - 1), bool)
     for row in range(1, criteria.shape[1]):
         held = np.ones((1, 1), bool)
         for column in range(criteria.shape[2]):
-            held = held & _meets_cell(database, cell_of(criteria, 0, column), cell_of(criteria, row, column))
+            name, criterion = cell_of(criteria, 0, column), cell_of(criteria, row, column)
+            held = held & _meets_cell(database, name, criterion, date1904)
         result = result | held
     return result
 
 
-def _meets_cell(database: Value, name: Value, criterion: Value) -> Bools:
+def _meets_cell(database: Value, name: Value, criterion: Value, date1904: bool) -> Bools:
     """Which records meet one cell of the criteria."""
     empty = np.asarray(criterion.kinds == BLANK)
     if criterion.texts is not None:
@@ -50,7 +51,8 @@ def _meets_cell(database: Value, name: Value, criterion: Value) -> Bools:
         )
     result = empty[:, None]
     for field in np.unique(place[place >= 0]):
-        result = result | ((place == field)[:, None] & met(criterion, _records(database, field), begins=True))
+        held = met(criterion, _records(database, field), begins=True, date1904=date1904)
+        result = result | ((place == field)[:, None] & held)
     return result
 
 
@@ -72,7 +74,7 @@ def _field(database: Value, field: Value) -> tuple[Places, Bools]:
     return np.where(known, place, 0).astype(np.intp), known
 
 
-def _of_records(database: Value, field: Value, criteria: Value, reduce: Reduce) -> Value:
+def _of_records(database: Value, field: Value, criteria: Value, reduce: Reduce, date1904: bool) -> Value:
     """One value for each cell of `field`."""
     errors = earliest(direct_errors(database), direct_errors(criteria))
     cells, conditions = database.as_range(), criteria.as_range()
@@ -80,7 +82,7 @@ def _of_records(database: Value, field: Value, criteria: Value, reduce: Reduce) 
         return refused(field, ErrorCode.VALUE, errors if field.numbers.ndim == 1 else errors.reshape(-1, 1, 1))
 
     def compute(cells: Value, field: Value, conditions: Value) -> Value:
-        return with_errors(_reduced(cells, field, conditions, reduce), field.errors)
+        return with_errors(_reduced(cells, field, reduce, _meets(cells, conditions, date1904)), field.errors)
 
     width = cells.shape[1] * cells.shape[2]
     if field.numbers.ndim == 1:
@@ -90,18 +92,18 @@ def _of_records(database: Value, field: Value, criteria: Value, reduce: Reduce) 
     return with_errors(side_by_side(results, *field.shape[1:]), errors.reshape(-1, 1, 1))
 
 
-def _reduced(cells: Value, field: Value, conditions: Value, reduce: Reduce) -> Value:
+def _reduced(cells: Value, field: Value, reduce: Reduce, held: Bools) -> Value:
     place, known = _field(cells, field)
     column = picked(cells, np.arange(1, cells.shape[1])[None, :, None], place[:, None, None])
-    return with_errors(reduce(column, _meets(cells, conditions)), where_wrong(~known, ErrorCode.VALUE))
+    return with_errors(reduce(column, held), where_wrong(~known, ErrorCode.VALUE))
 
 
 def _register(name: str, meaning: str, reduce: Reduce, returns: Kind = Kind.NUMBER) -> None:
-    def body(database: Value, field: Value, criteria: Value) -> Value:
-        return _of_records(database, field, criteria, reduce)
+    def body(database: Value, field: Value, criteria: Value, *, date1904: bool = False) -> Value:
+        return _of_records(database, field, criteria, reduce, date1904)
 
     body.__doc__ = meaning
-    excel(name, Cells, Anything, Cells, returns=returns)(body)
+    excel(name, Cells, Anything, Cells, returns=returns, dated=True)(body)
 
 
 _register("DSUM", "Sum of the field's numbers.", numbers_held(aggregate.sum_))
@@ -136,15 +138,15 @@ def _count(name: str, meaning: str, counts: Callable[[Value], Bools]) -> None:
     def of_all(column: Value, held: Bools) -> Value:
         return Value.of_numbers(held.sum(axis=1).astype(np.float64))
 
-    def body(database: Value, field: Value, criteria: Value) -> Value:
-        counted = _of_records(database, field, criteria, of_field)
+    def body(database: Value, field: Value, criteria: Value, *, date1904: bool = False) -> Value:
+        counted = _of_records(database, field, criteria, of_field, date1904)
         absent = field.kinds == BLANK
         if not absent.any():
             return counted
-        return choose(absent, _of_records(database, constant(1), criteria, of_all), counted)
+        return choose(absent, _of_records(database, constant(1), criteria, of_all, date1904), counted)
 
     body.__doc__ = meaning
-    excel(name, Cells, Anything, Cells)(body)
+    excel(name, Cells, Anything, Cells, dated=True)(body)
 
 
 _count("DCOUNT", "How many of the records have a number in the field.", lambda column: column.kinds == NUMBER)

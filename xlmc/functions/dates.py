@@ -32,9 +32,10 @@ def _of_calendar(serial: Any, date1904: bool, part: Callable[[Floats], Any]) -> 
 @excel("DATE", Number, Number, Number, dated=True)
 def date(year: Any, month: Any, day: Any, *, date1904: bool = False) -> Floats:
     """Serial of a date; years up to 1899 count from 1900, months and days may run over."""
-    full = np.where(np.asarray(year) < _FIRST_FULL_YEAR, np.asarray(year) + _FIRST_FULL_YEAR, year)
-    serial = serial_of(full, month, day, date1904)
-    known = (np.asarray(year) >= 0) & (np.floor(year) <= _LAST_YEAR)
+    years = np.trunc(year)
+    full = np.where(years < _FIRST_FULL_YEAR, years + _FIRST_FULL_YEAR, years)
+    serial = serial_of(full, np.trunc(month), np.trunc(day), date1904)
+    known = (years >= 0) & (years <= _LAST_YEAR)
     return np.where(known & in_calendar(serial, date1904), serial, NUM)
 
 

@@ -1,0 +1,130 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from xlmc.address import Cell
+from xlmc.definitions import Correlation
+from xlmc.drawing import correlated_groups
+from xlmc.errors import DefinitionError
+
+UNIT = {"low": 0, "high": 1}
+
+
+def drawn(model, name, n=64, seed=1):
+    return model.sampler(seed, n).draw(0)[name]
+
+
+def test_parameters_that_no_assumption_reaches_become_numbers(book):
+    cells = {"A1": 1.0, "B1": "=B2*2", "B2": 5.0, "C1": "=A1"}
+    model = (
+        book(cells, {"a": {"cell": "A1", "low": "B1", "high": "B3"}}, {"x": "C1"})
+        if False
+        else book(cells | {"B3": "=B1+1"}, {"a": {"cell": "A1", "low": "B1", "high": "B3"}}, {"x": "C1"})
+    )
+    assert model.fallible == frozenset()
+    values = drawn(model, "a")
+    assert 10 <= values.min() < values.max() <= 11
+
+
+def test_cutoffs(book):
+    given = {"cell": "A1", "distribution": "Normal", "mean": 0, "std_dev": 1, "lower_cutoff": "B1"}
+    model = book({"A1": 1.0, "B1": "=1/2"}, {"a": given}, {"x": "A1"})
+    assert drawn(model, "a").min() >= 0.5
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"low": 2, "high": 1}, "a: Low (2) is above High (1)"),
+        ({"low": 2, "high": "B1"}, "a: Low (2) is above High (1)"),
+        ({**UNIT, "lower_cutoff": 0.9, "upper_cutoff": 0.1}, "a: Lower cutoff (0.9) is not below Upper cutoff (0.1)"),
+        ({**UNIT, "lower_cutoff": 5}, "a: Lower cutoff (5) leaves nothing of the distribution"),
+    ],
+)
+def test_numbers_that_are_no_distribution(book, given, message):
+    with pytest.raises(DefinitionError) as caught:
+        book({"A1": 1.0, "B1": "=2-1"}, {"a": {"cell": "A1", **given}}, {"x": "A1"})
+    assert (caught.value.message, caught.value.where) == (message, "S!A1")
+    assert caught.value.hint
+
+
+@pytest.mark.parametrize("formula", ["=1/0", '="x"'])
+def test_a_parameter_that_is_no_number(book, formula):
+    with pytest.raises(DefinitionError, match="the parameter is an error") as caught:
+        book({"A1": 1.0, "B1": formula}, {"a": {"cell": "A1", "low": 0, "high": "B1"}}, {"x": "A1"})
+    assert caught.value.where == "S!B1"
+
+
+def test_parameters_that_vary(book):
+    cells = {"A1": 1.0, "A2": 2.0, "B1": "=A1+1"}
+    given = {"a": {"cell": "A1", **UNIT}, "b": {"cell": "A2", "low": "A1", "high": "B1"}}
+    model = book(cells, given, {"x": "A2"})
+    assert model.fallible == {"b"}
+    draws = model.sampler(1, 256).draw(0)
+    assert ((draws["a"] <= draws["b"]) & (draws["b"] <= draws["a"] + 1)).all()
+
+
+def test_a_varying_cutoff(book):
+    given = {"a": {"cell": "A1", **UNIT}, "b": {"cell": "A2", "upper_cutoff": "A1", **UNIT}}
+    draws = book({"A1": 1.0, "A2": 2.0}, given, {"x": "A2"}).sampler(1, 256).draw(0)
+    assert (draws["b"] <= draws["a"]).all()
+
+
+def test_a_chain_of_parameters(book):
+    given = {
+        "c": {"cell": "A3", "low": "A2", "high": "B2"},
+        "b": {"cell": "A2", "low": "A1", "high": "B1"},
+        "a": {"cell": "A1", **UNIT},
+    }
+    cells = {"A1": 1.0, "A2": 1.0, "A3": 1.0, "B1": "=A1+1", "B2": "=A2+1"}
+    draws = book(cells, given, {"x": "A3"}).sampler(1, 256).draw(0)
+    assert ((draws["a"] <= draws["b"]) & (draws["b"] <= draws["c"]) & (draws["c"] <= draws["a"] + 2)).all()
+
+
+def test_trials_whose_parameters_are_errors_are_nan(book):
+    given = {"a": {"cell": "A1", "low": -1, "high": 1}, "b": {"cell": "A2", "low": 0, "high": "B1"}}
+    draws = book({"A1": 1.0, "A2": 2.0, "B1": "=SQRT(A1)"}, given, {"x": "A2"}).sampler(1, 256).draw(0)
+    assert np.array_equal(np.isnan(draws["b"]), draws["a"] < 0)
+    assert (draws["a"] < 0).any()
+
+
+def row(first, second, value):
+    return Correlation(first, second, value, Cell("C", 1, 1))
+
+
+@pytest.mark.parametrize(
+    ("pairs", "groups"),
+    [
+        ([], []),
+        ([("a", "b")], [("a", "b")]),
+        ([("d", "b")], [("b", "d")]),  # in the order in which they are drawn
+        ([("a", "b"), ("c", "d")], [("a", "b"), ("c", "d")]),
+        ([("a", "c"), ("c", "e"), ("b", "d")], [("a", "c", "e"), ("b", "d")]),
+        ([("a", "b"), ("c", "d"), ("b", "c")], [("a", "b", "c", "d")]),
+        ([("a", "elsewhere"), ("b", "c")], [("b", "c")]),  # an assumption that is not drawn
+        ([(" A ", "B")], [("a", "b")]),
+    ],
+)
+def test_groups_of_correlated_assumptions(pairs, groups):
+    found = correlated_groups([row(*pair, 0.3) for pair in pairs], ["a", "b", "c", "d", "e"])
+    assert [group.names for group in found] == groups
+
+
+def test_contradictory_correlations(book):
+    cells = dict.fromkeys(("A1", "A2", "A3"), 1.0) | {"B1": "=A1+A2+A3"}
+    given = {name: {"cell": name, **UNIT} for name in ("A1", "A2", "A3")}
+    contradictory = {("A1", "A2"): 0.9, ("A2", "A3"): 0.9, ("A1", "A3"): -0.9}
+    with pytest.raises(DefinitionError) as caught:
+        book(cells, given, {"x": "B1"}, correlations=contradictory)
+    error = caught.value
+    assert error.message == "these correlations contradict each other: no assumptions can have all of them at once"
+    assert (error.where, error.hint) == ("Correlations!A1", "bring them closer to 0")
+
+
+def test_correlated_draws(book):
+    given = {name: {"cell": name, **UNIT} for name in ("A1", "A2")}
+    model = book({"A1": 1.0, "A2": 1.0, "B1": "=A1+A2"}, given, {"x": "B1"}, correlations={("A1", "A2"): 0.8})
+    draws = model.sampler(1, 20_000).draw(0)
+    ranks = [np.argsort(np.argsort(draws[name])) for name in ("a1", "a2")]
+    assert abs(np.corrcoef(ranks)[0, 1] - 0.8) < 4 * (1 - 0.8**2) * np.sqrt((1 + 0.8**2 / 2) / 20_000)

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import accumulate
 from math import comb
 
 import numpy as np
@@ -51,14 +52,14 @@ TABLE = [
     ("BINOM.DIST", (6, 7, 1, True), 0),
     ("BINOM.DIST", (22937751, 182492109, 0.1258196291747408, True), 9.448453254686476e-8),
     ("BINOM.DIST.RANGE", (60, 0.75, 0, 60), 1),
-    ("BINOM.DIST.RANGE", (60, 0.75, 48, 48.9), stats.binom.pmf(48, 60, 0.75).item()),
+    ("BINOM.DIST.RANGE", (60, 0.75, 48, 48.9), 0.08397496742904752),
     ("BINOM.INV", (10, 0, 0.5), 0),
     ("BINOM.INV", (10, 1, 0.5), 10),
     ("BINOM.INV", (0, 0.8, 0.999), 0),
     ("BINOM.INV", (1, 0.8, 0.2), 0),  # 1 - 0.8 falls short of 0.2 in doubles; Excel gives 0 nevertheless
     ("BINOM.INV", (1, 0.1, 0.9), 0),
     ("BINOM.INV", (1000.9, 0.8, 0.999), 838),
-    ("BINOM.INV", (2**31 - 1, 0.5, 1e-300), 1072876026),
+    ("BINOM.INV", (2**31 - 1, 0.5, 1e-300), 1072883425),
     ("NEGBINOM.DIST", (0, 1, 0, False), 0),
     ("NEGBINOM.DIST", (0, 1, 1, False), 1),
     ("NEGBINOM.DIST", (10.9, 20.9, 0.5, True), 0.0493685733526945114),
@@ -123,7 +124,8 @@ def test_binomial_sums_are_exact(evaluate, n, p, data):
     k = data.draw(st.integers(0, n))
     masses = [comb(n, i) * p**i * (1 - p) ** (n - i) for i in range(n + 1)]
     assert evaluate("BINOM.DIST", k, n, float(p), False) == pytest.approx(float(masses[k]), rel=1e-12, abs=1e-300)
-    assert evaluate("BINOM.DIST", k, n, float(p), True) == pytest.approx(float(sum(masses[: k + 1])), rel=1e-12, abs=1e-300)
+    below = float(sum(masses[: k + 1]))
+    assert evaluate("BINOM.DIST", k, n, float(p), True) == pytest.approx(below, rel=1e-12, abs=1e-300)
     most = data.draw(st.integers(k, n))
     between = float(sum(masses[k : most + 1]))
     assert evaluate("BINOM.DIST.RANGE", n, float(p), k, most) == pytest.approx(between, rel=1e-11, abs=1e-300)
@@ -133,12 +135,9 @@ def test_binomial_sums_are_exact(evaluate, n, p, data):
 @settings(max_examples=150, deadline=None)
 def test_the_critical_number_is_the_first_to_reach_alpha(evaluate, n, twentieths, hundredths):
     p, alpha = Fraction(twentieths, 20), Fraction(hundredths, 100)
-    reached = sum(p**0 * (1 - p) ** n for _ in range(1))
-    k = 0
-    while reached < alpha:
-        k += 1
-        reached += comb(n, k) * p**k * (1 - p) ** (n - k)
-    assert evaluate("BINOM.INV", n, float(p), float(alpha)) == k
+    below = list(accumulate(comb(n, k) * p**k * (1 - p) ** (n - k) for k in range(n + 1)))
+    first = next(k for k in range(n + 1) if below[k] >= alpha)
+    assert evaluate("BINOM.INV", n, float(p), float(alpha)) == first
 
 
 @given(st.integers(1, 40), st.data())
@@ -147,9 +146,9 @@ def test_hypergeometric_sums_are_exact(evaluate, size, data):
     drawn, marked = data.draw(st.integers(1, size)), data.draw(st.integers(1, size))
     least, most = max(0, drawn - size + marked), min(drawn, marked)
     x = data.draw(st.integers(least, most))
-    masses = {k: Fraction(comb(marked, k) * comb(size - marked, drawn - k), comb(size, drawn)) for k in range(least, most + 1)}
-    below = float(sum(mass for k, mass in masses.items() if k <= x))
-    assert evaluate("HYPGEOM.DIST", x, drawn, marked, size, False) == pytest.approx(float(masses[x]), rel=1e-12)
+    ways = [comb(marked, k) * comb(size - marked, drawn - k) for k in range(x + 1)]
+    mass, below = (float(Fraction(found, comb(size, drawn))) for found in (ways[x], sum(ways)))
+    assert evaluate("HYPGEOM.DIST", x, drawn, marked, size, False) == pytest.approx(mass, rel=1e-12)
     assert evaluate("HYPGEOM.DIST", x, drawn, marked, size, True) == pytest.approx(below, rel=1e-12)
 
 

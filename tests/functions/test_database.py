@@ -2,10 +2,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions import function_named
-from xlmc.functions.values import Value, constant
+from xlmc.functions.values import Value, constant, from_objects
 
 DIV0, NA, NUM, VALUE = ErrorCode.DIV0, ErrorCode.NA, ErrorCode.NUM, ErrorCode.VALUE
 
@@ -92,3 +94,26 @@ def test_database_and_criteria_of_their_own_in_each_trial(value):
     wanted = Value(np.zeros((1, 1, 1)), np.full((1, 1, 1), 2, np.uint8), criteria)
     found = function_named("DSUM")([database, constant("Profit"), Value(np.zeros((3, 2, 1)), wanted.kinds, criteria)])
     assert found.objects().tolist() == [6, 5, 24]
+
+
+cells = st.sampled_from([0.0, 1.0, 2.0, "a", "ab", "2", True, None, DIV0])
+wanted = st.sampled_from([None, "", 1.0, "a", "=a", ">0", "<>a", "=", "<>", True])
+
+
+@pytest.mark.parametrize("name", ["DSUM", "DGET", "DCOUNT", "DCOUNTA", "DAVERAGE"])
+@given(data=st.data())
+def test_trials_together_are_the_trials_alone(name, data):
+    def drawn(strategy, headings, rows):
+        box = np.empty((data.draw(st.sampled_from([1, 3])), rows + 1, 2), object)
+        box[:, 0] = headings
+        below = box[:, 1:]
+        below[...] = np.array(data.draw(st.lists(strategy, min_size=below.size, max_size=below.size)), object).reshape(
+            below.shape
+        )
+        return from_objects(box)
+
+    field = np.array(data.draw(st.lists(st.sampled_from(["x", "Y", 1.0, 3.0, None]), min_size=3, max_size=3)), object)
+    arguments = [drawn(cells, ["X", "y"], 3), from_objects(field), drawn(wanted, ["x", "Y"], 2)]
+    function = function_named(name)
+    together = function(arguments).objects().tolist()
+    assert together == [function([v.take(np.array([i])) for v in arguments]).objects()[0] for i in range(3)]

@@ -8,17 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.functions.arguments import (  # noqa: F401
-    direct_errors,
-    earliest,
-    first_errors,
-    if_blank,
-    leveled,
-    same_in_all_trials,
-    where_wrong,
-    whole_numbers,
-    with_errors,
-)
 from xlmc.functions.values import Objects, Value
 
 __all__ = ["Places", "cell_of", "each_part", "flattened", "joined", "picked", "side_by_side", "transposed"]

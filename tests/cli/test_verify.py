@@ -1,0 +1,72 @@
+from __future__ import annotations
+
+import json
+
+import openpyxl
+import pytest
+
+
+@pytest.fixture
+def spoiled(case_study, tmp_path):
+    """The case study with one saved value that its formula does not give."""
+    import zipfile
+
+    target = tmp_path / "spoiled.xlsx"
+    with zipfile.ZipFile(case_study) as source, zipfile.ZipFile(target, "w") as copy:
+        for name in source.namelist():
+            data = source.read(name)
+            if name == "xl/worksheets/sheet2.xml":
+                start = data.index(b'<c r="D54"')
+                value = data.index(b"<v>", start) + 3
+                end = data.index(b"</v>", value)
+                data = data[:value] + b"99" + data[end:]
+            copy.writestr(name, data)
+    return target
+
+
+def test_every_needed_cell_matches(xlmc, case_study):
+    outcome = xlmc("verify", case_study)
+    assert outcome.code == 0
+    assert "42 formula cells: 42 matched." in outcome.out
+
+
+def test_all_cells(xlmc, case_study):
+    outcome = xlmc("verify", case_study, "--all")
+    assert outcome.code == 0
+    assert "79 formula cells: 79 matched." in outcome.out
+
+
+def test_a_cell_that_differs_is_shown_and_is_exit_code_1(xlmc, spoiled):
+    outcome = xlmc("verify", spoiled)
+    assert outcome.code == 1
+    assert "1 differing" in outcome.out
+    assert "Model!D54" in outcome.out
+    assert "99.0" in outcome.out
+
+
+def test_json(xlmc, spoiled):
+    outcome = xlmc("verify", spoiled, "--json")
+    found = json.loads(outcome.out)
+    assert outcome.code == 1
+    assert found["differing"] == 1
+    (cell,) = found["cells"]
+    assert cell["cell"] == "Model!D54"
+    assert cell["expected"] == 99
+    assert cell["relative_difference"] == pytest.approx(1 - cell["got"] / 99)
+
+
+def test_what_is_unsupported_is_named_with_its_cell(xlmc, tmp_path):
+    book = openpyxl.Workbook()
+    book.active["A1"] = "=NOSUCHFUNCTION(1)"
+    book.save(tmp_path / "book.xlsx")
+    outcome = xlmc("verify", tmp_path / "book.xlsx", "--all")
+    assert outcome.code == 0
+    assert "1 unsupported" in outcome.out
+    assert "NOSUCHFUNCTION is not known to xlmc (Sheet!A1)" in outcome.out
+
+
+def test_a_workbook_without_definitions_needs_all(xlmc, tmp_path):
+    openpyxl.Workbook().save(tmp_path / "plain.xlsx")
+    outcome = xlmc("verify", tmp_path / "plain.xlsx")
+    assert outcome.code == 2
+    assert "--all" in outcome.err

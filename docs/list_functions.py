@@ -27,9 +27,9 @@ def page() -> str:
     lines = [
         "# Functions",
         "",
-        f"xlmc computes these {len(names())} functions of Excel, for all trials at once. Where a formula uses another one,",
-        "or `OFFSET` and `INDIRECT` with arguments that vary, `xlmc check` names its cell; where no assumption reaches that",
-        "cell, the value that Excel saved is used, with a note.",
+        f"xlmc computes these {len(names())} functions of Excel, for all trials at once. Where a formula uses another",
+        "one, or `OFFSET` and `INDIRECT` with arguments that vary, `xlmc check` names its cell; where no assumption",
+        "reaches that cell, the value that Excel saved is used, with a note.",
         "",
         "This page is written by `python docs/list_functions.py`.",
         "",

@@ -30,7 +30,8 @@ def test_every_command_and_option_is_documented(name):
 
 def test_every_function_is_documented():
     spec = importlib.util.spec_from_file_location("list_functions", ROOT / "docs" / "list_functions.py")
-    assert spec is not None and spec.loader is not None
+    assert spec is not None
+    assert spec.loader is not None
     script = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(script)
     assert (ROOT / "docs" / "functions.md").read_text() == script.page()

@@ -12,13 +12,15 @@ import numpy as np
 from xlmc.address import Area, Cell
 from xlmc.compile import choices, lambdas, places
 from xlmc.compile.arrays import cell_by_cell, element, grid, size_of
-from xlmc.compile.dag import Apply, Constant, Dag, Range
+from xlmc.compile.dag import Apply, Constant, Dag, Input, Range
 from xlmc.compile.engine import Target
 from xlmc.compile.scope import Scope
 from xlmc.compile.settings import as_set
 from xlmc.errors import ErrorCode, FormulaError, Notice
 from xlmc.formula import Graph, Resolver, ir
 from xlmc.functions import REGISTRY, Function, Kind, function_named
+from xlmc.functions.logical import zero_if_blank
+from xlmc.functions.registry import Anything
 from xlmc.functions.values import BLANK, Value, constant
 
 __all__ = ["Lowering"]
@@ -30,6 +32,9 @@ _FACTORS = {"RADIANS": np.pi / 180, "DEGREES": 180 / np.pi}
 _OVER_ARRAYS = {"SUMPRODUCT", "MMULT", "MDETERM", "MINVERSE", "LOOKUP", "FREQUENCY"}
 """Functions that evaluate their arguments cell by cell, as an array formula does; all others have Excel pick the cell
 of a range that stands beside the formula."""
+
+
+_SHOWN = Function("shown", (Anything,), zero_if_blank, Kind.ANY)
 
 
 class Lowering:
@@ -129,7 +134,13 @@ class Lowering:
             return self._held_cell(cell)  # only until the graph is built again
         except FormulaError as error:
             return self._uncomputed(cell, error)
-        return self.number(0.0) if self._is_blank(place) else place
+        return self._shown(place)
+
+    def _shown(self, place: int) -> int:
+        """What a formula's cell shows: 0 for an empty one, in each trial."""
+        if self.dag.types[place] is Kind.ANY and not isinstance(self.dag.nodes[place], Constant | Input):
+            return self.dag.add(Apply(_SHOWN, (place,)))
+        return self.zero_if_blank(place)
 
     def _filled_cell(self, cell: Cell, anchor: ir.Expression) -> int:
         """A cell that the array formula of another fills."""
@@ -137,7 +148,7 @@ class Lowering:
         if anchor in self.saved:
             return self._saved(cell, self.faults[anchor])
         place = element(self.dag, self.array(anchor), cell.row - anchor.row, cell.column - anchor.column)
-        return self.number(0.0) if self._is_blank(place) else place
+        return self._shown(place)
 
     def _uncomputed(self, cell: Cell, error: FormulaError) -> int:
         """Excel's own value stands in for what we cannot compute, as long as no assumption reaches it."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
@@ -408,6 +409,22 @@ def _summed_beside(name: str) -> Callable[[Lowering, Arguments, Scope], int | No
     return lower
 
 
+def _levelled(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
+    """Whole columns of different sheets end where the longest does; the criteria stand in every other place."""
+
+    def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+        first = 0 if name == "COUNTIFS" else 1
+        ranges = [i for i in range(len(arguments)) if i < first or (i - first) % 2 == 0]
+        areas = {i: part for i in ranges if isinstance(part := arguments[i], Area) and part.top == 1}
+        longest = max((area.bottom for area in areas.values()), default=0)
+        if len(areas) < len(ranges) or all(area.bottom == longest for area in areas.values()):
+            return None
+        longer = [replace(areas[i], bottom=longest) if i in areas else argument for i, argument in enumerate(arguments)]
+        return lowering.lower(ir.Call(name, tuple(longer)), scope)
+
+    return lower
+
+
 PLACES: Mapping[str, Callable[[Lowering, Arguments, Scope], int | None]] = {
     "OFFSET": _value_of("OFFSET"),
     "INDIRECT": _value_of("INDIRECT"),
@@ -417,6 +434,7 @@ PLACES: Mapping[str, Callable[[Lowering, Arguments, Scope], int | None]] = {
     "ROWS": _count("ROWS"),
     "COLUMNS": _count("COLUMNS"),
     "AREAS": _count("AREAS"),
+    **{name: _levelled(name) for name in ("SUMIFS", "COUNTIFS", "AVERAGEIFS", "MAXIFS", "MINIFS")},
     "SUMIF": _summed_beside("SUMIF"),
     "AVERAGEIF": _summed_beside("AVERAGEIF"),
     "ISREF": _is_reference,

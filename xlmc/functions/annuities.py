@@ -88,10 +88,10 @@ def rate_of_annuity(nper: Any, pmt: Any, pv: Any, fv: Any, when: Any, guess: Any
 
     def balance(x: Floats) -> Floats:
         """At present for positive rates, at the end for negative ones, so that nothing grows beyond bounds."""
-        rate, shrunk = np.expm1(x), np.exp(-periods * np.abs(x))
+        rate, lost = np.expm1(x), np.expm1(-periods * np.abs(x))
         zero = rate == 0
-        paid = np.where(zero, periods, (1 - shrunk) * np.sign(x) / np.where(zero, 1.0, rate))
-        ends = np.where(x >= 0, pv + fv * shrunk, pv * shrunk + fv)
+        paid = np.where(zero, periods, -lost * np.sign(x) / np.where(zero, 1.0, rate))
+        ends = np.where(x >= 0, fv, pv) * lost + pv + fv
         return np.asarray(ends + pmt * _due(rate, when) * paid)
 
     return np.where(possible, growth_root(balance, np.asarray(guess, np.float64)), np.nan)
@@ -131,10 +131,13 @@ def _totals(rate: Any, nper: Any, pv: Any, first: Any, last: Any, when: Any) -> 
     """Interest and principal paid from the first to the last period, both with the sign of the payments."""
     first, last = np.ceil(first), np.floor(last)
     pmt = payment(rate, nper, pv, 0.0, when)
-    principal = _owed_after(rate, last, pmt, pv, when) - _owed_after(rate, first - 1, pmt, pv, when)
+    owed_at_last = _owed_after(rate, last, pmt, pv, when)
+    principal = owed_at_last - _owed_after(rate, first - 1, pmt, pv, when)
+    bearing = np.where((np.asarray(when) != 0) & (first == 1), 2.0, first)  # the first that bears interest
+    interest = pmt * (last - bearing + 1) - owed_at_last + _owed_after(rate, bearing - 1, pmt, pv, when)
     wrong = (rate <= 0) | (nper <= 0) | (pv <= 0) | (first < 1) | (last < first) | (last > nper)
     wrong = wrong | ((np.trunc(when) != 0) & (np.trunc(when) != 1))
-    return np.where(wrong, NUM, pmt * (last - first + 1) - principal), np.where(wrong, NUM, principal)
+    return np.where(wrong, NUM, interest), np.where(wrong, NUM, principal)
 
 
 def _owed_after(rate: Any, paid: Any, pmt: Any, pv: Any, when: Any) -> Floats:

@@ -7,12 +7,13 @@ refined once by its own residuals. Sums run from left to right: a trial has the 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from xlmc.functions.samples import row_sums
+from xlmc.functions.samples import mean_of, row_sums
 from xlmc.functions.values import Bools, Floats
 
 __all__ = ["Fit", "fit"]
@@ -56,10 +57,9 @@ class Fit:
 def fit(y: Floats, x: Floats, free: Bools) -> Fit:
     """The plane through observations y (n, m) at x (n, m, p); with an intercept where `free` (n,), else through 0."""
     m = y.shape[1]
-    columns = [x[:, :, j] for j in range(x.shape[2])]
-    mean_y, *means = (np.where(free, _mean(column), 0.0) for column in (y, *columns))
-    frame = _orthogonal([column - mean[:, None] for column, mean in zip(columns, means, strict=True)])
-    centred = y - mean_y[:, None]
+    mean_y, centred = _about_the_mean(y, free)
+    means, columns = zip(*(_about_the_mean(x[:, :, j], free) for j in range(x.shape[2])), strict=True)
+    frame = _orthogonal(columns)
     slopes = frame.solved(centred)
     rest = frame.residual(centred, slopes)
     slopes = [a + b for a, b in zip(slopes, frame.solved(rest), strict=True)]
@@ -79,13 +79,13 @@ def fit(y: Floats, x: Floats, free: Bools) -> Fit:
     )
 
 
-def _mean(x: Floats) -> Floats:
-    """Means of the rows, exact where all numbers of a row are equal: (n, m) -> (n,)."""
-    first = row_sums(x) / x.shape[1]
-    return np.asarray(first + row_sums(x - first[:, None]) / x.shape[1])
+def _about_the_mean(x: Floats, free: Bools) -> tuple[Floats, Floats]:
+    """The mean of each row and the distances from it, or 0 and the row where not `free`: (n, m) -> (n,), (n, m)."""
+    mean, distance, _ = mean_of(x, np.ones(x.shape, bool))
+    return np.where(free, mean, 0.0), np.where(free[:, None], distance, x)
 
 
-def _side_by_side(columns: list[Floats]) -> Floats:
+def _side_by_side(columns: Sequence[Floats]) -> Floats:
     return np.stack(np.broadcast_arrays(*columns), axis=1)
 
 
@@ -100,7 +100,7 @@ class _Frame:
         kept: whether a column does not depend on others, p of (n,).
     """
 
-    columns: list[Floats]
+    columns: Sequence[Floats]
     directions: list[Floats]
     parts: list[list[Floats]]
     kept: list[Bools]
@@ -133,7 +133,7 @@ class _Frame:
         return rows
 
 
-def _orthogonal(columns: list[Floats]) -> _Frame:
+def _orthogonal(columns: Sequence[Floats]) -> _Frame:
     p = len(columns)
     directions: list[Floats] = []
     parts: list[list[Floats]] = [[np.zeros(1)] * p for _ in range(p)]

@@ -21,7 +21,7 @@ from xlmc.functions.values import (
     constant,
 )
 
-__all__ = ["choose"]
+__all__ = ["choose", "zero_if_blank"]
 
 
 def choose(condition: Bools, yes: Value, no: Value, errors: Codes | None = None) -> Value:
@@ -47,23 +47,24 @@ def _texts(value: Value) -> Objects:
 def if_(condition: Value, yes: Value, no: Value | None = None) -> Value:
     """The second argument where the first is TRUE, else the third; a blank branch is 0."""
     truth, errors = condition.to_logicals()
-    return choose(truth, _zero_if_blank(yes), constant(False) if no is None else _zero_if_blank(no), errors)
+    return choose(truth, zero_if_blank(yes), constant(False) if no is None else zero_if_blank(no), errors)
 
 
-def _zero_if_blank(value: Value) -> Value:
+def zero_if_blank(value: Value) -> Value:
+    """What a formula gives for an empty cell: 0."""
     return Value(value.numbers, np.where(value.kinds == BLANK, np.uint8(NUMBER), value.kinds), value.texts)
 
 
 @excel("IFERROR", Anything, Anything, returns=Kind.ANY)
 def if_error(value: Value, instead: Value) -> Value:
     """The first argument, or the second where the first is an error."""
-    return choose(value.kinds >= ERROR, _zero_if_blank(instead), _zero_if_blank(value))
+    return choose(value.kinds >= ERROR, zero_if_blank(instead), zero_if_blank(value))
 
 
 @excel("IFNA", Anything, Anything, returns=Kind.ANY)
 def if_na(value: Value, instead: Value) -> Value:
     """The first argument, or the second where the first is `#N/A`."""
-    return choose(value.kinds == ERROR + ErrorCode.NA, _zero_if_blank(instead), _zero_if_blank(value))
+    return choose(value.kinds == ERROR + ErrorCode.NA, zero_if_blank(instead), zero_if_blank(value))
 
 
 @excel("NOT", Logical, returns=Kind.LOGICAL, ufunc=np.logical_not)

@@ -12,10 +12,10 @@ __all__ = ["powered"]
 
 
 def powered(base: Any, exponent: Any) -> Floats:
-    """`base` to the power of `exponent`; NaN for a negative base and a fraction.
+    """`base` to the power of `exponent`, both of at least one axis; NaN for a negative base and a fraction.
 
-    NumPy squares by a multiplication where the exponent is one number for all, and by `pow` elsewhere, which may differ
-    in the last bit. Here every square is a multiplication.
+    Where the exponent is one number for all trials, NumPy squares, inverts and takes square roots by other means than
+    `pow`, which may differ in the last bit. So each trial gets an exponent of its own.
     """
-    base = np.asarray(base, np.float64)
-    return np.where(np.asarray(exponent) == 2, base * base, np.power(base, exponent))
+    base, exponents = np.broadcast_arrays(np.atleast_1d(np.asarray(base, np.float64)), np.asarray(exponent, np.float64))
+    return np.where(exponents == 2, base * base, np.power(base, exponents.copy()))

@@ -13,8 +13,8 @@ __all__ = ["growth_root"]
 
 _FIRST_STEP: Final = 0.01
 _WIDENING: Final = 1.5
-_FARTHEST: Final = 40.0
-"""Rates from nearly -100 % to 10^17: all that a double can tell from what lies beyond."""
+_FARTHEST: Final = 34.0
+"""So far from the guess that the rates go from 10^-14 above -100 % to 10^14."""
 _MOST_STEPS: Final = 100
 
 Function = Callable[[Floats], Floats]

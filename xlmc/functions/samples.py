@@ -40,13 +40,17 @@ def row_sums(x: Floats) -> Floats:
 def mean_of(x: Floats, counts: Bools) -> tuple[Floats, Floats, Floats]:
     """The mean of what counts, every distance from it (0 of what does not), and how much counts: (n,), (n, k), (n,).
 
-    The mean of equal numbers is that number to the last bit, so that they do not vary.
+    The distances sum up to 0 as well as doubles can, however far from 0 the numbers lie; those of equal numbers are 0.
     """
     k = counts.sum(axis=1).astype(np.float64)
     divisor = np.maximum(k, 1.0)
+    most = np.where(counts, x, -np.inf).max(axis=1)
+    varies = most > np.where(counts, x, np.inf).min(axis=1)
     first = row_sums(np.where(counts, x, 0.0)) / divisor
-    mean = first + row_sums(np.where(counts, x - first[:, None], 0.0)) / divisor
-    return mean, np.where(counts, x - mean[:, None], 0.0), k
+    distance = np.where(counts, x - first[:, None], 0.0)
+    over = row_sums(distance) / divisor
+    mean = np.where(varies | (k == 0), first + over, most)
+    return mean, np.where(counts & varies[:, None], distance - over[:, None], 0.0), k
 
 
 def spread_of(x: Floats, counts: Bools) -> tuple[Floats, Floats]:

@@ -7,7 +7,11 @@ from templates.description import Input
 __all__ = ["FEET_PER_MILE", "GRAVITY", "INCHES_PER_FOOT", "SECONDS_PER_HOUR"]
 
 GRAVITY = Input(
-    "g", "g", "Acceleration of gravity", "ft/s²", 32.174,
+    "g",
+    "g",
+    "Acceleration of gravity",
+    "ft/s²",
+    32.174,
     "Standard gravity (9.80665 m/s²). Part of the record: the answers depend on it",
     number_format="0.000",
 )

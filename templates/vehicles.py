@@ -28,9 +28,10 @@ def _expanded(vehicles: tuple[str, str], pattern: Equation) -> Iterator[Equation
         return
     for j in (1, 2):
         texts = {field.name: getattr(pattern, field.name) for field in fields(pattern)}
-        yield replace(pattern, **{
-            name: _filled(text, j, vehicles[j - 1]) for name, text in texts.items() if isinstance(text, str)
-        })
+        yield replace(
+            pattern,
+            **{name: _filled(text, j, vehicles[j - 1]) for name, text in texts.items() if isinstance(text, str)},
+        )
 
 
 def _filled(text: str, j: int, who: str) -> str:

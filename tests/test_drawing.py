@@ -85,6 +85,19 @@ def test_trials_whose_parameters_are_errors_are_nan(book):
     assert (draws["a"] < 0).any()
 
 
+def test_a_parameter_may_come_to_terms_with_an_error(book):
+    given = {
+        "a": {"cell": "A1", "low": -1, "high": 1},
+        "b": {"cell": "A2", "low": 0, "high": "B1"},
+        "c": {"cell": "A3", "low": 5, "high": "B2"},
+    }
+    cells = {"A1": 1.0, "A2": 1.0, "A3": 1.0, "B1": "=SQRT(A1)", "B2": "=IFERROR(A2+6,5)"}
+    draws = book(cells, given, {"x": "A3"}).sampler(1, 256).draw(0)
+    assert (draws["a"] < 0).any()
+    assert (draws["c"][draws["a"] < 0] == 5).all()
+    assert (draws["c"][draws["a"] > 0] > 5).all()
+
+
 def row(first, second, value):
     return Correlation(first, second, value, Cell("C", 1, 1))
 

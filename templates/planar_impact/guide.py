@@ -38,9 +38,7 @@ _TRUST = GuideSection(
 
 _CORRECTIONS = GuideSection(
     "Where this workbook departs from the printed paper",
-    (
-        "A prime, as in (15′), marks an equation rewritten to keep its digits: in exact arithmetic it is the same.",
-    ),
+    ("A prime, as in (15′), marks an equation rewritten to keep its digits: in exact arithmetic it is the same.",),
     (
         ("Equation", "As used here"),
         ("(4)", "Sign corrected: vehicle 2 receives −P, as in (18)"),

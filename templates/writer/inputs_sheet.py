@@ -76,22 +76,34 @@ def _draw_name(sheet: Worksheet, styles: Styles, given: Input, row: int) -> None
 
 def _guard_table(sheet: Worksheet, styles: Styles, first: int, last: int) -> None:
     """Drop-down lists, and red for a base value outside its range."""
-    sheet.data_validation(first, 5, last, 5, {
-        "validate": "list",
-        "source": list(_DISTRIBUTIONS),
-        "input_title": "Distribution",
-        "input_message": "Uniform: Low, High. Normal: Mean, Std dev. Triangular: Low, Likeliest, High. Trapezoid: Low, "
-        "Low likeliest, High likeliest, High. Further columns open with the + above the headings.",
-        "error_type": "warning",
-        "error_title": "Distribution",
-        "error_message": "Not in the list. Leave it only if your version of xlmc knows this distribution.",
-    })
-    sheet.data_validation(first, _FROZEN, last, _FROZEN, {
-        "validate": "list",
-        "source": ["TRUE", "FALSE"],
-        "input_title": "Frozen",
-        "input_message": "TRUE holds this input at its green value. Blank is FALSE.",
-    })
+    sheet.data_validation(
+        first,
+        5,
+        last,
+        5,
+        {
+            "validate": "list",
+            "source": list(_DISTRIBUTIONS),
+            "input_title": "Distribution",
+            "input_message": "Uniform: Low, High. Normal: Mean, Std dev. Triangular: Low, Likeliest, High. Trapezoid: Low, "
+            "Low likeliest, High likeliest, High. Further columns open with the + above the headings.",
+            "error_type": "warning",
+            "error_title": "Distribution",
+            "error_message": "Not in the list. Leave it only if your version of xlmc knows this distribution.",
+        },
+    )
+    sheet.data_validation(
+        first,
+        _FROZEN,
+        last,
+        _FROZEN,
+        {
+            "validate": "list",
+            "source": ["TRUE", "FALSE"],
+            "input_title": "Frozen",
+            "input_message": "TRUE holds this input at its green value. Blank is FALSE.",
+        },
+    )
     value, low, high = (f"${column}{first + 1}" for column in "DGH")
     outside = f"=OR(AND(ISNUMBER({low}),{value}<{low}),AND(ISNUMBER({high}),{value}>{high}))"
     rule = {"type": "formula", "criteria": outside, "format": styles("wrong")}

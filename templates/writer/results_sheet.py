@@ -108,14 +108,20 @@ def _draw_correlations(sheet: Worksheet, styles: Styles, note: str, top: int) ->
     sheet.set_row(top + 2, 32)
     for column, look in enumerate(("text", "text", "number")):
         sheet.write_blank(top + 2, column, None, styles(look))
-    sheet.data_validation(top + 2, 2, top + 2, 2, {
-        "validate": "decimal",
-        "criteria": "between",
-        "minimum": -1,
-        "maximum": 1,
-        "error_title": "Correlation",
-        "error_message": "A rank correlation lies between -1 and 1.",
-    })
+    sheet.data_validation(
+        top + 2,
+        2,
+        top + 2,
+        2,
+        {
+            "validate": "decimal",
+            "criteria": "between",
+            "minimum": -1,
+            "maximum": 1,
+            "error_title": "Correlation",
+            "error_message": "A rank correlation lies between -1 and 1.",
+        },
+    )
     return top + 3
 
 

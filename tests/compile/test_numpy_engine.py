@@ -57,7 +57,8 @@ def a_book(seed):
     filters = [f"D{row}" for row in range(1, random.randint(1, 3))]
     for name in filters:
         cells[name] = f"={random.choice(names)}>{random.choice(('0', '0.7', 'A1'))}"
-    forecasts = random.sample((*names, *INPUTS), random.randint(1, 4))
+    cells["E1"] = "=" + "".join(f"{random.choice('+-')}{name}" for name in names)
+    forecasts = ["E1", *random.sample((*names, *INPUTS), random.randint(0, 3))]
     odd = random.choice(((), (0.0, 1.0, -1.0, 2.0, 1e200, -3.5), (1.0, 2.0, 0.75)))
     numbers = [*odd, *(random.uniform(0.1, 2.0) for _ in range(10))]
     return cells, {name: random.choices(numbers, k=20) for name in INPUTS}, forecasts, filters

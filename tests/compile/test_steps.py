@@ -30,7 +30,18 @@ def test_no_function_of_numbers_gives_back_its_argument(name):
             assert not any(np.shares_memory(result, argument) for argument in arguments)
 
 
-@pytest.mark.parametrize("formula", ['HYPERLINK("x",A1*2)', "TRANSPOSE(A1*2)", "+(A1*2)", "IF(A1>9,0,A1*2)", "(A1*2)"])
+@pytest.mark.parametrize(
+    "formula",
+    [
+        'HYPERLINK("x",A1*2)',
+        "TRANSPOSE(A1*2)",
+        "+(A1*2)",
+        "(A1*2)",
+        "IFERROR(A1*2,0)",
+        'IFNA(A1*2,"x")',
+        "IF(A1>9,0,A1*2)",
+    ],
+)
 def test_values_outlive_the_buffer_they_were_made_from(run, formula):
     cells = {"C1": f"={formula}", "C2": "=SQRT(A1)*3", "C3": "=C2+1", "C4": "=C1+C3"}
     assert run(cells, {"A1": [1.0, 4.0]}, ["C4"]).forecasts == [[6.0, 15.0]]

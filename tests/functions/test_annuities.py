@@ -82,7 +82,9 @@ def test_what_is_paid_grows_to_what_is_owed(rate, nper, pv, fv, due):
     pmt = call([Value.of_numbers(np.array([x])) for x in (rate, nper, pv, fv, float(due))]).numbers[0]
     grown = (1 + rate) ** nper
     paid = nper if rate == 0 else (grown - 1) / rate
-    assert pv * grown + pmt * (1 + rate * due) * paid + fv == pytest.approx(0, abs=1e-6 * (1 + abs(fv) + abs(pv) * grown))
+    assert pv * grown + pmt * (1 + rate * due) * paid + fv == pytest.approx(
+        0, abs=1e-6 * (1 + abs(fv) + abs(pv) * grown)
+    )
 
 
 @given(st.floats(-0.5, 1.0), st.integers(1, 60), st.floats(10, 1000), st.booleans())

@@ -14,8 +14,25 @@ NUMBER = re.compile(rb"<v>[^<]*</v>")
 TABLES = {
     "xlmc_assumptions": (
         "Inputs",
-        ["Name", "Symbol", "Cell name", "Value", "Units", "Distribution", "Low", "High", "Likeliest", "Low likeliest",
-         "High likeliest", "Mean", "Std dev", "Lower cutoff", "Upper cutoff", "Frozen", "Source"],
+        [
+            "Name",
+            "Symbol",
+            "Cell name",
+            "Value",
+            "Units",
+            "Distribution",
+            "Low",
+            "High",
+            "Likeliest",
+            "Low likeliest",
+            "High likeliest",
+            "Mean",
+            "Std dev",
+            "Lower cutoff",
+            "Upper cutoff",
+            "Frozen",
+            "Source",
+        ],
     ),
     "xlmc_forecasts": ("Results wanted", ["Name", "Cell", "Units", "Range %", "Threshold", "Symbol", "Note"]),
     "xlmc_filters": ("Results wanted", ["Name", "Cell", "At least", "At most", "Above", "Below", "Because"]),
@@ -98,7 +115,10 @@ def test_the_case_study_says_what_the_paper_says(book_path):
     limits = [[row[header].value for header in headers] for row in rows(book, "xlmc_filters")]
     assert limits == [[0, None, None, 1], [0, 0.25, None, None], [None, None, 0, None]]
     assert [row["Name"].value for row in rows(book, "xlmc_forecasts")] == [
-        "Chevrolet delta-V", "Nissan delta-V", "Chevrolet impact speed", "Nissan impact speed",
+        "Chevrolet delta-V",
+        "Nissan delta-V",
+        "Chevrolet impact speed",
+        "Nissan impact speed",
     ]
     settings = [(row["Setting"].value, row["Value"].value) for row in rows(book, "xlmc_settings")]
     assert settings == [("Trials", 200_000), ("Seed", 999)]

@@ -14,6 +14,7 @@ from xlmc.compile import choices, lambdas, places
 from xlmc.compile.arrays import cell_by_cell, element, grid, size_of
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Range
 from xlmc.compile.engine import Target
+from xlmc.compile.fallback import fallback
 from xlmc.compile.scope import Scope
 from xlmc.compile.settings import as_set
 from xlmc.errors import ErrorCode, FormulaError, Notice
@@ -249,7 +250,7 @@ class Lowering:
                 made = special[name](self, arguments, scope)
                 if made is not None:
                     return made
-        function = function_named(name)
+        function = function_named(name) or self._fallback(name, scope)
         if function is None:
             raise _unknown_function(name)
         fewest, most = function.arity()
@@ -263,6 +264,12 @@ class Lowering:
             part = self.whole(argument, beside) if parameter.ranged else [self.lower(argument, scope)]
             found += part if parameter.repeat else [self._stacked(part)]
         return self.made(as_set(function, book.date1904, book.macintosh), tuple(found))
+
+    def _fallback(self, name: str, scope: Scope) -> Function | None:
+        found = fallback(name)
+        if found is not None:
+            self.notices.append(Notice(f"{name} is computed by the formulas package, trial by trial: slow", scope.cell))
+        return found
 
     def _stacked(self, parts: list[int]) -> int:
         """Joined areas as one, for a function that takes a single range: their cells in one column."""

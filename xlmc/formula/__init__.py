@@ -2,8 +2,17 @@
 
 from xlmc.formula import ir
 from xlmc.formula.graph import Graph, build_graph
-from xlmc.formula.parse import compile_with_formulas, parse
+from xlmc.formula.parse import compile_with_formulas, foreign_functions, parse
 from xlmc.formula.resolve import Resolver
 from xlmc.formula.text import formula_text
 
-__all__ = ["Graph", "Resolver", "build_graph", "compile_with_formulas", "formula_text", "ir", "parse"]
+__all__ = [
+    "Graph",
+    "Resolver",
+    "build_graph",
+    "compile_with_formulas",
+    "foreign_functions",
+    "formula_text",
+    "ir",
+    "parse",
+]

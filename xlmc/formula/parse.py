@@ -15,12 +15,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
 from formulas.errors import FormulaError as ForeignFormulaError
 from formulas.errors import TokenError
+from formulas.functions import get_functions
 from formulas.parser import Parser
 from formulas.tokens.function import Array as ArrayToken
 from formulas.tokens.function import Function as FunctionToken
@@ -35,7 +36,7 @@ from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
 from xlmc.formula.table_reference import TABLE_REFERENCE, parse_table_reference
 
-__all__ = ["compile_with_formulas", "parse"]
+__all__ = ["compile_with_formulas", "foreign_functions", "parse"]
 
 _SHEET = r"[^\W\d][\w.]*"
 _PREFIX = rf"(?:'(?P<quoted>(?:[^']|'')+)'|(?P<book>\[[^\[\]]+\])?(?P<sheet>{_SHEET}(?::{_SHEET})?)?)!"
@@ -424,6 +425,12 @@ def _without_line_breaks(text: str) -> str:
 
 def _with_line_breaks(text: str) -> str:
     return text.replace("\r" + _LINE_BREAK_IN_TEXT, "\n").replace(_LINE_BREAK_IN_TEXT, "\n")
+
+
+@cache
+def foreign_functions() -> frozenset[str]:
+    """The names of the functions that `formulas` implements."""
+    return frozenset(get_functions())
 
 
 def compile_with_formulas(text: str) -> Callable[[Mapping[str, Any]], object]:

@@ -88,10 +88,10 @@ def rate_of_annuity(nper: Any, pmt: Any, pv: Any, fv: Any, when: Any, guess: Any
 
     def balance(x: Floats) -> Floats:
         """At present for positive rates, at the end for negative ones, so that nothing grows beyond bounds."""
-        rate, lost = np.expm1(x), np.expm1(-periods * np.abs(x))
+        rate, shrunk = np.expm1(x), np.exp(-periods * np.abs(x))
         zero = rate == 0
-        paid = np.where(zero, periods, -lost * np.sign(x) / np.where(zero, 1.0, rate))
-        ends = np.where(x >= 0, fv, pv) * lost + pv + fv
+        paid = np.where(zero, periods, np.expm1(-periods * np.abs(x)) * -np.sign(x) / np.where(zero, 1.0, rate))
+        ends = np.where(x >= 0, pv + fv * shrunk, pv * shrunk + fv)
         return np.asarray(ends + pmt * _due(rate, when) * paid)
 
     return np.where(possible, growth_root(balance, np.asarray(guess, np.float64)), np.nan)

@@ -83,16 +83,17 @@ def binom_inv(trials: Floats, p: Floats, alpha: Floats) -> Floats:
     low, high = np.full(np.shape(n), -1.0), n
     while np.any(high - low > 1):
         middle = np.floor((low + high) / 2)
-        reached = _reaches(middle, n, p, alpha)
+        reached = (middle > low) & _reaches(np.maximum(middle, 0.0), n, p, alpha)
         low, high = np.where(reached, low, middle), np.where(reached, middle, high)
     return np.where(inside, high, NUM)
 
 
 def _reaches(k: Floats, n: Floats, p: Floats, alpha: Floats) -> Bools:
-    """Whether at most k successes have the probability alpha; judged by the smaller tail."""
-    below = _at_most(k, n, p) >= alpha * (1 - _SEEN)
-    above = _more_than(k, n, p) <= (1 - alpha) + _SEEN * alpha
-    return np.where(alpha > 0.5, above, below)
+    """Whether at most k successes, fewer than n, have the probability alpha; judged by the smaller tail."""
+    upper, more, less = alpha > 0.5, k + 1, np.maximum(n - k, 1.0)
+    beta, share = np.where(upper, [more, less], [less, more]), np.where(upper, [p, 1 - p], [1 - p, p])
+    tail = incomplete_beta(*beta, *share)
+    return np.where(upper, tail <= (1 - alpha) + _SEEN * alpha, tail >= alpha * (1 - _SEEN))
 
 
 @excel("NEGBINOM.DIST", Number, Number, Number, Logical)
@@ -101,8 +102,12 @@ def negbinom_dist(failures: Floats, successes: Floats, p: Floats, cumulative: Bo
     k, n = np.floor(failures), np.floor(successes)
     inside = (k >= 0) & (n >= 1) & _probability(p)
     k, n, p = np.where(inside, k, 0.0), np.where(inside, n, 1.0), np.where(inside, p, 0.5)
-    mass = lambda: n / (n + k) * binomial_mass(n, k, p, 1 - p)  # noqa: E731 - as short as its pair
-    return np.where(inside, by_form(cumulative, lambda: incomplete_beta(n, k + 1, p, 1 - p), mass), NUM)
+    result = by_form(
+        cumulative,
+        lambda: incomplete_beta(n, k + 1, p, 1 - p),
+        lambda: n / (n + k) * binomial_mass(n, k, p, 1 - p),
+    )
+    return np.where(inside, result, NUM)
 
 
 @excel("NEGBINOMDIST", Number, Number, Number)

@@ -18,4 +18,5 @@ def powered(base: Any, exponent: Any) -> Floats:
     `pow`, which may differ in the last bit. So each trial gets an exponent of its own.
     """
     base, exponents = np.broadcast_arrays(np.atleast_1d(np.asarray(base, np.float64)), np.asarray(exponent, np.float64))
-    return np.where(exponents == 2, base * base, np.power(base, exponents.copy()))
+    powers: Floats = np.where(exponents == 2, base * base, np.power(base, exponents.copy()))
+    return powers

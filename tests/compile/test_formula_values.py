@@ -14,9 +14,24 @@ from xlmc.verify import verify
 from xlmc.workbook.model import CellContent, Formula
 
 CELLS = {
-    **{"A1": 1.0, "A2": 2.0, "A3": 3.0, "B1": 10.0, "B2": 20.0, "B3": 30.0},
-    **{"C1": "x", "C2": True, "C3": None, "D1": "=A1+1", "D2": "=B2/A2", "D3": "=SUM(A1:A3)"},
-    **{"E1": "=1/0", "E2": '=""', "E3": "B2", "Other!A1": 100.0, "Other!A2": 200.0, "Third!A1": 1000.0},
+    "A1": 1.0,
+    "A2": 2.0,
+    "A3": 3.0,
+    "B1": 10.0,
+    "B2": 20.0,
+    "B3": 30.0,
+    "C1": "x",
+    "C2": True,
+    "C3": None,
+    "D1": "=A1+1",
+    "D2": "=B2/A2",
+    "D3": "=SUM(A1:A3)",
+    "E1": "=1/0",
+    "E2": '=""',
+    "E3": "B2",
+    "Other!A1": 100.0,
+    "Other!A2": 200.0,
+    "Third!A1": 1000.0,
 }
 NAMES = {"Rate": "0.5", "Span": "S!$A$1:$A$3", "Twice": "_xlfn.LAMBDA(_xlpm.x,_xlpm.x*2)", "Next": "S!B1"}
 

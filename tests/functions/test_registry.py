@@ -118,6 +118,28 @@ def test_ordinary_numbers_raise_no_flag(name):
             function.body(*_as_body_takes_them(function, columns))
 
 
+def _takes_plain_numbers(function: Function) -> bool:
+    kinds = {parameter.kind for parameter in function.parameters}
+    several = any(parameter.repeat for parameter in function.parameters)
+    return bool(kinds) and kinds <= {Kind.NUMBER, Kind.LOGICAL} and not several and not function.dated
+
+
+@pytest.mark.parametrize("name", [name for name in ROWS if _takes_plain_numbers(ROWS[name])])
+@given(data=st.data())
+@settings(max_examples=25, deadline=None)
+def test_constants_may_come_as_plain_floats(name, data):
+    """So they do on the fast path, where Python's own division by zero would be no error value."""
+    function = ROWS[name]
+    k = len(function.parameters)
+    numbers = np.array(data.draw(st.lists(st.sampled_from([0.0, 0.25, 1.0, 2.0, -1.0, 3.0]), min_size=k, max_size=k)))
+    varying = data.draw(st.integers(0, k - 1))
+    arrays = _as_body_takes_them(function, [np.full(2, number) for number in numbers])
+    mixed = [array if i == varying else array[0].item() for i, array in enumerate(arrays)]
+    with np.errstate(all="ignore"):
+        found, expected = (np.asarray(function.body(*each)) for each in (mixed, arrays))
+    assert np.array_equal(np.broadcast_to(found, expected.shape), expected, equal_nan=True)
+
+
 @pytest.mark.parametrize("name", [name for name in ROWS if name[0].isalpha() and name not in ("u-", "u+")])
 def test_every_function_is_documented_and_named_in_capitals(name):
     assert name == name.upper()

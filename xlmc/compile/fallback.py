@@ -54,7 +54,6 @@ def _body(name: str, *arguments: Value) -> Value:
 
 
 def _trial(objects: Mapping[str, Any], i: int) -> dict[str, Any]:
+    """The arguments of one trial by address, single cells as they are and ranges (r, c)."""
     picked = {address: found[i if found.shape[0] > 1 else 0] for address, found in objects.items()}
-    return {
-        a: (item.ravel()[0] if isinstance(item, np.ndarray) and item.size == 1 else item) for a, item in picked.items()
-    }
+    return {address: item.item() if np.size(item) == 1 and np.ndim(item) else item for address, item in picked.items()}

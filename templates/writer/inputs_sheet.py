@@ -85,8 +85,8 @@ def _guard_table(sheet: Worksheet, styles: Styles, first: int, last: int) -> Non
             "validate": "list",
             "source": list(_DISTRIBUTIONS),
             "input_title": "Distribution",
-            "input_message": "Uniform: Low, High. Normal: Mean, Std dev. Triangular: Low, Likeliest, High. Trapezoid: Low, "
-            "Low likeliest, High likeliest, High. Further columns open with the + above the headings.",
+            "input_message": "Uniform: Low, High. Normal: Mean, Std dev. Triangular: Low, Likeliest, High. "
+            "Trapezoid: Low, Low likeliest, High likeliest, High. Further columns open with the + above the headings.",
             "error_type": "warning",
             "error_title": "Distribution",
             "error_message": "Not in the list. Leave it only if your version of xlmc knows this distribution.",

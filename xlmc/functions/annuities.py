@@ -81,9 +81,13 @@ def periods_needed(rate: Any, pmt: Any, pv: Any, fv: Any, when: Any) -> Floats:
 
 @excel("RATE", Number, Number, Number, Number(default=0.0), Number(default=0.0), Number(default=0.1))
 def rate_of_annuity(nper: Any, pmt: Any, pv: Any, fv: Any, when: Any, guess: Any) -> Floats:
-    """Rate per period; of several, the one nearest to the guess; `#NUM!` where there is none."""
+    """Rate per period; of several, the one nearest to the guess; `#NUM!` where there is none.
+
+    There is none unless something is paid and something received.
+    """
     nper, pmt, pv, fv, when, guess = np.broadcast_arrays(*map(np.atleast_1d, (nper, pmt, pv, fv, when, guess)))
-    possible = nper > 0
+    largest, smallest = np.maximum(np.maximum(pmt, pv), fv), np.minimum(np.minimum(pmt, pv), fv)
+    possible = (nper > 0) & (largest > 0) & (smallest < 0)
     periods = np.where(possible, nper, 1.0)
 
     def balance(x: Floats) -> Floats:

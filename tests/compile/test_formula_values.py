@@ -253,3 +253,12 @@ def test_indirect_reference_to_itself_is_a_circle(book):
 def test_implicit_intersection_picks_the_cell_beside(computed):
     found = computed({"H2": "=A1:A3*2", "B9": "=A1:B1*2", "H3": "=@A1:A3"})
     assert [found[cell].got for cell in ("H2", "B9", "H3")] == [4.0, 20.0, 3.0]
+
+
+def test_the_clock_is_held_at_what_excel_saved(book):
+    cells = {"A1": 1.0, "C1": ("=TODAY()", 45000.0), "B1": "=A1+C1"}
+    model = book(cells, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"answer": "B1"})
+    assert model.function({"a": 0.5})["answer"].tolist() == [45000.5]
+    assert "TODAY gives another value each time; Excel's saved value is used" in model.notices[0].message
+    with pytest.raises(XlmcError, match="a cell of its own"):
+        book({"A1": 1.0, "B1": "=A1+TODAY()"}, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"answer": "B1"})

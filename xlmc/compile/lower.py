@@ -253,6 +253,9 @@ class Lowering:
         function = function_named(name) or self._fallback(name, scope)
         if function is None:
             raise _unknown_function(name)
+        if function.volatile and not self._audit:
+            hint = "put it in a cell of its own: the value Excel saved for it is then used, and the run can be repeated"
+            raise FormulaError(f"{name} gives another value each time", hint=hint)
         fewest, most = function.arity()
         if not fewest <= len(arguments) <= most:
             raise FormulaError(f"{name} has {len(arguments)} arguments; it takes {_count(fewest, most)}")

@@ -21,7 +21,7 @@ from typing import Any, ClassVar
 import numpy as np
 from formulas.errors import FormulaError as ForeignFormulaError
 from formulas.errors import TokenError
-from formulas.functions import get_functions
+from formulas.functions import get_functions, not_implemented
 from formulas.parser import Parser
 from formulas.tokens.function import Array as ArrayToken
 from formulas.tokens.function import Function as FunctionToken
@@ -430,7 +430,8 @@ def _with_line_breaks(text: str) -> str:
 @cache
 def foreign_functions() -> frozenset[str]:
     """The names of the functions that `formulas` implements."""
-    return frozenset(get_functions())
+    known = get_functions()  # looking up a name that is not there leaves an entry for it behind
+    return frozenset(name for name, found in known.items() if found is not not_implemented)
 
 
 def compile_with_formulas(text: str) -> Callable[[Mapping[str, Any]], object]:

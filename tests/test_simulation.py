@@ -68,6 +68,12 @@ def test_a_frame_of_accepted_trials(run):
     assert frame["Sum"].to_numpy().tolist() == run.forecasts["Sum"].tolist()
 
 
+def test_an_assumption_and_a_forecast_of_one_name(book):
+    frame = book(CELLS, GIVEN, {"Mass": "B1"}).simulate(10).frame()
+    assert list(frame.columns) == ["Mass (assumption)", "Speed", "Mass"]
+    assert frame["Mass"].tolist() == (frame["Mass (assumption)"] + frame["Speed"]).tolist()
+
+
 def test_few_errors_are_no_warning(run):
     assert 0 < run.error_trials <= 20
     assert run.warnings == []

@@ -147,10 +147,14 @@ class Simulation:
         return found
 
     def frame(self) -> pandas.DataFrame:
-        """Accepted trials, one a row, indexed by trial: assumptions, then forecasts."""
+        """Accepted trials, one a row, indexed by trial: assumptions, then forecasts.
+
+        An assumption with the name of a forecast is called `name (assumption)`.
+        """
         import pandas
 
-        columns = {**self.inputs, **self.forecasts}
+        names = {name: f"{name} (assumption)" if name in self.forecasts else name for name in self.inputs}
+        columns = {names[name]: values for name, values in self.inputs.items()} | dict(self.forecasts)
         return pandas.DataFrame(columns, index=pandas.Index(self.trial_index, name="Trial"))
 
     def save(self, path: str | Path) -> None:

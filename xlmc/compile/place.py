@@ -8,8 +8,9 @@ no error is not worth its own context and is evaluated with its parent.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache, partial
 from typing import Final
 
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Select
@@ -38,13 +39,21 @@ _DEEPEST: Final = 8
 _SAFE = {"+", "-", "*", "u-", "u+", "%", "=", "<>", "<", "<=", ">", ">=", "NOT", "ABS", "SIGN", "MIN", "MAX", "SUM"}
 
 
+Reads = Callable[[int], tuple[int, ...]]
+
+
 class Placement:
-    """The context of every varying node that `first` (all trials) and `late` (survivors) need on the fast path."""
+    """The context of every varying node that `first` (all trials) and `late` (survivors) need on the fast path.
+
+    Attributes:
+        reads: the nodes whose values the step of a node needs.
+    """
 
     def __init__(self, dag: Dag, first: Sequence[int], late: Sequence[int]) -> None:
         self._dag = dag
+        self.reads: Reads = cache(partial(reads, dag))
         self._members: defaultdict[Context, list[int]] = defaultdict(list)
-        contexts = _without_safe_branches(dag, _contexts(dag, first, late))
+        contexts = _without_safe_branches(dag, _contexts(dag, self.reads, first, late))
         for node, context in sorted(contexts.items()):
             self._members[context].append(node)
         self._inner: defaultdict[Context, list[Context]] = defaultdict(list)
@@ -65,7 +74,7 @@ class Placement:
     def externals(self, context: Context, results: Iterable[int]) -> list[int]:
         """The varying nodes that a context, its inner contexts included, takes from outside it."""
         inside = set(self._inside(context))
-        read = {used for node in inside for used in reads(self._dag, node)} | set(results)
+        read = {used for node in inside for used in self.reads(node)} | set(results)
         return sorted(node for node in read - inside if not isinstance(self._dag.nodes[node], Constant))
 
     def _inside(self, context: Context) -> Iterator[int]:
@@ -74,23 +83,23 @@ class Placement:
             yield from self._inside(inner)
 
 
-def _contexts(dag: Dag, first: Sequence[int], late: Sequence[int]) -> dict[int, Context]:
+def _contexts(dag: Dag, reads: Reads, first: Sequence[int], late: Sequence[int]) -> dict[int, Context]:
     contexts: dict[int, Context] = {}
     _use(dag, contexts, first, ROOT)
     _use(dag, contexts, late, SURVIVORS)
-    needed = dag.upstream([*first, *late], lambda node: reads(dag, node))
+    needed = dag.upstream([*first, *late], reads)
     for node in reversed(needed):
-        for used, context in _edges(dag, node, contexts[node]):
+        for used, context in _edges(dag, reads, node, contexts[node]):
             _use(dag, contexts, [used], context)
     return {node: contexts[node] for node in needed}
 
 
-def _edges(dag: Dag, place: int, context: Context) -> list[tuple[int, Context]]:
+def _edges(dag: Dag, reads: Reads, place: int, context: Context) -> list[tuple[int, Context]]:
     match dag.nodes[place]:
         case Select(condition, yes, no) if _divides(dag, place, condition, context):
             return [(condition, context), (yes, _branch(context, place, 1)), (no, _branch(context, place, 0))]
         case _:
-            return [(used, context) for used in reads(dag, place)]
+            return [(used, context) for used in reads(place)]
 
 
 def _branch(parent: Context, select: int, branch: int) -> Context:
@@ -111,7 +120,7 @@ def _use(dag: Dag, contexts: dict[int, Context], places: Sequence[int], context:
 
 
 def _common(a: Context, b: Context) -> Context:
-    while a != b:
+    while a is not b and a != b:
         if a.depth >= b.depth and a.parent is not None:
             a = a.parent
         elif b.parent is not None:

@@ -13,7 +13,7 @@ from xlmc.compile.buffers import Buffers
 from xlmc.compile.dag import Dag, Input, constants
 from xlmc.compile.engine import Column, column_of
 from xlmc.compile.place import ROOT, SURVIVORS, Context, Placement
-from xlmc.compile.steps import Frame, Step, is_elementwise_ufunc, make_step, plain_constant, reads
+from xlmc.compile.steps import Frame, Step, is_elementwise_ufunc, make_step, plain_constant
 from xlmc.functions import Kind
 from xlmc.functions.values import Floats, Value
 
@@ -62,8 +62,8 @@ class Plan:
     def _reads(self, node: int) -> tuple[int, ...]:
         branches = self._placement.branches(node)
         if not branches:
-            return reads(self._dag, node)
-        return (*reads(self._dag, node), *(read for b in branches for read in self._placement.externals(b, ())))
+            return self._placement.reads(node)
+        return (*self._placement.reads(node), *(read for b in branches for read in self._placement.externals(b, ())))
 
     def _step(self, node: int, done: list[int], context: Context) -> Step:
         if self._placement.branches(node):

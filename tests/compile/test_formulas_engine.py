@@ -112,3 +112,11 @@ def test_array_formulas_are_refused(lower):
     with pytest.raises(FormulaError, match="no array formulas") as caught:
         FormulasProgram(lowering, [target], [], frozenset())
     assert caught.value.where == "S!C1"
+
+
+def test_a_formula_that_names_an_empty_cell_gives_zero(both):
+    ours, theirs = both({"C1": "=C9", "C2": "=C1&A1"}, [], ["C1", "C2", "C9"])
+    assert [values.tolist()[:1] for values, _ in ours[:1]] == [[0.0]]
+    for (_, codes), (_, their_codes) in zip(ours, theirs, strict=True):
+        assert (codes is None) is (their_codes is None)
+        assert codes is None or codes.tolist() == their_codes.tolist()

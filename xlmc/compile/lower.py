@@ -10,11 +10,13 @@ from typing import assert_never
 import numpy as np
 
 from xlmc.address import Area, Cell
-from xlmc.compile import choices, lambdas, places
+from xlmc.compile import choices, lambdas
 from xlmc.compile.arrays import cell_by_cell, element, grid, size_of
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Range
 from xlmc.compile.engine import Target
 from xlmc.compile.fallback import fallback
+from xlmc.compile.places import PLACES
+from xlmc.compile.references import NotYetNeeded, areas_of
 from xlmc.compile.scope import Scope
 from xlmc.compile.settings import as_set
 from xlmc.errors import ErrorCode, FormulaError, Notice
@@ -130,7 +132,7 @@ class Lowering:
             place = self.lower(tree, Scope(cell, array=formula.array is not None or formula.dynamic))
             self._arrays[cell] = place
             place = self.single(place)
-        except places.NotYetNeeded as needed:
+        except NotYetNeeded as needed:
             self.more.setdefault(cell, set()).update(needed.cells)
             return self._held_cell(cell)  # only until the graph is built again
         except FormulaError as error:
@@ -229,7 +231,7 @@ class Lowering:
 
     def _joined(self, tree: ir.Binary, scope: Scope) -> int:
         """References put together, where one value is wanted."""
-        areas = places.areas_of(self, tree, scope)
+        areas = areas_of(self, tree, scope)
         if areas is None or len(areas) != 1:
             raise FormulaError("several areas joined by commas stand where one value is needed")
         return self.lower(areas[0], scope)
@@ -245,7 +247,7 @@ class Lowering:
         return self.error(ErrorCode.VALUE)
 
     def _function_call(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int:
-        for special in (choices.CHOICES, places.PLACES, lambdas.LAMBDAS):
+        for special in (choices.CHOICES, PLACES, lambdas.LAMBDAS):
             if name in special:
                 made = special[name](self, arguments, scope)
                 if made is not None:
@@ -296,7 +298,7 @@ class Lowering:
 
     def whole(self, tree: ir.Expression, scope: Scope) -> list[int]:
         """An argument that may be a range: ranges whole, joined areas one by one, anything else as it computes."""
-        areas = places.areas_of(self, tree, scope)
+        areas = areas_of(self, tree, scope)
         if areas is None:
             return [self.lower(tree, scope.over_arrays() if _gives_area(tree) else scope)]
         return [self.range(area) for area in areas]

@@ -1,0 +1,229 @@
+"""References that are worked out while a formula is lowered: OFFSET, INDIRECT, INDEX, and choices between references.
+
+Their arguments must be known by then. What they lead to may lie outside the graph of needed cells, which cannot know it
+beforehand; `NotYetNeeded` then asks for a wider graph.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Final
+
+from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
+from xlmc.compile import choices
+from xlmc.compile.scope import Scope, Thunk
+from xlmc.errors import FormulaError
+from xlmc.formula import ir, parse
+
+if TYPE_CHECKING:
+    from xlmc.compile.lower import Lowering
+
+__all__ = ["REFERENCES", "NotYetNeeded", "OffTheSheet", "areas_of", "needed"]
+
+Arguments = tuple[ir.Expression, ...]
+
+_R1C1: Final = re.compile(r"(?:(?P<sheet>.+)!)?R(?P<r>\[-?\d+\]|\d+)?C(?P<c>\[-?\d+\]|\d+)?", re.IGNORECASE)
+
+
+class NotYetNeeded(Exception):  # noqa: N818 - it asks for more; nothing is wrong
+    """A reference leads to cells that the graph does not hold yet."""
+
+    def __init__(self, cells: Iterable[Cell]) -> None:
+        super().__init__()
+        self.cells = frozenset(cells)
+
+
+def areas_of(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
+    """The areas that a tree refers to; None where it is no reference.
+
+    Raises:
+        NotYetNeeded: see the class.
+        FormulaError: the reference depends on what varies.
+    """
+    match tree:
+        case Cell(sheet, row, column):
+            return [Area(sheet, row, column, row, column)]
+        case Area():
+            return [tree]
+        case ir.Binary(",", _, _):
+            return _union(lowering, tree, scope)
+        case ir.Binary(":" | " " as operator, left, right):
+            return _combined(lowering, operator, left, right, scope)
+        case ir.Call(name, arguments) if name in REFERENCES:
+            return REFERENCES[name](lowering, arguments, scope)
+        case ir.Variable(name):
+            bound = scope.variables.get(name)
+            return areas_of(lowering, bound.tree, bound.scope) if isinstance(bound, Thunk) else None
+        case _:
+            return None
+
+
+def _union(lowering: Lowering, tree: ir.Binary, scope: Scope) -> list[Area] | None:
+    first, rest = ir.chain(tree)
+    found = [areas_of(lowering, part, scope) for part in (first, *(part for _, part in rest))]
+    return None if any(areas is None for areas in found) else [area for areas in found for area in areas or ()]
+
+
+def _combined(
+    lowering: Lowering, operator: str, left: ir.Expression, right: ir.Expression, scope: Scope
+) -> list[Area] | None:
+    a, b = areas_of(lowering, left, scope), areas_of(lowering, right, scope)
+    if a is None or b is None or len(a) != 1 or len(b) != 1 or a[0].sheet != b[0].sheet:
+        raise FormulaError(f"the two sides of {operator!r} are not areas of one sheet")
+    tops, lefts = (a[0].top, b[0].top), (a[0].left, b[0].left)
+    bottoms, rights = (a[0].bottom, b[0].bottom), (a[0].right, b[0].right)
+    if operator == " ":
+        return [Area(a[0].sheet, max(tops), max(lefts), min(bottoms), min(rights))]
+    return [needed(lowering, Area(a[0].sheet, min(tops), min(lefts), max(bottoms), max(rights)))]
+
+
+def needed(lowering: Lowering, area: Area) -> Area:
+    """The area, once everything in it is lowered."""
+    missing = [cell for cell in area.cells() if lowering.awaits(cell)]
+    if missing:
+        raise NotYetNeeded(missing)
+    return area
+
+
+class OffTheSheet(Exception):  # noqa: N818 - `#REF!`, as a value
+    """A reference that leads off the sheet."""
+
+
+def _whole_number(lowering: Lowering, tree: ir.Expression, scope: Scope, function: str) -> int | None:
+    """A known argument, cut to a whole number; None where it is left out."""
+    if isinstance(tree, ir.Missing):
+        return None
+    known = lowering.known_single(lowering.single(lowering.lower(tree, scope)))
+    if known is None:
+        hint = "INDEX or a lookup function does the same with arguments that vary"
+        raise FormulaError(f"{function} depends on a value that varies; where it leads must be fixed", hint=hint)
+    numbers, errors = known.to_numbers()
+    if errors.any():
+        raise OffTheSheet
+    return int(numbers[0])
+
+
+def _offset(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    if not 3 <= len(arguments) <= 5:
+        raise FormulaError(f"OFFSET has {len(arguments)} arguments; it takes 3 to 5")
+    base = areas_of(lowering, arguments[0], scope)
+    if base is None or len(base) != 1:
+        raise FormulaError("OFFSET starts from a reference to one area")
+    numbers = [_whole_number(lowering, argument, scope, "OFFSET") for argument in arguments[1:]]
+    down, right = (numbers[0] or 0), (numbers[1] or 0)
+    height = numbers[2] if len(numbers) > 2 and numbers[2] is not None else base[0].rows
+    width = numbers[3] if len(numbers) > 3 and numbers[3] is not None else base[0].columns
+    top, left = base[0].top + down, base[0].left + right
+    if not height or not width:
+        raise OffTheSheet
+    rows, columns = _span(top, height), _span(left, width)
+    return [needed(lowering, _on_the_sheet(Area(base[0].sheet, rows[0], columns[0], rows[1], columns[1])))]
+
+
+def _span(start: int, count: int) -> tuple[int, int]:
+    """First and last; a negative count goes backwards."""
+    end = start + count - (1 if count > 0 else -1)
+    return min(start, end), max(start, end)
+
+
+def _on_the_sheet(area: Area) -> Area:
+    if area.top < 1 or area.left < 1 or area.bottom > MAX_ROW or area.right > MAX_COLUMN:
+        raise OffTheSheet
+    return area
+
+
+def _indirect(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    known = lowering.known_single(lowering.single(lowering.lower(arguments[0], scope)))
+    if known is None:
+        raise FormulaError("INDIRECT depends on a value that varies; where it leads must be fixed")
+    texts, errors = known.to_texts()
+    if errors.any():
+        raise OffTheSheet
+    a1 = len(arguments) < 2 or choices.decided(lowering, lowering.lower(arguments[1], scope))
+    tree = _read(lowering, str(texts[0])) if a1 else _read_r1c1(str(texts[0]), scope.cell)
+    found = None if tree is None else _resolved(lowering, tree, scope)
+    if found is None:
+        raise OffTheSheet
+    return [needed(lowering, area) for area in found]
+
+
+def _read(lowering: Lowering, text: str) -> ir.Expression | None:
+    try:
+        return parse(text)
+    except FormulaError:
+        return None
+
+
+def _resolved(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
+    """What a text refers to; None where it is no reference."""
+    try:
+        return areas_of(lowering, lowering.resolver.tree(tree, scope.cell), scope)
+    except FormulaError:
+        return None
+
+
+def _read_r1c1(text: str, host: Cell) -> ir.Expression | None:
+    found = _R1C1.fullmatch(text.strip())
+    if found is None:
+        return None
+    row, column = _step(found["r"], host.row), _step(found["c"], host.column)
+    return ir.Reference(ir.Corner(row, column, True, True), sheet=found["sheet"] and found["sheet"].strip("'"))
+
+
+def _step(text: str | None, base: int) -> int:
+    if text is None:
+        return base
+    return base + int(text[1:-1]) if text.startswith("[") else int(text)
+
+
+def _index(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    """INDEX of a reference at a known place; None leaves it to the function of values."""
+    if not 2 <= len(arguments) <= 4:
+        raise FormulaError(f"INDEX has {len(arguments)} arguments; it takes 2 to 4")
+    areas = areas_of(lowering, arguments[0], scope)
+    try:
+        numbers = [_whole_number(lowering, argument, scope, "INDEX") or 0 for argument in arguments[1:]]
+    except FormulaError:
+        return None
+    if areas is None or scope.array:
+        return None
+    which = numbers[2] if len(numbers) > 2 else 1
+    if not 1 <= which <= len(areas):
+        raise OffTheSheet
+    area = areas[which - 1]
+    row, column = (numbers[0], numbers[1]) if len(numbers) > 1 else (numbers[0], 0 if area.columns > 1 else 1)
+    if len(numbers) == 1 and area.rows == 1:
+        row, column = 1, numbers[0]
+    if row < 0 or column < 0 or row > area.rows or column > area.columns:
+        raise OffTheSheet
+    top, bottom = (area.top, area.bottom) if row == 0 else (area.top + row - 1,) * 2
+    left, right = (area.left, area.right) if column == 0 else (area.left + column - 1,) * 2
+    return [needed(lowering, Area(area.sheet, top, left, bottom, right))]
+
+
+def _chosen(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    """IF and CHOOSE of references, the choice being known."""
+    if not any(isinstance(part, Cell | Area | ir.Call) for part in arguments[1:]):
+        return None
+    known = lowering.known_single(lowering.single(lowering.lower(arguments[0], scope)))
+    if known is None or not known.plain:
+        return None
+    place = int(known.numbers[0])
+    return areas_of(lowering, arguments[place], scope) if 0 < place < len(arguments) else None
+
+
+def _either(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    condition = choices.decided(lowering, lowering.lower(arguments[0], scope)) if len(arguments) > 1 else None
+    if condition is None or (not condition and len(arguments) < 3):
+        return None
+    return areas_of(lowering, arguments[1 if condition else 2], scope)
+
+
+REFERENCES: Mapping[str, Callable[[Lowering, Arguments, Scope], list[Area] | None]] = {
+    "OFFSET": _offset,
+    "INDIRECT": _indirect,
+    "INDEX": _index,
+    "IF": _either,
+    "CHOOSE": _chosen,
+}

@@ -53,6 +53,9 @@ bonds = st.tuples(
 @given(bonds)
 def test_the_yield_is_found_again(evaluate, bond):
     settlement, maturity, rate, yield_, redemption, frequency, basis = bond
+    of_period = (settlement, maturity, frequency, basis)
+    if evaluate("COUPDAYS", *of_period) <= evaluate("COUPDAYBS", *of_period):
+        return  # by this basis nothing of the period is left to earn a yield in
     pr = evaluate("PRICE", *bond)
     if pr > 0:
         found = evaluate("YIELD", settlement, maturity, rate, pr, redemption, frequency, basis)

@@ -17,7 +17,6 @@ from xlmc.definitions import Assumption, Correlation, Definitions, Filter, Forec
 from xlmc.model import Model
 from xlmc.workbook.model import CellContent, DefinedName, Formula, Sheet, Table, Workbook
 
-
 # The same examples in every run of CI, so that a landing does not hang on chance; new ones at a desk.
 settings.register_profile("desk", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True)

@@ -103,7 +103,7 @@ def _counts(simulation: Simulation) -> Section:
         Entry("acceptance_error", "Its standard error", plain(simulation.acceptance.error)),
         Entry("error_trials", "Lost to errors", simulation.error_trials),
         Entry("undecided", "Not decided by a filter", simulation.tally.by_error),
-        Entry("invalid", "With parameters that are no distribution", sum(simulation.invalid.values())),
+        Entry("invalid", "Draws whose parameters are no distribution", sum(simulation.invalid.values())),
     )
     return Section("counts", "Trials", entries)
 

@@ -99,8 +99,9 @@ class Worker:
         draws = self._sampler.draw(start)
         columns = self._evaluator.filters(draws, self._block)
         invalid = {name: np.isnan(draws[name]) for name in sorted(self._fallible)}
-        kept = ~_any([*map(_fails, columns), *invalid.values()], self._block)
-        tally, undecided = _tally(columns, trials), _undecided(columns, trials)
+        fails, undecided = [_fails(column) for column in columns], _undecided(columns, trials)
+        kept = ~_any([*fails, *invalid.values()], self._block)
+        tally = _tally(columns, [rejected[:trials] for rejected in fails], undecided)
         survivors = np.flatnonzero(kept)
         forecasts = self._forecasts(survivors)
         survivors = survivors[: np.searchsorted(survivors, trials)]
@@ -132,9 +133,9 @@ def _any(masks: Sequence[Bools], n: int) -> Bools:
     return np.asarray(np.logical_or.reduce([np.zeros(n, bool), *masks]))
 
 
-def _tally(columns: Sequence[Column], trials: int) -> FilterTally:
-    """What the filters reject of a block's first `trials`."""
-    fails = [_fails(column)[:trials] for column in columns]
+def _tally(columns: Sequence[Column], fails: Sequence[Bools], undecided: Bools) -> FilterTally:
+    """What the filters reject of a block's first trials: `fails`, a mask (n,) each, and `undecided` (n,)."""
+    trials = undecided.size
     tally = FilterTally.empty(len(columns))
     count = np.zeros(trials, np.uint16)
     for rejected in fails:
@@ -145,7 +146,7 @@ def _tally(columns: Sequence[Column], trials: int) -> FilterTally:
         for j in range(i + 1):
             tally.together[i, j] = tally.together[j, i] = np.count_nonzero(mine & fails[j])
         tally.errors[i] = _faults(columns[i], trials)
-    tally.by_error = int(np.count_nonzero(_undecided(columns, trials)))
+    tally.by_error = int(np.count_nonzero(undecided))
     return tally
 
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
 from xlmc.collecting import paused_collection
-from xlmc.compile import ENGINES, Lowering, Program, Target
+from xlmc.compile import ENGINES, Lowering, Program, Target, widened
 from xlmc.definitions import Assumption, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key
 from xlmc.drawing import correlated_groups, draw_of, dynamic_parameters
@@ -48,17 +48,17 @@ def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:
 
 
 def _understood(workbook: Workbook, definitions: Definitions) -> tuple[Scene, Lowering]:
-    """What is needed, lowered; again and wider as long as OFFSET and its like lead to cells that were not."""
+    """What is needed, and lowered."""
     inputs = {a.cell: name_key(a.name) for a in definitions.assumptions if not a.frozen}
     held = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
-    more: dict[Cell, set[Cell]] = {}
-    while True:
-        scene = survey(workbook, definitions, more)
-        lowering = Lowering(scene.graph, inputs, held)
-        if not lowering.more:
-            return scene, lowering
-        for cell, needed in lowering.more.items():
-            more.setdefault(cell, set()).update(needed)
+    scenes: list[Scene] = []
+
+    def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
+        scenes.append(survey(workbook, definitions, more))
+        return Lowering(scenes[-1].graph, inputs, held)
+
+    lowering = widened(lower)
+    return scenes[-1], lowering
 
 
 class Model:

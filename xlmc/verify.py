@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
 from xlmc.address import Cell
-from xlmc.compile import Lowering
+from xlmc.compile import Lowering, widened
 from xlmc.definitions import Definitions
 from xlmc.errors import ErrorCode
 from xlmc.formula import Resolver, build_graph
@@ -89,14 +89,11 @@ def verify(workbook: Workbook, definitions: Definitions | None = None) -> Verifi
 
 def _lowered(workbook: Workbook, wanted: Sequence[Cell]) -> Lowering:
     resolver = Resolver(workbook, strict=False)
-    more: dict[Cell, set[Cell]] = {}
-    while True:
-        graph = build_graph(resolver, wanted, frozenset(), more=more, strict=False)
-        lowering = Lowering(graph, {}, {}, audit=True)
-        if not lowering.more:
-            return lowering
-        for cell, needed in lowering.more.items():
-            more.setdefault(cell, set()).update(needed)
+
+    def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
+        return Lowering(build_graph(resolver, wanted, frozenset(), more=more, strict=False), {}, {}, audit=True)
+
+    return widened(lower)
 
 
 def _all_formulas(workbook: Workbook) -> list[Cell]:

@@ -6,8 +6,9 @@ from xlmc.compile.engine import Column, Evaluator, Program, Target
 from xlmc.compile.formulas_engine import FormulasProgram
 from xlmc.compile.lower import Lowering
 from xlmc.compile.numpy_engine import NumpyProgram
+from xlmc.compile.widening import widened
 
-__all__ = ["ENGINES", "Column", "Evaluator", "Lowering", "Program", "Target"]
+__all__ = ["ENGINES", "Column", "Evaluator", "Lowering", "Program", "Target", "widened"]
 
 ENGINES: Mapping[str, Callable[..., Program]] = {"numpy": NumpyProgram, "formulas": FormulasProgram}
 """Name of an engine -> program of (lowering, filters, forecasts, inputs whose draws may be errors)."""

@@ -10,8 +10,9 @@ from collections.abc import Callable
 import numpy as np
 
 from xlmc.functions.arguments import earliest, first_errors
+from xlmc.functions.picking import flattened
 from xlmc.functions.registry import Cells, excel
-from xlmc.functions.samples import mean_of, rows_of, spread_of
+from xlmc.functions.samples import mean_of, spread_of
 from xlmc.functions.values import BLANK, DIV0, Bools, Codes, Floats, Value
 
 __all__: list[str] = []
@@ -22,7 +23,7 @@ def _columns(value: Value) -> tuple[Floats, Bools, Codes]:
     in_range = value.numbers.ndim == 3
     x, errors = (value.numbers, value.errors) if in_range else value.to_numbers()
     counts = (value.kinds != BLANK) | (not in_range)
-    x, counts, errors = (rows_of(array, value) for array in (x, counts & (errors == 0), errors))
+    x, counts, errors = (flattened(array, value) for array in (x, counts & (errors == 0), errors))
     return x, counts, errors
 
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong
-from xlmc.functions.picking import Places
+from xlmc.functions.picking import Places, flattened
 from xlmc.functions.registry import Cells, Kind, Number, excel
-from xlmc.functions.samples import laid_out, pairs_of, places_of, row_sums, rows_of, sample_of
+from xlmc.functions.samples import laid_out, pairs_of, places_of, row_sums, sample_of
 from xlmc.functions.values import ERROR, NA, NUM, NUMBER, Bools, Codes, Floats, Value
 
 __all__: list[str] = []
@@ -50,9 +50,9 @@ def _modes_of(values: tuple[Value, ...]) -> _Modes:
 def _listed(value: Value) -> tuple[Floats, Bools, Codes]:
     """Numbers, which cells hold one, and errors: (n, k) each. A value or cell by itself must be a number."""
     alone = value.shape[1:] in ((), (1, 1))
-    kinds = rows_of(value.kinds, value)
+    kinds = flattened(value.kinds, value)
     wrong = where_wrong(alone & (kinds != NUMBER) & (kinds < ERROR), ErrorCode.VALUE)
-    return rows_of(value.numbers, value), kinds == NUMBER, earliest(rows_of(value.errors, value), wrong)
+    return flattened(value.numbers, value), kinds == NUMBER, earliest(flattened(value.errors, value), wrong)
 
 
 def _places_of_modes(x: Floats, counts: Bools) -> Places:

@@ -13,8 +13,8 @@ import numpy as np
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong
 from xlmc.functions.least_squares import Fit, fit
+from xlmc.functions.picking import flattened
 from xlmc.functions.registry import Anything, Cells, Kind, excel
-from xlmc.functions.samples import rows_of
 from xlmc.functions.values import BLANK, ERROR, NA, NUM, NUMBER, Bools, Codes, Floats, Value, constant
 
 __all__: list[str] = []
@@ -55,9 +55,9 @@ def _given(value: Value | None) -> Value | None:
 def _numbers(value: Value) -> tuple[Floats, Codes]:
     """A range all of numbers (n, r, c), and its first error: (n,)."""
     cells = value.as_range()
-    kinds = rows_of(cells.kinds, cells)
+    kinds = flattened(cells.kinds, cells)
     wrong = where_wrong((kinds != NUMBER) & (kinds < ERROR), ErrorCode.VALUE)
-    return np.broadcast_to(cells.numbers, cells.shape), first_errors(earliest(rows_of(cells.errors, cells), wrong))
+    return np.broadcast_to(cells.numbers, cells.shape), first_errors(earliest(flattened(cells.errors, cells), wrong))
 
 
 def _known(ys: Value, xs: Value | None) -> _Known | None:
@@ -91,7 +91,7 @@ def _switch(value: Value | None, otherwise: bool) -> tuple[Bools, Codes]:
         return np.full(1, otherwise), np.zeros(1, np.uint8)
     truth, errors = value.to_logicals()
     truth = np.where((value.kinds == BLANK) & (value.numbers.ndim == 1), otherwise, truth)
-    return rows_of(truth, value)[:, 0], rows_of(errors, value)[:, 0]
+    return flattened(truth, value)[:, 0], flattened(errors, value)[:, 0]
 
 
 def _logarithms(known: _Known) -> _Known:

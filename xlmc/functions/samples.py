@@ -9,12 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import wraps
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from xlmc.functions.arguments import earliest, first_errors, leveled
+from xlmc.functions.picking import flattened
 from xlmc.functions.values import NA, NUMBER, Bools, Codes, Floats, Value
 
 __all__ = [
@@ -26,7 +25,6 @@ __all__ = [
     "pairs_of",
     "places_of",
     "row_sums",
-    "rows_of",
     "sample_of",
     "spread_of",
 ]
@@ -93,17 +91,12 @@ class Sample:
         return np.stack(found, axis=1).astype(np.float64)
 
 
-def rows_of(array: NDArray[Any], value: Value) -> Any:
-    """An array that broadcasts to `value`, a row per trial: -> (n, k)."""
-    return np.broadcast_to(array, value.shape).reshape(value.shape[0], -1)
-
-
 def sample_of(value: Value) -> Sample:
     """The numbers of a range, or the one number given directly."""
     in_range = value.numbers.ndim == 3
     x, errors = (value.numbers, value.errors) if in_range else value.to_numbers()
     counts = value.kinds == NUMBER if in_range else errors == 0
-    return Sample(rows_of(x, value), rows_of(counts, value), rows_of(errors, value))
+    return Sample(flattened(x, value), flattened(counts, value), flattened(errors, value))
 
 
 def pairs_of(first: Value, second: Value) -> tuple[Floats, Floats, Bools, Codes] | None:
@@ -138,7 +131,7 @@ def places_of(*values: Value) -> tuple[list[Floats], list[Codes], tuple[int, ...
     shape = np.broadcast_shapes(*(value.shape for value in level))
     found = [value.to_numbers() for value in level]
     whole = Value(np.zeros(shape), np.zeros(shape, np.uint8))
-    return [rows_of(x, whole) for x, _ in found], [rows_of(codes, whole) for _, codes in found], shape
+    return [flattened(x, whole) for x, _ in found], [flattened(codes, whole) for _, codes in found], shape
 
 
 def laid_out(result: Floats, errors: Codes, shape: tuple[int, ...]) -> Value:

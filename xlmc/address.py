@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 __all__ = ["MAX_COLUMN", "MAX_ROW", "Area", "Cell", "column_letters", "column_number", "parse_address", "quote_sheet"]
 
@@ -17,9 +18,8 @@ _PLAIN_SHEET = re.compile(r"[^\W\d][\w.]*")
 _LOOKS_LIKE_A_CELL = re.compile(r"[A-Za-z]{1,3}[0-9]+|[Rr][0-9]*[Cc][0-9]*|[Rr]|[Cc]")
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Cell:
-    """One cell; rows and columns count from 1."""
+class Cell(NamedTuple):
+    """One cell; rows and columns count from 1. A tuple, because large books make millions and look them up in dicts."""
 
     sheet: str
     row: int

@@ -51,10 +51,10 @@ def test_what_differs_in_more_than_a_shift_has_another(one, at, other, there):
 
 def test_a_shape_is_parsed_once():
     shapes = Shapes()
-    first, _ = shapes.parse("A1+$B$1", 1, 3)
-    again, origin = shapes.parse("A500+$B$1", 500, 3)
+    first = shapes.parse("A1+$B$1", 1, 3)
+    again = shapes.parse("A500+$B$1", 500, 3)
     assert again is first
-    assert origin == (1, 3)
+    assert again.origin == (1, 3)
 
 
 PIECES = ["A1", "B$2", "$C3", "$D$4", "A1:B3", "A:A", "$A:B", "2:3", "1:$2", "Data!A2", "YAW1", '"A1"', "T[A1]", "10"]

@@ -16,12 +16,13 @@ from xlmc.functions.values import Value
 __all__ = ["branch_step"]
 
 
-def branch_step(dag: Dag, placement: Placement, place: int, parent: Context) -> Step:
-    """The step of an `IF` of the context `parent` with at least one branch in a context of its own."""
+def branch_step(dag: Dag, placement: Placement, place: int) -> Step:
+    """The step of an `IF` with at least one branch in a context of its own."""
     select = dag.nodes[place]
     assert isinstance(select, Select)
-    contexts = [Context(parent, place, branch, parent.depth + 1) for branch in (1, 0)]
-    yes, no = (_Branch(dag, placement, *part) for part in zip(contexts, (select.yes, select.no), strict=True))
+    contexts = {context.branch: context for context in placement.branches(place)}
+    yes = _Branch(dag, placement, contexts.get(1), select.yes)
+    no = _Branch(dag, placement, contexts.get(0), select.no)
     dtype = np.bool_ if dag.types[place] is Kind.LOGICAL else np.float64
 
     def step(frame: Frame) -> None:
@@ -41,10 +42,13 @@ def _truth(condition: NDArray[Any]) -> NDArray[np.bool_]:
 
 
 class _Branch:
-    def __init__(self, dag: Dag, placement: Placement, context: Context, result: int) -> None:
+    """What a branch computes; without a context of its own, its result alone is taken."""
+
+    def __init__(self, dag: Dag, placement: Placement, context: Context | None, result: int) -> None:
         self._result = result
         self._outside = placement.externals(context, [result])
-        self._steps = [_step(dag, placement, node, context) for node in placement.members(context)]
+        members = [] if context is None else placement.members(context)
+        self._steps = [_step(dag, placement, node) for node in members]
 
     def run(self, frame: Frame, index: NDArray[np.intp]) -> Any:
         """The branch's value on the trials of `index`; for that long the values from outside are those of `index`."""
@@ -61,7 +65,5 @@ class _Branch:
         return result
 
 
-def _step(dag: Dag, placement: Placement, place: int, context: Context) -> Step:
-    if placement.branches(place):
-        return branch_step(dag, placement, place, context)
-    return make_step(dag, place, None)
+def _step(dag: Dag, placement: Placement, place: int) -> Step:
+    return branch_step(dag, placement, place) if placement.branches(place) else make_step(dag, place, None)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, assert_never
+from typing import Any, Final, NamedTuple, assert_never
 
 import numpy as np
 
@@ -44,9 +44,8 @@ class Input:
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class Apply:
-    """A function of the registry."""
+class Apply(NamedTuple):
+    """A function of the registry. A tuple, because nearly every node is one, and looked up in a dict."""
 
     function: Function
     arguments: tuple[int, ...]
@@ -130,12 +129,14 @@ class Dag:
         nodes: by place.
         types: what each gives where it is no error; ANY where that is not known before the run, or is many cells.
         sizes: of each.
+        made: where it is a list, the nodes asked for are noted in it, whether they were new or not.
     """
 
     def __init__(self) -> None:
         self.nodes: list[Node] = []
         self.types: list[Kind] = []
         self.sizes: list[Size] = []
+        self.made: list[int] | None = None
         self._known: dict[object, int] = {}
 
     def constant(self, value: Value) -> int:
@@ -153,6 +154,22 @@ class Dag:
         Raises:
             ValueError: parts of many cells have sizes that do not go together.
         """
+        place = self._add(node)
+        if self.made is not None and not isinstance(self.nodes[place], Constant):
+            self.made.append(place)
+        return place
+
+    def again(self, node: Apply | Select | Rescue | Range, kind: Kind, size: Size) -> int:
+        """The place of a node like one added before, with the type and size of that."""
+        place = self._known.get(node)
+        if place is None:
+            self._known[node] = place = len(self.nodes)
+            self.nodes.append(node)
+            self.types.append(kind)
+            self.sizes.append(size)
+        return place
+
+    def _add(self, node: Apply | Select | Rescue | Range) -> int:
         if node in self._known:
             return self._known[node]
         if isinstance(node, Apply) and self._is_plain(node):

@@ -13,7 +13,7 @@ from xlmc.compile.engine import Column, Evaluator, Target, column_of
 from xlmc.compile.lower import Lowering
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import compile_with_formulas, formula_text, ir
-from xlmc.formula.graph import references
+from xlmc.formula.references import references
 from xlmc.functions.values import Floats, from_objects
 
 __all__ = ["FormulasProgram"]

@@ -16,11 +16,12 @@ from xlmc.compile.dag import Apply, Constant, Dag, Input, Range
 from xlmc.compile.engine import Target
 from xlmc.compile.fallback import fallback
 from xlmc.compile.places import PLACES
+from xlmc.compile.recipes import Recipes
 from xlmc.compile.references import NotYetNeeded, areas_of
 from xlmc.compile.scope import Scope
 from xlmc.compile.settings import as_set
 from xlmc.errors import ErrorCode, FormulaError, Notice
-from xlmc.formula import Graph, Resolver, ir
+from xlmc.formula import Graph, Resolver, Stencil, ir
 from xlmc.functions import REGISTRY, Function, Kind, function_named
 from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.registry import Anything
@@ -74,8 +75,9 @@ class Lowering:
         self._numbers: dict[float, int] = {}
         self._cells: dict[Cell, int] = {cell: self.dag.input(name) for cell, name in inputs.items()}
         self._cells |= {cell: self.dag.constant(constant(value)) for cell, value in held.items()}
-        for cell, tree in graph.formulas.items():
-            self._computed[cell] = place = self._formula_cell(cell, tree)
+        self._recipes = Recipes(self.dag)
+        for cell, placed in graph.formulas.placed.items():
+            self._computed[cell] = place = self._formula_cell(cell, placed)
             saved = graph.workbook.content(cell).value if audit else None
             self._cells[cell] = place if saved is None else self._held_cell(cell)
 
@@ -122,7 +124,15 @@ class Lowering:
         """The node of an error."""
         return self.dag.constant(constant(code))
 
-    def _formula_cell(self, cell: Cell, tree: ir.Expression) -> int:
+    def _formula_cell(self, cell: Cell, placed: ir.Expression | Stencil) -> int:
+        if not isinstance(placed, Stencil):
+            return self._resolved_cell(cell, placed)
+        if self._audit:
+            return self._resolved_cell(cell, placed.at(cell))
+        leaves = [self.cell(leaf) for leaf in placed.cells(cell)]
+        return self._recipes.lowered(placed, leaves, lambda: self._resolved_cell(cell, placed.at(cell)))
+
+    def _resolved_cell(self, cell: Cell, tree: ir.Expression) -> int:
         formula = self.graph.workbook.content(cell).formula
         try:
             if cell in self.graph.faults:

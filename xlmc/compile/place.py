@@ -8,9 +8,8 @@ no error is not worth its own context and is evaluated with its parent.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache, partial
 from typing import Final
 
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Select
@@ -20,7 +19,7 @@ from xlmc.functions import Kind
 __all__ = ["ROOT", "SURVIVORS", "Context", "Placement"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Context:
     """One set of trials: `select` and `branch` (1 yes, 0 no) say which of the parent's."""
 
@@ -39,27 +38,26 @@ _DEEPEST: Final = 8
 _SAFE = {"+", "-", "*", "u-", "u+", "%", "=", "<>", "<", "<=", ">", ">=", "NOT", "ABS", "SIGN", "MIN", "MAX", "SUM"}
 
 
-Reads = Callable[[int], tuple[int, ...]]
-
-
 class Placement:
     """The context of every varying node that `first` (all trials) and `late` (survivors) need on the fast path.
 
     Attributes:
-        reads: the nodes whose values the step of a node needs.
+        reads: by node, the nodes whose values its step needs.
     """
 
     def __init__(self, dag: Dag, first: Sequence[int], late: Sequence[int]) -> None:
         self._dag = dag
-        self.reads: Reads = cache(partial(reads, dag))
+        self.reads: dict[int, tuple[int, ...]] = {}
+        contexts = self._contexts(first, late)
+        hoisted = _without_safe_branches(dag, contexts)
         self._members: defaultdict[Context, list[int]] = defaultdict(list)
-        contexts = _without_safe_branches(dag, _contexts(dag, self.reads, first, late))
-        for node, context in sorted(contexts.items()):
-            self._members[context].append(node)
+        for node in reversed(contexts):  # they were found from the last to the first
+            context = contexts[node]
+            self._members[hoisted.get(context, context)].append(node)
         self._inner: defaultdict[Context, list[Context]] = defaultdict(list)
         self._branches: defaultdict[int, list[Context]] = defaultdict(list)
-        for context in {outer for inner in self._members for outer in _outwards(inner)} - {ROOT, SURVIVORS}:
-            if context.parent is not None:
+        for context in dict.fromkeys(outer for inner in self._members for outer in _outwards(inner)):
+            if context.parent is not None and context is not SURVIVORS:
                 self._inner[context.parent].append(context)
                 self._branches[context.select].append(context)
 
@@ -71,10 +69,10 @@ class Placement:
         """The branches of an `IF` that hold nodes of their own."""
         return self._branches.get(place, [])
 
-    def externals(self, context: Context, results: Iterable[int]) -> list[int]:
-        """The varying nodes that a context, its inner contexts included, takes from outside it."""
-        inside = set(self._inside(context))
-        read = {used for node in inside for used in self.reads(node)} | set(results)
+    def externals(self, context: Context | None, results: Iterable[int]) -> list[int]:
+        """The varying nodes that a context, its inner contexts included, takes from outside it; None has no nodes."""
+        inside = set() if context is None else set(self._inside(context))
+        read = {used for node in inside for used in self.reads[node]} | set(results)
         return sorted(node for node in read - inside if not isinstance(self._dag.nodes[node], Constant))
 
     def _inside(self, context: Context) -> Iterator[int]:
@@ -82,45 +80,55 @@ class Placement:
         for inner in self._inner.get(context, ()):
             yield from self._inside(inner)
 
-
-def _contexts(dag: Dag, reads: Reads, first: Sequence[int], late: Sequence[int]) -> dict[int, Context]:
-    contexts: dict[int, Context] = {}
-    _use(dag, contexts, first, ROOT)
-    _use(dag, contexts, late, SURVIVORS)
-    needed = dag.upstream([*first, *late], reads)
-    for node in reversed(needed):
-        for used, context in _edges(dag, reads, node, contexts[node]):
-            _use(dag, contexts, [used], context)
-    return {node: contexts[node] for node in needed}
-
-
-def _edges(dag: Dag, reads: Reads, place: int, context: Context) -> list[tuple[int, Context]]:
-    match dag.nodes[place]:
-        case Select(condition, yes, no) if _divides(dag, place, condition, context):
-            return [(condition, context), (yes, _branch(context, place, 1)), (no, _branch(context, place, 0))]
-        case _:
-            return [(used, context) for used in reads(place)]
+    def _contexts(self, first: Sequence[int], late: Sequence[int]) -> dict[int, Context]:
+        """The context of each needed node, from the last node to the first."""
+        nodes, types = self._dag.nodes, self._dag.types
+        wanted: list[Context | None] = [None] * len(nodes)
+        for places, context in ((first, ROOT), (late, SURVIVORS)):
+            for place in places:
+                wanted[place] = _common(wanted[place], context)
+        found: dict[int, Context] = {}
+        for place in range(len(nodes) - 1, -1, -1):
+            at = wanted[place]
+            node = nodes[place]
+            if at is None or type(node) is Constant:
+                continue
+            if type(node) is Input:
+                at = _undivided(at)  # draws are there for all trials
+            found[place] = at
+            simple = type(node) is Apply and not node.function.takes_sets
+            self.reads[place] = read = node.arguments if simple else reads(self._dag, place)
+            if type(node) is Select and at.depth < _DEEPEST and _divides(types[place], types[node.condition]):
+                edges = [(node.condition, at), (node.yes, _branch(at, place, 1)), (node.no, _branch(at, place, 0))]
+                for used, inner in edges:
+                    wanted[used] = _common(wanted[used], inner)
+                continue
+            for used in read:
+                if wanted[used] is not at:
+                    wanted[used] = _common(wanted[used], at)
+        return found
 
 
 def _branch(parent: Context, select: int, branch: int) -> Context:
     return Context(parent, select, branch, parent.depth + 1)
 
 
-def _divides(dag: Dag, place: int, condition: int, context: Context) -> bool:
+def _divides(result: Kind, condition: Kind) -> bool:
     """Whether the trials can be parted by the condition at sight, and the results put together again."""
-    return {dag.types[place], dag.types[condition]} <= {Kind.NUMBER, Kind.LOGICAL} and context.depth < _DEEPEST
+    return {result, condition} <= {Kind.NUMBER, Kind.LOGICAL}
 
 
-def _use(dag: Dag, contexts: dict[int, Context], places: Sequence[int], context: Context) -> None:
-    for used in places:
-        wanted = context
-        while isinstance(dag.nodes[used], Input) and wanted.select >= 0 and wanted.parent is not None:
-            wanted = wanted.parent  # draws are there for all trials
-        contexts[used] = _common(contexts[used], wanted) if used in contexts else wanted
+def _undivided(context: Context) -> Context:
+    while context.select >= 0 and context.parent is not None:
+        context = context.parent
+    return context
 
 
-def _common(a: Context, b: Context) -> Context:
-    while a is not b and a != b:
+def _common(a: Context | None, b: Context) -> Context:
+    """The narrowest context that holds the trials of both; of nothing yet and one, that one."""
+    if a is None:
+        return b
+    while a is not b:
         if a.depth >= b.depth and a.parent is not None:
             a = a.parent
         elif b.parent is not None:
@@ -135,16 +143,16 @@ def _outwards(context: Context) -> Iterator[Context]:
         inner = inner.parent
 
 
-def _without_safe_branches(dag: Dag, contexts: dict[int, Context]) -> dict[int, Context]:
+def _without_safe_branches(dag: Dag, contexts: dict[int, Context]) -> dict[Context, Context]:
+    """The branches in which nothing can err, and the nearest context around that is kept."""
     kept = {ROOT, SURVIVORS}
     for node, context in contexts.items():
         if context not in kept and not _is_safe(dag, node):
             kept.update(_outwards(context))
-    return {node: _hoisted(context, kept) for node, context in contexts.items()}
+    return {context: _kept(context, kept) for context in set(contexts.values()) - kept}
 
 
-def _hoisted(context: Context, kept: set[Context]) -> Context:
-    """The nearest context around that is kept."""
+def _kept(context: Context, kept: set[Context]) -> Context:
     while context not in kept and context.parent is not None:
         context = context.parent
     return context

@@ -13,7 +13,8 @@ from xlmc.compile.buffers import Buffers
 from xlmc.compile.dag import Dag, Input, constants
 from xlmc.compile.engine import Column, column_of
 from xlmc.compile.place import ROOT, SURVIVORS, Context, Placement
-from xlmc.compile.steps import Frame, Step, is_elementwise_ufunc, make_step, plain_constant
+from xlmc.compile.sequence import Steps
+from xlmc.compile.steps import Frame, Step, plain_constant
 from xlmc.functions import Kind
 from xlmc.functions.values import Floats, Value
 
@@ -48,34 +49,26 @@ class Plan:
 
     def _steps(self, context: Context, keep: set[int], free_at_end: Sequence[int]) -> list[Step]:
         """The steps of one context; `keep` outlives them."""
-        members = self._placement.members(context)
-        computed = [node for node in members if not isinstance(self._dag.nodes[node], Input)]
-        read = {node: self._reads(node) for node in computed}
+        nodes, branches = self._dag.nodes, self._placement.branches
+        computed = [node for node in self._placement.members(context) if type(nodes[node]) is not Input]
+        read = {node: self._reads(node) if branches(node) else self._placement.reads[node] for node in computed}
         last = {needed: node for node in computed for needed in read[node]}
-        steps = []
+        steps = Steps(self._dag, self.buffers)
         for node in computed:
-            done = [needed for needed in dict.fromkeys(read[node]) if last[needed] == node and needed not in keep]
-            steps.append(self._step(node, done, context))
+            done = [needed for needed in read[node] if last[needed] == node and needed not in keep]
+            if branches(node):
+                self.buffers.free(done)
+                steps.append(branch_step(self._dag, self._placement, node))
+            else:
+                steps.add(node, done)
         self.buffers.free(node for node in free_at_end if node not in self._carried)
-        return steps
+        return steps.finish()
 
     def _reads(self, node: int) -> tuple[int, ...]:
+        """What an `IF` needs, its branches included."""
         branches = self._placement.branches(node)
-        if not branches:
-            return self._placement.reads(node)
-        return (*self._placement.reads(node), *(read for b in branches for read in self._placement.externals(b, ())))
-
-    def _step(self, node: int, done: list[int], context: Context) -> Step:
-        if self._placement.branches(node):
-            self.buffers.free(done)
-            return branch_step(self._dag, self._placement, node, context)
-        early = is_elementwise_ufunc(self._dag, node)
-        if early:
-            self.buffers.free(done)
-        buffer = self.buffers.take(node)
-        if not early:
-            self.buffers.free(done)
-        return make_step(self._dag, node, buffer)
+        inner = (read for branch in branches for read in self._placement.externals(branch, ()))
+        return (*self._placement.reads[node], *inner)
 
     def _carry(self, node: int) -> int | None:
         """A buffer for the survivors of a node that the first steps computed."""

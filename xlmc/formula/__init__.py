@@ -4,11 +4,13 @@ from xlmc.formula import ir
 from xlmc.formula.graph import Graph, build_graph
 from xlmc.formula.parse import compile_with_formulas, foreign_functions, parse
 from xlmc.formula.resolve import Resolver
+from xlmc.formula.stencil import Stencil
 from xlmc.formula.text import formula_text
 
 __all__ = [
     "Graph",
     "Resolver",
+    "Stencil",
     "build_graph",
     "compile_with_formulas",
     "foreign_functions",

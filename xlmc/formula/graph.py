@@ -4,32 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import assert_never
 
 from xlmc.address import Area, Cell
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
+from xlmc.formula.references import references
 from xlmc.formula.resolve import Resolver
 from xlmc.formula.spills import Spills
+from xlmc.formula.stencil import Stencil
 from xlmc.workbook.model import Workbook
 
-__all__ = ["Graph", "build_graph", "references"]
+__all__ = ["Graph", "Trees", "build_graph"]
 
 
-_LOOKED_AT = {
-    "ROW",
-    "COLUMN",
-    "ROWS",
-    "COLUMNS",
-    "AREAS",
-    "SHEET",
-    "SHEETS",
-    "ISREF",
-    "ISFORMULA",
-    "FORMULATEXT",
-    "CELL",
-}
-"""Functions that ask where their arguments are, not what they hold."""
+class Trees(Mapping[Cell, ir.Expression]):
+    """The resolved trees of formula cells; those of a stencil are made when they are asked for."""
+
+    def __init__(self, placed: Mapping[Cell, ir.Expression | Stencil]) -> None:
+        self.placed = placed
+
+    def __getitem__(self, cell: Cell) -> ir.Expression:
+        found = self.placed[cell]
+        return found.at(cell) if isinstance(found, Stencil) else found
+
+    def __iter__(self) -> Iterator[Cell]:
+        return iter(self.placed)
+
+    def __len__(self) -> int:
+        return len(self.placed)
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class Graph:
     """
 
     workbook: Workbook
-    formulas: Mapping[Cell, ir.Expression]
+    formulas: Trees
     needs: Mapping[Cell, tuple[Cell, ...]]
     varying: frozenset[Cell]
     reached: frozenset[Cell]
@@ -80,59 +82,92 @@ def build_graph(
     Raises:
         FormulaError: a needed formula cannot be read, or the needed cells form a cycle.
     """
-    formulas: dict[Cell, ir.Expression] = {}
-    needs: dict[Cell, tuple[Cell, ...]] = {}
-    reached: set[Cell] = set()
-    trail: dict[Cell, Iterator[Cell]] = {}
-    trees: dict[Cell, ir.Expression] = {}
-    faults: dict[Cell, FormulaError] = {}
-
-    def enter(cell: Cell) -> None:
-        if cell in given:
-            reached.add(cell)
-        elif cell in trail:
-            loop = [*trail][[*trail].index(cell) :]
-            if strict:
-                raise _cycle(loop)
-            faults.update(dict.fromkeys(loop, _cycle(loop)))  # one message: it is as long as the loop
-        elif cell not in formulas and (tree := read(cell)) is not None:
-            trees[cell] = tree
-            needs[cell] = (*_precedents(workbook, spills, tree, given), *(more or {}).get(cell, ()))
-            trail[cell] = iter(needs[cell])
-
-    def read(cell: Cell) -> ir.Expression | None:
-        try:
-            return _tree(resolver, spills, cell)
-        except FormulaError as error:
-            if strict:
-                raise
-            faults[cell] = error
-            return ir.Missing()
-
-    workbook, spills, given = resolver.workbook, Spills(resolver.workbook), inputs | held
+    walk = _Walk(resolver, inputs | held, more or {}, strict)
     for target in targets:
-        enter(target)
+        walk.upstream(target)
+    varying = _varying(walk.placed, walk.needs, walk.reached & inputs)
+    reached = frozenset(walk.reached)
+    return Graph(resolver.workbook, Trees(walk.placed), walk.needs, varying, reached, walk.faults)
+
+
+class _Walk:
+    """Upstream through the precedents, depth first, each formula cell once."""
+
+    def __init__(
+        self, resolver: Resolver, given: frozenset[Cell], more: Mapping[Cell, Iterable[Cell]], strict: bool
+    ) -> None:
+        self._resolver, self._given, self._more, self._strict = resolver, given, more, strict
+        self._workbook, self._spills = resolver.workbook, Spills(resolver.workbook)
+        self.placed: dict[Cell, ir.Expression | Stencil] = {}
+        self.needs: dict[Cell, tuple[Cell, ...]] = {}
+        self.reached: set[Cell] = set()
+        self.faults: dict[Cell, FormulaError] = {}
+        self._trail: dict[Cell, Iterator[Cell]] = {}
+        self._open: dict[Cell, ir.Expression | Stencil] = {}
+        self._computed: dict[Cell, bool] = {}
+
+    def upstream(self, target: Cell) -> None:
+        """Place a cell after all that it needs."""
+        trail, placed = self._trail, self.placed
+        self._enter(target)
         while trail:
             cell = next(reversed(trail))
-            following = next(trail[cell], None)
-            if following is not None:
-                enter(following)
+            before = len(trail)
+            for following in trail[cell]:
+                if following not in placed:
+                    self._enter(following)
+                    if len(trail) > before:
+                        break
             else:
-                formulas[cell] = trees[cell]
-                trail.popitem()
-    return Graph(workbook, formulas, needs, _varying(formulas, needs, reached & inputs), frozenset(reached), faults)
+                placed[cell] = self._open.pop(cell)
+                del trail[cell]
 
+    def _enter(self, cell: Cell) -> None:
+        if cell in self._given:
+            self.reached.add(cell)
+        elif cell in self._trail:
+            self._close_circle(cell)
+        elif cell not in self.placed and (found := self._read(cell)) is not None:
+            self._open[cell] = found
+            self.needs[cell] = needs = self._precedents(cell, found)
+            self._trail[cell] = iter(needs)
 
-def _tree(resolver: Resolver, spills: Spills, cell: Cell) -> ir.Expression | None:
-    formula = resolver.workbook.content(cell).formula
-    return spills.anchor(cell) if formula is None else resolver.formula(cell, formula)
+    def _close_circle(self, cell: Cell) -> None:
+        loop = [*self._trail][[*self._trail].index(cell) :]
+        if self._strict:
+            raise _cycle(loop)
+        self.faults.update(dict.fromkeys(loop, _cycle(loop)))  # one message: it is as long as the loop
 
+    def _read(self, cell: Cell) -> ir.Expression | Stencil | None:
+        formula = self._workbook.content(cell).formula
+        if formula is None:
+            return self._spills.anchor(cell)
+        try:
+            return self._resolver.placed(cell, formula)
+        except FormulaError as error:
+            if self._strict:
+                raise
+            self.faults[cell] = error
+            return ir.Missing()
 
-def _precedents(workbook: Workbook, spills: Spills, tree: ir.Expression, inputs: frozenset[Cell]) -> Iterator[Cell]:
-    for place in dict.fromkeys(references(tree)):
-        for cell in (place,) if isinstance(place, Cell) else _held(workbook, place, inputs):
-            if cell in inputs or workbook.content(cell).formula is not None or spills.anchor(cell) is not None:
-                yield cell
+    def _precedents(self, cell: Cell, found: ir.Expression | Stencil) -> tuple[Cell, ...]:
+        """The cells that one needs and that hold a formula or are given."""
+        if isinstance(found, Stencil):
+            needs = [need for need in found.cells(cell) if self._counts(need)]
+        else:
+            needs = [need for place in dict.fromkeys(references(found)) for need in self._counted(place)]
+        return (*needs, *self._more.get(cell, ()))
+
+    def _counted(self, place: Cell | Area) -> Iterator[Cell]:
+        cells = (place,) if isinstance(place, Cell) else _held(self._workbook, place, self._given)
+        return filter(self._counts, cells)
+
+    def _counts(self, cell: Cell) -> bool:
+        known = self._computed.get(cell)
+        if known is None:
+            known = cell in self._given or self._workbook.content(cell).formula is not None
+            self._computed[cell] = known = known or self._spills.anchor(cell) is not None
+        return known
 
 
 def _held(workbook: Workbook, area: Area, inputs: frozenset[Cell]) -> Iterator[Cell]:
@@ -146,51 +181,12 @@ def _held(workbook: Workbook, area: Area, inputs: frozenset[Cell]) -> Iterator[C
     yield from sorted(cell for cell in held | extra if cell in area)
 
 
-def references(tree: ir.Expression) -> Iterator[Cell | Area]:
-    """Every cell and area a resolved tree reads, from left to right."""
-    match tree:
-        case Cell() | Area():
-            yield tree
-        case ir.Unary(_, operand):
-            yield from references(operand)
-        case ir.Binary():
-            first, rest = ir.chain(tree)
-            yield from references(first)
-            for _, right in rest:
-                yield from references(right)
-        case ir.Call(name, arguments):
-            looked_at = name in _LOOKED_AT
-            for part in arguments:
-                if not (looked_at and isinstance(part, Cell | Area)):
-                    yield from references(part)
-        case ir.Let(bindings, body):
-            for _, value in bindings:
-                yield from references(value)
-            yield from references(body)
-        case ir.Lambda(_, body):
-            yield from references(body)
-        case ir.Invoke(function, arguments):
-            yield from references(function)
-            for part in arguments:
-                yield from references(part)
-        case ir.Array(rows):
-            for row in rows:
-                for part in row:
-                    yield from references(part)
-        case ir.Variable() | ir.Number() | ir.Text() | ir.Logical() | ir.ErrorLiteral() | ir.Missing():
-            return
-        case ir.Reference() | ir.Name() | ir.TableReference():
-            raise TypeError(f"not resolved: {tree}")
-        case _:
-            assert_never(tree)
-
-
 def _varying(
     formulas: Iterable[Cell], needs: Mapping[Cell, tuple[Cell, ...]], inputs: Iterable[Cell]
 ) -> frozenset[Cell]:
     varying = set(inputs)
     for cell in formulas:  # in dependency order: what a cell needs was settled before it
-        if any(need in varying for need in needs[cell]):
+        if not varying.isdisjoint(needs[cell]):
             varying.add(cell)
     return frozenset(varying)
 

@@ -16,6 +16,7 @@ from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
 from xlmc.formula.parse import parse
 from xlmc.formula.shape import Shapes
+from xlmc.formula.stencil import Stencil, stencil
 from xlmc.workbook.model import Formula, Table, Workbook
 
 __all__ = ["Resolver"]
@@ -57,11 +58,26 @@ class Resolver:
         Raises:
             FormulaError: told of the cell; the formula cannot be read, or names something that is not there.
         """
-        self._depth = self._parts = 0
-        self._variables = frozenset()
+        found = self.placed(cell, formula)
+        return found.at(cell) if isinstance(found, Stencil) else found
+
+    def placed(self, cell: Cell, formula: Formula) -> ir.Expression | Stencil:
+        """The same; or, of a formula that was filled into many cells, what these have in common.
+
+        Raises:
+            FormulaError: as `formula`.
+        """
         try:
-            tree, origin = self._shapes.parse(formula.text, formula.row, formula.column)
-            return self._resolve(tree, cell, origin)
+            shape = self._shapes.parse(formula.text, formula.row, formula.column)
+            common = shape.stencils.get(cell.sheet)
+            if common is not None and common.fits(cell) and formula.array is None and not formula.dynamic:
+                return common
+            self._depth = self._parts = 0
+            self._variables = frozenset()
+            tree = self._resolve(shape.tree, cell, shape.origin)
+            if cell.sheet not in shape.stencils:
+                shape.stencils[cell.sheet] = stencil(shape.tree, tree, cell)
+            return tree
         except FormulaError as error:
             complete = error if error.text is not None else _about(error, formula.text)
             raise complete.at(cell) from None

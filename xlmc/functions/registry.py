@@ -46,6 +46,8 @@ class Kind(Enum):
     TEXT = "text"
     ANY = "any"
 
+    __hash__ = object.__hash__  # kinds are looked up in dicts for every node
+
 
 _REQUIRED: Final = object()
 

@@ -1,0 +1,171 @@
+"""One resolved formula for all the cells that it was filled into: its references move with the cell.
+
+A large book holds few formulas in many cells. What is worked out once for a stencil (its tree, its precedents, how it
+is lowered) need not be worked out again for each cell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Final, NamedTuple
+
+from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
+from xlmc.formula import ir
+from xlmc.formula.references import LOOKED_AT
+
+__all__ = ["Stencil", "stencil"]
+
+_MOST_CELLS: Final = 64
+"""Cells of the areas of a stencil; formulas that read more are few beside the cells they read."""
+
+
+class _Spot(NamedTuple):
+    """A cell that the formula reads: where it is seen from home, and whether its row and column move (1) or not (0)."""
+
+    sheet: str
+    row: int
+    row_moves: int
+    column: int
+    column_moves: int
+
+
+class Stencil:
+    """A formula resolved at `home`, to be seen from other cells of the same sheet.
+
+    Attributes:
+        home: the cell it was resolved for.
+        tree: what it is there.
+    """
+
+    def __init__(self, home: Cell, tree: ir.Expression, moves: list[tuple[Cell | Area, int, int]]) -> None:
+        self.home, self.tree = home, tree
+        self._moves = {id(place): (down, right) for place, down, right in moves}
+        spots = (
+            _Spot(cell.sheet, cell.row, down, cell.column, right) for p, down, right in moves for cell in _cells(p)
+        )
+        self._spots = tuple(dict.fromkeys(spots))
+        rows = [spot.row for spot in self._spots if spot.row_moves]
+        columns = [spot.column for spot in self._spots if spot.column_moves]
+        self._rows = 1 - min(rows, default=1), MAX_ROW - max(rows, default=MAX_ROW)
+        self._columns = 1 - min(columns, default=1), MAX_COLUMN - max(columns, default=MAX_COLUMN)
+        self._free = not rows, not columns
+
+    def fits(self, host: Cell) -> bool:
+        """Whether nothing leaves the sheet when the formula stands in `host`."""
+        down, right = host.row - self.home.row, host.column - self.home.column
+        return (self._free[0] or self._rows[0] <= down <= self._rows[1]) and (
+            self._free[1] or self._columns[0] <= right <= self._columns[1]
+        )
+
+    def cells(self, host: Cell) -> list[Cell]:
+        """The cells that the formula reads when it stands in `host`, areas cell by cell, each once."""
+        down, right = host.row - self.home.row, host.column - self.home.column
+        return [
+            Cell(sheet, row + down * row_moves, column + right * column_moves)
+            for sheet, row, row_moves, column, column_moves in self._spots
+        ]
+
+    def at(self, host: Cell) -> ir.Expression:
+        """The tree when the formula stands in `host`."""
+        if host == self.home:
+            return self.tree
+        down, right = host.row - self.home.row, host.column - self.home.column
+
+        def moved(place: Cell | Area) -> Cell | Area:
+            rows, columns = self._moves[id(place)]
+            return _shifted(place, down * rows, right * columns)
+
+        return _rebuilt(self.tree, moved)
+
+
+def _cells(place: Cell | Area) -> Iterator[Cell]:
+    if isinstance(place, Cell):
+        yield place
+    else:
+        yield from place.cells()
+
+
+def _shifted(place: Cell | Area, down: int, right: int) -> Cell | Area:
+    if isinstance(place, Cell):
+        return Cell(place.sheet, place.row + down, place.column + right)
+    return Area(place.sheet, place.top + down, place.left + right, place.bottom + down, place.right + right)
+
+
+def stencil(written: ir.Expression, resolved: ir.Expression, home: Cell) -> Stencil | None:
+    """The stencil of a formula as written and as resolved at `home`; None where it holds what does not simply move."""
+    before, after = _leaves(written), _leaves(resolved)
+    if before is None or after is None or len(before) != len(after):
+        return None
+    moves: list[tuple[Cell | Area, int, int]] = []
+    for reference, place in zip(before, after, strict=True):
+        steps = _steps(reference)
+        if steps is None or not isinstance(place, Cell | Area):
+            return None
+        moves.append((place, *steps))
+    if sum(p.rows * p.columns for p, _, _ in moves if isinstance(p, Area)) > _MOST_CELLS:
+        return None
+    if len({id(place) for place, _, _ in moves}) < len(moves):
+        return None
+    return Stencil(home, resolved, moves)
+
+
+_Leaf = ir.Reference | Cell | Area
+
+
+def _leaves(tree: ir.Expression) -> list[_Leaf] | None:
+    """The references from left to right; None where the tree holds names or what binds or asks for places."""
+    match tree:
+        case ir.Reference() | Cell() | Area():
+            return [tree]
+        case ir.Number() | ir.Text() | ir.Logical() | ir.Missing() | ir.ErrorLiteral():
+            return []
+        case ir.Unary(_, operand):
+            return _leaves(operand)
+        case ir.Binary(operator) if operator not in (":", " ", ","):
+            first, rest = ir.chain(tree)
+            return _joined([first, *(part for _, part in rest)])
+        case ir.Call(name, arguments) if name not in LOOKED_AT and name not in ("LET", "LAMBDA"):
+            return _joined(arguments)
+        case _:
+            return None
+
+
+def _joined(parts: list[ir.Expression] | tuple[ir.Expression, ...]) -> list[_Leaf] | None:
+    found: list[_Leaf] = []
+    for part in parts:
+        leaves = _leaves(part)
+        if leaves is None:
+            return None
+        found += leaves
+    return found
+
+
+def _steps(reference: _Leaf) -> tuple[int, int] | None:
+    """Whether row and column move with the host; None where not as a whole."""
+    if not isinstance(reference, ir.Reference) or reference.last_sheet is not None:
+        return None
+    first, last = reference.first, reference.last or reference.first
+    if None in (first.row, first.column, last.row, last.column):
+        return None
+    if (first.row_fixed, first.column_fixed) != (last.row_fixed, last.column_fixed):
+        return None
+    return int(not first.row_fixed), int(not first.column_fixed)
+
+
+def _rebuilt(tree: ir.Expression, moved: Callable[[Cell | Area], Cell | Area]) -> ir.Expression:
+    match tree:
+        case Cell() | Area():
+            return moved(tree)
+        case ir.Unary(_, operand):
+            return replace(tree, operand=_rebuilt(operand, moved))
+        case ir.Binary():
+            first, rest = ir.chain(tree)
+            built = _rebuilt(first, moved)
+            for operator, right in rest:
+                built = ir.Binary(operator, built, _rebuilt(right, moved))
+            return built
+        case ir.Call(name, arguments):
+            return ir.Call(name, tuple(_rebuilt(part, moved) for part in arguments))
+        case _:
+            return tree

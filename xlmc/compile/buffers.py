@@ -32,10 +32,10 @@ class Buffers:
         if isinstance(node, Rescue):
             self._held.pop(node.value, None)  # the value lives on under another name: its buffer is never given back
             return None
-        if kind not in (Kind.NUMBER, Kind.LOGICAL) or not isinstance(node, Apply | Select):
+        if (kind is not Kind.NUMBER and kind is not Kind.LOGICAL) or not isinstance(node, (Apply, Select)):
             return None
-        self._held[place] = self.take_for(kind)
-        return self._held[place]
+        self._held[place] = buffer = self.take_for(kind)
+        return buffer
 
     def take_for(self, kind: Kind) -> int:
         """A buffer of that kind that is never given back."""
@@ -46,9 +46,10 @@ class Buffers:
 
     def free(self, places: Iterable[int]) -> None:
         """Give back the buffers of values that nothing reads any more."""
+        held = self._held
         for place in places:
-            if place in self._held:
-                buffer = self._held.pop(place)
+            buffer = held.pop(place, None)
+            if buffer is not None:
                 self._idle[self._types[buffer]].append(buffer)
 
     def allocate(self, block: int) -> list[NDArray[Any]]:

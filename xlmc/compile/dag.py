@@ -22,6 +22,7 @@ __all__ = [
     "Input",
     "Node",
     "Range",
+    "Repeat",
     "Rescue",
     "Select",
     "constants",
@@ -122,6 +123,21 @@ _SPILLING: Final = frozenset(
 """Functions that give many cells, or may."""
 
 
+class Repeat(NamedTuple):
+    """A node to be made as it was made before: of `function`, or by `make` where that is None.
+
+    Attributes:
+        slots: which of the places known by then it uses.
+        kind, size: what it gives.
+    """
+
+    make: Callable[[tuple[int, ...]], Node]
+    function: Function | None
+    slots: tuple[int, ...]
+    kind: Kind
+    size: Size
+
+
 class Dag:
     """Nodes in an order in which each comes after those it uses; a node is known by its place.
 
@@ -159,15 +175,24 @@ class Dag:
             self.made.append(place)
         return place
 
-    def again(self, node: Apply | Select | Rescue | Range, kind: Kind, size: Size) -> int:
-        """The place of a node like one added before, with the type and size of that."""
-        place = self._known.get(node)
-        if place is None:
-            self._known[node] = place = len(self.nodes)
-            self.nodes.append(node)
-            self.types.append(kind)
-            self.sizes.append(size)
-        return place
+    def again(self, steps: Sequence[Repeat], local: list[int]) -> None:
+        """Nodes like some added before, one after another; their places are appended to `local`.
+
+        Args:
+            steps: what to make.
+            local: the places that the slots of the steps count.
+        """
+        known, nodes, types, sizes = self._known, self.nodes, self.types, self.sizes
+        for make, function, slots, kind, size in steps:
+            used = tuple([local[slot] for slot in slots])
+            node = make(used) if function is None else tuple.__new__(Apply, (function, used))
+            place = known.get(node)
+            if place is None:
+                known[node] = place = len(nodes)
+                nodes.append(node)
+                types.append(kind)
+                sizes.append(size)
+            local.append(place)
 
     def _add(self, node: Apply | Select | Rescue | Range) -> int:
         if node in self._known:

@@ -129,7 +129,8 @@ class Lowering:
             return self._resolved_cell(cell, placed)
         if self._audit:
             return self._resolved_cell(cell, placed.at(cell))
-        leaves = [self.cell(leaf) for leaf in placed.cells(cell)]
+        known = self._cells
+        leaves = [known[leaf] if leaf in known else self.cell(leaf) for leaf in placed.cells(cell)]
         return self._recipes.lowered(placed, leaves, lambda: self._resolved_cell(cell, placed.at(cell)))
 
     def _resolved_cell(self, cell: Cell, tree: ir.Expression) -> int:

@@ -43,6 +43,7 @@ class Placement:
 
     Attributes:
         reads: by node, the nodes whose values its step needs.
+        branched: the `IF`s with branches that hold nodes of their own.
     """
 
     def __init__(self, dag: Dag, first: Sequence[int], late: Sequence[int]) -> None:
@@ -60,6 +61,7 @@ class Placement:
             if context.parent is not None and context is not SURVIVORS:
                 self._inner[context.parent].append(context)
                 self._branches[context.select].append(context)
+        self.branched = frozenset(self._branches)
 
     def members(self, context: Context) -> list[int]:
         """The nodes of a context itself, in order."""
@@ -96,8 +98,7 @@ class Placement:
             if type(node) is Input:
                 at = _undivided(at)  # draws are there for all trials
             found[place] = at
-            simple = type(node) is Apply and not node.function.takes_sets
-            self.reads[place] = read = node.arguments if simple else reads(self._dag, place)
+            self.reads[place] = read = reads(self._dag, place)
             if type(node) is Select and at.depth < _DEEPEST and _divides(types[place], types[node.condition]):
                 edges = [(node.condition, at), (node.yes, _branch(at, place, 1)), (node.no, _branch(at, place, 0))]
                 for used, inner in edges:

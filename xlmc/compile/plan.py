@@ -49,18 +49,18 @@ class Plan:
 
     def _steps(self, context: Context, keep: set[int], free_at_end: Sequence[int]) -> list[Step]:
         """The steps of one context; `keep` outlives them."""
-        nodes, branches = self._dag.nodes, self._placement.branches
+        nodes, branched = self._dag.nodes, self._placement.branched
         computed = [node for node in self._placement.members(context) if type(nodes[node]) is not Input]
-        read = {node: self._reads(node) if branches(node) else self._placement.reads[node] for node in computed}
-        last = {needed: node for node in computed for needed in read[node]}
+        read = self._placement.reads | {node: self._reads(node) for node in computed if node in branched}
+        last = {needed: node for node in computed for needed in read[node]} | dict.fromkeys(keep, -1)
         steps = Steps(self._dag, self.buffers)
         for node in computed:
-            done = [needed for needed in read[node] if last[needed] == node and needed not in keep]
-            if branches(node):
+            done = [needed for needed in read[node] if last[needed] == node]
+            if node in branched:
                 self.buffers.free(done)
                 steps.append(branch_step(self._dag, self._placement, node))
             else:
-                steps.add(node, done)
+                steps.add(node, read[node], done)
         self.buffers.free(node for node in free_at_end if node not in self._carried)
         return steps.finish()
 

@@ -12,11 +12,11 @@ from typing import Final
 
 from xlmc.address import Area, Cell
 from xlmc.compile.choices import CHOICES
-from xlmc.compile.dag import Apply, Constant, Dag, Range, Rescue, Select, Size, uses
+from xlmc.compile.dag import Apply, Constant, Dag, Node, Range, Repeat, Rescue, Select, uses
 from xlmc.compile.lambdas import LAMBDAS
 from xlmc.compile.places import PLACES
 from xlmc.formula import Stencil, ir
-from xlmc.functions import Kind, function_named
+from xlmc.functions import function_named
 
 __all__ = ["Recipes"]
 
@@ -25,19 +25,11 @@ _Marks = tuple[object, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class _Step:
-    """One node: made by `make` from the nodes in `slots`, which count what the cell reads, constants, earlier steps."""
-
-    make: Callable[[tuple[int, ...]], Apply | Select | Rescue | Range]
-    slots: tuple[int, ...]
-    kind: Kind
-    size: Size
-
-
-@dataclass(frozen=True, slots=True)
 class _Recipe:
+    """The nodes to make; their slots count the nodes that the cell reads, then `constants`, then earlier steps."""
+
     constants: tuple[int, ...]
-    steps: tuple[_Step, ...]
+    steps: tuple[Repeat, ...]
     result: int
 
 
@@ -75,10 +67,8 @@ class Recipes:
         return place
 
     def _follow(self, recipe: _Recipe, leaves: Sequence[int]) -> int:
-        again = self._dag.again
         local = [*leaves, *recipe.constants]
-        for step in recipe.steps:
-            local.append(again(step.make(tuple([local[slot] for slot in step.slots])), step.kind, step.size))
+        self._dag.again(recipe.steps, local)
         return local[recipe.result]
 
     def _noted(self, leaves: Sequence[int], lower: Callable[[], int]) -> tuple[int, _Recipe | None]:
@@ -101,21 +91,22 @@ class Recipes:
             return place, None  # folded, or Excel's own value stands in
         if not all(isinstance(dag.nodes[node], Constant) for node in read):
             return place, None
-        made_of = [(dag.nodes[step], tuple(known[used] for used in uses(dag.nodes[step]))) for step in steps]
-        found = [
-            _Step(_maker(node), slots, dag.types[step], dag.sizes[step])
-            for step, (node, slots) in zip(steps, made_of, strict=True)
-        ]
-        return place, _Recipe(tuple(read), tuple(found), known[place])
+        repeats = tuple(self._repeat(step, known) for step in steps)
+        return place, _Recipe(tuple(read), repeats, known[place])
+
+    def _repeat(self, place: int, known: dict[int, int]) -> Repeat:
+        node, kind, size = self._dag.nodes[place], self._dag.types[place], self._dag.sizes[place]
+        function = node.function if isinstance(node, Apply) else None
+        return Repeat(_maker(node), function, tuple(known[used] for used in uses(node)), kind, size)
 
 
 _UNSEEN: Final[dict[_Marks, _Recipe | None]] = {}
 
 
-def _maker(node: object) -> Callable[[tuple[int, ...]], Apply | Select | Rescue | Range]:
+def _maker(node: Node) -> Callable[[tuple[int, ...]], Node]:
     """Makes nodes like this one from what they use."""
     match node:
-        case Apply(function, _):
+        case Apply(function):
             return lambda used: Apply(function, used)
         case Select():
             return lambda used: Select(*used)

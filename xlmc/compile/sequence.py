@@ -1,27 +1,35 @@
-"""The steps of a plan in a row: ufuncs of plain numbers, nearly all of them, run in one loop from one table."""
+"""The steps of a plan in a row. Nearly all are ufuncs of plain numbers, run in one loop from one table.
+
+A line of the table costs little to make and to run; what does not fit one gets a step of its own.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from xlmc.compile.buffers import Buffers
-from xlmc.compile.dag import Apply, Dag
-from xlmc.compile.steps import Frame, Step, is_elementwise_ufunc, make_step
+from xlmc.compile.dag import Apply, Dag, Select
+from xlmc.compile.steps import Departure, Frame, Step, is_elementwise_ufunc, make_step
 from xlmc.functions import Kind
 
 __all__ = ["Steps"]
 
 
 class _Line(NamedTuple):
-    """`values[place] = ufunc(values[first], values[second], out=buffers[buffer])`; no `second` is -1."""
+    """`values[place] = ufunc(values[first], values[second], out=buffers[buffer])`; no `second` is -1.
 
-    ufunc: np.ufunc
+    Without a ufunc it is the choice between `first` and `second` by the logical in `guard_or_condition`.
+    """
+
+    ufunc: np.ufunc | None
     place: int
     first: int
     second: int
     buffer: int
+    guard_or_condition: Any
 
 
 class Steps:
@@ -32,19 +40,32 @@ class Steps:
         self._dag, self._buffers = dag, buffers
         self._lines: list[_Line] = []
 
-    def add(self, place: int, done: list[int]) -> None:
-        """The step of a node, after which nothing reads the values of `done` any more."""
-        line = self._is_line(place)
-        early = line or is_elementwise_ufunc(self._dag, place)  # it may write over what it reads
-        if early:
-            self._buffers.free(done)
-        buffer = self._buffers.take(place)
-        if not early:
-            self._buffers.free(done)
-        if line and buffer is not None:
-            self._lines.append(_line(self._dag, place, buffer))
+    def add(self, place: int, read: Sequence[int], done: list[int]) -> None:
+        """The step of a node.
+
+        Args:
+            place: of the node.
+            read: what it reads.
+            done: what nothing reads after it.
+        """
+        node, take, free = self._dag.nodes[place], self._buffers.take, self._buffers.free
+        if type(node) is Apply and (ufunc := self._elementwise(node)) is not None:
+            free(done)  # it may write over what it reads
+            buffer = take(place)
+            if buffer is not None:
+                used = node.arguments
+                line = _Line(ufunc, place, used[0], used[1] if len(used) == 2 else -1, buffer, node.function.guard)
+                self._lines.append(line)
+                return
+        elif is_elementwise_ufunc(self._dag, place):
+            free(done)
+            buffer = take(place)
         else:
-            self.append(make_step(self._dag, place, buffer))
+            buffer = take(place)
+            free(done)
+            if buffer is not None and self._tabled(place, read, buffer):
+                return
+        self.append(make_step(self._dag, place, buffer))
 
     def append(self, step: Step) -> None:
         """A step that has its memory already."""
@@ -56,15 +77,35 @@ class Steps:
         self._close()
         return self._made
 
-    def _is_line(self, place: int) -> bool:
+    def _elementwise(self, node: Apply) -> np.ufunc | None:
+        """The ufunc of a node that takes plain numbers, one or two."""
+        function, used = node
+        ufunc = function.ufunc
+        if ufunc is None or not function.on_numbers or len(used) != ufunc.nin or len(used) > 2:
+            return None
+        types = self._dag.types
+        return ufunc if types[used[0]] is Kind.NUMBER and types[used[-1]] is Kind.NUMBER else None
+
+    def _tabled(self, place: int, read: Sequence[int], buffer: int) -> bool:
+        """A choice between numbers, or a fold of numbers, as lines."""
         node, types = self._dag.nodes[place], self._dag.types
-        if type(node) is not Apply or not node.function.on_numbers or node.function.guard is not None:
+        if types[place] is not Kind.NUMBER:
             return False
-        used = node.arguments
+        if type(node) is Select:
+            plain = types[node.yes] is types[node.no] is Kind.NUMBER and types[node.condition] is Kind.LOGICAL
+            if plain:
+                self._lines.append(_Line(None, place, node.yes, node.no, buffer, node.condition))
+            return plain
+        if type(node) is not Apply or not node.function.takes_sets or len(read) < 2:
+            return False
         ufunc = node.function.ufunc
-        if ufunc is None or len(used) != ufunc.nin or len(used) > 2:
+        if ufunc is None or node.function.parameters[0].kind is not Kind.NUMBER:
             return False
-        return types[used[0]] is Kind.NUMBER and types[used[-1]] is Kind.NUMBER
+        if not all(types[cell] is Kind.NUMBER for cell in read):
+            return False
+        self._lines.append(_Line(ufunc, place, read[0], read[1], buffer, None))
+        self._lines += [_Line(ufunc, place, place, cell, buffer, None) for cell in read[2:]]
+        return True
 
     def _close(self) -> None:
         if self._lines:
@@ -72,21 +113,22 @@ class Steps:
             self._lines = []
 
 
-def _line(dag: Dag, place: int, buffer: int) -> _Line:
-    node = dag.nodes[place]
-    assert isinstance(node, Apply)
-    assert node.function.ufunc is not None
-    used = node.arguments
-    return _Line(node.function.ufunc, place, used[0], used[1] if len(used) == 2 else -1, buffer)
-
-
 def _run(lines: list[_Line]) -> Step:
     def step(frame: Frame) -> None:
         values, buffers = frame.values, frame.buffers
-        for ufunc, place, first, second, buffer in lines:
-            if second < 0:
-                values[place] = ufunc(values[first], buffers[buffer])
+        for ufunc, place, first, second, buffer, guard in lines:
+            if ufunc is None:
+                out = buffers[buffer]
+                np.copyto(out, values[second])
+                np.copyto(out, values[first], where=values[guard])
+                values[place] = out
+            elif second < 0:
+                if guard is not None and not guard(values[first]):
+                    raise Departure
+                values[place] = ufunc(values[first], out=buffers[buffer])
             else:
-                values[place] = ufunc(values[first], values[second], buffers[buffer])
+                if guard is not None and not guard(values[first], values[second]):
+                    raise Departure
+                values[place] = ufunc(values[first], values[second], out=buffers[buffer])
 
     return step

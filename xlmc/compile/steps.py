@@ -223,13 +223,17 @@ def _cells(dag: Dag, node: Apply) -> Iterator[tuple[int, bool]]:
     for argument in node.arguments:
         part = dag.nodes[argument]
         if isinstance(part, Range):
-            yield from ((cell, True) for row in part.rows for cell in row)
+            for row in part.rows:
+                for cell in row:
+                    yield cell, True
         else:
             yield argument, False
 
 
 def _foldable(dag: Dag, place: int, kind: Kind) -> bool:
-    return dag.sizes[place] is None and kind in (Kind.NUMBER, Kind.LOGICAL) and _reader(dag, place, kind) is not None
+    if kind not in (Kind.NUMBER, Kind.LOGICAL) or dag.sizes[place] is not None:
+        return False
+    return dag.types[place] is kind or _reader(dag, place, kind) is not None
 
 
 def _readers(dag: Dag, places: Sequence[int], kind: Kind) -> list[Reader]:
@@ -241,7 +245,10 @@ def _counts(dag: Dag, cell: int, kind: Kind) -> bool:
 
     Nor has a text that varies: it never counts, but may be an error.
     """
-    node, found = dag.nodes[cell], dag.types[cell]
+    found = dag.types[cell]
+    if found is kind:
+        return True
+    node = dag.nodes[cell]
     if isinstance(node, Constant) and int(node.value.kinds.flat[0]) in (BLANK, TEXT):
         return False
     return not (kind is Kind.NUMBER and found is Kind.LOGICAL)

@@ -153,7 +153,8 @@ class _Walk:
     def _precedents(self, cell: Cell, found: ir.Expression | Stencil) -> tuple[Cell, ...]:
         """The cells that one needs and that hold a formula or are given."""
         if isinstance(found, Stencil):
-            needs = [need for need in found.cells(cell) if self._counts(need)]
+            known = self._computed
+            needs = [need for need in found.cells(cell) if (known[need] if need in known else self._counts(need))]
         else:
             needs = [need for place in dict.fromkeys(references(found)) for need in self._counted(place)]
         return (*needs, *self._more.get(cell, ()))

@@ -106,6 +106,10 @@ class Workbook:
         return {name.casefold(): name for name in self.sheets}
 
     @cached_property
+    def _cells(self) -> dict[str, Mapping[tuple[int, int], CellContent]]:
+        return {}
+
+    @cached_property
     def _tables(self) -> dict[str, Table]:
         return {table.name.casefold(): table for table in self.tables}
 
@@ -132,8 +136,11 @@ class Workbook:
 
     def content(self, cell: Cell) -> CellContent:
         """What the cell holds; blank where the file holds nothing or has no such sheet."""
-        sheet = self.sheets.get(cell.sheet)
-        return _BLANK if sheet is None else sheet.cells.get((cell.row, cell.column), _BLANK)
+        cells = self._cells.get(cell.sheet)
+        if cells is None:
+            sheet = self.sheets.get(cell.sheet)
+            self._cells[cell.sheet] = cells = {} if sheet is None else sheet.cells
+        return cells.get(cell[1:], _BLANK)
 
 
 _BLANK = CellContent()

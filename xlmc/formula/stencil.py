@@ -59,7 +59,7 @@ class Stencil:
         )
 
     def cells(self, host: Cell) -> list[Cell]:
-        """The cells that the formula reads when it stands in `host`, areas cell by cell, each once."""
+        """The cells that the formula reads when it stands in `host`, areas cell by cell, each once unless `$` lets two meet."""
         down, right = host.row - self.home.row, host.column - self.home.column
         return [
             Cell(sheet, row + down * row_moves, column + right * column_moves)

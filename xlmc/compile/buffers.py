@@ -38,7 +38,7 @@ class Buffers:
         return buffer
 
     def take_for(self, kind: Kind) -> int:
-        """A buffer of that kind that is never given back."""
+        """A buffer of that kind, until `give_back`."""
         if self._idle[kind]:
             return self._idle[kind].pop()
         self._types.append(kind)
@@ -50,7 +50,11 @@ class Buffers:
         for place in places:
             buffer = held.pop(place, None)
             if buffer is not None:
-                self._idle[self._types[buffer]].append(buffer)
+                self.give_back(buffer)
+
+    def give_back(self, buffer: int) -> None:
+        """A buffer that nothing reads any more."""
+        self._idle[self._types[buffer]].append(buffer)
 
     def allocate(self, block: int) -> list[NDArray[Any]]:
         """The arrays, `(block,)` each, on cache lines of their own."""

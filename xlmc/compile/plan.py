@@ -53,7 +53,7 @@ class Plan:
         computed = [node for node in self._placement.members(context) if type(nodes[node]) is not Input]
         read = self._placement.reads | {node: self._reads(node) for node in computed if node in branched}
         last = {needed: node for node in computed for needed in read[node]} | dict.fromkeys(keep, -1)
-        steps = Steps(self._dag, self.buffers)
+        steps = Steps(self._dag, self.buffers, computed)
         for node in computed:
             done = [needed for needed in read[node] if last[needed] == node]
             if node in branched:

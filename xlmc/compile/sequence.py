@@ -5,15 +5,17 @@ A line of the table costs little to make and to run; what does not fit one gets 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from xlmc.compile.buffers import Buffers
-from xlmc.compile.dag import Apply, Dag, Select
+from xlmc.compile.dag import Apply, Dag, Select, uses
 from xlmc.compile.steps import Departure, Frame, Step, is_elementwise_ufunc, make_step
 from xlmc.functions import Kind
+from xlmc.functions.registry import Elementwise
+from xlmc.functions.sine import sine_and_cosine
 
 __all__ = ["Steps"]
 
@@ -24,7 +26,7 @@ class _Line(NamedTuple):
     Without a ufunc it is the choice between `first` and `second` by the logical in `guard_or_condition`.
     """
 
-    ufunc: np.ufunc | None
+    ufunc: Elementwise | None
     place: int
     first: int
     second: int
@@ -33,12 +35,20 @@ class _Line(NamedTuple):
 
 
 class Steps:
-    """Collects the steps of nodes in order, with the buffers that they write to."""
+    """Collects the steps of nodes in order, with the buffers that they write to.
 
-    def __init__(self, dag: Dag, buffers: Buffers) -> None:
+    Args:
+        dag: of the nodes.
+        buffers: to take from.
+        places: the nodes to come.
+    """
+
+    def __init__(self, dag: Dag, buffers: Buffers, places: Iterable[int]) -> None:
         self._made: list[Step] = []
         self._dag, self._buffers = dag, buffers
         self._lines: list[_Line] = []
+        self._pairs = _sines_with_cosines(dag, places)
+        self._had: set[int] = set()
 
     def add(self, place: int, read: Sequence[int], done: list[int]) -> None:
         """The step of a node.
@@ -49,6 +59,11 @@ class Steps:
             done: what nothing reads after it.
         """
         node, take, free = self._dag.nodes[place], self._buffers.take, self._buffers.free
+        if place in self._pairs:
+            if place not in self._had:
+                self._add_pair(*self._pairs[place])
+            free(done)
+            return
         if type(node) is Apply and (ufunc := self._elementwise(node)) is not None:
             free(done)  # it may write over what it reads
             buffer = take(place)
@@ -77,7 +92,7 @@ class Steps:
         self._close()
         return self._made
 
-    def _elementwise(self, node: Apply) -> np.ufunc | None:
+    def _elementwise(self, node: Apply) -> Elementwise | None:
         """The ufunc of a node that takes plain numbers, one or two."""
         function, used = node
         ufunc = function.ufunc
@@ -107,10 +122,49 @@ class Steps:
         self._lines += [_Line(ufunc, place, place, cell, buffer, None) for cell in read[2:]]
         return True
 
+    def _add_pair(self, sine: int, cosine: int) -> None:
+        """The sine and the cosine of one angle in one step."""
+        (angle,) = uses(self._dag.nodes[sine])
+        first, second = self._buffers.take(sine), self._buffers.take(cosine)
+        if first is None or second is None:
+            self.append(make_step(self._dag, sine, None))
+            self.append(make_step(self._dag, cosine, None))
+        else:
+            work = self._buffers.take_for(Kind.NUMBER)
+            self._buffers.give_back(work)
+            self.append(_pair(self._dag, angle, (sine, cosine), (first, second, work)))
+        self._had |= {sine, cosine}
+
     def _close(self) -> None:
         if self._lines:
             self._made.append(_run(self._lines))
             self._lines = []
+
+
+def _sines_with_cosines(dag: Dag, places: Iterable[int]) -> dict[int, tuple[int, int]]:
+    """The sines and cosines of angles of which both are wanted: place -> (sine, cosine)."""
+    found: dict[str, dict[int, int]] = {"SIN": {}, "COS": {}}
+    for place in places:
+        node = dag.nodes[place]
+        if type(node) is Apply and node.function.name in found and dag.types[node.arguments[0]] is Kind.NUMBER:
+            found[node.function.name][node.arguments[0]] = place
+    both = [(found["SIN"][angle], found["COS"][angle]) for angle in found["SIN"].keys() & found["COS"].keys()]
+    return {place: pair for pair in both for place in pair}
+
+
+def _pair(dag: Dag, angle: int, places: tuple[int, int], buffers: tuple[int, int, int]) -> Step:
+    sine, cosine = places
+    node = dag.nodes[sine]
+    guard = node.function.guard if isinstance(node, Apply) else None
+
+    def step(frame: Frame) -> None:
+        values = frame.values
+        if guard is not None and not guard(values[angle]):
+            raise Departure
+        values[sine], values[cosine], work = (frame.buffers[buffer] for buffer in buffers)
+        sine_and_cosine(values[angle], values[sine], values[cosine], work)
+
+    return step
 
 
 def _run(lines: list[_Line]) -> Step:

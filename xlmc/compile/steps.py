@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from xlmc.compile.dag import Apply, Constant, Dag, Range, Rescue, Select, evaluated, uses
 from xlmc.functions import Function, Kind
+from xlmc.functions.registry import Elementwise
 from xlmc.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value
 
 __all__ = ["Departure", "Frame", "Step", "is_elementwise_ufunc", "make_step", "plain_constant", "reads"]
@@ -181,7 +182,7 @@ def _compares_unlike_kinds(dag: Dag, node: Apply) -> bool:
 
 
 def _ufunc(
-    ufunc: np.ufunc, guard: Callable[..., bool] | None, place: int, readers: list[Reader], buffer: int | None
+    ufunc: Elementwise, guard: Callable[..., bool] | None, place: int, readers: list[Reader], buffer: int | None
 ) -> Step:
     def step(frame: Frame) -> None:
         arguments = [read(frame.values) for read in readers]

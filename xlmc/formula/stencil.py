@@ -59,7 +59,10 @@ class Stencil:
         )
 
     def cells(self, host: Cell) -> list[Cell]:
-        """The cells that the formula reads when it stands in `host`, areas cell by cell, each once unless `$` lets two meet."""
+        """The cells that the formula reads when it stands in `host`, areas cell by cell.
+
+        Each comes once, unless some move and others stay, and they meet.
+        """
         down, right = host.row - self.home.row, host.column - self.home.column
         return [
             Cell(sheet, row + down * row_moves, column + right * column_moves)

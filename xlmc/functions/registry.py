@@ -19,12 +19,14 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.functions.sine import Tangents
 from xlmc.functions.values import ERROR, LOGICAL, NUMBER, Bools, Codes, Value, from_objects
 
 __all__ = [
     "REGISTRY",
     "Anything",
     "Cells",
+    "Elementwise",
     "Function",
     "Kind",
     "Logical",
@@ -47,6 +49,10 @@ class Kind(Enum):
     ANY = "any"
 
     __hash__ = object.__hash__  # kinds are looked up in dicts for every node
+
+
+Elementwise = np.ufunc | Tangents
+"""What is called as a NumPy ufunc is."""
 
 
 _REQUIRED: Final = object()
@@ -101,7 +107,7 @@ class Function:
     parameters: tuple[Parameter, ...]
     body: Callable[..., Any]
     returns: Kind
-    ufunc: np.ufunc | None = None
+    ufunc: Elementwise | None = None
     guard: Callable[..., bool] | None = None
     volatile: bool = False
     dated: bool = False
@@ -220,7 +226,7 @@ def excel(
     *parameters: Parameter,
     returns: Kind = Kind.NUMBER,
     aliases: tuple[str, ...] = (),
-    ufunc: np.ufunc | None = None,
+    ufunc: Elementwise | None = None,
     guard: Callable[..., bool] | None = None,
     volatile: bool = False,
     dated: bool = False,

@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.functions.registry import Number, excel
+from xlmc.functions.sine import COSINE, SINE
 from xlmc.functions.values import DIV0, NUM, Bools, Floats
 
 __all__: list[str] = []
@@ -35,16 +36,16 @@ def _all_small(x: Floats) -> bool:
     return bool(np.min(x, initial=0.0) > -_LIMIT and np.max(x, initial=0.0) < _LIMIT)
 
 
-@excel("SIN", Number, ufunc=np.sin, guard=_all_small)
+@excel("SIN", Number, ufunc=SINE, guard=_all_small)
 def sin(x: Floats) -> Floats:
     """Sine."""
-    return np.where(_small(x), np.sin(x), NUM)
+    return np.where(_small(x), SINE(x), NUM)
 
 
-@excel("COS", Number, ufunc=np.cos, guard=_all_small)
+@excel("COS", Number, ufunc=COSINE, guard=_all_small)
 def cos(x: Floats) -> Floats:
     """Cosine."""
-    return np.where(_small(x), np.cos(x), NUM)
+    return np.where(_small(x), COSINE(x), NUM)
 
 
 @excel("TAN", Number, ufunc=np.tan, guard=_all_small)

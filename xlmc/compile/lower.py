@@ -18,6 +18,7 @@ from xlmc.compile.fallback import fallback
 from xlmc.compile.places import PLACES
 from xlmc.compile.recipes import Recipes
 from xlmc.compile.references import NotYetNeeded, areas_of
+from xlmc.compile.running import RunningTotals
 from xlmc.compile.scope import Scope
 from xlmc.compile.settings import as_set
 from xlmc.errors import ErrorCode, FormulaError, Notice
@@ -75,7 +76,7 @@ class Lowering:
         self._numbers: dict[float, int] = {}
         self._cells: dict[Cell, int] = {cell: self.dag.input(name) for cell, name in inputs.items()}
         self._cells |= {cell: self.dag.constant(constant(value)) for cell, value in held.items()}
-        self._recipes = Recipes(self.dag)
+        self._recipes, self._totals = Recipes(self.dag), RunningTotals(self.dag)
         for cell, placed in graph.formulas.placed.items():
             self._computed[cell] = place = self._formula_cell(cell, placed)
             saved = graph.workbook.content(cell).value if audit else None
@@ -301,6 +302,8 @@ class Lowering:
         """The node of a function of nodes, cell by cell where it takes single values and is given many."""
         if function.name in _FACTORS:
             return self.call("*", (arguments[0], self.number(_FACTORS[function.name])))
+        if function.takes_sets:
+            return self._totals.made(function, arguments)
         if all(self.dag.sizes[place] is None for place in arguments):
             return self.dag.add(Apply(function, arguments))
         loose = tuple(p for i, p in enumerate(arguments) if not function.parameter(i).ranged)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from xlmc.address import Area, Cell
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
+from xlmc.formula.circles import circular, cycle
 from xlmc.formula.references import references
 from xlmc.formula.resolve import Resolver
 from xlmc.formula.spills import Spills
@@ -85,6 +86,8 @@ def build_graph(
     walk = _Walk(resolver, inputs | held, more or {}, strict)
     for target in targets:
         walk.upstream(target)
+    if walk.circular:
+        walk.faults.update(circular(walk.needs))
     varying = _varying(walk.placed, walk.needs, walk.reached & inputs)
     reached = frozenset(walk.reached)
     return Graph(resolver.workbook, Trees(walk.placed), walk.needs, varying, reached, walk.faults)
@@ -102,6 +105,7 @@ class _Walk:
         self.needs: dict[Cell, tuple[Cell, ...]] = {}
         self.reached: set[Cell] = set()
         self.faults: dict[Cell, FormulaError] = {}
+        self.circular = False
         self._trail: dict[Cell, Iterator[Cell]] = {}
         self._open: dict[Cell, ir.Expression | Stencil] = {}
         self._computed: dict[Cell, bool] = {}
@@ -133,10 +137,9 @@ class _Walk:
             self._trail[cell] = iter(needs)
 
     def _close_circle(self, cell: Cell) -> None:
-        loop = [*self._trail][[*self._trail].index(cell) :]
         if self._strict:
-            raise _cycle(loop)
-        self.faults.update(dict.fromkeys(loop, _cycle(loop)))  # one message: it is as long as the loop
+            raise cycle([*self._trail][[*self._trail].index(cell) :])
+        self.circular = True
 
     def _read(self, cell: Cell) -> ir.Expression | Stencil | None:
         formula = self._workbook.content(cell).formula
@@ -190,12 +193,3 @@ def _varying(
         if not varying.isdisjoint(needs[cell]):
             varying.add(cell)
     return frozenset(varying)
-
-
-def _cycle(cells: list[Cell]) -> FormulaError:
-    loop = " → ".join(str(cell) for cell in [*cells, cells[0]])
-    return FormulaError(
-        f"the cells need each other in a circle: {loop}",
-        where=cells[0],
-        hint="break the circle; iterative calculation is not supported",
-    )

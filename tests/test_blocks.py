@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from xlmc.blocks import FilterTally, Worker, fault_text
+from xlmc.blocks import FilterTally, Task, Worker, fault_text
 from xlmc.compile import Column
 from xlmc.compile.engine import BLANK_RESULT, TEXT_RESULT
 from xlmc.errors import ErrorCode
@@ -69,11 +69,11 @@ def code(column, trial):
     return 0 if column.codes is None else int(column.codes[trial])
 
 
-def worked(case, start=0, keep_prior=False):
+def worked(case, start=0, keep_prior=False, keep_inputs=True):
     draws = {"a": np.arange(float(BLOCK)), "b": np.array(case["draws"])}
     evaluator = Columns(case["filters"], case["forecasts"])
     worker = Worker(Draws(draws), evaluator, BLOCK, len(case["forecasts"]), frozenset({"b"}))
-    return worker.run(start, case["trials"], keep_prior), evaluator, draws
+    return worker.run(Task(start, case["trials"], keep_prior, keep_inputs)), evaluator, draws
 
 
 @settings(max_examples=200)

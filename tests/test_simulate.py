@@ -299,7 +299,7 @@ def test_settings_of_the_book_and_of_the_call(model):
         ({"trials": -5}, "-5 trials were asked for"),
         ({"trials": 10**13}, "10000000000000 trials were asked for"),
         ({"seed": -1}, "the seed -1 is negative"),
-        ({"jobs": 0}, "0 threads were asked for"),
+        ({"jobs": 0}, "0 jobs were asked for"),
         ({"engine": "excel"}, "there is no engine 'excel'"),
     ],
 )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import closing
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
@@ -15,14 +16,14 @@ from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
 from xlmc.scheduling import Recipe, by_cluster, by_processes, in_order, worker_of
 from xlmc.scratch import Keeper
-from xlmc.simulation import Simulation
+from xlmc.simulation import KEPT_INPUTS, Simulation
 
 if TYPE_CHECKING:
     from xlmc.compile import Program
     from xlmc.definitions import Settings
     from xlmc.model import Model
 
-__all__ = ["BLOCK", "KEPT_INPUTS", "PRIOR_TRIALS", "Progress", "simulate"]
+__all__ = ["BLOCK", "PRIOR_TRIALS", "Progress", "simulate"]
 
 BLOCK: Final = 32_768
 """Trials evaluated at once: enough that the calls cost little beside the arithmetic, few enough for the cache."""
@@ -30,11 +31,8 @@ BLOCK: Final = 32_768
 PRIOR_TRIALS: Final = 65_536
 """Trials whose draws are all kept, accepted or not, to show the prior."""
 
-KEPT_INPUTS: Final = 1 << 20
-"""Accepted trials whose draws are kept, unless asked otherwise: more than a sheet has rows."""
-
-PROCESS_BLOCKS: Final = 100
-"""From so many blocks on, processes make up for the half second that they take to start."""
+PROCESS_BLOCKS: Final[Mapping[str, int]] = {"numpy": 256, "formulas": 4}
+"""Engine -> blocks from which processes make up for the half second they take to start: its threads share a lock."""
 
 MOST_TRIALS: Final = 10**12
 
@@ -56,6 +54,10 @@ def simulate(
     """Run a model; see `Model.simulate`."""
     settings = _settings(model, trials, seed, engine)
     _check_parallel(jobs, scheduler, workers)
+    if keep_inputs is not None and keep_inputs < 0:
+        raise SimulationError(
+            f"the draws of {keep_inputs} trials were asked for", hint="give 0 or more, or None for all"
+        )
     program = model.program(settings.engine)
     block = min(BLOCK, program.largest_block)
     gathered = _Gathered(model, block, settings.trials if keep_inputs is None else keep_inputs)
@@ -87,7 +89,7 @@ def _scheduled(
     blocks = -(-settings.trials // block)
     jobs = min(jobs, blocks)
     if scheduler is None:
-        scheduler = "processes" if jobs > 1 and blocks >= PROCESS_BLOCKS else "threads"
+        scheduler = "processes" if jobs > 1 and blocks >= PROCESS_BLOCKS.get(settings.engine, math.inf) else "threads"
     if scheduler == "threads":
         runners = [worker_of(model, program, settings.seed, block) for _ in range(jobs)]
         yield from in_order(runners, tasks)

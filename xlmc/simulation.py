@@ -25,10 +25,13 @@ if TYPE_CHECKING:
 
     from xlmc.model import Model
 
-__all__ = ["ERROR_SHARE", "ForecastResult", "Simulation"]
+__all__ = ["ERROR_SHARE", "KEPT_INPUTS", "ForecastResult", "Simulation"]
 
 ERROR_SHARE: Final = 0.001
 """Above this share of error trials the answer must not be used as it stands."""
+
+KEPT_INPUTS: Final = 1 << 20
+"""Accepted trials whose draws are kept, unless asked otherwise: more than a sheet has rows."""
 
 Floats = NDArray[np.float64]
 

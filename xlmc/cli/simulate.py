@@ -28,9 +28,7 @@ NOT_TO_BE_USED = 1
     type=click.Choice(["numpy", "formulas"]),
     help="numpy, or formulas: the slow reference.  [default: the book's, else numpy]",
 )
-@click.option(
-    "-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes; same result."
-)
+@click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes.")
 @click.option(
     "--scheduler",
     help="threads, processes, local (a Dask cluster here), or a Dask scheduler's address; same result."

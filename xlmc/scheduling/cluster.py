@@ -65,7 +65,7 @@ def _client(scheduler: str, workers: int | None) -> Iterator[Client]:
         hint = "pip install 'xlmc[distributed]', or leave out --scheduler"
         raise SimulationError("Dask is not installed", hint=hint) from error
     if scheduler == "local":
-        settings: dict[str, Any] = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": logging.ERROR}
+        settings: dict[str, Any] = {"threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": logging.ERROR}
         with LocalCluster(n_workers=workers, **settings) as cluster, Client(cluster, set_as_default=False) as client:
             yield client
         return

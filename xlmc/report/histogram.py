@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.scratch import parts
+from xlmc.scratch import parts, release
 from xlmc.statistics.sample import Sample, Values
 
 __all__ = ["Histogram", "histogram"]
@@ -99,6 +99,7 @@ def histogram(values: Values, low: float, high: float) -> Histogram | None:
     edges = _multiples(width, start, stop - start + 1)
     reached = np.searchsorted(x, edges, side="left")
     central = reached.clip(np.searchsorted(x, low, side="left"), np.searchsorted(x, high, side="right"))
+    release(x)
     inside = np.diff(central)
     return Histogram(
         edges=edges[:-1],

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.scratch.mapped import release
+from xlmc.scratch.mapped import on_disk, release
 
 __all__ = ["PART", "pairwise_sum", "parts", "picked"]
 
@@ -45,6 +45,8 @@ def _between(term: Callable[[slice], NDArray[np.float64]], start: int, stop: int
 
 def picked(values: NDArray[Any], places: NDArray[np.intp]) -> NDArray[Any]:
     """The values at `(m,)` places, in memory of their own."""
+    if not on_disk(values):
+        return np.asarray(values[places])
     found = np.empty(places.size, values.dtype)
     for start in range(0, places.size, _PICKED):
         here = slice(start, start + _PICKED)

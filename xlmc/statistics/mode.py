@@ -70,6 +70,10 @@ def half_sample_mode(sample: Sample) -> float:
 def _densest_half(x: Floats) -> slice:
     size = (x.size + 1) // 2
 
+    if x.size <= PART:
+        start = _middle_smallest_of(x[size - 1 :] - x[: x.size - size + 1])
+        return slice(start, start + size)
+
     def widths() -> Iterator[Floats]:
         for start in range(0, x.size - size + 1, PART):
             stop = min(start + PART, x.size - size + 1)
@@ -87,16 +91,18 @@ def _densest_weighted_half(x: Floats, w: Floats) -> slice:
     stops = np.searchsorted(reached, needed)
     stops = stops[stops <= x.size]
     starts = np.arange(stops.size)
-    widths = (x[stops - 1] - x[starts]) / (reached[stops] - reached[starts])
-    start = _middle_smallest(lambda: iter([widths]))
+    start = _middle_smallest_of((x[stops - 1] - x[starts]) / (reached[stops] - reached[starts]))
     return slice(start, int(stops[start]))
 
 
-def _middle_smallest(widths: Callable[[], Iterator[Floats]]) -> int:
-    """Where the smallest stands; of several the middle one, so that evenly spaced values do not give an end.
+def _middle_smallest_of(widths: Floats) -> int:
+    """Where the smallest stands; of several the middle one, so that evenly spaced values do not give an end."""
+    smallest = np.flatnonzero(widths <= widths.min() * (1.0 + ROUNDING))
+    return int(smallest[(smallest.size - 1) // 2])
 
-    `widths` begins anew with every call, and gives them a part at a time.
-    """
+
+def _middle_smallest(widths: Callable[[], Iterator[Floats]]) -> int:
+    """The same of widths that are made a part at a time, anew with every call."""
     smallest = min(float(part.min()) for part in widths()) * (1.0 + ROUNDING)
     wanted = (sum(int(np.count_nonzero(part <= smallest)) for part in widths()) - 1) // 2
     passed = 0

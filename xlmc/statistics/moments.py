@@ -13,14 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.scratch import PART, pairwise_sum, release
+from xlmc.scratch import PART, on_disk, pairwise_sum, release
 
 __all__ = ["Moments", "moments_of"]
 
 Floats = NDArray[np.float64]
 
 Slices = Callable[[slice], Floats]
-"""Gives the standardised values of some of the trials: they are made when they are needed, never all at once."""
+"""Gives the values of some of the trials, centred or standardised."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,22 +53,26 @@ def moments_of(x: Floats, w: Floats | None, group: NDArray[np.intp] | None, grou
     pivot = float(x[x.size // 2])
     shift = _average(lambda here: x[here] - pivot, x.size, w)
 
-    def centred(here: slice) -> Floats:
+    def about_the_mean(here: slice) -> Floats:
         release(x)
         return np.asarray(x[here] - pivot - shift)
 
+    centred = _held(about_the_mean, x)
     largest = max(float(np.abs(centred(here)).max()) for here in _slices(x.size))
     if largest == 0.0:
         return Moments(pivot + shift, 0.0, np.nan, np.nan, np.zeros((4, 4)), 0.0)
     # Scaled before squaring: tiny and huge units neither vanish nor overflow.
     root = _average(lambda here: np.square(centred(here) / largest), x.size, w) ** 0.5
 
-    def z(here: slice) -> Floats:
-        return centred(here) / largest / root
-
+    z = _held(lambda here: centred(here) / largest / root, x)
     means = np.sum([(powers * share).sum(axis=1) for powers, share, _ in _blocks(z, x.size, w, None)], axis=0)
     covariance, noise = _variation(_influences(z, x.size, w, group, groups, means), units)
     return Moments(pivot + shift, largest * root, float(means[2]), float(means[3]), covariance, noise)
+
+
+def _held(made: Slices, x: Floats) -> Slices:
+    """The values made once, if `x` itself is in memory; else whenever they are needed, and never all at once."""
+    return made if on_disk(x) else made(slice(0, x.size)).__getitem__
 
 
 def _slices(n: int) -> Iterator[slice]:

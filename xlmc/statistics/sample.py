@@ -98,7 +98,7 @@ class Sample:
             return np.interp(p, self.positions, self.x)
         rank = p * (self.n - 1)
         low = np.floor(rank).astype(np.intp)
-        left, right = self.x[low], self.x[np.minimum(low + 1, self.n - 1)]
+        left, right = picked(self.x, low), picked(self.x, np.minimum(low + 1, self.n - 1))
         return np.asarray(left + (right - left) * (rank - low))
 
     def per_unit(self, amounts: Floats) -> Floats:

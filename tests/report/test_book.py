@@ -45,7 +45,7 @@ def test_draws_that_were_not_kept_are_told(run, opened, rows_of):
     told = [str(row[0]) for row in rows_of(book["Assumptions"]) if row]
     assert f"Accepted: the first 100 of {again.accepted:,} accepted trials." in told
     assert f"Only the first 100 of {again.accepted:,} accepted trials stand here." in str(rows_of(book["Trials"]))
-    assert ["inputs_kept", "Accepted trials whose draws are kept", 100] in rows_of(book["Record"])
+    assert ["counts.inputs_kept", "Accepted trials whose draws are kept", 100] in rows_of(book["Record"])
 
 
 @pytest.mark.parametrize("name", RUNS)

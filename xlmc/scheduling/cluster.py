@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from functools import lru_cache
 from itertools import islice
 from queue import Empty, SimpleQueue
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from xlmc.blocks import Block, Task, Worker
 from xlmc.errors import SimulationError
@@ -31,6 +31,9 @@ MOST_BLOCKS = 8
 
 PATIENCE = 30.0
 """Seconds to wait for a scheduler, and for its first worker."""
+
+_DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
+"""What a worker of a local cluster starts with: Ctrl-C is for us, and we end it."""
 
 MODELS = 4
 """That a worker has at hand: a cluster may serve several people."""
@@ -65,7 +68,7 @@ def _client(scheduler: str, workers: int | None) -> Iterator[Client]:
         hint = "pip install 'xlmc[distributed]', or leave out --scheduler"
         raise SimulationError("Dask is not installed", hint=hint) from error
     if scheduler == "local":
-        settings: dict[str, Any] = {"threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": logging.ERROR}
+        settings = {"threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": logging.ERROR, "preload": _DEAF}
         with LocalCluster(n_workers=workers, **settings) as cluster, Client(cluster, set_as_default=False) as client:
             yield client
         return

@@ -81,6 +81,13 @@ def test_just_as_many_trials_as_asked_for(model, trials):
     assert run.acceptance.n == trials
 
 
+def test_on_disk_a_forecast_that_does_not_vary(book, monkeypatch):
+    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    run = book({"A1": 1.0, "B1": "=2>1"}, {"a": {"cell": "A1", **UNIT}}, {"x": "B1", "y": "A1"}).simulate(300)
+    assert run.forecasts["x"].tolist() == [1.0] * 300
+    assert run["x"].mean.value == 1.0
+
+
 @pytest.mark.parametrize("trials", [100, 5000])
 def test_on_disk_no_bit_is_different(model, monkeypatch, trials):
     in_memory = model.simulate(trials)

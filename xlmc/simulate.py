@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
@@ -14,12 +13,11 @@ import numpy as np
 from xlmc.blocks import Block, FilterTally, Task
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
-from xlmc.scheduling import Recipe, by_cluster, by_processes, in_order, worker_of
+from xlmc.scheduling import Crew
 from xlmc.scratch import Keeper
 from xlmc.simulation import KEPT_INPUTS, Simulation
 
 if TYPE_CHECKING:
-    from xlmc.compile import Program
     from xlmc.definitions import Settings
     from xlmc.model import Model
 
@@ -30,9 +28,6 @@ BLOCK: Final = 32_768
 
 PRIOR_TRIALS: Final = 65_536
 """Trials whose draws are all kept, accepted or not, to show the prior."""
-
-PROCESS_BLOCKS: Final[Mapping[str, int]] = {"numpy": 256, "formulas": 4}
-"""Engine -> blocks from which processes make up for the half second they take to start: its threads share a lock."""
 
 MOST_TRIALS: Final = 10**12
 
@@ -53,7 +48,7 @@ def simulate(
 ) -> Simulation:
     """Run a model; see `Model.simulate`."""
     settings = _settings(model, trials, seed, engine)
-    _check_parallel(jobs, scheduler, workers)
+    crew = Crew(jobs, scheduler, workers)
     if keep_inputs is not None and keep_inputs < 0:
         raise SimulationError(
             f"the draws of {keep_inputs} trials were asked for", hint="give 0 or more, or None for all"
@@ -67,50 +62,12 @@ def simulate(
         for start in starts:
             yield Task(start, min(block, settings.trials - start), start < PRIOR_TRIALS, gathered.wants_inputs)
 
-    with closing(_scheduled(model, program, settings, block, jobs, scheduler, workers, tasks())) as blocks:
+    with closing(crew.blocks(model, program, settings, block, tasks())) as blocks:
         for finished in blocks:
             gathered.add(finished)
             if progress is not None:
                 progress(gathered.trials, gathered.accepted)
     return gathered.simulation(settings)
-
-
-def _scheduled(
-    model: Model,
-    program: Program,
-    settings: Settings,
-    block: int,
-    jobs: int,
-    scheduler: str | None,
-    workers: int | None,
-    tasks: Iterator[Task],
-) -> Generator[Block, None, None]:
-    """The blocks in order, by whoever was asked to run them."""
-    blocks = -(-settings.trials // block)
-    jobs = min(jobs, blocks)
-    if scheduler is None:
-        scheduler = "processes" if jobs > 1 and blocks >= PROCESS_BLOCKS.get(settings.engine, math.inf) else "threads"
-    if scheduler == "threads":
-        runners = [worker_of(model, program, settings.seed, block) for _ in range(jobs)]
-        yield from in_order(runners, tasks)
-        return
-    recipe = Recipe.of(model, settings.engine, settings.seed, block)
-    if scheduler == "processes":
-        yield from by_processes(recipe, jobs, tasks)
-    else:
-        yield from by_cluster(recipe, scheduler, workers, blocks, tasks)
-
-
-def _check_parallel(jobs: int, scheduler: str | None, workers: int | None) -> None:
-    if jobs < 1:
-        raise SimulationError(f"{jobs} jobs were asked for", hint="give 1 or more")
-    if workers is not None and workers < 1:
-        raise SimulationError(f"{workers} workers were asked for", hint="give 1 or more")
-    if workers is not None and scheduler != "local":
-        raise SimulationError("only a local cluster is told how many workers to have", hint="use --scheduler local")
-    if scheduler not in (None, "threads", "processes", "local") and "://" not in str(scheduler):
-        hint = "choose threads, processes or local, or give an address such as tcp://10.0.0.5:8786"
-        raise SimulationError(f"there is no scheduler {scheduler!r}", hint=hint)
 
 
 def _settings(model: Model, trials: int | None, seed: int | None, engine: str | None) -> Settings:

@@ -7,10 +7,11 @@ import sys
 
 import pytest
 
-from xlmc import simulate as module
 from xlmc.blocks import Task
 from xlmc.errors import SimulationError
-from xlmc.scheduling import Recipe, by_processes, processes
+from xlmc.scheduling import crew, processes
+from xlmc.scheduling.processes import by_processes
+from xlmc.scheduling.recipe import Recipe
 
 
 @pytest.fixture
@@ -37,7 +38,7 @@ def test_processes_change_no_bit(model, bits, children, jobs):
 
 @pytest.mark.parametrize(("trials", "started"), [(900, 0), (1000, 2)])
 def test_a_long_run_with_jobs_starts_processes(model, monkeypatch, children, trials, started):
-    monkeypatch.setattr(module, "PROCESS_BLOCKS", {"numpy": 10})
+    monkeypatch.setattr(crew, "PROCESS_BLOCKS", {"numpy": 10})
     assert model.simulate(trials).trials == trials
     assert model.simulate(trials, jobs=2).trials == trials
     assert len(children) == started
@@ -62,6 +63,13 @@ def test_a_process_that_dies_is_told(model, children):
     with pytest.raises(SimulationError, match="a process ended before its time"):
         list(blocks)
     assert all(child.returncode is not None for child in children)
+
+
+def test_a_process_that_cannot_be_started_is_told(model, monkeypatch):
+    monkeypatch.setattr(sys, "executable", "/there/is/no/python")
+    with pytest.raises(SimulationError, match="no process can be started: No such file") as caught:
+        model.simulate(1000, jobs=2, scheduler="processes")
+    assert "--scheduler threads" in caught.value.hint
 
 
 def test_an_error_in_a_process_is_raised_here(model):

@@ -6,8 +6,7 @@ import pytest
 
 from xlmc.blocks import Task
 from xlmc.errors import SimulationError
-from xlmc.scheduling import Recipe, worker_of
-from xlmc.scheduling.recipe import check_software, software, unpacked
+from xlmc.scheduling.recipe import Recipe, check_software, software, unpacked, worker_of
 
 
 def test_a_recipe_makes_the_same_blocks(model):

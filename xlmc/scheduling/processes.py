@@ -30,7 +30,7 @@ def by_processes(recipe: Recipe, jobs: int, tasks: Iterable[Task]) -> Iterator[B
     """The blocks in the order of their tasks.
 
     Raises:
-        SimulationError: a process ended before its time.
+        SimulationError: a process cannot be started, or ended before its time.
     """
     packed = recipe.packed()
     children: list[_Child] = []
@@ -48,12 +48,16 @@ class _Child:
     def __init__(self, packed: bytes) -> None:
         self._greeting: list[object] = [sys.path, packed]
         # A session of its own, where there are such: Ctrl-C is for us alone, and we end it.
-        self._process = subprocess.Popen(
-            [sys.executable, "-c", _START],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            start_new_session=os.name == "posix",
-        )
+        try:
+            self._process = subprocess.Popen(
+                [sys.executable, "-c", _START],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                start_new_session=os.name == "posix",
+            )
+        except OSError as error:
+            hint = "Ask for fewer with -j, or use --scheduler threads"
+            raise SimulationError(f"no process can be started: {error.strerror or error}", hint=hint) from error
 
     def run(self, task: Task) -> Block:
         try:

@@ -74,7 +74,7 @@ def _client(scheduler: str, workers: int | None) -> Iterator[Client]:
         return
     try:
         client = Client(scheduler, timeout=PATIENCE, set_as_default=False)
-    except (OSError, TimeoutError, ValueError) as error:
+    except (OSError, TimeoutError, ValueError, TypeError) as error:  # TypeError: no certificates for tls
         hint = "Start one with `dask scheduler`, and give the address it prints"
         raise SimulationError(f"no scheduler answers: {error}", where=scheduler, hint=hint) from error
     with client:

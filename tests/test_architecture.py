@@ -12,7 +12,7 @@ PACKAGE = Path(__file__).resolve().parents[1] / "xlmc"
 # From the ground up; what stands in one line does not import each other.
 FLOORS = [
     {"errors", "collecting"},
-    {"address"},
+    {"address", "scratch"},
     {"distributions", "statistics"},
     {"workbook"},
     {"definitions", "templates_folder"},
@@ -22,7 +22,7 @@ FLOORS = [
     {"scene", "drawing"},
     {"model", "verify"},
     {"blocks"},
-    {"simulation"},
+    {"simulation", "scheduling"},
     {"simulate"},
     {"record"},
     {"report"},

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from xlmc.blocks import FilterTally, Worker, fault_text
+from xlmc.blocks import FilterTally, Task, Worker, _tally, fault_text
 from xlmc.compile import Column
 from xlmc.compile.engine import BLANK_RESULT, TEXT_RESULT
 from xlmc.errors import ErrorCode
@@ -69,11 +69,11 @@ def code(column, trial):
     return 0 if column.codes is None else int(column.codes[trial])
 
 
-def worked(case, start=0, keep_prior=False):
+def worked(case, start=0, keep_prior=False, keep_inputs=True):
     draws = {"a": np.arange(float(BLOCK)), "b": np.array(case["draws"])}
     evaluator = Columns(case["filters"], case["forecasts"])
     worker = Worker(Draws(draws), evaluator, BLOCK, len(case["forecasts"]), frozenset({"b"}))
-    return worker.run(start, case["trials"], keep_prior), evaluator, draws
+    return worker.run(Task(start, case["trials"], keep_prior, keep_inputs)), evaluator, draws
 
 
 @settings(max_examples=200)
@@ -140,6 +140,22 @@ def test_the_prior_is_that_of_all_trials():
     assert block.prior["a"].tolist() == list(range(7))
     assert not np.shares_memory(block.prior["a"], draws["a"])
     assert worked(case)[0].prior is None
+
+
+def test_accepted_draws_are_left_out_when_nobody_wants_them():
+    sound = Column(np.ones(BLOCK))
+    case = {"filters": [sound], "forecasts": [sound], "draws": [0.5] * BLOCK, "trials": 7}
+    assert worked(case, keep_inputs=False)[0].draws == {}
+    assert worked(case)[0].draws["a"].tolist() == list(range(7))
+
+
+@given(st.integers(1, 12), st.integers(1, 200), st.sampled_from((0.02, 0.3, 0.9)), st.integers(0, 99))
+def test_a_tally_of_many_filters_is_that_of_a_recount(filters, trials, share, seed):
+    fails = np.random.default_rng(seed).random((filters, trials)) < share
+    tally = _tally([Column(np.ones(trials))] * filters, list(fails), np.zeros(trials, bool))
+    assert tally.rejected.tolist() == fails.sum(axis=1).tolist()
+    assert tally.only.tolist() == (fails & (fails.sum(axis=0) == 1)).sum(axis=1).tolist()
+    assert tally.together.tolist() == (fails.astype(int) @ fails.T.astype(int)).tolist()
 
 
 def test_tallies_add_up():

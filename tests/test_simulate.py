@@ -1,10 +1,18 @@
 from __future__ import annotations
 
+import gc
+import inspect
+import tempfile
+
 import numpy as np
 import pytest
 
 from xlmc import simulate as module
 from xlmc.errors import FormulaError, SimulationError
+from xlmc.model import Model
+from xlmc.record.fingerprint import fingerprint
+from xlmc.scratch import columns, on_disk
+from xlmc.simulation import KEPT_INPUTS
 
 CELLS = {
     "A1": 1.0,
@@ -71,6 +79,80 @@ def test_just_as_many_trials_as_asked_for(model, trials):
     assert run.accepted == 0 or run.trial_index[-1] < trials
     assert {values.size for values in run.prior.values()} == {trials}
     assert run.acceptance.n == trials
+
+
+def test_on_disk_a_forecast_that_does_not_vary(book, monkeypatch):
+    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    run = book({"A1": 1.0, "B1": "=2>1"}, {"a": {"cell": "A1", **UNIT}}, {"x": "B1", "y": "A1"}).simulate(300)
+    assert run.forecasts["x"].tolist() == [1.0] * 300
+    assert run["x"].mean.value == 1.0
+
+
+@pytest.mark.parametrize("trials", [100, 5000])
+def test_on_disk_no_bit_is_different(model, monkeypatch, trials):
+    in_memory = model.simulate(trials)
+    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    monkeypatch.setattr(columns, "WRITTEN", 4000)
+    run = model.simulate(trials)
+    assert on_disk(run.trial_index)
+    assert all(on_disk(values) for part in (run.inputs, run.prior, run.forecasts) for values in part.values())
+    assert bits(run) == bits(in_memory)
+    for name in FORECASTS:
+        assert repr(run[name].statistics) == repr(in_memory[name].statistics)
+        assert run[name].values.tolist() == in_memory[name].values.tolist()
+    assert fingerprint(run) == fingerprint(in_memory)
+    assert run.frame().equals(in_memory.frame())
+
+
+def test_on_disk_a_forecast_without_a_number_is_left_out(book, monkeypatch):
+    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    run = book({"A1": 1.0, "B1": "=SQRT(A1-0.5)"}, {"a": {"cell": "A1", **UNIT}}, {"x": "B1"}).simulate(1000)
+    kept = run.inputs["a"] >= 0.5
+    assert on_disk(run["x"].values)
+    assert run["x"].values.tolist() == np.sqrt(run.inputs["a"][kept] - 0.5).tolist()
+    assert run["x"].statistics.trials == kept.sum()
+
+
+def test_the_temporary_files_go_with_the_run(model, monkeypatch, tmp_path):
+    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    run = model.simulate(1000)
+    assert list(tmp_path.iterdir())
+    assert run["x"].statistics.trials == run.accepted
+    del run
+    gc.collect()
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("scheduler", ["threads", "processes"])
+def test_a_full_disk_ends_the_run(model, monkeypatch, scheduler):
+    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    monkeypatch.setattr(tempfile, "tempdir", "/there/is/none")
+    with pytest.raises(SimulationError, match="temporary folder"):
+        model.simulate(1000, jobs=2, scheduler=scheduler)
+
+
+@pytest.mark.parametrize("kept", [0, 1, 200, 10**6, None])
+def test_draws_of_the_first_accepted_trials_are_kept(model, kept):
+    run, full = model.simulate(3000, jobs=2, keep_inputs=kept), model.simulate(3000)
+    count = run.accepted if kept is None else min(kept, run.accepted)
+    assert run.kept_inputs == count
+    for name in GIVEN:
+        assert run.inputs[name].tobytes() == full.inputs[name][:count].tobytes()
+    assert [values.tobytes() for values in run.forecasts.values()] == [v.tobytes() for v in full.forecasts.values()]
+
+
+def test_a_frame_never_holds_fewer_trials_than_were_accepted(model):
+    run = model.simulate(3000, keep_inputs=10)
+    with pytest.raises(SimulationError, match="the draws of 10 of"):
+        run.frame()
+    frame = run.frame(inputs=False)
+    assert list(frame) == list(FORECASTS)
+    assert len(frame) == run.accepted
+
+
+def test_the_model_and_the_run_agree_on_what_is_kept():
+    assert inspect.signature(Model.simulate).parameters["keep_inputs"].default == KEPT_INPUTS
 
 
 def test_draws_do_not_depend_on_the_block_size(model, monkeypatch):
@@ -299,8 +381,12 @@ def test_settings_of_the_book_and_of_the_call(model):
         ({"trials": -5}, "-5 trials were asked for"),
         ({"trials": 10**13}, "10000000000000 trials were asked for"),
         ({"seed": -1}, "the seed -1 is negative"),
-        ({"jobs": 0}, "0 threads were asked for"),
+        ({"jobs": 0}, "0 jobs were asked for"),
         ({"engine": "excel"}, "there is no engine 'excel'"),
+        ({"scheduler": "ray"}, "there is no scheduler 'ray'"),
+        ({"scheduler": "local", "workers": 0}, "0 workers were asked for"),
+        ({"workers": 2}, "only a local cluster is told how many workers to have"),
+        ({"keep_inputs": -1}, "the draws of -1 trials were asked for"),
     ],
 )
 def test_arguments_out_of_range(model, arguments, message):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from xlmc.compile.engine import BLANK_RESULT, TEXT_RESULT
 from xlmc.errors import ErrorCode
 from xlmc.sampling import MonteCarlo
 
-__all__ = ["Block", "FilterTally", "Worker", "fault_text"]
+__all__ = ["Block", "FilterTally", "Runner", "Task", "Worker", "fault_text"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -61,7 +62,7 @@ class Block:
 
     Attributes:
         accepted: `(m,)` trial indices.
-        draws: assumption -> `(m,)`.
+        draws: assumption -> `(m,)`; empty when not asked for.
         forecasts: one a forecast, `(m,)`, NaN where it has no number.
         faults: per forecast, fault -> accepted trials in which it has no number.
         invalid: assumption -> trials in which its parameters were no distribution.
@@ -80,6 +81,22 @@ class Block:
     prior: dict[str, Floats] | None
 
 
+class Task(NamedTuple):
+    """A block to run: its first trial, how many of its trials count, and whether to keep all and accepted draws."""
+
+    start: int
+    trials: int
+    prior: bool
+    inputs: bool = True
+
+
+class Runner(Protocol):
+    """Whatever runs blocks, one after another."""
+
+    def run(self, task: Task) -> Block:
+        """The trials from the task's first on, a whole block of them, cut to those that count."""
+
+
 class Worker:
     """Runs blocks, one after another, in one thread.
 
@@ -94,8 +111,9 @@ class Worker:
         self._sampler, self._evaluator, self._block = sampler, evaluator, block
         self._width, self._fallible = forecasts, fallible
 
-    def run(self, start: int, trials: int, keep_prior: bool) -> Block:
-        """The trials from `start` on, a whole block of them, cut to the first `trials`."""
+    def run(self, task: Task) -> Block:
+        """See `Runner`."""
+        start, trials = task.start, task.trials
         draws = self._sampler.draw(start)
         columns = self._evaluator.filters(draws, self._block)
         invalid = {name: np.isnan(draws[name]) for name in sorted(self._fallible)}
@@ -113,13 +131,13 @@ class Worker:
         return Block(
             trials,
             survivors + start,
-            {name: values[survivors] for name, values in draws.items()},
+            {name: values[survivors] for name, values in draws.items()} if task.inputs else {},
             [column.as_floats()[:m] for column in forecasts],
             [_faults(column, m) for column in forecasts],
             tally,
             Counter({name: int(np.count_nonzero(bad[:trials])) for name, bad in invalid.items() if bad[:trials].any()}),
             int(np.count_nonzero(lost)),
-            {name: values[:trials].copy() for name, values in draws.items()} if keep_prior else None,
+            {name: values[:trials].copy() for name, values in draws.items()} if task.prior else None,
         )
 
     def _forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
@@ -137,17 +155,38 @@ def _tally(columns: Sequence[Column], fails: Sequence[Bools], undecided: Bools) 
     """What the filters reject of a block's first trials: `fails`, a mask (n,) each, and `undecided` (n,)."""
     trials = undecided.size
     tally = FilterTally.empty(len(columns))
-    count = np.zeros(trials, np.uint16)
-    for rejected in fails:
-        count += rejected
-    for i, mine in enumerate(fails):
-        tally.rejected[i] = np.count_nonzero(mine)
-        tally.only[i] = np.count_nonzero(mine & (count == 1))
-        for j in range(i + 1):
-            tally.together[i, j] = tally.together[j, i] = np.count_nonzero(mine & fails[j])
-        tally.errors[i] = _faults(columns[i], trials)
+    if fails:
+        bits = _bits(fails, trials)
+        for i, mine in enumerate(bits):
+            tally.together[i, : i + 1] = tally.together[: i + 1, i] = _count(mine & bits[: i + 1])
+        tally.rejected[:] = np.diagonal(tally.together)
+        tally.only[:] = _count(bits & _exactly_one(bits))
+    for i, column in enumerate(columns):
+        tally.errors[i] = _faults(column, trials)
     tally.by_error = int(np.count_nonzero(undecided))
     return tally
+
+
+def _bits(masks: Sequence[Bools], n: int) -> NDArray[np.uint64]:
+    """Masks `(n,)` as rows of words, a bit a trial: sets of trials are compared 64 trials at a time."""
+    rows = np.zeros((len(masks), -(-n // 64) * 8), np.uint8)
+    for row, mask in zip(rows, masks, strict=True):
+        row[: -(-n // 8)] = np.packbits(mask)
+    return rows.view(np.uint64)
+
+
+def _count(bits: NDArray[np.uint64]) -> NDArray[np.int64]:
+    """The set bits of every row."""
+    return np.asarray(np.bitwise_count(bits).sum(axis=1, dtype=np.int64))
+
+
+def _exactly_one(bits: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """A row of the bits that are set in one row only."""
+    once, more = np.zeros_like(bits[0]), np.zeros_like(bits[0])
+    for row in bits:
+        more |= once & row
+        once |= row
+    return np.asarray(once & ~more)
 
 
 def _fails(column: Column) -> Bools:

@@ -105,23 +105,43 @@ class Model:
         *,
         engine: str | None = None,
         jobs: int = 1,
+        scheduler: str | None = None,
+        workers: int | None = None,
+        keep_inputs: int | None = 1 << 20,
         progress: Progress | None = None,
     ) -> Simulation:
         """Run the simulation; what is not given comes from the workbook's settings.
+
+        However the work is divided, the result is the same to the last bit.
 
         Args:
             trials: how many, 1 or more.
             seed: 0 or more.
             engine: `numpy`, or `formulas`, the slow reference.
-            jobs: threads. The result does not depend on it.
+            jobs: threads or processes.
+            scheduler: `threads`; `processes`; `local`, a Dask cluster of this machine; or the address of a Dask
+                scheduler. By default processes for a long run with several jobs, else threads.
+            workers: of the local cluster; by default one a processor.
+            keep_inputs: of how many accepted trials, from the first on, the draws are kept; None for all.
             progress: called with (trials done, trials accepted) after every block.
 
         Raises:
-            SimulationError: an argument is out of its range.
+            SimulationError: an argument is out of its range, there is no room on the disk for the accepted trials, or
+                the workers cannot be used.
         """
         from xlmc.simulate import simulate
 
-        return simulate(self, trials=trials, seed=seed, engine=engine, jobs=jobs, progress=progress)
+        return simulate(
+            self,
+            trials=trials,
+            seed=seed,
+            engine=engine,
+            jobs=jobs,
+            scheduler=scheduler,
+            workers=workers,
+            keep_inputs=keep_inputs,
+            progress=progress,
+        )
 
     def function(self, inputs: Mapping[str, ArrayLike]) -> dict[str, NDArray[np.float64]]:
         """The workbook as a function: values of every live assumption in, every forecast out. Filters are not asked.

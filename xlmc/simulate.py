@@ -1,20 +1,21 @@
-"""Runs a model: blocks over threads, put together in block order."""
+"""Runs a model: its blocks over threads, processes or a cluster, put together in block order."""
 
 from __future__ import annotations
 
-from collections import Counter, deque
+from collections import Counter
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import closing
 from dataclasses import replace
-from queue import SimpleQueue
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from xlmc.blocks import Block, FilterTally, Worker
+from xlmc.blocks import Block, FilterTally, Task
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
-from xlmc.simulation import Simulation
+from xlmc.scheduling import Crew
+from xlmc.scratch import Keeper
+from xlmc.simulation import KEPT_INPUTS, Simulation
 
 if TYPE_CHECKING:
     from xlmc.definitions import Settings
@@ -40,33 +41,32 @@ def simulate(
     seed: int | None = None,
     engine: str | None = None,
     jobs: int = 1,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    keep_inputs: int | None = KEPT_INPUTS,
     progress: Progress | None = None,
 ) -> Simulation:
     """Run a model; see `Model.simulate`."""
     settings = _settings(model, trials, seed, engine)
-    if jobs < 1:
-        raise SimulationError(f"{jobs} threads were asked for", hint="give 1 or more")
+    crew = Crew(jobs, scheduler, workers)
+    if keep_inputs is not None and keep_inputs < 0:
+        raise SimulationError(
+            f"the draws of {keep_inputs} trials were asked for", hint="give 0 or more, or None for all"
+        )
     program = model.program(settings.engine)
     block = min(BLOCK, program.largest_block)
+    gathered = _Gathered(model, block, settings.trials if keep_inputs is None else keep_inputs)
     starts = range(0, settings.trials, block)
-    workers = min(jobs, len(starts))
-    idle: SimpleQueue[Worker] = SimpleQueue()
-    for _ in range(workers):
-        sampler, evaluator = model.sampler(settings.seed, block), program.evaluator(block)
-        idle.put(Worker(sampler, evaluator, block, len(model.forecasts), model.fallible))
 
-    def run(start: int) -> Block:
-        worker = idle.get()
-        try:
-            return worker.run(start, min(block, settings.trials - start), start < PRIOR_TRIALS)
-        finally:
-            idle.put(worker)
+    def tasks() -> Iterator[Task]:
+        for start in starts:
+            yield Task(start, min(block, settings.trials - start), start < PRIOR_TRIALS, gathered.wants_inputs)
 
-    gathered = _Gathered(model, block)
-    for finished in _in_order(run, starts, workers):
-        gathered.add(finished)
-        if progress is not None:
-            progress(gathered.trials, gathered.accepted)
+    with closing(crew.blocks(model, program, settings, block, tasks())) as blocks:
+        for finished in blocks:
+            gathered.add(finished)
+            if progress is not None:
+                progress(gathered.trials, gathered.accepted)
     return gathered.simulation(settings)
 
 
@@ -80,33 +80,30 @@ def _settings(model: Model, trials: int | None, seed: int | None, engine: str | 
     return settings
 
 
-def _in_order(run: Callable[[int], Block], starts: range, workers: int) -> Iterator[Block]:
-    if workers == 1:
-        yield from map(run, starts)
-        return
-    with ThreadPoolExecutor(workers) as pool:
-        waiting: deque[Future[Block]] = deque()
-        for start in starts:
-            waiting.append(pool.submit(run, start))
-            if len(waiting) > 2 * workers:
-                yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
-
-
 class _Gathered:
-    """The blocks so far."""
+    """The blocks so far: the counts of all trials, and the columns of the accepted ones."""
 
-    def __init__(self, model: Model, block: int) -> None:
-        self._model, self._block = model, block
-        self._blocks: list[Block] = []
+    def __init__(self, model: Model, block: int, keep_inputs: int) -> None:
+        self._model, self._block, self._keep_inputs = model, block, keep_inputs
+        keys = [name_key(a.name) for a in model.live]
+        real, whole = np.dtype(np.float64), np.dtype(np.int64)
+        self._inputs = {a.name: ("input", key) for a, key in zip(model.live, keys, strict=True)}
+        self._prior = {a.name: ("prior", key) for a, key in zip(model.live, keys, strict=True)}
+        self._forecasts = {f.name: ("forecast", place) for place, f in enumerate(model.forecasts)}
+        columns = (*self._inputs.values(), *self._prior.values(), *self._forecasts.values())
+        self._keeper = Keeper({("trial", 0): whole, **dict.fromkeys(columns, real)})
         self._tally = FilterTally.empty(len(model.filters))
         self._invalid: Counter[str] = Counter()
         self._faults: list[Counter[str]] = [Counter() for _ in model.forecasts]
         self.trials = self.accepted = self.lost = 0
 
+    @property
+    def wants_inputs(self) -> bool:
+        """Whether there are accepted trials still to come whose draws are kept."""
+        return self.accepted < self._keep_inputs
+
     def add(self, block: Block) -> None:
-        self._blocks.append(block)
+        self._keep(block)
         self._tally.add(block.tally)
         self._invalid.update(block.invalid)
         for mine, theirs in zip(self._faults, block.faults, strict=True):
@@ -115,22 +112,27 @@ class _Gathered:
         self.accepted += block.accepted.size
         self.lost += block.lost
 
+    def _keep(self, block: Block) -> None:
+        self._keeper.add(("trial", 0), block.accepted)
+        room = max(0, self._keep_inputs - self.accepted)
+        for key, values in block.draws.items():
+            self._keeper.add(("input", key), values[:room])
+        for key, values in (block.prior or {}).items():
+            self._keeper.add(("prior", key), values)
+        for place, values in enumerate(block.forecasts):
+            self._keeper.add(("forecast", place), values)
+        self._keeper.settle()
+
     def simulation(self, settings: Settings) -> Simulation:
-        names = [a.name for a in self._model.live]
-        keys = list(self._blocks[0].draws)
-        kept = {key: np.concatenate([block.draws[key] for block in self._blocks]) for key in keys}
-        early = [block.prior for block in self._blocks if block.prior is not None]
-        prior = {key: np.concatenate([part[key] for part in early]) for key in keys}
-        forecasts = [np.concatenate(parts) for parts in zip(*(b.forecasts for b in self._blocks), strict=True)]
         return Simulation(
             model=self._model,
             settings=settings,
             block=self._block,
             trials=self.trials,
-            trial_index=np.concatenate([block.accepted for block in self._blocks]),
-            inputs={name: kept[name_key(name)] for name in names},
-            prior={name: prior[name_key(name)] for name in names},
-            forecasts={f.name: values for f, values in zip(self._model.forecasts, forecasts, strict=True)},
+            trial_index=self._keeper.columns({"trial": ("trial", 0)})["trial"],
+            inputs=self._keeper.columns(self._inputs),
+            prior=self._keeper.columns(self._prior),
+            forecasts=self._keeper.columns(self._forecasts),
             faults={f.name: counts for f, counts in zip(self._model.forecasts, self._faults, strict=True)},
             tally=self._tally,
             invalid=self._invalid,

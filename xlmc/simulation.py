@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -16,17 +16,22 @@ from xlmc import statistics
 from xlmc.blocks import FilterTally
 from xlmc.definitions import Forecast, Settings
 from xlmc.definitions.model import name_key
-from xlmc.statistics import Description, Estimate
+from xlmc.errors import SimulationError
+from xlmc.scratch import numbers
+from xlmc.statistics import Description, Estimate, Sample
 
 if TYPE_CHECKING:
     import pandas
 
     from xlmc.model import Model
 
-__all__ = ["ERROR_SHARE", "ForecastResult", "Simulation"]
+__all__ = ["ERROR_SHARE", "KEPT_INPUTS", "ForecastResult", "Simulation"]
 
 ERROR_SHARE: Final = 0.001
 """Above this share of error trials the answer must not be used as it stands."""
+
+KEPT_INPUTS: Final = 1 << 20
+"""Accepted trials whose draws are kept, unless asked otherwise: more than a sheet has rows."""
 
 Floats = NDArray[np.float64]
 
@@ -35,12 +40,22 @@ class ForecastResult:
     """One forecast's accepted trials and their statistics. Estimates carry their standard error.
 
     Attributes:
-        values: `(m,)` accepted trials in which it is a number.
         faults: error, `text` or `blank` -> accepted trials in which it is none.
     """
 
-    def __init__(self, definition: Forecast, values: Floats, faults: Counter[str]) -> None:
-        self.definition, self.values, self.faults = definition, values[~np.isnan(values)], faults
+    def __init__(self, definition: Forecast, column: Callable[[], Floats], faults: Counter[str]) -> None:
+        self.definition, self.faults = definition, faults
+        self._column = column
+
+    @cached_property
+    def values(self) -> Floats:
+        """`(m,)` accepted trials in which it is a number, in their order."""
+        return numbers(self._column())
+
+    @cached_property
+    def sample(self) -> Sample:
+        """The same in ascending order, from which the statistics come."""
+        return Sample.of(self.values)
 
     def __repr__(self) -> str:
         return f"<{self.definition.name}: {self.values.size} accepted trials>"
@@ -49,42 +64,42 @@ class ForecastResult:
     def statistics(self) -> Description:
         """Every statistic at once."""
         d = self.definition
-        return statistics.describe(self.values, central=d.central, threshold=d.threshold)
+        return statistics.describe(self.sample, central=d.central, threshold=d.threshold)
 
     @property
     def mean(self) -> Estimate:
-        return statistics.mean(self.values)
+        return statistics.mean(self.sample)
 
     @property
     def median(self) -> Estimate:
-        return statistics.median(self.values)
+        return statistics.median(self.sample)
 
     @property
     def standard_deviation(self) -> Estimate:
-        return statistics.standard_deviation(self.values)
+        return statistics.standard_deviation(self.sample)
 
     def percentile(self, percent: float) -> Estimate:
         """The value that `percent` (0 to 100) of the trials do not exceed, as Excel's PERCENTILE.INC."""
-        return statistics.percentile(self.values, percent)
+        return statistics.percentile(self.sample, percent)
 
     def central(self, share: float | None = None) -> tuple[Estimate, Estimate]:
         """Both ends of the central range that holds `share` of the trials; the forecast's own share by default."""
-        return statistics.central_interval(self.values, self.definition.central if share is None else share)
+        return statistics.central_interval(self.sample, self.definition.central if share is None else share)
 
     def probability_above(self, threshold: float) -> Estimate:
         """P(forecast > threshold)."""
-        return statistics.probability_above(self.values, threshold)
+        return statistics.probability_above(self.sample, threshold)
 
 
 @dataclass(frozen=True, eq=False)
 class Simulation:
-    """A finished run.
+    """A finished run. Of a large one the columns lie in temporary files, as read-only arrays, for as long as it lives.
 
     Attributes:
         model, settings, block: what it is a function of.
         trials: how many were run.
         trial_index: `(m,)` the accepted ones, counted from 0.
-        inputs: assumption -> `(m,)` its accepted draws.
+        inputs: assumption -> its accepted draws, `(m,)`, or of the first accepted trials where not all were asked for.
         prior: assumption -> its draws before filtering, of the first trials.
         forecasts: forecast -> `(m,)`, NaN where it has no number.
         faults: forecast -> fault -> accepted trials in which it has no number.
@@ -124,7 +139,10 @@ class Simulation:
     @cached_property
     def results(self) -> dict[str, ForecastResult]:
         """Every forecast's result, in the order of the workbook."""
-        return {f.name: ForecastResult(f, self.forecasts[f.name], self.faults[f.name]) for f in self.model.forecasts}
+        return {
+            f.name: ForecastResult(f, partial(self.forecasts.__getitem__, f.name), self.faults[f.name])
+            for f in self.model.forecasts
+        }
 
     @property
     def accepted(self) -> int:
@@ -146,15 +164,31 @@ class Simulation:
             found.append(f"{self.error_trials:,} trials ({share:.2%}) were lost to errors in cells")
         return found
 
-    def frame(self) -> pandas.DataFrame:
+    @property
+    def kept_inputs(self) -> int:
+        """Of how many accepted trials, from the first on, the draws are kept."""
+        return next((int(values.size) for values in self.inputs.values()), self.accepted)
+
+    def frame(self, *, inputs: bool = True) -> pandas.DataFrame:
         """Accepted trials, one a row, indexed by trial: assumptions, then forecasts.
 
         An assumption with the name of a forecast is called `name (assumption)`.
+
+        Args:
+            inputs: with the assumptions.
+
+        Raises:
+            SimulationError: not all draws were kept.
         """
         import pandas
 
-        names = {name: f"{name} (assumption)" if name in self.forecasts else name for name in self.inputs}
-        columns = {names[name]: values for name, values in self.inputs.items()} | dict(self.forecasts)
+        if inputs and self.kept_inputs < self.accepted:
+            message = f"the draws of {self.kept_inputs:,} of {self.accepted:,} accepted trials were kept"
+            raise SimulationError(message, hint="use frame(inputs=False), or simulate(…, keep_inputs=None)")
+        columns = dict(self.forecasts)
+        if inputs:
+            names = {name: f"{name} (assumption)" if name in self.forecasts else name for name in self.inputs}
+            columns = {names[name]: values for name, values in self.inputs.items()} | columns
         return pandas.DataFrame(columns, index=pandas.Index(self.trial_index, name="Trial"))
 
     def save(self, path: str | Path) -> None:

@@ -47,6 +47,38 @@ def test_threads_change_nothing(xlmc, book):
     assert xlmc("simulate", book, "-n", 30_000, "-j", 2).out == xlmc("simulate", book, "-n", 30_000).out
 
 
+@pytest.mark.parametrize("options", [("-j", 2, "--scheduler", "processes"), ("--scheduler", "local", "--workers", 1)])
+@pytest.mark.filterwarnings("ignore::ResourceWarning")  # Dask's, when it closes
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_who_runs_the_blocks_changes_nothing(xlmc, book, options):
+    assert xlmc("simulate", book, "-n", 50_000, *options).out == xlmc("simulate", book, "-n", 50_000).out
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--workers", 2), "only a local cluster is told how many workers to have"),
+        (("--scheduler", "ray"), "there is no scheduler 'ray'"),
+    ],
+)
+def test_workers_that_cannot_be_had(xlmc, book, options, message):
+    outcome = xlmc("simulate", book, "-n", 100, *options)
+    assert outcome.code == 2
+    assert message in outcome.err
+
+
+def test_a_full_disk_is_a_message_and_nothing_is_lost(xlmc, book, tmp_path, monkeypatch):
+    results = tmp_path / "case-results.xlsx"
+    results.write_bytes(b"of an earlier run")
+    monkeypatch.setattr("xlmc.scratch.columns.IN_MEMORY", 0)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "none"))
+    outcome = xlmc("simulate", book, "-n", 10_000)
+    assert outcome.code == 2
+    assert outcome.err.startswith("xlmc: temporary folder: the accepted trials cannot be kept there: No such file")
+    assert "TMPDIR" in outcome.err
+    assert results.read_bytes() == b"of an earlier run"
+
+
 def test_in_place_replaces_its_own_sheets_and_nothing_else(xlmc, book):
     before = parts(book)
     assert xlmc("simulate", book, "-n", 20_000, "--in-place").code == 0

@@ -10,6 +10,7 @@ import zipfile
 import pytest
 
 from xlmc.report.book import build_sheets
+from xlmc.scratch import columns, on_disk
 
 SHEETS = ["Results", "Charts", "Statistics", "Assumptions", "Trials", "Bins", "Record"]
 RUNS = ["run", "none_accepted", "one_accepted"]
@@ -29,6 +30,22 @@ def test_the_same_run_gives_the_same_bytes(request, name):
 def test_threads_do_not_change_a_byte(run):
     again = run.model.simulate(jobs=2)
     assert build_sheets(again) == build_sheets(run)
+
+
+def test_results_on_disk_do_not_change_a_byte(run, monkeypatch):
+    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    again = run.model.simulate()
+    assert on_disk(again.trial_index)
+    assert build_sheets(again) == build_sheets(run)
+
+
+def test_draws_that_were_not_kept_are_told(run, opened, rows_of):
+    again = run.model.simulate(keep_inputs=100)
+    book = opened(again)
+    told = [str(row[0]) for row in rows_of(book["Assumptions"]) if row]
+    assert f"Accepted: the first 100 of {again.accepted:,} accepted trials." in told
+    assert f"Only the first 100 of {again.accepted:,} accepted trials stand here." in str(rows_of(book["Trials"]))
+    assert ["counts.inputs_kept", "Accepted trials whose draws are kept", 100] in rows_of(book["Record"])
 
 
 @pytest.mark.parametrize("name", RUNS)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from xlmc.scratch import PART
 from xlmc.statistics import Sample, kurtosis, mean, skewness, variance
-from xlmc.statistics.moments import BLOCK
 
 
 def exact_moments(values):
@@ -38,7 +38,7 @@ def test_units_may_be_tiny_or_huge(unit):
 
 
 def test_blocks_join_without_a_seam():
-    values = np.random.default_rng(3).exponential(size=2 * BLOCK + 17)
+    values = np.random.default_rng(3).exponential(size=2 * PART + 17)
     moments = Sample.of(values).moments
     assert moments.skewness == pytest.approx(stats.skew(values), rel=1e-11)
     assert moments.kurtosis == pytest.approx(stats.kurtosis(values, fisher=False), rel=1e-11)
@@ -49,7 +49,7 @@ def test_blocks_join_without_a_seam():
 
 def test_replicates_across_blocks_are_summed_once():
     rng = np.random.default_rng(4)
-    values, ids = rng.normal(size=BLOCK + 99), rng.integers(0, 5, BLOCK + 99)
+    values, ids = rng.normal(size=PART + 99), rng.integers(0, 5, PART + 99)
     covariance = Sample.of(values, replicate=ids).moments.covariance
     z = (values - values.mean()) / values.std()
     pulls = np.array([[np.sum(z[ids == r] ** k - np.mean(z**k)) for r in range(5)] for k in (1, 2, 3, 4)]) / z.size

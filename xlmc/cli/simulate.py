@@ -28,7 +28,13 @@ NOT_TO_BE_USED = 1
     type=click.Choice(["numpy", "formulas"]),
     help="numpy, or formulas: the slow reference.  [default: the book's, else numpy]",
 )
-@click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads; same result.")
+@click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes.")
+@click.option(
+    "--scheduler",
+    help="threads, processes, local (a Dask cluster here), or a Dask scheduler's address; same result."
+    "  [default: processes for long runs with -j, else threads]",
+)
+@click.option("--workers", type=click.IntRange(1), help="Workers of --scheduler local.  [default: one a processor]")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Result workbook.  [default: BOOK-results.xlsx]")
 @click.option("--in-place", is_flag=True, help="Write the result sheets into BOOK itself.")
 @click.option("--quiet", is_flag=True, help="Print no progress bar and no notes.")
@@ -38,6 +44,8 @@ def simulate(
     seed: int | None,
     engine: str | None,
     jobs: int,
+    scheduler: str | None,
+    workers: int | None,
     output: Path | None,
     in_place: bool,
     quiet: bool,
@@ -56,7 +64,9 @@ def simulate(
     if not quiet:
         notices(model.notices)
     with _progress(trials or model.definitions.settings.trials, quiet) as progress:
-        run = model.simulate(trials, seed, engine=engine, jobs=jobs, progress=progress)
+        run = model.simulate(
+            trials, seed, engine=engine, jobs=jobs, scheduler=scheduler, workers=workers, progress=progress
+        )
     save(run, target)
     _show(run)
     click.echo(f"Results are in {target}")

@@ -99,6 +99,7 @@ def _counts(simulation: Simulation) -> Section:
     entries = (
         Entry("trials", "Trials", simulation.trials),
         Entry("accepted", "Accepted", simulation.accepted),
+        Entry("inputs_kept", "Accepted trials whose draws are kept", simulation.kept_inputs),
         Entry("acceptance", "Share accepted", plain(simulation.acceptance.value)),
         Entry("acceptance_error", "Its standard error", plain(simulation.acceptance.error)),
         Entry("error_trials", "Lost to errors", simulation.error_trials),

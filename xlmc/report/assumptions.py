@@ -51,6 +51,9 @@ def write_assumptions(page: Page, simulation: Simulation) -> None:
     page.wide(_MEANING, "paragraph", _READABLE)
     early = max((values.size for values in simulation.prior.values()), default=0)
     page.wide(f"Before filtering: the first {early:,} trials. ± is the standard error.", "paragraph", _READABLE)
+    if simulation.kept_inputs < simulation.accepted:
+        kept = f"Accepted: the first {simulation.kept_inputs:,} of {simulation.accepted:,} accepted trials."
+        page.wide(kept, "paragraph", _READABLE)
     page.printed(name, repeat=HEADER)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc import statistics
+from xlmc.scratch import numbers
 from xlmc.statistics import Estimate
 
 __all__ = ["PERCENTS", "Conditioning", "Marginal", "conditioning", "marginal"]
@@ -48,7 +49,7 @@ class Conditioning:
 
 def marginal(draws: NDArray[np.float64]) -> Marginal:
     """The marginal of `(n,)` draws; NaN, a trial whose parameters were no distribution, is left out."""
-    sample = statistics.Sample.of(draws[~np.isnan(draws)])
+    sample = statistics.Sample.of(numbers(draws))
     return Marginal(
         trials=sample.n,
         mean=statistics.mean(sample),

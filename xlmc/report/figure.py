@@ -55,7 +55,7 @@ def figures_of(simulation: Simulation) -> list[Figure]:
     """Every forecast that has a number in an accepted trial."""
     found: list[Figure] = []
     for row in summarise(simulation):
-        bins = histogram(simulation.results[row.name].values, row.low.value, row.high.value)
+        bins = histogram(simulation.results[row.name].sample, row.low.value, row.high.value)
         if bins is not None:
             found.append(Figure(len(found) + 1, row, bins))
     return found

@@ -20,6 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.scratch import parts, release
+from xlmc.statistics.sample import Sample, Values
+
 __all__ = ["Histogram", "histogram"]
 
 Floats = NDArray[np.float64]
@@ -83,50 +86,62 @@ class Histogram:
         return self.decimals <= _MOST_DECIMALS and bool(np.max(np.abs(self.upper_edges)) < _LONGEST)
 
 
-def histogram(values: Floats, low: float, high: float) -> Histogram | None:
-    """Count `(n,)` finite values, apart for those in [low, high]; None where there are none."""
-    if values.size == 0:
+def histogram(values: Values, low: float, high: float) -> Histogram | None:
+    """Count finite values `(n,)`, or a `Sample` of them, apart for those in [low, high]; None where there are none."""
+    x = Sample.of(values).x
+    if x.size == 0:
         return None
-    sane = values.clip(-_VAST, _VAST)
-    first, last = _shown(sane)
-    width = _width(sane, first, last)
+    first, last = _shown(x)
+    width = _width(x, first, last)
     start, stop = math.floor(first / width), math.floor(last / width) + 1
     step = _step(width, stop - start)
     start, stop = step * math.floor(start / step), step * math.ceil(stop / step)
     edges = _multiples(width, start, stop - start + 1)
-    place = np.searchsorted(edges, values, side="right") - 1
-    drawn = (place >= 0) & (place < edges.size - 1)
-    central = (values >= low) & (values <= high)
+    reached = np.searchsorted(x, edges, side="left")
+    central = reached.clip(np.searchsorted(x, low, side="left"), np.searchsorted(x, high, side="right"))
+    release(x)
+    inside = np.diff(central)
     return Histogram(
         edges=edges[:-1],
         width=width,
-        inside=np.bincount(place[drawn & central], minlength=edges.size - 1),
-        outside=np.bincount(place[drawn & ~central], minlength=edges.size - 1),
-        below=int(np.count_nonzero(place < 0)),
-        above=int(np.count_nonzero(place >= edges.size - 1)),
+        inside=inside,
+        outside=np.diff(reached) - inside,
+        below=int(reached[0]),
+        above=int(x.size - reached[-1]),
         step=step,
         decimals=_decimals(width),
     )
 
 
-def _shown(values: Floats) -> tuple[float, float]:
-    """The smallest and largest value inside the fences."""
-    lower, upper = np.percentile(values, [25.0, 75.0])
+def _shown(x: Floats) -> tuple[float, float]:
+    """The smallest and largest of ascending values inside the fences."""
+    lower, upper = _quartiles(x)
     reach = _FENCE * (upper - lower)
     if reach == 0.0:
-        return float(values.min()), float(values.max())
-    near = values[(values >= lower - reach) & (values <= upper + reach)]
-    return float(near.min()), float(near.max())
+        return _sane(x[0]), _sane(x[-1])
+    first = np.searchsorted(x, lower - reach, side="left")
+    last = np.searchsorted(x, upper + reach, side="right") - 1
+    return _sane(x[first]), _sane(x[last])
 
 
-def _width(values: Floats, first: float, last: float) -> float:
+def _sane(value: float) -> float:
+    return float(min(max(value, -_VAST), _VAST))
+
+
+def _quartiles(x: Floats) -> tuple[float, float]:
+    """Of ascending values, by straight lines between them."""
+    lower, upper = Sample(x).quantile(np.array([0.25, 0.75]))
+    return _sane(lower), _sane(upper)
+
+
+def _width(x: Floats, first: float, last: float) -> float:
     span, largest = last - first, max(abs(first), abs(last))
     if span <= max(_FINEST * largest, 1.0 / _VAST):
         return _round_below(0.01 * largest) if largest > 1.0 / _VAST else 1.0
-    if span <= _MOST and bool(np.all(values == np.floor(values))):
+    if span <= _MOST and all(bool(np.all(part == np.floor(part))) for part in parts(x)):
         return 1.0
-    lower, upper = np.percentile(values, [25.0, 75.0])
-    wanted = min(2.0 * (upper - lower) * values.size ** (-1.0 / 3.0), span / _FEWEST)
+    lower, upper = _quartiles(x)
+    wanted = min(2.0 * (upper - lower) * x.size ** (-1.0 / 3.0), span / _FEWEST)
     width = _round_below(max(wanted, span / _MOST))
     return width if span <= _MOST * width else _round_above(width)
 

@@ -31,18 +31,18 @@ _WIDTH = 13
 
 def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> None:
     """Write the sheet with the first `rows` accepted trials, and say so where there are more."""
-    shown = max(0, min(rows, simulation.accepted, MOST_ROWS))
+    shown = max(0, min(rows, simulation.kept_inputs, MOST_ROWS))
     name = simulation.model.workbook.name
     page.title("Accepted trials", f"{name}, seed {simulation.settings.seed}. Trials are numbered from 0.")
     page.put(page.row, 0, _said(shown, simulation.accepted))
     page.row = HEADER
-    columns = _columns(simulation)
+    columns = _columns(simulation, shown)
     page.sheet.set_column(1, max(1, len(columns)), _WIDTH)
     page.sheet.set_row(HEADER, 64)
     for place, heading in enumerate([Shown("Trial", look="header"), *(heading for heading, _ in columns)]):
         page.put(HEADER, place, heading)
     page.row = HEADER + 1
-    _write_values(page, simulation.trial_index[:shown], [values[:shown] for _, values in columns])
+    _write_values(page, simulation.trial_index[:shown], [values for _, values in columns])
     page.sheet.freeze_panes(HEADER + 1, 1)
     page.sheet.autofilter(HEADER, 0, HEADER + shown, len(columns))
     page.printed(name, repeat=HEADER)
@@ -54,11 +54,15 @@ def _said(shown: int, accepted: int) -> Shown:
     return Shown(f"Only the first {shown:,} of {accepted:,} accepted trials stand here.", look="alarm")
 
 
-def _columns(simulation: Simulation) -> list[tuple[Shown, NDArray[np.float64]]]:
-    """Headings with units, green for assumptions and blue for forecasts, and `(m,)` values."""
+def _columns(simulation: Simulation, shown: int) -> list[tuple[Shown, NDArray[np.float64]]]:
+    """Headings with units, green for assumptions and blue for forecasts, and `(shown,)` values in memory."""
+
+    def column(heading: Shown, values: NDArray[np.float64]) -> tuple[Shown, NDArray[np.float64]]:
+        return heading, values[:shown].copy()
+
     live, forecasts = simulation.model.live, simulation.model.forecasts
-    inputs = [(_heading(a.name, a.units, "header assumption"), simulation.inputs[a.name]) for a in live]
-    outputs = [(_heading(f.name, f.units, "header forecast"), simulation.forecasts[f.name]) for f in forecasts]
+    inputs = [column(_heading(a.name, a.units, "header assumption"), simulation.inputs[a.name]) for a in live]
+    outputs = [column(_heading(f.name, f.units, "header forecast"), simulation.forecasts[f.name]) for f in forecasts]
     return inputs + outputs
 
 

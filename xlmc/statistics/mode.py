@@ -15,11 +15,12 @@ with n as well, is not in it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from xlmc.scratch import PART, release
 from xlmc.statistics.estimate import Estimate, with_error
 from xlmc.statistics.sample import Sample, Values
 
@@ -68,7 +69,18 @@ def half_sample_mode(sample: Sample) -> float:
 
 def _densest_half(x: Floats) -> slice:
     size = (x.size + 1) // 2
-    start = _middle_smallest(x[size - 1 :] - x[: x.size - size + 1])
+
+    if x.size <= PART:
+        start = _middle_smallest_of(x[size - 1 :] - x[: x.size - size + 1])
+        return slice(start, start + size)
+
+    def widths() -> Iterator[Floats]:
+        for start in range(0, x.size - size + 1, PART):
+            stop = min(start + PART, x.size - size + 1)
+            yield x[start + size - 1 : stop + size - 1] - x[start:stop]
+            release(x)
+
+    start = _middle_smallest(widths)
     return slice(start, start + size)
 
 
@@ -79,14 +91,27 @@ def _densest_weighted_half(x: Floats, w: Floats) -> slice:
     stops = np.searchsorted(reached, needed)
     stops = stops[stops <= x.size]
     starts = np.arange(stops.size)
-    start = _middle_smallest((x[stops - 1] - x[starts]) / (reached[stops] - reached[starts]))
+    start = _middle_smallest_of((x[stops - 1] - x[starts]) / (reached[stops] - reached[starts]))
     return slice(start, int(stops[start]))
 
 
-def _middle_smallest(widths: Floats) -> int:
+def _middle_smallest_of(widths: Floats) -> int:
     """Where the smallest stands; of several the middle one, so that evenly spaced values do not give an end."""
     smallest = np.flatnonzero(widths <= widths.min() * (1.0 + ROUNDING))
     return int(smallest[(smallest.size - 1) // 2])
+
+
+def _middle_smallest(widths: Callable[[], Iterator[Floats]]) -> int:
+    """The same of widths that are made a part at a time, anew with every call."""
+    smallest = min(float(part.min()) for part in widths()) * (1.0 + ROUNDING)
+    wanted = (sum(int(np.count_nonzero(part <= smallest)) for part in widths()) - 1) // 2
+    passed = 0
+    for part in widths():
+        here = np.flatnonzero(part <= smallest)
+        if wanted < here.size:
+            return passed + int(here[wanted])
+        wanted, passed = wanted - here.size, passed + part.size
+    raise AssertionError("the smallest width is one of them")
 
 
 def _mode_of_three(x: Floats, w: Floats) -> float:

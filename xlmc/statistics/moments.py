@@ -7,18 +7,20 @@ differ only in what an independent unit is, and so only in `_influences`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.scratch import PART, on_disk, pairwise_sum, release
+
 __all__ = ["Moments", "moments_of"]
 
 Floats = NDArray[np.float64]
 
-BLOCK = 65_536
-"""Trials per pass: the powers of one block fit in the processor's cache."""
+Slices = Callable[[slice], Floats]
+"""Gives the values of some of the trials, centred or standardised."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,44 +51,60 @@ def moments_of(x: Floats, w: Floats | None, group: NDArray[np.intp] | None, grou
     if x.size == 0:
         return Moments(np.nan, np.nan, np.nan, np.nan, np.zeros((4, 4)), np.nan)
     pivot = float(x[x.size // 2])
-    z = x - pivot
-    shift = _average(z, w)
-    z -= shift
-    largest = max(float(z.max()), -float(z.min()))
+    shift = _average(lambda here: x[here] - pivot, x.size, w)
+
+    def about_the_mean(here: slice) -> Floats:
+        release(x)
+        return np.asarray(x[here] - pivot - shift)
+
+    centred = _held(about_the_mean, x)
+    largest = max(float(np.abs(centred(here)).max()) for here in _slices(x.size))
     if largest == 0.0:
         return Moments(pivot + shift, 0.0, np.nan, np.nan, np.zeros((4, 4)), 0.0)
-    z /= largest  # before squaring: tiny and huge units neither vanish nor overflow
-    root = _average(z * z, w) ** 0.5
-    z /= root
-    means = np.sum([(powers * share).sum(axis=1) for powers, share, _ in _blocks(z, w, None)], axis=0)
-    covariance, noise = _variation(_influences(z, w, group, groups, means), units)
+    # Scaled before squaring: tiny and huge units neither vanish nor overflow.
+    root = _average(lambda here: np.square(centred(here) / largest), x.size, w) ** 0.5
+
+    z = _held(lambda here: centred(here) / largest / root, x)
+    means = np.sum([(powers * share).sum(axis=1) for powers, share, _ in _blocks(z, x.size, w, None)], axis=0)
+    covariance, noise = _variation(_influences(z, x.size, w, group, groups, means), units)
     return Moments(pivot + shift, largest * root, float(means[2]), float(means[3]), covariance, noise)
 
 
-def _average(z: Floats, w: Floats | None) -> float:
-    return float(z.mean()) if w is None else float(np.sum(w * z))
+def _held(made: Slices, x: Floats) -> Slices:
+    """The values made once, if `x` itself is in memory; else whenever they are needed, and never all at once."""
+    return made if on_disk(x) else made(slice(0, x.size)).__getitem__
+
+
+def _slices(n: int) -> Iterator[slice]:
+    return (slice(start, min(start + PART, n)) for start in range(0, n, PART))
+
+
+def _average(values: Slices, n: int, w: Floats | None) -> float:
+    if w is None:
+        return pairwise_sum(values, n) / n
+    return pairwise_sum(lambda here: w[here] * values(here), n)
 
 
 def _blocks(
-    z: Floats, w: Floats | None, group: NDArray[np.intp] | None
+    z: Slices, n: int, w: Floats | None, group: NDArray[np.intp] | None
 ) -> Iterator[tuple[Floats, Floats | float, NDArray[np.intp] | None]]:
     """Block by block: (4, b) powers of z, the share of each trial in the whole, its replicate."""
-    for start in range(0, z.size, BLOCK):
-        here = slice(start, start + BLOCK)
-        block, square = z[here], z[here] * z[here]
+    for here in _slices(n):
+        block = z(here)
+        square = block * block
         yield (
             np.stack([block, square, square * block, square * square]),
-            1.0 / z.size if w is None else w[here],
+            1.0 / n if w is None else w[here],
             None if group is None else group[here],
         )
 
 
 def _influences(
-    z: Floats, w: Floats | None, group: NDArray[np.intp] | None, groups: int, means: Floats
+    z: Slices, n: int, w: Floats | None, group: NDArray[np.intp] | None, groups: int, means: Floats
 ) -> Iterator[Floats]:
     """(4, units) how far each independent unit pulls the means of z, z², z³, z⁴; trials in several blocks."""
     totals = np.zeros((4, groups))
-    for powers, share, ids in _blocks(z, w, group):
+    for powers, share, ids in _blocks(z, n, w, group):
         pulls = (powers - means[:, None]) * share
         if ids is None:
             yield pulls

@@ -18,6 +18,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from xlmc.scratch import release
 from xlmc.statistics.estimate import LEAST_DOF, Estimate, one_tail, t_quantile
 from xlmc.statistics.sample import Sample, Values
 
@@ -92,6 +93,7 @@ def probability_above(
     """
     sample = Sample.of(values, weights, replicate)
     first = int(np.searchsorted(sample.x, threshold, side="right"))
+    release(sample.x)
     if sample.w is None and sample.group is None:
         return proportion(sample.n - first, sample.n, confidence=confidence, method=method)
     if sample.n == 0:

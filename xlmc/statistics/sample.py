@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from xlmc.scratch import ascending, parts, picked
 from xlmc.statistics.moments import Moments, moments_of
 
 __all__ = ["Sample", "Values"]
@@ -30,7 +31,7 @@ class Sample:
     Latin hypercube or a scrambled Sobol set the trials depend on each other, and only whole sets are independent.
 
     Attributes:
-        x: (n,) values, ascending.
+        x: (n,) values, ascending; on disk where the values given were.
         w: (n,) weights that sum to 1, None if all are equal; trials without weight are left out.
         group: (n,) the replicate of each trial, 0 … groups − 1, None if the trials themselves are independent.
         groups: how many replicates there are, at most 64.
@@ -55,7 +56,7 @@ class Sample:
         x = np.asarray(values, dtype=np.float64)
         if x.ndim != 1:
             raise ValueError(f"values must be one column, not of shape {x.shape}")
-        if not np.isfinite(x).all():
+        if not all(np.isfinite(part).all() for part in parts(x)):
             raise ValueError("values must be finite; trials without a number are left out before")
         w = None if weights is None else _normalised(np.asarray(weights, dtype=np.float64), x)
         ids = None if replicate is None else _matching(np.asarray(replicate), x, "replicate ids")
@@ -97,7 +98,7 @@ class Sample:
             return np.interp(p, self.positions, self.x)
         rank = p * (self.n - 1)
         low = np.floor(rank).astype(np.intp)
-        left, right = self.x[low], self.x[np.minimum(low + 1, self.n - 1)]
+        left, right = picked(self.x, low), picked(self.x, np.minimum(low + 1, self.n - 1))
         return np.asarray(left + (right - left) * (rank - low))
 
     def per_unit(self, amounts: Floats) -> Floats:
@@ -109,7 +110,7 @@ class Sample:
     def part(self, where: Groups) -> Sample:
         """The trials at these ascending positions, as independent ones."""
         w = None if self.w is None else self.w[where]
-        return Sample(self.x[where], None if w is None else w / w.sum())
+        return Sample(picked(self.x, where), None if w is None else w / w.sum())
 
     def replicate(self, number: int) -> Sample:
         """One replicate alone."""
@@ -150,7 +151,7 @@ def _sorted(
     x: Floats, w: Floats | None, ids: NDArray[np.generic] | None
 ) -> tuple[Floats, Floats | None, Groups | None, int]:
     if w is None and ids is None:
-        return np.sort(x), None, None, 0
+        return ascending(x), None, None, 0
     order = np.argsort(x, kind="stable")  # ties stay in trial order: the same sums on every machine
     if w is not None:
         order = order[w[order] > 0.0]

@@ -1,0 +1,5 @@
+"""Who runs the blocks: threads, processes, or the workers of a Dask cluster. Blocks come back in order from all."""
+
+from xlmc.scheduling.crew import Crew
+
+__all__ = ["Crew"]

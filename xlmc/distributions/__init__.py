@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from xlmc.distributions.base import Family, Fault, ParameterSpec
+from xlmc.distributions.by_percentiles import ByPercentiles
 from xlmc.distributions.naming import did_you_mean, plain
 from xlmc.distributions.normal import Normal
 from xlmc.distributions.trapezoid import Trapezoid
@@ -13,9 +14,11 @@ from xlmc.distributions.truncated import Truncated
 from xlmc.distributions.uniform import Uniform
 from xlmc.errors import DefinitionError
 
-__all__ = ["FAMILIES", "Family", "Fault", "ParameterSpec", "Truncated", "family_named"]
+__all__ = ["FAMILIES", "ByPercentiles", "Family", "Fault", "ParameterSpec", "Truncated", "family_named"]
 
-FAMILIES: Mapping[str, Family] = {family.name: family for family in (Uniform(), Normal(), Triangular(), Trapezoid())}
+_CONTINUOUS = (Uniform(), Normal(), Triangular(), Trapezoid())
+
+FAMILIES: Mapping[str, Family] = {family.name: family for family in _CONTINUOUS}
 """Every family by its name."""
 
 _SPELLINGS = {plain(spelling): family for family in FAMILIES.values() for spelling in (family.name, *family.aliases)}

@@ -27,6 +27,7 @@ class Normal(Family):
         ParameterSpec("mean", ("Mean", "Average")),
         ParameterSpec("std_dev", ("Std dev", "Standard deviation", "SD", "Std. dev.", "St dev")),
     )
+    roles = ("location", "scale")
     rules = (
         Rule(
             "std_dev",

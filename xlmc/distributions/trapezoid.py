@@ -36,6 +36,7 @@ class Trapezoid(Family):
         ParameterSpec("high_likeliest", ("High likeliest",)),
         HIGH,
     )
+    roles = ("ordered", "ordered", "ordered", "ordered")
     rules = (
         Rule(
             "low",

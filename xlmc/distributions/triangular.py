@@ -24,6 +24,7 @@ class Triangular(Family):
     name = "Triangular"
     aliases = ("Triangle", "Triang")
     parameters = (LOW, LIKELIEST, HIGH)
+    roles = ("ordered", "ordered", "ordered")
     rules = (
         Rule(
             "low",

@@ -21,8 +21,13 @@ __all__ = [
     "HIGH",
     "LARGEST",
     "LIKELIEST",
+    "LOCATION",
     "LOW",
+    "MEAN",
+    "SCALE",
+    "SHAPE",
     "SMALLEST_U",
+    "STD_DEV",
     "Array",
     "DataError",
     "DataSpec",
@@ -32,6 +37,10 @@ __all__ = [
     "Role",
     "Rule",
     "Values",
+    "above_zero",
+    "at_most",
+    "ends",
+    "rising",
     "share",
     "show",
 ]
@@ -69,6 +78,11 @@ class ParameterSpec:
 LOW = ParameterSpec("low", ("Low", "Minimum", "Min"))
 HIGH = ParameterSpec("high", ("High", "Maximum", "Max"))
 LIKELIEST = ParameterSpec("likeliest", ("Likeliest", "Mode", "Most likely"))
+MEAN = ParameterSpec("mean", ("Mean", "Average"))
+STD_DEV = ParameterSpec("std_dev", ("Std dev", "Standard deviation", "SD", "Std. dev.", "St dev"))
+LOCATION = ParameterSpec("location", ("Location", "Loc"), default=0.0)
+SCALE = ParameterSpec("scale", ("Scale",))
+SHAPE = ParameterSpec("shape", ("Shape",))
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +100,31 @@ class Rule:
     holds: Callable[..., Any]
     message: str
     hint: str
+
+
+def above_zero(parameters: Sequence[ParameterSpec], key: str, hint: str = "Give a positive number") -> Rule:
+    """The parameter with this key must be positive."""
+    place, heading = _place_of(parameters, key)
+    return Rule(key, lambda *values: values[place] > 0, f"{heading} ({{{key}}}) must be above 0", hint)
+
+
+def at_most(parameters: Sequence[ParameterSpec], key: str, limit: float, hint: str) -> Rule:
+    """The parameter with this key has a largest value."""
+    place, heading = _place_of(parameters, key)
+    message = f"{heading} ({{{key}}}) must be at most {show(limit)}"
+    return Rule(key, lambda *values: values[place] <= limit, message, hint)
+
+
+def rising(parameters: Sequence[ParameterSpec], lower: str, upper: str) -> Rule:
+    """The parameter `lower` must not be above the parameter `upper`."""
+    (left, below), (right, above) = _place_of(parameters, lower), _place_of(parameters, upper)
+    message = f"{below} ({{{lower}}}) is above {above} ({{{upper}}})"
+    hint = "Exchange the two, or correct the wrong one"
+    return Rule(lower, lambda *values: values[left] <= values[right], message, hint)
+
+
+def _place_of(parameters: Sequence[ParameterSpec], key: str) -> tuple[int, str]:
+    return next((place, spec.heading) for place, spec in enumerate(parameters) if spec.key == key)
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,11 +301,11 @@ class Family(ABC):
         """The parameters of -X in the same family; one without mirror images overrides `_sf` and `_isf` instead."""
         raise NotImplementedError(f"{self.name} has no mirror image")
 
-    def _sf(self, x: Values, *params: Values) -> Values:
-        return self._cdf(-x, *self._mirrored(*params))
+    def _sf(self, x: Values, *args: Any, **kwargs: Any) -> Values:
+        return self._cdf(-x, *self._mirrored(*args, **kwargs))
 
-    def _isf(self, q: Array, *params: Values) -> Array:
-        return -self._ppf(q, *self._mirrored(*params))
+    def _isf(self, q: Array, *args: Any, **kwargs: Any) -> Array:
+        return -self._ppf(q, *self._mirrored(*args, **kwargs))
 
     def bind(self, params: Sequence[Any], named: Mapping[str, Any]) -> tuple[Any, ...]:
         """The parameters in order, defaults for those that are left out.
@@ -312,6 +351,12 @@ def share(part: Values, whole: Values) -> Array:
     """`part / whole`, and 0 where the whole is 0: a piece of no width holds nothing."""
     whole = np.asarray(whole)
     return np.asarray(part / np.where(whole > 0, whole, 1.0) * (whole > 0))
+
+
+def ends(low: float, high: float, *parameters: Values) -> tuple[Array, Array]:
+    """Two fixed ends of the support in the shape of the parameters, e.g. 0 and infinity."""
+    shape = np.broadcast_shapes(*(np.shape(each) for each in parameters))
+    return np.full(shape, low), np.full(shape, high)
 
 
 def show(value: float) -> str:

@@ -21,7 +21,7 @@ MISTAKES = [
     ),
     # distribution
     ({"Inputs!C2": "Unifrm"}, "Inputs!C2", "'Unifrm' is not a distribution", "Did you mean Uniform?"),
-    ({"Inputs!C2": "Weibull"}, "Inputs!C2", "'Weibull' is not a distribution", "Use one of Uniform, Normal"),
+    ({"Inputs!C2": "Zipf"}, "Inputs!C2", "'Zipf' is not a distribution", "Use one of Uniform, Triangular"),
     ({"Inputs!C2": ErrorCode.NA}, "Inputs!C2", "Distribution holds the error #N/A", "Correct the cell"),
     # parameters that are missing, superfluous or no numbers
     ({"Inputs!D2": None}, "Inputs!D2", "Uniform needs Low, and this cell is blank", "Type a number"),
@@ -40,7 +40,7 @@ MISTAKES = [
     ({"Inputs!G2": 6700}, "Inputs!G2", "Uniform has no Mean", "choose a distribution that has this parameter"),
     ({"Inputs!F2": 6700}, "Inputs!F2", "Uniform has no Likeliest", "Clear the cell"),
     ({"Inputs!D4": 0}, "Inputs!D4", "Normal has no Low", "use Lower cutoff and Upper cutoff"),
-    ({"Inputs!P1": "Std. dev.", "Inputs!P3": 2}, "Inputs!P3", "Uniform has no Std. dev.", "Clear the cell"),
+    ({"Inputs!P1": "Scale", "Inputs!P3": 2}, "Inputs!P3", "Uniform has no Scale", "Clear the cell"),
     ({"Inputs!P1": "P90", "Inputs!P3": 2}, "Inputs!P3", "Uniform has no P90", "Clear the cell"),
     ({"Inputs!P1": "Data", "Inputs!P3": "=Q1:Q9"}, "Inputs!P3", "Uniform has no Data", "Clear the cell"),
     ({"Inputs!P1": "Min", "Inputs!P3": 2}, "Inputs!P3", "Low is given twice, as Low and as Min", "Clear one of them"),

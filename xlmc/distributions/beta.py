@@ -62,9 +62,12 @@ class Beta(Family):
         return np.minimum(u, high, out=u)
 
     def _cdf(self, x: Values, low: Values, high: Values, alpha: Values, beta: Values) -> Values:
-        from scipy.special import betainc
+        from scipy.special import betainc, betaincc
 
-        inside = betainc(alpha, beta, share(np.clip(x, low, high) - low, high - low))
+        near = np.clip(x, low, high)
+        left, right = share(near - low, high - low), share(high - near, high - low)
+        # From the nearer end, where the density may be infinite.
+        inside = np.where(left < right, betainc(alpha, beta, left), betaincc(beta, alpha, right))
         return np.where(high > low, inside, x >= low)
 
     def _mean(self, low: Values, high: Values, alpha: Values, beta: Values) -> Values:

@@ -11,7 +11,9 @@ import numpy as np
 from xlmc.distributions.base import HIGH, LOW, Array, DataError, Family, Rule, Values, share, show
 from xlmc.distributions.piecewise import Piecewise
 
-__all__ = ["Between", "data_column"]
+__all__ = ["BELOW", "Between", "data_column"]
+
+BELOW = Rule("low", lambda low, high: low < high, "Low ({low}) must be below High ({high})", "Correct the wrong one")
 
 
 class Between(Family):

@@ -39,7 +39,7 @@ class General(Between):
             raise DataError(f"The height {show(heights[row])} is below 0", "Type 0 or more", int(row), 1)
         if not heights.any():
             raise DataError("All heights are 0", "At least one must be above 0", 0, 1)
-        return heights
+        return np.asarray(heights / heights.max())
 
     def _reaches(self, low: Values, first: float, height: float) -> Any:
         return np.less_equal(low, first)

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from xlmc.distributions.base import HIGH, LOW, Array, DataError, DataSpec, Family, Rule, Values, show
-from xlmc.distributions.between import data_column
+from xlmc.distributions.base import HIGH, LOW, Array, DataError, DataSpec, Family, Values, show
+from xlmc.distributions.between import BELOW, data_column
 from xlmc.distributions.piecewise import Piecewise
 
 __all__ = ["Histogrm"]
@@ -29,9 +29,7 @@ class Histogrm(Family):
     name = "Histogrm"
     aliases = ("Histogram",)
     parameters = (LOW, HIGH)
-    rules = (
-        Rule("low", lambda low, high: low < high, "Low ({low}) must be below High ({high})", "Correct the wrong one"),
-    )
+    rules = (BELOW,)
     data = DataSpec((1,), "weights")
     formula = "density ∝ the weights of Data over equal intervals from Low to High"
     source = "@RISK's manual, Histogrm"

@@ -8,7 +8,7 @@ such as Low ≤ Likeliest ≤ High; they are solved by least squares in coordina
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import product
 from typing import Any
 
@@ -23,6 +23,7 @@ Points = Sequence[tuple[float, float]]
 
 Solution = tuple[float, ...] | None
 
+_COORDINATES = np.linspace(-35.0, 35.0, 281)
 _LOG_SHAPES = np.linspace(math.log(1e-3), math.log(1e6), 400)
 _MET = 1e-9  # of the spread of the percentiles: they are met when the member's are this near
 
@@ -30,7 +31,7 @@ _MET = 1e-9  # of the spread of the percentiles: they are met when the member's 
 def match_percentiles(family: Family, given: Mapping[str, float], points: Points) -> Solution:
     """The parameters of the member, in the family's order; None where none fits, or where any shape does.
 
-    Where several members fit, the one with the smallest shape is taken.
+    Where several members fit, the one whose shape is nearest to 1 is taken, or else the narrowest.
 
     Args:
         family: one with `roles`.
@@ -41,13 +42,15 @@ def match_percentiles(family: Family, given: Mapping[str, float], points: Points
         raise TypeError(f"{family.name} needs {len(family.parameters) - len(given)} percentiles, not {len(points)}")
     if not all(map(math.isfinite, (*given.values(), *(x for _, x in points)))):
         return None
-    solve = _ordered if "ordered" in family.roles else _moved
+    p, x = (np.array(each) for each in zip(*points, strict=True))
+    candidates = _ordered(family, given, points) if "ordered" in family.roles else _moved(family, given, points)
     with np.errstate(all="ignore"):
-        found = solve(family, given, points)
-        if found is None or family.check(*found) is not None:
-            return None
-        p, x = (np.array(each) for each in zip(*points, strict=True))
-        return found if np.all(np.abs(family.ppf(p, *found) - x) <= _MET * _spread(given, points)) else None
+        for found in candidates:
+            if family.check(*found) is None:
+                away = np.abs(family.ppf(p, *found) - x)
+                if np.all(away <= _MET * _spread(given, points)):
+                    return found
+    return None
 
 
 def _spread(given: Mapping[str, float], points: Points) -> float:
@@ -56,17 +59,16 @@ def _spread(given: Mapping[str, float], points: Points) -> float:
     return max(places) - min(places) or abs(places[0]) or 1.0
 
 
-def _moved(family: Family, given: Mapping[str, float], points: Points) -> Solution:
+def _moved(family: Family, given: Mapping[str, float], points: Points) -> Iterator[tuple[float, ...]]:
     member = _Moved(family, given, points)
-    if "shape" not in family.roles:
-        return member.parameters(math.nan)
-    if member.shape is not None:
-        return member.parameters(member.shape)
-    spread = _spread(given, points)
-    found = (
-        member.parameters(math.exp(root)) for root in _roots(lambda s: member.misfit(np.exp(s)) / spread, _LOG_SHAPES)
-    )
-    return next((each for each in found if each is not None), None)
+    shapes = [math.nan if member.shape is None else member.shape]
+    if "shape" in family.roles and member.shape is None:
+        spread = _spread(given, points)
+        roots = _roots(lambda places: member.misfit(np.exp(places)) / spread, _LOG_SHAPES)
+        shapes = [math.exp(root) for root in sorted(roots, key=abs)]
+    for shape in shapes:
+        if (found := member.parameters(shape)) is not None:
+            yield found
 
 
 class _Moved:
@@ -145,7 +147,7 @@ def _roots(function: Callable[[Array], Array], places: Array) -> Iterator[float]
         )
 
 
-def _ordered(family: Family, given: Mapping[str, float], points: Points) -> Solution:
+def _ordered(family: Family, given: Mapping[str, float], points: Points) -> Iterator[tuple[float, ...]]:
     chart = _Chart(family, given, points)
     p, x = (np.array(each) for each in zip(*points, strict=True))
 
@@ -154,23 +156,20 @@ def _ordered(family: Family, given: Mapping[str, float], points: Points) -> Solu
         return np.where(np.isfinite(away), away, 1e6)
 
     if len(points) == 1:
-        places = np.linspace(-35.0, 35.0, 281)
-        for root in _roots(lambda t: np.array([misfit(np.array([each]))[0] for each in t]), places):
-            if abs(misfit(np.array([root]))[0]) <= _MET:
-                return chart.parameters(np.array([root]))
-        return None
-    return _least(misfit, chart)
+        roots = _roots(lambda places: np.array([misfit(np.array([place]))[0] for place in places]), _COORDINATES)
+        yield from (chart.parameters(np.array([root])) for root in roots)
+    else:
+        yield from (chart.parameters(found) for found in _least(misfit, chart.starts()))
 
 
-def _least(misfit: Callable[[Array], Array], chart: _Chart) -> Solution:
-    """From the middle of the coordinates outwards, until all percentiles are met."""
+def _least(misfit: Callable[[Array], Array], starts: Iterable[Array]) -> Iterator[Array]:
+    """Where all percentiles are met, looked for from each start."""
     from scipy.optimize import least_squares
 
-    for start in chart.starts():
+    for start in starts:
         found = least_squares(misfit, start, method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15)
-        if np.all(np.abs(found.fun) <= _MET / 10):
-            return chart.parameters(found.x)
-    return None
+        if np.all(np.abs(found.fun) <= _MET):
+            yield found.x
 
 
 class _Chart:

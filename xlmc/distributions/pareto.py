@@ -70,4 +70,5 @@ def _raised(log_above: Array, location: Values, shape: Values) -> Array:
 
 
 def _log_ratio(x: Values, location: Values) -> Values:
-    return np.log(np.maximum(x, location)) - np.log(location)
+    with np.errstate(over="ignore"):
+        return np.log1p(np.divide(np.maximum(x - location, 0.0), location))

@@ -96,7 +96,7 @@ class Piecewise(Family):
         return self._mirror._cdf(np.negative(x))
 
     def _mean(self) -> Values:
-        return self.edges[0] + self._moment(1)
+        return float(self.edges[0]) + self._moment(1)
 
     def _variance(self) -> Values:
         return self._moment(2) - self._moment(1) ** 2

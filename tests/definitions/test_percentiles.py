@@ -81,20 +81,20 @@ def test_a_formula_stays_a_cell(one):
 @pytest.mark.parametrize(
     ("distribution", "columns", "where", "message"),
     [
+        ("Cumul", {"Low": 1, "High": 2}, "Extra!C2", "Cumul is built from data"),
         ("Uniform", {"P10": 1, "P90": 2}, "Extra!A2", "Uniform needs Low"),
-        ("Cumul", {"P10": 1, "P90": 2}, "Extra!A2", "Cumul needs"),
-        ("Normal", {"P10": 1}, "Extra!D2", "Normal has 1 percentiles for 2 blank parameters (Mean, Std dev)"),
+        ("Normal", {"P10": 1}, "Extra!D2", "Normal leaves Mean, Std dev blank, and gives P10"),
         (
             "Normal",
             {"Mean": 1, "P10": 1, "P90": 2},
             "Extra!F2",
-            "Normal has 2 percentiles for 1 blank parameters (Std dev)",
+            "Normal leaves Std dev blank, and gives P10, P90",
         ),
         (
             "Normal",
             {"Mean": 1, "SD": 1, "P90": 2},
             "Extra!F2",
-            "Normal has 1 percentiles for 0 blank parameters (none)",
+            "Normal leaves no parameter blank, and gives P90",
         ),
         ("Normal", {"P0": 1, "P90": 2}, "Extra!D2", "P0 is no percentile"),
         ("Normal", {"P10": 1, "P100": 2}, "Extra!E2", "P100 is no percentile"),

@@ -80,6 +80,9 @@ def _assumption(
 def _family(row: Row) -> Family:
     typed = optional_text(row, "Distribution")
     family = family_named(typed, where=row.cell("Distribution")) if typed else FAMILIES["Uniform"]
+    if family.data is not None:
+        message = f"{family.name} is built from data, and the reader of assumptions takes none yet"
+        raise DefinitionError(message, where=row.cell("Distribution"), hint="Choose another distribution")
     return with_percentiles(row, family)
 
 

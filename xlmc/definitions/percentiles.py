@@ -34,8 +34,8 @@ def with_percentiles(row: Row, family: Family) -> Family:
     if len(percents) == len(blank):
         required = blank
     if len(percents) != len(required):
-        left = ", ".join(spec.heading for spec in blank) or "none"
-        message = f"{family.name} has {len(percents)} percentiles for {len(required)} blank parameters ({left})"
+        left = ", ".join(spec.heading for spec in blank) or "no parameter"
+        message = f"{family.name} leaves {left} blank, and gives {', '.join(map(row.heading, headings))}"
         hint = "Give one percentile for each parameter that is left blank"
         raise DefinitionError(message, where=row.cell(headings[-1]), hint=hint)
     unknown = {spec.key for spec in required}

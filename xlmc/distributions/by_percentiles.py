@@ -53,7 +53,7 @@ class ByPercentiles(Family):
             shown = ", ".join(
                 f"{spec.heading} {show(value)}" for spec, value in zip(self.parameters, values, strict=True)
             )
-            message = f"No {self.name} has {shown}"
+            message = f"No single {self.name} has {shown}"
             return Fault(places[-1][0].key, message, "Correct the percentiles, or choose another distribution")
         return None
 

@@ -24,6 +24,9 @@ class Normal(Family):
     name = "Normal"
     aliases = ("Gaussian",)
     parameters = (MEAN, STD_DEV)
+    formula = "density ∝ exp(−((x − Mean)/Std dev)²/2)"
+    source = "Johnson, Kotz and Balakrishnan, Continuous Univariate Distributions, vol. 1, ch. 13"
+    elsewhere = ("Crystal Ball Normal (mean, std dev)", "@RISK Normal(mean, std dev)")
     roles = ("location", "scale")
     rules = (
         above_zero(

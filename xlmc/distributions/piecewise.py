@@ -69,8 +69,9 @@ class Piecewise(Family):
     def _ppf(self, u: Array) -> Array:
         # Counted from the nearer end, so that the upper tail keeps its digits.
         upper = u > 0.5
-        from_above = -self._mirror._from_below(np.where(upper, 1 - u, 0.5))
-        return np.where(upper, from_above, self._from_below(np.where(upper, 0.5, u)))
+        u[~upper] = self._from_below(u[~upper])
+        u[upper] = -self._mirror._from_below(1 - u[upper])
+        return u
 
     def _isf(self, q: Array) -> Array:
         return -self._mirror._ppf(q)

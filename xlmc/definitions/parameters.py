@@ -94,9 +94,9 @@ def remark_on_range(family: Family, given: Given, base: float | None, cell: Cell
     numbers, lower, upper = known
     low, high = (float(end) for end in Truncated(family).support(lower, upper, **numbers))
     if low == high:
-        what = "Low and High are both" if {"low", "high"} <= given.places.keys() else "The only possible value is"
         where = given.places[family.keys[0]] if family.keys else cell
-        findings.notice(f"{what} {show(low)}: the assumption does not vary", where)
+        ends = "Low and High are both" if {"low", "high"} <= {*family.keys} else "Every draw is"
+        findings.notice(f"{ends} {show(low)}: the assumption does not vary", where)
     if base is not None and not low <= base <= high:
         reach = f"{show(low)} to {show(high)}"
         findings.notice(f"The base case ({show(base)}) lies outside the distribution ({reach})", cell)

@@ -51,7 +51,7 @@ class Between(Family):
             ),
         )
 
-    def built(self, data: Array) -> Self:
+    def built(self, data: Array, **_: Any) -> Self:
         """The family of these points: `(points, 2)`, values and probabilities or heights."""
         values, heights = data_column(data, 0, "value"), self._heights(data)
         for row in np.flatnonzero(np.diff(values) <= 0):

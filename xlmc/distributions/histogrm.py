@@ -38,7 +38,7 @@ class Histogrm(Family):
     def __init__(self, bars: Piecewise | None = None) -> None:
         self.bars = bars
 
-    def built(self, data: Array) -> Histogrm:
+    def built(self, data: Array, **_: Any) -> Histogrm:
         """The family of these weights, `(intervals, 1)`."""
         weights = data_column(data, 0, "weight")
         for row in np.flatnonzero(weights < 0):

@@ -81,7 +81,6 @@ def test_a_formula_stays_a_cell(one):
 @pytest.mark.parametrize(
     ("distribution", "columns", "where", "message"),
     [
-        ("Cumul", {"Low": 1, "High": 2}, "Extra!C2", "Cumul is built from data"),
         ("Uniform", {"P10": 1, "P90": 2}, "Extra!A2", "Uniform needs Low"),
         ("Normal", {"P10": 1}, "Extra!D2", "Normal leaves Mean, Std dev blank, and gives P10"),
         (
@@ -109,6 +108,14 @@ def test_mistakes(one, distribution, columns, where, message):
     assert problem.where == where
     assert problem.message.startswith(message)
     assert problem.hint
+
+
+@pytest.mark.parametrize("name", ["Cumul", "General", "Histogrm"])
+def test_a_distribution_of_points_needs_its_data(one, name):
+    problems = one(name, Low=1, High=5).problems
+    assert problems[0].message.startswith(name)
+    assert "data" in problems[0].message.casefold()
+    assert problems[0].hint
 
 
 def test_a_base_case_outside_is_pointed_out(one):

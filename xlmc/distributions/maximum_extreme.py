@@ -22,7 +22,7 @@ class MaximumExtreme(Family):
     """
 
     name = "Maximum Extreme"
-    aliases = ("Max Extreme", "Extvalue", "Ext value", "Gumbel", "Extreme value")
+    aliases = ("Max Extreme", "Extvalue", "Gumbel", "Extreme value")
     parameters = (LIKELIEST, SCALE)
     roles = ("location", "scale")
     rules = (above_zero(parameters, "scale"),)

@@ -22,7 +22,7 @@ class MinimumExtreme(Family):
     """
 
     name = "Minimum Extreme"
-    aliases = ("Min Extreme", "Extvaluemin", "Ext value min")
+    aliases = ("Min Extreme", "ExtvalueMin")
     parameters = (LIKELIEST, SCALE)
     roles = ("location", "scale")
     rules = (above_zero(parameters, "scale"),)

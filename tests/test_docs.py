@@ -12,6 +12,7 @@ import click
 import pytest
 
 from xlmc.cli import xlmc
+from xlmc.distributions import FAMILIES
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text()
@@ -28,12 +29,27 @@ def test_every_command_and_option_is_documented(name):
                 assert f"`{option}`" in section, option
 
 
-def test_every_function_is_documented():
-    spec = importlib.util.spec_from_file_location("list_functions", ROOT / "docs" / "list_functions.py")
+def script_of_docs(name):
+    spec = importlib.util.spec_from_file_location(name, ROOT / "docs" / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
     script = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(script)
+    return script
+
+
+def test_every_distribution_is_documented():
+    page = script_of_docs("list_distributions").page()
+    assert (ROOT / "docs" / "distributions.md").read_text() == page
+    for family in FAMILIES.values():
+        assert f"\n## {family.name}\n" in page
+        if family.roles or family.data:
+            assert family.formula, family.name
+            assert family.source, family.name
+
+
+def test_every_function_is_documented():
+    script = script_of_docs("list_functions")
     assert (ROOT / "docs" / "functions.md").read_text() == script.page()
     assert len(script.names()) >= 350
 

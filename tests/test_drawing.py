@@ -1,12 +1,16 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from xlmc.address import Cell
-from xlmc.definitions import Correlation
+from xlmc.definitions import Assumption, Correlation
+from xlmc.distributions import FAMILIES, ByPercentiles
 from xlmc.drawing import correlated_groups
 from xlmc.errors import DefinitionError
+from xlmc.model import Model
 
 UNIT = {"low": 0, "high": 1}
 
@@ -43,6 +47,45 @@ def test_numbers_that_are_no_distribution(book, given, message):
         book({"A1": 1.0, "B1": "=2-1"}, {"a": {"cell": "A1", **given}}, {"x": "A1"})
     assert (caught.value.message, caught.value.where) == (message, "S!A1")
     assert caught.value.hint
+
+
+def by_percentiles(book, p10, **more):
+    """A model with one assumption `a` in A1, normal by its percentiles 10 and 90; `b` is uniform in A2."""
+    model = book(
+        {"A1": 1.0, "A2": 1.0, "B1": "=2/2", "B2": "=A2+1"}, {"b": {"cell": "A2", **UNIT}}, {"x": "A1", "y": "A2"}
+    )
+    given = {"p10": p10, "p90": 9.0}
+    family = ByPercentiles(FAMILIES["Normal"], (), (10.0, 90.0))
+    a = Assumption("a", Cell("S", 1, 1), "Normal", given, Cell("S", 1, 1), base=1.0, own_family=family, **more)
+    definitions = replace(model.definitions, assumptions=(a, *model.definitions.assumptions))
+    return Model(model.workbook, definitions, model.path)
+
+
+@pytest.mark.parametrize("p10", [1.0, Cell("S", 1, 2)])
+def test_percentiles_in_place_of_parameters(book, p10):
+    """Of 100,000 draws a tenth lies below each, give or take four standard errors."""
+    values = drawn(by_percentiles(book, p10), "a", n=100_000)
+    error = 4 * np.sqrt(0.1 * 0.9 / 100_000)
+    assert abs((values < 1).mean() - 0.1) < error
+    assert abs((values > 9).mean() - 0.1) < error
+
+
+def test_percentiles_of_a_truncated_distribution(book):
+    values = drawn(by_percentiles(book, 1.0, lower_cutoff=5.0), "a")
+    assert values.min() >= 5
+
+
+def test_percentiles_that_no_member_has(book):
+    with pytest.raises(DefinitionError) as caught:
+        by_percentiles(book, 10.0)
+    assert caught.value.message == "a: P10 (10) is not below P90 (9)"
+
+
+def test_percentiles_cannot_vary(book):
+    with pytest.raises(DefinitionError) as caught:
+        by_percentiles(book, Cell("S", 2, 2))
+    assert caught.value.message == "a: a distribution given by percentiles cannot depend on another assumption"
+    assert (caught.value.where, caught.value.hint) == ("S!B2", "give it by its parameters, or by numbers")
 
 
 @pytest.mark.parametrize("formula", ["=1/0", '="x"'])

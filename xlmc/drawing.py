@@ -11,7 +11,7 @@ from xlmc.address import Cell
 from xlmc.compile import ENGINES, Lowering, Target
 from xlmc.definitions import Assumption, Correlation
 from xlmc.definitions.model import Parameter, name_key
-from xlmc.distributions import FAMILIES, Truncated
+from xlmc.distributions import ByPercentiles, Truncated
 from xlmc.errors import DefinitionError
 from xlmc.formula import ir
 from xlmc.functions.values import ERROR, TEXT
@@ -31,16 +31,26 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     Raises:
         DefinitionError: the numbers are no distribution.
     """
-    family = FAMILIES[assumption.distribution]
-    parameters = tuple(_settled(assumption.parameters[key], lowering) for key in family.keys)
+    family = assumption.family
+    parameters = tuple(_settled(each, lowering) for each in family.bind((), assumption.parameters))
     cutoffs = None
     if assumption.lower_cutoff is not None or assumption.upper_cutoff is not None:
         lower = -np.inf if assumption.lower_cutoff is None else assumption.lower_cutoff
         upper = np.inf if assumption.upper_cutoff is None else assumption.upper_cutoff
         cutoffs = _settled(lower, lowering), _settled(upper, lowering)
+    if isinstance(family, ByPercentiles):
+        _refuse_varying(assumption.name, (*parameters, *(cutoffs or ())))
     draw = Draw(name_key(assumption.name), family, parameters, cutoffs)
     _check(draw, assumption)
     return draw
+
+
+def _refuse_varying(name: str, parameters: Sequence[Parameter]) -> None:
+    """The member that has these percentiles is looked for once, not in every trial."""
+    varying = next((each for each in parameters if isinstance(each, Cell)), None)
+    if varying is not None:
+        message = f"{name}: a distribution given by percentiles cannot depend on another assumption"
+        raise DefinitionError(message, where=varying, hint="give it by its parameters, or by numbers")
 
 
 def _settled(parameter: Parameter, lowering: Lowering) -> Parameter:

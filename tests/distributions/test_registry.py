@@ -23,6 +23,20 @@ from xlmc.errors import DefinitionError
         ("Triang", "Triangular"),
         ("Trapezoid", "Trapezoid"),
         ("trapezoidal", "Trapezoid"),
+        ("Beta PERT", "BetaPERT"),
+        ("pert", "BetaPERT"),
+        ("Beta General", "Beta"),
+        ("Expon", "Exponential"),
+        ("Log-normal", "Lognormal"),
+        ("lognorm", "Lognormal"),
+        ("LogNorm2", "Lognorm2"),
+        ("max extreme", "Maximum Extreme"),
+        ("Extvalue", "Maximum Extreme"),
+        ("Minimum Extreme", "Minimum Extreme"),
+        ("Student's t", "Student's t"),
+        ("Student’s T", "Student's t"),
+        ("student", "Student's t"),
+        ("Histogram", "Histogrm"),
     ],
 )
 def test_names_people_type(typed, name):
@@ -34,7 +48,7 @@ def test_names_people_type(typed, name):
     [
         ("Unifrom", "Did you mean Uniform?"),
         ("Trapezium", "Did you mean Trapezoid?"),
-        ("Weibull", "Use one of Uniform, Normal, Triangular, Trapezoid"),
+        ("Wiebull", "Did you mean Weibull?"),
     ],
 )
 def test_unknown_name(typed, hint):
@@ -43,6 +57,12 @@ def test_unknown_name(typed, hint):
     assert caught.value.message == f"'{typed}' is not a distribution of this version"
     assert caught.value.where == "Inputs!C4"
     assert caught.value.hint == hint
+
+
+def test_a_name_like_no_other_lists_them_all():
+    with pytest.raises(DefinitionError) as caught:
+        family_named("Zipf")
+    assert caught.value.hint == f"Use one of {', '.join(FAMILIES)}"
 
 
 def test_keys_and_headings_are_consistent_across_families():

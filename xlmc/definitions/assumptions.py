@@ -11,6 +11,7 @@ from xlmc.definitions.findings import Findings
 from xlmc.definitions.identity import Claims, identify
 from xlmc.definitions.model import Assumption
 from xlmc.definitions.parameters import CUTOFFS, PARAMETER_HEADINGS, given_parameters, remark_on_range, rules_kept
+from xlmc.definitions.percentiles import is_percentile, with_percentiles
 from xlmc.definitions.tables import DefinitionTable, Row, is_blank, rows_of
 from xlmc.distributions import FAMILIES, Family, family_named
 from xlmc.errors import DefinitionError
@@ -34,12 +35,17 @@ def read_assumptions(
         claims: takes their names and cells.
         findings: takes mistakes and remarks.
     """
-    rows = rows_of(workbook, tables, ("Name",), _KNOWN, findings)
-    found = [_assumption(row, computed, claims, findings) for row in rows]
+    tables = tuple(tables)
+    percentiles = (written for table in tables for written, _ in table.columns.values() if is_percentile(written))
+    known = (*_KNOWN, *percentiles)
+    rows = rows_of(workbook, tables, ("Name",), known, findings)
+    found = [_assumption(row, known, computed, claims, findings) for row in rows]
     return tuple(each for each in found if each is not None)
 
 
-def _assumption(row: Row, computed: Computed, claims: Claims, findings: Findings) -> Assumption | None:
+def _assumption(
+    row: Row, known: tuple[str, ...], computed: Computed, claims: Claims, findings: Findings
+) -> Assumption | None:
     before = len(findings.problems)
     identity = identify(row, claims, findings)
     frozen = findings.attempt(logical, row, "Frozen") or False
@@ -66,13 +72,18 @@ def _assumption(row: Row, computed: Computed, claims: Claims, findings: Findings
         units=units,
         source=source,
         frozen=frozen,
-        notes=row.notes(_KNOWN),
+        notes=row.notes(known),
+        own_family=None if family is FAMILIES[family.name] else family,
     )
 
 
 def _family(row: Row) -> Family:
     typed = optional_text(row, "Distribution")
-    return family_named(typed, where=row.cell("Distribution")) if typed else FAMILIES["Uniform"]
+    family = family_named(typed, where=row.cell("Distribution")) if typed else FAMILIES["Uniform"]
+    if family.data is not None:
+        message = f"{family.name} is built from data, and the reader of assumptions takes none yet"
+        raise DefinitionError(message, where=row.cell("Distribution"), hint="Choose another distribution")
+    return with_percentiles(row, family)
 
 
 def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, findings: Findings) -> float | None:

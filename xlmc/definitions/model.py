@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from xlmc.address import Cell
+from xlmc.distributions import FAMILIES, Family
 from xlmc.errors import DefinitionError, Notice
 
 __all__ = [
@@ -34,12 +35,13 @@ class Assumption:
 
     Attributes:
         distribution: the family's name as `xlmc.distributions.FAMILIES` spells it.
-        parameters: the family's parameter key (`low`, `high`, …) -> value.
+        parameters: the family's parameter key (`low`, `high`, …) -> value; one left out has its default.
         lower_cutoff, upper_cutoff: truncation; None where there is none.
         base: the cell's own value, the base case.
         frozen: held at `base`, not drawn.
         row: where it is defined.
         notes: the table's other columns, echoed in the record.
+        own_family: built for this row, from its data or for its percentiles; None where `FAMILIES` has it.
     """
 
     name: str
@@ -54,6 +56,12 @@ class Assumption:
     source: str = ""
     frozen: bool = False
     notes: Mapping[str, str] = field(default_factory=dict)
+    own_family: Family | None = None
+
+    @property
+    def family(self) -> Family:
+        """What it is drawn from, given the parameters."""
+        return FAMILIES[self.distribution] if self.own_family is None else self.own_family
 
 
 @dataclass(frozen=True, slots=True)

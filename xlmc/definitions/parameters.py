@@ -10,22 +10,23 @@ from xlmc.address import Cell
 from xlmc.definitions.fields import parameter, static_value
 from xlmc.definitions.findings import Findings
 from xlmc.definitions.model import Parameter
+from xlmc.definitions.percentiles import is_percentile
 from xlmc.definitions.tables import Row
 from xlmc.distributions import FAMILIES, Family, ParameterSpec, Truncated
 from xlmc.distributions.base import show
 from xlmc.distributions.naming import plain
 from xlmc.errors import DefinitionError
 
-__all__ = ["CUTOFFS", "PARAMETER_HEADINGS", "Given", "given_parameters", "remark_on_range", "rules_kept"]
+__all__ = ["CUTOFFS", "DATA", "PARAMETER_HEADINGS", "Given", "given_parameters", "remark_on_range", "rules_kept"]
 
 CUTOFFS = {"lower_cutoff": "Lower cutoff", "upper_cutoff": "Upper cutoff"}
 
-_LATER = ("Location", "Scale", "Shape", "Rate", "Alpha", "Beta", "Probability", "Data")
-_PERCENTILES = tuple(f"P{percent}" for percent in range(101))
+DATA = "Data"
+
 _OURS = (heading for family in FAMILIES.values() for spec in family.parameters for heading in spec.headings)
 
-PARAMETER_HEADINGS = tuple(dict.fromkeys((*_OURS, *_LATER, *_PERCENTILES)))
-"""Every column that means a parameter, also of distributions that this version lacks: filled in, it is no note."""
+PARAMETER_HEADINGS = tuple(dict.fromkeys((*_OURS, DATA)))
+"""Every column that means a parameter of some distribution, beside percentiles: filled in, it is no note."""
 
 _LIMITS = frozenset({"low", "minimum", "min", "high", "maximum", "max"})
 
@@ -36,7 +37,7 @@ class Given:
 
     Attributes:
         values: as a run needs them.
-        places: the table's own cells that hold them.
+        places: the table's own cells that hold them; the row's first cell for one that is left to its default.
         numbers: what they are now, typed in or as Excel cached them; None where that is unknown.
     """
 
@@ -55,10 +56,12 @@ class Given:
 
 def given_parameters(row: Row, family: Family, findings: Findings) -> Given:
     """The family's parameters and the cutoffs in this row; every mistake is recorded on its own."""
-    headings = {spec.key: findings.attempt(_heading_of, row, family, spec) for spec in family.parameters}
+    defaults = {spec.key: spec.default for spec in family.parameters if _is_left_out(row, spec)}
+    required = (spec for spec in family.parameters if spec.key not in defaults)
+    headings = {spec.key: findings.attempt(_heading_of, row, family, spec) for spec in required}
     headings |= {key: heading for key, heading in CUTOFFS.items() if row.filled(heading)}
-    values: dict[str, Parameter] = {}
-    places: dict[str, Cell] = {}
+    values: dict[str, Parameter] = {key: value for key, value in defaults.items() if value is not None}
+    places: dict[str, Cell] = dict.fromkeys(values, row.where)
     for key, heading in headings.items():
         value = None if heading is None else findings.attempt(parameter, row, heading)
         if heading is not None and value is not None:
@@ -91,11 +94,16 @@ def remark_on_range(family: Family, given: Given, base: float | None, cell: Cell
     numbers, lower, upper = known
     low, high = (float(end) for end in Truncated(family).support(lower, upper, **numbers))
     if low == high:
-        where = given.places[family.keys[0]]
-        findings.notice(f"Low and High are both {show(low)}: the assumption does not vary", where)
+        where = given.places[family.keys[0]] if family.keys else cell
+        ends = "Low and High are both" if {"low", "high"} <= {*family.keys} else "Every draw is"
+        findings.notice(f"{ends} {show(low)}: the assumption does not vary", where)
     if base is not None and not low <= base <= high:
         reach = f"{show(low)} to {show(high)}"
         findings.notice(f"The base case ({show(base)}) lies outside the distribution ({reach})", cell)
+
+
+def _is_left_out(row: Row, spec: ParameterSpec) -> bool:
+    return spec.default is not None and not any(row.filled(heading) for heading in spec.headings)
 
 
 def _heading_of(row: Row, family: Family, spec: ParameterSpec) -> str:
@@ -121,7 +129,8 @@ def _heading_of(row: Row, family: Family, spec: ParameterSpec) -> str:
 def _refuse_unused(row: Row, family: Family, findings: Findings) -> None:
     """A number that is silently ignored would mislead: whoever gives a Normal a Low believes that it ends there."""
     used = {plain(heading) for spec in family.parameters for heading in spec.headings}
-    for heading in PARAMETER_HEADINGS:
+    used |= {plain(DATA)} if family.data else set()
+    for heading in (*PARAMETER_HEADINGS, *filter(is_percentile, row.headings)):
         if plain(heading) in used or not row.filled(heading):
             continue
         hint = "Clear the cell, or choose a distribution that has this parameter"

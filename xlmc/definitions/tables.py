@@ -51,6 +51,11 @@ class Row:
         """Whether the table has the column and the row holds something in it."""
         return self.has(heading) and not is_blank(self.content(heading))
 
+    @property
+    def headings(self) -> tuple[str, ...]:
+        """Every heading of the table, as written."""
+        return tuple(written for written, _ in self.table.columns.values())
+
     def heading(self, heading: str) -> str:
         """The heading as this table writes it."""
         return self.table.columns[plain(heading)][0]

@@ -4,18 +4,70 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from xlmc.distributions.base import Family, Fault, ParameterSpec
+from xlmc.distributions.base import DataError, DataSpec, Family, Fault, ParameterSpec
+from xlmc.distributions.beta import Beta
+from xlmc.distributions.beta_pert import BetaPERT
+from xlmc.distributions.by_percentiles import ByPercentiles
+from xlmc.distributions.cumul import Cumul
+from xlmc.distributions.exponential import Exponential
+from xlmc.distributions.gamma import Gamma
+from xlmc.distributions.general import General
+from xlmc.distributions.histogrm import Histogrm
+from xlmc.distributions.logistic import Logistic
+from xlmc.distributions.lognorm2 import Lognorm2
+from xlmc.distributions.lognormal import Lognormal
+from xlmc.distributions.maximum_extreme import MaximumExtreme
+from xlmc.distributions.minimum_extreme import MinimumExtreme
 from xlmc.distributions.naming import did_you_mean, plain
 from xlmc.distributions.normal import Normal
+from xlmc.distributions.pareto import Pareto
+from xlmc.distributions.piecewise import Piecewise
+from xlmc.distributions.students_t import StudentsT
 from xlmc.distributions.trapezoid import Trapezoid
 from xlmc.distributions.triangular import Triangular
+from xlmc.distributions.trigen import Trigen
 from xlmc.distributions.truncated import Truncated
 from xlmc.distributions.uniform import Uniform
+from xlmc.distributions.weibull import Weibull
 from xlmc.errors import DefinitionError
 
-__all__ = ["FAMILIES", "Family", "Fault", "ParameterSpec", "Truncated", "family_named"]
+__all__ = [
+    "FAMILIES",
+    "ByPercentiles",
+    "DataError",
+    "DataSpec",
+    "Family",
+    "Fault",
+    "ParameterSpec",
+    "Piecewise",
+    "Truncated",
+    "family_named",
+]
 
-FAMILIES: Mapping[str, Family] = {family.name: family for family in (Uniform(), Normal(), Triangular(), Trapezoid())}
+_CONTINUOUS = (
+    Uniform(),
+    Triangular(),
+    Trapezoid(),
+    Normal(),
+    Beta(),
+    BetaPERT(),
+    Exponential(),
+    Gamma(),
+    Logistic(),
+    Lognormal(),
+    Lognorm2(),
+    MaximumExtreme(),
+    MinimumExtreme(),
+    Pareto(),
+    StudentsT(),
+    Trigen(),
+    Weibull(),
+    Cumul(),
+    General(),
+    Histogrm(),
+)
+
+FAMILIES: Mapping[str, Family] = {family.name: family for family in _CONTINUOUS}
 """Every family by its name."""
 
 _SPELLINGS = {plain(spelling): family for family in FAMILIES.values() for spelling in (family.name, *family.aliases)}

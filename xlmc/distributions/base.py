@@ -12,7 +12,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,14 +21,26 @@ __all__ = [
     "HIGH",
     "LARGEST",
     "LIKELIEST",
+    "LOCATION",
     "LOW",
+    "MEAN",
+    "SCALE",
+    "SHAPE",
     "SMALLEST_U",
+    "STD_DEV",
     "Array",
+    "DataError",
+    "DataSpec",
     "Family",
     "Fault",
     "ParameterSpec",
+    "Role",
     "Rule",
     "Values",
+    "above_zero",
+    "at_most",
+    "ends",
+    "rising",
     "share",
     "show",
 ]
@@ -36,6 +48,9 @@ __all__ = [
 Array = NDArray[np.float64]
 Values = float | Array
 """A number, or one number for each trial, `(n,)`."""
+
+Role = Literal["location", "scale", "rate", "log scale", "shape", "ordered"]
+"""What a parameter does: moves, stretches or bends the distribution; those that are ordered rise in their order."""
 
 SMALLEST_U = 2.0**-54
 """What u = 0 stands for where the quantile of 0 is infinite: half a step of the grid k·2^-53 that u comes from."""
@@ -46,10 +61,14 @@ LARGEST = 1e150
 
 @dataclass(frozen=True, slots=True)
 class ParameterSpec:
-    """A parameter: the key the code uses and the column headings people may write, the usual one first."""
+    """A parameter: the key the code uses and the column headings people may write, the usual one first.
+
+    With a default the parameter may be left out, and its column blank.
+    """
 
     key: str
     headings: tuple[str, ...]
+    default: float | None = None
 
     @property
     def heading(self) -> str:
@@ -59,6 +78,11 @@ class ParameterSpec:
 LOW = ParameterSpec("low", ("Low", "Minimum", "Min"))
 HIGH = ParameterSpec("high", ("High", "Maximum", "Max"))
 LIKELIEST = ParameterSpec("likeliest", ("Likeliest", "Mode", "Most likely"))
+MEAN = ParameterSpec("mean", ("Mean", "Average"))
+STD_DEV = ParameterSpec("std_dev", ("Std dev", "Standard deviation", "SD", "Std. dev.", "St dev"))
+LOCATION = ParameterSpec("location", ("Location", "Loc"), default=0.0)
+SCALE = ParameterSpec("scale", ("Scale",))
+SHAPE = ParameterSpec("shape", ("Shape",))
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +102,31 @@ class Rule:
     hint: str
 
 
+def above_zero(parameters: Sequence[ParameterSpec], key: str, hint: str = "Give a positive number") -> Rule:
+    """The parameter with this key must be positive."""
+    place, heading = _place_of(parameters, key)
+    return Rule(key, lambda *values: values[place] > 0, f"{heading} ({{{key}}}) must be above 0", hint)
+
+
+def at_most(parameters: Sequence[ParameterSpec], key: str, limit: float, hint: str) -> Rule:
+    """The parameter with this key has a largest value."""
+    place, heading = _place_of(parameters, key)
+    message = f"{heading} ({{{key}}}) must be at most {show(limit)}"
+    return Rule(key, lambda *values: values[place] <= limit, message, hint)
+
+
+def rising(parameters: Sequence[ParameterSpec], lower: str, upper: str) -> Rule:
+    """The parameter `lower` must not be above the parameter `upper`."""
+    (left, below), (right, above) = _place_of(parameters, lower), _place_of(parameters, upper)
+    message = f"{below} ({{{lower}}}) is above {above} ({{{upper}}})"
+    hint = "Exchange the two, or correct the wrong one"
+    return Rule(lower, lambda *values: values[left] <= values[right], message, hint)
+
+
+def _place_of(parameters: Sequence[ParameterSpec], key: str) -> tuple[int, str]:
+    return next((place, spec.heading) for place, spec in enumerate(parameters) if spec.key == key)
+
+
 @dataclass(frozen=True, slots=True)
 class Fault:
     """A broken rule in words, with the key of the parameter to look at first."""
@@ -87,24 +136,86 @@ class Fault:
     hint: str
 
 
+@dataclass(frozen=True, slots=True)
+class DataSpec:
+    """What the range under Data must hold for a family that is built from data.
+
+    Attributes:
+        columns: the numbers of columns it may have; empty for any.
+        content: what the columns are, for people: `values, cumulative probabilities`.
+        options: headings of the assumptions table that say how to read it; `built` takes them in small letters.
+        truncates: whether what is built may have cutoffs.
+    """
+
+    columns: tuple[int, ...]
+    content: str
+    options: tuple[str, ...] = ()
+    truncates: bool = True
+
+
+class DataError(ValueError):
+    """Numbers that no distribution can be built from.
+
+    Attributes:
+        message, hint: what is wrong, and what to do; `{also}` in the message stands for the second place.
+        row, column: where to look first, counted from 0; None for the data as a whole.
+        also: the row and column that it disagrees with.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        hint: str,
+        row: int | None = None,
+        column: int | None = None,
+        also: tuple[int, int] | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.message, self.hint, self.row, self.column, self.also = message, hint, row, column, also
+
+
 class Family(ABC):
     """A family of distributions. The parameters of every method follow the order of `parameters`, or go by key.
 
     Attributes:
         name: as people see it, and as `FAMILIES` spells it.
         aliases: other names that people type.
+        parameters: in the usual order.
+        rules: what the parameters must keep.
         open_below: the quantile of 0 is minus infinity, so u = 0 is read as `SMALLEST_U`.
+        roles: of each parameter, so that percentiles may stand in its place; empty where they may not (`matching.py`).
+        data: what a family that is built from data needs; None for one that has parameters alone.
+        formula: its density, distribution or quantile function in the headings of its parameters, for people.
+        source: where the formula is written down.
+        elsewhere: what other programs call it, such as `@RISK Gamma(shape, scale)`.
     """
 
-    name: ClassVar[str]
-    aliases: ClassVar[tuple[str, ...]] = ()
-    parameters: ClassVar[tuple[ParameterSpec, ...]]
-    rules: ClassVar[tuple[Rule, ...]] = ()
-    open_below: ClassVar[bool] = False
+    name: str
+    aliases: tuple[str, ...] = ()
+    parameters: tuple[ParameterSpec, ...]
+    rules: tuple[Rule, ...] = ()
+    open_below: bool = False
+    roles: tuple[Role, ...] = ()
+    data: DataSpec | None = None
+    formula: str = ""
+    source: str = ""
+    elsewhere: tuple[str, ...] = ()
 
     @property
     def keys(self) -> tuple[str, ...]:
         return tuple(spec.key for spec in self.parameters)
+
+    def built(self, data: Array, **options: Any) -> Family:
+        """The family of this name that belongs to these data; its parameters, if any, are still to be given.
+
+        Args:
+            data: `(rows, columns)`, NaN where a cell is blank.
+            **options: those of `DataSpec.options` that are filled in.
+
+        Raises:
+            DataError: no distribution can be built from them.
+        """
+        raise TypeError(f"{self.name} is not built from data")
 
     def fault(self, *params: float, **named: float) -> Fault | None:
         """The first rule that these numbers break, if any."""
@@ -199,29 +310,29 @@ class Family(ABC):
     @abstractmethod
     def _support(self, *args: Any, **kwargs: Any) -> tuple[Values, Values]: ...
 
-    @abstractmethod
     def _mirrored(self, *args: Any, **kwargs: Any) -> tuple[Values, ...]:
         """The parameters of -X in the same family; one without mirror images overrides `_sf` and `_isf` instead."""
+        raise NotImplementedError(f"{self.name} has no mirror image")
 
-    def _sf(self, x: Values, *params: Values) -> Values:
-        return self._cdf(-x, *self._mirrored(*params))
+    def _sf(self, x: Values, *args: Any, **kwargs: Any) -> Values:
+        return self._cdf(-x, *self._mirrored(*args, **kwargs))
 
-    def _isf(self, q: Array, *params: Values) -> Array:
-        return -self._ppf(q, *self._mirrored(*params))
+    def _isf(self, q: Array, *args: Any, **kwargs: Any) -> Array:
+        return -self._ppf(q, *self._mirrored(*args, **kwargs))
 
     def bind(self, params: Sequence[Any], named: Mapping[str, Any]) -> tuple[Any, ...]:
-        """The parameters in order.
+        """The parameters in order, defaults for those that are left out.
 
         Raises:
-            TypeError: one is missing, unknown or given twice.
+            TypeError: one without default is missing, or one is unknown or given twice.
         """
         if len(params) == len(self.parameters) and not named:
             return tuple(params)
-        by_key = dict(zip(self.keys, params, strict=False))
-        if len(params) + len(named) != len(self.parameters) or {*by_key, *named} != {*self.keys}:
+        given = {**dict(zip(self.keys, params, strict=False)), **named}
+        defaults = {spec.key: spec.default for spec in self.parameters if spec.default is not None}
+        if len(given) < len(params) + len(named) or {*defaults, *given} != {*self.keys}:
             raise TypeError(f"{self.name} takes {', '.join(self.keys)}")
-        by_key.update(named)
-        return tuple(by_key[key] for key in self.keys)
+        return tuple(given[key] if key in given else defaults[key] for key in self.keys)
 
     def _sound(self, values: tuple[Any, ...]) -> tuple[tuple[Any, ...], Any]:
         """The parameters with NaN in trials that break a rule, and where these are (None: nowhere)."""
@@ -253,6 +364,12 @@ def share(part: Values, whole: Values) -> Array:
     """`part / whole`, and 0 where the whole is 0: a piece of no width holds nothing."""
     whole = np.asarray(whole)
     return np.asarray(part / np.where(whole > 0, whole, 1.0) * (whole > 0))
+
+
+def ends(low: float, high: float, *parameters: Values) -> tuple[Array, Array]:
+    """Two fixed ends of the support in the shape of the parameters, e.g. 0 and infinity."""
+    shape = np.broadcast_shapes(*(np.shape(each) for each in parameters))
+    return np.full(shape, low), np.full(shape, high)
 
 
 def show(value: float) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.distributions.base import Array, Family, ParameterSpec, Rule, Values
+from xlmc.distributions.base import MEAN, STD_DEV, Array, Family, Values, above_zero, ends
 
 __all__ = ["Normal"]
 
@@ -23,15 +23,15 @@ class Normal(Family):
 
     name = "Normal"
     aliases = ("Gaussian",)
-    parameters = (
-        ParameterSpec("mean", ("Mean", "Average")),
-        ParameterSpec("std_dev", ("Std dev", "Standard deviation", "SD", "Std. dev.", "St dev")),
-    )
+    parameters = (MEAN, STD_DEV)
+    formula = "density ∝ exp(−((x − Mean)/Std dev)²/2)"
+    source = "Johnson, Kotz and Balakrishnan, Continuous Univariate Distributions, vol. 1, ch. 13"
+    elsewhere = ("Crystal Ball Normal (mean, std dev)", "@RISK Normal(mean, std dev)")
+    roles = ("location", "scale")
     rules = (
-        Rule(
+        above_zero(
+            parameters,
             "std_dev",
-            lambda _mean, std_dev: std_dev > 0,
-            "Std dev ({std_dev}) must be above 0",
             "Give a positive number, or set Frozen to TRUE to hold the assumption at its cell's value",
         ),
     )
@@ -59,8 +59,7 @@ class Normal(Family):
         return std_dev**2 + 0 * mean
 
     def _support(self, mean: Values, std_dev: Values) -> tuple[Values, Values]:
-        everywhere = np.full(np.broadcast(mean, std_dev).shape, np.inf)
-        return -everywhere, everywhere
+        return ends(-np.inf, np.inf, mean, std_dev)
 
     def _mirrored(self, mean: Values, std_dev: Values) -> tuple[Values, ...]:
         return -mean, std_dev

@@ -36,6 +36,10 @@ class Trapezoid(Family):
         ParameterSpec("high_likeliest", ("High likeliest",)),
         HIGH,
     )
+    formula = "density ∝ straight lines through (Low, 0), (Low likeliest, 1), (High likeliest, 1), (High, 0)"
+    source = "Figure 4 of the paper; van Dorp and Kotz, Metrika 58 (2003), 85–97"
+    elsewhere = ("@RISK General(low, high, {low likeliest, high likeliest}, {1, 1})",)
+    roles = ("ordered", "ordered", "ordered", "ordered")
     rules = (
         Rule(
             "low",

@@ -24,6 +24,10 @@ class Triangular(Family):
     name = "Triangular"
     aliases = ("Triangle", "Triang")
     parameters = (LOW, LIKELIEST, HIGH)
+    formula = "density in straight lines from 0 at Low to its peak at Likeliest and down to 0 at High"
+    source = "Kotz and van Dorp, Beyond Beta (2004), ch. 1"
+    elsewhere = ("Crystal Ball Triangular (minimum, likeliest, maximum)", "@RISK Triang(min, likeliest, max)")
+    roles = ("ordered", "ordered", "ordered")
     rules = (
         Rule(
             "low",

@@ -27,6 +27,9 @@ class Uniform(Family):
 
     name = "Uniform"
     parameters = (LOW, HIGH)
+    formula = "density 1/(High − Low) from Low to High"
+    source = "Johnson, Kotz and Balakrishnan, Continuous Univariate Distributions, vol. 2, ch. 26"
+    elsewhere = ("Crystal Ball Uniform (minimum, maximum)", "@RISK Uniform(min, max)")
     rules = (
         Rule(
             "low",

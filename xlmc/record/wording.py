@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from xlmc.definitions.model import Assumption, Filter, Parameter
-from xlmc.distributions import FAMILIES
 
 if TYPE_CHECKING:
     from xlmc.model import Model
@@ -26,8 +25,9 @@ def bound_text(bound: Parameter) -> str:
 
 def parameters_text(assumption: Assumption) -> str:
     """`Low 6661, High 6861`."""
-    family = FAMILIES[assumption.distribution]
-    return ", ".join(f"{p.heading} {bound_text(assumption.parameters[p.key])}" for p in family.parameters)
+    given = assumption.parameters
+    specs = (spec for spec in assumption.family.parameters if spec.key in given)
+    return ", ".join(f"{spec.heading} {bound_text(given[spec.key])}" for spec in specs)
 
 
 def cutoffs_text(assumption: Assumption) -> str:

@@ -40,6 +40,8 @@ class Task:
         rows: inputs of the trials that are timed where the contestant does not draw its own.
         seconds: how long to measure, about; 0 for answers alone.
         options: of the contestant.
+        ladder: trial counts at which to sample for the measure of accuracy, instead of measuring the rate.
+        seeds: how many runs at each of them.
     """
 
     book: str
@@ -50,6 +52,8 @@ class Task:
     rows: list[list[float]]
     seconds: float
     options: dict[str, Any] = field(default_factory=dict)
+    ladder: list[int] = field(default_factory=list)
+    seeds: int = 0
 
     @classmethod
     def of(cls, plain: dict[str, Any]) -> Task:
@@ -69,6 +73,7 @@ class Answer:
         trials: timed in the fastest measurement.
         versions: of what it runs on.
         note: how it was used.
+        samples: trials -> one [seconds, statistics] a seed; see `one_contestant.statistics`.
     """
 
     values: list[list[float | None]]
@@ -77,6 +82,7 @@ class Answer:
     trials: int = 0
     versions: dict[str, str] = field(default_factory=dict)
     note: str = ""
+    samples: dict[str, list[list[Any]]] = field(default_factory=dict)
 
 
 class Contestant(Protocol):

@@ -17,17 +17,21 @@ Array = NDArray[np.float64]
 
 
 class Hand:
-    """See `Contestant`. A chunk is what is drawn and evaluated at once."""
+    """See `Contestant`. A chunk is what is drawn and evaluated at once.
+
+    Attributes:
+        sample: (trials, seed) -> forecasts of the accepted trials, (f, m).
+    """
 
     def __init__(
         self,
         evaluate: Callable[[Array], Array],
-        simulate: Callable[[int], object],
+        simulate: Callable[[int, int], Any],
         chunk: int,
         versions: dict[str, str],
         note: str,
     ) -> None:
-        self._evaluate, self._run = evaluate, simulate
+        self._evaluate, self.sample = evaluate, simulate
         self.fewest, self.note = 8 * chunk, f"{note}, chunks of {chunk:,}"
         self.versions = {"numpy": np.__version__} | versions
 
@@ -39,11 +43,12 @@ class Hand:
         return [list(row) for row in found.T.tolist()]
 
     def settle(self) -> None:
-        """Nothing to settle."""
+        """Compile what compiles when it is first called."""
+        self.run(self.fewest)
 
     def run(self, trials: int) -> object:
         """See `Contestant`."""
-        return self._run(trials)
+        return self.sample(trials, 1)
 
 
 def prepare(task: Task) -> Hand:
@@ -68,7 +73,7 @@ def _numpy(book: str, options: dict[str, Any]) -> Hand:
     if book == "skid":
         return Hand(
             hand_written_skid.evaluate,
-            lambda trials: hand_written_skid.simulate(trials, 1, chunk),
+            lambda trials, seed: hand_written_skid.simulate(trials, seed, chunk),
             chunk,
             {},
             "NumPy, buffers allocated once",
@@ -76,7 +81,7 @@ def _numpy(book: str, options: dict[str, Any]) -> Hand:
     kernel = options["kernel"]
     return Hand(
         lambda inputs: hand_written.KERNELS[kernel](inputs.shape[1])(inputs),
-        lambda trials: hand_written.simulate(trials, 1, chunk, kernel),
+        lambda trials, seed: hand_written.simulate(trials, seed, chunk, kernel)[1],
         chunk,
         {},
         f"NumPy, {kernel}",
@@ -97,8 +102,8 @@ def _numba(book: str, options: dict[str, Any]) -> Hand:
         out = np.empty((forecasts, n))
         return out[:, : kernel(inputs, n, np.empty((6, n)), out, 0)]
 
-    def simulate(trials: int) -> object:
-        return hand_numba.simulate(kernel, forecasts, low, high, trials, 1, options["chunk"])
+    def simulate(trials: int, seed: int) -> Array:
+        return hand_numba.simulate(kernel, forecasts, low, high, trials, seed, options["chunk"])
 
     note = f"numba, {options['kernel']} sine and cosine" if case else "numba"
     return Hand(evaluate, simulate, options["chunk"], {"numba": numba.__version__}, note)
@@ -111,4 +116,5 @@ def _c(book: str, options: dict[str, Any]) -> Hand:
     case = book == "case-study"
     hand = hand_c.Hand(Path(options["library"]), "case" if case else "skid", low, high, 4 if case else 1)
     chunk = options["chunk"]
-    return Hand(hand.evaluate, lambda trials: hand.simulate(trials, 1, chunk), chunk, {}, f"C, {' '.join(hand_c.FLAGS)}")
+    note = f"C, {' '.join(hand_c.FLAGS)}"
+    return Hand(hand.evaluate, lambda trials, seed: hand.simulate(trials, seed, chunk), chunk, {}, note)

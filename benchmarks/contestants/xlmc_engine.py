@@ -9,21 +9,21 @@ from contest import Task
 
 
 class Xlmc:
-    """A loaded book. A run compiles its program anew; `xlmc/jit` then finds its machine code in this process."""
+    """A loaded book. Every run makes its program anew, which is in the time; compiling to machine code is not."""
 
-    note = "model.simulate, one thread"
 
     def __init__(self, task: Task) -> None:
         import numpy
         import xlmc
+        from xlmc.simulate import BLOCK
 
         self.engine = task.options["engine"]
         self.jobs = task.options.get("jobs", 1)
         self._model = xlmc.load(task.path)
         self._names = {(a.cell.sheet, a.cell.row, a.cell.column): a.name for a in self._model.assumptions}
         self._task = task
-        slow = self.engine == "formulas"
-        self.fewest = 16 if slow else self._model.simulate(1, 1, engine=self.engine).block
+        self.note = f"model.simulate, {self.jobs} thread{'s' * (self.jobs > 1)}"
+        self.fewest = min(BLOCK, self._model.program(self.engine).largest_block)
         self.versions = {"xlmc": xlmc.__version__, "numpy": numpy.__version__} | _versions("numba", "formulas")
 
     def answers(self, rows: list[list[float]]) -> list[list[Any]]:
@@ -38,11 +38,18 @@ class Xlmc:
         return [list(row) for row in zip(*(column.as_floats().tolist() for column in columns), strict=True)]
 
     def settle(self) -> None:
-        """Nothing to settle."""
+        """Compile to machine code, if the engine does that."""
+        if self.engine == "jit":
+            self.run(self.fewest)
 
     def run(self, trials: int) -> object:
         """See `Contestant`."""
         return self._model.simulate(trials, 1, engine=self.engine, jobs=self.jobs)
+
+    def sample(self, trials: int, seed: int) -> Any:
+        """Forecasts of the accepted trials, one array (m,) a forecast."""
+        run = self._model.simulate(trials, seed, engine=self.engine)
+        return [run[forecast.name].values for forecast in self._model.forecasts]
 
 
 def prepare(task: Task) -> Xlmc:

@@ -1,8 +1,8 @@
 """Speed against accuracy: the error of the case study's answers against the seconds that they cost.
 
 The truth is a run of 2·10⁹ trials made independently of this project. The error of a statistic at a trial count is the
-root of the mean square over seeds and the four forecasts, in mph. Contestants that draw are run; the error of those that
-only answer given trials is that of xlmc at the same trials, for they give the same forecasts, and their time is the
+root of the mean square over seeds and the four forecasts, in mph. Contestants that draw are run. The error of those
+that only answer given trials is that of xlmc at the same trials, for they give the same forecasts; their time is the
 trials over their measured rate.
 """
 
@@ -30,7 +30,7 @@ TRUTH = np.array([
 ])  # fmt: skip
 """Forecasts by STATISTICS, mph. Its standard errors are .0001 to .0005."""
 
-LADDER = (10_000, 40_000, 160_000, 640_000, 2_560_000)
+LADDER = (5_000, 20_000, 80_000, 320_000, 1_280_000)
 SEEDS = 20
 
 
@@ -45,8 +45,7 @@ def measure(
 ) -> dict[str, Any]:
     """Contestant -> trials, seconds (medians), errors (a list by STATISTICS for each trial count).
 
-    Args:
-        rates: of the case study, as `rates.measure` finds them: it tells the variants and the peers' speeds.
+    `rates` are those of the case study, as `rates.measure` finds them: they tell the variants and the peers' speeds.
     """
     task = task_of("case-study", path, 0)
     curves: dict[str, Any] = {}
@@ -77,7 +76,13 @@ def _curve(answer: Answer, ladder: Sequence[int]) -> dict[str, Any]:
     runs = [answer.samples[str(trials)] for trials in ladder]
     seconds = [statistics.median(seconds for seconds, _ in found) for found in runs]
     found = [errors(np.array([answers for _, answers in run])) for run in runs]
-    return {"trials": list(ladder), "seeds": len(runs[0]), "seconds": seconds, "errors": [row.tolist() for row in found], "by rate": False}
+    return {
+        "trials": list(ladder),
+        "seeds": len(runs[0]),
+        "seconds": seconds,
+        "errors": [row.tolist() for row in found],
+        "by rate": False,
+    }
 
 
 def errors(answers: Any) -> Any:

@@ -49,7 +49,7 @@ MARCH: tuple[Row, ...] = (
 
 
 def write_skid(path: Path) -> None:
-    """v = sqrt(2 g d (f cos θ + sin θ)), the speed that a skid of length d up a grade θ ends, in mph."""
+    """V = sqrt(2 g d (f cos θ + sin θ)), the speed that a skid of length d up a grade θ ends, in mph."""
     from xlsxwriter import Workbook
 
     with Workbook(path) as book:

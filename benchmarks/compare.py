@@ -3,13 +3,14 @@
 Five parts, each optional: `rates` (trials per second of all contestants on four books), `scaling` (one thread against
 two), `accuracy` (error against seconds), `whole-command`, `memory`. Every contestant runs in a fresh process, one after
 another, round by round; figures are medians, ratios are of the same round. A whole run writes `results/*.json`, draws
-`results/*.png` and makes the tables of docs/speed.md anew. `--quick`, or a choice of books or contestants, writes into a
-folder of its own instead and leaves the committed results alone.
+`results/*.png` and makes the tables of docs/speed.md anew. `--quick`, or a choice of books or contestants, writes into
+a folder of its own instead and leaves the committed results alone.
 """
 
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import json
 import sys
 import tempfile
@@ -52,7 +53,7 @@ class Plan:
 
     rounds: int = 3
     seconds: float = 1.0
-    limit: float = 240.0
+    limit: float = 120.0
     ladder: Sequence[int] = accuracy.LADDER
     seeds: int = accuracy.SEEDS
     trials: Sequence[int] = memory.TRIALS
@@ -85,7 +86,10 @@ def main(arguments: Sequence[str] | None = None) -> Path:
 
 
 def draw(results: Path) -> None:
-    """Draw the figures of the results there are."""
+    """Draw the figures of the results there are, if matplotlib is installed."""
+    if importlib.util.find_spec("matplotlib") is None:
+        _say("no figures are drawn: matplotlib is not installed (pip install 'xlmc[plots]')")
+        return
     for part, drawn, name in (
         ("accuracy", figures.draw_accuracy, "speed-against-accuracy.png"),
         ("rates", figures.draw_rates, "rates.png"),

@@ -16,8 +16,8 @@ STYLES: dict[str, tuple[str, str]] = {
     "xlmc/jit": ("#56B4E9", "s"),
     "xlmc/formulas": ("#999999", "v"),
     "hand/NumPy": ("#000000", "D"),
-    "hand/numba, libm": ("#CC79A7", "^"),
-    "hand/numba, polynomial": ("#AA4499", "<"),
+    "hand/numba": ("#CC79A7", "^"),
+    "hand/numba, libm": ("#882255", "<"),
     "hand/C": ("#009E73", "P"),
     "formulas": ("#D55E00", "X"),
     "IronCalc": ("#E69F00", "h"),
@@ -40,6 +40,8 @@ PANELS = {
 
 def draw_accuracy(results: Path, target: Path) -> None:
     """Error against seconds, log–log, one panel a statistic."""
+    from matplotlib.ticker import LogLocator
+
     curves = json.loads(results.read_text())["found"]
     plot = _pyplot()
     figure, axes = plot.subplots(2, 2, figsize=(11, 9.4), sharex=True, sharey=True, layout="constrained")
@@ -52,6 +54,9 @@ def draw_accuracy(results: Path, target: Path) -> None:
         _slope(axis, curves, k)
         axis.set(xscale="log", yscale="log", title=PANELS[name])
         axis.grid(which="major", color="#D5DBE3", lw=0.7)
+        axis.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        axis.yaxis.set_minor_formatter("")
     for axis in axes[:, 0]:
         axis.set_ylabel("RMS error, mph")
     for axis in axes[1]:
@@ -91,7 +96,9 @@ def draw_rates(results: Path, target: Path) -> None:
         axis.set_title(TITLES.get(book, book), loc="left", fontsize=11)
     axes[-1, 0].set_xlabel("trials per second, as a multiple of xlmc/numpy's in the same round")
     handles = [plot.Rectangle((0, 0), 1, 1, color=colour) for colour, _ in FAMILIES.values()]
-    figure.legend(handles, [label for _, label in FAMILIES.values()], loc="outside lower center", ncols=3, frameon=False)
+    figure.legend(
+        handles, [label for _, label in FAMILIES.values()], loc="outside lower center", ncols=3, frameon=False
+    )
     figure.suptitle("Cost of a trial, contestants side by side on one thread", fontsize=13)
     figure.savefig(target, dpi=150)
     plot.close(figure)
@@ -107,6 +114,7 @@ def _bars(axis: Any, records: dict[str, Any]) -> None:
     colours = [FAMILIES[record["family"]][0] for _, record in shown]
     axis.barh(range(len(shown)), [r - 1 for r in ratios], left=1, color=colours, height=0.68)
     axis.axvline(1, color="#1F3044", lw=1)
+    axis.plot(1, ratios.index(1.0), "o", color=FAMILIES["xlmc"][0], ms=9)
     axis.set_xscale("log")
     axis.set_yticks(range(len(shown)), [name for name, _ in shown])
     axis.set_xlim(3e-6, 3e3)
@@ -138,4 +146,3 @@ def _pyplot() -> Any:
     from matplotlib import pyplot
 
     return pyplot
-

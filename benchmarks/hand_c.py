@@ -18,7 +18,11 @@ __all__ = ["FLAGS", "Hand", "build", "compiler"]
 
 Array = NDArray[np.float64]
 SOURCE = Path(__file__).resolve().parent / "hand.c"
-FLAGS = ("-O3", "-march=native", "-fopenmp-simd", *("-fno-math-errno", "-fno-trapping-math", "-ffp-contract=fast"), *("-fno-builtin-sin", "-fno-builtin-cos"))
+FLAGS = (
+    *("-O3", "-march=native", "-fopenmp-simd", "-ffp-contract=fast"),
+    *("-fno-math-errno", "-fno-trapping-math"),  # or gcc takes no square root of several numbers at once
+    *("-fno-builtin-sin", "-fno-builtin-cos"),  # or gcc makes pairs of them into calls that it cannot vectorise
+)
 """No -ffast-math: its reordering and its dropping of NaNs are not used. Contraction to fused multiply-adds is."""
 WIDE = "-mprefer-vector-width=512"
 """Compilers avoid 512-bit vectors unless told; one that does not know the flag is called without it."""

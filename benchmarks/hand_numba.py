@@ -13,10 +13,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from hand_written import DEGREE, MPH, G
 from numba import njit
 from numpy.typing import NDArray
-
-from hand_written import DEGREE, MPH, G
 
 __all__ = ["CASE_KERNELS", "case_kernel", "simulate", "skid_kernel"]
 

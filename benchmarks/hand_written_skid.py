@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
-
 from books import SKID, G
+from numpy.typing import NDArray
 
 __all__ = ["HIGH", "LOW", "evaluate", "simulate"]
 

@@ -70,7 +70,9 @@ def main() -> None:
     print(f"{'trials':>13}{'accepted':>12}{'seconds':>10}{'ns a trial':>12}{'peak memory, MB':>17}{'loaded, MB':>12}")
     for run in found["runs"]:
         cost, peak, before = 1e9 * run["seconds"] / run["trials"], run["peak"] / 1e6, run["before"] / 1e6
-        print(f"{run['trials']:>13,}{run['accepted']:>12,}{run['seconds']:>10.2f}{cost:>12.1f}{peak:>17.0f}{before:>12.0f}")
+        print(
+            f"{run['trials']:>13,}{run['accepted']:>12,}{run['seconds']:>10.2f}{cost:>12.1f}{peak:>17.0f}{before:>12.0f}"
+        )
     print(f"cost of a trial, longest over shortest run: {found['cost']:.3f}; peak memory: {found['memory']:.2f}")
 
 

@@ -31,4 +31,8 @@ def missing(home: Path = HOME) -> list[str]:
     """The peers that cannot be imported."""
     if not python(home).exists():
         return list(PEERS)
-    return [name for name in PEERS if subprocess.run([python(home), "-c", f"import {name}"], capture_output=True).returncode]
+    return [name for name in PEERS if not _imports(name, home)]
+
+
+def _imports(name: str, home: Path) -> bool:
+    return subprocess.run([str(python(home)), "-c", f"import {name}"], capture_output=True).returncode == 0

@@ -107,7 +107,8 @@ def _best_variant(entry: Entry, task: Task, limit: float, say: Say) -> int:
         answer = ask(entry.python, entry.module, _with(task, variant, task.seconds / 4), limit)
         rates.append(answer.rate or 0.0 if isinstance(answer, Answer) else 0.0)
     best = rates.index(max(rates))
-    say(f"{entry.name} on {task.book}: fastest with {variants[best].get('kernel')}, chunks of {variants[best]['chunk']}")
+    kernel, chunk = variants[best]["kernel"], variants[best]["chunk"]
+    say(f"{entry.name} on {task.book}: fastest with {kernel or 'its only kernel'} and chunks of {chunk}")
     return best
 
 

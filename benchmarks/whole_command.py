@@ -14,7 +14,6 @@ The ratio is of the same round, the median over rounds.
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import pickle
 import statistics
@@ -83,13 +82,14 @@ def _real(argument: Any) -> Any:
     return argument._real if isinstance(argument, Recorder) else argument
 
 
-def record(path: Path) -> int:
-    """Write what xlmc asks of XlsxWriter for the result sheets of the run; how many calls that are."""
-    import xlmc
+def record(path: Path, trials: int = TRIALS) -> int:
+    """Write what xlmc asks of XlsxWriter for the result sheets of a run; how many calls that are."""
     import xlsxwriter
+
+    import xlmc
     from xlmc.report.book import build_sheets
 
-    run = xlmc.load(CASE_STUDY).simulate(TRIALS)
+    run = xlmc.load(CASE_STUDY).simulate(trials)
     calls: list[Call] = []
     real = xlsxwriter.Workbook
     xlsxwriter.Workbook = lambda _, options=None: Recorder(real(os.devnull, options), 0, calls)
@@ -115,9 +115,13 @@ def baseline(recording: Path, target: Path) -> float:
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
     objects: dict[int, Any] = {0: Workbook(target, options)}
     for number, name, arguments, named, made in calls:
-        given = [objects[a.number] if isinstance(a, Made) else a for a in arguments]
-        objects[made] = getattr(objects[number], name)(*given, **named)
+        given = [_found(a, objects) for a in arguments]
+        objects[made] = getattr(objects[number], name)(*given, **{k: _found(v, objects) for k, v in named.items()})
     return reading
+
+
+def _found(argument: Any, objects: dict[int, Any]) -> Any:
+    return objects[argument.number] if isinstance(argument, Made) else argument
 
 
 def measure(rounds: int = ROUNDS) -> dict[str, Any]:
@@ -160,7 +164,6 @@ def main() -> None:
         print(baseline(*chosen.baseline))
         return
     found = measure(chosen.rounds)
-    print(json.dumps(found))
     print(f"xlmc simulate, {TRIALS:,} trials, workbook written: {statistics.median(found['xlmc']):.3f} s")
     print(f"baseline, the same sheets from recorded calls:  {statistics.median(found['baseline']):.3f} s")
     print(f"  of it importing the three libraries:          {statistics.median(found['imports']):.3f} s")

@@ -1,4 +1,4 @@
-"""The `formulas` package by its own means: `ExcelModel().loads(…).finish().compile(inputs, outputs)`, called per trial."""
+"""The `formulas` package by its own means: `ExcelModel().loads(…).finish().compile(…)`, called once a trial."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The case study and the skid sheet written by hand, in NumPy, numba or C: drawing, model, filters, accepted trials kept.
+"""The case study and the skid sheet written by hand in NumPy, numba or C: drawing, model, filters, keeping what passes.
 
 `options` name the language, the kernel where there are several, the trials in a chunk and, for C, the built library.
 """

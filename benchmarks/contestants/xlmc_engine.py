@@ -11,9 +11,9 @@ from contest import Task
 class Xlmc:
     """A loaded book. Every run makes its program anew, which is in the time; compiling to machine code is not."""
 
-
     def __init__(self, task: Task) -> None:
         import numpy
+
         import xlmc
         from xlmc.simulate import BLOCK
 
@@ -23,7 +23,8 @@ class Xlmc:
         self._names = {(a.cell.sheet, a.cell.row, a.cell.column): a.name for a in self._model.assumptions}
         self._task = task
         self.note = f"model.simulate, {self.jobs} thread{'s' * (self.jobs > 1)}"
-        self.fewest = min(BLOCK, self._model.program(self.engine).largest_block)
+        self._program = self._model.program(self.engine)
+        self.fewest = min(BLOCK, self._program.largest_block)
         self.versions = {"xlmc": xlmc.__version__, "numpy": numpy.__version__} | _versions("numba", "formulas")
 
     def answers(self, rows: list[list[float]]) -> list[list[Any]]:
@@ -32,7 +33,7 @@ class Xlmc:
 
         names = [self._names[place] for place in self._task.inputs]
         inputs = {_key(name): np.array(column) for name, column in zip(names, zip(*rows, strict=True), strict=True)}
-        evaluator = self._model.program(self.engine).evaluator(len(rows))
+        evaluator = self._program.evaluator(len(rows))
         evaluator.filters(inputs, len(rows))
         columns = evaluator.forecasts(np.arange(len(rows)))
         return [list(row) for row in zip(*(column.as_floats().tolist() for column in columns), strict=True)]

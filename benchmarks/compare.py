@@ -53,7 +53,7 @@ class Plan:
 
     rounds: int = 3
     seconds: float = 1.0
-    limit: float = 120.0
+    limit: float = 300.0
     ladder: Sequence[int] = accuracy.LADDER
     seeds: int = accuracy.SEEDS
     trials: Sequence[int] = memory.TRIALS

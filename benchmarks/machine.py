@@ -40,8 +40,8 @@ def sentence(machine: dict[str, Any]) -> str:
     return (
         f"{machine['processor']}, {machine['cores']} cores, {machine['memory, GB']} GB, "
         f"{' '.join(machine['features'])}; {machine['system']}; Python {machine['python']}, {packages}; "
-        f"{machine['compiler'] or 'no C compiler'}. Measured {machine['date'][:10]}; load average before the start "
-        f"{machine['load before']}."
+        f"{machine['compiler'] or 'no C compiler'}. Measured on {machine['date'][:10]}; load average before "
+        f"the start: {machine['load before']}."
     )
 
 

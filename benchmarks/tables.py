@@ -18,6 +18,15 @@ __all__ = ["PAGE", "TABLES", "filled", "write"]
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "speed.md"
 
 
+QUIET = 0.5
+"""A load average above this before the start means that other work was running."""
+
+PROVISIONAL = (
+    "**These figures are provisional**: other work was running on the machine, which slows now one contestant, now "
+    "another, by a factor of up to three. Read the ratios, and those with a grain of salt."
+)
+
+
 def write(results: Path, page: Path = PAGE) -> None:
     """Put the tables of all results there are into the page."""
     page.write_text(filled(page.read_text(), results))
@@ -29,17 +38,29 @@ def filled(text: str, results: Path) -> str:
     Raises:
         ValueError: a table's markers are missing.
     """
-    for name, table in TABLES.items():
-        path = results / f"{name}.json"
-        if not path.exists():
-            continue
-        given = json.loads(path.read_text())
-        body = f"{sentence(given['machine'])}\n\n{table(given['found'])}"
-        marked = re.compile(rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)", re.DOTALL)
-        if not marked.search(text):
-            raise ValueError(f"the page has no markers for the table {name!r}")
-        text = marked.sub(lambda match, body=body: f"{match[1]}\n{body}\n\n{match[2]}", text)
+    paths = {name: results / f"{name}.json" for name in TABLES}
+    found = {name: json.loads(path.read_text()) for name, path in paths.items() if path.exists()}
+    if not found:
+        return text
+    machine = next(iter(found.values()))["machine"]
+    text = _placed(text, "machine", _machine(machine))
+    for name, given in found.items():
+        table = TABLES[name](given["found"])
+        text = _placed(text, name, table if given["machine"] == machine else f"{table}\n\n{_machine(given['machine'])}")
     return text
+
+
+def _placed(text: str, name: str, body: str) -> str:
+    marked = re.compile(rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)", re.DOTALL)
+    if not marked.search(text):
+        raise ValueError(f"the page has no markers for the table {name!r}")
+    return marked.sub(lambda match: f"{match[1]}\n{body}\n\n{match[2]}", text)
+
+
+def _machine(machine: dict[str, Any]) -> str:
+    """The machine in words, with a warning where other work was running on it."""
+    busy = machine["load before"] is not None and machine["load before"] > QUIET
+    return f"{PROVISIONAL}\n\n{sentence(machine)}" if busy else sentence(machine)
 
 
 def _rates(found: dict[str, Any]) -> str:
@@ -58,7 +79,18 @@ def _of_book(records: dict[str, Any]) -> str:
         ratios = [_ratio(record.get("to xlmc/numpy"))] + ([_ratio(record.get("to hand/NumPy"))] if hand else [])
         ready, rounds = f"{record['ready_median']:.2f}", str(len(record["rates"]))
         rows.append([name, _number(record["rate"]), *ratios, ready, rounds, _same(record)])
-    return _table(headings, rows, "lr" + "r" * (len(headings) - 3) + "l")
+    return f"{_table(headings, rows, 'lr' + 'r' * (len(headings) - 3) + 'l')}\n\n{_notes(records)}"
+
+
+def _notes(records: dict[str, Any]) -> str:
+    """How those were used that can be used in several ways, and the peers' versions."""
+    shown = [(name, record) for name, record in records.items() if not record["absent"]]
+    ways = [
+        f"{name}: {record['note']}" for name, record in shown if record["family"] == "hand" or name == "formualizer"
+    ]
+    peers = [record["versions"] for _, record in shown if record["family"] == "peer"]
+    versions = [f"{package} {number}" for found in peers for package, number in found.items()]
+    return f"{'; '.join([*ways, *versions])}."
 
 
 def _same(record: dict[str, Any]) -> str:

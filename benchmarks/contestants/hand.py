@@ -116,5 +116,5 @@ def _c(book: str, options: dict[str, Any]) -> Hand:
     case = book == "case-study"
     hand = hand_c.Hand(Path(options["library"]), "case" if case else "skid", low, high, 4 if case else 1)
     chunk = options["chunk"]
-    note = f"C, {' '.join(hand_c.FLAGS)}"
-    return Hand(hand.evaluate, lambda trials, seed: hand.simulate(trials, seed, chunk), chunk, {}, note)
+    flags = {"flags": " ".join(hand_c.FLAGS)}
+    return Hand(hand.evaluate, lambda trials, seed: hand.simulate(trials, seed, chunk), chunk, flags, "C")

@@ -83,8 +83,11 @@ def _slope(axis: Any, curves: dict[str, Any], k: int) -> None:
 
 
 def draw_rates(results: Path, target: Path) -> None:
-    """Trials per second of every contestant over those of xlmc/numpy, one panel a book."""
-    found: dict[str, Any] = json.loads(results.read_text())["found"]
+    """Trials per second of every contestant over those of xlmc/numpy, one panel a book where that was measured."""
+    books = json.loads(results.read_text())["found"]
+    found: dict[str, Any] = {book: records for book, records in books.items() if _shown(records)}
+    if not found:
+        return
     plot = _pyplot()
     heights = [max(len(_shown(records)), 2) for records in found.values()]
     figure, axes = plot.subplots(
@@ -99,7 +102,7 @@ def draw_rates(results: Path, target: Path) -> None:
     figure.legend(
         handles, [label for _, label in FAMILIES.values()], loc="outside lower center", ncols=3, frameon=False
     )
-    figure.suptitle("Cost of a trial, contestants side by side on one thread", fontsize=13)
+    figure.suptitle("Trials per second, side by side", fontsize=13)
     figure.savefig(target, dpi=150)
     plot.close(figure)
 
@@ -126,7 +129,7 @@ def _bars(axis: Any, records: dict[str, Any]) -> None:
         text = f"×{ratio:.2g}" if ratio >= 0.095 else f"1/{_round(1 / ratio)}"
         label, slow = f"{text}   {_speed(record['rate'])}", ratio < 1
         axis.annotate(
-            label, (max(ratio, 1), place), (6, 0), textcoords="offset points", va="center", ha="left", fontsize=9,
+            label, (max(ratio, 1), place), (9, 0), textcoords="offset points", va="center", ha="left", fontsize=9,
             color="#1F3044" if slow else "#000000",
         )  # fmt: skip
 

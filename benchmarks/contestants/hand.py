@@ -1,0 +1,120 @@
+"""The case study and the skid sheet written by hand in NumPy, numba or C: drawing, model, filters, keeping what passes.
+
+`options` name the language, the kernel where there are several, the trials in a chunk and, for C, the built library.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from contest import Task
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Hand:
+    """See `Contestant`. A chunk is what is drawn and evaluated at once.
+
+    Attributes:
+        sample: (trials, seed) -> forecasts of the accepted trials, (f, m).
+    """
+
+    def __init__(
+        self,
+        evaluate: Callable[[Array], Array],
+        simulate: Callable[[int, int], Any],
+        chunk: int,
+        versions: dict[str, str],
+        note: str,
+    ) -> None:
+        self._evaluate, self.sample = evaluate, simulate
+        self.fewest, self.note = 8 * chunk, f"{note}, chunks of {chunk:,}"
+        self.versions = {"numpy": np.__version__} | versions
+
+    def answers(self, rows: list[list[float]]) -> list[list[Any]]:
+        """The check trials are accepted ones, so that every row has its forecasts."""
+        found = self._evaluate(np.array(rows).T.copy())
+        if found.shape[1] != len(rows):
+            return [[None] * found.shape[0] for _ in rows]
+        return [list(row) for row in found.T.tolist()]
+
+    def settle(self) -> None:
+        """Compile what compiles when it is first called."""
+        self.run(self.fewest)
+
+    def run(self, trials: int) -> object:
+        """See `Contestant`."""
+        return self.sample(trials, 1)
+
+
+def prepare(task: Task) -> Hand:
+    """See `Contestant`."""
+    make = {"numpy": _numpy, "numba": _numba, "c": _c}[task.options["language"]]
+    return make(task.book, task.options)
+
+
+def _ranges(book: str) -> tuple[Array, Array]:
+    import hand_written
+    import hand_written_skid
+
+    module = hand_written if book == "case-study" else hand_written_skid
+    return module.LOW, module.HIGH
+
+
+def _numpy(book: str, options: dict[str, Any]) -> Hand:
+    import hand_written
+    import hand_written_skid
+
+    chunk = options["chunk"]
+    if book == "skid":
+        return Hand(
+            hand_written_skid.evaluate,
+            lambda trials, seed: hand_written_skid.simulate(trials, seed, chunk),
+            chunk,
+            {},
+            "NumPy, buffers allocated once",
+        )
+    kernel = options["kernel"]
+    return Hand(
+        lambda inputs: hand_written.KERNELS[kernel](inputs.shape[1])(inputs),
+        lambda trials, seed: hand_written.simulate(trials, seed, chunk, kernel)[1],
+        chunk,
+        {},
+        f"NumPy, {kernel}",
+    )
+
+
+def _numba(book: str, options: dict[str, Any]) -> Hand:
+    import hand_numba
+    import numba
+
+    case = book == "case-study"
+    kernel = hand_numba.CASE_KERNELS[options["kernel"]]() if case else hand_numba.skid_kernel()
+    low, high = _ranges(book)
+    forecasts = 4 if case else 1
+
+    def evaluate(inputs: Array) -> Array:
+        n = inputs.shape[1]
+        out = np.empty((forecasts, n))
+        return out[:, : kernel(inputs, n, np.empty((6, n)), out, 0)]
+
+    def simulate(trials: int, seed: int) -> Array:
+        return hand_numba.simulate(kernel, forecasts, low, high, trials, seed, options["chunk"])
+
+    note = f"numba, {options['kernel']} sine and cosine" if case else "numba"
+    return Hand(evaluate, simulate, options["chunk"], {"numba": numba.__version__}, note)
+
+
+def _c(book: str, options: dict[str, Any]) -> Hand:
+    import hand_c
+
+    low, high = _ranges(book)
+    case = book == "case-study"
+    hand = hand_c.Hand(Path(options["library"]), "case" if case else "skid", low, high, 4 if case else 1)
+    chunk = options["chunk"]
+    flags = {"flags": " ".join(hand_c.FLAGS)}
+    return Hand(hand.evaluate, lambda trials, seed: hand.simulate(trials, seed, chunk), chunk, flags, "C")

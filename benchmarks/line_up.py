@@ -1,0 +1,85 @@
+"""Who takes part: every contestant's file, options and variants, and the books it can do."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import peers
+from books import BOOKS
+
+__all__ = ["Entry", "line_up"]
+
+CASE, SKID = "case-study", "skid"
+CHUNKS = {"numpy": (2_048, 4_096, 8_192, 16_384, 32_768), "numba": (2_048, 4_096, 8_192), "c": (1_024, 2_048, 4_096)}
+"""Chunks that the hand-written ones are tried with: where compiled loops were never faster is left out."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A contestant.
+
+    Attributes:
+        name: as in tables.
+        family: `xlmc`, `hand` or `peer`.
+        module: its file in `contestants/`.
+        python: the interpreter that runs it.
+        books: those that it can do.
+        variants: book -> options, of which the fastest is measured; `{}` alone for all others.
+    """
+
+    name: str
+    family: str
+    module: str
+    python: Path = Path(sys.executable)
+    books: Sequence[str] = tuple(BOOKS)
+    variants: Mapping[str, Sequence[dict[str, Any]]] = field(default_factory=dict)
+
+
+def line_up(library: Path | None, engines: Sequence[str], home: Path = peers.HOME) -> tuple[list[Entry], list[str]]:
+    """Who can take part here, and in words who cannot.
+
+    Args:
+        library: hand.c, built; None where there is no compiler.
+        engines: of xlmc.
+        home: the peers' environment.
+    """
+    entries = [_xlmc(name) for name in engines]
+    absent = []
+    entries.append(_hand("hand/NumPy", "numpy", ("plain", "buffered")))
+    if importlib.util.find_spec("numba"):
+        entries += [_hand("hand/numba", "numba", ("polynomial",)), _hand("hand/numba, libm", "numba", ("libm",))]
+    else:
+        absent.append("hand/numba: numba is not installed (pip install 'xlmc[jit]')")
+    if library:
+        entries.append(_hand("hand/C", "c", ("",), library=str(library)))
+    else:
+        absent.append("hand/C: no C compiler was found (set CC)")
+    entries.append(Entry("formulas", "peer", "formulas_model"))
+    gone = peers.missing(home)
+    for name, label in (("ironcalc", "IronCalc"), ("formualizer", "formualizer")):
+        if name in gone:
+            absent.append(f"{label}: not installed; --install puts it into {home}")
+        else:
+            entries.append(Entry(label, "peer", f"{name}_book", python=peers.python(home)))
+    return entries, absent
+
+
+def _xlmc(engine: str) -> Entry:
+    """An engine of ours; `formulas` evaluates 16 trials at least, which takes minutes on the larger books."""
+    books = (CASE, SKID) if engine == "formulas" else tuple(BOOKS)
+    options: Sequence[dict[str, Any]] = [{"engine": engine}]
+    return Entry(f"xlmc/{engine}", "xlmc", "xlmc_engine", books=books, variants=dict.fromkeys(books, options))
+
+
+def _hand(name: str, language: str, kernels: Sequence[str], **more: str) -> Entry:
+    """A hand-written contestant; the kernels differ on the case study alone."""
+    chunks = CHUNKS[language]
+    case = [{"language": language, "kernel": kernel, "chunk": chunk, **more} for kernel in kernels for chunk in chunks]
+    skid = [variant for variant in case if variant["kernel"] == kernels[-1]]
+    books = (CASE,) if kernels == ("libm",) else (CASE, SKID)  # the skid sheet has no sine to be different in
+    return Entry(name, "hand", "hand", books=books, variants={CASE: case, SKID: skid})

@@ -1,0 +1,170 @@
+"""The tables of docs/speed.md, made from the results and put between its markers."""
+
+from __future__ import annotations
+
+import json
+import re
+import statistics
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from accuracy import STATISTICS
+from figures import TITLES
+from machine import sentence
+
+__all__ = ["PAGE", "TABLES", "filled", "write"]
+
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "speed.md"
+
+
+QUIET = 0.5
+"""A load average above this before the start means that other work was running."""
+
+PROVISIONAL = (
+    "**These figures are provisional**: other work was running on the machine, which slows now one contestant, now "
+    "another, by a factor of up to three. Read the ratios, and those with a grain of salt."
+)
+
+
+def write(results: Path, page: Path = PAGE) -> None:
+    """Put the tables of all results there are into the page."""
+    page.write_text(filled(page.read_text(), results))
+
+
+def filled(text: str, results: Path) -> str:
+    """The page with its tables made anew: each stands between `<!-- name -->` and `<!-- /name -->`.
+
+    Raises:
+        ValueError: a table's markers are missing.
+    """
+    paths = {name: results / f"{name}.json" for name in TABLES}
+    found = {name: json.loads(path.read_text()) for name, path in paths.items() if path.exists()}
+    if not found:
+        return text
+    machine = next(iter(found.values()))["machine"]
+    text = _placed(text, "machine", _machine(machine))
+    for name, given in found.items():
+        table = TABLES[name](given["found"])
+        text = _placed(text, name, table if given["machine"] == machine else f"{table}\n\n{_machine(given['machine'])}")
+    return text
+
+
+def _placed(text: str, name: str, body: str) -> str:
+    marked = re.compile(rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)", re.DOTALL)
+    if not marked.search(text):
+        raise ValueError(f"the page has no markers for the table {name!r}")
+    return marked.sub(lambda match: f"{match[1]}\n{body}\n\n{match[2]}", text)
+
+
+def _machine(machine: dict[str, Any]) -> str:
+    """The machine in words, with a warning where other work was running on it."""
+    busy = machine["load before"] is not None and machine["load before"] > QUIET
+    return f"{PROVISIONAL}\n\n{sentence(machine)}" if busy else sentence(machine)
+
+
+def _rates(found: dict[str, Any]) -> str:
+    return "\n\n".join(f"**{TITLES[book]}** (`{book}`)\n\n{_of_book(records)}" for book, records in found.items())
+
+
+def _of_book(records: dict[str, Any]) -> str:
+    hand = any("to hand/NumPy" in record for record in records.values())
+    headings = ["contestant", "trials/s", "× xlmc/numpy", *(["× hand/NumPy"] if hand else []), "ready, s"]
+    headings += ["rounds", "same forecasts"]
+    rows = []
+    for name, record in sorted(records.items(), key=lambda item: -item[1].get("rate", 0)):
+        if record["absent"]:
+            rows.append([name, record["absent"], *[""] * (len(headings) - 2)])
+            continue
+        ratios = [_ratio(record.get("to xlmc/numpy"))] + ([_ratio(record.get("to hand/NumPy"))] if hand else [])
+        ready, rounds = f"{record['ready_median']:.2f}", str(len(record["rates"]))
+        rows.append([name, _number(record["rate"]), *ratios, ready, rounds, _same(record)])
+    return f"{_table(headings, rows, 'lr' + 'r' * (len(headings) - 3) + 'l')}\n\n{_notes(records)}"
+
+
+def _notes(records: dict[str, Any]) -> str:
+    """How those were used that can be used in several ways, and the peers' versions."""
+    shown = [(name, record) for name, record in records.items() if not record["absent"]]
+    ways = [
+        f"{name}: {record['note']}" for name, record in shown if record["family"] == "hand" or name == "formualizer"
+    ]
+    peers = [record["versions"] for _, record in shown if record["family"] == "peer"]
+    versions = [f"{package} {number}" for found in peers for package, number in found.items()]
+    return f"{'; '.join([*ways, *versions])}."
+
+
+def _same(record: dict[str, Any]) -> str:
+    trials = f"{record['checked']} trial{'s' * (record['checked'] > 1)}"
+    return f"yes, {trials}" if not record["differs"] else f"**no**: {record['differs'][0]}"
+
+
+def _scaling(found: dict[str, Any]) -> str:
+    rows = [
+        [name, *(_number(statistics.median(rates[jobs])) for jobs in ("1", "2")), f"{rates['ratio']:.2f}"]
+        for name, rates in found.items()
+    ]
+    return _table(["engine", "`-j 1`, trials/s", "`-j 2`, trials/s", "ratio"], rows, "lrrr")
+
+
+def _accuracy(found: dict[str, Any]) -> str:
+    headings = ["contestant", "trials", "seconds", *(f"error of {name}, mph" for name in STATISTICS)]
+    rows = []
+    for name, curve in found.items():
+        if not curve["by rate"]:
+            for trials, seconds, error in zip(curve["trials"], curve["seconds"], curve["errors"], strict=True):
+                rows.append([name, f"{trials:,}", f"{seconds:.3g}", *(f"{value:.4f}" for value in error)])
+    return _table(headings, rows, "lrr" + "r" * len(STATISTICS))
+
+
+def _memory(found: dict[str, Any]) -> str:
+    rows = [
+        [
+            f"{run['trials']:,}",
+            f"{run['seconds']:.1f}",
+            f"{1e9 * run['seconds'] / run['trials']:.0f}",
+            f"{run['peak'] / 1e6:.0f}",
+            f"{run['before'] / 1e6:.0f}",
+        ]
+        for run in found["runs"]
+    ]
+    headings = ["trials", "seconds", "ns a trial", "peak memory, MB", "before the run, MB"]
+    close = f"Longest over shortest run: cost of a trial {found['cost']:.3f}, peak memory {found['memory']:.2f}."
+    return f"{_table(headings, rows, 'rrrrr')}\n\n{close}"
+
+
+def _whole_command(found: dict[str, Any]) -> str:
+    labels = {
+        "xlmc": f"`xlmc simulate`, {found['trials']:,} trials, workbook written",
+        "baseline": "the three imports, and the same sheets written from recorded calls",
+        "imports": "of it the three imports alone",
+    }
+    rows = [[label, f"{statistics.median(found[name]):.3f}"] for name, label in labels.items()]
+    close = f"Ratio of the first to the second, median of {len(found['xlmc'])} rounds: **{found['ratio']:.2f}**."
+    return f"{_table(['process', 'seconds'], rows, 'lr')}\n\n{close}"
+
+
+def _table(headings: Sequence[str], rows: Sequence[Sequence[str]], aligned: str) -> str:
+    rules = ["---:" if side == "r" else "---" for side in aligned]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in (headings, rules, *rows))
+
+
+def _number(value: float) -> str:
+    """Three digits."""
+    rounded = float(f"{value:.3g}")
+    return f"{rounded:,.0f}" if rounded >= 100 else f"{rounded:g}"
+
+
+def _ratio(value: float | None) -> str:
+    if value is None:
+        return "–"
+    return f"{value:.2f}" if value >= 0.095 else f"1/{_number(1 / value)}"
+
+
+TABLES: dict[str, Callable[[dict[str, Any]], str]] = {
+    "rates": _rates,
+    "scaling": _scaling,
+    "accuracy": _accuracy,
+    "memory": _memory,
+    "whole-command": _whole_command,
+}
+"""Name of a part, of its results and of its place in the page -> what makes its table."""

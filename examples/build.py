@@ -13,6 +13,7 @@ if __name__ == "__main__":
     sys.path.append(str(HERE.parent))
 
 from templates.description import GuideSection, Template  # noqa: E402 (the path above lets this run as a plain script)
+from templates.editions import Edition, edition  # noqa: E402
 from templates.planar_impact import Scene, describe  # noqa: E402
 from templates.writer import write_book  # noqa: E402
 
@@ -70,9 +71,10 @@ INTERSECTION = Scene(
         "V2_mph": "The Nissan was moving forward",
     },
     guide=_ABOUT,
+    paper_only=True,
 )
 
-EXAMPLES: dict[str, Template] = {"intersection": describe(INTERSECTION)}
+EXAMPLES: dict[str, Template] = {"intersection": edition(describe(INTERSECTION), Edition.IMPERIAL)}
 """File name without its ending -> what the workbook says."""
 
 

@@ -1,7 +1,7 @@
 """What a template says, apart from how it is drawn.
 
-A template is a description: inputs, equations in the order a reader follows them, the results wanted of a run, a diagram
-of the scene, a guide. What differs between units is written with both (see `editions`).
+A template is a description: inputs, equations in the order a reader follows them, the results wanted of a run, a
+diagram of the scene, a guide. What differs between units is written with both (see `editions`).
 """
 
 from __future__ import annotations

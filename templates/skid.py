@@ -85,7 +85,15 @@ _ASSUMPTIONS = (
 )
 
 _CONSTANTS = (
-    Input("grade", "G", "Grade along the skid, uphill positive", "%", 0, "Enter: the survey; rise over run", number_format="0.0"),
+    Input(
+        "grade",
+        "G",
+        "Grade along the skid, uphill positive",
+        "%",
+        0,
+        "Enter: the survey; rise over run",
+        number_format="0.0",
+    ),
     Input(
         "braking",
         "n",
@@ -210,38 +218,28 @@ _CHECKS = checks_section(
 )
 
 
-_SHARES = tuple(f"{step * (16 - step)}/64" for step in range(9))
-"""Of a surface's length; closer together toward its end, where the speed changes fastest."""
+_LEFT = tuple(f"{(8 - step) ** 2}/64" for step in range(9))
+"""Of a surface, still to be slid; points closer together toward its end, where the speed changes fastest."""
 
 
-def _speed_curve() -> Diagram:
-    """Speed along the skid: v² falls in proportion to the distance on each surface."""
-    points: list[tuple[str, str]] = []
-    for i in _SURFACES:
-        before = "+".join(["0", *(f"d_{k}" for k in range(1, i))])
-        spent = "+".join(["0", *(f"drag_{k}*d_{k}" for k in range(1, i))])
-        points += [
-            (
-                f"{before}+{share}*d_{i}",
-                f"SQRT(MAX(v_start^2-2*g*({spent}+{share}*drag_{i}*d_{i}),0))*{MPH}",
-            )
-            for share in _SHARES
-        ]
-    return Diagram(
-        "Speed along the skid, base case",
-        "Distance from the beginning of the marks, [ft|m]",
-        "Speed, [mph|km/h]",
-        (
-            Curve("Speed", Look.FIRST, tuple(points)),
-            Curve(
-                "Change of surface",
-                Look.POINT,
-                (("d_1", f"SQRT(MAX(v_start^2-2*g*drag_1*d_1,0))*{MPH}"), ("d_1+d_2", points[17][1])),
-            ),
-        ),
-        remark="Drawn from the cells below.",
-    )
+def _point(surface: int, left: str) -> tuple[str, str]:
+    """Distance slid, and speed: v² is what remains to be taken away, counted back from the end."""
+    before = "+".join(f"d_{k}" for k in _SURFACES if k < surface) or "0"
+    after = "".join(f"+drag_{k}*d_{k}" for k in _SURFACES if k > surface)
+    work = f"{left}*drag_{surface}*d_{surface}{after}"
+    return f"{before}+(1-{left})*d_{surface}", f"SQRT(MAX(v_end_s^2+2*g*({work}),0))*{MPH}"
 
+
+_DIAGRAM = Diagram(
+    "Speed along the skid, base case",
+    "Distance from the beginning of the marks, [ft|m]",
+    "Speed, [mph|km/h]",
+    (
+        Curve("Speed", Look.FIRST, tuple(_point(i, left) for i in _SURFACES for left in _LEFT)),
+        Curve("End of a surface", Look.POINT, tuple(_point(i, "0") for i in _SURFACES)),
+    ),
+    remark="Drawn from the cells below. v² falls in proportion to the distance on each surface.",
+)
 
 _GUIDE = (
     GuideSection(
@@ -253,14 +251,14 @@ _GUIDE = (
     GuideSection(
         "When to use this model",
         (
-            "A vehicle that slid, all wheels locked or at the limit of anti-lock braking, over surfaces of known friction, "
-            "to rest or to a known speed. It answers the speed at the first mark.",
+            "A vehicle that slid, all wheels locked or at the limit of anti-lock braking, over surfaces of known "
+            "friction, to rest or to a known speed. It answers the speed at the first mark.",
             "Where the skid ended in an impact, take the speed at its end from an impact model, such as momentum, and "
             "enter it: speeds combine as √(v² + vend²), they do not add.",
-            "Not for a rolling vehicle, for one that spins (use critical-speed-yaw where it left curved yaw marks), nor "
-            "where only some wheels brake unless their share is entered.",
-            "Next rungs: collinear, momentum and planar-impact take run-out to rest, computed as here, as the speed after "
-            "an impact.",
+            "Not for a rolling vehicle, for one that spins (use critical-speed-yaw where it left curved yaw marks), "
+            "nor where only some wheels brake unless their share is entered.",
+            "Next rungs: collinear, momentum and planar-impact take run-out to rest, computed as here, as the speed "
+            "after an impact.",
         ),
     ),
     GuideSection(
@@ -283,8 +281,8 @@ TEMPLATE = Template(
     title="Speed from skid marks",
     subtitle="Friction and slope over up to three surfaces: v = √(2 g Σ a d + vend²)",
     rung=1,
-    question="How fast was a vehicle that skidded, and how far back did its driver perceive danger?",
-    needs="length and friction of each surface, grade, speed at the end",
+    question="How fast was a vehicle that skidded, and where was danger perceived?",
+    needs="length and friction of each surface, grade",
     assumptions=_ASSUMPTIONS,
     constants=_CONSTANTS,
     optional=(),
@@ -306,5 +304,5 @@ TEMPLATE = Template(
     correlations=(),
     correlation_note="Several surfaces alike? First = Surface 1 friction, Second = Surface 2 friction, 0.8, say.",
     guide=_GUIDE,
-    diagram=_speed_curve(),
+    diagram=_DIAGRAM,
 )

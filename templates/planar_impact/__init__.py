@@ -30,8 +30,8 @@ def describe(scene: Scene) -> Template:
         title=scene.title,
         subtitle=scene.subtitle,
         rung=5,
-        question="How fast were two vehicles, how hard did they hit and turn, and does restitution allow it?",
-        needs="weights, yaw inertias, approach and departure angles, run-out, friction, impact centre, contact direction",
+        question="The same, with yaw: which solutions does restitution allow?",
+        needs="those of momentum; yaw inertias, impact centre, contact direction",
         assumptions=assumptions_of_planar_impact(scene),
         constants=(*yaw_rates(vehicles), *constants_of_momentum(inches=True)),
         optional=(duration_input(), *(turn_inputs(vehicles) if more else ()), *drawing_inputs(vehicles)),
@@ -67,6 +67,6 @@ def _diagram(vehicles: tuple[str, str]) -> Diagram:
             mark("Impact centre", ("0", "0")),
         ),
         plan=True,
-        remark="Drawn from the cells below, about the impact centre. Outlines are centred on the CG; only their size is "
-        "not used by the model.",
+        remark="Drawn from the cells below, about the impact centre. Outlines are centred on the CG; their size "
+        "is for the eye only.",
     )

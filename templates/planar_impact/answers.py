@@ -1,4 +1,4 @@
-"""What the planar impact model answers beside momentum, and the checks that tell a possible impact from an impossible one."""
+"""What the planar impact model answers beside momentum, and its checks: a possible impact, or an impossible one."""
 
 from __future__ import annotations
 
@@ -89,6 +89,7 @@ def answer_sections(vehicles: tuple[str, str], *, turning: bool) -> tuple[Sectio
     """The answers, what else a report states, the optional rows, and the checks.
 
     Args:
+        vehicles: what to call them.
         turning: give the rows of a turning vehicle too.
     """
     optional = (duration_section(8, vehicles), *((turn_section(9, vehicles),) if turning else ()))

@@ -16,6 +16,7 @@ def vehicle_curves(vehicles: tuple[str, str], centres: tuple[Point, Point]) -> t
     """Either vehicle at the impact, where it came from and where it went.
 
     Args:
+        vehicles: what to call them.
         centres: formulas of the centres of gravity at the impact.
     """
     curves: list[Curve] = []

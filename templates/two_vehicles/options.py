@@ -83,8 +83,8 @@ def turn_section(number: int, vehicles: tuple[str, str]) -> Section:
 def turn_filters(vehicles: tuple[str, str]) -> tuple[FilterRow, ...]:
     """A vehicle cannot turn faster than its tyres hold: off until a radius is entered."""
     because = (
-        "Example; off until the radius of its turn is entered on sheet Inputs. Limit: the top of the range of friction; "
-        "the tyres can hold no more sideways"
+        "Example; off until the radius of its turn is entered on sheet Inputs. Limit: the top of the range of "
+        "friction; the tyres can hold no more sideways"
     )
     return tuple(
         FilterRow(f"{vehicles[j - 1]} lateral acceleration", f"a_lat_{j}", because, at_most=0.95) for j in (1, 2)

@@ -26,7 +26,9 @@ def direction_forecasts(vehicles: tuple[str, str], *, yaw: bool) -> tuple[Foreca
         ForecastRow("Energy lost", "E_lost", "[ft·lb|J]"),
     ]
     if yaw:
-        rows += (ForecastRow(f"{who} change in yaw rate", f"d_omega{j}_deg", "deg/s") for j, who in enumerate(vehicles, 1))
+        rows += (
+            ForecastRow(f"{who} change in yaw rate", f"d_omega{j}_deg", "deg/s") for j, who in enumerate(vehicles, 1)
+        )
     return tuple(rows)
 
 

@@ -44,6 +44,7 @@ class Scene:
         Args:
             key: its imperial symbol.
             texts: symbol, notation, name, unit.
+            number_format: of the cell.
         """
         low, high = _ends(self.ranges[key])
         symbol, notation, name, unit = texts
@@ -67,7 +68,7 @@ def _ends(given: Range) -> tuple[float | Both, float | Both]:
 
 def _middle(low: float | Both, high: float | Both) -> float | Both:
     if isinstance(low, Both) and isinstance(high, Both):
-        return Both((low.imperial + high.imperial) / 2, (low.si + high.si) / 2)
+        return Both((low.imperial + high.imperial) / 2, round((low.si + high.si) / 2, 6))
     return (low + high) / 2  # type: ignore[operator]
 
 

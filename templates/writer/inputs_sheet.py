@@ -16,8 +16,6 @@ _DISTRIBUTIONS = ("Uniform", "Normal", "Triangular", "Trapezoid")
 _BEFORE = ("Name", "Symbol", "Cell name", "Value", "Units", "Distribution")
 _HEADERS = (*_BEFORE, *PARAMETER_COLUMNS, "Frozen", "Source")
 _SOURCE_WIDTH = 70
-_LOGICAL = '"TRUE";"TRUE";"FALSE"'
-"""Excel ignores it; LibreOffice would show 1 without."""
 _WIDTHS = (38, 8, 13, 10, 11, 13, *(10 for _ in PARAMETER_COLUMNS), 9, _SOURCE_WIDTH)
 _ALWAYS_SHOWN = 2
 """Of the parameter columns, Low and High; the others fold away until a distribution needs them."""
@@ -66,7 +64,7 @@ def _draw_assumption(sheet: Worksheet, styles: Styles, given: Input, row: int) -
         else:
             sheet.write_number(row, column, value, styles("number", shown))
     if given.frozen:
-        sheet.write_boolean(row, _FROZEN, True, styles("open centred", _LOGICAL))
+        sheet.write_string(row, _FROZEN, "TRUE", styles("open centred"))
     else:
         sheet.write_blank(row, _FROZEN, None, styles("open centred"))
     sheet.write_string(row, _FROZEN + 1, given.source, styles("open text"))

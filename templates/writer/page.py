@@ -74,7 +74,11 @@ def guard(sheet: Worksheet, area: tuple[int, int, int, int], title: str, message
     """Ask before someone types over formulas on a sheet that must stay open for new rows; refuse where `final`.
 
     Args:
+        sheet: to guard.
         area: first row, first column, last row, last column.
+        title: of the message.
+        message: why not.
+        final: whether to refuse.
     """
     rule = {"validate": "custom", "value": "=FALSE", "error_title": title, "error_message": message}
     sheet.data_validation(*area, rule | {"error_type": "stop" if final else "warning"})

@@ -35,7 +35,7 @@ def places(template: Template) -> dict[str, Place]:
     return found
 
 
-def reference(place: Place, *, absolute: bool = False, column: int = VALUE_COLUMN) -> str:
+def reference(place: Place, *, absolute: bool = False) -> str:
     """`Model!D12`, or `Model!$D$12`."""
     sheet, row = place
-    return f"{sheet}!{xl_rowcol_to_cell(row, column, row_abs=absolute, col_abs=absolute)}"
+    return f"{sheet}!{xl_rowcol_to_cell(row, VALUE_COLUMN, row_abs=absolute, col_abs=absolute)}"

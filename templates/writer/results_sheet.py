@@ -35,7 +35,7 @@ def draw_results_wanted(
     begin_sheet(sheet, styles, template.title, _SUBTITLE, _WIDTHS)
     row = _draw_forecasts(sheet, styles, template, at, values, 3)
     row = _draw_filters(sheet, styles, template, at, values, row + _ROOM)
-    row = _draw_correlations(sheet, styles, template, at, values, row + _ROOM)
+    row = _draw_correlations(sheet, styles, template, row + _ROOM)
     _draw_settings(sheet, styles, template.settings, row + _ROOM)
 
 
@@ -104,14 +104,13 @@ def _rejected(excel_row: int) -> str:
     return f"=OR({','.join(broken)})"
 
 
-def _draw_correlations(
-    sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values, top: int
-) -> int:
+def _draw_correlations(sheet: Worksheet, styles: Styles, template: Template, top: int) -> int:
     _head(sheet, styles, top, "Correlations", template.correlation_note)
     rows = max(len(template.correlations), 1)
+    names = {given.symbol: given.name for given in template.assumptions}
     add_table(sheet, styles, "xlmc_correlations", top + 1, _CORRELATIONS, rows)
     for row, pair in enumerate(template.correlations, top + 2):
-        _draw_correlation(sheet, styles, pair, at, values, row)
+        _draw_correlation(sheet, styles, pair, names, row)
     if not template.correlations:
         sheet.set_row(top + 2, 32)
         for column, look in enumerate(("open text", "open text", "number")):
@@ -133,14 +132,10 @@ def _draw_correlations(
     return top + 2 + rows
 
 
-def _draw_correlation(
-    sheet: Worksheet, styles: Styles, pair: CorrelationRow, at: dict[str, Place], values: Values, row: int
-) -> None:
-    """The names follow the rows of sheet Inputs, so that a new name there needs no change here."""
+def _draw_correlation(sheet: Worksheet, styles: Styles, pair: CorrelationRow, names: dict[str, str], row: int) -> None:
     sheet.set_row(row, 32)
     for column, symbol in enumerate((pair.first, pair.second)):
-        write_formula(sheet, row, column, reference(at[symbol], column=0), styles("open text"), values)
-    guard(sheet, (row, 0, row, 1), "A formula", "The name follows sheet Inputs. Type over it to correlate another input.")
+        sheet.write_string(row, column, names[symbol], styles("open text"))
     sheet.write_number(row, 2, pair.correlation, styles("number"))
 
 

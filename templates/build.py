@@ -9,7 +9,7 @@ HERE = Path(__file__).resolve().parent
 if __name__ == "__main__":
     sys.path.append(str(HERE.parent))
 
-from templates import skid  # noqa: E402 (the path above makes a plain `python templates/build.py` work)
+from templates import collinear, critical_speed_yaw, skid  # noqa: E402 (the path above makes a plain `python templates/build.py` work)
 from templates.description import Template  # noqa: E402
 from templates.editions import Edition, edition  # noqa: E402
 from templates.momentum import describe as momentum  # noqa: E402
@@ -21,6 +21,8 @@ __all__ = ["TEMPLATES", "build", "file_name"]
 
 TEMPLATES: dict[str, Template] = {
     "skid": skid.TEMPLATE,
+    "critical-speed-yaw": critical_speed_yaw.TEMPLATE,
+    "collinear": collinear.TEMPLATE,
     "momentum": momentum(MOMENTUM_EXAMPLE),
     "planar-impact": planar_impact(EXAMPLE),
 }

@@ -147,7 +147,7 @@ def _draw_fixed_value(sheet: Worksheet, styles: Styles, given: Input, row: int) 
             {
                 "validate": "list",
                 "source": list(given.choices),
-                "error_title": given.name,
+                "error_title": "Choice",
                 "error_message": f"Type {listed}.",
             },
         )

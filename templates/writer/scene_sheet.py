@@ -97,7 +97,14 @@ def _finish(chart: Chart, diagram: Diagram) -> None:
     """Titles, axes and legend; a plan view is square."""
     grid = {"visible": True, "line": {"color": "#E3E7EC", "width": 0.75}}
     for set_axis, title in ((chart.set_x_axis, diagram.x_title), (chart.set_y_axis, diagram.y_title)):
-        set_axis({"name": title, "label_position": "low", "major_gridlines": grid, "num_format": "0"})
+        set_axis(
+            {
+                "name": title,
+                "label_position": "low",
+                "major_gridlines": grid,
+                "num_format": "0" if diagram.plan else "General",
+            }
+        )
     legend: dict[str, Any] = {"position": "right"}
     if diagram.plan:
         legend["delete_series"] = [len(diagram.curves)]

@@ -3,7 +3,7 @@ from __future__ import annotations
 import openpyxl
 import pytest
 
-TEMPLATES = ["skid", "momentum", "planar-impact"]
+TEMPLATES = ["skid", "critical-speed-yaw", "collinear", "momentum", "planar-impact"]
 """The simplest first."""
 
 

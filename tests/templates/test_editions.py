@@ -75,7 +75,7 @@ def test_both_editions_give_the_same_crash(name, cells, shown, described):
     }
     wanted = {s.symbol: i for i, s in rows if i.symbol not in inputs and is_number(imperial[i.symbol])}
     found = cells(f"{name}-si", given, list(wanted))
-    assert len(wanted) > 10
+    assert len(wanted) > 5
     for symbol, row in wanted.items():
         truth = converted(imperial[row.symbol], row.unit)
         assert math.isclose(found[symbol].item(), truth, rel_tol=1e-9, abs_tol=1e-9), symbol

@@ -9,7 +9,8 @@ HERE = Path(__file__).resolve().parent
 if __name__ == "__main__":
     sys.path.append(str(HERE.parent))
 
-from templates import collinear, critical_speed_yaw, skid  # noqa: E402 (the path above makes a plain `python templates/build.py` work)
+# The path above makes a plain `python templates/build.py` work.
+from templates import collinear, critical_speed_yaw, crush_energy, pedestrian_throw, skid  # noqa: E402
 from templates.description import Template  # noqa: E402
 from templates.editions import Edition, edition  # noqa: E402
 from templates.momentum import describe as momentum  # noqa: E402
@@ -25,6 +26,8 @@ TEMPLATES: dict[str, Template] = {
     "collinear": collinear.TEMPLATE,
     "momentum": momentum(MOMENTUM_EXAMPLE),
     "planar-impact": planar_impact(EXAMPLE),
+    "crush-energy": crush_energy.TEMPLATE,
+    "pedestrian-throw": pedestrian_throw.TEMPLATE,
 }
 """Name of the template -> what its workbooks say, both editions in one."""
 

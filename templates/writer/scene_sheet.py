@@ -34,7 +34,7 @@ _LINES: dict[Look, dict[str, Any]] = {
 }
 _MARKERS: dict[Look, dict[str, Any]] = {
     Look.REST: {"type": "diamond", "size": 9, "fill": {"color": _INK}, "border": {"color": _INK}},
-    Look.POINT: {"type": "circle", "size": 9, "fill": {"color": "#FFFFFF"}, "border": {"color": "#B3261E", "width": 2}},
+    Look.POINT: {"type": "circle", "size": 9, "fill": {"color": "#B3261E"}, "border": {"color": "#B3261E"}},
 }
 _MARGIN = 1.1
 """Half-width of a plan view, in units of its farthest coordinate."""

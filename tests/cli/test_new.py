@@ -3,7 +3,15 @@ from __future__ import annotations
 import openpyxl
 import pytest
 
-TEMPLATES = ["skid", "critical-speed-yaw", "collinear", "momentum", "planar-impact"]
+TEMPLATES = [
+    "skid",
+    "critical-speed-yaw",
+    "collinear",
+    "momentum",
+    "planar-impact",
+    "crush-energy",
+    "pedestrian-throw",
+]
 """The simplest first."""
 
 

@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 BOOKS = sorted(path.stem for folder in ("templates", "examples") for path in (ROOT / folder).glob("*.xlsx"))
 TEMPLATES = sorted(path.stem for path in (ROOT / "templates").glob("*.xlsx"))
 REFERENCE = re.compile(r"=Model!D\d+")
+LIKE_A_CELL = re.compile(r"[A-Z]{1,3}\d+|R\d*(C\d*)?|C\d*", re.IGNORECASE)
 ROUND_OFF = 1e-12
 """Of a difference of numbers near 1 to 100 that comes out as 0 or almost; LibreOffice makes some of them 0."""
 NUMBER = re.compile(rb"<v>[^<]*</v>")
@@ -175,6 +176,14 @@ def test_formulas_are_guarded_and_inputs_are_open(name, book_path, described):
         [(sheet, place)] = book.defined_names[given.symbol].destinations
         assert not book[sheet][place].protection.locked
         assert not book[sheet].protection.sheet
+
+
+@pytest.mark.parametrize("name", BOOKS)
+def test_names_are_names_to_excel(name, described):
+    """It takes e and E for one name, and R2C3, R or AB12 for cells."""
+    symbols = [quantity.symbol for quantity in (*described[name].inputs, *described[name].equations)]
+    assert len({symbol.casefold() for symbol in symbols}) == len(symbols)
+    assert not [symbol for symbol in symbols if LIKE_A_CELL.fullmatch(symbol)]
 
 
 @pytest.mark.parametrize("name", TEMPLATES)

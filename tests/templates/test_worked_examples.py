@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 MPH = 3600 / 5280
 KMH = 3.6
 STANDING = {"w_1": 5000, "w_2": 5000, "V2_before": 0, "e": 0, "known": 1}
 TEXTBOOK = {"m_1": 1500, "m_2": 2500, "V2_before": 0, "V2_after": 15 * KMH, "e": 0.5, "known": 2}
+CRUSH = {"A_given_1": 479.7, "B_given_1": 52.2, "A_given_2": 355.8, "B_given_2": 34.0, "L_1": 60, "L_2": 60}
+CRUSH |= {f"c_1_{i}": 14 for i in range(1, 7)} | {f"c_2_{i}": 25.138 for i in range(1, 7)}
+CRUSH |= {f"{symbol}_{j}": 0 for symbol in ("bias", "theta", "h") for j in (1, 2)}
+WEDGE = CRUSH | {f"c_1_{i}": 4.8 * (i - 1) for i in range(1, 7)}
+THROW = {"s": 60, "mu": 0.66, "g": 32.174}
 YAW = {"chord": 52, "ordinate": 6, "f": 0.2, "bank": 0, "offset": 0, "g": 32.174}
 SKID = {"f_1": 0.75, "d_1": 100, "d_2": 0, "d_3": 0, "v_end": 0, "grade": 0, "g": 32.174}
 
@@ -40,6 +46,42 @@ EXAMPLES = [
         {"V1_f": 0, "V2_f": 0, "dV1_mph": 20, "dV2_mph": 40},
         1e-9,
     ),
+    # A 479.7/355.8 lb/in, B 52.2/34.0 lb/in²: 14 in of crush on one balance 25.138 in on the other, over 60 in.
+    ("crush-energy", CRUSH, {"balance_2": 25.138}, 5e-4),
+    ("crush-energy", CRUSH, {"E_1": 70_178, "E_2": 107_743}, 1.5),
+    ("crush-energy", CRUSH, {"ratio": 1}, 1e-5),
+    # Crush of 0 to 24 in: F from A to A + 24 B; E = L (F0² + F0 F1 + F1²)/(6 B).
+    (
+        "crush-energy",
+        WEDGE,
+        {
+            "E_1": 60 * (479.7**2 + 479.7 * 1732.5 + 1732.5**2) / (6 * 52.2) / 12,
+            "shortcut_1": 60 * 1106.1**2 / 104.4 / 12,
+        },
+        1e-3,
+    ),
+    # 45° off: twice the energy. Off centre by the radius of gyration: half the mass.
+    ("crush-energy", CRUSH | {"theta_1": 45}, {"E_1": 2 * 70_178}, 3),
+    ("crush-energy", CRUSH | {"h_1": 4.6, "k_1": 4.6, "w_1": 3217.4, "g": 32.174}, {"m_eff_1": 50}, 1e-9),
+    # A = m b0 b1/L and B = m b1²/L of a 35 mph test: 5 mph leaves no crush, 20 in of crush at 35 mph.
+    (
+        "crush-energy",
+        {"b0_1": 5, "b1_1": 1.5, "w_test_1": 3500, "L_test_1": 60, "g": 32.174},
+        {"A_1": 12 * 3500 / 32.174 * (5 / MPH) * (1.5 / MPH) / 60, "B_1": 12 * 3500 / 32.174 * (1.5 / MPH) ** 2 / 60},
+        1e-9,
+    ),
+    # The same test again: a barrier test of 20 in leaves the energy of 35 mph.
+    (
+        "crush-energy",
+        {"b0_1": 5, "b1_1": 1.5, "w_test_1": 3500, "L_test_1": 60, "L_1": 60, "g": 32.174, "bias_1": 0, "theta_1": 0}
+        | {f"c_1_{i}": 20 for i in range(1, 7)},
+        {"E_1": 0.5 * 3500 / 32.174 * (35 / MPH) ** 2},
+        1e-6,
+    ),
+    ("pedestrian-throw", THROW, {"vmax_mph": 34.417, "vmin_mph": 28.725}, 1e-3),
+    ("pedestrian-throw", THROW | {"angle": 0}, {"v_mph": 34.4178}, 5e-5),
+    ("pedestrian-throw", THROW | {"angle": 33.42480}, {"v_mph": 28.7255}, 5e-5),  # atan .66
+    ("pedestrian-throw", THROW | {"angle": 0, "efficiency": 0.8}, {"V_vehicle_mph": 34.4178 / 0.8}, 1e-4),
     # 1500 kg into 2500 kg at rest, which leaves at 15 m/s; e = 0.5.
     ("collinear-si", TEXTBOOK, {"V1_i": 26.6667, "V1_kmh": 96, "dV_2": 15, "V1_f": 1.6667}, 5e-5),
     # Equal cars, one struck off centre: delta-V overstated by .6, 2.3 and 8.6 % at .5, 1 and 2 ft.
@@ -54,6 +96,27 @@ def test_worked_example(template, inputs, expected, tolerance, cells):
     found = cells(template, inputs, list(expected))
     for symbol, value in expected.items():
         assert found[symbol].item() == pytest.approx(value, abs=tolerance), symbol
+
+
+def test_the_shortcut_by_mean_crush_is_ten_percent_low(cells):
+    found = cells("crush-energy", WEDGE, ["E_1", "shortcut_1"])
+    assert found["shortcut_1"].item() / found["E_1"].item() == pytest.approx(0.9, abs=0.005)
+
+
+def test_delta_v_closes_the_energy_balance(cells):
+    """E = ½ m̄ Vc² (1 − e²), P = m̄ (1 + e) Vc, and both vehicles take the same impulse."""
+    wanted = ["dV_1", "dV_2", "m_1", "m_2", "m_both", "V_close", "E_sum"]
+    v = {symbol: value.item() for symbol, value in cells("crush-energy", CRUSH | {"e": 0.2}, wanted).items()}
+    assert v["E_sum"] == pytest.approx(v["m_both"] * v["V_close"] ** 2 * (1 - 0.2**2) / 2)
+    assert v["m_1"] * v["dV_1"] == pytest.approx(v["m_both"] * 1.2 * v["V_close"])
+    assert v["m_1"] * v["dV_1"] == pytest.approx(v["m_2"] * v["dV_2"])
+
+
+def test_every_angle_of_a_throw_lies_between_searles_bounds(cells):
+    angles = np.linspace(0, 2 * np.degrees(np.arctan(0.66)), 200)
+    v = cells("pedestrian-throw", THROW | {"angle": angles}, ["v_throw", "v_least", "v_most"])
+    assert (v["v_throw"] >= v["v_least"] * (1 - 1e-12)).all()
+    assert (v["v_throw"] <= v["v_most"] * (1 + 1e-12)).all()
 
 
 def test_the_textbook_that_prints_80_is_caught(cells):

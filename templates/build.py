@@ -14,8 +14,9 @@ from templates import collinear, critical_speed_yaw, crush_energy, pedestrian_th
 from templates.description import Template  # noqa: E402
 from templates.editions import Edition, edition  # noqa: E402
 from templates.momentum import describe as momentum  # noqa: E402
+from templates.planar_forward import describe as planar_forward  # noqa: E402
 from templates.planar_impact import describe as planar_impact  # noqa: E402
-from templates.two_vehicles.example_scene import EXAMPLE, MOMENTUM_EXAMPLE  # noqa: E402
+from templates.two_vehicles.example_scene import EXAMPLE, FORWARD_EXAMPLE, MOMENTUM_EXAMPLE  # noqa: E402
 from templates.writer import write_book  # noqa: E402
 
 __all__ = ["TEMPLATES", "build", "file_name"]
@@ -26,6 +27,7 @@ TEMPLATES: dict[str, Template] = {
     "collinear": collinear.TEMPLATE,
     "momentum": momentum(MOMENTUM_EXAMPLE),
     "planar-impact": planar_impact(EXAMPLE),
+    "planar-forward": planar_forward(FORWARD_EXAMPLE),
     "crush-energy": crush_energy.TEMPLATE,
     "pedestrian-throw": pedestrian_throw.TEMPLATE,
 }

@@ -9,7 +9,7 @@ from templates.plan_view import mark, turned
 from templates.two_vehicles.answers import ANSWERS, FORCE
 from templates.two_vehicles.checks import ANGLES, ENERGY, FORWARD
 from templates.two_vehicles.drawing import rest_points, vehicle_curves
-from templates.two_vehicles.equations import DELTA_V, IMPACT_SPEEDS, RUN_OUT
+from templates.two_vehicles.equations import DELTA_V, IMPACT_SPEEDS, MASSES, RUN_OUT
 from templates.two_vehicles.options import (
     drawing_inputs,
     duration_input,
@@ -140,7 +140,7 @@ def describe(scene: Scene) -> Template:
 
 def _sections(vehicles: tuple[str, str]) -> tuple[Section, ...]:
     patterns = {
-        "1  Masses and run-out speeds": RUN_OUT,
+        "1  Masses and run-out speeds": MASSES + RUN_OUT,
         "2  Impact speeds, by conservation of momentum": IMPACT_SPEEDS,
         "3  Impulse and change in velocity": DELTA_V,
         "4  Answers (the forecasts)": ANSWERS,

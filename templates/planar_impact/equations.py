@@ -3,30 +3,10 @@
 from __future__ import annotations
 
 from templates.description import Equation, Section
-from templates.two_vehicles.equations import DELTA_V, IMPACT_SPEEDS, RUN_OUT
+from templates.two_vehicles.equations import CENTRES, DELTA_V, IMPACT_SPEEDS, MASSES, RUN_OUT
 from templates.vehicles import for_both
 
 __all__ = ["model_sections"]
-
-_CENTRES = (
-    Equation(
-        "a_{j}",
-        "a{j}",
-        "{who} CG, X coordinate",
-        "[ft|m]",
-        "-(x_{j}*COS(RADIANS(alpha_{j}))+y_{j}*SIN(RADIANS(alpha_{j})))[/in_per_ft|]",
-        "Figure 5",
-        "<The impact centre (x forward, y right of the CG), turned by the heading and seen from itself.|>",
-    ),
-    Equation(
-        "b_{j}",
-        "b{j}",
-        "{who} CG, Y coordinate",
-        "[ft|m]",
-        "-(x_{j}*SIN(RADIANS(alpha_{j}))-y_{j}*COS(RADIANS(alpha_{j})))[/in_per_ft|]",
-        "Figure 5",
-    ),
-)
 
 _YAW = (
     Equation(
@@ -132,7 +112,7 @@ _RESTITUTION = (
 def model_sections(vehicles: tuple[str, str]) -> tuple[Section, ...]:
     """The model of two vehicles called so, in the order of the paper."""
     patterns = {
-        "1  Masses, run-out speeds, centres of gravity": RUN_OUT + _CENTRES,
+        "1  Masses, run-out speeds, centres of gravity": MASSES + RUN_OUT + CENTRES,
         "2  Impact speeds, by conservation of momentum": IMPACT_SPEEDS,
         "3  Impulse and change in velocity": DELTA_V,
         "4  Change in yaw rate": _YAW,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from templates.description import Equation, Role
 
-__all__ = ["ANSWERS", "FORCE"]
+__all__ = ["ANSWERS", "FORCE", "ROTATION"]
 
 ANSWERS = (
     Equation(
@@ -89,5 +89,45 @@ FORCE = (
         "convention",
         "<Front 12, right side 3, left side 9.|>",
         number_format="0",
+    ),
+)
+
+ROTATION = (
+    Equation(
+        "d_omega{j}_deg",
+        "Δω{j}",
+        "{who} change in yaw rate",
+        "deg/s",
+        "DEGREES(d_omega_{j})",
+        "eq (<17|18>′)",
+        "<Counter-clockwise positive.|>",
+        number_format="0.0",
+    ),
+    Equation(
+        "E_before",
+        "Ei",
+        "Kinetic energy before",
+        "[ft·lb|J]",
+        "(m_1*V1_i^2+m_2*V2_i^2+I_1*omega1_i^2+I_2*omega2_i^2)/2",
+        "definition",
+        number_format="#,##0",
+    ),
+    Equation(
+        "E_after",
+        "Ef",
+        "Kinetic energy after",
+        "[ft·lb|J]",
+        "(m_1*V1_f^2+m_2*V2_f^2+I_1*omega1_f^2+I_2*omega2_f^2)/2",
+        "definition",
+        number_format="#,##0",
+    ),
+    Equation(
+        "E_lost",
+        "Elost",
+        "Energy lost in the impact",
+        "[ft·lb|J]",
+        "E_before-E_after",
+        "definition",
+        number_format="#,##0",
     ),
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from templates.checks import check
 
-__all__ = ["ANGLES", "ENERGY", "FORWARD"]
+__all__ = ["ANGLES", "BOUNDS", "CLOSING", "ENERGY", "FORWARD"]
 
 ENERGY = check(
     "check_energy",
@@ -26,4 +26,18 @@ FORWARD = check(
     "AND(V1_i>0,V2_i>0)",
     "physics",
     "FALSE: a negative impact speed. The approach and departure angles contradict each other.",
+)
+CLOSING = check(
+    "check_closing",
+    "The contact points approach each other",
+    "approach_[mph|kmh]>0",
+    "physics",
+    "FALSE: the vehicles move apart before they touch. Look at γ, the impact centre and the approach angles.",
+)
+BOUNDS = check(
+    "check_restitution",
+    "Both restitutions lie between −1 and 1",
+    "AND(ABS(e_n)<=1,ABS(e_t)<=1)",
+    "eqs (9), (10)",
+    "FALSE: no impact behaves so. The filters reject such trials; a base case should not be one.",
 )

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from templates.description import Equation
 
-__all__ = ["DELTA_V", "IMPACT_SPEEDS", "RUN_OUT"]
+__all__ = ["CENTRES", "DELTA_V", "IMPACT_SPEEDS", "MASSES", "RUN_OUT"]
+
+MASSES = (Equation("[m_{j}|]", "m{j}", "{who} mass", "lb·s²/ft", "w_{j}/g", "weight / g"),)
 
 RUN_OUT = (
-    Equation("[m_{j}|]", "m{j}", "{who} mass", "[lb·s²/ft|kg]", "w_{j}/g", "weight / g"),
     Equation(
         "V{j}_f",
         "V{j}f",
@@ -20,6 +21,26 @@ RUN_OUT = (
         "SQRT(2*g*f_{j}*s_{j})",
         "run-out to rest",
         "<Not stated in the paper: constant deceleration f·g to rest.|>",
+    ),
+)
+
+CENTRES = (
+    Equation(
+        "a_{j}",
+        "a{j}",
+        "{who} CG, X coordinate",
+        "[ft|m]",
+        "-(x_{j}*COS(RADIANS(alpha_{j}))+y_{j}*SIN(RADIANS(alpha_{j})))[/in_per_ft|]",
+        "Figure 5",
+        "<The impact centre (x forward, y right of the CG), turned by the heading and seen from itself.|>",
+    ),
+    Equation(
+        "b_{j}",
+        "b{j}",
+        "{who} CG, Y coordinate",
+        "[ft|m]",
+        "-(x_{j}*SIN(RADIANS(alpha_{j}))-y_{j}*COS(RADIANS(alpha_{j})))[/in_per_ft|]",
+        "Figure 5",
     ),
 )
 

@@ -8,7 +8,7 @@ from templates.description import GuideSection
 from templates.editions import Both
 from templates.two_vehicles.scene import Scene
 
-__all__ = ["EXAMPLE", "MOMENTUM_EXAMPLE"]
+__all__ = ["EXAMPLE", "FORWARD_EXAMPLE", "MOMENTUM_EXAMPLE"]
 
 _RANGES = {
     "w_1": Both((6660, 6860), (3020, 3110)),
@@ -75,4 +75,10 @@ MOMENTUM_EXAMPLE = replace(
     EXAMPLE,
     title="Momentum of two vehicles",
     subtitle="Impact speeds and delta-V from directions and run-out; no rotation, no restitution (SAE 2001-01-3347)",
+)
+
+FORWARD_EXAMPLE = replace(
+    EXAMPLE,
+    title="What an impact does to two vehicles",
+    subtitle="Delta-V, rotation and departure from impact speeds and restitution (SAE 2001-01-3347, forward)",
 )

@@ -9,7 +9,14 @@ from templates.description import GuideSection, Input
 from templates.editions import Both
 from templates.units import CONVERSIONS, GRAVITY, INCHES_PER_FOOT
 
-__all__ = ["Scene", "assumptions_of_momentum", "assumptions_of_planar_impact", "constants_of_momentum", "yaw_rates"]
+__all__ = [
+    "Scene",
+    "assumptions_of_momentum",
+    "assumptions_of_planar_forward",
+    "assumptions_of_planar_impact",
+    "constants_of_momentum",
+    "yaw_rates",
+]
 
 Range = tuple[float, float] | Both
 
@@ -111,7 +118,19 @@ def assumptions_of_momentum(scene: Scene) -> tuple[Input, ...]:
 def assumptions_of_planar_impact(scene: Scene) -> tuple[Input, ...]:
     """The seventeen uncertain inputs, in the order of the paper's Table 1."""
     of_vehicles = _of_both(scene, (_WEIGHT, _INERTIA, *_DIRECTIONS, *_RUN_OUT), _IMPACT_CENTRE)
-    return (*of_vehicles, scene.input("gamma_t", ("gamma_t", "γ", "Orientation of tangent", "deg"), "0.0"))
+    return (*of_vehicles, _tangent(scene))
+
+
+def assumptions_of_planar_forward(scene: Scene, speeds: tuple[Input, ...]) -> tuple[Input, ...]:
+    """What the forward model needs of a scene, with the impact speeds of both vehicles in their place."""
+    heading, friction = _DIRECTIONS[:1], _RUN_OUT[1:]
+    before = _of_both(scene, (_WEIGHT, _INERTIA, *heading))
+    after = _of_both(scene, friction, _IMPACT_CENTRE)
+    return (*before, *speeds, *after, _tangent(scene))
+
+
+def _tangent(scene: Scene) -> Input:
+    return scene.input("gamma_t", ("gamma_t", "γ", "Orientation of tangent", "deg"), "0.0")
 
 
 def constants_of_momentum(*, inches: bool = False) -> tuple[Input, ...]:

@@ -9,6 +9,7 @@ TEMPLATES = [
     "collinear",
     "momentum",
     "planar-impact",
+    "planar-forward",
     "crush-energy",
     "pedestrian-throw",
 ]

@@ -23,6 +23,12 @@ CASES = [
     ("collinear", "check_restitution check_order", {"e": -0.2}),
     ("collinear", "check_forward", {"known": 1, "V1_before": -10, "V2_before": -20}),
     ("collinear", "check_claim", {"V1_claimed": 90}),
+    # Off centre, restitutions of opposite sign can add energy although each is below 1.
+    ("planar-forward", "check_energy", {"e_n": 0.95, "e_t": -0.95, "gamma_t": 113, "x_1": 90, "y_1": -40, "y_2": -11}),
+    ("planar-forward", "check_closing check_push", {"gamma_t": 281, "V1_before": 5, "V2_before": 60, "alpha_2": 190}),
+    ("planar-forward", "check_restitution", {"e_t": 1.05, "gamma_t": 100}),
+    ("planar-forward", "check_ratio", {"mu": -0.5}),
+    ("planar-forward", "check_forward", {"V2_before": -1}),
     ("crush-energy", "check_crush", {"c_1_3": -2}),
     ("crush-energy", "check_stiffness", {"b0_2": -0.1}),
     ("crush-energy", "check_restitution", {"e": -0.1}),

@@ -26,6 +26,7 @@ CONVERSION = {
     ("lb/in", "N/cm"): POUND_FORCE / 2.54,
     ("lb/in²", "N/cm²"): POUND_FORCE / 2.54**2,
     ("lb·s²/ft", "kg"): SLUG,
+    ("ft/(lb·s²)", "1/kg"): 1 / SLUG,
     ("lb·s", "N·s"): POUND_FORCE,
     ("ft·lb", "J"): POUND_FORCE * 0.3048,
     ("lb·ft·s²", "kg·m²"): POUND_FORCE * 0.3048,

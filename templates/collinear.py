@@ -148,6 +148,7 @@ _SPEEDS = (
     Equation(
         "dV_2", "ΔV2", "Vehicle 2 change in velocity", "[ft|m]/s", "V_close*(1+e)/(1+m_2/m_1)", "momentum, restitution"
     ),
+    Equation("V_sep", "Vsep", "Separation speed", "[ft|m]/s", "e*V_close", "restitution"),
     Equation("V1_f", "V1f", "Vehicle 1 speed after", "[ft|m]/s", "V1_i-dV_1", "definition"),
     Equation("V2_f", "V2f", "Vehicle 2 speed after", "[ft|m]/s", "V2_i+dV_2", "definition"),
 )
@@ -248,7 +249,7 @@ _CHECKS = checks_section(
     check(
         "check_order",
         "Vehicle 1 does not leave through vehicle 2",
-        "V1_f<=V2_f",
+        "V_sep>=0",
         "physics",
         "FALSE: after the impact the rear vehicle is the faster one. A sign in the separation speed?",
     ),

@@ -26,7 +26,7 @@ _SIGNS = {
     "^2": "²",
 }
 _SIGN = re.compile(r">=|<=|<>|\^2|[*+\-><,]")
-_LEADING_MINUS = re.compile(r"(^|\(|, ) ?− ")
+_LEADING_MINUS = re.compile(r"(^|\(|[,≥≤<>≠] ) ?− ")
 
 
 def printed(formula: str, notation: Mapping[str, str]) -> str:

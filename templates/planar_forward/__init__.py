@@ -19,7 +19,7 @@ from templates.editions import Both
 from templates.plan_view import line, mark
 from templates.planar_forward.equations import model_sections
 from templates.planar_forward.guide import GUIDE
-from templates.two_vehicles.answers import ANSWERS, FORCE, ROTATION
+from templates.two_vehicles.answers import DELTA_V_ANSWER, FORCE, ROTATION
 from templates.two_vehicles.checks import CLOSING, ENERGY
 from templates.two_vehicles.drawing import rest_points, vehicle_curves
 from templates.two_vehicles.options import drawing_inputs, duration_input, duration_section
@@ -170,7 +170,7 @@ def describe(scene: Scene) -> Template:
         optional=(duration_input(), *drawing_inputs(vehicles)),
         sections=(
             *model_sections(vehicles),
-            Section("5  Answers (the forecasts)", for_both(vehicles, ANSWERS + _FURTHER)),
+            Section("5  Answers (the forecasts)", for_both(vehicles, (DELTA_V_ANSWER, *_FURTHER))),
             Section("6  Direction of force, yaw, energy", for_both(vehicles, FORCE + ROTATION + _NORMAL)),
             duration_section(7, vehicles),
             checks_section(8, *_CHECKS),

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from templates.description import Equation, Role
 
-__all__ = ["ANSWERS", "FORCE", "ROTATION"]
+__all__ = ["ANSWERS", "DELTA_V_ANSWER", "FORCE", "ROTATION"]
+
+DELTA_V_ANSWER = Equation(
+    "dV{j}_[mph|kmh]",
+    "ΔV{j}",
+    "{who} delta-V",
+    "[mph|km/h]",
+    "dV_{j}*s_per_hour/[ft_per_mile|m_per_km]",
+    "eq (19′)",
+    role=Role.ANSWER,
+    number_format="0.00",
+)
 
 ANSWERS = (
-    Equation(
-        "dV{j}_[mph|kmh]",
-        "ΔV{j}",
-        "{who} delta-V",
-        "[mph|km/h]",
-        "dV_{j}*s_per_hour/[ft_per_mile|m_per_km]",
-        "eq (19′)",
-        role=Role.ANSWER,
-        number_format="0.00",
-    ),
+    DELTA_V_ANSWER,
     Equation(
         "V{j}_[mph|kmh]",
         "V{j}i",

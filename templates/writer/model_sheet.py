@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from xlsxwriter.format import Format
 from xlsxwriter.utility import xl_rowcol_to_cell
 from xlsxwriter.worksheet import Worksheet
 
@@ -32,10 +33,13 @@ def draw_model(sheet: Worksheet, styles: Styles, template: Template, at: dict[st
     for column, header in enumerate(_HEADERS):
         sheet.write_string(HEADER_ROW, column, header, styles("header"))
     notation = {quantity.symbol: quantity.notation for quantity in (*template.inputs, *template.equations)}
+    forecasts = {row.symbol for row in template.forecasts}
     for section in template.sections:
         _draw_band(sheet, styles, section.title, at[section.equations[0].symbol][1] - 1)
         for equation in section.equations:
-            _draw_equation(sheet, styles, equation, at[equation.symbol][1], values)
+            look = "answer" if equation.symbol in forecasts else _LOOK[equation.role]
+            style = styles(look, equation.number_format)
+            _draw_equation(sheet, styles, equation, at[equation.symbol][1], style, values)
             _draw_words(sheet, styles, equation, at[equation.symbol][1], notation)
     repeat_header(sheet, HEADER_ROW, 1)
     protect(sheet)
@@ -48,8 +52,9 @@ def _draw_band(sheet: Worksheet, styles: Styles, title: str, row: int) -> None:
         sheet.write_blank(row, column, None, styles("band"))
 
 
-def _draw_equation(sheet: Worksheet, styles: Styles, equation: Equation, row: int, values: Values) -> None:
-    style = styles(_LOOK[equation.role], equation.number_format)
+def _draw_equation(
+    sheet: Worksheet, styles: Styles, equation: Equation, row: int, style: Format, values: Values
+) -> None:
     write_formula(sheet, row, VALUE_COLUMN, equation.formula, style, values)
     if equation.role is Role.CHECK:
         cell = xl_rowcol_to_cell(row, VALUE_COLUMN)

@@ -141,7 +141,7 @@ def test_assumption_cells_are_green_and_forecast_cells_blue(name, book_path, des
     colours = {}
     for kind, symbols in (
         ("green", [given.symbol for given in described[name].assumptions]),
-        ("blue", [equation.symbol for equation in described[name].equations if equation.role.value == "answer"]),
+        ("blue", [row.symbol for row in described[name].forecasts]),
         ("yellow", [given.symbol for given in described[name].constants]),
     ):
         places = [next(iter(book.defined_names[symbol].destinations)) for symbol in symbols]

@@ -30,6 +30,7 @@ NOTATION = {
         ("AND(a>0,b<=1)", "and(a > 0, b ≤ 1)"),
         ("a>=COS(RADIANS(10))", "a ≥ cos(10°)"),
         ("IF(a<>0,b<1,TRUE)", "if(a ≠ 0, b < 1, true)"),
+        ("AND(a>=-1,b<-a)", "and(a ≥ −1, b < −a)"),
         ("AND(Check_a,a<b)", "and(Check_a, a < b)"),
     ],
 )

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import xlmc
+
 MPH = 3600 / 5280
 KMH = 3.6
 STANDING = {"w_1": 5000, "w_2": 5000, "V2_before": 0, "e": 0, "known": 1}
@@ -128,3 +130,54 @@ def test_the_textbook_that_prints_80_is_caught(cells):
     right = cells("collinear-si", TEXTBOOK | {"V1_claimed": printed["V1_kmh"].item()}, wanted)
     assert right["e_claimed"].item() == pytest.approx(0.5)
     assert right["check_claim"].item() == right["checks_hold"].item() == 1
+
+
+# Example book, what its cells must show.
+BOOKS = {
+    "skid-100-ft": {"v_mph": (47.366, 5e-4)},
+    "yaw-mark": {"R_mark": (59.33, 5e-3), "v_mph": (13.32, 5e-3)},
+    "collinear-equal-cars": {"V1_f": (45, 1e-9), "V2_f": (45, 1e-9)},
+    "collinear-head-on": {"V1_mph": (20, 1e-9), "V1_f": (0, 1e-9), "V2_f": (0, 1e-9)},
+    "textbook-claim": {"V1_i": (26.67, 5e-3), "e_claimed": (-0.5, 1e-12)},
+    "barrier-corner": {"dV1_long": (-35.7275, 5e-4), "d_omega1_deg": (-176.43, 1e-2), "E_lost": (170_421, 2)},
+    "crush-balance": {"balance_2": (25.138, 5e-4), "E_1": (70_178, 1.5), "E_2": (107_743, 1.5)},
+}
+
+
+@pytest.mark.parametrize("name", BOOKS)
+def test_example_book_shows_the_published_figures(name, shown):
+    found = shown(name)
+    for symbol, (value, tolerance) in BOOKS[name].items():
+        assert found[symbol] == pytest.approx(value, abs=tolerance), symbol
+    assert found["checks_hold"] is (name != "textbook-claim")
+
+
+@pytest.mark.parametrize("name", BOOKS)
+def test_example_book_runs(name, book_path):
+    run = xlmc.load(book_path[name]).simulate(1_000)
+    assert run.accepted == 1_000
+
+
+def test_every_worked_example_is_a_book(builders):
+    assert set(builders["examples"].EXAMPLES) == {"intersection", "intersection-momentum", *BOOKS}
+
+
+# Mean and standard deviation before any filter, from 2e9 trials.
+UNFILTERED = {
+    "Chevrolet delta-V": (12.1658, 1.1324),
+    "Nissan delta-V": (23.7710, 2.1971),
+    "Chevrolet impact speed": (33.6923, 1.7862),
+    "Nissan impact speed": (8.8974, 4.1869),
+}
+
+
+def test_the_case_study_by_momentum_has_the_unfiltered_moments(book_path):
+    """200,000 trials: within four standard errors, and half a unit of the last digit of the reference."""
+    model, n = xlmc.load(book_path["intersection-momentum"]), 200_000
+    rng = np.random.default_rng(6)
+    found = model.function({a.name: rng.uniform(a.parameters["low"], a.parameters["high"], n) for a in model.live})
+    for name, (mean, deviation) in UNFILTERED.items():
+        x = found[name]
+        fourth = np.mean((x - x.mean()) ** 4)
+        assert abs(x.mean() - mean) < 4 * deviation / n**0.5 + 5e-5, name
+        assert abs(x.std() - deviation) < 4 * ((fourth - deviation**4) / n) ** 0.5 / (2 * deviation) + 5e-5, name

@@ -9,24 +9,44 @@ HERE = Path(__file__).resolve().parent
 if __name__ == "__main__":
     sys.path.append(str(HERE.parent))
 
-from templates.description import Template  # noqa: E402 (the path above makes a plain `python templates/build.py` work)
-from templates.planar_impact import describe  # noqa: E402
-from templates.planar_impact.example_scene import EXAMPLE  # noqa: E402
+# The path above makes a plain `python templates/build.py` work.
+from templates import collinear, critical_speed_yaw, crush_energy, pedestrian_throw, skid  # noqa: E402
+from templates.description import Template  # noqa: E402
+from templates.editions import Edition, edition  # noqa: E402
+from templates.momentum import describe as momentum  # noqa: E402
+from templates.planar_forward import describe as planar_forward  # noqa: E402
+from templates.planar_impact import describe as planar_impact  # noqa: E402
+from templates.two_vehicles.example_scene import EXAMPLE, FORWARD_EXAMPLE, MOMENTUM_EXAMPLE  # noqa: E402
 from templates.writer import write_book  # noqa: E402
 
-__all__ = ["TEMPLATES", "build"]
+__all__ = ["TEMPLATES", "build", "file_name"]
 
-TEMPLATES: dict[str, Template] = {"planar-impact": describe(EXAMPLE)}
-"""File name without its ending -> what the workbook says."""
+TEMPLATES: dict[str, Template] = {
+    "skid": skid.TEMPLATE,
+    "critical-speed-yaw": critical_speed_yaw.TEMPLATE,
+    "collinear": collinear.TEMPLATE,
+    "momentum": momentum(MOMENTUM_EXAMPLE),
+    "planar-impact": planar_impact(EXAMPLE),
+    "planar-forward": planar_forward(FORWARD_EXAMPLE),
+    "crush-energy": crush_energy.TEMPLATE,
+    "pedestrian-throw": pedestrian_throw.TEMPLATE,
+}
+"""Name of the template -> what its workbooks say, both editions in one."""
+
+
+def file_name(name: str, units: Edition) -> str:
+    """The imperial edition has the name of the template; the SI edition, `-si` after it."""
+    return f"{name}.xlsx" if units is Edition.IMPERIAL else f"{name}-{units.value}.xlsx"
 
 
 def build(folder: Path) -> list[Path]:
-    """Write every template into `folder`; the paths written are returned."""
+    """Write every edition of every template into `folder`; the paths written are returned."""
     written = []
     for name, template in TEMPLATES.items():
-        path = folder / f"{name}.xlsx"
-        write_book(template, path)
-        written.append(path)
+        for units in Edition:
+            path = folder / file_name(name, units)
+            write_book(edition(template, units), path)
+            written.append(path)
     return written
 
 

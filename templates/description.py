@@ -1,30 +1,36 @@
 """What a template says, apart from how it is drawn.
 
-A template is a description: inputs, equations in the order a reader follows them, the results wanted of a run, a guide,
-and a hand-written function of the same equations that gives the values the cells show before Excel recalculates.
+A template is a description: inputs, equations in the order a reader follows them, the results wanted of a run, a
+diagram of the scene, a guide. What differs between units is written with both (see `editions`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from templates.editions import Both
 
 __all__ = [
+    "ALL_CHECKS",
     "PARAMETER_COLUMNS",
+    "CorrelationRow",
+    "Curve",
+    "Diagram",
     "Equation",
-    "Evaluate",
     "FilterRow",
     "ForecastRow",
     "GuideSection",
     "Input",
+    "Look",
     "Role",
     "Section",
     "Template",
 ]
+
+ALL_CHECKS = "checks_hold"
+"""Symbol of the TRUE/FALSE equation, in every template, that says whether each physics check holds."""
 
 PARAMETER_COLUMNS = (
     "Low",
@@ -39,8 +45,8 @@ PARAMETER_COLUMNS = (
 )
 """The parameter columns of `xlmc_assumptions`: enough for Uniform, Normal, Triangular and Trapezoid."""
 
-Evaluate = Callable[[Mapping[str, ArrayLike]], dict[str, NDArray[np.generic]]]
-"""`{symbol: (n,) or a number}` of every input -> `{symbol: (n,) or 0-d}` of every equation."""
+Number = float | Both
+"""A number; in a description of both editions, one or two."""
 
 
 class Role(Enum):
@@ -58,18 +64,23 @@ class Input:
     Attributes:
         symbol: the cell's defined name, as formulas use it (`alpha_1`).
         notation: the same as the paper prints it (`α1`).
+        base: the value of the cell; None for an optional input that is left blank.
         parameters: column of `xlmc_assumptions` -> value; empty for an input that is held fixed.
+        frozen: an assumption that is held at its base value until the engineer says otherwise.
+        choices: the only values the cell may take, where there are such.
     """
 
     symbol: str
     notation: str
     name: str
     unit: str
-    base: float
+    base: Number | None
     source: str
-    parameters: Mapping[str, float] = field(default_factory=dict)
+    parameters: Mapping[str, Number] = field(default_factory=dict)
     distribution: str = "Uniform"
     number_format: str = "General"
+    frozen: bool = False
+    choices: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,10 +130,19 @@ class FilterRow:
     name: str
     symbol: str
     because: str
-    at_least: float | None = None
-    at_most: float | None = None
-    above: float | None = None
-    below: float | None = None
+    at_least: Number | None = None
+    at_most: Number | None = None
+    above: Number | None = None
+    below: Number | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class CorrelationRow:
+    """A row of `xlmc_correlations`; `first` and `second` are symbols of assumptions. A correlation of 0 is none."""
+
+    first: str
+    second: str
+    correlation: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,35 +154,78 @@ class GuideSection:
     rows: tuple[tuple[str, ...], ...] = ()
 
 
+class Look(Enum):
+    """How a curve of the diagram is drawn; the first and the second vehicle have a colour each."""
+
+    FIRST = "first"
+    SECOND = "second"
+    FIRST_PATH = "first path"
+    SECOND_PATH = "second path"
+    LINE = "line"
+    REST = "rest"
+    POINT = "point"
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """A polyline of the diagram; `points` are formulas of X and Y in terms of symbols."""
+
+    name: str
+    look: Look
+    points: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Diagram:
+    """A native chart drawn from cells.
+
+    Attributes:
+        plan: a plan view about the origin: both axes get the same scale, whatever the numbers.
+    """
+
+    title: str
+    x_title: str
+    y_title: str
+    curves: tuple[Curve, ...]
+    plan: bool = False
+    remark: str = ""
+
+
 @dataclass(frozen=True, slots=True)
 class Template:
-    """A whole workbook."""
+    """A whole workbook.
+
+    Attributes:
+        rung: its place on the ladder of models, the simplest 1.
+        question: what it answers, one line.
+        needs: the inputs it needs, one line.
+        assumptions, constants: uncertain inputs; inputs held fixed.
+        optional: inputs that may stay blank, or that only the drawing uses.
+    """
 
     title: str
     subtitle: str
+    rung: int
+    question: str
+    needs: str
     assumptions: tuple[Input, ...]
     constants: tuple[Input, ...]
+    optional: tuple[Input, ...]
     sections: tuple[Section, ...]
     forecasts: tuple[ForecastRow, ...]
     filters: tuple[FilterRow, ...]
     settings: tuple[tuple[str, float], ...]
+    correlations: tuple[CorrelationRow, ...]
     correlation_note: str
     guide: tuple[GuideSection, ...]
-    all_checks: str
-    """Symbol of the TRUE/FALSE equation that says whether every physics check holds."""
-    evaluate: Evaluate
+    diagram: Diagram | None = None
 
     @property
     def inputs(self) -> tuple[Input, ...]:
-        """Uncertain and fixed inputs together."""
-        return self.assumptions + self.constants
+        """Uncertain, fixed and optional inputs together."""
+        return self.assumptions + self.constants + self.optional
 
     @property
     def equations(self) -> tuple[Equation, ...]:
         """All equations, in the order of the sheet."""
         return tuple(equation for section in self.sections for equation in section.equations)
-
-    def base_values(self) -> dict[str, float | bool]:
-        """The value every cell shows at the base case, by symbol."""
-        base = {given.symbol: given.base for given in self.inputs}
-        return base | {symbol: value.item() for symbol, value in self.evaluate(base).items()}

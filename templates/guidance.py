@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from templates.description import GuideSection
 
-__all__ = ["CAVEATS", "FIRST_STEPS", "NAMES", "RESTITUTION"]
+__all__ = ["CAVEATS", "FIRST_STEPS", "NAMES", "RESTITUTION", "SIGNS"]
 
 FIRST_STEPS = GuideSection(
     "How to use this workbook",
@@ -19,8 +19,15 @@ FIRST_STEPS = GuideSection(
         "4.  Sheet Model: look at the checks at the bottom. Red means that the single values contradict physics.",
         "5.  Sheet Results wanted: the forecasts, the filters with the evidence for their limits, trials and seed.",
         "6.  Save, close, and type   xlmc simulate this-file.xlsx   A copy with the results is written beside it.",
+        "Sheets Model, Scene and Guide are locked against slips, without a password (Review, Unprotect Sheet). Inputs "
+        "and Results wanted stay open, so that rows can be added; Excel asks before a formula there is typed over.",
         "The limits of a filter belong to the scene. Write down the evidence before looking at the answers.",
     ),
+)
+
+SIGNS = GuideSection(
+    "Names",
+    ("Every quantity is a named cell, so that formulas read like the printed equation beside them.",),
 )
 
 NAMES = GuideSection(

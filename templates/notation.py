@@ -13,9 +13,20 @@ __all__ = ["printed"]
 _ANGLE_FUNCTION = re.compile(r"\b(SIN|COS)\(RADIANS\(([^()]*)\)\)")
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _FUNCTIONS = {"SQRT": "√", "RADIANS": "rad", "DEGREES": "deg", "ABS": "abs"}
-_SIGNS = {"*": " · ", "+": " + ", "-": " − ", ">=": " ≥ ", "<=": " ≤ ", ">": " > ", ",": ", ", "^2": "²"}
-_SIGN = re.compile(r">=|<=|\^2|[*+\->,]")
-_LEADING_MINUS = re.compile(r"(^|\(|, ) ?− ")
+_SIGNS = {
+    "*": " · ",
+    "+": " + ",
+    "-": " − ",
+    ">=": " ≥ ",
+    "<=": " ≤ ",
+    "<>": " ≠ ",
+    ">": " > ",
+    "<": " < ",
+    ",": ", ",
+    "^2": "²",
+}
+_SIGN = re.compile(r">=|<=|<>|\^2|[*+\-><,]")
+_LEADING_MINUS = re.compile(r"(^|\(|[,≥≤<>≠] ) ?− ")
 
 
 def printed(formula: str, notation: Mapping[str, str]) -> str:
@@ -37,4 +48,4 @@ def _angle(function: re.Match[str]) -> str:
 
 
 def _word(word: str, notation: Mapping[str, str]) -> str:
-    return notation.get(word) or _FUNCTIONS.get(word) or word.lower()
+    return notation.get(word) or _FUNCTIONS.get(word) or (word if word in notation else word.lower())

@@ -3,18 +3,31 @@
 from __future__ import annotations
 
 from templates.description import Input
+from templates.editions import Both
 
-__all__ = ["FEET_PER_MILE", "GRAVITY", "INCHES_PER_FOOT", "SECONDS_PER_HOUR"]
+__all__ = ["CONVERSIONS", "GRAVITY", "INCHES_PER_FOOT", "MPH"]
 
 GRAVITY = Input(
     "g",
     "g",
     "Acceleration of gravity",
-    "ft/s²",
-    32.174,
-    "Standard gravity (9.80665 m/s²). Part of the record: the answers depend on it",
-    number_format="0.000",
+    "[ft|m]/s²",
+    Both(32.174, 9.80665),
+    "Standard gravity[ (9.80665 m/s²)|]. Part of the record: the answers depend on it",
+    number_format="0.000[|00]",
 )
-INCHES_PER_FOOT = Input("in_per_ft", "12", "Inches in a foot", "in/ft", 12, "Definition")
+INCHES_PER_FOOT = Input("[in_per_ft|]", "12", "Inches in a foot", "in/ft", 12, "Definition")
 SECONDS_PER_HOUR = Input("s_per_hour", "3600", "Seconds in an hour", "s/h", 3600, "Definition")
-FEET_PER_MILE = Input("ft_per_mile", "5280", "Feet in a mile", "ft/mi", 5280, "Definition")
+LONG_DISTANCE = Input(
+    "[ft_per_mile|m_per_km]",
+    "[5280|1000]",
+    "[Feet in a mile|Metres in a kilometre]",
+    "[ft/mi|m/km]",
+    Both(5280, 1000),
+    "Definition",
+)
+CONVERSIONS = (SECONDS_PER_HOUR, LONG_DISTANCE)
+"""What a speed in mph or km/h needs."""
+
+MPH = "s_per_hour/[ft_per_mile|m_per_km]"
+"""A speed in ft/s or m/s times this is in mph or km/h."""

@@ -2,41 +2,47 @@
 
 from __future__ import annotations
 
-from templates.description import FilterRow, ForecastRow, Template
-from templates.planar_impact.answers import ALL_CHECKS, answer_sections
+from templates.description import CorrelationRow, Diagram, FilterRow, Look, Template
+from templates.plan_view import line, mark
+from templates.planar_impact.answers import answer_sections
 from templates.planar_impact.equations import model_sections
 from templates.planar_impact.evaluate import evaluate
 from templates.planar_impact.guide import guide
-from templates.planar_impact.inputs import Scene, assumptions, constants
+from templates.two_vehicles.drawing import rest_points, vehicle_curves
+from templates.two_vehicles.options import drawing_inputs, duration_input, turn_filters, turn_inputs
+from templates.two_vehicles.results import direction_forecasts, paper_forecasts, shared_road, shared_road_note
+from templates.two_vehicles.scene import (
+    Scene,
+    assumptions_of_planar_impact,
+    constants_of_momentum,
+    yaw_rates,
+)
 
 __all__ = ["Scene", "describe", "evaluate"]
+
+_CENTRES = (("a_1", "b_1"), ("a_2", "b_2"))
 
 
 def describe(scene: Scene) -> Template:
     """The workbook of one scene."""
+    vehicles, more = scene.vehicles, not scene.paper_only
     return Template(
         title=scene.title,
         subtitle=scene.subtitle,
-        assumptions=assumptions(scene),
-        constants=constants(scene),
-        sections=model_sections(scene.vehicles) + answer_sections(scene.vehicles),
-        forecasts=_forecasts(scene),
-        filters=_filters(scene),
+        rung=5,
+        question="The same, with yaw: which solutions does restitution allow?",
+        needs="those of momentum; yaw inertias, impact centre, contact direction",
+        assumptions=assumptions_of_planar_impact(scene),
+        constants=(*yaw_rates(vehicles), *constants_of_momentum(inches=True)),
+        optional=(duration_input(), *(turn_inputs(vehicles) if more else ()), *drawing_inputs(vehicles)),
+        sections=model_sections(vehicles) + answer_sections(vehicles, turning=more),
+        forecasts=paper_forecasts(vehicles) + (direction_forecasts(vehicles, yaw=True) if more else ()),
+        filters=_filters(scene) + (turn_filters(vehicles) if more else ()),
         settings=(("Trials", 200_000), ("Seed", 999)),
-        correlation_note=_shared_road(scene),
+        correlations=(CorrelationRow("f_1", "f_2", 0),) if more else (),
+        correlation_note=shared_road_note() if more else shared_road(vehicles),
         guide=guide(scene.guide),
-        all_checks=ALL_CHECKS,
-        evaluate=evaluate,
-    )
-
-
-def _forecasts(scene: Scene) -> tuple[ForecastRow, ...]:
-    first, second = scene.vehicles
-    return (
-        ForecastRow(f"{first} delta-V", "dV1_mph", "mph"),
-        ForecastRow(f"{second} delta-V", "dV2_mph", "mph"),
-        ForecastRow(f"{first} impact speed", "V1_mph", "mph"),
-        ForecastRow(f"{second} impact speed", "V2_mph", "mph"),
+        diagram=_diagram(vehicles),
     )
 
 
@@ -45,13 +51,22 @@ def _filters(scene: Scene) -> tuple[FilterRow, ...]:
     return (
         FilterRow("Restitution, normal", "e_n", because["e_n"], at_least=0, below=1),
         FilterRow("Restitution, tangential", "e_t", because["e_t"], at_least=0, at_most=0.25),
-        FilterRow(f"{scene.vehicles[1]} impact speed", "V2_mph", because["V2_mph"], above=0),
+        FilterRow(f"{scene.vehicles[1]} impact speed", "V2_[mph|kmh]", because["V2_mph"], above=0),
     )
 
 
-def _shared_road(scene: Scene) -> str:
-    rows = [f"{who} post-impact deceleration" for who in scene.vehicles]
-    return (
-        f"Both on one road? First = {rows[0]}, Second = {rows[1]}, Correlation = 0.8, say. "
-        "Blank: none, as in the paper."
+def _diagram(vehicles: tuple[str, str]) -> Diagram:
+    return Diagram(
+        "Plan view of the base case",
+        "X, [ft|m]",
+        "Y, [ft|m]",
+        (
+            *vehicle_curves(vehicles, _CENTRES),
+            line("Contact direction γ", Look.LINE, "gamma_t", "0.4*length_1"),
+            rest_points(_CENTRES),
+            mark("Impact centre", ("0", "0")),
+        ),
+        plan=True,
+        remark="Drawn from the cells below, about the impact centre. Outlines are centred on the CG; their size "
+        "is for the eye only.",
     )

@@ -1,4 +1,4 @@
-"""The equations of the workbook once more, by hand in NumPy: the values its cells show until they are recalculated."""
+"""The equations of the imperial workbook once more, by hand in NumPy: its compiled cells are held to them."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ Values = dict[str, Value]
 
 
 def evaluate(inputs: Mapping[str, ArrayLike]) -> Values:
-    """Every equation of the template.
+    """Every equation of the template but the optional ones.
 
     Args:
-        inputs: symbol -> (n,) or a number, for every input, in the units of the sheet (lb, ft, in, deg, g).
+        inputs: symbol -> (n,) or a number, of every assumption and constant, in units of the sheet (lb, ft, in, deg).
 
     Returns:
         symbol -> (n,) or 0-d, for every equation: ft/s, lb·s, rad/s inside, mph and deg in the answers; the checks are

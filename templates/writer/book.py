@@ -1,18 +1,21 @@
-"""The whole workbook: its four sheets, its defined names, and nothing that changes from one build to the next."""
+"""The whole workbook: its sheets, its defined names, and nothing that changes from one build to the next."""
 
 from __future__ import annotations
 
 from datetime import UTC, datetime
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from xlsxwriter.workbook import Workbook
 
 from templates.description import Template
+from templates.writer.cached import Values, computed
 from templates.writer.guide_sheet import draw_guide
 from templates.writer.inputs_sheet import draw_inputs
 from templates.writer.model_sheet import draw_model
 from templates.writer.places import places, reference
 from templates.writer.results_sheet import draw_results_wanted
+from templates.writer.scene_sheet import draw_scene
 from templates.writer.styles import Styles
 
 __all__ = ["write_book"]
@@ -22,19 +25,39 @@ _CREATED = datetime(2001, 1, 1, tzinfo=UTC)
 
 
 def write_book(template: Template, path: Path) -> None:
-    """Write the template as an Excel workbook, with the values of its base case cached in every formula cell.
+    """Write one edition of a template as an Excel workbook, the values of its base case cached in every formula cell.
 
     Raises:
-        KeyError: the template's `evaluate` leaves out an equation, or a forecast or filter names none.
+        KeyError: a forecast, filter or correlation names a symbol that there is not.
+        FormulaError: a formula cannot be computed.
     """
-    at, values = places(template), template.base_values()
+    with TemporaryDirectory() as folder:
+        draft = Path(folder) / path.name
+        _write(template, draft, {})
+        values = computed(draft)
+    _write(template, path, values)
+
+
+def _write(template: Template, path: Path, values: Values) -> None:
+    at = places(template)
     with Workbook(path) as workbook:
-        workbook.set_properties({"title": template.title, "subject": template.subtitle, "created": _CREATED})
+        workbook.set_properties(
+            {
+                "title": template.title,
+                "subject": template.question,
+                "comments": template.needs,
+                "category": f"rung {template.rung}",
+                "created": _CREATED,
+            }
+        )
         workbook.set_size(2400, 1400)
         styles = Styles(workbook)
-        inputs, model, wanted, guide = map(workbook.add_worksheet, ("Inputs", "Model", "Results wanted", "Guide"))
+        inputs, model = map(workbook.add_worksheet, ("Inputs", "Model"))
         draw_inputs(inputs, styles, template, at, values)
         draw_model(model, styles, template, at, values)
+        if template.diagram is not None:
+            draw_scene(workbook, workbook.add_worksheet("Scene"), styles, template.diagram, values)
+        wanted, guide = map(workbook.add_worksheet, ("Results wanted", "Guide"))
         draw_results_wanted(wanted, styles, template, at, values)
         draw_guide(guide, styles, template)
         for symbol, place in at.items():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from xlsxwriter.worksheet import Worksheet
 
 from templates.description import GuideSection, Template
-from templates.writer.page import begin_sheet, fit_row
+from templates.writer.page import begin_sheet, fit_row, protect
 from templates.writer.styles import LEGEND, Styles
 
 __all__ = ["draw_guide"]
@@ -19,6 +19,7 @@ def draw_guide(sheet: Worksheet, styles: Styles, template: Template) -> None:
     row = _draw_legend(sheet, styles, 3)
     for section in template.guide:
         row = _draw_section(sheet, styles, section, row)
+    protect(sheet)
 
 
 def _draw_legend(sheet: Worksheet, styles: Styles, row: int) -> int:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from xlsxwriter.worksheet import Worksheet
 
-from templates.description import PARAMETER_COLUMNS, Input, Template
-from templates.writer.page import add_table, begin_sheet, fit_row, repeat_header
+from templates.description import ALL_CHECKS, PARAMETER_COLUMNS, Input, Template
+from templates.writer.cached import Values
+from templates.writer.page import add_table, begin_sheet, fit_row, guard, repeat_header, write_formula
 from templates.writer.places import HEADER_ROW, VALUE_COLUMN, Place
 from templates.writer.styles import Styles
 
@@ -21,19 +22,18 @@ _ALWAYS_SHOWN = 2
 _FROZEN = len(_HEADERS) - 2
 
 
-def draw_inputs(
-    sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: dict[str, float | bool]
-) -> None:
-    """Write the sheet; `values` are the base values by symbol."""
+def draw_inputs(sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values) -> None:
+    """Write the sheet; `values` are what the formulas give at the base case."""
     begin_sheet(sheet, styles, template.title, template.subtitle, _WIDTHS)
-    _draw_status(sheet, styles, template, bool(values[template.all_checks]))
+    _draw_status(sheet, styles, values)
     _fold_columns(sheet)
     sheet.set_row(HEADER_ROW, 32)
     add_table(sheet, styles, "xlmc_assumptions", HEADER_ROW, _HEADERS, len(template.assumptions))
     for given in template.assumptions:
         _draw_assumption(sheet, styles, given, at[given.symbol][1])
     _guard_table(sheet, styles, HEADER_ROW + 1, HEADER_ROW + len(template.assumptions))
-    _draw_fixed(sheet, styles, template.constants, at)
+    _draw_fixed(sheet, styles, "Held fixed", template.constants, at)
+    _draw_fixed(sheet, styles, "Optional: leave blank what does not apply", template.optional, at)
     repeat_header(sheet, HEADER_ROW, 1)
 
 
@@ -43,11 +43,12 @@ def _fold_columns(sheet: Worksheet) -> None:
     sheet.set_column(_FROZEN, _FROZEN, _WIDTHS[_FROZEN], None, {"collapsed": True})
 
 
-def _draw_status(sheet: Worksheet, styles: Styles, template: Template, holds: bool) -> None:
+def _draw_status(sheet: Worksheet, styles: Styles, values: Values) -> None:
     good, bad = "All physics checks hold at the base case", "A physics check fails at the base case: see sheet Model"
-    formula = f'=IF(IFERROR({template.all_checks},FALSE),"{good}","{bad}")'
-    sheet.write_formula(2, 0, formula, styles("status"), good if holds else bad)
-    rule = {"type": "formula", "criteria": f"=NOT(IFERROR({template.all_checks},FALSE))", "format": styles("wrong")}
+    formula = f'IF(IFERROR({ALL_CHECKS},FALSE),"{good}","{bad}")'
+    write_formula(sheet, 2, 0, formula, styles("status"), values)
+    guard(sheet, (2, 0, 2, 0), "A formula", "This line tells whether the checks of sheet Model hold.", final=True)
+    rule = {"type": "formula", "criteria": f"=NOT(IFERROR({ALL_CHECKS},FALSE))", "format": styles("wrong")}
     sheet.conditional_format(2, 0, 2, 0, rule)
 
 
@@ -55,15 +56,18 @@ def _draw_assumption(sheet: Worksheet, styles: Styles, given: Input, row: int) -
     shown = given.number_format
     _draw_name(sheet, styles, given, row)
     sheet.write_number(row, VALUE_COLUMN, given.base, styles("assumption", shown))
-    sheet.write_string(row, 5, given.distribution, styles("centred"))
+    sheet.write_string(row, 5, given.distribution, styles("open centred"))
     for column, header in enumerate(PARAMETER_COLUMNS, len(_BEFORE)):
         value = given.parameters.get(header)
         if value is None:
             sheet.write_blank(row, column, None, styles("number", shown))
         else:
             sheet.write_number(row, column, value, styles("number", shown))
-    sheet.write_blank(row, _FROZEN, None, styles("centred"))
-    sheet.write_string(row, _FROZEN + 1, given.source, styles("text"))
+    if given.frozen:
+        sheet.write_string(row, _FROZEN, "TRUE", styles("open centred"))
+    else:
+        sheet.write_blank(row, _FROZEN, None, styles("open centred"))
+    sheet.write_string(row, _FROZEN + 1, given.source, styles("open text"))
     fit_row(sheet, row, [(given.name, _WIDTHS[0]), (given.source, _SOURCE_WIDTH)])
 
 
@@ -110,13 +114,40 @@ def _guard_table(sheet: Worksheet, styles: Styles, first: int, last: int) -> Non
     sheet.conditional_format(first, VALUE_COLUMN, last, VALUE_COLUMN, rule)
 
 
-def _draw_fixed(sheet: Worksheet, styles: Styles, constants: tuple[Input, ...], at: dict[str, Place]) -> None:
-    top = at[constants[0].symbol][1]
-    sheet.write_string(top - 2, 0, "Held fixed", styles("heading"))
+def _draw_fixed(
+    sheet: Worksheet, styles: Styles, heading: str, given_values: tuple[Input, ...], at: dict[str, Place]
+) -> None:
+    if not given_values:
+        return
+    top = at[given_values[0].symbol][1]
+    sheet.write_string(top - 2, 0, heading, styles("heading"))
     for column, header in enumerate((*_BEFORE[:5], "Source")):
         sheet.write_string(top - 1, column, header, styles("header"))
-    for given in constants:
+    for given in given_values:
         row = at[given.symbol][1]
         _draw_name(sheet, styles, given, row)
-        sheet.write_number(row, VALUE_COLUMN, given.base, styles("fixed", given.number_format))
+        fit_row(sheet, row, [(given.name, _WIDTHS[0])])
+        _draw_fixed_value(sheet, styles, given, row)
         sheet.write_string(row, 5, given.source, styles("remark"))
+
+
+def _draw_fixed_value(sheet: Worksheet, styles: Styles, given: Input, row: int) -> None:
+    look = styles("fixed", given.number_format)
+    if given.base is None:
+        sheet.write_blank(row, VALUE_COLUMN, None, look)
+    else:
+        sheet.write_number(row, VALUE_COLUMN, given.base, look)
+    if given.choices:
+        listed = " or ".join(f"{choice:g}" for choice in given.choices)
+        sheet.data_validation(
+            row,
+            VALUE_COLUMN,
+            row,
+            VALUE_COLUMN,
+            {
+                "validate": "list",
+                "source": list(given.choices),
+                "error_title": "Choice",
+                "error_message": f"Type {listed}.",
+            },
+        )

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from xlsxwriter.format import Format
+from xlsxwriter.utility import xl_rowcol_to_cell
 from xlsxwriter.worksheet import Worksheet
 
 from templates.description import Equation, Role, Template
 from templates.notation import printed
-from templates.writer.page import begin_sheet, fit_row, repeat_header
+from templates.writer.cached import Values
+from templates.writer.page import begin_sheet, fit_row, protect, repeat_header, write_formula
 from templates.writer.places import HEADER_ROW, VALUE_COLUMN, Place
 from templates.writer.styles import Styles
 
@@ -24,20 +27,22 @@ _SUBTITLE = (
 )
 
 
-def draw_model(
-    sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: dict[str, float | bool]
-) -> None:
-    """Write the sheet; `values` are what the formulas give at the base case, by symbol."""
+def draw_model(sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values) -> None:
+    """Write the sheet, locked; `values` are what the formulas give at the base case."""
     begin_sheet(sheet, styles, template.title, _SUBTITLE, _WIDTHS)
     for column, header in enumerate(_HEADERS):
         sheet.write_string(HEADER_ROW, column, header, styles("header"))
     notation = {quantity.symbol: quantity.notation for quantity in (*template.inputs, *template.equations)}
+    forecasts = {row.symbol for row in template.forecasts}
     for section in template.sections:
         _draw_band(sheet, styles, section.title, at[section.equations[0].symbol][1] - 1)
         for equation in section.equations:
-            _draw_equation(sheet, styles, equation, at[equation.symbol][1], values[equation.symbol])
+            look = "answer" if equation.symbol in forecasts else _LOOK[equation.role]
+            style = styles(look, equation.number_format)
+            _draw_equation(sheet, styles, equation, at[equation.symbol][1], style, values)
             _draw_words(sheet, styles, equation, at[equation.symbol][1], notation)
     repeat_header(sheet, HEADER_ROW, 1)
+    protect(sheet)
 
 
 def _draw_band(sheet: Worksheet, styles: Styles, title: str, row: int) -> None:
@@ -47,11 +52,13 @@ def _draw_band(sheet: Worksheet, styles: Styles, title: str, row: int) -> None:
         sheet.write_blank(row, column, None, styles("band"))
 
 
-def _draw_equation(sheet: Worksheet, styles: Styles, equation: Equation, row: int, value: float | bool) -> None:
-    style = styles(_LOOK[equation.role], equation.number_format)
-    sheet.write_formula(row, VALUE_COLUMN, f"={equation.formula}", style, value)
+def _draw_equation(
+    sheet: Worksheet, styles: Styles, equation: Equation, row: int, style: Format, values: Values
+) -> None:
+    write_formula(sheet, row, VALUE_COLUMN, equation.formula, style, values)
     if equation.role is Role.CHECK:
-        rule = {"type": "cell", "criteria": "==", "value": "FALSE", "format": styles("wrong")}
+        cell = xl_rowcol_to_cell(row, VALUE_COLUMN)
+        rule = {"type": "formula", "criteria": f"=NOT(IFERROR({cell},FALSE))", "format": styles("wrong")}
         sheet.conditional_format(row, VALUE_COLUMN, row, VALUE_COLUMN, rule)
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from textwrap import wrap
 
+from xlsxwriter.format import Format
 from xlsxwriter.worksheet import Worksheet
 
+from templates.writer.cached import Values
 from templates.writer.styles import Styles
 
-__all__ = ["add_table", "begin_sheet", "fit_row", "repeat_header"]
+__all__ = ["add_table", "begin_sheet", "fit_row", "guard", "protect", "repeat_header", "write_formula"]
 
 _LINE = 15.0
 """Height of a line of text, in points."""
@@ -56,3 +58,27 @@ def add_table(sheet: Worksheet, styles: Styles, name: str, top: int, headers: Se
     columns = [{"header": header, "header_format": styles("header")} for header in headers]
     place = (top, 0, top + rows, len(headers) - 1)
     sheet.add_table(*place, {"name": name, "columns": columns, "style": None, "autofilter": False})
+
+
+def write_formula(sheet: Worksheet, row: int, column: int, formula: str, style: Format, values: Values) -> None:
+    """Write a formula, given without `=`, with its cached value."""
+    sheet.write_formula(row, column, f"={formula}", style, values.get((sheet.name, row, column), 0))
+
+
+def protect(sheet: Worksheet) -> None:
+    """Lock the sheet against slips, without a password: Review > Unprotect Sheet opens it."""
+    sheet.protect("", {"format_columns": True, "format_rows": True, "objects": True})
+
+
+def guard(sheet: Worksheet, area: tuple[int, int, int, int], title: str, message: str, *, final: bool = False) -> None:
+    """Ask before someone types over formulas on a sheet that must stay open for new rows; refuse where `final`.
+
+    Args:
+        sheet: to guard.
+        area: first row, first column, last row, last column.
+        title: of the message.
+        message: why not.
+        final: whether to refuse.
+    """
+    rule = {"validate": "custom", "value": "=FALSE", "error_title": title, "error_message": message}
+    sheet.data_validation(*area, rule | {"error_type": "stop" if final else "warning"})

@@ -6,25 +6,26 @@ from xlsxwriter.utility import xl_rowcol_to_cell
 
 from templates.description import Template
 
-__all__ = ["FIXED_GAP", "HEADER_ROW", "VALUE_COLUMN", "Place", "places", "reference"]
+__all__ = ["HEADER_ROW", "VALUE_COLUMN", "Place", "places", "reference"]
 
 Place = tuple[str, int]
 """Sheet and row, the row counted from 0."""
 
 HEADER_ROW = 4
 VALUE_COLUMN = 3
-FIXED_GAP = 4
+_GAP = 4
 """Rows between the last assumption and the first fixed input: room for new rows, a heading, a header row."""
 
 
 def places(template: Template) -> dict[str, Place]:
     """Symbol -> place of every input and equation."""
-    first_fixed = HEADER_ROW + 1 + len(template.assumptions) + FIXED_GAP
     found: dict[str, Place] = {}
-    for row, given in enumerate(template.assumptions, HEADER_ROW + 1):
-        found[given.symbol] = "Inputs", row
-    for row, given in enumerate(template.constants, first_fixed):
-        found[given.symbol] = "Inputs", row
+    row = HEADER_ROW + 1
+    for group in (template.assumptions, template.constants, template.optional):
+        for given in group:
+            found[given.symbol] = "Inputs", row
+            row += 1
+        row += _GAP
     row = HEADER_ROW + 1
     for section in template.sections:
         for equation in section.equations:

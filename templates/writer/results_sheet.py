@@ -9,8 +9,9 @@ from collections.abc import Sequence
 
 from xlsxwriter.worksheet import Worksheet
 
-from templates.description import FilterRow, ForecastRow, Template
-from templates.writer.page import add_table, begin_sheet, fit_row
+from templates.description import CorrelationRow, FilterRow, ForecastRow, Template
+from templates.writer.cached import Values
+from templates.writer.page import add_table, begin_sheet, fit_row, guard, write_formula
 from templates.writer.places import Place, reference
 from templates.writer.styles import Styles
 
@@ -24,18 +25,17 @@ _WIDTHS = (38, 22, 12, 12, 12, 12, 76)
 _SUBTITLE = "What a run collects, which trials it keeps, how many it makes. The Cell columns point into sheet Model."
 _ROOM = 3
 """Blank rows below a table, into which Excel lets it grow by typing."""
-
-Values = dict[str, float | bool]
+_POINTS = "This formula says which quantity the row speaks of. Change it only to ask for another one."
 
 
 def draw_results_wanted(
     sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values
 ) -> None:
-    """Write the sheet; `values` are the base values by symbol."""
+    """Write the sheet; `values` are what the formulas give at the base case."""
     begin_sheet(sheet, styles, template.title, _SUBTITLE, _WIDTHS)
     row = _draw_forecasts(sheet, styles, template, at, values, 3)
     row = _draw_filters(sheet, styles, template, at, values, row + _ROOM)
-    row = _draw_correlations(sheet, styles, template.correlation_note, row + _ROOM)
+    row = _draw_correlations(sheet, styles, template, row + _ROOM)
     _draw_settings(sheet, styles, template.settings, row + _ROOM)
 
 
@@ -55,12 +55,13 @@ def _draw_forecasts(
     for row, forecast in enumerate(template.forecasts, top + 2):
         _draw_forecast(sheet, styles, forecast, row, equations[forecast.symbol].notation)
         shown = styles("answer", equations[forecast.symbol].number_format)
-        sheet.write_formula(row, 1, f"={reference(at[forecast.symbol])}", shown, values[forecast.symbol])
+        write_formula(sheet, row, 1, reference(at[forecast.symbol]), shown, values)
+    guard(sheet, (top + 2, 1, top + 1 + len(template.forecasts), 1), "A formula", _POINTS)
     return top + 2 + len(template.forecasts)
 
 
 def _draw_forecast(sheet: Worksheet, styles: Styles, forecast: ForecastRow, row: int, notation: str) -> None:
-    sheet.write_string(row, 0, forecast.name, styles("text"))
+    sheet.write_string(row, 0, forecast.name, styles("open text"))
     sheet.write_string(row, 2, forecast.unit, styles("centred"))
     _number(sheet, styles, row, 3, forecast.central_percent)
     _number(sheet, styles, row, 4, forecast.threshold)
@@ -78,18 +79,19 @@ def _draw_filters(
     for row, kept in enumerate(template.filters, top + 2):
         _draw_filter(sheet, styles, kept, row)
         shown = styles("step", formats[kept.symbol])
-        sheet.write_formula(row, 1, f"={reference(at[kept.symbol])}", shown, values[kept.symbol])
+        write_formula(sheet, row, 1, reference(at[kept.symbol]), shown, values)
     last = top + 1 + len(template.filters)
+    guard(sheet, (top + 2, 1, last, 1), "A formula", _POINTS)
     rule = {"type": "formula", "criteria": _rejected(top + 3), "format": styles("wrong")}
     sheet.conditional_format(top + 2, 1, last, 1, rule)
     return last + 1
 
 
 def _draw_filter(sheet: Worksheet, styles: Styles, kept: FilterRow, row: int) -> None:
-    sheet.write_string(row, 0, kept.name, styles("text"))
+    sheet.write_string(row, 0, kept.name, styles("open text"))
     for column, limit in enumerate((kept.at_least, kept.at_most, kept.above, kept.below), 2):
         _number(sheet, styles, row, column, limit)
-    sheet.write_string(row, 6, kept.because, styles("text"))
+    sheet.write_string(row, 6, kept.because, styles("open text"))
     fit_row(sheet, row, [(kept.name, _WIDTHS[0]), (kept.because, _WIDTHS[6])])
 
 
@@ -102,16 +104,21 @@ def _rejected(excel_row: int) -> str:
     return f"=OR({','.join(broken)})"
 
 
-def _draw_correlations(sheet: Worksheet, styles: Styles, note: str, top: int) -> int:
-    _head(sheet, styles, top, "Correlations", note)
-    add_table(sheet, styles, "xlmc_correlations", top + 1, _CORRELATIONS, 1)
-    sheet.set_row(top + 2, 32)
-    for column, look in enumerate(("text", "text", "number")):
-        sheet.write_blank(top + 2, column, None, styles(look))
+def _draw_correlations(sheet: Worksheet, styles: Styles, template: Template, top: int) -> int:
+    _head(sheet, styles, top, "Correlations", template.correlation_note)
+    rows = max(len(template.correlations), 1)
+    names = {given.symbol: given.name for given in template.assumptions}
+    add_table(sheet, styles, "xlmc_correlations", top + 1, _CORRELATIONS, rows)
+    for row, pair in enumerate(template.correlations, top + 2):
+        _draw_correlation(sheet, styles, pair, names, row)
+    if not template.correlations:
+        sheet.set_row(top + 2, 32)
+        for column, look in enumerate(("open text", "open text", "number")):
+            sheet.write_blank(top + 2, column, None, styles(look))
     sheet.data_validation(
         top + 2,
         2,
-        top + 2,
+        top + 1 + rows,
         2,
         {
             "validate": "decimal",
@@ -122,7 +129,14 @@ def _draw_correlations(sheet: Worksheet, styles: Styles, note: str, top: int) ->
             "error_message": "A rank correlation lies between -1 and 1.",
         },
     )
-    return top + 3
+    return top + 2 + rows
+
+
+def _draw_correlation(sheet: Worksheet, styles: Styles, pair: CorrelationRow, names: dict[str, str], row: int) -> None:
+    sheet.set_row(row, 32)
+    for column, symbol in enumerate((pair.first, pair.second)):
+        sheet.write_string(row, column, names[symbol], styles("open text"))
+    sheet.write_number(row, 2, pair.correlation, styles("number"))
 
 
 def _draw_settings(sheet: Worksheet, styles: Styles, settings: Sequence[tuple[str, float]], top: int) -> None:

@@ -25,9 +25,11 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "header": _WRAPPED | {"bold": True, "font_color": "#FFFFFF", "bg_color": _INK, "align": "center"},
     "text": _WRAPPED | {"indent": 1},
     "centred": _CELL | {"align": "center"},
-    "number": _NUMBER,
-    "assumption": _NUMBER | {"bg_color": "#C6E7B5"},
-    "fixed": _NUMBER | {"bg_color": "#FFF2C2"},
+    "number": _NUMBER | {"locked": False},
+    "assumption": _NUMBER | {"bg_color": "#C6E7B5", "locked": False},
+    "fixed": _NUMBER | {"bg_color": "#FFF2C2", "locked": False},
+    "open text": _WRAPPED | {"indent": 1, "locked": False},
+    "open centred": _CELL | {"align": "center", "locked": False},
     "step": _NUMBER | {"bg_color": "#F0F0F0"},
     "answer": _NUMBER | {"bg_color": "#BBDDF7", "bold": True},
     "check": _CELL | {"bg_color": "#F0F0F0", "align": "center"},
@@ -39,7 +41,7 @@ _LOOKS: dict[str, dict[str, Any]] = {
 LEGEND = (
     ("assumption", "Green", "An assumption: an uncertain input, varied from trial to trial"),
     ("fixed", "Yellow", "A fixed input: yours to change, the same in every trial"),
-    ("step", "Grey", "A formula: change it only to change the model"),
+    ("step", "Grey", "A formula, locked: change it only to change the model (Review, Unprotect Sheet; no password)"),
     ("answer", "Blue", "A forecast: an answer, collected in every accepted trial"),
     ("wrong", "Red", "A physics check that fails, a base value outside its range, or one that a filter rejects"),
 )

@@ -1,10 +1,41 @@
 from __future__ import annotations
 
+import openpyxl
+import pytest
+
+TEMPLATES = [
+    "skid",
+    "critical-speed-yaw",
+    "collinear",
+    "momentum",
+    "planar-impact",
+    "planar-forward",
+    "crush-energy",
+    "pedestrian-throw",
+]
+"""The simplest first."""
+
 
 def test_lists_the_templates(xlmc):
     outcome = xlmc("new")
     assert outcome.code == 0
-    assert "planar-impact  " in outcome.out
+    names = [line.split()[0] for line in outcome.out.splitlines() if line.startswith(" ") and line.strip()]
+    assert [name for name in names if name in TEMPLATES] == TEMPLATES
+    assert "run-out" in outcome.out
+    assert "--units si" in outcome.out
+
+
+@pytest.mark.parametrize(("units", "expected"), [("imperial", "Speed, mph"), ("si", "Speed, km/h")])
+def test_copies_the_edition_asked_for(xlmc, tmp_path, units, expected):
+    assert xlmc("new", "skid", "case.xlsx", "--units", units).code == 0
+    cells = openpyxl.load_workbook(tmp_path / "case.xlsx")["Scene"]["C"]
+    assert expected in [cell.value for cell in cells]
+
+
+def test_refuses_other_units(xlmc):
+    outcome = xlmc("new", "skid", "--units", "cgs")
+    assert outcome.code == 2
+    assert "imperial" in outcome.err
 
 
 def test_copies_a_template_that_runs(xlmc, tmp_path):

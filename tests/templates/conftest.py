@@ -8,7 +8,14 @@ import sys
 import zipfile
 from pathlib import Path
 
+import numpy as np
+import openpyxl
 import pytest
+
+from xlmc.address import parse_address
+from xlmc.compile import ENGINES, Lowering, Target, widened
+from xlmc.formula import Resolver, build_graph
+from xlmc.workbook import read_workbook
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT))
@@ -30,15 +37,71 @@ def builders():
 
 
 @pytest.fixture(scope="session")
-def book_path():
-    """Name -> the committed workbook."""
-    return {"planar-impact": ROOT / "templates/planar-impact.xlsx", "intersection": ROOT / "examples/intersection.xlsx"}
+def described(builders):
+    """File name without its ending -> what the workbook was built from, in its own units."""
+    from templates.editions import Edition, edition
+
+    build = builders["templates"]
+    editions = {
+        build.file_name(name, units).removesuffix(".xlsx"): edition(template, units)
+        for name, template in build.TEMPLATES.items()
+        for units in Edition
+    }
+    return editions | builders["examples"].EXAMPLES
 
 
 @pytest.fixture(scope="session")
-def described(builders):
-    """Name -> what the workbook was built from."""
-    return builders["templates"].TEMPLATES | builders["examples"].EXAMPLES
+def book_path(builders, described):
+    """Name -> the committed workbook."""
+    examples = builders["examples"].EXAMPLES
+    return {name: ROOT / ("examples" if name in examples else "templates") / f"{name}.xlsx" for name in described}
+
+
+@pytest.fixture(scope="session")
+def shown(book_path, described):
+    """`shown(name)`: symbol -> the value that the committed workbook shows."""
+
+    def read(name):
+        book = openpyxl.load_workbook(book_path[name], data_only=True)
+        places = {symbol: next(iter(named.destinations)) for symbol, named in book.defined_names.items()}
+        return {symbol: book[sheet][place].value for symbol, (sheet, place) in places.items()}
+
+    return read
+
+
+@pytest.fixture(scope="session")
+def cells(book_path):
+    """`cells(name, inputs, wanted)`: a workbook as a function of any input cells, by symbol; NaN for an error.
+
+    What is not given keeps the value of its cell. Inputs and results are `(n,)`, or numbers where n is 1.
+    """
+    books = {}
+
+    def compute(name, inputs, wanted):
+        if name not in books:
+            books[name] = read_workbook(book_path[name])
+        workbook = books[name]
+        at = {each.name: _named_cell(each) for each in workbook.names if not each.name.startswith("_xlnm")}
+        live = {at[symbol]: symbol for symbol in inputs}
+        resolver = Resolver(workbook, list(live))
+        targets = [Target(at[symbol], at[symbol]) for symbol in wanted]
+        places = [target.cell for target in targets]
+
+        def lower(more):
+            return Lowering(build_graph(resolver, places, frozenset(live), more=more), live, {})
+
+        n = max(np.size(values) for values in inputs.values())
+        full = {s: np.ascontiguousarray(np.broadcast_to(np.asarray(v, float), (n,))) for s, v in inputs.items()}
+        program = ENGINES["numpy"](widened(lower), targets, [], frozenset(inputs))
+        columns = program.evaluator(n).filters(full, n)
+        return {symbol: column.as_floats().copy() for symbol, column in zip(wanted, columns, strict=True)}
+
+    return compute
+
+
+def _named_cell(name):
+    sheet, _, place = name.text.removeprefix("=").rpartition("!")
+    return parse_address(place, sheet.strip("'"))
 
 
 @pytest.fixture(scope="session")
@@ -51,7 +114,7 @@ def recalculated(book_path, tmp_path_factory):
     bare = [_without_cached_values(path, folder) for path in book_path.values()]
     profile = f"-env:UserInstallation={(folder / 'profile').as_uri()}"
     command = [soffice, "--headless", profile, "--convert-to", "xlsx", "--outdir", str(folder / "out"), *map(str, bare)]
-    subprocess.run(command, check=True, capture_output=True, timeout=240)
+    subprocess.run(command, check=True, capture_output=True, timeout=600)
     return {name: folder / "out" / path.name for name, path in book_path.items()}
 
 

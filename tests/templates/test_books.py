@@ -3,12 +3,22 @@ from __future__ import annotations
 import math
 import re
 import zipfile
+from pathlib import Path
 
 import openpyxl
 import pytest
 
-BOOKS = ("planar-impact", "intersection")
+import xlmc
+from xlmc.verify import Status, verify
+from xlmc.workbook import read_workbook
+
+ROOT = Path(__file__).resolve().parents[2]
+BOOKS = sorted(path.stem for folder in ("templates", "examples") for path in (ROOT / folder).glob("*.xlsx"))
+TEMPLATES = sorted(path.stem for path in (ROOT / "templates").glob("*.xlsx"))
 REFERENCE = re.compile(r"=Model!D\d+")
+LIKE_A_CELL = re.compile(r"[A-Z]{1,3}\d+|R\d*(C\d*)?|C\d*", re.IGNORECASE)
+ROUND_OFF = 1e-12
+"""Of a difference of numbers near 1 to 100 that comes out as 0 or almost; LibreOffice makes some of them 0."""
 NUMBER = re.compile(rb"<v>[^<]*</v>")
 
 TABLES = {
@@ -62,11 +72,11 @@ def test_cached_values_are_what_libreoffice_computes(name, book_path, recalculat
     cached = openpyxl.load_workbook(book_path[name], data_only=True)
     computed = openpyxl.load_workbook(recalculated[name], data_only=True)
     cells = formula_cells(openpyxl.load_workbook(book_path[name]))
-    assert len(cells) > 70
+    assert len(cells) > 30
     for sheet, place in cells:
         shown, truth = cached[sheet][place].value, computed[sheet][place].value
         if isinstance(shown, int | float) and not isinstance(shown, bool):
-            assert math.isclose(shown, truth, rel_tol=1e-12), (sheet, place)
+            assert math.isclose(shown, truth, rel_tol=1e-12, abs_tol=ROUND_OFF), (sheet, place)
         else:
             assert shown == truth, (sheet, place)
 
@@ -139,9 +149,63 @@ def test_assumption_cells_are_green_and_forecast_cells_blue(name, book_path, des
     assert colours == {"green": {"FFC6E7B5"}, "blue": {"FFBBDDF7"}, "yellow": {"FFFFF2C2"}}
 
 
-def test_the_empty_template_shows_a_possible_crash(described):
-    template = described["planar-impact"]
-    base = template.base_values()
+@pytest.mark.parametrize("name", BOOKS)
+def test_xlmc_agrees_with_libreoffice_in_every_cell(name, recalculated):
+    found = verify(read_workbook(recalculated[name]))
+    assert not [str(cell) for cell in found.cells if cell.status is not Status.MATCHED]
+
+
+@pytest.mark.parametrize("name", BOOKS)
+def test_formulas_are_guarded_and_inputs_are_open(name, book_path, described):
+    """A formula is locked, or Excel asks before it is typed over; no input is locked; there is no password."""
+    book = openpyxl.load_workbook(book_path[name])
+    asked = {
+        (sheet.title, cell)
+        for sheet in book
+        for rule in sheet.data_validations.dataValidation
+        if rule.type == "custom" and rule.formula1 == "FALSE"
+        for cells in rule.sqref.ranges
+        for row in sheet[cells.coord if ":" in cells.coord else f"{cells.coord}:{cells.coord}"]
+        for cell in (cell.coordinate for cell in row)
+    }
+    for sheet, place in formula_cells(book):
+        protected = book[sheet].protection.sheet and book[sheet][place].protection.locked
+        assert protected or (sheet, place) in asked, (sheet, place)
+    assert all(sheet.protection.password is None for sheet in book)
+    for given in described[name].inputs:
+        [(sheet, place)] = book.defined_names[given.symbol].destinations
+        assert not book[sheet][place].protection.locked
+        assert not book[sheet].protection.sheet
+
+
+@pytest.mark.parametrize("name", BOOKS)
+def test_names_are_names_to_excel(name, described):
+    """It takes e and E for one name, and R2C3, R or AB12 for cells."""
+    symbols = [quantity.symbol for quantity in (*described[name].inputs, *described[name].equations)]
+    assert len({symbol.casefold() for symbol in symbols}) == len(symbols)
+    assert not [symbol for symbol in symbols if LIKE_A_CELL.fullmatch(symbol)]
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_every_default_has_a_source_and_every_filter_a_reason(name, described):
+    template = described[name]
+    assert all(given.source for given in template.inputs)
+    assert all(given.parameters for given in template.assumptions)
+    assert all(row.because for row in template.filters)
+    assert template.question.endswith("?")
+    assert template.needs
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_the_template_runs_and_keeps_trials(name, book_path):
+    run = xlmc.load(book_path[name]).simulate(20_000)
+    assert run.accepted > 100
+    assert not run.model.definitions.problems
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_the_empty_template_shows_a_possible_crash(name, described, shown):
+    template, base = described[name], shown(name)
     assert base["checks_hold"] is True
     for row in template.filters:
         value = base[row.symbol]
@@ -151,17 +215,27 @@ def test_the_empty_template_shows_a_possible_crash(described):
         assert row.below is None or value < row.below
 
 
-@pytest.mark.parametrize(("folder", "name"), [("templates", "planar-impact"), ("examples", "intersection")])
-def test_the_committed_book_is_what_the_script_builds(folder, name, builders, book_path, tmp_path):
+@pytest.fixture(scope="module")
+def built(builders, tmp_path_factory):
+    """Name -> the workbook, built again."""
+    folder = tmp_path_factory.mktemp("built")
+    return {path.stem: path for builder in builders.values() for path in builder.build(folder)}
+
+
+def test_every_committed_book_has_a_script(built):
+    assert sorted(built) == BOOKS
+
+
+@pytest.mark.parametrize("name", BOOKS)
+def test_the_committed_book_is_what_the_script_builds(name, book_path, built):
     """Part by part; cached numbers to 1e-12, since the last digit of a sine depends on the processor."""
-    [built] = [path for path in builders[folder].build(tmp_path) if path.stem == name]
-    with zipfile.ZipFile(book_path[name]) as committed, zipfile.ZipFile(built) as fresh:
+    with zipfile.ZipFile(book_path[name]) as committed, zipfile.ZipFile(built[name]) as fresh:
         assert committed.namelist() == fresh.namelist()
         for part in committed.namelist():
             old, new = committed.read(part), fresh.read(part)
             if part.startswith("xl/worksheets/sheet"):
                 assert [float(x[3:-4]) for x in NUMBER.findall(old) if is_number(x)] == pytest.approx(
-                    [float(x[3:-4]) for x in NUMBER.findall(new) if is_number(x)], rel=1e-12
+                    [float(x[3:-4]) for x in NUMBER.findall(new) if is_number(x)], rel=1e-12, abs=ROUND_OFF
                 )
                 old, new = NUMBER.sub(b"<v/>", old), NUMBER.sub(b"<v/>", new)
             assert old == new, part

@@ -4,7 +4,17 @@ import pytest
 
 from templates.notation import printed
 
-NOTATION = {"alpha_1": "α1", "beta_1": "β1", "V1_f": "V1f", "m_1": "m1", "g": "g", "P_x": "Px", "a": "a", "b": "b"}
+NOTATION = {
+    "alpha_1": "α1",
+    "beta_1": "β1",
+    "V1_f": "V1f",
+    "m_1": "m1",
+    "g": "g",
+    "P_x": "Px",
+    "a": "a",
+    "b": "b",
+    "Check_a": "",
+}
 
 
 @pytest.mark.parametrize(
@@ -19,6 +29,9 @@ NOTATION = {"alpha_1": "α1", "beta_1": "β1", "V1_f": "V1f", "m_1": "m1", "g": 
         ("RADIANS(a)", "rad(a)"),
         ("AND(a>0,b<=1)", "and(a > 0, b ≤ 1)"),
         ("a>=COS(RADIANS(10))", "a ≥ cos(10°)"),
+        ("IF(a<>0,b<1,TRUE)", "if(a ≠ 0, b < 1, true)"),
+        ("AND(a>=-1,b<-a)", "and(a ≥ −1, b < −a)"),
+        ("AND(Check_a,a<b)", "and(Check_a, a < b)"),
     ],
 )
 def test_formula_is_printed_as_the_paper_prints(formula, expected):

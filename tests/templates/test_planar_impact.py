@@ -26,6 +26,10 @@ def drawn(described, trials, seed):
     return FIXED | {symbol: rng.uniform(p["Low"], p["High"], trials) for symbol, p in ranges.items()}
 
 
+def base_inputs(described):
+    return {given.symbol: given.base for given in described["planar-impact"].inputs if given.base is not None}
+
+
 def accepted(v):
     """The filters of the case study, (trials,)."""
     return (v["e_n"] >= 0) & (v["e_n"] < 1) & (v["e_t"] >= 0) & (v["e_t"] <= 0.25) & (v["V2_mph"] > 0)
@@ -78,6 +82,16 @@ def as_printed(v):
     }  # fmt: skip
 
 
+def test_the_cells_are_the_equations_written_by_hand(cells, scenes):
+    """The workbook, compiled, against `evaluate`: two codings of one model, bit for bit but for the order of sums."""
+    ours = evaluate(scenes)
+    found = cells("planar-impact", scenes, [symbol for symbol in ours if symbol != "checks_hold"])
+    assert len(found) > 60
+    for symbol, values in found.items():
+        scale = np.abs(ours[symbol]).max()
+        np.testing.assert_allclose(values, ours[symbol], rtol=1e-11, atol=1e-13 * scale, err_msg=symbol)
+
+
 def test_equations_agree_with_the_printed_ones(scenes):
     ours, printed = evaluate(scenes), as_printed(scenes)
     for symbol, truth in printed.items():
@@ -115,9 +129,9 @@ def test_swapping_the_vehicles_swaps_the_answers(scenes):
 
 
 @pytest.mark.parametrize("alpha_2", [90.0, 270.0])
-def test_turning_the_axes_changes_nothing_even_at_the_pole_of_equation_16(described, alpha_2):
-    base = described["intersection"].base_values()
-    scene = {given.symbol: given.base for given in described["intersection"].inputs}
+def test_turning_the_axes_changes_nothing_even_at_the_pole_of_equation_16(described, shown, alpha_2):
+    base = shown("intersection")
+    scene = {given.symbol: given.base for given in described["intersection"].inputs if given.base is not None}
     turn = alpha_2 - scene["alpha_2"]
     for symbol in ("alpha_1", "alpha_2", "beta_1", "beta_2", "gamma_t"):
         scene[symbol] += turn
@@ -164,7 +178,7 @@ def test_the_three_directions_of_force_agree(scenes):
 )
 def test_each_check_fails_alone_where_it_should(described, failing, directions):
     angles = dict(zip(("alpha_1", "alpha_2", "beta_1", "beta_2", "gamma_t"), directions, strict=True))
-    values = evaluate({given.symbol: given.base for given in described["planar-impact"].inputs} | angles)
+    values = evaluate(base_inputs(described) | angles)
     checks = {symbol: bool(value) for symbol, value in values.items() if symbol.startswith("check_")}
     assert len(checks) == 5
     assert [symbol for symbol, holds in checks.items() if not holds] == ([failing] if failing else [])
@@ -172,7 +186,7 @@ def test_each_check_fails_alone_where_it_should(described, failing, directions):
 
 
 def test_parallel_approaches_have_no_answer_and_raise_nothing(described):
-    scene = {given.symbol: given.base for given in described["planar-impact"].inputs} | {"alpha_1": 188, "alpha_2": 188}
+    scene = base_inputs(described) | {"alpha_1": 188, "alpha_2": 188}
     values = evaluate(scene)
     assert not np.isfinite(values["V1_i"])
     assert not values["checks_hold"]

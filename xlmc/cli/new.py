@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from xlmc.errors import WorkbookError
+
+if TYPE_CHECKING:
+    from xlmc.templates_folder import Template
 
 __all__ = ["new"]
 
@@ -15,22 +20,32 @@ __all__ = ["new"]
 @click.command()
 @click.argument("template", required=False)
 @click.argument("book", required=False, type=click.Path(path_type=Path))
-def new(template: str | None, book: Path | None) -> None:
+@click.option(
+    "--units", type=click.Choice(["imperial", "si"]), default="imperial", show_default=True, help="Units of the copy."
+)
+def new(template: str | None, book: Path | None, units: str) -> None:
     """List the templates, or copy TEMPLATE to BOOK (by default TEMPLATE.xlsx here)."""
     from xlmc.templates_folder import templates
 
     known = templates()
     if template is None:
-        width = max(len(name) for name in known)
-        for name, entry in known.items():
-            click.echo(f"{name:<{width}}  {entry.summary}")
-        click.echo("\nxlmc new TEMPLATE my-case.xlsx copies one.")
+        _list(known)
         return
     if template not in known:
         raise click.UsageError(f"There is no template {template!r}; there are: {', '.join(known)}.")
+    if units not in known[template].editions:
+        raise WorkbookError(f"the {units} edition of {template} is missing", hint="install xlmc again")
     target = book or Path(f"{template}.xlsx")
-    _copy(known[template].path, target)
+    _copy(known[template].editions[units], target)
     click.echo(f"{target} is ready: open it, fill in the green cells, then run: xlmc simulate {target}")
+
+
+def _list(known: Mapping[str, Template]) -> None:
+    from xlmc.cli.printing import table
+
+    rows = [(name, entry.question, entry.needs) for name, entry in known.items()]
+    table("Templates, the simplest first", ("Template", "Answers", "Needs"), rows)
+    click.echo("xlmc new TEMPLATE my-case.xlsx copies one; --units si for metres, kilograms and km/h.")
 
 
 def _copy(source: Path, target: Path) -> None:

@@ -59,7 +59,8 @@ def _assumption(
     if len(findings.problems) > before or not (identity and family and given):
         return None
     name, cell = identity
-    remark_on_range(family, given, base, cell, findings)
+    if not frozen:
+        remark_on_range(family, given, base, cell, findings)
     return Assumption(
         name=name,
         cell=cell,

@@ -2,37 +2,40 @@
 
 from __future__ import annotations
 
-from templates.description import GuideSection
-from templates.planar_impact.inputs import Scene
+from dataclasses import replace
 
-__all__ = ["EXAMPLE"]
+from templates.description import GuideSection
+from templates.editions import Both
+from templates.two_vehicles.scene import Scene
+
+__all__ = ["EXAMPLE", "FORWARD_EXAMPLE", "MOMENTUM_EXAMPLE"]
 
 _RANGES = {
-    "w_1": (6660, 6860),
-    "I_1": (4710, 5210),
+    "w_1": Both((6660, 6860), (3020, 3110)),
+    "I_1": Both((4710, 5210), (6390, 7060)),
     "alpha_1": (181, 191),
     "beta_1": (187, 197),
-    "s_1": (20, 22),
+    "s_1": Both((20, 22), (6.1, 6.7)),
     "f_1": (0.60, 0.95),
-    "w_2": (3410, 3510),
-    "I_2": (1850, 2040),
+    "w_2": Both((3410, 3510), (1545, 1595)),
+    "I_2": Both((1850, 2040), (2510, 2770)),
     "alpha_2": (272, 292),
     "beta_2": (192, 202),
-    "s_2": (20, 24),
+    "s_2": Both((20, 24), (6.1, 7.3)),
     "f_2": (0.60, 0.95),
-    "x_1": (97.5, 103.5),
-    "y_1": (-16, -10),
-    "x_2": (-3.2, 3.2),
-    "y_2": (-28.6, -22.6),
+    "x_1": Both((97.5, 103.5), (2.48, 2.63)),
+    "y_1": Both((-16, -10), (-0.41, -0.25)),
+    "x_2": Both((-3.2, 3.2), (-0.08, 0.08)),
+    "y_2": Both((-28.6, -22.6), (-0.73, -0.57)),
     "gamma_t": (96, 106),
 }
 _BASE = {
     "alpha_1": 188,
     "beta_1": 188.5,
-    "s_1": 21,
+    "s_1": Both(21, 6.4),
     "f_1": 0.75,
     "beta_2": 199,
-    "s_2": 22,
+    "s_2": Both(22, 6.7),
     "f_2": 0.82,
 }
 _WHAT_TO_ENTER = {
@@ -42,13 +45,13 @@ _WHAT_TO_ENTER = {
     "beta": "line from the point of impact toward rest, as surveyed",
     "s": "surveyed distance from impact to rest along the path",
     "f": "published drag of this surface, share of locked wheels, grade",
-    "x": "from the CG forward to the centre of the crush zone, inches",
-    "y": "from the CG to the right, to the centre of the crush zone, inches",
+    "x": "from the CG forward to the centre of the crush zone",
+    "y": "from the CG to the right, to the centre of the crush zone",
     "gamma": "direction of the contact surface, from the damage",
 }
 
 EXAMPLE = Scene(
-    title="Planar impact of two vehicles",
+    title="Impact of two vehicles in the plane",
     subtitle="Impact speeds and delta-V from approach and departure directions and run-out (SAE 2001-01-3347)",
     vehicles=("Vehicle 1", "Vehicle 2"),
     ranges=_RANGES,
@@ -66,4 +69,16 @@ EXAMPLE = Scene(
             "green cell, every range, every source, and the filter limits by those of your scene.",
         ),
     ),
+)
+
+MOMENTUM_EXAMPLE = replace(
+    EXAMPLE,
+    title="Momentum of two vehicles",
+    subtitle="Impact speeds and delta-V from directions and run-out; no rotation, no restitution (SAE 2001-01-3347)",
+)
+
+FORWARD_EXAMPLE = replace(
+    EXAMPLE,
+    title="What an impact does to two vehicles",
+    subtitle="Delta-V, rotation and departure from impact speeds and restitution (SAE 2001-01-3347, forward)",
 )

@@ -1,0 +1,338 @@
+"""Two vehicles meet in one line: speeds and delta-V from masses, restitution and one known speed."""
+
+from __future__ import annotations
+
+from templates.checks import check, checks_section
+from templates.description import (
+    Equation,
+    FilterRow,
+    ForecastRow,
+    GuideSection,
+    Input,
+    Role,
+    Section,
+    Template,
+)
+from templates.editions import Both
+from templates.guidance import CAVEATS, FIRST_STEPS, RESTITUTION
+from templates.units import CONVERSIONS, GRAVITY, MPH
+
+__all__ = ["TEMPLATE"]
+
+_SPEED = "[mph|km/h]"
+
+
+def _mass(j: int, low: Both, base: Both, high: Both) -> Input:
+    return Input(
+        f"[w|m]_{j}",
+        f"[w|m]{j}",
+        f"Vehicle {j} [weight|mass]",
+        "[lb|kg]",
+        base,
+        "Example. Enter: scale weight or published curb weight, plus occupants and load",
+        {"Low": low, "High": high},
+        number_format="#,##0",
+    )
+
+
+_ASSUMPTIONS = (
+    _mass(1, Both(3900, 1770), Both(4000, 1815), Both(4100, 1860)),
+    _mass(2, Both(2930, 1330), Both(3000, 1360), Both(3070, 1390)),
+    Input(
+        "e",
+        "e",
+        "Restitution",
+        "",
+        0.15,
+        "Example: frontal barrier tests at 30 mph, 0.04 to 0.24 (Monson and Germane); see sheet Guide",
+        {"Low": 0.04, "High": 0.24},
+        number_format="0.00",
+    ),
+    Input(
+        "V2_before",
+        "V2i",
+        "Vehicle 2 speed before, in the direction of vehicle 1",
+        _SPEED,
+        0,
+        "Example, held at 0: it stood. Negative where it came the other way",
+        {"Low": 0, "High": Both(5, 8)},
+        number_format="0.0",
+        frozen=True,
+    ),
+    Input(
+        "V2_after",
+        "V2f",
+        "Vehicle 2 speed after (used where known = 2)",
+        _SPEED,
+        Both(20, 32),
+        "Example. Enter: from its run-out, by skid",
+        {"Low": Both(18, 29), "High": Both(22, 35)},
+        number_format="0.0",
+    ),
+    Input(
+        "V1_before",
+        "V1i",
+        "Vehicle 1 speed before (used where known = 1)",
+        _SPEED,
+        Both(30, 48),
+        "Example, held. Enter: event data recorder, video; set Frozen to FALSE",
+        {"Low": Both(28, 45), "High": Both(32, 51)},
+        number_format="0.0",
+        frozen=True,
+    ),
+)
+
+_CONSTANTS = (
+    Input(
+        "known",
+        "",
+        "Known speed: 1 = vehicle 1 before, 2 = vehicle 2 after",
+        "",
+        2,
+        "Which of the two rows above is the known one",
+        choices=(1, 2),
+    ),
+    GRAVITY,
+    *CONVERSIONS,
+)
+
+_OPTIONAL = (
+    Input(
+        "V1_claimed",
+        "V1claimed",
+        "Vehicle 1 speed claimed by someone else",
+        _SPEED,
+        None,
+        "Optional. A statement, or another report: is it possible with the speeds of vehicle 2 as given?",
+    ),
+    Input(
+        "h_1", "h1", "Vehicle 1 lever arm of the impulse", "[ft|m]", None, "Optional. From its CG to the line of force"
+    ),
+    Input(
+        "h_2", "h2", "Vehicle 2 lever arm of the impulse", "[ft|m]", None, "Optional. From its CG to the line of force"
+    ),
+    Input(
+        "k_yaw",
+        "k",
+        "Radius of gyration in yaw",
+        "[ft|m]",
+        Both(4.6, 1.4),
+        "Typical of passenger cars. Used with the lever arms only",
+    ),
+)
+
+_SPEEDS = (
+    Equation("[m_1|]", "m1", "Vehicle 1 mass", "lb·s²/ft", "w_1/g", "weight / g"),
+    Equation("[m_2|]", "m2", "Vehicle 2 mass", "lb·s²/ft", "w_2/g", "weight / g"),
+    Equation("V2_i", "V2i", "Vehicle 2 speed before", "[ft|m]/s", f"V2_before/({MPH})", "input"),
+    Equation(
+        "V1_i",
+        "V1i",
+        "Vehicle 1 speed before",
+        "[ft|m]/s",
+        f"IF(known=1,V1_before/({MPH}),V2_i+(V2_after/({MPH})-V2_i)*(1+m_2/m_1)/(1+e))",
+        "momentum, restitution",
+        "Where vehicle 2's speed after is known, the impulse is m2·(V2f − V2i), and it is (1 + e) times the plastic "
+        "one.",
+    ),
+    Equation("V_close", "Vc", "Closing speed", "[ft|m]/s", "V1_i-V2_i", "definition"),
+    Equation(
+        "dV_1",
+        "ΔV1",
+        "Vehicle 1 change in velocity",
+        "[ft|m]/s",
+        "V_close*(1+e)/(1+m_1/m_2)",
+        "momentum, restitution",
+        "Backward; vehicle 2's is forward.",
+    ),
+    Equation(
+        "dV_2", "ΔV2", "Vehicle 2 change in velocity", "[ft|m]/s", "V_close*(1+e)/(1+m_2/m_1)", "momentum, restitution"
+    ),
+    Equation("V_sep", "Vsep", "Separation speed", "[ft|m]/s", "e*V_close", "restitution"),
+    Equation("V1_f", "V1f", "Vehicle 1 speed after", "[ft|m]/s", "V1_i-dV_1", "definition"),
+    Equation("V2_f", "V2f", "Vehicle 2 speed after", "[ft|m]/s", "V2_i+dV_2", "definition"),
+)
+
+
+def _answer(symbol: str, notation: str, name: str, quantity: str) -> Equation:
+    return Equation(
+        f"{symbol}_[mph|kmh]", notation, name, _SPEED, f"{quantity}*{MPH}", "conversion", "", Role.ANSWER, "0.00"
+    )
+
+
+_ANSWERS = (
+    _answer("V1", "V1i", "Vehicle 1 impact speed", "V1_i"),
+    _answer("dV1", "ΔV1", "Vehicle 1 delta-V", "dV_1"),
+    _answer("dV2", "ΔV2", "Vehicle 2 delta-V", "dV_2"),
+    _answer("V1f", "V1f", "Vehicle 1 speed after", "V1_f"),
+    _answer("V2f", "V2f", "Vehicle 2 speed after", "V2_f"),
+    Equation(
+        "E_lost",
+        "Elost",
+        "Energy lost in the impact",
+        "[ft·lb|J]",
+        "m_1*m_2/(m_1+m_2)*V_close^2*(1-e^2)/2",
+        "definition",
+        "",
+        Role.ANSWER,
+        "#,##0",
+    ),
+)
+
+_MORE = (
+    Equation(
+        "closing_[mph|kmh]",
+        "Vc",
+        "Closing speed",
+        _SPEED,
+        f"V_close*{MPH}",
+        "conversion",
+        number_format="0.00",
+    ),
+    Equation(
+        "common_[mph|kmh]",
+        "Vcommon",
+        "Common speed at the end of compression",
+        _SPEED,
+        f"(m_1*V1_i+m_2*V2_i)/(m_1+m_2)*{MPH}",
+        "momentum",
+        number_format="0.00",
+    ),
+    Equation(
+        "eccentricity",
+        "x",
+        "Share of rotation, Σ w·h²/k²",
+        "",
+        "(m_2*h_1^2+m_1*h_2^2)/(m_1+m_2)/k_yaw^2",
+        "lever arms",
+        "0 while the lever arms are blank.",
+    ),
+    Equation(
+        "overstated",
+        "",
+        "Delta-V from a closing speed is overstated by",
+        "%",
+        "100*eccentricity/(1+eccentricity)",
+        "x/(1 + x)",
+        "Equal cars, one struck off centre: about 2 % at 1 ft (0.3 m), 9 % at 2 ft (0.6 m). If that matters, use "
+        "planar-impact or planar-forward.",
+        number_format="0.0",
+    ),
+    Equation(
+        "e_claimed",
+        "eclaimed",
+        "Restitution that the claimed speed implies",
+        "",
+        f'IF(V1_claimed<>0,(V2_f-(V1_claimed/({MPH})-m_2/m_1*(V2_f-V2_i)))/(V1_claimed/({MPH})-V2_i),"–")',
+        "momentum",
+        "With the speeds of vehicle 2 before and after as above. Below 0, vehicle 1 would leave through vehicle 2.",
+        number_format="0.00",
+    ),
+)
+
+_CHECKS = checks_section(
+    4,
+    check(
+        "check_closing",
+        "Vehicle 1 catches vehicle 2",
+        "V_close>0",
+        "physics",
+        "FALSE: they move apart before they touch. Look at the sign of vehicle 2's speed.",
+    ),
+    check(
+        "check_restitution",
+        "Restitution lies between 0 and 1",
+        "AND(e>=0,e<1)",
+        "physics",
+        "FALSE: 1 or more adds energy; below 0 one vehicle passes through the other.",
+    ),
+    check(
+        "check_order",
+        "Vehicle 1 does not leave through vehicle 2",
+        "V_sep>=0",
+        "physics",
+        "FALSE: after the impact the rear vehicle is the faster one. A sign in the separation speed?",
+    ),
+    check(
+        "check_forward",
+        "Vehicle 1 moves forward",
+        "V1_i>0",
+        "physics",
+        "FALSE: forward is the direction of vehicle 1. Exchange the vehicles, or the signs.",
+    ),
+    check(
+        "check_claim",
+        "The claimed speed is possible",
+        "IF(V1_claimed<>0,AND(e_claimed>=0,e_claimed<1),TRUE)",
+        "physics",
+        "FALSE: it would need a restitution that no impact has: energy grows, or the vehicles pass through each other.",
+    ),
+)
+
+_GUIDE = (
+    GuideSection(
+        "This workbook",
+        (
+            "A template. The numbers in it are an example: a car runs into the rear of a standing one. Replace every "
+            "green cell, every range, every source.",
+        ),
+    ),
+    FIRST_STEPS,
+    GuideSection(
+        "When to use this model",
+        (
+            "Head-on and front-to-rear impacts whose line of force passes near both centres of gravity, at low angles. "
+            "It needs the masses, the restitution and one speed: that of vehicle 1 before, or that of vehicle 2 after.",
+            "Positive is the direction of vehicle 1. A vehicle 2 that came the other way has a negative speed.",
+            "Restitution matters: delta-V is proportional to 1 + e. At low speeds it is far from 0.",
+            "Not for impacts off centre: enter the lever arms on sheet Inputs to see by how much delta-V is "
+            "overstated. The next rungs are momentum and planar-impact (directions and run-out known) and "
+            "planar-forward.",
+            "Not where tyre forces matter: at f = 0.8 they take about 1.8 mph (2.8 km/h) for each 0.1 s of contact, "
+            "much of a low-speed delta-V.",
+        ),
+    ),
+    RESTITUTION,
+    GuideSection(
+        "A published example can be wrong",
+        (
+            "A textbook lets 1,500 kg run into 2,500 kg at rest, which leaves at 15 m/s; e = 0.5. It prints 80 m/s for "
+            "the impact speed. The answer is 26.67 m/s (96 km/h): the printed one has the separation speed negative. "
+            "Entered as the claimed speed, 80 m/s turns its check red: restitution would be −0.5.",
+        ),
+    ),
+    CAVEATS,
+)
+
+TEMPLATE = Template(
+    title="Collinear impact of two vehicles",
+    subtitle="One dimension: momentum, restitution and one known speed",
+    rung=3,
+    question="How fast was a vehicle that struck another head-on or from behind? Delta-V?",
+    needs="weights, restitution, one known speed",
+    assumptions=_ASSUMPTIONS,
+    constants=_CONSTANTS,
+    optional=_OPTIONAL,
+    sections=(
+        Section("1  Speeds and changes in velocity", _SPEEDS),
+        Section("2  Answers (the forecasts)", _ANSWERS),
+        Section("3  Limits of one dimension, claims", _MORE),
+        _CHECKS,
+    ),
+    forecasts=(
+        ForecastRow("Vehicle 1 impact speed", "V1_[mph|kmh]", _SPEED),
+        ForecastRow("Vehicle 1 delta-V", "dV1_[mph|kmh]", _SPEED),
+        ForecastRow("Vehicle 2 delta-V", "dV2_[mph|kmh]", _SPEED),
+        ForecastRow("Vehicle 1 speed after", "V1f_[mph|kmh]", _SPEED),
+        ForecastRow("Vehicle 2 speed after", "V2f_[mph|kmh]", _SPEED),
+        ForecastRow("Energy lost", "E_lost", "[ft·lb|J]"),
+    ),
+    filters=(
+        FilterRow("Closing speed", "closing_[mph|kmh]", "Vehicle 1 must catch vehicle 2 to strike it", above=0),
+        FilterRow("Energy lost", "E_lost", "An impact takes energy away; it cannot add any", at_least=0),
+    ),
+    settings=(("Trials", 200_000), ("Seed", 999)),
+    correlations=(),
+    correlation_note="Do the weights share an error? Then correlate them here.",
+    guide=_GUIDE,
+)

@@ -1,0 +1,513 @@
+"""Speed change from the energy that crushed two vehicles, by crush profile and stiffness."""
+
+from __future__ import annotations
+
+from templates.checks import check, checks_section
+from templates.description import (
+    CorrelationRow,
+    Curve,
+    Diagram,
+    Equation,
+    FilterRow,
+    ForecastRow,
+    GuideSection,
+    Input,
+    Look,
+    Role,
+    Section,
+    Template,
+)
+from templates.editions import Both
+from templates.guidance import CAVEATS, FIRST_STEPS, RESTITUTION, SIGNS
+from templates.units import CONVERSIONS, GRAVITY, MPH
+from templates.vehicles import for_both
+
+__all__ = ["TEMPLATE"]
+
+_VEHICLES = ("Vehicle 1", "Vehicle 2")
+_STATIONS = range(1, 7)
+_TEST = "Example. Enter: published crash test of this model, this end of it"
+
+# Symbol, notation, name, unit, (low, base, high) of vehicle 1 and of vehicle 2, source, number format.
+_UNCERTAIN = (
+    (
+        "b0",
+        "b0",
+        "no-damage speed b0",
+        "[mph|km/h]",
+        (Both((4, 5, 6), (6.5, 8, 9.5)), Both((2, 3, 4), (3.2, 4.8, 6.4))),
+        f"{_TEST}: the speed that leaves no residual crush",
+        "0.00",
+    ),
+    (
+        "b1",
+        "b1",
+        "slope of speed over crush b1",
+        "[mph/in|(km/h)/cm]",
+        (Both((1.35, 1.5, 1.65), (0.86, 0.95, 1.04)), Both((1.5, 1.7, 1.9), (0.95, 1.08, 1.21))),
+        f"{_TEST}: (test speed − b0) / mean residual crush",
+        "0.000",
+    ),
+    (
+        "bias",
+        "c",
+        "reading error of all crush stations",
+        "[in|cm]",
+        (Both((-0.5, 0, 0.5), (-1.3, 0, 1.3)), Both((-0.5, 0, 0.5), (-1.3, 0, 1.3))),
+        "Example. Where the undamaged contour was: shifts the whole profile",
+        "0.00",
+    ),
+    (
+        "L",
+        "L",
+        "width of the crush",
+        "[in|cm]",
+        (Both((58, 60, 62), (147, 152, 157)), Both((56, 60, 64), (142, 152, 162))),
+        "Example. Enter: measured width of direct and induced damage; 0 for a fixed barrier",
+        "0.0",
+    ),
+    (
+        "theta",
+        "θ",
+        "force, off the perpendicular",
+        "deg",
+        ((0, 5, 10), (0, 5, 10)),
+        "Example. From the principal direction of force; the correction grows as tan²θ",
+        "0.0",
+    ),
+    (
+        "h",
+        "h",
+        "lever arm of the force",
+        "[ft|m]",
+        (Both((0, 0.5, 1), (0, 0.15, 0.3)), Both((0, 1, 2), (0, 0.3, 0.6))),
+        "Example. From the CG to the line of the force",
+        "0.00",
+    ),
+    (
+        "[w|m]",
+        "[w|m]",
+        "[weight|mass]",
+        "[lb|kg]",
+        (Both((3400, 3500, 3600), (1540, 1590, 1640)), Both((2900, 3000, 3100), (1315, 1360, 1405))),
+        "Example. Enter: scale weight or published curb weight, plus occupants and load",
+        "#,##0",
+    ),
+)
+
+
+def _third(values: tuple[float, float, float] | Both, place: int) -> float | Both:
+    if isinstance(values, Both):
+        return Both(values.imperial[place], values.si[place])
+    return values[place]
+
+
+def _assumptions() -> tuple[Input, ...]:
+    of_vehicles = (
+        Input(
+            f"{symbol}_{j}",
+            f"{notation},{j}" if notation in ("b0", "b1") else f"{notation}{j}",
+            f"{_VEHICLES[j - 1]} {name}",
+            unit,
+            _third(values[j - 1], 1),
+            source,
+            {"Low": _third(values[j - 1], 0), "High": _third(values[j - 1], 2)},
+            number_format=number_format,
+        )
+        for j in (1, 2)
+        for symbol, notation, name, unit, values, source, number_format in _UNCERTAIN
+    )
+    restitution = Input(
+        "e",
+        "e",
+        "Restitution",
+        "",
+        0.1,
+        "Example: frontal barrier tests at 30 and 35 mph, 0.04 to 0.24 (Monson and Germane); see sheet Guide",
+        {"Low": 0.04, "High": 0.24},
+        number_format="0.00",
+    )
+    return (*of_vehicles, restitution)
+
+
+_PROFILES = (
+    (Both((18, 17, 16, 15, 14, 12), (46, 43, 41, 38, 36, 30)), "front, example"),
+    (Both((8, 12, 16, 18, 17, 12), (20, 30, 41, 46, 43, 30)), "side, example"),
+)
+
+
+def _constants() -> tuple[Input, ...]:
+    of_vehicles: list[Input] = []
+    for j, (profile, what) in enumerate(_PROFILES, 1):
+        of_vehicles += (
+            Input(
+                f"c_{j}_{i}",
+                f"C{j},{i}",
+                f"Vehicle {j} crush at station {i}",
+                "[in|cm]",
+                Both(profile.imperial[i - 1], profile.si[i - 1]),
+                f"Residual crush, stations evenly spaced over the width ({what})",
+                number_format="0.0",
+            )
+            for i in _STATIONS
+        )
+        of_vehicles += (
+            Input(
+                f"[w|m]_test_{j}",
+                f"[w|m]test,{j}",
+                f"Vehicle {j} [weight|mass] in the crash test",
+                "[lb|kg]",
+                Both(3700, 1680) if j == 1 else Both(3200, 1450),
+                _TEST,
+                number_format="#,##0",
+            ),
+            Input(
+                f"L_test_{j}",
+                f"Ltest,{j}",
+                f"Vehicle {j} width of the crush in the crash test",
+                "[in|cm]",
+                Both(62, 157),
+                _TEST,
+                number_format="0.0",
+            ),
+            Input(
+                f"k_{j}",
+                f"k{j}",
+                f"Vehicle {j} radius of gyration in yaw",
+                "[ft|m]",
+                Both(4.6, 1.4),
+                "Typical of passenger cars: √(I/m)",
+                number_format="0.00",
+            ),
+        )
+    length = Input(
+        "[in_per_ft|cm_per_m]",
+        "[12|100]",
+        "[Inches in a foot|Centimetres in a metre]",
+        "[in/ft|cm/m]",
+        Both(12, 100),
+        "Definition",
+    )
+    return (*of_vehicles, GRAVITY, length, *CONVERSIONS)
+
+
+_OPTIONAL = tuple(
+    Input(
+        f"{letter}_given_{j}",
+        f"{letter}{j} given",
+        f"Vehicle {j} stiffness {letter}, where it is published",
+        unit,
+        None,
+        "Optional. Both A and B replace b0 and b1; a pair taken from tables has no known scatter",
+    )
+    for j in (1, 2)
+    for letter, unit in (("A", "[lb/in|N/cm]"), ("B", "[lb/in²|N/cm²]"))
+)
+
+_LENGTH = "[in_per_ft|cm_per_m]"
+
+_STIFFNESS = (
+    Equation("[m_{j}|]", "m{j}", "{who} mass", "lb·s²/ft", "w_{j}/g", "weight / g"),
+    Equation("[m_test_{j}|]", "mtest,{j}", "{who} mass in the crash test", "lb·s²/ft", "w_test_{j}/g", "weight / g"),
+    Equation(
+        "A_{j}",
+        "A{j}",
+        "{who} force at which crush begins, per width",
+        "[lb/in|N/cm]",
+        f"IF(B_given_{{j}}>0,A_given_{{j}},{_LENGTH}*m_test_{{j}}*(b0_{{j}}/({MPH}))*(b1_{{j}}/({MPH}))/L_test_{{j}})",
+        "A = m b0 b1 / L",
+        "<A and B come from one test and go together: b0 and b1 are drawn, not A and B.|>",
+        number_format="0.00",
+    ),
+    Equation(
+        "B_{j}",
+        "B{j}",
+        "{who} stiffness, per width",
+        "[lb/in²|N/cm²]",
+        f"IF(B_given_{{j}}>0,B_given_{{j}},{_LENGTH}*m_test_{{j}}*(b1_{{j}}/({MPH}))^2/L_test_{{j}})",
+        "B = m b1² / L",
+        number_format="0.00",
+    ),
+)
+
+
+def _force(i: int) -> Equation:
+    return Equation(
+        f"F_{{j}}_{i}",
+        f"F{{j}},{i}",
+        f"{{who}} force per width at station {i}",
+        "[lb/in|N/cm]",
+        f"A_{{j}}+B_{{j}}*MAX(c_{{j}}_{i}+bias_{{j}},0)",
+        "A + B·C",
+        number_format="#,##0.0",
+    )
+
+
+_PAIRS = tuple((i, i + 1) for i in _STATIONS if i + 1 in _STATIONS)
+_ENERGY = (
+    *(_force(i) for i in _STATIONS),
+    Equation(
+        "E_plain_{j}",
+        "E{j}0",
+        "{who} crush energy, force perpendicular",
+        "[ft·lb|J]",
+        "L_{j}/(6*5*B_{j})*("
+        + "+".join(f"F_{{j}}_{a}^2+F_{{j}}_{a}*F_{{j}}_{b}+F_{{j}}_{b}^2" for a, b in _PAIRS)
+        + f")/{_LENGTH}",
+        "∫(A + B·C)²/(2B) dL, crush linear between the stations",
+        "<Exact for a profile of straight pieces. The shortcut by mean crush is too low: 10 % for 0 to 24 inches.|>",
+        number_format="#,##0",
+    ),
+    Equation(
+        "E_{j}",
+        "E{j}",
+        "{who} crush energy",
+        "[ft·lb|J]",
+        "E_plain_{j}*(1+TAN(RADIANS(theta_{j}))^2)",
+        "oblique force",
+        "<1 + tan²θ: an oblique force crushes along its own line.|>",
+        number_format="#,##0",
+    ),
+    Equation(
+        "force_{j}",
+        "F{j}",
+        "{who} force at full crush",
+        "[lb|N]",
+        "L_{j}/(2*5)*(" + "+".join(f"F_{{j}}_{a}+F_{{j}}_{b}" for a, b in _PAIRS) + ")/COS(RADIANS(theta_{j}))",
+        "∫(A + B·C) dL / cos θ",
+        number_format="#,##0",
+    ),
+)
+
+_IMPACT = (
+    Equation(
+        "m_eff_{j}",
+        "m{j}′",
+        "{who} effective mass at the line of force",
+        "[lb·s²/ft|kg]",
+        "m_{j}*k_{j}^2/(k_{j}^2+h_{j}^2)",
+        "m k²/(k² + h²)",
+        "<Off centre, part of the closing speed turns the vehicle instead of stopping it.|>",
+        number_format="#,##0.00",
+    ),
+    Equation(
+        "m_both",
+        "m̄",
+        "Effective mass of both",
+        "[lb·s²/ft|kg]",
+        "m_eff_1*m_eff_2/(m_eff_1+m_eff_2)",
+        "1/(1/m1′ + 1/m2′)",
+        number_format="#,##0.00",
+    ),
+    Equation(
+        "E_sum", "E", "Energy of the crush, both vehicles", "[ft·lb|J]", "E_1+E_2", "definition", number_format="#,##0"
+    ),
+    Equation(
+        "V_close",
+        "Vc",
+        "Closing speed along the line of force",
+        "[ft|m]/s",
+        "SQRT(2*E_sum/(m_both*(1-e^2)))",
+        "energy",
+        "At the line of force, not of the centres of gravity.",
+    ),
+    Equation(
+        "dV_{j}",
+        "ΔV{j}",
+        "{who} change in velocity",
+        "[ft|m]/s",
+        "SQRT(2*m_both*E_sum*(1+e)/(1-e))/m_{j}",
+        "(1/m) √(2 m̄ E (1 + e)/(1 − e))",
+    ),
+)
+
+_ANSWERS = (
+    Equation(
+        "dV{j}_[mph|kmh]",
+        "ΔV{j}",
+        "{who} delta-V",
+        "[mph|km/h]",
+        f"dV_{{j}}*{MPH}",
+        "conversion",
+        "",
+        Role.ANSWER,
+        "0.00",
+    ),
+    Equation(
+        "closing_[mph|kmh]",
+        "Vc",
+        "Closing speed along the line of force",
+        "[mph|km/h]",
+        f"V_close*{MPH}",
+        "conversion",
+        "",
+        Role.ANSWER,
+        "0.00",
+    ),
+    Equation("E_crush", "E", "Energy of the crush", "[ft·lb|J]", "E_sum", "above", "", Role.ANSWER, "#,##0"),
+    Equation(
+        "ratio",
+        "F1/F2",
+        "Force balance, F1/F2",
+        "",
+        "IF(MIN(L_1,L_2)>0,force_1/force_2,1)",
+        "Newton's third law",
+        "The same force crushed both vehicles: 1 within what stiffness data are worth.",
+        Role.ANSWER,
+        "0.00",
+    ),
+)
+
+_MORE = (
+    Equation(
+        "balance_2",
+        "C2 balance",
+        "Uniform crush of vehicle 2 that balances vehicle 1's force",
+        "[in|cm]",
+        'IF(L_2>0,(force_1*COS(RADIANS(theta_2))/L_2-A_2)/B_2,"–")',
+        "Newton's third law",
+        "Compare it with the profile of vehicle 2.",
+        number_format="0.000",
+    ),
+    Equation(
+        "shortcut_{j}",
+        "",
+        "{who} energy by mean crush, for comparison",
+        "[ft·lb|J]",
+        "L_{j}/(2*B_{j})*((" + "+".join(f"F_{{j}}_{a}+F_{{j}}_{b}" for a, b in _PAIRS) + f")/10)^2/{_LENGTH}",
+        "L (A + B·C̄)²/(2B)",
+        "<Too low wherever the profile is not flat. Not used.|>",
+        number_format="#,##0",
+    ),
+)
+
+_CHECKS = checks_section(
+    6,
+    check(
+        "check_crush",
+        "No crush is negative",
+        "MIN(" + ",".join(f"c_{j}_{i}" for j in (1, 2) for i in _STATIONS) + ")>=0",
+        "geometry",
+        "FALSE: crush is measured inward from the undamaged contour.",
+    ),
+    check(
+        "check_stiffness",
+        "Both vehicles resist crush",
+        "AND(MIN(A_1,A_2)>=0,MIN(B_1,B_2)>0)",
+        "physics",
+        "FALSE: a stiffness that is not positive. Look at b0, b1 and the optional A and B.",
+    ),
+    check(
+        "check_restitution",
+        "Restitution lies between 0 and 1",
+        "AND(e>=0,e<1)",
+        "physics",
+        "FALSE: 1 or more adds energy; below 0 a common velocity was never reached, and crush tells less.",
+    ),
+    check(
+        "check_balance",
+        "The forces on both vehicles agree within a factor of 1.5",
+        "AND(ratio>=1/1.5,ratio<=1.5)",
+        "Newton's third law",
+        "FALSE: one force cannot crush both vehicles so. Look at profiles, widths and stiffness.",
+    ),
+    check(
+        "check_oblique",
+        "No force is more than 45° off the perpendicular",
+        "MAX(ABS(theta_1),ABS(theta_2))<=45",
+        "validity",
+        "FALSE: a sliding contact; the correction 1 + tan²θ is no longer one.",
+    ),
+)
+
+
+def _profile(j: int, look: Look) -> Curve:
+    points = tuple((f"L_{j}*{i - 1}/5-L_{j}/2", f"MAX(c_{j}_{i}+bias_{j},0)") for i in _STATIONS)
+    return Curve(f"Vehicle {j} crush", look, points)
+
+
+_DIAGRAM = Diagram(
+    "Crush profiles, base case",
+    "Along the crush, [in|cm]",
+    "Depth, [in|cm]",
+    (_profile(1, Look.FIRST), _profile(2, Look.SECOND)),
+    remark="Drawn from the cells below, each profile about the middle of its width.",
+)
+
+_GUIDE = (
+    GuideSection(
+        "This workbook",
+        (
+            "A template. The numbers in it are an example: the front of one car into the side of another. Replace "
+            "every green cell, every crush station, every range, every source.",
+        ),
+    ),
+    FIRST_STEPS,
+    SIGNS,
+    GuideSection(
+        "When to use this model",
+        (
+            "Damage was measured and stiffness data fit the vehicles, but momentum is blind: near-parallel approaches, "
+            "one vehicle that did not leave the scene, unknown run-out. It answers delta-V, not the speeds of the "
+            "vehicles.",
+            "Enter residual crush at six stations evenly spaced over the width. For a fixed barrier as vehicle 2: "
+            "width 0, a weight of 1,000,000,000.",
+            "Stiffness from one test at one speed is a straight line through one point: stay near its crush. A and B "
+            "of one test are bound to each other: b0 and b1 are drawn and both computed from them. Published A and B "
+            "may be entered under Optional; they are then single values without a distribution, which is worth saying.",
+            "The next rungs: momentum and planar-impact where directions and run-out are known. Where both can be "
+            "used, use both: two independent answers that agree are worth more than either.",
+            "Not for sideswipes, override or underride, nor for crush far beyond the test's.",
+        ),
+    ),
+    GuideSection(
+        "Reading the results of this model",
+        (
+            "The force balance judges the data: the same force crushed both. Trials outside 0.67 to 1.5 are rejected.",
+            "Energy rises with the square of the crush, so that the mean crush of an uneven profile underestimates it.",
+            "Delta-V is that along the line of force, at the centre of gravity.",
+        ),
+    ),
+    RESTITUTION,
+    CAVEATS,
+)
+
+TEMPLATE = Template(
+    title="Delta-V from crush energy",
+    subtitle="Energy of the crush by profile and stiffness; effective masses; restitution",
+    rung=7,
+    question="What delta-V left this damage, where momentum is blind?",
+    needs="crush profiles, stiffness from tests, weights, direction and lever arm of the force",
+    assumptions=_assumptions(),
+    constants=_constants(),
+    optional=_OPTIONAL,
+    sections=(
+        Section("1  Stiffness from a crash test", for_both(_VEHICLES, _STIFFNESS)),
+        Section("2  Crush energy", for_both(_VEHICLES, _ENERGY)),
+        Section("3  Energy to change in velocity", for_both(_VEHICLES, _IMPACT)),
+        Section("4  Answers (the forecasts)", for_both(_VEHICLES, _ANSWERS)),
+        Section("5  For comparison", for_both(_VEHICLES, _MORE)),
+        _CHECKS,
+    ),
+    forecasts=(
+        ForecastRow("Vehicle 1 delta-V", "dV1_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("Vehicle 2 delta-V", "dV2_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("Closing speed along the force", "closing_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("Energy of the crush", "E_crush", "[ft·lb|J]"),
+        ForecastRow("Force balance", "ratio", ""),
+    ),
+    filters=(
+        FilterRow(
+            "Force balance",
+            "ratio",
+            "Example. The same force crushed both vehicles; limits as wide as stiffness data are uncertain",
+            at_least=0.67,
+            at_most=1.5,
+        ),
+    ),
+    settings=(("Trials", 200_000), ("Seed", 999)),
+    correlations=(CorrelationRow("b0_1", "b1_1", 0), CorrelationRow("b0_2", "b1_2", 0)),
+    correlation_note="A higher b0 chosen for the same test means a lower b1: enter a negative correlation. 0 is none.",
+    guide=_GUIDE,
+    diagram=_DIAGRAM,
+)

@@ -1,0 +1,135 @@
+"""What a momentum solution answers: speeds, delta-V, the direction of the force."""
+
+from __future__ import annotations
+
+from templates.description import Equation, Role
+
+__all__ = ["ANSWERS", "DELTA_V_ANSWER", "FORCE", "ROTATION"]
+
+DELTA_V_ANSWER = Equation(
+    "dV{j}_[mph|kmh]",
+    "ΔV{j}",
+    "{who} delta-V",
+    "[mph|km/h]",
+    "dV_{j}*s_per_hour/[ft_per_mile|m_per_km]",
+    "eq (19′)",
+    role=Role.ANSWER,
+    number_format="0.00",
+)
+
+ANSWERS = (
+    DELTA_V_ANSWER,
+    Equation(
+        "V{j}_[mph|kmh]",
+        "V{j}i",
+        "{who} impact speed",
+        "[mph|km/h]",
+        "V{j}_i*s_per_hour/[ft_per_mile|m_per_km]",
+        "eq (<15|16>′)",
+        role=Role.ANSWER,
+        number_format="0.00",
+    ),
+)
+
+FORCE = (
+    Equation(
+        "closing_[mph|kmh]",
+        "Vc",
+        "Closing speed of the centres of gravity",
+        "[mph|km/h]",
+        "SQRT((V1_i*COS(RADIANS(alpha_1))-V2_i*COS(RADIANS(alpha_2)))^2"
+        "+(V1_i*SIN(RADIANS(alpha_1))-V2_i*SIN(RADIANS(alpha_2)))^2)*s_per_hour/[ft_per_mile|m_per_km]",
+        "definition",
+        number_format="0.00",
+    ),
+    Equation(
+        "dV{j}_long",
+        "ΔV{j} long",
+        "{who} delta-V along its heading",
+        "[mph|km/h]",
+        "(dV{j}_x*COS(RADIANS(alpha_{j}))+dV{j}_y*SIN(RADIANS(alpha_{j})))*s_per_hour/[ft_per_mile|m_per_km]",
+        "definition",
+        "<Negative: slowed. This is what an event data recorder calls longitudinal.|>",
+        number_format="0.00",
+    ),
+    Equation(
+        "dV{j}_left",
+        "ΔV{j} left",
+        "{who} delta-V to its left",
+        "[mph|km/h]",
+        "(dV{j}_y*COS(RADIANS(alpha_{j}))-dV{j}_x*SIN(RADIANS(alpha_{j})))*s_per_hour/[ft_per_mile|m_per_km]",
+        "definition",
+        number_format="0.00",
+    ),
+    Equation(
+        "PDOF_{j}",
+        "PDOF{j}",
+        "{who} PDOF, counter-clockwise from the front",
+        "deg",
+        "DEGREES(ATAN2(-dV{j}_long,-dV{j}_left))",
+        "eq (23′)",
+        "<Direction the blow came from, −180 to 180, left side positive. Eq (23)'s arctangent loses the quadrant. "
+        "Excel's ATAN2 takes x first.|>",
+        number_format="0.0",
+    ),
+    Equation(
+        "PDOF{j}_cw",
+        "PDOF{j} cw",
+        "{who} PDOF, clockwise from the front",
+        "deg",
+        "MOD(-PDOF_{j},360)",
+        "convention",
+        "<0 to 360: right side 90, left side 270.|>",
+        number_format="0.0",
+    ),
+    Equation(
+        "PDOF{j}_clock",
+        "PDOF{j} clock",
+        "{who} PDOF, clock direction",
+        "o'clock",
+        "MOD(ROUND(PDOF{j}_cw/30,0)+11,12)+1",
+        "convention",
+        "<Front 12, right side 3, left side 9.|>",
+        number_format="0",
+    ),
+)
+
+ROTATION = (
+    Equation(
+        "d_omega{j}_deg",
+        "Δω{j}",
+        "{who} change in yaw rate",
+        "deg/s",
+        "DEGREES(d_omega_{j})",
+        "eq (<17|18>′)",
+        "<Counter-clockwise positive.|>",
+        number_format="0.0",
+    ),
+    Equation(
+        "E_before",
+        "Ei",
+        "Kinetic energy before",
+        "[ft·lb|J]",
+        "(m_1*V1_i^2+m_2*V2_i^2+I_1*omega1_i^2+I_2*omega2_i^2)/2",
+        "definition",
+        number_format="#,##0",
+    ),
+    Equation(
+        "E_after",
+        "Ef",
+        "Kinetic energy after",
+        "[ft·lb|J]",
+        "(m_1*V1_f^2+m_2*V2_f^2+I_1*omega1_f^2+I_2*omega2_f^2)/2",
+        "definition",
+        number_format="#,##0",
+    ),
+    Equation(
+        "E_lost",
+        "Elost",
+        "Energy lost in the impact",
+        "[ft·lb|J]",
+        "E_before-E_after",
+        "definition",
+        number_format="#,##0",
+    ),
+)

@@ -1,0 +1,36 @@
+"""The plan view of two vehicles at the impact: outlines, approach and departure directions, points of rest."""
+
+from __future__ import annotations
+
+from templates.description import Curve, Look
+from templates.plan_view import arrow, mark, outline, turned
+
+__all__ = ["rest_points", "vehicle_curves"]
+
+Point = tuple[str, str]
+
+_LOOKS = ((Look.FIRST, Look.FIRST_PATH), (Look.SECOND, Look.SECOND_PATH))
+
+
+def vehicle_curves(vehicles: tuple[str, str], centres: tuple[Point, Point]) -> tuple[Curve, ...]:
+    """Either vehicle at the impact, where it came from and where it went.
+
+    Args:
+        vehicles: what to call them.
+        centres: formulas of the centres of gravity at the impact.
+    """
+    curves: list[Curve] = []
+    for j, (who, centre, (solid, dashed)) in enumerate(zip(vehicles, centres, _LOOKS, strict=True), 1):
+        came = turned(centre, f"alpha_{j}", f"-0.5*length_{j}", "0")
+        curves += [
+            outline(who, solid, centre, f"alpha_{j}", f"length_{j}", f"width_{j}"),
+            arrow(f"{who} approach", solid, came, f"alpha_{j}", f"-0.9*length_{j}"),
+            arrow(f"{who} departure, to rest", dashed, centre, f"beta_{j}", f"s_{j}"),
+        ]
+    return tuple(curves)
+
+
+def rest_points(centres: tuple[Point, Point]) -> Curve:
+    """Where the centres of gravity come to rest."""
+    points = (turned(centre, f"beta_{j}", f"s_{j}", "0") for j, centre in enumerate(centres, 1))
+    return mark("Rest", *points, look=Look.REST)

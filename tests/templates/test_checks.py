@@ -1,0 +1,67 @@
+"""Inputs that contradict physics turn their own check red, and only that one."""
+
+from __future__ import annotations
+
+import pytest
+
+from templates.build import TEMPLATES
+
+# Template, the check that must fail, the inputs that make it (the others as in the empty template).
+CASES = [
+    ("skid", "check_slowing", {"grade": -10, "f_2": 0.05}),
+    ("skid", "check_lengths", {"d_2": -5}),
+    ("skid", "check_friction", {"f_1": 7.5}),
+    ("skid", "check_friction", {"braking": 1.5}),
+    ("skid", "check_end", {"v_end": -1}),
+    ("critical-speed-yaw", "check_arc", {"chord": 4, "ordinate": 100}),
+    ("critical-speed-yaw", "check_arc", {"ordinate": -4, "offset": -1000}),
+    ("critical-speed-yaw", "check_radius", {"offset": 400, "f": 0.5}),
+    ("critical-speed-yaw", "check_friction", {"f": 7.5}),
+    ("critical-speed-yaw", "check_slowing", {"chord_later": 100, "ordinate_later": 3}),
+    ("collinear", "check_closing check_order", {"known": 1, "V1_before": 10, "V2_before": 20}),
+    ("collinear", "check_restitution", {"e": 1.2}),
+    ("collinear", "check_restitution check_order", {"e": -0.2}),
+    ("collinear", "check_forward", {"known": 1, "V1_before": -10, "V2_before": -20}),
+    ("collinear", "check_claim", {"V1_claimed": 90}),
+    # Off centre, restitutions of opposite sign can add energy although each is below 1.
+    ("planar-forward", "check_energy", {"e_n": 0.95, "e_t": -0.95, "gamma_t": 113, "x_1": 90, "y_1": -40, "y_2": -11}),
+    ("planar-forward", "check_closing check_push", {"gamma_t": 281, "V1_before": 5, "V2_before": 60, "alpha_2": 190}),
+    ("planar-forward", "check_restitution", {"e_t": 1.05, "gamma_t": 100}),
+    ("planar-forward", "check_ratio", {"mu": -0.5}),
+    ("planar-forward", "check_forward", {"V2_before": -1}),
+    ("crush-energy", "check_crush", {"c_1_3": -2}),
+    ("crush-energy", "check_stiffness", {"b0_2": -0.1}),
+    ("crush-energy", "check_restitution", {"e": -0.1}),
+    ("crush-energy", "check_balance", {"L_2": 20}),
+    ("crush-energy", "check_oblique", {"theta_1": 50, "L_1": 40}),
+    ("pedestrian-throw", "check_distance", {"s": 0}),
+    ("pedestrian-throw", "check_friction", {"mu": 6.6}),
+    ("pedestrian-throw", "check_angle", {"angle": 80}),
+    ("pedestrian-throw", "check_efficiency", {"efficiency": 1.1}),
+    ("momentum", "check_energy", {"alpha_1": 110, "alpha_2": 150, "beta_1": 150, "beta_2": 30}),
+    ("momentum", "check_angles", {"alpha_1": 340, "alpha_2": 170, "beta_1": 300, "beta_2": 270}),
+    ("momentum", "check_forward", {"alpha_1": 190, "alpha_2": 100, "beta_1": 300, "beta_2": 230}),
+    # An impulse that pulls always adds energy too.
+    ("momentum", "check_energy check_closing", {"alpha_1": 80, "alpha_2": 310, "beta_1": 60, "beta_2": 250}),
+]
+
+
+@pytest.mark.parametrize(("template", "failing", "changes"), CASES)
+def test_a_contradiction_turns_its_check_red(template, failing, changes, cells, described):
+    names = [row.symbol for row in described[template].equations if row.role.value == "check"]
+    found = {symbol: value.item() for symbol, value in cells(template, changes, names).items()}
+    assert found.pop("checks_hold") == 0
+    assert [symbol for symbol, holds in found.items() if not holds] == failing.split()
+
+
+def test_every_check_of_every_template_is_tried(described):
+    """Those of planar-impact are in test_planar_impact.py."""
+    tried = {(template, symbol) for template, failing, _ in CASES for symbol in failing.split()}
+    checks = {
+        (name, row.symbol)
+        for name in TEMPLATES
+        if name != "planar-impact"
+        for row in described[name].equations
+        if row.role.value == "check" and row.symbol != "checks_hold"
+    }
+    assert tried == checks

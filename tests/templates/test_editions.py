@@ -1,0 +1,88 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from templates.build import TEMPLATES
+from templates.description import Equation
+from templates.editions import Both, Edition, edition
+
+# Unit of the imperial edition -> unit of the SI edition, and how many of these it is. Masses: pounds over 32.174 are
+# slugs, 14.593903 kg each, so that both editions mean the same mass whatever the digits of g.
+SLUG = 4.4482216152605 / 0.3048
+POUND_FORCE = 4.4482216152605
+CONVERSION = {
+    ("ft", "m"): 0.3048,
+    ("in", "m"): 0.0254,
+    ("in", "cm"): 2.54,
+    ("ft/s", "m/s"): 0.3048,
+    ("ft/s²", "m/s²"): 0.3048,
+    ("ft²/s²", "m²/s²"): 0.3048**2,
+    ("mph", "km/h"): 1.609344,
+    ("mph/in", "(km/h)/cm"): 1.609344 / 2.54,
+    ("lb", "kg"): SLUG / 32.174,
+    ("lb", "N"): POUND_FORCE,
+    ("lb/in", "N/cm"): POUND_FORCE / 2.54,
+    ("lb/in²", "N/cm²"): POUND_FORCE / 2.54**2,
+    ("lb·s²/ft", "kg"): SLUG,
+    ("ft/(lb·s²)", "1/kg"): 1 / SLUG,
+    ("lb·s", "N·s"): POUND_FORCE,
+    ("ft·lb", "J"): POUND_FORCE * 0.3048,
+    ("lb·ft·s²", "kg·m²"): POUND_FORCE * 0.3048,
+}
+DEFINITIONS = ("ft_per_mile", "in_per_ft")
+
+
+def converted(value, imperial, si):
+    """A value of an imperial cell in the units of its SI counterpart."""
+    return value if imperial.unit == si.unit else value * CONVERSION[imperial.unit, si.unit]
+
+
+def test_a_choice_follows_the_units():
+    row = Equation("V_[mph|kmh]", "V", "Speed", "[mph|km/h]", "v*[ft_per_mile|m_per_km]", number_format="0.0[|0]")
+    imperial, si = (edition(row, units) for units in Edition)
+    assert (imperial.symbol, imperial.unit, imperial.number_format) == ("V_mph", "mph", "0.0")
+    assert (si.symbol, si.formula, si.number_format) == ("V_kmh", "v*m_per_km", "0.00")
+
+
+def test_numbers_and_empty_rows_follow_too():
+    rows = (Equation("[m|]", "", "", "", "w/g"), Equation("v", "", "", "", "2"))
+    assert [row.symbol for row in edition(rows, Edition.SI)] == ["v"]
+    assert edition({"Low": Both(3, 1)}, Edition.SI) == {"Low": 1}
+    assert edition("Monson and Germane [23]", Edition.SI) == "Monson and Germane [23]"
+
+
+def pairs(name):
+    """(imperial, SI) of each input and equation that both editions have."""
+    template = TEMPLATES[name]
+    for rows in (template.assumptions, template.constants, template.optional, template.equations):
+        for row in rows:
+            both = [edition((row,), units) for units in Edition]
+            if all(both) and both[0][0].symbol not in DEFINITIONS:
+                yield both[0][0], both[1][0]
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_units_of_the_editions_are_counterparts(name):
+    for imperial, si in pairs(name):
+        assert imperial.unit == si.unit or (imperial.unit, si.unit) in CONVERSION, imperial.symbol
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_both_editions_give_the_same_crash(name, cells, shown, described):
+    """The SI workbook, given the imperial base case in its own units, shows the imperial answers in its own units."""
+    inputs = {given.symbol for given in described[name].inputs}
+    imperial = shown(name)
+    rows = [(i, s) for i, s in pairs(name) if is_number(imperial[i.symbol])]
+    given = {s.symbol: converted(imperial[i.symbol], i, s) for i, s in rows if i.symbol in inputs}
+    wanted = {s.symbol: (i, s) for i, s in rows if i.symbol not in inputs}
+    found = cells(f"{name}-si", given, list(wanted))
+    assert len(wanted) > 5
+    for symbol, (row, counterpart) in wanted.items():
+        truth = converted(imperial[row.symbol], row, counterpart)
+        assert math.isclose(found[symbol].item(), truth, rel_tol=1e-9, abs_tol=1e-9), symbol
+
+
+def is_number(value):
+    return isinstance(value, int | float) and not isinstance(value, bool)

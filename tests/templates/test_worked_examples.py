@@ -1,0 +1,183 @@
+"""Every template gives the published or independently computed figures of its worked examples."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import xlmc
+
+MPH = 3600 / 5280
+KMH = 3.6
+STANDING = {"w_1": 5000, "w_2": 5000, "V2_before": 0, "e": 0, "known": 1}
+TEXTBOOK = {"m_1": 1500, "m_2": 2500, "V2_before": 0, "V2_after": 15 * KMH, "e": 0.5, "known": 2}
+CRUSH = {"A_given_1": 479.7, "B_given_1": 52.2, "A_given_2": 355.8, "B_given_2": 34.0, "L_1": 60, "L_2": 60}
+CRUSH |= {f"c_1_{i}": 14 for i in range(1, 7)} | {f"c_2_{i}": 25.138 for i in range(1, 7)}
+CRUSH |= {f"{symbol}_{j}": 0 for symbol in ("bias", "theta", "h") for j in (1, 2)}
+WEDGE = CRUSH | {f"c_1_{i}": 4.8 * (i - 1) for i in range(1, 7)}
+THROW = {"s": 60, "mu": 0.66, "g": 32.174}
+YAW = {"chord": 52, "ordinate": 6, "f": 0.2, "bank": 0, "offset": 0, "g": 32.174}
+SKID = {"f_1": 0.75, "d_1": 100, "d_2": 0, "d_3": 0, "v_end": 0, "grade": 0, "g": 32.174}
+
+# Template, inputs, what must come out, tolerance: half a unit of the last digit printed.
+EXAMPLES = [
+    ("skid", SKID, {"v_mph": 47.366}, 5e-4),
+    # Speeds combine as the root of the sum of their squares: 47.366 and 30.
+    ("skid", SKID | {"v_end": 30}, {"v_mph": (47.366**2 + 30**2) ** 0.5}, 1e-3),
+    # Two surfaces of half the length are one of the whole.
+    ("skid", SKID | {"d_1": 60, "f_2": 0.75, "d_2": 40}, {"v_mph": 47.366}, 5e-4),
+    # 10 % downhill: f cos θ − sin θ = (0.75 − 0.10)/√1.01.
+    ("skid", SKID | {"grade": -10}, {"v_mph": (2 * 32.174 * 100 * 0.65 / 1.01**0.5) ** 0.5 * MPH}, 1e-9),
+    (
+        "skid",
+        SKID | {"t_reaction": 1.25},
+        {"d_reaction": 86.8377, "d_total": 186.8377},
+        5e-5,
+    ),
+    ("critical-speed-yaw", YAW, {"R_mark": 59.33, "v_mph": 13.32}, 5e-3),
+    # The mark of the outer front tyre, 2.5 ft outside the path; 5 % of bank.
+    ("critical-speed-yaw", YAW | {"offset": 2.5}, {"v_mph": (0.2 * 32.174 * (59.3333 - 2.5)) ** 0.5 * MPH}, 1e-4),
+    ("critical-speed-yaw", YAW | {"bank": 5}, {"f_side": 0.25 / 0.99}, 1e-12),
+    # 5000 lb at 90 ft/s into an equal car that stands, plastic: 45 ft/s together. Either speed may be the known one.
+    ("collinear", STANDING | {"V1_before": 90 * MPH}, {"V1_f": 45, "V2_f": 45, "dV_1": 45, "V1_mph": 61.3636}, 5e-5),
+    ("collinear", STANDING | {"known": 2, "V2_after": 45 * MPH}, {"V1_i": 90, "dV_1": 45}, 1e-9),
+    # 5000 lb at 20 against 2500 lb at 40, head-on, plastic: both stop.
+    (
+        "collinear",
+        STANDING | {"w_2": 2500, "V2_before": -40, "V1_before": 20},
+        {"V1_f": 0, "V2_f": 0, "dV1_mph": 20, "dV2_mph": 40},
+        1e-9,
+    ),
+    # A 479.7/355.8 lb/in, B 52.2/34.0 lb/in²: 14 in of crush on one balance 25.138 in on the other, over 60 in.
+    ("crush-energy", CRUSH, {"balance_2": 25.138}, 5e-4),
+    ("crush-energy", CRUSH, {"E_1": 70_178, "E_2": 107_743}, 1.5),
+    ("crush-energy", CRUSH, {"ratio": 1}, 1e-5),
+    # Crush of 0 to 24 in: F from A to A + 24 B; E = L (F0² + F0 F1 + F1²)/(6 B).
+    (
+        "crush-energy",
+        WEDGE,
+        {
+            "E_1": 60 * (479.7**2 + 479.7 * 1732.5 + 1732.5**2) / (6 * 52.2) / 12,
+            "shortcut_1": 60 * 1106.1**2 / 104.4 / 12,
+        },
+        1e-3,
+    ),
+    # 45° off: twice the energy. Off centre by the radius of gyration: half the mass.
+    ("crush-energy", CRUSH | {"theta_1": 45}, {"E_1": 2 * 70_178}, 3),
+    ("crush-energy", CRUSH | {"h_1": 4.6, "k_1": 4.6, "w_1": 3217.4, "g": 32.174}, {"m_eff_1": 50}, 1e-9),
+    # A = m b0 b1/L and B = m b1²/L of a 35 mph test: 5 mph leaves no crush, 20 in of crush at 35 mph.
+    (
+        "crush-energy",
+        {"b0_1": 5, "b1_1": 1.5, "w_test_1": 3500, "L_test_1": 60, "g": 32.174},
+        {"A_1": 12 * 3500 / 32.174 * (5 / MPH) * (1.5 / MPH) / 60, "B_1": 12 * 3500 / 32.174 * (1.5 / MPH) ** 2 / 60},
+        1e-9,
+    ),
+    # The same test again: a barrier test of 20 in leaves the energy of 35 mph.
+    (
+        "crush-energy",
+        {"b0_1": 5, "b1_1": 1.5, "w_test_1": 3500, "L_test_1": 60, "L_1": 60, "g": 32.174, "bias_1": 0, "theta_1": 0}
+        | {f"c_1_{i}": 20 for i in range(1, 7)},
+        {"E_1": 0.5 * 3500 / 32.174 * (35 / MPH) ** 2},
+        1e-6,
+    ),
+    ("pedestrian-throw", THROW, {"vmax_mph": 34.417, "vmin_mph": 28.725}, 1e-3),
+    ("pedestrian-throw", THROW | {"angle": 0}, {"v_mph": 34.4178}, 5e-5),
+    ("pedestrian-throw", THROW | {"angle": 33.42480}, {"v_mph": 28.7255}, 5e-5),  # atan .66
+    ("pedestrian-throw", THROW | {"angle": 0, "efficiency": 0.8}, {"V_vehicle_mph": 34.4178 / 0.8}, 1e-4),
+    # 1500 kg into 2500 kg at rest, which leaves at 15 m/s; e = 0.5.
+    ("collinear-si", TEXTBOOK, {"V1_i": 26.6667, "V1_kmh": 96, "dV_2": 15, "V1_f": 1.6667}, 5e-5),
+    # Equal cars, one struck off centre: delta-V overstated by .6, 2.3 and 8.6 % at .5, 1 and 2 ft.
+    ("collinear", STANDING | {"V1_before": 30, "h_2": 0.5, "k_yaw": 4.6}, {"overstated": 0.6}, 0.05),
+    ("collinear", STANDING | {"V1_before": 30, "h_2": 1, "k_yaw": 4.6}, {"overstated": 2.3}, 0.05),
+    ("collinear", STANDING | {"V1_before": 30, "h_2": 2, "k_yaw": 4.6}, {"overstated": 8.6}, 0.05),
+]
+
+
+@pytest.mark.parametrize(("template", "inputs", "expected", "tolerance"), EXAMPLES)
+def test_worked_example(template, inputs, expected, tolerance, cells):
+    found = cells(template, inputs, list(expected))
+    for symbol, value in expected.items():
+        assert found[symbol].item() == pytest.approx(value, abs=tolerance), symbol
+
+
+def test_the_shortcut_by_mean_crush_is_ten_percent_low(cells):
+    found = cells("crush-energy", WEDGE, ["E_1", "shortcut_1"])
+    assert found["shortcut_1"].item() / found["E_1"].item() == pytest.approx(0.9, abs=0.005)
+
+
+def test_delta_v_closes_the_energy_balance(cells):
+    """E = ½ m̄ Vc² (1 − e²), P = m̄ (1 + e) Vc, and both vehicles take the same impulse."""
+    wanted = ["dV_1", "dV_2", "m_1", "m_2", "m_both", "V_close", "E_sum"]
+    v = {symbol: value.item() for symbol, value in cells("crush-energy", CRUSH | {"e": 0.2}, wanted).items()}
+    assert v["E_sum"] == pytest.approx(v["m_both"] * v["V_close"] ** 2 * (1 - 0.2**2) / 2)
+    assert v["m_1"] * v["dV_1"] == pytest.approx(v["m_both"] * 1.2 * v["V_close"])
+    assert v["m_1"] * v["dV_1"] == pytest.approx(v["m_2"] * v["dV_2"])
+
+
+def test_every_angle_of_a_throw_lies_between_searles_bounds(cells):
+    angles = np.linspace(0, 2 * np.degrees(np.arctan(0.66)), 200)
+    v = cells("pedestrian-throw", THROW | {"angle": angles}, ["v_throw", "v_least", "v_most"])
+    assert (v["v_throw"] >= v["v_least"] * (1 - 1e-12)).all()
+    assert (v["v_throw"] <= v["v_most"] * (1 + 1e-12)).all()
+
+
+def test_the_textbook_that_prints_80_is_caught(cells):
+    """Its separation speed is negative; the right speed passes the same check."""
+    wanted = ["check_claim", "checks_hold", "e_claimed", "V1_kmh"]
+    printed = cells("collinear-si", TEXTBOOK | {"V1_claimed": 80 * KMH}, wanted)
+    assert printed["e_claimed"].item() == pytest.approx(-0.5)
+    assert printed["check_claim"].item() == printed["checks_hold"].item() == 0
+    right = cells("collinear-si", TEXTBOOK | {"V1_claimed": printed["V1_kmh"].item()}, wanted)
+    assert right["e_claimed"].item() == pytest.approx(0.5)
+    assert right["check_claim"].item() == right["checks_hold"].item() == 1
+
+
+# Example book, what its cells must show.
+BOOKS = {
+    "skid-100-ft": {"v_mph": (47.366, 5e-4)},
+    "yaw-mark": {"R_mark": (59.33, 5e-3), "v_mph": (13.32, 5e-3)},
+    "collinear-equal-cars": {"V1_f": (45, 1e-9), "V2_f": (45, 1e-9)},
+    "collinear-head-on": {"V1_mph": (20, 1e-9), "V1_f": (0, 1e-9), "V2_f": (0, 1e-9)},
+    "textbook-claim": {"V1_i": (26.67, 5e-3), "e_claimed": (-0.5, 1e-12)},
+    "barrier-corner": {"dV1_long": (-35.7275, 5e-4), "d_omega1_deg": (-176.43, 1e-2), "E_lost": (170_421, 2)},
+    "crush-balance": {"balance_2": (25.138, 5e-4), "E_1": (70_178, 1.5), "E_2": (107_743, 1.5)},
+}
+
+
+@pytest.mark.parametrize("name", BOOKS)
+def test_example_book_shows_the_published_figures(name, shown):
+    found = shown(name)
+    for symbol, (value, tolerance) in BOOKS[name].items():
+        assert found[symbol] == pytest.approx(value, abs=tolerance), symbol
+    assert found["checks_hold"] is (name != "textbook-claim")
+
+
+@pytest.mark.parametrize("name", BOOKS)
+def test_example_book_runs(name, book_path):
+    run = xlmc.load(book_path[name]).simulate(1_000)
+    assert run.accepted == 1_000
+
+
+def test_every_worked_example_is_a_book(builders):
+    assert set(builders["examples"].EXAMPLES) == {"intersection", "intersection-momentum", *BOOKS}
+
+
+# Mean and standard deviation before any filter, from 2e9 trials.
+UNFILTERED = {
+    "Chevrolet delta-V": (12.1658, 1.1324),
+    "Nissan delta-V": (23.7710, 2.1971),
+    "Chevrolet impact speed": (33.6923, 1.7862),
+    "Nissan impact speed": (8.8974, 4.1869),
+}
+
+
+def test_the_case_study_by_momentum_has_the_unfiltered_moments(book_path):
+    """200,000 trials: within four standard errors, and half a unit of the last digit of the reference."""
+    model, n = xlmc.load(book_path["intersection-momentum"]), 200_000
+    rng = np.random.default_rng(6)
+    found = model.function({a.name: rng.uniform(a.parameters["low"], a.parameters["high"], n) for a in model.live})
+    for name, (mean, deviation) in UNFILTERED.items():
+        x = found[name]
+        fourth = np.mean((x - x.mean()) ** 4)
+        assert abs(x.mean() - mean) < 4 * deviation / n**0.5 + 5e-5, name
+        assert abs(x.std() - deviation) < 4 * ((fourth - deviation**4) / n) ** 0.5 / (2 * deviation) + 5e-5, name

@@ -112,7 +112,7 @@ class Model:
         Args:
             trials: how many, 1 or more.
             seed: 0 or more.
-            engine: `numpy`, or `formulas`, the slow reference.
+            engine: `numpy`, `jit`, compiled for long runs, or `formulas`, the slow reference.
             jobs: threads. The result does not depend on it.
             progress: called with (trials done, trials accepted) after every block.
 

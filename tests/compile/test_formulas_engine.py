@@ -8,6 +8,7 @@ from xlmc.compile.formulas_engine import FormulasProgram
 from xlmc.errors import FormulaError
 from xlmc.workbook.model import CellContent, Formula
 
+
 def test_a_draw_that_is_an_error(lower):
     lowering, (target,) = lower({"C1": "=IFERROR(A1,-1)"}, ["A1"], ["C1"])
     evaluator = FormulasProgram(lowering, [target], [], frozenset({"A1"})).evaluator(2)

@@ -53,7 +53,9 @@ ANGLES = {
     "closest": closest(),
     "any size": np.exp(GENERATOR.uniform(np.log(1e-12), np.log(LIMIT), 2000)) * GENERATOR.choice([-1, 1], 2000),
     "large": GENERATOR.uniform(LIMIT / 2, LIMIT, 1000),
-    "tiny": np.array([0.0, 5e-324, 1e-310, 2.2e-308, 1e-300, 1e-200, 1e-20, 1e-8, -1e-8, -5e-324, np.nextafter(LIMIT, 0)]),
+    "tiny": np.array(
+        [0.0, 5e-324, 1e-310, 2.2e-308, 1e-300, 1e-200, 1e-20, 1e-8, -1e-8, -5e-324, np.nextafter(LIMIT, 0)]
+    ),
 }
 
 

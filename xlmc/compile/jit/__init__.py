@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from importlib.util import find_spec
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import SimulationError
 
@@ -17,7 +17,10 @@ if TYPE_CHECKING:
     from xlmc.compile.engine import Program, Target
     from xlmc.compile.lower import Lowering
 
-__all__ = ["available", "jit_program"]
+__all__ = ["REPAYS_FROM", "available", "jit_program"]
+
+REPAYS_FROM: Final = 5_000_000
+"""Trials of a model of some dozens of formulas from which the time to compile it, half a second to one, is repaid."""
 
 
 def available() -> bool:
@@ -31,6 +34,9 @@ def jit_program(
     """The filters and forecasts as compiled loops.
 
     Args:
+        lowering: the graph of nodes.
+        filters: evaluated on all trials.
+        forecasts: evaluated on the survivors.
         may_err: the inputs whose draws may be errors (NaNs).
 
     Raises:

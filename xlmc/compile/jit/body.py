@@ -1,8 +1,8 @@
 """One trial's computation in a loop: values of nodes, and what went wrong so far, by context.
 
 What went wrong is kept in two ways. A number that may be infinite or NaN and is about to vanish (in a comparison, in a
-divisor, in memory) is multiplied by 0 and added to a running sum, which is NaN from then on: one fused instruction. What
-Excel minds and arithmetic does not is a flag.
+divisor, in memory) is multiplied by 0 and added to a running sum, which is NaN from then on: one fused instruction.
+What Excel minds and arithmetic does not is a flag.
 """
 
 from __future__ import annotations
@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from llvmlite import ir
+
 from xlmc.compile.dag import Constant, Dag, Select
 from xlmc.compile.jit.contexts import ROOT, Context, branch
 from xlmc.compile.jit.recipes import Literal, Operand, Recipe, literal
@@ -18,6 +20,8 @@ from xlmc.compile.jit.sine import sine_and_cosine
 from xlmc.functions import Kind
 
 __all__ = ["Body", "Loaded"]
+
+_DOUBLE, _BIT = ir.DoubleType(), ir.IntType(1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,10 +52,8 @@ class Body:
         contexts: Mapping[int, Context],
         fused: bool,
     ) -> None:
-        from llvmlite import ir
-
-        self.builder, self._dag, self._contexts, self._fused = builder, dag, contexts, fused
-        self._double, self._bit, self._ir = ir.DoubleType(), ir.IntType(1), ir
+        self.builder: Any = builder
+        self._dag, self._contexts, self._fused = dag, contexts, fused
         self._known = dict(loaded)
         self._checked: set[tuple[Operand, Context]] = set()
         self._sums: dict[Context, Any] = {}
@@ -61,16 +63,16 @@ class Body:
 
     def number(self, value: float) -> Any:
         """A constant."""
-        return self._ir.Constant(self._double, value)
+        return ir.Constant(_DOUBLE, value)
 
     def truth(self, value: bool) -> Any:
         """A constant truth value."""
-        return self._ir.Constant(self._bit, int(value))
+        return ir.Constant(_BIT, int(value))
 
     def intrinsic(self, name: str, *arguments: Any) -> Any:
         """A call of one of LLVM's own functions of doubles."""
-        of = self._ir.FunctionType(self._double, [self._double] * len(arguments))
-        return self.builder.call(self.builder.module.declare_intrinsic(name, [self._double], of), arguments)
+        of = ir.FunctionType(_DOUBLE, [_DOUBLE] * len(arguments))
+        return self.builder.call(self.builder.module.declare_intrinsic(name, [_DOUBLE], of), arguments)
 
     def sine_and_cosine(self, angle: Any) -> tuple[Any, Any]:
         """Both, computed once for each angle."""
@@ -132,14 +134,14 @@ class Body:
         if isinstance(part, Literal):
             return self.truth(part.value) if isinstance(part.value, bool) else self.number(part.value)
         value = self._source(part)[1].value
-        is_number = value.type == self._double
+        is_number = value.type == _DOUBLE
         if part.kind is Kind.NUMBER:
-            return value if is_number else self.builder.uitofp(value, self._double)
+            return value if is_number else self.builder.uitofp(value, _DOUBLE)
         return self.builder.fcmp_unordered("!=", value, self.number(0.0)) if is_number else value
 
     def _is_truth_of_number(self, part: Operand) -> bool:
         """Whether taking a number as a truth value hides that it is infinite or NaN."""
-        return part.kind is Kind.LOGICAL and bool(self._source(part)[1].value.type == self._double)
+        return part.kind is Kind.LOGICAL and bool(self._source(part)[1].value.type == _DOUBLE)
 
     def _check(self, part: Operand) -> None:
         """See the module."""

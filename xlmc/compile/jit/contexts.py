@@ -1,7 +1,7 @@
 """In which trials each node of a loop is needed: in all of them, or only where an `IF` takes the branch it stands in.
 
-The loop computes both branches of every `IF`; what goes wrong in one counts only in the trials that take it. A node that
-is needed in several places belongs to the innermost context around all of them.
+The loop computes both branches of every `IF`; what goes wrong in one counts only in the trials that take it. A node
+that is needed in several places belongs to the innermost context around all of them.
 """
 
 from __future__ import annotations

@@ -112,7 +112,12 @@ def _cube(body: Body, parts: Sequence[Any]) -> Any:
     return body.builder.fmul(body.builder.fmul(parts[0], parts[0]), parts[0])
 
 
-_POWERS: Final = {0.5: _Row(_root), 1.0: _Row(lambda _, parts: parts[0], makes=False), -1.0: _Row(_reciprocal, (0,)), 3.0: _Row(_cube)}
+_POWERS: Final = {
+    0.5: _Row(_root),
+    1.0: _Row(lambda _, parts: parts[0], makes=False),
+    -1.0: _Row(_reciprocal, (0,)),
+    3.0: _Row(_cube),
+}
 """Exponents that need no logarithm; the results are within 1 ulp, and 0 and infinity come out as of `pow`."""
 
 

@@ -1,4 +1,4 @@
-"""The nodes that are computed on one set of trials: all of them, for the filters, or the survivors, for the forecasts."""
+"""The nodes that are computed on one set of trials: on all of them, or on the survivors of the filters."""
 
 from __future__ import annotations
 

@@ -54,9 +54,8 @@ class JitProgram:
         keep = {*self.filter_places, *(carried & early)}
         self.first = Phase(self.dag, machine(), recipes, first, keep, None, may_err)
         self.late = Phase(self.dag, machine(), recipes, late, set(self.forecast_places), early, may_err)
-        self.inputs = {
-            place: node.name for place in (*first, *late) if isinstance(node := self.dag.nodes[place], Input)
-        }
+        self.inputs = _inputs(self.dag, [*first, *late])
+        self.careful_inputs = _inputs(self.dag, self.dag.upstream([*self.filter_places, *self.forecast_places]))
         self.stores = (*self.first.stores, *self.late.stores)
         self.largest_block = _LARGEST_BLOCK
         while self.largest_block > _SMALLEST_BLOCK and self.largest_block * 8 * len(self.stores) > _MOST_MEMORY:
@@ -65,6 +64,11 @@ class JitProgram:
     def evaluator(self, block: int) -> Evaluator:
         """See `Program`."""
         return _JitEvaluator(self, block)
+
+
+def _inputs(dag: Dag, places: Sequence[int]) -> dict[int, str]:
+    """The names of the inputs among the nodes."""
+    return {place: node.name for place in places if isinstance(node := dag.nodes[place], Input)}
 
 
 def _recipes(dag: Dag) -> dict[int, Recipe]:
@@ -125,14 +129,14 @@ class _JitEvaluator:
         return columns
 
     def _picked(self, trials: NDArray[np.intp]) -> dict[str, Floats]:
-        return {name: self._draws[name][trials] for name in self._program.inputs.values()}
+        return {name: self._draws[name][trials] for name in self._program.careful_inputs.values()}
 
 
 def _corrected(columns: Sequence[Column], again: NDArray[np.intp], careful: Sequence[Column]) -> list[Column]:
     """The columns (n,) with the trials `again` (k,) as the careful path has them (k,)."""
     corrected = []
     for column, found in zip(columns, careful, strict=True):
-        values = np.array(column.values)
+        values = column.values.copy()
         codes = np.zeros(values.size, np.uint8) if column.codes is None else np.array(column.codes)
         values[again] = found.values
         codes[again] = 0 if found.codes is None else found.codes

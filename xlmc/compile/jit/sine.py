@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Final
 
+from llvmlite import ir
+
 __all__ = ["HALF_PI", "sine_and_cosine"]
 
 HALF_PI: Final = (1.5707963267948966, 6.123233995736766e-17, -1.4973849048591698e-33)
@@ -28,28 +30,27 @@ _TO_WHOLE: Final = 1.5 * 2.0**52
 
 _SPLIT: Final = 2.0**27 + 1
 
+_DOUBLE, _INTEGER = ir.DoubleType(), ir.IntType(64)
+
 
 class _Arithmetic:
     """Doubles and 64-bit integers on a builder; `fused` says whether the processor multiplies and adds at once."""
 
     def __init__(self, builder: Any, fused: bool) -> None:
-        from llvmlite import ir
-
-        self._ir, self._builder, self._fused = ir, builder, fused
+        self._builder, self._fused = builder, fused
         self.add, self.sub, self.mul, self.select = builder.fadd, builder.fsub, builder.fmul, builder.select
-        self._double, self._integer = ir.DoubleType(), ir.IntType(64)
-        of = ir.FunctionType(self._double, [self._double] * 3)
-        self._fma = builder.module.declare_intrinsic("llvm.fma", [self._double], of)
+        of = ir.FunctionType(_DOUBLE, [_DOUBLE] * 3)
+        self._fma = builder.module.declare_intrinsic("llvm.fma", [_DOUBLE], of)
 
     def number(self, value: float) -> Any:
-        return self._ir.Constant(self._double, value)
+        return ir.Constant(_DOUBLE, value)
 
     def plus(self, z: Any, x: Any, y: Any) -> Any:
-        """z + x·y, rounded once or twice."""
+        """Z + x·y, rounded once or twice."""
         return self._builder.call(self._fma, (x, y, z)) if self._fused else self.add(z, self.mul(x, y))
 
     def minus(self, z: Any, x: Any, y: Any) -> Any:
-        """z - x·y, rounded once or twice."""
+        """Z - x·y, rounded once or twice."""
         return self.plus(z, self._builder.fneg(x), y)
 
     def polynomial(self, x: Any, coefficients: Sequence[float]) -> Any:
@@ -68,25 +69,25 @@ class _Arithmetic:
         return self.add(rest, self.mul(k, self.number(constant - high)))
 
     def less_multiple(self, angle: Any, k: Any, constant: float) -> Any:
-        """angle - k·constant, exactly: the two nearly cancel."""
+        """What k·constant leaves of the angle, exactly: the two nearly cancel."""
         if self._fused:
             return self.minus(angle, k, self.number(constant))
         product = self.mul(k, self.number(constant))
         return self.sub(self.sub(angle, product), self.lost(k, constant, product))
 
     def bits(self, x: Any) -> Any:
-        return self._builder.bitcast(x, self._integer)
+        return self._builder.bitcast(x, _INTEGER)
 
     def odd(self, whole: Any) -> Any:
-        return self._builder.trunc(whole, self._ir.IntType(1))
+        return self._builder.trunc(whole, ir.IntType(1))
 
     def turned(self, x: Any, quadrant: Any, one_more: bool) -> Any:
         """`x` negated where the second bit of the quadrant, or of the one after it, is set."""
         if one_more:
-            quadrant = self._builder.add(quadrant, self._ir.Constant(self._integer, 1))
-        sign = self._builder.and_(quadrant, self._ir.Constant(self._integer, 2))
-        flipped = self._builder.xor(self.bits(x), self._builder.shl(sign, self._ir.Constant(self._integer, 62)))
-        return self._builder.bitcast(flipped, self._double)
+            quadrant = self._builder.add(quadrant, ir.Constant(_INTEGER, 1))
+        sign = self._builder.and_(quadrant, ir.Constant(_INTEGER, 2))
+        flipped = self._builder.xor(self.bits(x), self._builder.shl(sign, ir.Constant(_INTEGER, 62)))
+        return self._builder.bitcast(flipped, _DOUBLE)
 
 
 def sine_and_cosine(builder: Any, angle: Any, fused: bool) -> tuple[Any, Any]:
@@ -118,7 +119,7 @@ def _reduced(do: _Arithmetic, angle: Any) -> tuple[Any, Any, Any]:
 
 
 def _sine(do: _Arithmetic, x: Any, rest: Any, square: Any, first: Any) -> Any:
-    """x + (x³·p + rest·(1 - x²/2))."""
+    """The sum x + (x³·p + rest·(1 - x²/2))."""
     cubic = do.mul(do.mul(square, x), do.polynomial(square, _SINE))
     return do.add(x, do.plus(cubic, rest, first))
 

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 __all__ = ["REPAYS_FROM", "available", "jit_program"]
 
-REPAYS_FROM: Final = 5_000_000
-"""Trials of a model of some dozens of formulas from which the time to compile it, half a second to one, is repaid."""
+REPAYS_FROM: Final = 3_000_000
+"""Trials of a model of some dozens of formulas from which the time to compile it, some 0.3 s, is surely repaid."""
 
 
 def available() -> bool:

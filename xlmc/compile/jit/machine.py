@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
-from functools import cache
-from typing import Any
+from functools import cache, lru_cache
+from typing import Any, Final
 
 from llvmlite import binding, ir
 
 __all__ = ["Machine", "NativeLoop", "machine", "this_machine"]
+
+_KEPT: Final = 64
 
 NativeLoop = Callable[[Any, int], int]
 """Takes the addresses of the arrays and the number of trials; gives how many of them must be computed again."""
@@ -27,6 +29,7 @@ class Machine:
 
     def __init__(self, cpu: str, features: str) -> None:
         self._cpu, self._features = cpu, features
+        self._compiled = lru_cache(_KEPT)(self._compile)
         triple = binding.get_default_triple()
         self.fused = "+fma" in features.split(",") or triple.startswith(("aarch64", "arm64"))
 
@@ -38,11 +41,15 @@ class Machine:
     def native(self, module: ir.Module, name: str) -> NativeLoop:
         """The function `name` of a module, as native code that runs without holding Python's lock.
 
+        The last modules are kept: a model that is run again is not compiled again.
         Its own type is `i64 (i8**, i64)`.
         """
+        return self._compiled(str(module), name)
+
+    def _compile(self, module: str, name: str) -> NativeLoop:
         target = self._target()
-        module.triple, module.data_layout = target.triple, str(target.target_data)
-        parsed = binding.parse_assembly(str(module))
+        parsed = binding.parse_assembly(module)
+        parsed.triple, parsed.data_layout = target.triple, str(target.target_data)
         parsed.verify()
         tuning = binding.create_pipeline_tuning_options(speed_level=3)
         tuning.loop_vectorization = True
@@ -61,11 +68,12 @@ class Machine:
 
 
 def this_machine() -> Machine:
-    """The processor that runs this."""
+    """The processor that runs this, its widest vectors in use: LLVM alone would take half of AVX-512."""
     binding.initialize_native_target()
     binding.initialize_native_asmprinter()
-    features = binding.get_host_cpu_features().flatten()
-    return Machine(binding.get_host_cpu_name(), features)
+    found = binding.get_host_cpu_features()
+    wide = ",-prefer-256-bit" if found.get("avx512f") else ""
+    return Machine(binding.get_host_cpu_name(), found.flatten() + wide)
 
 
 machine = cache(this_machine)

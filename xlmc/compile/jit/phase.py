@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Range, Rescue, Select, evaluated
+from xlmc.compile.jit.addresses import Addresses
 from xlmc.compile.jit.loop import Load, compiled
 from xlmc.compile.jit.machine import Machine, NativeLoop
 from xlmc.compile.jit.recipes import Operand, Recipe, reads
@@ -20,8 +21,23 @@ from xlmc.functions import Kind
 
 __all__ = ["Memory", "Phase"]
 
-Memory = Mapping[int, NDArray[Any]]
-"""Arrays that loops write to, by node, `(block,)`."""
+
+class Memory:
+    """Arrays that loops write to, by node, `(block,)`; for one thread.
+
+    Attributes:
+        addresses: of the arrays that loops read and write.
+    """
+
+    def __init__(self, dag: Dag, places: Iterable[int], block: int) -> None:
+        dtypes = {place: np.bool_ if dag.types[place] is Kind.LOGICAL else np.float64 for place in places}
+        self._arrays: dict[int, NDArray[Any]] = {place: np.empty(block, dtype) for place, dtype in dtypes.items()}
+        self.addresses = Addresses()
+
+    def of(self, place: int, n: int) -> NDArray[Any]:
+        """The first `n` elements of a node's array."""
+        array = self._arrays[place]
+        return array if n == array.size else array[:n]
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,15 +123,15 @@ class Phase:
         return wrong > 0
 
     def _run_loop(self, step: _Loop, trials: Trials, memory: Memory) -> int:
-        read = []
+        address, places = memory.addresses.of, []
         for load in step.loads:
             source = trials.wider if load.picked else trials
             assert source is not None
-            read.append(source.array(load.operand))
-        written = [memory[place][: trials.n] for place in step.stores]
-        arrays = [*read, *written, trials.survivors, trials.wrong]
-        addresses = (ctypes.c_void_p * len(arrays))(*(a.__array_interface__["data"][0] for a in arrays))
-        wrong = step.call(addresses, trials.n)
+            places.append(address(load.operand.place, source.array(load.operand)))
+        written = [memory.of(place, trials.n) for place in step.stores]
+        places += [address(place, array) for place, array in zip(step.stores, written, strict=True)]
+        places += [address("survivors", trials.survivors), address("wrong", trials.wrong)]
+        wrong = step.call((ctypes.c_void_p * len(places))(*places), trials.n)
         trials.arrays.update(zip(step.stores, written, strict=True))
         return wrong
 

@@ -16,7 +16,6 @@ from xlmc.compile.jit.recipes import Recipe, reads, recipe_of
 from xlmc.compile.jit.trials import Trials
 from xlmc.compile.lower import Lowering
 from xlmc.compile.tracking import TrackingEvaluator
-from xlmc.functions import Kind
 from xlmc.functions.values import Floats
 
 __all__ = ["JitProgram"]
@@ -79,10 +78,7 @@ def _recipes(dag: Dag) -> dict[int, Recipe]:
 class _JitEvaluator:
     def __init__(self, program: JitProgram, block: int) -> None:
         self._program = program
-        kinds = {place: program.dag.types[place] for place in program.stores}
-        self._memory: Memory = {
-            place: np.empty(block, np.bool_ if kind is Kind.LOGICAL else np.float64) for place, kind in kinds.items()
-        }
+        self._memory = Memory(program.dag, program.stores, block)
         self._tracking = TrackingEvaluator(program.dag, program.filter_places, program.forecast_places)
         self._all = np.empty(0, np.intp)
         self._trials = self._of_block({}, 0)

@@ -117,7 +117,7 @@ class Model:
         Args:
             trials: how many, 1 or more.
             seed: 0 or more.
-            engine: `numpy`, or `formulas`, the slow reference.
+            engine: `numpy`, `jit`, compiled for long runs, or `formulas`, the slow reference.
             jobs: threads or processes.
             scheduler: `threads`; `processes`; `local`, a Dask cluster of this machine; or the address of a Dask
                 scheduler. By default processes for a long run with several jobs, else threads.

@@ -8,6 +8,9 @@ import zipfile
 import openpyxl
 import pytest
 
+from xlmc.compile.jit import REPAYS_FROM
+from xlmc.errors import SimulationError
+
 EDITED = {
     "[Content_Types].xml",
     "docProps/app.xml",
@@ -147,3 +150,35 @@ def test_help_imports_no_numerical_library():
     program += "print([m for m in ('numpy', 'scipy', 'pandas', 'openpyxl', 'rich', 'formulas') if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_without_llvmlite_the_engine_jit_says_what_to_install(xlmc, book, tmp_path, monkeypatch):
+    monkeypatch.setattr("xlmc.compile.jit.find_spec", lambda name: None)
+    outcome = xlmc("simulate", book, "-n", 1_000, "--engine", "jit")
+    assert outcome.code == 2
+    assert 'pip install "xlmc[jit]"' in outcome.err
+    assert not (tmp_path / "case-results.xlsx").exists()
+
+
+def test_the_engine_jit_prints_the_same_answers(xlmc, book):
+    pytest.importorskip("llvmlite")
+    assert xlmc("simulate", book, "-n", 20_000, "--engine", "jit").out == xlmc("simulate", book, "-n", 20_000).out
+
+
+@pytest.mark.parametrize(
+    ("trials", "options", "installed", "hinted"),
+    [
+        (REPAYS_FROM, (), True, True),
+        (REPAYS_FROM - 1, (), True, False),
+        (REPAYS_FROM, (), False, False),
+        (REPAYS_FROM, ("--engine", "formulas"), True, False),
+        (REPAYS_FROM, ("--quiet",), True, False),
+    ],
+)
+def test_a_long_run_is_told_of_the_engine_jit(xlmc, book, monkeypatch, trials, options, installed, hinted):
+    def stopped(*arguments, **named):
+        raise SimulationError("stopped by the test")
+
+    monkeypatch.setattr("xlmc.model.Model.simulate", stopped)
+    monkeypatch.setattr("xlmc.compile.jit.find_spec", lambda name: object() if installed else None)
+    assert ("--engine jit" in xlmc("simulate", book, "-n", trials, *options).err) is hinted

@@ -45,6 +45,7 @@ def test_bad_seeds(only_problem, seed):
         ("sampling", "Monte Carlo", Settings(seed=7)),
         ("Engine", "NumPy", Settings(seed=7)),
         ("Engine", "formulas", Settings(seed=7, engine="formulas")),
+        ("Engine", "JIT", Settings(seed=7, engine="jit")),
         ("Range %", 90, Settings(seed=7)),
     ],
 )

@@ -4,6 +4,7 @@ import platform
 from importlib.metadata import version
 
 import numpy
+import pytest
 
 import xlmc
 from xlmc.record.environment import LIBRARIES, processor, versions
@@ -16,6 +17,11 @@ def test_versions_are_those_installed():
     assert found["python"] == platform.python_version()
     assert found["numpy"] == numpy.__version__
     assert found["formulas"] == version("formulas")
+
+
+def test_the_compiler_of_a_compiled_run_is_named():
+    pytest.importorskip("llvmlite")
+    assert versions("jit") == versions() | {"llvmlite": version("llvmlite")}
 
 
 def test_the_processors_vector_instructions_are_named():

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
+    from xlmc.errors import Notice
+    from xlmc.model import Model
     from xlmc.simulate import Progress
     from xlmc.simulation import Simulation
 
@@ -25,8 +27,8 @@ NOT_TO_BE_USED = 1
 @click.option("--seed", type=click.IntRange(0), help="Seed of the random streams.  [default: the book's, else 999]")
 @click.option(
     "--engine",
-    type=click.Choice(["numpy", "formulas"]),
-    help="numpy, or formulas: the slow reference.  [default: the book's, else numpy]",
+    type=click.Choice(["numpy", "jit", "formulas"]),
+    help="numpy; jit: compiled, for long runs; formulas: the slow reference.  [default: the book's, else numpy]",
 )
 @click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes.")
 @click.option(
@@ -62,7 +64,7 @@ def simulate(
     refuse_if_open(target)
     model = load(book)
     if not quiet:
-        notices(model.notices)
+        notices([*model.notices, *_hints(model, trials, engine)])
     with _progress(trials or model.definitions.settings.trials, quiet) as progress:
         run = model.simulate(
             trials, seed, engine=engine, jobs=jobs, scheduler=scheduler, workers=workers, progress=progress
@@ -74,6 +76,17 @@ def simulate(
         click.echo(f"warning: {warning}; the answer must not be used as it stands.", err=True)
     if run.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
+
+
+def _hints(model: Model, trials: int | None, engine: str | None) -> list[Notice]:
+    """What could make the run shorter."""
+    from xlmc.compile.jit import REPAYS_FROM, available
+    from xlmc.errors import Notice
+
+    settings = model.definitions.settings
+    if (engine or settings.engine) != "numpy" or (trials or settings.trials) < REPAYS_FROM or not available():
+        return []
+    return [Notice("a run of so many trials may be shorter with `--engine jit`, which compiles the model first")]
 
 
 @contextmanager

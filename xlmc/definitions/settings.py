@@ -24,7 +24,7 @@ _LARGEST_SEED = 10**15  # a worksheet holds no more digits
 _KNOWN = ("Setting", "Value")
 _SAMPLINGS = {"mc": "mc", "montecarlo": "mc"}
 _LATER = {"lhs": "Latin hypercube", "latinhypercube": "Latin hypercube", "sobol": "Sobol"}
-_ENGINES = ("numpy", "formulas")
+_ENGINES = ("numpy", "jit", "formulas")
 
 
 def read_settings(workbook: Workbook, tables: list[DefinitionTable], findings: Findings) -> tuple[Settings, float]:

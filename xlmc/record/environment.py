@@ -10,12 +10,12 @@ __all__ = ["LIBRARIES", "processor", "versions"]
 LIBRARIES = ("numpy", "scipy", "formulas", "XlsxWriter", "openpyxl")
 
 
-def versions() -> dict[str, str]:
-    """Name -> version of xlmc, of Python and of the libraries a result depends on."""
+def versions(engine: str = "numpy") -> dict[str, str]:
+    """Name -> version of xlmc, of Python and of the libraries a result depends on, those of its engine among them."""
     import xlmc
 
     own = {"xlmc": xlmc.__version__, "python": platform.python_version()}
-    return own | {name: version(name) for name in LIBRARIES}
+    return own | {name: version(name) for name in (*LIBRARIES, *(["llvmlite"] if engine == "jit" else []))}
 
 
 def processor() -> dict[str, str]:

@@ -64,7 +64,7 @@ def make_record(simulation: Simulation, command: str | None = None) -> Record:
             _messages("notices", "Notices", [str(notice) for notice in simulation.model.notices]),
             _errors(simulation),
             Section("conventions", "Conventions", tuple(Entry(*convention) for convention in _CONVENTIONS)),
-            Section("software", "Software", _entries(versions())),
+            Section("software", "Software", _entries(versions(simulation.settings.engine))),
             Section("processor", "Processor", _entries(processor())),
         )
     )

@@ -1,0 +1,128 @@
+"""A loop over trials: nodes computed one after another for each trial, from arrays and into arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from llvmlite import ir
+
+from xlmc.compile.dag import Dag
+from xlmc.compile.jit.body import Body, Loaded
+from xlmc.compile.jit.contexts import contexts
+from xlmc.compile.jit.machine import Machine, NativeLoop
+from xlmc.compile.jit.recipes import Operand, Recipe
+from xlmc.functions import Kind
+
+__all__ = ["Load", "compiled"]
+
+_NAME = "over_trials"
+_BYTE, _BIT, _LONG, _DOUBLE = ir.IntType(8), ir.IntType(1), ir.IntType(64), ir.DoubleType()
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """An array that a loop reads.
+
+    Attributes:
+        operand: the node, and the kind it is read as.
+        stored: the kind of the array: doubles or truth values.
+        picked: whether trial i of the loop is trial `survivors[i]` of the array.
+        fallible: whether its numbers may be infinite or NaN.
+    """
+
+    operand: Operand
+    stored: Kind
+    picked: bool
+    fallible: bool
+
+
+def compiled(
+    dag: Dag, machine: Machine, recipes: Mapping[int, Recipe], loads: Sequence[Load], stores: Sequence[int]
+) -> NativeLoop:
+    """The loop that computes the nodes of `recipes`, as native code.
+
+    It takes the addresses of: the loads, the stores, the survivors (int64; not read where no load is picked), and one
+    byte a trial, which it sets to 1 where the trial must be computed again.
+    """
+    module = ir.Module()
+    inner = _inner(dag, module, machine, recipes, loads, stores)
+    _entry(module, inner)
+    return machine.native(module, _NAME)
+
+
+def _pointer_type(kind: Kind) -> ir.Type:
+    return (_DOUBLE if kind is Kind.NUMBER else _BYTE).as_pointer()
+
+
+def _inner(
+    dag: Dag,
+    module: ir.Module,
+    machine: Machine,
+    recipes: Mapping[int, Recipe],
+    loads: Sequence[Load],
+    stores: Sequence[int],
+) -> ir.Function:
+    """The loop itself; its arrays do not overlap, which is what lets it run several trials at once."""
+    arrays = [*(load.stored for load in loads), *(dag.types[place] for place in stores)]
+    types = [*map(_pointer_type, arrays), _LONG.as_pointer(), _BYTE.as_pointer(), _LONG]
+    function = ir.Function(module, ir.FunctionType(_LONG, types), "loop")
+    function.linkage = "internal"
+    for argument in function.args[:-1]:
+        argument.add_attribute("noalias")
+    *pointers, survivors, wrongs, n = function.args
+    builder = ir.IRBuilder(function.append_basic_block("entry"))
+    before, body_block, after = builder.block, *(function.append_basic_block(name) for name in ("body", "after"))
+    builder.cbranch(builder.icmp_signed("<", _LONG(0), n), body_block, after)
+
+    builder.position_at_end(body_block)
+    i, count = builder.phi(_LONG), builder.phi(_LONG)
+    picked = builder.load(builder.gep(survivors, [i])) if any(load.picked for load in loads) else i
+    loaded = {
+        load.operand: Loaded(_loaded(builder, pointer, picked if load.picked else i), load.fallible)
+        for load, pointer in zip(loads, pointers, strict=False)
+    }
+    body = Body(dag, builder, loaded, contexts(dag, recipes, stores), machine.fused)
+    for place, recipe in recipes.items():
+        body.compute(place, recipe)
+    for place, pointer in zip(stores, pointers[len(loads) :], strict=True):
+        result = body.result(place)
+        stored = builder.zext(result, _BYTE) if result.type == _BIT else result
+        builder.store(stored, builder.gep(pointer, [i]))
+    wrong = body.wrong()
+    counted = count
+    if wrong is not None:
+        place = builder.gep(wrongs, [i])
+        builder.store(builder.or_(builder.load(place), builder.zext(wrong, _BYTE)), place)
+        counted = builder.add(count, builder.zext(wrong, _LONG))
+    following = builder.add(i, _LONG(1), flags=["nuw", "nsw"])
+    i.add_incoming(_LONG(0), before)
+    i.add_incoming(following, body_block)
+    count.add_incoming(_LONG(0), before)
+    count.add_incoming(counted, body_block)
+    builder.cbranch(builder.icmp_signed("<", following, n), body_block, after)
+
+    builder.position_at_end(after)
+    total = builder.phi(_LONG)
+    total.add_incoming(_LONG(0), before)
+    total.add_incoming(counted, body_block)
+    builder.ret(total)
+    return function
+
+
+def _loaded(builder: ir.IRBuilder, pointer: Any, i: Any) -> Any:
+    value = builder.load(builder.gep(pointer, [i]))
+    return value if value.type == _DOUBLE else builder.icmp_unsigned("!=", value, _BYTE(0))
+
+
+def _entry(module: ir.Module, inner: ir.Function) -> None:
+    """The function to call: it takes the arrays' addresses as one array."""
+    function = ir.Function(module, ir.FunctionType(_LONG, [_BYTE.as_pointer().as_pointer(), _LONG]), _NAME)
+    builder = ir.IRBuilder(function.append_basic_block("entry"))
+    addresses, n = function.args
+    arguments = []
+    for place, argument in enumerate(inner.args[:-1]):
+        address = builder.load(builder.gep(addresses, [_LONG(place)]))
+        arguments.append(builder.bitcast(address, argument.type))
+    builder.ret(builder.call(inner, [*arguments, n]))

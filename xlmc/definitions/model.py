@@ -41,7 +41,7 @@ class Assumption:
         frozen: held at `base`, not drawn.
         row: where it is defined.
         notes: the table's other columns, echoed in the record.
-        own_family: built for this row, from its data or for its percentiles; None where `FAMILIES` has it.
+        own_family: built for this row; None where `FAMILIES` has it, or where a cell of the data awaits calculation.
     """
 
     name: str

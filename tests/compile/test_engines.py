@@ -230,6 +230,16 @@ def test_more_nodes_than_one_loop_holds(differences, engine):
     agree(differences(engine, cells, {"A1": [0.0, 1.0, 500.0]}, ["C1", "B1499"], []))
 
 
+@OURS
+@pytest.mark.parametrize(
+    "formula", ["SUM(B1:B{n})", "MAX(B1:B{n})*2", "SUMPRODUCT(B1:B{n},B1:B{n})", "STDEV(B1:B{n},A1)"]
+)
+def test_ranges_wider_than_a_loop_reads(differences, engine, formula):
+    for n in (3, 250):
+        cells = {f"B{k}": f"=A1/{k}" for k in range(1, n + 1)} | {"C1": "=" + formula.format(n=n)}
+        agree(differences(engine, cells, {"A1": [0.0, 1.0, -500.0, 1e308]}, ["C1"], []))
+
+
 ONE = ("SQRT", "LN", "EXP", "ABS", "INT", "SIGN", "NOT", "ISERROR", "ISNUMBER", "ASIN")
 TWO = ("IFERROR", "IFNA", "AND", "OR", "XOR", "MOD", "ATAN2", "ROUND", "MAX", "IF", "SUM")
 MANY = ("SUM", "MIN", "MAX", "PRODUCT", "AVERAGE", "COUNT", "AND", "OR", "SUMSQ", "VAR", "SUMPRODUCT", "MEDIAN")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ pytest.importorskip("llvmlite")
 
 import xlmc
 from xlmc.compile.jit import program as programs
+from xlmc.compile.jit.machine import Machine
 from xlmc.compile.jit.program import JitProgram
 from xlmc.compile.tracking import TrackingEvaluator
 
@@ -123,3 +125,49 @@ def test_blocks_are_small_where_many_values_are_kept(monkeypatch, program):
     assert program("A1+A2").largest_block == 1 << 20
     monkeypatch.setattr(programs, "_MOST_MEMORY", 1 << 16)
     assert program("A1+A2").largest_block == 1 << 13
+
+
+def test_nothing_of_the_workbooks_text_reaches_the_compiler(lower, monkeypatch):
+    """Names, texts and comments of a workbook are not ours to run: modules hold our own identifiers and numbers."""
+    modules = []
+    native = Machine.native
+
+    def seen(self, module, name):
+        modules.append(str(module))
+        return native(self, module, name)
+
+    monkeypatch.setattr(Machine, "native", seen)
+    cells = {
+        "Evil!A7": 3.0,
+        "B1": '=A1*2+Evil!A7+IF(A1>0,Injected,LEN("payload"&A1))',
+        "B2": '=IFERROR(SQRT(B1),"payload")&"payload"',
+        "B3": "=SIN(LN(A1))+B1+(B2=A1)",
+    }
+    names = {"Injected": "S!$C$1"}
+    lowering, targets = lower(cells | {"C1": 1.5}, ["A1"], ["B1", "B2", "B3"], names=names)
+    JitProgram(lowering, targets[:1], targets[1:], frozenset())
+    assert len(modules) > 1
+    for text in modules:
+        assert set(re.findall(r"[A-Za-z_][\w.]*", re.sub(r"0x[0-9a-fA-F]+", "", text))) <= OWN_WORDS
+
+
+OWN_WORDS = {
+    *(
+        "ModuleID",
+        "target",
+        "triple",
+        "datalayout",
+        "unknown",
+        "define",
+        "declare",
+        "internal",
+        "noinline",
+        "noalias",
+        "ret",
+    ),
+    *("loop", "over_trials", "entry", "body", "after", "br", "label", "phi", "icmp", "slt", "ne", "fcmp", "uno"),
+    *("double", "i1", "i8", "i64", "ptr", "load", "store", "getelementptr", "bitcast", "call", "select", "zext"),
+    *("trunc", "to", "uitofp", "add", "nuw", "nsw", "or", "and", "xor", "shl", "fadd", "fsub", "fmul", "fdiv", "fneg"),
+    *("olt", "ogt", "oeq", "one", "ole", "oge", "uge", "une", "x", "source_filename"),
+    *("llvm.fma", "llvm.fma.f64", "llvm.fabs.f64", "llvm.sqrt.f64"),
+}

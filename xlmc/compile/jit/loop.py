@@ -69,6 +69,7 @@ def _inner(
     types = [*map(_pointer_type, arrays), _LONG.as_pointer(), _BYTE.as_pointer(), _LONG]
     function = ir.Function(module, ir.FunctionType(_LONG, types), "loop")
     function.linkage = "internal"
+    function.attributes.add("noinline")  # put in its caller, each access would list all the arrays it does not overlap
     for argument in function.args[:-1]:
         argument.add_attribute("noalias")
     *pointers, survivors, wrongs, n = function.args

@@ -22,7 +22,10 @@ __all__ = ["over_cells"]
 Part = Operand | Literal
 Parts = Sequence[Any]
 
-_ALL: Final = range(1 << 20)
+_MOST: Final = 200
+"""Cells of a range that a loop reads one by one; a wider one is summed by NumPy."""
+
+_ALL: Final = range(_MOST)
 
 
 class _NotForTheLoopError(Exception):
@@ -48,7 +51,7 @@ def over_cells(dag: Dag, node: Apply) -> Recipe | None:
         members = _members(dag, node)
     except _NotForTheLoopError:
         return None
-    if len(members.counting) < row.fewest:
+    if not row.fewest <= len(members.counting) <= _MOST:
         return None
     return Recipe(tuple(members.counting), row.emit, row.absorbs, row.makes, tuple(members.beside))
 
@@ -133,6 +136,8 @@ def _sum_of_products(dag: Dag, node: Apply) -> Recipe | None:
                 beside.append(cell)
         columns.append(parts)
     height = len(columns[0])
+    if height * len(columns) > _MOST:
+        return None
 
     def emit(body: Body, parts: Parts) -> Any:
         products = [reduce(body.builder.fmul, parts[cell::height]) for cell in range(height)]

@@ -12,7 +12,7 @@ from xlmc.compile.jit.recipes import Recipe, reads
 
 __all__ = ["Stage", "stages"]
 
-_LONGEST: Final = 500
+_LONGEST: Final = 250
 """Nodes of one loop; the time to compile grows faster than the loop."""
 
 

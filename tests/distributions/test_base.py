@@ -11,6 +11,15 @@ GOOD = {
     "Normal": (3.0, 2.0),
     "Triangular": (2.0, 5.0, 6.0),
     "Trapezoid": (2.0, 3.0, 5.0, 6.0),
+    "Binomial": (0.3, 20.0),
+    "Discrete Uniform": (2.0, 7.0),
+    "Geometric": (0.25,),
+    "Geomet": (0.25,),
+    "Hypergeometric": (20.0, 10.0, 50.0),
+    "Negative Binomial": (0.25, 3.0),
+    "Negbin": (0.25, 3.0),
+    "Poisson": (4.0,),
+    "Yes-No": (0.25,),
 }
 CASES = [pytest.param(FAMILIES[name], GOOD[name], id=name) for name in FAMILIES]
 U = np.array([0.0, 2.0**-53, 0.25, 0.5, 0.75, 1 - 2.0**-53])

@@ -5,17 +5,39 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from xlmc.distributions.base import Family, Fault, ParameterSpec
+from xlmc.distributions.binomial import Binomial
+from xlmc.distributions.discrete_uniform import DiscreteUniform
+from xlmc.distributions.geomet import Geomet
+from xlmc.distributions.geometric import Geometric
+from xlmc.distributions.hypergeometric import Hypergeometric
 from xlmc.distributions.naming import did_you_mean, plain
+from xlmc.distributions.negative_binomial import NegativeBinomial
+from xlmc.distributions.negbin import Negbin
 from xlmc.distributions.normal import Normal
+from xlmc.distributions.poisson import Poisson
 from xlmc.distributions.trapezoid import Trapezoid
 from xlmc.distributions.triangular import Triangular
 from xlmc.distributions.truncated import Truncated
 from xlmc.distributions.uniform import Uniform
+from xlmc.distributions.yes_no import YesNo
 from xlmc.errors import DefinitionError
 
 __all__ = ["FAMILIES", "Family", "Fault", "ParameterSpec", "Truncated", "family_named"]
 
-FAMILIES: Mapping[str, Family] = {family.name: family for family in (Uniform(), Normal(), Triangular(), Trapezoid())}
+_CONTINUOUS = (Uniform(), Normal(), Triangular(), Trapezoid())
+_COUNTS = (
+    Binomial(),
+    DiscreteUniform(),
+    Geometric(),
+    Geomet(),
+    Hypergeometric(),
+    NegativeBinomial(),
+    Negbin(),
+    Poisson(),
+    YesNo(),
+)
+
+FAMILIES: Mapping[str, Family] = {family.name: family for family in (*_CONTINUOUS, *_COUNTS)}
 """Every family by its name."""
 
 _SPELLINGS = {plain(spelling): family for family in FAMILIES.values() for spelling in (family.name, *family.aliases)}

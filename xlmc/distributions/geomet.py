@@ -1,0 +1,20 @@
+"""Geomet: how many independent trials fail before the first success, @RISK's geometric distribution."""
+
+from __future__ import annotations
+
+from xlmc.distributions.geometric import Geometric
+
+__all__ = ["Geomet"]
+
+
+class Geomet(Geometric):
+    """Geometric with the probability of success, counting failures as @RISK does: 0, 1, 2, …
+
+    >>> geomet = Geomet()
+    >>> print(float(geomet.ppf(0.99, probability=0.25)), float(Geometric().ppf(0.99, probability=0.25)))
+    16.0 17.0
+    """
+
+    name = "Geomet"
+    aliases = ("Geometric failures",)
+    first = 0.0

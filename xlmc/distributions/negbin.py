@@ -1,0 +1,20 @@
+"""Negbin: how many independent trials fail before so many have succeeded, @RISK's negative binomial distribution."""
+
+from __future__ import annotations
+
+from xlmc.distributions.negative_binomial import NegativeBinomial
+
+__all__ = ["Negbin"]
+
+
+class Negbin(NegativeBinomial):
+    """Negative binomial with the probability of success and the number of successes, counting failures as @RISK does.
+
+    >>> negbin = Negbin()
+    >>> print(float(negbin.ppf(0.99, probability=0.25, shape=3)))
+    28.0
+    """
+
+    name = "Negbin"
+    aliases = ("Negative binomial failures",)
+    counts_successes = False

@@ -1,0 +1,56 @@
+"""Poisson: how many independent events fall into an interval, at a known mean rate."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from xlmc.distributions.base import Array, Rule, Values
+from xlmc.distributions.whole_numbers import MOST, RATE, WholeNumbers
+
+__all__ = ["Poisson"]
+
+
+class Poisson(WholeNumbers):
+    """Poisson with the mean number of events, which Crystal Ball calls its rate: 0, 1, 2, …
+
+    >>> poisson = Poisson()
+    >>> print(poisson.ppf(np.array([0.0, 0.5, 0.99]), rate=4))
+    [0. 4. 9.]
+    >>> poisson.check(rate=0)
+    'Rate (0) must be above 0 and at most 1,000,000,000'
+    >>> print(poisson.ppf(0.5, np.array([4.0, -4.0])))
+    [ 4. nan]
+    """
+
+    name = "Poisson"
+    parameters = (RATE,)
+    rules = (
+        Rule(
+            "rate",
+            lambda rate: (rate > 0) & (rate <= MOST),
+            f"Rate ({{rate}}) must be above 0 and at most {MOST:,.0f}",
+            "Type the mean number of events",
+        ),
+    )
+
+    def _at_most(self, k: Array, rate: Values) -> Values:
+        from scipy.special import gammaincc
+
+        return gammaincc(k + 1, rate)  # type: ignore[no-any-return]  # SciPy has no types
+
+    def _at_least(self, k: Array, rate: Values) -> Values:
+        from scipy.special import gammainc
+
+        return gammainc(np.maximum(k, 1), rate)  # type: ignore[no-any-return]
+
+    def _mean(self, rate: Values) -> Values:
+        return rate
+
+    def _variance(self, rate: Values) -> Values:
+        return rate
+
+    def _skewness(self, rate: Values) -> Values:
+        return 1 / np.sqrt(rate)
+
+    def _support(self, rate: Values) -> tuple[Values, Values]:
+        return 0 * rate, np.inf + 0 * rate

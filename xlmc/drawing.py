@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from xlmc.address import Cell
 from xlmc.compile import ENGINES, Lowering, Target
 from xlmc.definitions import Assumption, Correlation
+from xlmc.definitions.data import data_family
 from xlmc.definitions.model import Parameter, name_key
-from xlmc.distributions import FAMILIES, Truncated
+from xlmc.distributions import FAMILIES, Family, Truncated
 from xlmc.errors import DefinitionError
 from xlmc.formula import ir
 from xlmc.functions.values import ERROR, TEXT
@@ -31,7 +32,7 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     Raises:
         DefinitionError: the numbers are no distribution.
     """
-    family = FAMILIES[assumption.distribution]
+    family = _family(assumption, lowering)
     parameters = tuple(_settled(assumption.parameters[key], lowering) for key in family.keys)
     cutoffs = None
     if assumption.lower_cutoff is not None or assumption.upper_cutoff is not None:
@@ -41,6 +42,31 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     draw = Draw(name_key(assumption.name), family, parameters, cutoffs)
     _check(draw, assumption)
     return draw
+
+
+def _family(assumption: Assumption, lowering: Lowering) -> Family:
+    """The family; one made from data, from what its cells compute to."""
+    if assumption.data is None:
+        return FAMILIES[assumption.distribution]
+    drawn = next((cell for cell in lowering.inputs if assumption.data and cell in assumption.data.area), None)
+    if drawn is not None:
+        raise _varying_data(assumption, drawn)
+
+    def number(cell: Cell) -> float:
+        value = _settled(cell, lowering)
+        if isinstance(value, Cell):
+            raise _varying_data(assumption, cell)
+        return value
+
+    return data_family(assumption.distribution, assumption.data, number)
+
+
+def _varying_data(assumption: Assumption, cell: Cell) -> DefinitionError:
+    return DefinitionError(
+        f"The data of {assumption.name!r} vary with an assumption in this cell, and data must be fixed",
+        where=cell,
+        hint="Draw from fixed data, and let the cell that uses the draw vary with the assumption",
+    )
 
 
 def _settled(parameter: Parameter, lowering: Lowering) -> Parameter:

@@ -21,7 +21,7 @@ MISTAKES = [
     ),
     # distribution
     ({"Inputs!C2": "Unifrm"}, "Inputs!C2", "'Unifrm' is not a distribution", "Did you mean Uniform?"),
-    ({"Inputs!C2": "Weibull"}, "Inputs!C2", "'Weibull' is not a distribution", "Use one of Uniform, Normal"),
+    ({"Inputs!C2": "Qxzzy"}, "Inputs!C2", "'Qxzzy' is not a distribution", "Use one of Uniform, Normal"),
     ({"Inputs!C2": ErrorCode.NA}, "Inputs!C2", "Distribution holds the error #N/A", "Correct the cell"),
     # parameters that are missing, superfluous or no numbers
     ({"Inputs!D2": None}, "Inputs!D2", "Uniform needs Low, and this cell is blank", "Type a number"),

@@ -6,7 +6,7 @@ from subprocess import run
 import pytest
 
 from xlmc.address import Cell
-from xlmc.distributions import FAMILIES, family_named
+from xlmc.distributions import DATA_FAMILIES, FAMILIES, data_family_named, family_named
 from xlmc.distributions.naming import plain
 from xlmc.errors import DefinitionError
 
@@ -23,6 +23,12 @@ from xlmc.errors import DefinitionError
         ("Triang", "Triangular"),
         ("Trapezoid", "Trapezoid"),
         ("trapezoidal", "Trapezoid"),
+        ("IntUniform", "Discrete Uniform"),
+        ("negative binomial", "Negative Binomial"),
+        ("negbin", "Negbin"),
+        ("Geomet", "Geomet"),
+        ("YesNo", "Yes-No"),
+        ("Bernoulli", "Yes-No"),
     ],
 )
 def test_names_people_type(typed, name):
@@ -34,7 +40,7 @@ def test_names_people_type(typed, name):
     [
         ("Unifrom", "Did you mean Uniform?"),
         ("Trapezium", "Did you mean Trapezoid?"),
-        ("Weibull", "Use one of Uniform, Normal, Triangular, Trapezoid"),
+        ("Qxzzy", "Use one of Uniform, Normal, Triangular, Trapezoid"),
     ],
 )
 def test_unknown_name(typed, hint):
@@ -42,7 +48,29 @@ def test_unknown_name(typed, hint):
         family_named(typed, where=Cell("Inputs", 4, 3))
     assert caught.value.message == f"'{typed}' is not a distribution of this version"
     assert caught.value.where == "Inputs!C4"
-    assert caught.value.hint == hint
+    assert caught.value.hint.startswith(hint)
+
+
+@pytest.mark.parametrize(
+    ("typed", "name"),
+    [
+        ("custom", "Custom"),
+        ("Discrete", "Discrete"),
+        ("DUniform", "DUniform"),
+        ("empirical", "Empirical"),
+        ("EMPIRICAL SMOOTHED", "Empirical smoothed"),
+        ("kde", "Empirical smoothed"),
+    ],
+)
+def test_names_of_distributions_made_from_data(typed, name):
+    assert data_family_named(typed) is DATA_FAMILIES[name]
+    assert data_family_named("Normal") is None
+
+
+def test_no_name_means_two_distributions():
+    families = (*FAMILIES.values(), *DATA_FAMILIES.values())
+    spellings = [plain(name) for family in families for name in (family.name, *family.aliases)]
+    assert len(set(spellings)) == len(spellings)
 
 
 def test_keys_and_headings_are_consistent_across_families():

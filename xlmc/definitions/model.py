@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from xlmc.address import Cell
+from xlmc.address import Area, Cell
 from xlmc.errors import DefinitionError, Notice
 
 __all__ = [
     "Assumption",
     "Correlation",
+    "DataRange",
     "Definitions",
     "Filter",
     "Forecast",
@@ -29,17 +30,42 @@ def name_key(name: str) -> str:
 
 
 @dataclass(frozen=True, slots=True)
+class DataRange:
+    """The data that a distribution is made from.
+
+    Attributes:
+        area: where they stand.
+        rows: what stands there, row by row; None in a blank cell.
+        cumulative: their weights are sums of those up to their row.
+        bandwidth: of a smoothed distribution, where it is given.
+    """
+
+    area: Area
+    rows: tuple[tuple[Parameter | None, ...], ...]
+    cumulative: bool = False
+    bandwidth: Parameter | None = None
+
+    @property
+    def cells(self) -> Iterator[Cell]:
+        """The cells that hold formulas."""
+        for value in (*(value for row in self.rows for value in row), self.bandwidth):
+            if isinstance(value, Cell):
+                yield value
+
+
+@dataclass(frozen=True, slots=True)
 class Assumption:
     """An uncertain input: its cell, its distribution, and why.
 
     Attributes:
-        distribution: the family's name as `xlmc.distributions.FAMILIES` spells it.
+        distribution: the family's name as `xlmc.distributions.FAMILIES` or `DATA_FAMILIES` spells it.
         parameters: the family's parameter key (`low`, `high`, …) -> value.
         lower_cutoff, upper_cutoff: truncation; None where there is none.
         base: the cell's own value, the base case.
         frozen: held at `base`, not drawn.
         row: where it is defined.
         notes: the table's other columns, echoed in the record.
+        data: what a distribution of `DATA_FAMILIES` is made from.
     """
 
     name: str
@@ -54,6 +80,7 @@ class Assumption:
     source: str = ""
     frozen: bool = False
     notes: Mapping[str, str] = field(default_factory=dict)
+    data: DataRange | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,7 @@ __all__ = ["CUTOFFS", "PARAMETER_HEADINGS", "Given", "given_parameters", "remark
 
 CUTOFFS = {"lower_cutoff": "Lower cutoff", "upper_cutoff": "Upper cutoff"}
 
-_LATER = ("Location", "Scale", "Shape", "Rate", "Alpha", "Beta", "Probability", "Data")
+_LATER = ("Location", "Scale", "Shape", "Rate", "Alpha", "Beta", "Probability", "Data", "Bandwidth")
 _PERCENTILES = tuple(f"P{percent}" for percent in range(101))
 _OURS = (heading for family in FAMILIES.values() for spec in family.parameters for heading in spec.headings)
 
@@ -91,8 +91,9 @@ def remark_on_range(family: Family, given: Given, base: float | None, cell: Cell
     numbers, lower, upper = known
     low, high = (float(end) for end in Truncated(family).support(lower, upper, **numbers))
     if low == high:
-        where = given.places[family.keys[0]]
-        findings.notice(f"Low and High are both {show(low)}: the assumption does not vary", where)
+        where = given.places[family.keys[0]] if family.keys else cell
+        ends = "Low and High are both" if {"low", "high"} <= {*family.keys} else "Every draw is"
+        findings.notice(f"{ends} {show(low)}: the assumption does not vary", where)
     if base is not None and not low <= base <= high:
         reach = f"{show(low)} to {show(high)}"
         findings.notice(f"The base case ({show(base)}) lies outside the distribution ({reach})", cell)
@@ -121,6 +122,7 @@ def _heading_of(row: Row, family: Family, spec: ParameterSpec) -> str:
 def _refuse_unused(row: Row, family: Family, findings: Findings) -> None:
     """A number that is silently ignored would mislead: whoever gives a Normal a Low believes that it ends there."""
     used = {plain(heading) for spec in family.parameters for heading in spec.headings}
+    used |= {plain(heading) for heading in family.columns}
     for heading in PARAMETER_HEADINGS:
         if plain(heading) in used or not row.filled(heading):
             continue

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from xlmc.distributions.base import Family, Fault, ParameterSpec
 from xlmc.distributions.binomial import Binomial
+from xlmc.distributions.data_families import DATA_FAMILIES, DataFamily, data_family_named
 from xlmc.distributions.discrete_uniform import DiscreteUniform
 from xlmc.distributions.geomet import Geomet
 from xlmc.distributions.geometric import Geometric
@@ -22,7 +23,17 @@ from xlmc.distributions.uniform import Uniform
 from xlmc.distributions.yes_no import YesNo
 from xlmc.errors import DefinitionError
 
-__all__ = ["FAMILIES", "Family", "Fault", "ParameterSpec", "Truncated", "family_named"]
+__all__ = [
+    "DATA_FAMILIES",
+    "FAMILIES",
+    "DataFamily",
+    "Family",
+    "Fault",
+    "ParameterSpec",
+    "Truncated",
+    "data_family_named",
+    "family_named",
+]
 
 _CONTINUOUS = (Uniform(), Normal(), Triangular(), Trapezoid())
 _COUNTS = (
@@ -56,5 +67,5 @@ def family_named(name: str, where: object = None) -> Family:
     family = _SPELLINGS.get(plain(name))
     if family is None:
         message = f"{name.strip()!r} is not a distribution of this version"
-        raise DefinitionError(message, where=where, hint=did_you_mean(name, FAMILIES))
+        raise DefinitionError(message, where=where, hint=did_you_mean(name, (*FAMILIES, *DATA_FAMILIES)))
     return family

@@ -93,13 +93,15 @@ class Family(ABC):
     Attributes:
         name: as people see it, and as `FAMILIES` spells it.
         aliases: other names that people type.
+        columns: headings of the assumptions table that it reads beside its parameters.
         open_below: the quantile of 0 is minus infinity, so u = 0 is read as `SMALLEST_U`.
     """
 
-    name: ClassVar[str]
+    name: str
     aliases: ClassVar[tuple[str, ...]] = ()
     parameters: ClassVar[tuple[ParameterSpec, ...]]
     rules: ClassVar[tuple[Rule, ...]] = ()
+    columns: tuple[str, ...] = ()
     open_below: ClassVar[bool] = False
 
     @property

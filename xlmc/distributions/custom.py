@@ -1,7 +1,7 @@
 """Custom: single values and ranges, each with a weight of its own.
 
-Every form of Crystal Ball's custom data comes down to pieces that do not overlap, from left to right: a single value, or
-a range with a density that is flat or slopes in a straight line. `custom_data` makes the pieces; this draws from them.
+Every form of Crystal Ball's custom data comes down to pieces that do not overlap, from left to right: a single value,
+or a range with a density that is flat or slopes in a straight line. `custom_data` makes the pieces; this draws.
 """
 
 from __future__ import annotations
@@ -10,10 +10,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from xlmc.distributions.base import Array, Family, Values
 
 __all__ = ["Custom", "Piece"]
+
+
+Places = NDArray[np.intp]
+"""Of each value, which piece it belongs to."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +55,7 @@ class Custom(Family):
 
     def __init__(self, pieces: Sequence[Piece], name: str = "Custom") -> None:
         kept = [piece for piece in pieces if piece.weight > 0]
-        self.name = name  # type: ignore[misc]  # a family's name, but an instance's own here
+        self.name = name
         self.low, self.high, weights, left, right = (
             np.array([getattr(piece, field) for piece in kept], dtype=float)
             for field in ("low", "high", "weight", "left", "right")
@@ -79,7 +84,7 @@ class Custom(Family):
         along = np.clip((u - self.below[piece]) / self.share[piece], 0.0, 1.0)
         return self._place(piece, _distance(along, self.start[piece]))
 
-    def _isf(self, q: Array) -> Array:
+    def _isf(self, q: Array, *_: Values) -> Array:
         # The last piece above which no more than q lies, counted from the right.
         count = self.low.size
         piece = np.clip(count - np.searchsorted(self.above[::-1], q, side="right"), 0, count - 1)
@@ -88,9 +93,9 @@ class Custom(Family):
         along = np.clip((q - self.above[piece + 1]) / self.share[piece], 0.0, 1.0)
         return self._place(piece, 1 - _distance(along, 2 - self.start[piece]))
 
-    def _place(self, piece: Array, t: Array) -> Array:
+    def _place(self, piece: Places, t: Array) -> Array:
         low, high = self.low[piece], self.high[piece]
-        return np.clip(low + (high - low) * t, low, high)
+        return np.asarray(np.clip(low + (high - low) * t, low, high))
 
     def _cdf(self, x: Values) -> Values:
         piece = np.searchsorted(self.low, x, side="right") - 1  # the piece that x lies in or after
@@ -99,26 +104,26 @@ class Custom(Family):
         whole = (piece >= 0) & (x >= self.high[inside])
         return np.where(whole, self.below[inside + 1], np.where(piece < 0, 0.0, value))
 
-    def _sf(self, x: Values) -> Values:
+    def _sf(self, x: Values, *_: Values) -> Values:
         piece = np.searchsorted(self.high, x, side="left")  # the piece that x lies in or before
         inside = np.minimum(piece, self.high.size - 1)
         value = self.above[inside + 1] + self.share[inside] * self._uncovered(inside, x)
         whole = (piece <= inside) & (x <= self.low[inside])
         return np.where(whole, self.above[inside], np.where(piece > inside, 0.0, value))
 
-    def _along(self, piece: Array, x: Values) -> Array:
+    def _along(self, piece: Places, x: Values) -> Array:
         width = np.where(self.single[piece], 1.0, self.high[piece] - self.low[piece])
-        return (np.clip(x, self.low[piece], self.high[piece]) - self.low[piece]) / width
+        return np.asarray((np.clip(x, self.low[piece], self.high[piece]) - self.low[piece]) / width)
 
-    def _covered(self, piece: Array, x: Values) -> Array:
+    def _covered(self, piece: Places, x: Values) -> Array:
         t, start = self._along(piece, x), self.start[piece]
-        return t * (start + (1 - start) * t)
+        return np.asarray(t * (start + (1 - start) * t))
 
-    def _uncovered(self, piece: Array, x: Values) -> Array:
+    def _uncovered(self, piece: Places, x: Values) -> Array:
         width = np.where(self.single[piece], 1.0, self.high[piece] - self.low[piece])
         t = (self.high[piece] - np.clip(x, self.low[piece], self.high[piece])) / width
         end = 2 - self.start[piece]
-        return t * (end + (1 - end) * t)
+        return np.asarray(t * (end + (1 - end) * t))
 
     def _mean(self) -> Values:
         return float(self.low[0] + np.sum(self.share * (self.low - self.low[0] + self._centre())))
@@ -131,7 +136,7 @@ class Custom(Family):
 
     def _centre(self) -> Array:
         """How far right of its low end a piece's mean lies."""
-        return (self.high - self.low) * (0.5 + (1 - self.start) / 6)
+        return np.asarray((self.high - self.low) * (0.5 + (1 - self.start) / 6))
 
     def _support(self) -> tuple[Values, Values]:
         return float(self.low[0]), float(self.high[-1])

@@ -26,7 +26,7 @@ from xlmc.distributions.custom import Piece
 
 __all__ = ["MOST_VALUES", "BadData", "custom_pieces", "value_pieces", "weighted_pieces"]
 
-MOST_VALUES = 1_000_000
+MOST_VALUES = 100_000
 """No more single values than this may one distribution have."""
 
 _TOLERANCE = 1e-9

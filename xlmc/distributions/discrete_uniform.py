@@ -51,7 +51,8 @@ class DiscreteUniform(WholeNumbers):
     def _at_least(self, k: Array, low: Values, high: Values) -> Values:
         return (high - k + 1) / (high - low + 1)
 
-    def _guess(self, u: Array, q: Array, low: Values, high: Values) -> Array:
+    def _guess(self, u: Array, q: Array, *params: Values) -> Array:
+        low, high = params
         return np.asarray(low - 1 + np.ceil(u * (high - low + 1)))
 
     def _mean(self, low: Values, high: Values) -> Values:

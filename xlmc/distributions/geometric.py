@@ -38,9 +38,10 @@ class Geometric(WholeNumbers):
         """The logarithm of the probability that everything before k failed; far below 0 where it is certain to end."""
         with np.errstate(divide="ignore"):
             each = np.maximum(np.log1p(-np.asarray(probability)), -1e300)
-        return np.maximum(k - self.first, 0.0) * each
+        return np.asarray(np.maximum(k - self.first, 0.0) * each)
 
-    def _guess(self, u: Array, q: Array, probability: Values) -> Array:
+    def _guess(self, u: Array, q: Array, *params: Values) -> Array:
+        (probability,) = params
         each = np.minimum(np.log1p(-np.minimum(probability, LARGEST_SHARE)), -1e-300)
         log_above = np.where(u < q, np.log1p(-np.minimum(u, 0.5)), np.log(np.clip(q, 1e-300, 1.0)))
         return np.asarray(self.first - 1 + np.ceil(log_above / each))

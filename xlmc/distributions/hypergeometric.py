@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -57,16 +59,20 @@ class Hypergeometric(WholeNumbers):
 
     def _looked_up(self, side: int, k: Values, *params: Values) -> Array:
         columns = np.broadcast_arrays(k, *params)
-        rows = np.stack([column.ravel() for column in columns[1:]], axis=1)
-        asked, found = columns[0].ravel(), np.full(len(rows), np.nan)
-        kinds, which, counts = np.unique(rows, axis=0, return_inverse=True, return_counts=True)
-        groups = np.split(np.argsort(which.ravel(), kind="stable"), np.cumsum(counts)[:-1])
-        for row, here in zip(kinds, groups, strict=True):
-            if not np.isnan(row).any():
-                first, *tails = _tails(*(float(value) for value in row))
-                place = np.clip(asked[here] - first + 1, 0, tails[side].size - 1)
-                found[here] = tails[side][place.astype(np.intp)]
+        asked, found = columns[0].ravel(), np.full(columns[0].size, np.nan)
+        for row, here in _alike(columns[1:]):
+            first, *tails = _tails(*row)
+            place = np.clip(asked[here] - first + 1, 0, tails[side].size - 1)
+            found[here] = tails[side][place.astype(np.intp)]
         return found.reshape(columns[0].shape)
+
+    def _ppf(self, u: Array, *params: Values) -> Array:
+        columns = np.broadcast_arrays(u, *params)
+        found = np.full(u.size, np.nan)
+        for row, here in _alike(columns[1:]):
+            first, at_most, _ = _tails(*row)
+            found[here] = first - 1 + np.searchsorted(at_most, u.ravel()[here])
+        return found.reshape(u.shape)
 
     def _mean(self, success: Values, trials: Values, population: Values) -> Values:
         return trials * (success / population)
@@ -82,6 +88,19 @@ class Hypergeometric(WholeNumbers):
 
     def _support(self, success: Values, trials: Values, population: Values) -> tuple[Values, Values]:
         return np.maximum(0.0, success + trials - population), np.minimum(success, trials) + 0 * population
+
+
+def _alike(columns: Sequence[Array]) -> Iterator[tuple[tuple[float, ...], Any]]:
+    """The parameters that occur, and the trials that have them; trials without any are left out."""
+    if all(column.size and (column == column.flat[0]).all() for column in columns):
+        yield tuple(float(column.flat[0]) for column in columns), slice(None)
+        return
+    rows = np.stack([column.ravel() for column in columns], axis=1)
+    kinds, which, counts = np.unique(rows, axis=0, return_inverse=True, return_counts=True)
+    groups = np.split(np.argsort(which.ravel(), kind="stable"), np.cumsum(counts)[:-1])
+    for row, here in zip(kinds, groups, strict=True):
+        if not np.isnan(row).any():
+            yield tuple(float(value) for value in row), here
 
 
 @lru_cache(maxsize=4096)
@@ -101,7 +120,7 @@ def _tails(success: float, trials: float, population: float) -> tuple[float, Arr
     with np.errstate(under="ignore"):
         up, down = np.cumprod(ratio[peak:]), np.cumprod(1 / ratio[:peak][::-1])[::-1]
     mass = np.concatenate([down, [1.0], up])
-    whole = mass.sum()
-    at_most, at_least = np.cumsum(mass) / whole, np.cumsum(mass[::-1])[::-1] / whole
-    below, above = np.concatenate([[0.0], at_most, [1.0]]), np.concatenate([[1.0], at_least, [0.0]])
-    return float(first), np.minimum(below, 1.0), np.minimum(above, 1.0)
+    at_most, at_least = np.cumsum(mass), np.cumsum(mass[::-1])[::-1]
+    below = np.concatenate([[0.0], at_most / at_most[-1], [1.0]])
+    above = np.concatenate([[1.0], at_least / at_least[0], [0.0]])
+    return float(first), below, above

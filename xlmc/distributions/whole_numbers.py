@@ -28,7 +28,6 @@ __all__ = [
     "SUCCESS",
     "TRIALS",
     "WholeNumbers",
-    "possible",
     "probability",
     "whole",
 ]
@@ -109,7 +108,7 @@ class WholeNumbers(Family):
         def holds(k: Array, trials: Any) -> Any:
             return reached(k, *(column[trials] for column in columns))
 
-        return smallest(holds, guess, low, high).reshape(shape)
+        return np.asarray(smallest(holds, guess, low, high).reshape(shape))
 
     def _guess(self, u: Array, q: Array, *params: Values) -> Array:
         """Near the quantile. Source: E. A. Cornish and R. A. Fisher, 1937; the normal quantile bent by the skewness."""
@@ -126,7 +125,8 @@ def standard_normal(u: Array, q: Array) -> Array:
     """The normal quantile of the probabilities u below and q above it, from the smaller one; finite."""
     from scipy.special import ndtri
 
-    return np.where(u < q, ndtri(np.clip(u, 1e-300, 0.5)), -ndtri(np.clip(q, 1e-300, 0.5)))
+    z = np.where(u < q, ndtri(np.clip(u, 1e-300, 0.5)), -ndtri(np.clip(q, 1e-300, 0.5)))
+    return np.asarray(z)
 
 
 @lru_cache(maxsize=64)
@@ -156,14 +156,7 @@ def whole(parameters: Sequence[ParameterSpec], spec: ParameterSpec, least: float
     place = parameters.index(spec)
     return Rule(
         spec.key,
-        lambda *values: (
-            (values[place] >= least) & (values[place] <= MOST) & (values[place] == np.floor(values[place]))
-        ),
+        lambda *values: (values[place] >= least) & (values[place] <= MOST) & (values[place] == np.floor(values[place])),
         f"{spec.heading} ({{{spec.key}}}) must be a whole number from {least:.0f} to {MOST:,.0f}",
         "Correct the number, or wrap its formula in ROUND",
     )
-
-
-def possible(kept: Any, value: Values, otherwise: float) -> Array:
-    """The value where it may be computed with, and a harmless one elsewhere."""
-    return np.where(kept, value, otherwise)

@@ -15,7 +15,7 @@ FARTHEST = 2.0**52
 """Whole numbers are told apart up to here."""
 
 Holds = Callable[[Array, NDArray[np.intp]], NDArray[np.bool_]]
-"""Of candidates `(m,)` and the trials `(m,)` they belong to: where the condition holds. Once true, true for all above."""
+"""Of candidates `(m,)` and the trials `(m,)` they belong to: where it holds. It does from some number up."""
 
 
 def smallest(holds: Holds, guess: Array, low: Array, high: Array) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from xlmc.definitions.model import Assumption, Filter, Parameter
+from xlmc.definitions.model import Assumption, DataRange, Filter, Parameter
 from xlmc.distributions import FAMILIES
 
 if TYPE_CHECKING:
@@ -25,9 +25,17 @@ def bound_text(bound: Parameter) -> str:
 
 
 def parameters_text(assumption: Assumption) -> str:
-    """`Low 6661, High 6861`."""
+    """`Low 6661, High 6861`; `Data Inputs!Q2:R9` for a distribution made from data."""
+    if assumption.data is not None:
+        return _data_text(assumption.data)
     family = FAMILIES[assumption.distribution]
     return ", ".join(f"{p.heading} {bound_text(assumption.parameters[p.key])}" for p in family.parameters)
+
+
+def _data_text(data: DataRange) -> str:
+    weights = ", cumulative weights" * data.cumulative
+    bandwidth = "" if data.bandwidth is None else f", Bandwidth {bound_text(data.bandwidth)}"
+    return f"Data {data.area}{weights}{bandwidth}"
 
 
 def cutoffs_text(assumption: Assumption) -> str:

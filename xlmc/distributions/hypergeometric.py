@@ -92,7 +92,9 @@ class Hypergeometric(WholeNumbers):
 
 def _alike(columns: Sequence[Array]) -> Iterator[tuple[tuple[float, ...], Any]]:
     """The parameters that occur, and the trials that have them; trials without any are left out."""
-    if all(column.size and (column == column.flat[0]).all() for column in columns):
+    if columns[0].size == 0:
+        return
+    if all((column == column.flat[0]).all() for column in columns):
         yield tuple(float(column.flat[0]) for column in columns), slice(None)
         return
     rows = np.stack([column.ravel() for column in columns], axis=1)

@@ -85,8 +85,8 @@ def test_as_high_as_scipys_own_fit(name):
     ["Normal", "Uniform", "Lognormal", "Exponential", "Gamma", "Weibull", "Maximum Extreme", "Pareto", "Poisson"],
 )
 def test_standard_errors_are_the_scatter_of_estimates(name):
-    """400 samples of 200: the scatter is known to 3.5 %, the mean standard error to less; four times that is allowed."""
-    params, oracle = SAME[name]
+    """400 samples of 200: the scatter is known to 3.5 %, the mean standard error better; four times that is allowed."""
+    _, oracle = SAME[name]
     candidate, random = CANDIDATES[name], np.random.default_rng(13)
     free = [place for place, heading in enumerate(candidate.headings) if heading not in candidate.fixed]
     estimates, errors = [], []
@@ -105,10 +105,10 @@ def test_standard_errors_are_the_scatter_of_estimates(name):
 
 
 def test_the_bootstrap_of_the_triangular_is_the_scatter_of_estimates():
-    """100 samples, 100 bootstrap samples: each scatter is known to 7 %."""
+    """60 samples, three times 100 bootstrap samples: the scatters are known to 9 % and, with the samples, to 15 %."""
     candidate, random = CANDIDATES["Triangular"], np.random.default_rng(14)
     _, oracle = SAME["Triangular"]
-    samples = [np.sort(oracle.rvs(200, random_state=random)) for _ in range(100)]
+    samples = [np.sort(oracle.rvs(200, random_state=random)) for _ in range(60)]
     scatter = np.std([candidate.estimate(x) for x in samples], axis=0, ddof=1)
     stated = np.mean([candidate.errors(x, candidate.estimate(x)) for x in samples[:3]], axis=0)
     np.testing.assert_allclose(stated, scatter, rtol=0.4)

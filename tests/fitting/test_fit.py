@@ -57,7 +57,7 @@ def test_a_large_sample_finds_its_family(name):
             assert best.parameters[heading] == value, heading
         else:
             assert abs(best.parameters[heading] - value) < 4 * error, heading
-            assert 0 < error < 0.2 * (abs(value) + 1)
+            assert 0 < error < 0.3 * (abs(value) + 1)
 
 
 @pytest.mark.parametrize("by", CRITERIA)
@@ -87,9 +87,10 @@ def test_whole_numbers_are_counts_unless_told_otherwise():
 
 
 def test_what_cannot_be_fitted_says_why():
-    assert fit([-1.5, 2, 3, 5]).unfit["Lognormal"] == "it takes values above 0 only"
-    assert fit([-1.5, 2, 3, 5]).unfit["Exponential"] == "it takes values from 0 up only"
-    assert fit([1.5, 2, 3, 5]).unfit["Beta"] == "it is fitted to values between 0 and 1 only"
+    unfit = fit([-1.5, 2, 3, 5]).unfit
+    assert unfit["Lognormal"] == "it takes values above 0 only"
+    assert unfit["Exponential"] == "it takes values from 0 up only"
+    assert unfit["Beta"] == "it is fitted to values between 0 and 1 only"
     assert fit([0, 2, 9, 5]).unfit["Geometric"] == "it counts trials, which are 1 or more"
     assert fit([0, 2, 9, 5]).unfit["Binomial"] == "the variance of the values is not below their mean"
     assert fit([4, 4, 5, 5]).unfit["Negbin"] == "the variance of the values is not above their mean"

@@ -62,11 +62,6 @@ def _binomial_log(x: Floats, probability: float, trials: float) -> Floats:
     return np.asarray(ways + xlogy(x, probability) + xlog1py(trials - x, -probability))
 
 
-def _binomial_errors(x: Floats, params: Params) -> Errors:
-    probability, trials = params
-    return float(np.sqrt(probability * (1 - probability) / (trials * x.size))), None
-
-
 def _geometric(x: Floats) -> Params:
     refuse(x[0] < 1, "it counts trials, which are 1 or more")
     return (1 / float(x.mean()),)
@@ -114,12 +109,6 @@ def _negbin_log(x: Floats, probability: float, shape: float) -> Floats:
     return _negative_log(x + shape, probability, shape)
 
 
-def _negative_errors(x: Floats, params: Params) -> Errors:
-    """The information of n negative binomials of this shape: n·shape/(p²(1 - p))."""
-    probability, shape = params
-    return float(probability * np.sqrt((1 - probability) / (x.size * shape))), None
-
-
 def _discrete_uniform(x: Floats) -> Params:
     return float(x[0]), float(x[-1])
 
@@ -132,7 +121,7 @@ def _no_errors(_: Floats, params: Params) -> Errors:
     return (None,) * len(params)
 
 
-_GIVEN = f"{INFORMATION}, as if the whole number were known"
+_GIVEN = f"{INFORMATION}, the whole number taken as continuous"
 
 COUNTS = (
     Candidate("Poisson", ("Rate",), _poisson, _poisson_log, _cdf("Poisson")),
@@ -142,7 +131,6 @@ COUNTS = (
         _binomial,
         _binomial_log,
         _cdf("Binomial"),
-        errors=_binomial_errors,
         errors_from=_GIVEN,
     ),
     Candidate("Geometric", ("Probability",), _geometric, _geometric_log, _cdf("Geometric")),
@@ -153,7 +141,6 @@ COUNTS = (
         _negative_binomial,
         _negative_log,
         _cdf("Negative Binomial"),
-        errors=_negative_errors,
         errors_from=_GIVEN,
     ),
     Candidate(
@@ -162,7 +149,6 @@ COUNTS = (
         _negbin,
         _negbin_log,
         _cdf("Negbin"),
-        errors=_negative_errors,
         errors_from=_GIVEN,
     ),
     Candidate(

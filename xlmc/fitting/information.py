@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from xlmc.fitting.candidate import Errors, Params
 
@@ -13,6 +14,9 @@ __all__ = ["standard_errors"]
 
 _DROP = 0.005
 """How far the log-likelihood falls over a step: a tenth of a standard error, far above rounding."""
+
+_FLAT = 1e-7
+"""Least bend, beside that along the parameters themselves, that counts as one."""
 
 
 def standard_errors(log_likelihood: Callable[[Params], float], params: Params, free: Sequence[int]) -> Errors:
@@ -44,10 +48,18 @@ def standard_errors(log_likelihood: Callable[[Params], float], params: Params, f
             mixed = at((i, h), (j, k)) - at((i, h), (j, -k)) - at((i, -h), (j, k)) + at((i, -h), (j, -k))
             bend[row, column] = bend[column, row] = -mixed / (4 * h * k)
     errors: list[float | None] = [None] * len(params)
-    if np.isfinite(bend).all() and (np.linalg.eigvalsh(bend) > 0).all():
+    if _bends_everywhere(bend):
         for place, variance in zip(free, np.diag(np.linalg.inv(bend)), strict=True):
             errors[place] = float(np.sqrt(variance))
     return tuple(errors)
+
+
+def _bends_everywhere(bend: NDArray[np.float64]) -> bool:
+    """Whether there is no direction in which it is flat, as far as differences can tell."""
+    if not (np.isfinite(bend).all() and (np.diag(bend) > 0).all()):
+        return False
+    scale = np.sqrt(np.diag(bend))
+    return bool((np.linalg.eigvalsh(bend / np.outer(scale, scale)) > _FLAT).all())
 
 
 def _step(drop: Callable[[float], float], value: float) -> float:

@@ -11,13 +11,16 @@ from xlmc.fitting.candidate import Floats, Unfit
 __all__ = ["maximise", "root"]
 
 
-def maximise(log_likelihood: Callable[[Floats], float], start: list[float], *, tolerance: float = 1e-10) -> Floats:
+def maximise(
+    log_likelihood: Callable[[Floats], float], start: list[float], *, tolerance: float = 1e-10, most: int = 4000
+) -> Floats:
     """Where it is highest, by the simplex method, begun twice so that a simplex that collapsed early is found out.
 
     Args:
         log_likelihood: of parameters that may be any numbers.
         start: a point near it.
         tolerance: of the parameters.
+        most: how often each of the two may ask for it.
 
     Raises:
         Unfit: it has no highest point that can be found.
@@ -30,7 +33,7 @@ def maximise(log_likelihood: Callable[[Floats], float], start: list[float], *, t
 
     point = np.array(start, dtype=float)
     for _ in range(2):
-        options = {"xatol": tolerance, "fatol": 1e-11 * (1 + abs(loss(point))), "maxiter": 4000, "maxfev": 4000}
+        options = {"xatol": tolerance, "fatol": tolerance / 10 * (1 + abs(loss(point))), "maxfev": most}
         found = minimize(loss, point, method="Nelder-Mead", options=options)
         point = np.asarray(found.x)
     if not found.success or not found.fun < 1e300:

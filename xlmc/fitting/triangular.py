@@ -15,6 +15,8 @@ from xlmc.fitting.maximise import maximise
 __all__ = ["TRIANGULAR"]
 
 _SAMPLES, _SEED = 100, 999
+_NEAREST, _FARTHEST = -12.0, 5.0
+"""Logarithms of the least and the greatest distance of an end from the values, in widths of these."""
 
 
 def _likeliest(x: Floats, low: float, high: float) -> tuple[float, float]:
@@ -29,7 +31,7 @@ def _likeliest(x: Floats, low: float, high: float) -> tuple[float, float]:
     return float(x[best]), float(totals[best] + n * np.log(2 / width))
 
 
-def _ends(x: Floats, tolerance: float) -> tuple[float, float]:
+def _ends(x: Floats, tolerance: float = 1e-8) -> tuple[float, float]:
     """Beyond the smallest and the largest value, where neither has density 0."""
     spread = float(x[-1] - x[0])
 
@@ -37,13 +39,16 @@ def _ends(x: Floats, tolerance: float) -> tuple[float, float]:
         return float(x[0] - spread * np.exp(point[0])), float(x[-1] + spread * np.exp(point[1]))
 
     def log_likelihood(point: Floats) -> float:
-        return _likeliest(x, *moved(np.clip(point, -30, 5)))[1]
+        # Ends on a value, or far away, are as good as ends near there: a slope keeps the search from wandering.
+        return _likeliest(x, *moved(np.clip(point, _NEAREST, _FARTHEST)))[1] - float(
+            np.sum(np.abs(point - np.clip(point, _NEAREST, _FARTHEST)))
+        )
 
-    return moved(np.clip(maximise(log_likelihood, [-2.5, -2.5], tolerance=tolerance), -30, 5))
+    return moved(np.clip(maximise(log_likelihood, [-2.5, -2.5], tolerance=tolerance), _NEAREST, _FARTHEST))
 
 
 def _estimate(x: Floats) -> Params:
-    low, high = _ends(x, 1e-8)
+    low, high = _ends(x)
     return low, _likeliest(x, low, high)[0], high
 
 
@@ -75,7 +80,7 @@ def _errors(x: Floats, params: Params) -> Errors:
     for _ in range(_SAMPLES):
         sample = np.sort(_drawn(random.random(x.size), *params))
         try:
-            low, high = _ends(sample, 1e-4)
+            low, high = _ends(sample, 1e-2)
         except Unfit:
             continue
         found.append((low, _likeliest(sample, low, high)[0], high))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from xlmc.distributions.base import Array, Rule, Values
+from xlmc.distributions.poisson_tails import at_least, at_most
 from xlmc.distributions.whole_numbers import MOST, RATE, WholeNumbers
 
 __all__ = ["Poisson"]
@@ -34,14 +35,10 @@ class Poisson(WholeNumbers):
     )
 
     def _at_most(self, k: Array, rate: Values) -> Values:
-        from scipy.special import gammaincc
-
-        return gammaincc(k + 1, rate)  # type: ignore[no-any-return]  # SciPy has no types
+        return at_most(k, rate)
 
     def _at_least(self, k: Array, rate: Values) -> Values:
-        from scipy.special import gammainc
-
-        return gammainc(np.maximum(k, 1), rate)  # type: ignore[no-any-return]
+        return at_least(np.maximum(k, 1), rate)
 
     def _mean(self, rate: Values) -> Values:
         return rate

@@ -33,13 +33,13 @@ def test_large_rates_against_sums_of_masses(rate):
     masses = poisson_mass(k, rate)
     at_most, at_least = np.cumsum(masses), np.cumsum(masses[::-1])[::-1]
     seen = np.linspace(0, k.size - 1, 2001).astype(int)
-    for found, expected in ((POISSON.cdf(k, rate), at_most), (POISSON.sf(k, rate), at_least)):
+    for function, expected in ((POISSON.cdf, at_most), (POISSON.sf, at_least)):
         possible = seen[expected[seen] > 1e-28]
-        np.testing.assert_allclose(found[possible], expected[possible], rtol=1e-12)
+        np.testing.assert_allclose(function(k[possible], rate), expected[possible], rtol=1e-12)
     assert (np.diff(POISSON.cdf(k[seen], rate)) >= 0).all()
-    u = at_most[seen[(at_most[seen] > 1e-12) & (at_most[seen] < 1 - 1e-12)]]
-    x = POISSON.ppf(u, rate)
-    np.testing.assert_allclose(at_most[(x - k[0]).astype(int)], u, rtol=1e-4, atol=1e-9)
+    middle = seen[(at_most[seen] > 1e-9) & (at_least[seen] > 1e-3)]
+    x = POISSON.ppf(at_most[middle], rate)
+    assert (np.abs(x - k[middle]) <= 1).all()  # the sums are not the last bit of the distribution function
     assert abs(POISSON.ppf(0.5, rate) - rate) <= 1
 
 

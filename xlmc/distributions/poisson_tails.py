@@ -1,8 +1,8 @@
 """The tails of Poisson distributions with large rates, to all digits.
 
-SciPy's incomplete gamma function is right to 1e-13 within 4.5 standard deviations of a large mean, and loses digits beyond
-(2e-6 at a rate of 1e9), where its continued fraction is cut short. There, the first two terms of the uniform expansion
-leave a relative error below 1e-12.
+SciPy's incomplete gamma function is right to 1e-13 within 4.5 standard deviations of a large mean, and loses digits
+beyond (2e-6 at a rate of 1e9), where its continued fraction is cut short. There, the first two terms of the uniform
+expansion leave a relative error below 1e-12.
 
 Source: N. M. Temme, "The asymptotic expansion of the incomplete gamma functions", SIAM J. Math. Anal. 10, 1979.
 """

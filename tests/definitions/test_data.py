@@ -120,7 +120,7 @@ MISTAKES = {
         ["Custom", "Costs"],
         {"Data!A2": 14},
         "Data!A2",
-        "The row of Data!A2 (14 to 21) overlaps the row of Data!A1 (5 to 15)",
+        "This row (14 to 21) overlaps the row of Data!A1 (5 to 15)",
         "Let each range end",
     ),
     "an overlap with a computed end": (
@@ -136,6 +136,13 @@ MISTAKES = {
         "Data!C2",
         "The cumulative weight (0.25) falls: before it, in Data!C1, it is 0.75",
         "Sort the rows",
+    ),
+    "too few columns": (
+        ["Discrete", "Tests[Value]"],
+        {},
+        "Inputs!D2",
+        "Discrete takes 2 columns (values, probabilities), and Data!H2:H3 has 1",
+        "Correct the range",
     ),
     "cutoffs of Custom": (["Custom", "Costs", *[None] * 2, 6], {}, "Inputs!G2", "Custom cannot be cut off", "the data"),
     "a parameter": (["Custom", "Costs", *[None] * 4, 6], {}, "Inputs!I2", "Custom has no Low", "Clear the cell"),

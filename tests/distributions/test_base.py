@@ -21,7 +21,7 @@ GOOD = {
     "Poisson": (4.0,),
     "Yes-No": (0.25,),
 }
-CASES = [pytest.param(FAMILIES[name], GOOD[name], id=name) for name in FAMILIES]
+CASES = [pytest.param(family, GOOD[name], id=name) for name, family in FAMILIES.items() if family.data is None]
 U = np.array([0.0, 2.0**-53, 0.25, 0.5, 0.75, 1 - 2.0**-53])
 
 

@@ -2,10 +2,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
-from xlmc.distributions.custom import Piece
-from xlmc.distributions.custom_data import BadData, custom_pieces, value_pieces, weighted_pieces
+from xlmc.distributions.base import DataError
+from xlmc.distributions.custom_data import custom_pieces, rows_of, value_pieces, weighted_pieces
+from xlmc.distributions.pieces import Piece
 
 B = None  # a blank cell
 
@@ -56,21 +58,21 @@ BAD = {
     "an overlap": (
         [[0, 5, 1], [4, 9, 1]],
         {},
-        "The row of {0} (4 to 9) overlaps the row of {1} (0 to 5)",
+        "This row (4 to 9) overlaps the row of {also} (0 to 5)",
         [(1, 0), (0, 0)],
     ),
     "an overlap in any order": (
         [[4, 9, 1], [6, 7, 1], [0, 1, 1]],
         {},
-        "The row of {0} (6 to 7) overlaps the row of {1} (4 to 9)",
+        "This row (6 to 7) overlaps the row of {also} (4 to 9)",
         [(1, 0), (0, 0)],
     ),
-    "the same range": ([[0, 5, 1], [0, 5, 1]], {}, "The row of {0} (0 to 5) overlaps", [(1, 0), (0, 0)]),
-    "a value inside a range": ([[0, 5, 1], [3, B, 1]], {}, "The row of {0} (3 to 3) overlaps", [(1, 0), (0, 0)]),
-    "steps inside a range": ([[0, 5, 1, B], [1, 3, 1, 1]], {}, "The row of {0} (1 to 3) overlaps", [(1, 0), (0, 0)]),
-    "steps that meet": ([[0, 4, 1, 2], [4, 6, 1, 1]], {}, "The row of {0} (4 to 6) overlaps", [(1, 0), (0, 0)]),
-    "a value where steps end": ([[0, 4, 1, 2], [4, B, 1, B]], {}, "The row of {0} (4 to 4)", [(1, 0), (0, 0)]),
-    "ends exchanged": ([[5, 0, 1]], {}, "The low end (5) is above the high end (0)", [(0, 0), (0, 1)]),
+    "the same range": ([[0, 5, 1], [0, 5, 1]], {}, "This row (0 to 5) overlaps", [(1, 0), (0, 0)]),
+    "a value inside a range": ([[0, 5, 1], [3, B, 1]], {}, "This row (3 to 3) overlaps", [(1, 0), (0, 0)]),
+    "steps inside a range": ([[0, 5, 1, B], [1, 3, 1, 1]], {}, "This row (1 to 3) overlaps", [(1, 0), (0, 0)]),
+    "steps that meet": ([[0, 4, 1, 2], [4, 6, 1, 1]], {}, "This row (4 to 6) overlaps", [(1, 0), (0, 0)]),
+    "a value where steps end": ([[0, 4, 1, 2], [4, B, 1, B]], {}, "This row (4 to 4)", [(1, 0), (0, 0)]),
+    "ends exchanged": ([[5, 0, 1]], {}, "The low end (5) is above the high end (0)", [(0, 0)]),
     "a blank low": ([[B, 5, 1]], {}, "The low end is blank", [(0, 0)]),
     "blank ends": ([[0, 1, 1], [B, B, 2]], {}, "Both ends are blank", [(1, 0)]),
     "a blank value": ([[1, 1], [B, 2]], {}, "The value is blank", [(1, 0)]),
@@ -93,7 +95,7 @@ BAD = {
     "a falling cumulative weight": (
         [[1, 0.5], [2, 0.25]],
         {"cumulative": True},
-        "The cumulative weight (0.25) falls: before it, in {1}, it is 0.5",
+        "The cumulative weight (0.25) falls: before it, in {also}, it is 0.5",
         [(1, 1), (0, 1)],
     ),
     "a blank cumulative weight": (
@@ -125,10 +127,11 @@ BAD = {
 
 @pytest.mark.parametrize(("rows", "options", "message", "places"), BAD.values(), ids=BAD)
 def test_bad_data(rows, options, message, places):
-    with pytest.raises(BadData) as caught:
+    with pytest.raises(DataError) as caught:
         custom_pieces(rows, **options)
     assert caught.value.message.startswith(message)
-    assert list(caught.value.places[: len(places)]) == places
+    found = [(caught.value.row, caught.value.column), caught.value.also]
+    assert found[: len(places)] == places
     assert caught.value.hint
     assert not caught.value.hint.endswith(".")
 
@@ -142,3 +145,7 @@ def test_steps_share_the_weight():
 def test_minus_zero_is_zero():
     assert value_pieces([[0.0], [-0.0]]) == [Piece(0.0, 0.0, 2.0)]
     assert weighted_pieces([[-0.0, 1.0], [0.0, 1.0]]) == [Piece(0.0, 0.0, 2.0)]
+
+
+def test_blanks_of_an_array():
+    assert rows_of(np.array([[1.0, np.nan]])) == [[1.0, None]]

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from xlmc.distributions import Truncated
+from xlmc.distributions.base import DataError
 from xlmc.distributions.empirical_smoothed import EmpiricalSmoothed, silverman
 
 RNG = np.random.default_rng(20010311)
@@ -86,3 +87,24 @@ def test_truncation():
     assert (x <= 3).all()
     middle = (smoothed.cdf(0.0) + smoothed.cdf(3.0)) / 2
     assert Truncated(smoothed).ppf(0.5, 0.0, 3.0) == pytest.approx(smoothed.ppf(middle), rel=1e-12)
+
+
+COLUMN = np.array([[4.0], [1.0], [np.nan], [2.0], [1.0]])
+
+
+def test_it_is_built_with_silvermans_bandwidth_or_the_given_one():
+    assert EmpiricalSmoothed().built(COLUMN).bandwidth == silverman([4, 1, 2, 1])
+    assert EmpiricalSmoothed().built(COLUMN, bandwidth=0.5).bandwidth == 0.5
+
+
+@pytest.mark.parametrize(
+    ("data", "options", "message"),
+    [
+        ([[2.0], [2.0]], {}, "The values are all equal"),
+        ([[np.nan]], {}, "The data are blank"),
+        ([[float(i)] for i in range(5000)], {"bandwidth": 1e-6}, "The bandwidth is very small"),
+    ],
+)
+def test_data_that_cannot_be_smoothed(data, options, message):
+    with pytest.raises(DataError, match=message):
+        EmpiricalSmoothed().built(np.array(data), **options)

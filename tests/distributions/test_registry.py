@@ -6,7 +6,7 @@ from subprocess import run
 import pytest
 
 from xlmc.address import Cell
-from xlmc.distributions import DATA_FAMILIES, FAMILIES, data_family_named, family_named
+from xlmc.distributions import FAMILIES, family_named
 from xlmc.distributions.naming import plain
 from xlmc.errors import DefinitionError
 
@@ -29,6 +29,11 @@ from xlmc.errors import DefinitionError
         ("Geomet", "Geomet"),
         ("YesNo", "Yes-No"),
         ("Bernoulli", "Yes-No"),
+        ("custom", "Custom"),
+        ("Discrete", "Discrete"),
+        ("DUniform", "DUniform"),
+        ("EMPIRICAL SMOOTHED", "Empirical smoothed"),
+        ("kde", "Empirical smoothed"),
     ],
 )
 def test_names_people_type(typed, name):
@@ -51,25 +56,8 @@ def test_unknown_name(typed, hint):
     assert caught.value.hint.startswith(hint)
 
 
-@pytest.mark.parametrize(
-    ("typed", "name"),
-    [
-        ("custom", "Custom"),
-        ("Discrete", "Discrete"),
-        ("DUniform", "DUniform"),
-        ("empirical", "Empirical"),
-        ("EMPIRICAL SMOOTHED", "Empirical smoothed"),
-        ("kde", "Empirical smoothed"),
-    ],
-)
-def test_names_of_distributions_made_from_data(typed, name):
-    assert data_family_named(typed) is DATA_FAMILIES[name]
-    assert data_family_named("Normal") is None
-
-
 def test_no_name_means_two_distributions():
-    families = (*FAMILIES.values(), *DATA_FAMILIES.values())
-    spellings = [plain(name) for family in families for name in (family.name, *family.aliases)]
+    spellings = [plain(name) for family in FAMILIES.values() for name in (family.name, *family.aliases)]
     assert len(set(spellings)) == len(spellings)
 
 

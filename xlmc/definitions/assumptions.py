@@ -6,17 +6,11 @@ from collections.abc import Iterable
 
 from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.data import (
-    DATA_HEADINGS,
-    cached_data_family,
-    given_cutoffs,
-    given_data,
-    refuse_cumulative,
-)
+from xlmc.definitions.data import OPTIONS, cached_data_family, given_data, refuse_options
 from xlmc.definitions.fields import logical, number_in, optional_text
 from xlmc.definitions.findings import Findings
 from xlmc.definitions.identity import Claims, identify
-from xlmc.definitions.model import Assumption, DataRange
+from xlmc.definitions.model import Assumption
 from xlmc.definitions.parameters import (
     CUTOFFS,
     PARAMETER_HEADINGS,
@@ -26,14 +20,14 @@ from xlmc.definitions.parameters import (
     rules_kept,
 )
 from xlmc.definitions.tables import DefinitionTable, Row, is_blank, rows_of
-from xlmc.distributions import FAMILIES, DataFamily, Family, data_family_named, family_named
+from xlmc.distributions import FAMILIES, Family, family_named
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import Workbook
 
 __all__ = ["read_assumptions"]
 
 _FIXED = ("Name", "Value", "Cell", "Distribution", *CUTOFFS.values(), "Units", "Source", "Frozen")
-_KNOWN = (*_FIXED, *PARAMETER_HEADINGS, *DATA_HEADINGS)
+_KNOWN = (*_FIXED, *PARAMETER_HEADINGS, *OPTIONS)
 
 
 def read_assumptions(
@@ -58,8 +52,10 @@ def _assumption(row: Row, computed: Computed, claims: Claims, findings: Findings
     identity = identify(row, claims, findings)
     frozen = findings.attempt(logical, row, "Frozen") or False
     base = None if identity is None else findings.attempt(_base, row.workbook, computed, identity[1], frozen, findings)
-    kind = findings.attempt(_kind, row)
-    family, given, data = (None, None, None) if kind is None else _given(row, kind, computed, findings)
+    kind = findings.attempt(_family, row)
+    given = None if kind is None else _given(row, kind, findings)
+    data = None if kind is None or kind.data is None else findings.attempt(given_data, row, kind, computed, findings)
+    family = kind if kind is None or data is None else findings.attempt(cached_data_family, data, kind, row.workbook)
     units = findings.attempt(optional_text, row, "Units") or ""
     source = findings.attempt(optional_text, row, "Source") or ""
     if len(findings.problems) == before and family and given:
@@ -73,7 +69,7 @@ def _assumption(row: Row, computed: Computed, claims: Claims, findings: Findings
         name=name,
         cell=cell,
         distribution=kind.name,
-        parameters={} if isinstance(kind, DataFamily) else {key: given.values[key] for key in kind.keys},
+        parameters={key: given.values[key] for key in kind.keys},
         row=row.where,
         base=base,
         lower_cutoff=given.values.get("lower_cutoff"),
@@ -86,25 +82,14 @@ def _assumption(row: Row, computed: Computed, claims: Claims, findings: Findings
     )
 
 
-def _kind(row: Row) -> Family | DataFamily:
+def _family(row: Row) -> Family:
     typed = optional_text(row, "Distribution")
-    if not typed:
-        return FAMILIES["Uniform"]
-    return data_family_named(typed) or family_named(typed, where=row.cell("Distribution"))
+    return family_named(typed, where=row.cell("Distribution")) if typed else FAMILIES["Uniform"]
 
 
-def _given(
-    row: Row, kind: Family | DataFamily, computed: Computed, findings: Findings
-) -> tuple[Family | None, Given, DataRange | None]:
-    """The distribution, as far as it is known yet, its parameters and cutoffs, and the data it is made from."""
-    if not isinstance(kind, DataFamily):
-        findings.attempt(refuse_cumulative, row, None, kind.name)
-        return kind, given_parameters(row, kind, findings), None
-    findings.attempt(refuse_cumulative, row, kind, kind.name)
-    given = given_cutoffs(row, kind, findings)
-    data = findings.attempt(given_data, row, kind, computed, findings)
-    family = None if data is None else findings.attempt(cached_data_family, kind.name, data, row.workbook)
-    return family, given, data
+def _given(row: Row, family: Family, findings: Findings) -> Given:
+    refuse_options(row, family, findings)
+    return given_parameters(row, family, findings)
 
 
 def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, findings: Findings) -> float | None:

@@ -4,42 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
+
 from xlmc.address import Area, Cell
 from xlmc.definitions.area_reference import area_of_reference
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.fields import logical, number_in, parameter, static_value
 from xlmc.definitions.findings import Findings
 from xlmc.definitions.model import DataRange, Parameter
-from xlmc.definitions.parameters import CUTOFFS, Given, given_parameters
+from xlmc.definitions.parameters import CUTOFFS
 from xlmc.definitions.references import formula_at
 from xlmc.definitions.tables import Row, as_text, is_blank
-from xlmc.distributions import DATA_FAMILIES, DataFamily, Family
+from xlmc.distributions import FAMILIES, DataError, Family
 from xlmc.distributions.base import show
-from xlmc.distributions.custom import Custom, Piece
-from xlmc.distributions.custom_data import BadData
-from xlmc.distributions.data_families import DataOptions
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import Workbook
 
-__all__ = [
-    "DATA_HEADINGS",
-    "area_values",
-    "cached_data_family",
-    "data_family",
-    "given_cutoffs",
-    "given_data",
-    "refuse_cumulative",
-]
+__all__ = ["OPTIONS", "area_values", "cached_data_family", "data_family", "given_data", "refuse_options"]
 
-DATA_HEADINGS = ("Data", "Cumulative", "Bandwidth")
+OPTIONS = ("Cumulative", "Bandwidth")
+"""Columns that say how to read the data of some distribution."""
 
 
-def given_data(row: Row, kind: DataFamily, computed: Computed, findings: Findings) -> DataRange:
+def given_data(row: Row, family: Family, computed: Computed, findings: Findings) -> DataRange:
     """The data that the row names.
 
     Args:
         row: the row.
-        kind: its distribution.
+        family: its distribution.
         computed: which cells have formulas.
         findings: takes the notice that a reference written as text goes stale.
 
@@ -49,13 +41,14 @@ def given_data(row: Row, kind: DataFamily, computed: Computed, findings: Finding
     where = row.cell("Data") if row.has("Data") else row.where
     if not row.filled("Data"):
         hint = "Name the range that holds them, such as Inputs!Q2:R9" if row.has("Data") else "Add a column Data"
-        raise DefinitionError(f"{kind.name} needs Data, a range of cells", where=where, hint=hint)
+        raise DefinitionError(f"{family.name} needs Data, a range of cells", where=where, hint=hint)
     area = area_of_reference(row.workbook, _reference(row, where, findings), where.sheet, where)
-    bandwidth = parameter(row, "Bandwidth")
-    if bandwidth is not None and "Bandwidth" not in kind.options:
-        hint = "Clear the cell, or choose Empirical smoothed"
-        raise DefinitionError(f"{kind.name} has no Bandwidth", where=row.cell("Bandwidth"), hint=hint)
-    return DataRange(area, area_values(row.workbook, area, computed), logical(row, "Cumulative"), bandwidth)
+    if family.data is not None and family.data.columns and area.columns not in family.data.columns:
+        columns = " or ".join(map(str, family.data.columns))
+        message = f"{family.name} takes {columns} columns ({family.data.content}), and {area} has {area.columns}"
+        raise DefinitionError(message, where=where, hint="Correct the range")
+    values = area_values(row.workbook, area, computed)
+    return DataRange(area, values, logical(row, "Cumulative"), parameter(row, "Bandwidth"))
 
 
 def area_values(workbook: Workbook, area: Area, computed: Computed) -> tuple[tuple[Parameter | None, ...], ...]:
@@ -79,26 +72,22 @@ def area_values(workbook: Workbook, area: Area, computed: Computed) -> tuple[tup
     return tuple(tuple(value(cell) for cell in cells[i : i + width]) for i in range(0, len(cells), width))
 
 
-def given_cutoffs(row: Row, kind: DataFamily, findings: Findings) -> Given:
-    """The cutoffs of the row; parameters that the distribution has not are refused."""
-    stand_in = Custom([Piece(0.0, 1.0)], kind.name)
-    stand_in.columns = DATA_HEADINGS
-    if not kind.truncates:
-        for heading in CUTOFFS.values():
-            if row.filled(heading):
-                hint = "Clear the cell, and change the data: leave out what lies beyond the cutoff"
-                findings.problem(f"{kind.name} cannot be cut off", row.cell(heading), hint)
-    return given_parameters(row, stand_in, findings)
+def refuse_options(row: Row, family: Family, findings: Findings) -> None:
+    """What is filled in for a distribution that cannot use it: options of data, cutoffs of Custom."""
+    used = () if family.data is None else family.data.options
+    findings.attempt(_refuse_cumulative, row, family, used)
+    if row.filled("Bandwidth") and "Bandwidth" not in used:
+        hint = "Clear the cell, or choose Empirical smoothed"
+        findings.problem(f"{family.name} has no Bandwidth", row.cell("Bandwidth"), hint)
+    for heading in CUTOFFS.values():
+        if family.data is not None and not family.data.truncates and row.filled(heading):
+            hint = "Clear the cell, and change the data: leave out what lies beyond the cutoff"
+            findings.problem(f"{family.name} cannot be cut off", row.cell(heading), hint)
 
 
-def refuse_cumulative(row: Row, kind: DataFamily | None, name: str) -> None:
-    """Only weights in data can be cumulative.
-
-    Raises:
-        DefinitionError: Cumulative is TRUE for a distribution without them, or is no logical.
-    """
-    if logical(row, "Cumulative") and (kind is None or "Cumulative" not in kind.options):
-        message = f"{name} has no weights that could be cumulative"
+def _refuse_cumulative(row: Row, family: Family, used: tuple[str, ...]) -> None:
+    if logical(row, "Cumulative") and "Cumulative" not in used:
+        message = f"{family.name} has no weights that could be cumulative"
         raise DefinitionError(message, where=row.cell("Cumulative"), hint="Clear the cell")
 
 
@@ -106,7 +95,7 @@ def data_family(name: str, data: DataRange, number: Callable[[Cell], float]) -> 
     """The distribution that the data make.
 
     Args:
-        name: as `DATA_FAMILIES` spells it.
+        name: as `FAMILIES` spells it.
         data: where they stand and what they are.
         number: gives the value of a cell with a formula.
 
@@ -117,20 +106,31 @@ def data_family(name: str, data: DataRange, number: Callable[[Cell], float]) -> 
     def settled(value: Parameter | None) -> float | None:
         return number(value) if isinstance(value, Cell) else value
 
-    rows = [[settled(value) for value in row] for row in data.rows]
+    rows = [[np.nan if value is None else settled(value) for value in row] for row in data.rows]
     bandwidth = settled(data.bandwidth)
     if bandwidth is not None and not bandwidth > 0:
         message = f"Bandwidth ({show(bandwidth)}) must be above 0"
         raise DefinitionError(message, where=data.area, hint="Type a number above 0, or leave the cell blank")
+    options = {"cumulative": data.cumulative or None, "bandwidth": bandwidth}
+    given = {key: value for key, value in options.items() if value is not None}
     try:
-        return DATA_FAMILIES[name].make(rows, DataOptions(data.cumulative, bandwidth))
-    except BadData as fault:
-        places = [Cell(data.area.sheet, data.area.top + row, data.area.left + column) for row, column in fault.places]
-        message = fault.message.format(*places)
-        raise DefinitionError(message, where=places[0], hint=fault.hint) from None
+        return FAMILIES[name].built(np.array(rows, dtype=float), **given)
+    except DataError as fault:
+        raise _told(fault, data.area) from None
 
 
-def cached_data_family(name: str, data: DataRange, workbook: Workbook) -> Family | None:
+def _told(fault: DataError, area: Area) -> DefinitionError:
+    """The fault with its cells."""
+
+    def cell(row: int, column: int) -> Cell:
+        return Cell(area.sheet, area.top + row, area.left + column)
+
+    where = area if fault.row is None else cell(fault.row, fault.column or 0)
+    message = fault.message if fault.also is None else fault.message.format(also=cell(*fault.also))
+    return DefinitionError(message, where=where, hint=fault.hint)
+
+
+def cached_data_family(data: DataRange, family: Family, workbook: Workbook) -> Family | None:
     """`data_family` of the values that Excel saved; None where it has not calculated a cell yet.
 
     Raises:
@@ -138,7 +138,7 @@ def cached_data_family(name: str, data: DataRange, workbook: Workbook) -> Family
     """
     saved = {cell: static_value(cell, workbook) for cell in data.cells}
     known = {cell: value for cell, value in saved.items() if value is not None}
-    return data_family(name, data, known.__getitem__) if len(known) == len(saved) else None
+    return data_family(family.name, data, known.__getitem__) if len(known) == len(saved) else None
 
 
 def _reference(row: Row, where: Cell, findings: Findings) -> str:

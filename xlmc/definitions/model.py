@@ -58,14 +58,14 @@ class Assumption:
     """An uncertain input: its cell, its distribution, and why.
 
     Attributes:
-        distribution: the family's name as `xlmc.distributions.FAMILIES` or `DATA_FAMILIES` spells it.
+        distribution: the family's name as `xlmc.distributions.FAMILIES` spells it.
         parameters: the family's parameter key (`low`, `high`, …) -> value.
         lower_cutoff, upper_cutoff: truncation; None where there is none.
         base: the cell's own value, the base case.
         frozen: held at `base`, not drawn.
         row: where it is defined.
         notes: the table's other columns, echoed in the record.
-        data: what a distribution of `DATA_FAMILIES` is made from.
+        data: what the distribution is built from; None for one that has parameters alone.
     """
 
     name: str

@@ -20,7 +20,7 @@ __all__ = ["CUTOFFS", "PARAMETER_HEADINGS", "Given", "given_parameters", "remark
 
 CUTOFFS = {"lower_cutoff": "Lower cutoff", "upper_cutoff": "Upper cutoff"}
 
-_LATER = ("Location", "Scale", "Shape", "Rate", "Alpha", "Beta", "Probability", "Data", "Bandwidth")
+_LATER = ("Location", "Scale", "Shape", "Rate", "Alpha", "Beta", "Probability", "Data")
 _PERCENTILES = tuple(f"P{percent}" for percent in range(101))
 _OURS = (heading for family in FAMILIES.values() for spec in family.parameters for heading in spec.headings)
 
@@ -122,7 +122,7 @@ def _heading_of(row: Row, family: Family, spec: ParameterSpec) -> str:
 def _refuse_unused(row: Row, family: Family, findings: Findings) -> None:
     """A number that is silently ignored would mislead: whoever gives a Normal a Low believes that it ends there."""
     used = {plain(heading) for spec in family.parameters for heading in spec.headings}
-    used |= {plain(heading) for heading in family.columns}
+    used |= {plain("Data")} if family.data else set()
     for heading in PARAMETER_HEADINGS:
         if plain(heading) in used or not row.filled(heading):
             continue

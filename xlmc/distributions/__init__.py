@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from xlmc.distributions.base import Family, Fault, ParameterSpec
+from xlmc.distributions.base import DataError, DataSpec, Family, Fault, ParameterSpec
 from xlmc.distributions.binomial import Binomial
-from xlmc.distributions.data_families import DATA_FAMILIES, DataFamily, data_family_named
+from xlmc.distributions.custom import Custom
+from xlmc.distributions.discrete import Discrete
 from xlmc.distributions.discrete_uniform import DiscreteUniform
+from xlmc.distributions.discrete_values import DUniform
+from xlmc.distributions.empirical import Empirical
+from xlmc.distributions.empirical_smoothed import EmpiricalSmoothed
 from xlmc.distributions.geomet import Geomet
 from xlmc.distributions.geometric import Geometric
 from xlmc.distributions.hypergeometric import Hypergeometric
@@ -24,14 +28,13 @@ from xlmc.distributions.yes_no import YesNo
 from xlmc.errors import DefinitionError
 
 __all__ = [
-    "DATA_FAMILIES",
     "FAMILIES",
-    "DataFamily",
+    "DataError",
+    "DataSpec",
     "Family",
     "Fault",
     "ParameterSpec",
     "Truncated",
-    "data_family_named",
     "family_named",
 ]
 
@@ -47,8 +50,9 @@ _COUNTS = (
     Poisson(),
     YesNo(),
 )
+_OF_DATA = (Custom(), Discrete(), DUniform(), Empirical(), EmpiricalSmoothed())
 
-FAMILIES: Mapping[str, Family] = {family.name: family for family in (*_CONTINUOUS, *_COUNTS)}
+FAMILIES: Mapping[str, Family] = {family.name: family for family in (*_CONTINUOUS, *_COUNTS, *_OF_DATA)}
 """Every family by its name."""
 
 _SPELLINGS = {plain(spelling): family for family in FAMILIES.values() for spelling in (family.name, *family.aliases)}
@@ -67,5 +71,5 @@ def family_named(name: str, where: object = None) -> Family:
     family = _SPELLINGS.get(plain(name))
     if family is None:
         message = f"{name.strip()!r} is not a distribution of this version"
-        raise DefinitionError(message, where=where, hint=did_you_mean(name, (*FAMILIES, *DATA_FAMILIES)))
+        raise DefinitionError(message, where=where, hint=did_you_mean(name, FAMILIES))
     return family

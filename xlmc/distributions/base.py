@@ -24,6 +24,8 @@ __all__ = [
     "LOW",
     "SMALLEST_U",
     "Array",
+    "DataError",
+    "DataSpec",
     "Family",
     "Fault",
     "ParameterSpec",
@@ -87,26 +89,82 @@ class Fault:
     hint: str
 
 
+@dataclass(frozen=True, slots=True)
+class DataSpec:
+    """What the range under Data must hold for a family that is built from data.
+
+    Attributes:
+        columns: the numbers of columns it may have; empty for any.
+        content: what the columns are, for people: `values, cumulative probabilities`.
+        options: headings of the assumptions table that say how to read it; `built` takes them in small letters.
+        truncates: whether what is built may have cutoffs.
+    """
+
+    columns: tuple[int, ...]
+    content: str
+    options: tuple[str, ...] = ()
+    truncates: bool = True
+
+
+class DataError(ValueError):
+    """Numbers that no distribution can be built from.
+
+    Attributes:
+        message, hint: what is wrong, and what to do; `{also}` in the message stands for the second place.
+        row, column: where to look first, counted from 0; None for the data as a whole.
+        also: the row and column that it disagrees with.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        hint: str,
+        row: int | None = None,
+        column: int | None = None,
+        also: tuple[int, int] | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.message, self.hint, self.row, self.column, self.also = message, hint, row, column, also
+
+
 class Family(ABC):
     """A family of distributions. The parameters of every method follow the order of `parameters`, or go by key.
 
     Attributes:
         name: as people see it, and as `FAMILIES` spells it.
         aliases: other names that people type.
-        columns: headings of the assumptions table that it reads beside its parameters.
         open_below: the quantile of 0 is minus infinity, so u = 0 is read as `SMALLEST_U`.
+        data: what a family that is built from data needs; None for one that has parameters alone.
+        formula: its density, distribution or quantile function in the headings of its parameters, for people.
+        source: where the formula is written down.
+        elsewhere: what other programs call it, such as `@RISK Gamma(shape, scale)`.
     """
 
-    name: str
+    name: ClassVar[str]
     aliases: ClassVar[tuple[str, ...]] = ()
     parameters: ClassVar[tuple[ParameterSpec, ...]]
     rules: ClassVar[tuple[Rule, ...]] = ()
-    columns: tuple[str, ...] = ()
     open_below: ClassVar[bool] = False
+    data: ClassVar[DataSpec | None] = None
+    formula: ClassVar[str] = ""
+    source: ClassVar[str] = ""
+    elsewhere: ClassVar[tuple[str, ...]] = ()
 
     @property
     def keys(self) -> tuple[str, ...]:
         return tuple(spec.key for spec in self.parameters)
+
+    def built(self, data: Array, **options: Any) -> Family:
+        """The family of this name that belongs to these data; its parameters, if any, are still to be given.
+
+        Args:
+            data: `(rows, columns)`, NaN where a cell is blank.
+            **options: those of `DataSpec.options` that are filled in.
+
+        Raises:
+            DataError: no distribution can be built from them.
+        """
+        raise TypeError(f"{self.name} is not built from data")
 
     def fault(self, *params: float, **named: float) -> Fault | None:
         """The first rule that these numbers break, if any."""

@@ -23,6 +23,9 @@ class Binomial(WholeNumbers):
     """
 
     name = "Binomial"
+    formula = "P(k) = C(Trials, k)·Probability^k·(1 - Probability)^(Trials - k)"
+    source = "N. L. Johnson, A. W. Kemp and S. Kotz, Univariate Discrete Distributions, 2005, chapter 3"
+    elsewhere = ("Crystal Ball CB.Binomial(p, n)", "@RISK Binomial(n, p)")
     parameters = (PROBABILITY, TRIALS)
     rules = (probability(parameters), whole(parameters, TRIALS, 0))
 

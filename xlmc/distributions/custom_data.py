@@ -21,10 +21,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from xlmc.distributions.base import LARGEST, show
-from xlmc.distributions.custom import Piece
+from xlmc.distributions.base import LARGEST, Array, DataError, show
+from xlmc.distributions.pieces import Piece
 
-__all__ = ["MOST_VALUES", "BadData", "custom_pieces", "value_pieces", "weighted_pieces"]
+__all__ = ["MOST_VALUES", "custom_pieces", "rows_of", "value_pieces", "weighted_pieces"]
 
 MOST_VALUES = 100_000
 """No more single values than this may one distribution have."""
@@ -37,20 +37,6 @@ Row = Sequence[float | None]
 
 Place = tuple[int, int]
 """Row and column within the data, counted from 0."""
-
-
-class BadData(Exception):  # noqa: N818 - it blames the data
-    """What is wrong with the data, and where.
-
-    Args:
-        message: `{0}`, `{1}` stand for the places.
-        hint: what to do.
-        places: the cells it concerns, the one to correct first.
-    """
-
-    def __init__(self, message: str, hint: str, *places: Place) -> None:
-        super().__init__(message)
-        self.message, self.hint, self.places = message, hint, places
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,16 +62,21 @@ class _Read:
         return stepped and self.pieces[0].low == self.pieces[0].high and left.pieces[-1].low == left.high
 
 
+def rows_of(data: Array) -> list[Row]:
+    """`(rows, columns)` with NaN for blanks, as rows."""
+    return [[None if value != value else float(value) for value in row] for row in data]
+
+
 def value_pieces(rows: Sequence[Row]) -> list[Piece]:
     """Equally weighted values from any number of columns; blank cells are left out.
 
     Raises:
-        BadData: there is no value.
+        DataError: there is no value.
     """
     _refuse_extreme(rows)
     values = [(value, 1.0) for row in rows for value in row if value is not None]
     if not values:
-        raise BadData("The data are blank", "Fill in at least one value", (0, 0))
+        raise DataError("The data are blank", "Fill in at least one value", 0, 0)
     return _merged(values)
 
 
@@ -93,13 +84,13 @@ def weighted_pieces(rows: Sequence[Row], *, cumulative: bool = False) -> list[Pi
     """Values with weights, from two columns.
 
     Raises:
-        BadData: a value is missing, a weight is below 0 or does not rise, or nothing has a weight.
+        DataError: a value is missing, a weight is below 0 or does not rise, or nothing has a weight.
     """
     weights = _weights(rows, 1, cumulative)
     values: list[tuple[float, float]] = []
     for (number, row), weight in zip(_filled(rows), weights, strict=True):
         if row[0] is None:
-            raise BadData("The value is blank", "Type the value that this weight belongs to", (number, 0))
+            raise DataError("The value is blank", "Type the value that this weight belongs to", number, 0)
         values.append((row[0], weight))
     return _merged(values)
 
@@ -112,13 +103,13 @@ def custom_pieces(rows: Sequence[Row], *, cumulative: bool = False) -> list[Piec
         cumulative: each weight is the sum of all up to its row.
 
     Raises:
-        BadData: the data are no distribution.
+        DataError: the data are no distribution.
     """
     columns = len(rows[0])
     if cumulative and columns not in (2, 3, 4):
         what = "heights of a slope" if columns == 5 else "no weights"
         hint = "Clear Cumulative, or use two, three or four columns with cumulative weights"
-        raise BadData(f"Weights cannot be cumulative in data with {what}", hint, (0, 0))
+        raise DataError(f"Weights cannot be cumulative in data with {what}", hint, 0, 0)
     if columns == 1 or columns > 5:
         return value_pieces(rows)
     if columns == 2:
@@ -139,7 +130,7 @@ def _refuse_extreme(rows: Sequence[Row]) -> None:
         for column, value in enumerate(row):
             if value is not None and not abs(value) <= LARGEST:
                 message = f"The number ({show(value)}) must be between -1E150 and 1E150"
-                raise BadData(message, "Correct the number", (number, column))
+                raise DataError(message, "Correct the number", number, column)
 
 
 def _filled(rows: Sequence[Row]) -> list[tuple[int, Row]]:
@@ -151,7 +142,7 @@ def _weights(rows: Sequence[Row], column: int, cumulative: bool) -> list[float]:
     _refuse_extreme(rows)
     filled = _filled(rows)
     if not filled:
-        raise BadData("The data are blank", "Fill in at least one row", (0, 0))
+        raise DataError("The data are blank", "Fill in at least one row", 0, 0)
     weights: list[float] = []
     reached, last = 0.0, (filled[0][0], column)
     for number, row in filled:
@@ -162,18 +153,18 @@ def _weights(rows: Sequence[Row], column: int, cumulative: bool) -> list[float]:
         else:
             weights.append(1.0 if given is None else given)
         if weights[-1] < 0:
-            raise BadData(f"The weight ({show(weights[-1])}) is below 0", "Type 0 or more", place)
+            raise DataError(f"The weight ({show(weights[-1])}) is below 0", "Type 0 or more", *place)
     if not sum(weights) > 0:
-        raise BadData("Every weight is 0", "Give at least one row a weight above 0", (filled[0][0], column))
+        raise DataError("Every weight is 0", "Give at least one row a weight above 0", filled[0][0], column)
     return weights
 
 
 def _risen(given: float | None, reached: float, place: Place, last: Place) -> float:
     if given is None:
-        raise BadData("A cumulative weight is blank", "Type the sum of the weights up to this row", place)
+        raise DataError("A cumulative weight is blank", "Type the sum of the weights up to this row", *place)
     if given < reached:
-        message = f"The cumulative weight ({show(given)}) falls: before it, in {{1}}, it is {show(reached)}"
-        raise BadData(message, "Sort the rows, or clear Cumulative where weights are not sums", place, last)
+        message = f"The cumulative weight ({show(given)}) falls: before it, in {{also}}, it is {show(reached)}"
+        raise DataError(message, "Sort the rows, or clear Cumulative where weights are not sums", *place, also=last)
     return given - reached
 
 
@@ -181,17 +172,17 @@ def _pieces_of(row: Row, number: int, weight: float, before: float | None) -> tu
     low, high = before if row[0] is None else row[0], row[1]
     if low is None:
         hint = "Type it; only a range that follows another may leave it out"
-        raise BadData("The low end is blank", hint, (number, 0))
+        raise DataError("The low end is blank", hint, number, 0)
     if high is None:
         if row[0] is None:
-            raise BadData("Both ends are blank", "Type a value, or the two ends of a range", (number, 0))
+            raise DataError("Both ends are blank", "Type a value, or the two ends of a range", number, 0)
         high = low
     if high < low:
         message = f"The low end ({show(low)}) is above the high end ({show(high)})"
-        raise BadData(message, "Exchange the two, or correct the wrong one", (number, 0), (number, 1))
+        raise DataError(message, "Exchange the two, or correct the wrong one", number, 0)
     step = row[3] if len(row) == 4 else None
     if step is not None and step < 0:
-        raise BadData(f"The step ({show(step)}) is below 0", "Type a step above 0, or clear it", (number, 3))
+        raise DataError(f"The step ({show(step)}) is below 0", "Type a step above 0, or clear it", number, 3)
     if step and high > low:
         return _stepped(low, high, weight, step, number)
     left, right = _heights(row, number) if len(row) == 5 else (1.0, 1.0)
@@ -213,31 +204,31 @@ def _heights(row: Row, number: int) -> tuple[float, float]:
     left, right = (_height(row[column], (number, column)) for column in (3, 4))
     larger = max(left, right)
     if not larger > 0:
-        raise BadData("Both heights are 0", "Type a height above 0 for one end, or a weight of 0", (number, 3))
+        raise DataError("Both heights are 0", "Type a height above 0 for one end, or a weight of 0", number, 3)
     return left / larger, right / larger
 
 
 def _height(height: float | None, place: Place) -> float:
     if height is None:
-        raise BadData("One of the two heights is blank", "Type both, or neither for a flat range", place)
+        raise DataError("One of the two heights is blank", "Type both, or neither for a flat range", *place)
     if height < 0:
-        raise BadData(f"The height ({show(height)}) is below 0", "Type 0 or more", place)
+        raise DataError(f"The height ({show(height)}) is below 0", "Type 0 or more", *place)
     return height
 
 
 def _refuse_many(count: float, place: Place = (0, 0)) -> None:
     if count > MOST_VALUES:
         message = f"The data give more than {MOST_VALUES:,} single values"
-        raise BadData(message, "Take a larger step, or a range without steps", place)
+        raise DataError(message, "Take a larger step, or a range without steps", *place)
 
 
 def _refuse_overlaps(found: Iterable[_Read]) -> None:
     for first, second in pairwise(sorted(found, key=lambda read: (read.low, read.high))):
         if second.clashes_with(first):
             ends = [f"{show(read.low)} to {show(read.high)}" for read in (second, first)]
-            message = f"The row of {{0}} ({ends[0]}) overlaps the row of {{1}} ({ends[1]})"
+            message = f"This row ({ends[0]}) overlaps the row of {{also}} ({ends[1]})"
             hint = "Let each range end where the next begins, or before"
-            raise BadData(message, hint, (second.row, 0), (first.row, 0))
+            raise DataError(message, hint, second.row, 0, also=(first.row, 0))
 
 
 def _merged(values: Iterable[tuple[float, float]]) -> list[Piece]:

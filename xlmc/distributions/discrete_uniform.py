@@ -33,6 +33,9 @@ class DiscreteUniform(WholeNumbers):
 
     name = "Discrete Uniform"
     aliases = ("IntUniform", "Integer uniform")
+    formula = "P(k) = 1 / (High - Low + 1), k from Low to High"
+    source = "N. L. Johnson, A. W. Kemp and S. Kotz, Univariate Discrete Distributions, 2005, chapter 6"
+    elsewhere = ("Crystal Ball CB.DiscreteUniform(min, max)", "@RISK IntUniform(min, max)")
     parameters = (LOW, HIGH)
     rules = (
         _whole(LOW, 0),

@@ -9,12 +9,13 @@ Source: B. W. Silverman, *Density Estimation for Statistics and Data Analysis*, 
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from xlmc.distributions.base import Array, Family, Values
+from xlmc.distributions.base import Array, DataError, DataSpec, Family, Values
+from xlmc.distributions.custom_data import rows_of, value_pieces
 
 __all__ = ["REACH", "EmpiricalSmoothed", "silverman"]
 
@@ -26,6 +27,8 @@ _DEGREE: Final = 12
 """Cells per bandwidth, and the degree of the density's Taylor polynomial in one: the term left out is below 1e-13."""
 
 _CHUNK: Final = 64
+
+_MOST_CELLS: Final = 200_000
 
 
 def silverman(values: ArrayLike) -> float:
@@ -44,6 +47,8 @@ def silverman(values: ArrayLike) -> float:
 class EmpiricalSmoothed(Family):
     """A kernel density estimate with Gaussian curves. It has no parameters: an instance holds its data.
 
+    Without data it can only be `built`.
+
     Args:
         values: `(m,)`, two or more.
         bandwidth: the standard deviation of each curve, above 0.
@@ -56,12 +61,28 @@ class EmpiricalSmoothed(Family):
     """
 
     name = "Empirical smoothed"
+    aliases = ("Kernel density", "KDE")
     parameters = ()
     open_below = True
+    data = DataSpec((), "measurements", options=("Bandwidth",))
+    formula = "F(x) = mean of Φ((x - measurement) / Bandwidth)"
+    source = "B. W. Silverman, Density Estimation for Statistics and Data Analysis, 1986, equation 3.31"
 
-    def __init__(self, values: ArrayLike, bandwidth: float) -> None:
+    def __init__(self, values: ArrayLike = (), bandwidth: float = 1.0) -> None:
         self.values = np.sort(np.asarray(values, dtype=float))
         self.bandwidth = float(bandwidth)
+
+    def built(self, data: Array, **options: Any) -> EmpiricalSmoothed:
+        value_pieces(rows_of(data))  # refuses what is no data
+        values = data[~np.isnan(data)]
+        bandwidth = float(options.get("bandwidth", silverman(values)))
+        if not bandwidth > 0:
+            message = "The values are all equal, so nothing says how far to smooth them"
+            raise DataError(message, "Give a Bandwidth, or more measurements", 0, 0)
+        if self.cells_needed(values, bandwidth) > _MOST_CELLS:
+            message = "The bandwidth is very small beside the spread of so many values"
+            raise DataError(message, "Give a larger Bandwidth, or use Empirical without smoothing", 0, 0)
+        return EmpiricalSmoothed(values, bandwidth)
 
     @staticmethod
     def cells_needed(values: ArrayLike, bandwidth: float) -> float:

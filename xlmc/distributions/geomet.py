@@ -17,4 +17,7 @@ class Geomet(Geometric):
 
     name = "Geomet"
     aliases = ("Geometric failures",)
+    formula = "P(k) = Probability·(1 - Probability)^k, k from 0"
+    source = "N. L. Johnson, A. W. Kemp and S. Kotz, Univariate Discrete Distributions, 2005, chapter 5"
+    elsewhere = ("@RISK Geomet(p)",)
     first = 0.0

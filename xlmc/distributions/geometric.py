@@ -23,6 +23,9 @@ class Geometric(WholeNumbers):
     """
 
     name = "Geometric"
+    formula = "P(k) = Probability·(1 - Probability)^(k - 1), k from 1"
+    source = "N. L. Johnson, A. W. Kemp and S. Kotz, Univariate Discrete Distributions, 2005, chapter 5"
+    elsewhere = ("Crystal Ball CB.Geometric(p)",)
     parameters = (PROBABILITY,)
     rules = (probability(parameters, positive=True),)
     first = 1.0

@@ -32,6 +32,9 @@ class Hypergeometric(WholeNumbers):
     """
 
     name = "Hypergeometric"
+    formula = "P(k) = C(Success, k)·C(Population - Success, Trials - k) / C(Population, Trials)"
+    source = "N. L. Johnson, A. W. Kemp and S. Kotz, Univariate Discrete Distributions, 2005, chapter 6"
+    elsewhere = ("Crystal Ball CB.Hypergeometric2(success, trials, population)", "@RISK Hypergeo(n, D, M)")
     parameters = (SUCCESS, TRIALS, POPULATION)
     rules = (
         whole(parameters, SUCCESS, 0),
@@ -105,7 +108,7 @@ def _alike(columns: Sequence[Array]) -> Iterator[tuple[tuple[float, ...], Any]]:
             yield tuple(float(value) for value in row), here
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=64)
 def _tails(success: float, trials: float, population: float) -> tuple[float, Array, Array]:
     """The first number with a probability that counts, and P(X <= k), P(X >= k) from the number before it to beyond.
 

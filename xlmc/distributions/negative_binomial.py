@@ -25,6 +25,9 @@ class NegativeBinomial(WholeNumbers):
     """
 
     name = "Negative Binomial"
+    formula = "P(k) = C(k - 1, Shape - 1)·Probability^Shape·(1 - Probability)^(k - Shape), k from Shape"
+    source = "N. L. Johnson, A. W. Kemp and S. Kotz, Univariate Discrete Distributions, 2005, chapter 5"
+    elsewhere = ("Crystal Ball CB.NegBinomial(p, shape)",)
     parameters = (PROBABILITY, SHAPE)
     rules = (probability(parameters, positive=True), whole(parameters, SHAPE, 1))
     counts_successes = True

@@ -17,4 +17,7 @@ class Negbin(NegativeBinomial):
 
     name = "Negbin"
     aliases = ("Negative binomial failures",)
+    formula = "P(k) = C(k + Shape - 1, k)·Probability^Shape·(1 - Probability)^k, k from 0"
+    source = "N. L. Johnson, A. W. Kemp and S. Kotz, Univariate Discrete Distributions, 2005, chapter 5"
+    elsewhere = ("@RISK Negbin(s, p)",)
     counts_successes = False

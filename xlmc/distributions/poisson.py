@@ -24,6 +24,9 @@ class Poisson(WholeNumbers):
     """
 
     name = "Poisson"
+    formula = "P(k) = Rate^k·e^(-Rate) / k!"
+    source = "N. L. Johnson, A. W. Kemp and S. Kotz, Univariate Discrete Distributions, 2005, chapter 4"
+    elsewhere = ("Crystal Ball CB.Poisson(rate)", "@RISK Poisson(rate)")
     parameters = (RATE,)
     rules = (
         Rule(

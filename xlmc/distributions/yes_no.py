@@ -24,6 +24,9 @@ class YesNo(WholeNumbers):
 
     name = "Yes-No"
     aliases = ("Bernoulli",)
+    formula = "P(1) = Probability, P(0) = 1 - Probability"
+    source = "N. L. Johnson, A. W. Kemp and S. Kotz, Univariate Discrete Distributions, 2005, chapter 3"
+    elsewhere = ("Crystal Ball CB.YesNo(p)", "@RISK Bernoulli(p)")
     parameters = (PROBABILITY,)
     rules = (probability(parameters),)
 

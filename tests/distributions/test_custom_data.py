@@ -26,6 +26,7 @@ FORMS = {
     "steps that miss the end": ([[1, 2, 2, 0.6]], [Piece(1, 1, 1), Piece(1.6, 1.6, 1)]),
     "steps in decimals": ([[0, 0.3, 4, 0.1]], [Piece(v, v, 1) for v in (0, 0.1, 0.2, 0.3)]),
     "steps of nothing": ([[1, 2, 3, 0], [4, 5, 1, B], [6, B, 1, B]], [Piece(1, 2, 3), Piece(4, 5, 1), Piece(6, 6, 1)]),
+    "a range after steps": ([[1, 2, 2, 0.6], [B, 5, 1, B]], [Piece(1, 1, 1), Piece(1.6, 1.6, 1), Piece(2, 5, 1)]),
     "slopes": ([[0, 2, 1, 4, 2]], [Piece(0, 2, 1, 1.0, 0.5)]),
     "slopes and a flat range": ([[0, 2, B, 0, 3], [2, 4, 2, B, B]], [Piece(0, 2, 1, 0, 1), Piece(2, 4, 2)]),
     "a weight of nothing": ([[0, 2, 0], [1, 4, 1]], [Piece(1, 4, 1)]),

@@ -39,3 +39,8 @@ def test_bad_probabilities(probability, shown):
     fault = GEOMETRIC.fault(probability)
     assert (fault.key, fault.message) == ("probability", f"Probability ({shown}) must be above 0 and at most 1")
     assert fault.hint
+
+
+def test_a_probability_that_counts_cannot_reach():
+    assert GEOMETRIC.check(1e-14) == "Probability (1e-14) is so small that the count may pass 1E15"
+    assert GEOMETRIC.ppf(1 - 2.0**-30, 1e-13) == pytest.approx(30 * np.log(2) * 1e13, rel=1e-6)

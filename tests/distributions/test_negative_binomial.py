@@ -50,6 +50,7 @@ def test_the_quantile_is_the_first_that_reaches(p, shape, k):
     [
         ((0, 3), "probability", "Probability (0) must be above 0 and at most 1"),
         ((0.5, 0), "shape", "Shape (0) must be a whole number from 1 to 1,000,000,000"),
+        ((1e-9, 10**6), "probability", "Probability (1e-09) is so small that the count may pass 1E15"),
         ((0.5, 1.5), "shape", "Shape (1.5) must be a whole number from 1 to 1,000,000,000"),
     ],
 )

@@ -43,9 +43,10 @@ def test_large_rates_against_sums_of_masses(rate):
     assert abs(POISSON.ppf(0.5, rate) - rate) <= 1
 
 
-def test_a_tiny_rate_hardly_ever_happens():
+def test_a_tiny_rate_hardly_ever_happens(clean):
     assert POISSON.ppf(1 - 2.0**-53, 1e-20) == 0
     assert POISSON.sf(1.0, 1e-20) == pytest.approx(1e-20, rel=1e-12)
+    assert POISSON.cdf(1e300, 1e-20) == 1
 
 
 @given(rate=st.floats(1e-6, 1e6), k=st.integers(1, 2**53 - 1))

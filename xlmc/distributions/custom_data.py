@@ -116,9 +116,10 @@ def custom_pieces(rows: Sequence[Row], *, cumulative: bool = False) -> list[Piec
         return weighted_pieces(rows, cumulative=cumulative)
     weights = _weights(rows, 2, cumulative)
     found: list[_Read] = []
+    before: float | None = None  # the end of the row before
     for (number, row), weight in zip(_filled(rows), weights, strict=True):
-        before = found[-1].high if found else None
         found.append(_Read(_pieces_of(row, number, weight, before), number))
+        before = row[0] if row[1] is None else row[1]
     kept = [read for read, weight in zip(found, weights, strict=True) if weight > 0]
     _refuse_many(sum(len(read.pieces) for read in kept))
     _refuse_overlaps(kept)
@@ -148,24 +149,24 @@ def _weights(rows: Sequence[Row], column: int, cumulative: bool) -> list[float]:
     for number, row in filled:
         given, place = row[column], (number, column)
         if cumulative:
-            weights.append(_risen(given, reached, place, last))
-            reached, last = reached + weights[-1] if given is None else given, place
-        else:
-            weights.append(1.0 if given is None else given)
-        if weights[-1] < 0:
-            raise DataError(f"The weight ({show(weights[-1])}) is below 0", "Type 0 or more", *place)
+            _refuse_fall(given, reached, place, last)
+        weight = 1.0 if given is None else given
+        if weight < 0:
+            raise DataError(f"The weight ({show(weight)}) is below 0", "Type 0 or more", *place)
+        weights.append(weight - reached if cumulative else weight)
+        reached, last = weight, place
     if not sum(weights) > 0:
         raise DataError("Every weight is 0", "Give at least one row a weight above 0", filled[0][0], column)
     return weights
 
 
-def _risen(given: float | None, reached: float, place: Place, last: Place) -> float:
+def _refuse_fall(given: float | None, reached: float, place: Place, last: Place) -> None:
+    """A cumulative weight is there, and no less than the one before it."""
     if given is None:
         raise DataError("A cumulative weight is blank", "Type the sum of the weights up to this row", *place)
     if given < reached:
         message = f"The cumulative weight ({show(given)}) falls: before it, in {{also}}, it is {show(reached)}"
         raise DataError(message, "Sort the rows, or clear Cumulative where weights are not sums", *place, also=last)
-    return given - reached
 
 
 def _pieces_of(row: Row, number: int, weight: float, before: float | None) -> tuple[Piece, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from xlmc.distributions.base import Array, Values
-from xlmc.distributions.whole_numbers import PROBABILITY, WholeNumbers, probability
+from xlmc.distributions.whole_numbers import PROBABILITY, WholeNumbers, probability, within_reach
 
 __all__ = ["Geometric"]
 
@@ -27,7 +27,7 @@ class Geometric(WholeNumbers):
     source = "N. L. Johnson, A. W. Kemp and S. Kotz, Univariate Discrete Distributions, 2005, chapter 5"
     elsewhere = ("Crystal Ball CB.Geometric(p)",)
     parameters = (PROBABILITY,)
-    rules = (probability(parameters, positive=True),)
+    rules = (probability(parameters, positive=True), within_reach(lambda _: 1.0))
     first = 1.0
     """The least number: 1 counts trials, 0 counts failures."""
 

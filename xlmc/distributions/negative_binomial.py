@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from xlmc.distributions.base import Array, Values
-from xlmc.distributions.whole_numbers import PROBABILITY, SHAPE, WholeNumbers, probability, whole
+from xlmc.distributions.whole_numbers import PROBABILITY, SHAPE, WholeNumbers, probability, whole, within_reach
 
 __all__ = ["NegativeBinomial"]
 
@@ -29,7 +29,7 @@ class NegativeBinomial(WholeNumbers):
     source = "N. L. Johnson, A. W. Kemp and S. Kotz, Univariate Discrete Distributions, 2005, chapter 5"
     elsewhere = ("Crystal Ball CB.NegBinomial(p, shape)",)
     parameters = (PROBABILITY, SHAPE)
-    rules = (probability(parameters, positive=True), whole(parameters, SHAPE, 1))
+    rules = (probability(parameters, positive=True), whole(parameters, SHAPE, 1), within_reach(lambda _, shape: shape))
     counts_successes = True
     """Whether the successes are counted, too: trials, not failures."""
 

@@ -47,7 +47,7 @@ def _from_the_right_side(shape: Array, rate: Values, value: Array, side: float) 
 def _expanded(a: Array, x: Array, side: float) -> Array:
     from scipy.special import erfc
 
-    mu = (x - a) / a
+    mu = np.maximum((x - a) / a, 2.0**-53 - 1)
     half_square = _less_logarithm(mu)  # η²/2 = μ - ln(1 + μ)
     eta = np.sign(mu) * np.sqrt(2 * half_square)
     first = 1 / mu - 1 / eta

@@ -30,6 +30,7 @@ __all__ = [
     "WholeNumbers",
     "probability",
     "whole",
+    "within_reach",
 ]
 
 MOST = 1e9
@@ -148,6 +149,16 @@ def probability(parameters: Sequence[ParameterSpec], *, positive: bool = False) 
         lambda *values: ((values[place] > 0) if positive else (values[place] >= 0)) & (values[place] <= 1),
         f"Probability ({{probability}}) must be {'above 0 and at most 1' if positive else 'from 0 to 1'}",
         "Type a share, such as 0.25 for 25 %",
+    )
+
+
+def within_reach(successes: Callable[..., Any]) -> Rule:
+    """The rule that waiting for so many successes, of the parameters, does not pass what counts can reach."""
+    return Rule(
+        "probability",
+        lambda *values: successes(*values) <= 1e13 * values[0],
+        "Probability ({probability}) is so small that the count may pass 1E15",
+        "Give a larger probability, or use a continuous distribution",
     )
 
 

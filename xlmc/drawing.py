@@ -12,7 +12,7 @@ from xlmc.compile import ENGINES, Lowering, Target
 from xlmc.definitions import Assumption, Correlation
 from xlmc.definitions.data import data_family
 from xlmc.definitions.model import Parameter, name_key
-from xlmc.distributions import FAMILIES, Family, Truncated
+from xlmc.distributions import Family, Truncated
 from xlmc.errors import DefinitionError
 from xlmc.formula import ir
 from xlmc.functions.values import ERROR, TEXT
@@ -45,9 +45,9 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
 
 
 def _family(assumption: Assumption, lowering: Lowering) -> Family:
-    """The family; one made from data, from what its cells compute to."""
+    """The family; one built from data, from what its cells compute to."""
     if assumption.data is None:
-        return FAMILIES[assumption.distribution]
+        return assumption.family
     drawn = next((cell for cell in lowering.inputs if assumption.data and cell in assumption.data.area), None)
     if drawn is not None:
         raise _varying_data(assumption, drawn)
@@ -58,7 +58,7 @@ def _family(assumption: Assumption, lowering: Lowering) -> Family:
             raise _varying_data(assumption, cell)
         return value
 
-    return data_family(assumption.distribution, assumption.data, number)
+    return data_family(assumption.family, assumption.data, number)
 
 
 def _varying_data(assumption: Assumption, cell: Cell) -> DefinitionError:

@@ -78,6 +78,7 @@ def _assumption(row: Row, computed: Computed, claims: Claims, findings: Findings
         source=source,
         frozen=frozen,
         notes=row.notes(_KNOWN),
+        own_family=None if data is None else family,
         data=data,
     )
 

@@ -15,7 +15,7 @@ from xlmc.definitions.model import DataRange, Parameter
 from xlmc.definitions.parameters import CUTOFFS
 from xlmc.definitions.references import formula_at
 from xlmc.definitions.tables import Row, as_text, is_blank
-from xlmc.distributions import FAMILIES, DataError, Family
+from xlmc.distributions import DataError, Family
 from xlmc.distributions.base import show
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import Workbook
@@ -91,11 +91,11 @@ def _refuse_cumulative(row: Row, family: Family, used: tuple[str, ...]) -> None:
         raise DefinitionError(message, where=row.cell("Cumulative"), hint="Clear the cell")
 
 
-def data_family(name: str, data: DataRange, number: Callable[[Cell], float]) -> Family:
+def data_family(family: Family, data: DataRange, number: Callable[[Cell], float]) -> Family:
     """The distribution that the data make.
 
     Args:
-        name: as `FAMILIES` spells it.
+        family: of this name, with data or without.
         data: where they stand and what they are.
         number: gives the value of a cell with a formula.
 
@@ -114,7 +114,7 @@ def data_family(name: str, data: DataRange, number: Callable[[Cell], float]) -> 
     options = {"cumulative": data.cumulative or None, "bandwidth": bandwidth}
     given = {key: value for key, value in options.items() if value is not None}
     try:
-        return FAMILIES[name].built(np.array(rows, dtype=float), **given)
+        return family.built(np.array(rows, dtype=float), **given)
     except DataError as fault:
         raise _told(fault, data.area) from None
 
@@ -138,7 +138,7 @@ def cached_data_family(data: DataRange, family: Family, workbook: Workbook) -> F
     """
     saved = {cell: static_value(cell, workbook) for cell in data.cells}
     known = {cell: value for cell, value in saved.items() if value is not None}
-    return data_family(family.name, data, known.__getitem__) if len(known) == len(saved) else None
+    return data_family(family, data, known.__getitem__) if len(known) == len(saved) else None
 
 
 def _reference(row: Row, where: Cell, findings: Findings) -> str:

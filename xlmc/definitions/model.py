@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from xlmc.address import Area, Cell
+from xlmc.distributions import FAMILIES, Family
 from xlmc.errors import DefinitionError, Notice
 
 __all__ = [
@@ -65,6 +66,7 @@ class Assumption:
         frozen: held at `base`, not drawn.
         row: where it is defined.
         notes: the table's other columns, echoed in the record.
+        own_family: built for this row; None where `FAMILIES` has it, or where a cell of the data awaits calculation.
         data: what the distribution is built from; None for one that has parameters alone.
     """
 
@@ -80,7 +82,13 @@ class Assumption:
     source: str = ""
     frozen: bool = False
     notes: Mapping[str, str] = field(default_factory=dict)
+    own_family: Family | None = None
     data: DataRange | None = None
+
+    @property
+    def family(self) -> Family:
+        """What it is drawn from, given the parameters."""
+        return FAMILIES[self.distribution] if self.own_family is None else self.own_family
 
 
 @dataclass(frozen=True, slots=True)

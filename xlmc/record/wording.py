@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from xlmc.definitions.model import Assumption, DataRange, Filter, Parameter
-from xlmc.distributions import FAMILIES
 
 if TYPE_CHECKING:
     from xlmc.model import Model
@@ -25,11 +24,10 @@ def bound_text(bound: Parameter) -> str:
 
 
 def parameters_text(assumption: Assumption) -> str:
-    """`Low 6661, High 6861`; `Data Inputs!Q2:R9` for a distribution made from data."""
-    if assumption.data is not None:
-        return _data_text(assumption.data)
-    family = FAMILIES[assumption.distribution]
-    return ", ".join(f"{p.heading} {bound_text(assumption.parameters[p.key])}" for p in family.parameters)
+    """`Low 6661, High 6861`; `Data Inputs!Q2:R9` for a distribution built from data."""
+    given = assumption.parameters
+    parts = [f"{spec.heading} {bound_text(given[spec.key])}" for spec in assumption.family.parameters]
+    return ", ".join(parts if assumption.data is None else [*parts, _data_text(assumption.data)])
 
 
 def _data_text(data: DataRange) -> str:

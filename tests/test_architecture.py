@@ -14,7 +14,7 @@ FLOORS = [
     {"errors", "collecting"},
     {"address", "scratch"},
     {"distributions", "statistics"},
-    {"workbook"},
+    {"workbook", "fitting"},
     {"definitions", "templates_folder"},
     {"formula"},
     {"functions"},
@@ -81,7 +81,7 @@ def test_one_door_to_formulas():
 
 
 def test_rooms_that_must_not_see_each_other():
-    blind = ("compile", "sampling", "functions", "statistics", "distributions")
+    blind = ("compile", "sampling", "functions", "statistics", "distributions", "fitting")
     assert not {name for name in importers("xlmc.workbook") if name.startswith(blind)}
     assert not {name for name in importers("xlmc.formula") if name.startswith(("report", "sampling", "statistics"))}
 

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from xlmc.address import Cell
 from xlmc.compile import ENGINES, Lowering, Target
 from xlmc.definitions import Assumption, Correlation
+from xlmc.definitions.data import data_family
 from xlmc.definitions.model import Parameter, name_key
-from xlmc.distributions import ByPercentiles, Truncated
+from xlmc.distributions import ByPercentiles, Family, Truncated
 from xlmc.errors import DefinitionError
 from xlmc.formula import ir
 from xlmc.functions.values import ERROR, TEXT
@@ -31,7 +32,7 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     Raises:
         DefinitionError: the numbers are no distribution.
     """
-    family = assumption.family
+    family = _family(assumption, lowering)
     parameters = tuple(_settled(each, lowering) for each in family.bind((), assumption.parameters))
     cutoffs = None
     if assumption.lower_cutoff is not None or assumption.upper_cutoff is not None:
@@ -51,6 +52,31 @@ def _refuse_varying(name: str, parameters: Sequence[Parameter]) -> None:
     if varying is not None:
         message = f"{name}: a distribution given by percentiles cannot depend on another assumption"
         raise DefinitionError(message, where=varying, hint="give it by its parameters, or by numbers")
+
+
+def _family(assumption: Assumption, lowering: Lowering) -> Family:
+    """The family; one built from data, from what its cells compute to."""
+    if assumption.data is None:
+        return assumption.family
+    drawn = next((cell for cell in lowering.inputs if assumption.data and cell in assumption.data.area), None)
+    if drawn is not None:
+        raise _varying_data(assumption, drawn)
+
+    def number(cell: Cell) -> float:
+        value = _settled(cell, lowering)
+        if isinstance(value, Cell):
+            raise _varying_data(assumption, cell)
+        return value
+
+    return data_family(assumption.family, assumption.data, number)
+
+
+def _varying_data(assumption: Assumption, cell: Cell) -> DefinitionError:
+    return DefinitionError(
+        f"The data of {assumption.name!r} vary with an assumption in this cell, and data must be fixed",
+        where=cell,
+        hint="Draw from fixed data, and let the cell that uses the draw vary with the assumption",
+    )
 
 
 def _settled(parameter: Parameter, lowering: Lowering) -> Parameter:

@@ -75,7 +75,9 @@ def targets_of(definitions: Definitions) -> list[Cell]:
 
 
 def parameter_cells(assumption: Assumption) -> Iterator[Cell]:
-    """The cells that an assumption's parameters and cutoffs stand in."""
+    """The cells that an assumption's parameters and cutoffs stand in, and those of its data that hold formulas."""
+    if assumption.data is not None:
+        yield from assumption.data.cells
     for parameter in (*assumption.parameters.values(), assumption.lower_cutoff, assumption.upper_cutoff):
         if isinstance(parameter, Cell):
             yield parameter

@@ -57,3 +57,39 @@ def clean():
     """Any floating-point flag but underflow is an error."""
     with np.errstate(divide="raise", over="raise", invalid="raise"):
         yield
+
+
+@pytest.fixture
+def counts_agree():
+    """A distribution of whole numbers against SciPy's: probabilities to 1e-10, quantiles to the last bit of `cdf`."""
+
+    def agree(family, params, oracle, digits=1e-10):
+        low, high = float(oracle.ppf(1e-9)), float(oracle.isf(1e-9))
+        k = np.unique(np.rint(np.linspace(low, high, 201)))
+        np.testing.assert_allclose(family.cdf(k, *params), oracle.cdf(k), rtol=digits, atol=1e-15)
+        np.testing.assert_allclose(family.sf(k, *params), oracle.sf(k - 1), rtol=digits, atol=1e-15)
+        np.testing.assert_array_equal(family.cdf(k + 0.5, *params), family.cdf(k, *params))
+        np.testing.assert_array_equal(family.sf(k - 0.5, *params), family.sf(k, *params))
+        assert family.mean(*params) == pytest.approx(oracle.mean(), rel=1e-9)
+        assert family.variance(*params) == pytest.approx(oracle.var(), rel=1e-9)
+        jumps_are_exact(family, params, k)
+        # The same where parameters vary by trial, which takes the other road.
+        columns = [np.full(k.shape, value) for value in params]
+        u = np.clip(family.cdf(k, *params), 2.0**-54, 1 - 2.0**-53)
+        np.testing.assert_array_equal(family.ppf(u, *columns), family.ppf(u, *params))
+
+    return agree
+
+
+def jumps_are_exact(family, params, k):
+    """At u = F(k) the quantile is k, just above it is more; and so from above."""
+    at = family.cdf(k, *params)
+    rises = (family.cdf(k - 1, *params) < at) & (at < 1)
+    assert rises.any()
+    k, at = k[rises], at[rises]
+    np.testing.assert_array_equal(family.ppf(at, *params), k)
+    np.testing.assert_array_equal(family.ppf(np.nextafter(at, 1), *params) > k, np.nextafter(at, 1) < 1)
+    above = family.sf(k + 1, *params)
+    falls = (above > 0) & (above < family.sf(k, *params))
+    np.testing.assert_array_equal(family.isf(above[falls], *params), k[falls])
+    assert (family.isf(np.nextafter(above[falls], 0), *params) > k[falls]).all()

@@ -37,6 +37,17 @@ from xlmc.errors import DefinitionError
         ("Student’s T", "Student's t"),
         ("student", "Student's t"),
         ("Histogram", "Histogrm"),
+        ("IntUniform", "Discrete Uniform"),
+        ("negative binomial", "Negative Binomial"),
+        ("negbin", "Negbin"),
+        ("Geomet", "Geomet"),
+        ("YesNo", "Yes-No"),
+        ("Bernoulli", "Yes-No"),
+        ("custom", "Custom"),
+        ("Discrete", "Discrete"),
+        ("DUniform", "DUniform"),
+        ("EMPIRICAL SMOOTHED", "Empirical smoothed"),
+        ("kde", "Empirical smoothed"),
     ],
 )
 def test_names_people_type(typed, name):
@@ -56,7 +67,12 @@ def test_unknown_name(typed, hint):
         family_named(typed, where=Cell("Inputs", 4, 3))
     assert caught.value.message == f"'{typed}' is not a distribution of this version"
     assert caught.value.where == "Inputs!C4"
-    assert caught.value.hint == hint
+    assert caught.value.hint.startswith(hint)
+
+
+def test_no_name_means_two_distributions():
+    spellings = [plain(name) for family in FAMILIES.values() for name in (family.name, *family.aliases)]
+    assert len(set(spellings)) == len(spellings)
 
 
 def test_a_name_like_no_other_lists_them_all():

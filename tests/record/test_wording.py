@@ -4,8 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.address import Cell
+from xlmc.address import Area, Cell
 from xlmc.definitions import Assumption, Filter
+from xlmc.definitions.model import DataRange
 from xlmc.record.wording import distribution_text, limits_text, notes_text, number_text, parameters_text, status
 
 HERE = Cell("Inputs", 7, 2)
@@ -44,6 +45,20 @@ DISTRIBUTIONS = [
 @pytest.mark.parametrize(("family", "parameters", "cutoffs", "text"), DISTRIBUTIONS)
 def test_distributions(family, parameters, cutoffs, text):
     assert distribution_text(Assumption("a", HERE, family, parameters, HERE, **cutoffs)) == text
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({}, "Custom: Data Inputs!Q2:R9"),
+        ({"cumulative": True}, "Custom: Data Inputs!Q2:R9, cumulative weights"),
+        ({"bandwidth": 0.5}, "Custom: Data Inputs!Q2:R9, Bandwidth 0.5"),
+        ({"bandwidth": HERE}, "Custom: Data Inputs!Q2:R9, Bandwidth Inputs!B7"),
+    ],
+)
+def test_data(options, text):
+    data = DataRange(Area("Inputs", 2, 17, 9, 18), (), **options)
+    assert distribution_text(Assumption("a", HERE, "Custom", {}, HERE, data=data)) == text
 
 
 def test_parameters_stand_in_the_familys_order():

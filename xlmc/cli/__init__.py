@@ -1,4 +1,4 @@
-"""The command line: `xlmc new`, `xlmc check`, `xlmc verify`, `xlmc simulate`.
+"""The command line: `xlmc new`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc simulate`.
 
 Exit codes: 0 done; 1 the run finished but its answer must not be used as it stands; 2 bad input, with the cell and what
 to do. Modules here import what costs time inside their functions.
@@ -12,6 +12,7 @@ import click
 
 from xlmc import __version__
 from xlmc.cli.check import check
+from xlmc.cli.fit import fit
 from xlmc.cli.new import new
 from xlmc.cli.simulate import simulate
 from xlmc.cli.verify import verify
@@ -29,7 +30,7 @@ def xlmc() -> None:
     """Monte Carlo simulation of Excel workbooks, without Excel."""
 
 
-for _command in (new, check, verify, simulate):
+for _command in (new, check, fit, verify, simulate):
     xlmc.add_command(_command)
 
 

@@ -6,11 +6,19 @@ from collections.abc import Iterable
 
 from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
+from xlmc.definitions.data import OPTIONS, cached_data_family, given_data, refuse_options
 from xlmc.definitions.fields import logical, number_in, optional_text
 from xlmc.definitions.findings import Findings
 from xlmc.definitions.identity import Claims, identify
 from xlmc.definitions.model import Assumption
-from xlmc.definitions.parameters import CUTOFFS, PARAMETER_HEADINGS, given_parameters, remark_on_range, rules_kept
+from xlmc.definitions.parameters import (
+    CUTOFFS,
+    PARAMETER_HEADINGS,
+    Given,
+    given_parameters,
+    remark_on_range,
+    rules_kept,
+)
 from xlmc.definitions.percentiles import is_percentile, with_percentiles
 from xlmc.definitions.tables import DefinitionTable, Row, is_blank, rows_of
 from xlmc.distributions import FAMILIES, Family, family_named
@@ -20,7 +28,7 @@ from xlmc.workbook.model import Workbook
 __all__ = ["read_assumptions"]
 
 _FIXED = ("Name", "Value", "Cell", "Distribution", *CUTOFFS.values(), "Units", "Source", "Frozen")
-_KNOWN = (*_FIXED, *PARAMETER_HEADINGS)
+_KNOWN = (*_FIXED, *PARAMETER_HEADINGS, *OPTIONS)
 
 
 def read_assumptions(
@@ -50,22 +58,24 @@ def _assumption(
     identity = identify(row, claims, findings)
     frozen = findings.attempt(logical, row, "Frozen") or False
     base = None if identity is None else findings.attempt(_base, row.workbook, computed, identity[1], frozen, findings)
-    family = findings.attempt(_family, row)
-    given = None if family is None else given_parameters(row, family, findings)
+    kind = findings.attempt(_family, row)
+    given = None if kind is None else _given(row, kind, findings)
+    data = None if kind is None or kind.data is None else findings.attempt(given_data, row, kind, computed, findings)
+    family = kind if kind is None or data is None else findings.attempt(cached_data_family, data, kind, row.workbook)
     units = findings.attempt(optional_text, row, "Units") or ""
     source = findings.attempt(optional_text, row, "Source") or ""
     if len(findings.problems) == before and family and given:
         findings.attempt(rules_kept, family, given)
-    if len(findings.problems) > before or not (identity and family and given):
+    if len(findings.problems) > before or not (identity and kind and given):
         return None
     name, cell = identity
-    if not frozen:
+    if family is not None and not frozen:
         remark_on_range(family, given, base, cell, findings)
     return Assumption(
         name=name,
         cell=cell,
-        distribution=family.name,
-        parameters={key: given.values[key] for key in family.keys},
+        distribution=kind.name,
+        parameters={key: given.values[key] for key in kind.keys},
         row=row.where,
         base=base,
         lower_cutoff=given.values.get("lower_cutoff"),
@@ -74,17 +84,20 @@ def _assumption(
         source=source,
         frozen=frozen,
         notes=row.notes(known),
-        own_family=None if family is FAMILIES[family.name] else family,
+        own_family=None if family is FAMILIES[kind.name] else family,
+        data=data,
     )
 
 
 def _family(row: Row) -> Family:
     typed = optional_text(row, "Distribution")
     family = family_named(typed, where=row.cell("Distribution")) if typed else FAMILIES["Uniform"]
-    if family.data is not None:
-        message = f"{family.name} is built from data, and the reader of assumptions takes none yet"
-        raise DefinitionError(message, where=row.cell("Distribution"), hint="Choose another distribution")
     return with_percentiles(row, family)
+
+
+def _given(row: Row, family: Family, findings: Findings) -> Given:
+    refuse_options(row, family, findings)
+    return given_parameters(row, family, findings)
 
 
 def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, findings: Findings) -> float | None:

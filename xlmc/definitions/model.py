@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from xlmc.address import Cell
+from xlmc.address import Area, Cell
 from xlmc.distributions import FAMILIES, Family
 from xlmc.errors import DefinitionError, Notice
 
 __all__ = [
     "Assumption",
     "Correlation",
+    "DataRange",
     "Definitions",
     "Filter",
     "Forecast",
@@ -30,6 +31,30 @@ def name_key(name: str) -> str:
 
 
 @dataclass(frozen=True, slots=True)
+class DataRange:
+    """The data that a distribution is made from.
+
+    Attributes:
+        area: where they stand.
+        rows: what stands there, row by row; None in a blank cell.
+        cumulative: their weights are sums of those up to their row.
+        bandwidth: of a smoothed distribution, where it is given.
+    """
+
+    area: Area
+    rows: tuple[tuple[Parameter | None, ...], ...]
+    cumulative: bool = False
+    bandwidth: Parameter | None = None
+
+    @property
+    def cells(self) -> Iterator[Cell]:
+        """The cells that hold formulas."""
+        for value in (*(value for row in self.rows for value in row), self.bandwidth):
+            if isinstance(value, Cell):
+                yield value
+
+
+@dataclass(frozen=True, slots=True)
 class Assumption:
     """An uncertain input: its cell, its distribution, and why.
 
@@ -42,6 +67,7 @@ class Assumption:
         row: where it is defined.
         notes: the table's other columns, echoed in the record.
         own_family: built for this row; None where `FAMILIES` has it, or where a cell of the data awaits calculation.
+        data: what the distribution is built from; None for one that has parameters alone.
     """
 
     name: str
@@ -57,6 +83,7 @@ class Assumption:
     frozen: bool = False
     notes: Mapping[str, str] = field(default_factory=dict)
     own_family: Family | None = None
+    data: DataRange | None = None
 
     @property
     def family(self) -> Family:

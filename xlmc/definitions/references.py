@@ -10,7 +10,15 @@ from xlmc.distributions.naming import did_you_mean, nearest
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import DefinedName, Formula, Workbook
 
-__all__ = ["cell_of_name", "cell_of_reference", "formula_at", "is_address", "refuse_name_of_other_sheet", "split_sheet"]
+__all__ = [
+    "cell_of_name",
+    "cell_of_reference",
+    "formula_at",
+    "is_address",
+    "refuse_name_of_other_sheet",
+    "sheet_named",
+    "split_sheet",
+]
 
 _CORNER = re.compile(r"(\$?)([A-Za-z]{1,3})(\$?)([1-9][0-9]{0,6})")
 _ABSOLUTE = re.compile(r"\$[A-Za-z]{1,3}\$[0-9]+(:\$[A-Za-z]{1,3}\$[0-9]+)?")
@@ -53,7 +61,7 @@ def cell_of_reference(workbook: Workbook, text: str, sheet: str, where: Cell) ->
     """
     head, tail = split_sheet(text)
     if head is not None:
-        sheet = _sheet_named(workbook, head, text, where)
+        sheet = sheet_named(workbook, head, text, where)
     if is_address(tail):
         return _one_cell(parse_address(tail, sheet), where)
     if not _NAME.fullmatch(tail):
@@ -89,10 +97,10 @@ def cell_of_name(workbook: Workbook, name: DefinedName, where: Cell) -> Cell:
     if not _ABSOLUTE.fullmatch(tail):
         message = f"The name {name.name} stands for {text}, which moves with the cell that uses it"
         raise DefinitionError(message, where=where, hint="Write it with $ under Formulas ▸ Name Manager")
-    return _one_cell(parse_address(tail, _sheet_named(workbook, head, text, where)), where)
+    return _one_cell(parse_address(tail, sheet_named(workbook, head, text, where)), where)
 
 
-def refuse_name_of_other_sheet(workbook: Workbook, name: str, where: Cell) -> None:
+def refuse_name_of_other_sheet(workbook: Workbook, name: str, where: object) -> None:
     """Say where a name that is not in sight would be.
 
     Raises:
@@ -120,7 +128,18 @@ def split_sheet(text: str) -> tuple[str | None, str]:
     return (head if bang else None), tail.strip()
 
 
-def _sheet_named(workbook: Workbook, head: str, text: str, where: Cell) -> str:
+def sheet_named(workbook: Workbook, head: str, text: str, where: object) -> str:
+    """The sheet that a reference names, as the workbook spells it.
+
+    Args:
+        workbook: where it is looked up.
+        head: the name, in quotes or not.
+        text: the whole reference, for the message.
+        where: what holds it, likewise.
+
+    Raises:
+        DefinitionError: there is no such sheet, or it lies in another workbook.
+    """
     quoted = len(head) > 2 and head[0] == head[-1] == "'"
     name = head[1:-1].replace("''", "'") if quoted else head
     sheet = workbook.sheet_named(name)
@@ -142,5 +161,5 @@ def _one_cell(place: Cell | Area, where: Cell) -> Cell:
     raise DefinitionError(f"{place} is more than one cell", where=where, hint=_ONE_CELL)
 
 
-def _not_one_reference(text: str, where: Cell) -> NoReturn:
+def _not_one_reference(text: str, where: object) -> NoReturn:
     raise DefinitionError(f"{text!r} is not one reference to a cell", where=where, hint=_ONE_CELL)

@@ -7,21 +7,34 @@ from collections.abc import Mapping
 from xlmc.distributions.base import DataError, DataSpec, Family, Fault, ParameterSpec
 from xlmc.distributions.beta import Beta
 from xlmc.distributions.beta_pert import BetaPERT
+from xlmc.distributions.binomial import Binomial
 from xlmc.distributions.by_percentiles import ByPercentiles
 from xlmc.distributions.cumul import Cumul
+from xlmc.distributions.custom import Custom
+from xlmc.distributions.discrete import Discrete
+from xlmc.distributions.discrete_uniform import DiscreteUniform
+from xlmc.distributions.discrete_values import DUniform
+from xlmc.distributions.empirical import Empirical
+from xlmc.distributions.empirical_smoothed import EmpiricalSmoothed
 from xlmc.distributions.exponential import Exponential
 from xlmc.distributions.gamma import Gamma
 from xlmc.distributions.general import General
+from xlmc.distributions.geomet import Geomet
+from xlmc.distributions.geometric import Geometric
 from xlmc.distributions.histogrm import Histogrm
+from xlmc.distributions.hypergeometric import Hypergeometric
 from xlmc.distributions.logistic import Logistic
 from xlmc.distributions.lognorm2 import Lognorm2
 from xlmc.distributions.lognormal import Lognormal
 from xlmc.distributions.maximum_extreme import MaximumExtreme
 from xlmc.distributions.minimum_extreme import MinimumExtreme
 from xlmc.distributions.naming import did_you_mean, plain
+from xlmc.distributions.negative_binomial import NegativeBinomial
+from xlmc.distributions.negbin import Negbin
 from xlmc.distributions.normal import Normal
 from xlmc.distributions.pareto import Pareto
 from xlmc.distributions.piecewise import Piecewise
+from xlmc.distributions.poisson import Poisson
 from xlmc.distributions.students_t import StudentsT
 from xlmc.distributions.trapezoid import Trapezoid
 from xlmc.distributions.triangular import Triangular
@@ -29,6 +42,7 @@ from xlmc.distributions.trigen import Trigen
 from xlmc.distributions.truncated import Truncated
 from xlmc.distributions.uniform import Uniform
 from xlmc.distributions.weibull import Weibull
+from xlmc.distributions.yes_no import YesNo
 from xlmc.errors import DefinitionError
 
 __all__ = [
@@ -67,7 +81,20 @@ _CONTINUOUS = (
     Histogrm(),
 )
 
-FAMILIES: Mapping[str, Family] = {family.name: family for family in _CONTINUOUS}
+_COUNTS = (
+    Binomial(),
+    DiscreteUniform(),
+    Geometric(),
+    Geomet(),
+    Hypergeometric(),
+    NegativeBinomial(),
+    Negbin(),
+    Poisson(),
+    YesNo(),
+)
+_OF_DATA = (Custom(), Discrete(), DUniform(), Empirical(), EmpiricalSmoothed())
+
+FAMILIES: Mapping[str, Family] = {family.name: family for family in (*_CONTINUOUS, *_COUNTS, *_OF_DATA)}
 """Every family by its name."""
 
 _SPELLINGS = {plain(spelling): family for family in FAMILIES.values() for spelling in (family.name, *family.aliases)}

@@ -294,6 +294,15 @@ class Family(ABC):
         low, high = self._support(*values)
         return _masked(low, invalid), _masked(high, invalid)
 
+    def cutoffs(self, lower: Values, upper: Values) -> tuple[tuple[Values, Values], tuple[Values, Values]]:
+        """What cutoffs, which are kept themselves, mean to the family.
+
+        Returns:
+            The lowest value kept and the highest below it; the highest value kept and the lowest above it. Where no
+            single value has a probability, these are the cutoffs themselves.
+        """
+        return (lower, lower), (upper, upper)
+
     @abstractmethod
     def _ppf(self, u: Array, *args: Any, **kwargs: Any) -> Array:
         """The quantile function. `u` belongs to the hook, which may overwrite it and return it."""

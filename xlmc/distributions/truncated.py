@@ -57,7 +57,7 @@ class Truncated:
         """Quantiles of probabilities in [0, 1), shapes as in `Family.ppf`."""
         values = self.family.bind(params, named)
         part = _Slice(self.family, lower, upper, values)
-        x = np.clip(part.quantile(np.where(np.equal(u, 0.0), SMALLEST_U, u)), lower, upper)
+        x = np.clip(part.quantile(np.where(np.equal(u, 0.0), SMALLEST_U, u)), part.lowest, part.highest)
         x = np.where(_sound(part, lower, upper), x, np.nan)
         if out is None:
             return np.asarray(x, dtype=float)
@@ -69,7 +69,7 @@ class Truncated:
         values = self.family.bind(params, named)
         part = _Slice(self.family, lower, upper, values)
         sound = _sound(part, lower, upper)
-        return np.where(sound, part.probability(np.clip(x, lower, upper)), np.nan)
+        return np.where(sound, part.probability(x), np.nan)
 
     def support(self, lower: Values, upper: Values, *params: Values, **named: Values) -> tuple[Array, Array]:
         """The lowest and the highest possible value."""
@@ -92,8 +92,9 @@ class _Slice:
     def __init__(self, family: Family, lower: Values, upper: Values, params: tuple[Any, ...]) -> None:
         self.family = family
         self.params = params
-        self.below = family.cdf(lower, *params), family.cdf(upper, *params)
-        self.above = family.sf(lower, *params), family.sf(upper, *params)
+        (self.lowest, self.before), (self.highest, after) = family.cutoffs(lower, upper)
+        self.below = family.cdf(self.before, *params), family.cdf(self.highest, *params)
+        self.above = family.sf(self.lowest, *params), family.sf(after, *params)
         self.in_upper_half = self.below[0] > 0.5
         from_below = self.below[1] - self.below[0]
         from_above = self.above[0] - self.above[1]
@@ -107,10 +108,12 @@ class _Slice:
         return np.where(self.in_upper_half, self._from_above(u), self._from_below(u))
 
     def probability(self, x: Values) -> Array:
-        """P(X <= x) for x between the cutoffs."""
+        """P(X <= x)."""
+        x = np.clip(x, self.before, self.highest)
+        _, (_, beyond) = self.family.cutoffs(x, x)
         mass = np.where(self.mass > 0, self.mass, 1.0)
         from_below = (self.family.cdf(x, *self.params) - self.below[0]) / mass
-        from_above = (self.above[0] - self.family.sf(x, *self.params)) / mass
+        from_above = (self.above[0] - self.family.sf(beyond, *self.params)) / mass
         return np.where(self.in_upper_half, from_above, from_below)
 
     def _from_below(self, u: Array) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from xlmc.definitions.model import Assumption, Filter, Parameter
+from xlmc.definitions.model import Assumption, DataRange, Filter, Parameter
 
 if TYPE_CHECKING:
     from xlmc.model import Model
@@ -24,10 +24,18 @@ def bound_text(bound: Parameter) -> str:
 
 
 def parameters_text(assumption: Assumption) -> str:
-    """`Low 6661, High 6861`."""
+    """`Low 6661, High 6861`; `Data Inputs!Q2:R9` for a distribution built from data."""
     given = assumption.parameters
-    specs = (spec for spec in assumption.family.parameters if spec.key in given)
-    return ", ".join(f"{spec.heading} {bound_text(given[spec.key])}" for spec in specs)
+    parts = [
+        f"{spec.heading} {bound_text(given[spec.key])}" for spec in assumption.family.parameters if spec.key in given
+    ]
+    return ", ".join(parts if assumption.data is None else [*parts, _data_text(assumption.data)])
+
+
+def _data_text(data: DataRange) -> str:
+    weights = ", cumulative weights" * data.cumulative
+    bandwidth = "" if data.bandwidth is None else f", Bandwidth {bound_text(data.bandwidth)}"
+    return f"Data {data.area}{weights}{bandwidth}"
 
 
 def cutoffs_text(assumption: Assumption) -> str:

@@ -1,0 +1,153 @@
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import openpyxl
+import pytest
+from openpyxl.worksheet.table import Table
+
+FRICTION = np.random.default_rng(999).normal(0.75, 0.06, 40).round(3)
+
+
+@pytest.fixture
+def measured(tmp_path):
+    """Friction in Tests!A2:A41 (a table) with two blanks below, counts in Tests!C2:C21, and a second sheet."""
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet.title = "Tests"
+    for row, value in enumerate(["Friction", *FRICTION.tolist()], start=1):
+        sheet.cell(row, 1, value)
+    for row, value in enumerate(["Crashes", *np.random.default_rng(1).poisson(4, 20).tolist()], start=1):
+        sheet.cell(row, 3, value)
+    sheet["E1"], sheet["E2"] = "=A2*2", "text"
+    sheet.add_table(Table(displayName="Skids", ref="A1:A41"))
+    book.create_sheet("My notes")["A1"] = 5
+    book.save(tmp_path / "data.xlsx")
+    return tmp_path / "data.xlsx"
+
+
+@pytest.fixture
+def alone(tmp_path):
+    """One sheet with six values."""
+    book = openpyxl.Workbook()
+    for value in FRICTION[:6].tolist():
+        book.active.append([value])
+    book.save(tmp_path / "alone.xlsx")
+    return tmp_path / "alone.xlsx"
+
+
+def test_ranks_and_prints_the_row_to_paste(xlmc, measured):
+    outcome = xlmc("fit", f"{measured}!Tests!A2:A43", "--name", "Friction")
+    assert outcome.code == 0, outcome.err
+    assert "data.xlsx Tests!A2:A43: 40 values as continuous; 2 blank cells left out; the best by AIC" in outcome.out
+    normal = next(line for line in outcome.out.splitlines() if line.strip().startswith("Normal"))
+    assert f"Mean {FRICTION.mean():.2f}" in normal
+    assert " ± " in normal
+    assert "no p-values are given" in outcome.out
+    headings, row = (line.split("\t") for line in outcome.out.splitlines() if "\t" in line)
+    assert headings[:2] == ["Name", "Distribution"]
+    assert headings[-1] == "Source"
+    assert row[0] == "Friction"
+    assert row[-1] == "fitted by maximum likelihood to data.xlsx Tests!A2:A43, n = 40"
+    assert len(row) == len(headings)
+
+
+def test_the_row_can_be_pasted(xlmc, measured, tmp_path):
+    """A normal's row, in a workbook of its own, is read as it was printed."""
+    outcome = xlmc("fit", measured, "Tests!A2:A41", "--json")
+    normal = next(each for each in json.loads(outcome.out)["fits"] if each["distribution"] == "Normal")
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet.append(["Name", "Value", "Distribution", *normal["parameters"]])
+    sheet.append(["Friction", 0.75, "Normal", *normal["parameters"].values()])
+    sheet.append([])
+    sheet.append(["Name", "Cell"])
+    sheet.append(["Twice", "=C8"])
+    sheet["C8"] = "=B2*2"
+    sheet.add_table(Table(displayName="xlmc_assumptions", ref="A1:E2"))
+    sheet.add_table(Table(displayName="xlmc_forecasts", ref="A4:B5"))
+    book.save(tmp_path / "pasted.xlsx")
+    checked = xlmc("check", tmp_path / "pasted.xlsx")
+    assert checked.code == 0, checked.err
+    assert f"Normal: Mean {normal['parameters']['Mean']!r}"[:24] in checked.out
+
+
+WAYS = ["!Tests!A2:A41", "!Skids[Friction]", "!Skids", "!'Tests'!$A$2:$A$41"]
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_ways_to_name_the_range(xlmc, measured, way):
+    joined = xlmc("fit", f"{measured}{way}", "--json")
+    apart = xlmc("fit", measured, way[1:], "--json")
+    assert joined.code == apart.code == 0, joined.err
+    assert joined.out == apart.out
+    assert json.loads(joined.out)["values"] == 40
+
+
+def test_json(xlmc, measured):
+    outcome = xlmc("fit", measured, "Tests!C2:C21", "--json", "--by", "ks")
+    found = json.loads(outcome.out)
+    assert (found["values"], found["kind"], found["ranked_by"]) == (20, "counts", "ks")
+    distances = [each["kolmogorov_smirnov"] for each in found["fits"]]
+    assert distances == sorted(distances)
+    assert found["fits"][0]["anderson_darling"] is None
+    assert found["row"]["Distribution"] == found["fits"][0]["distribution"]
+    assert "20 values tell families of distributions apart only roughly" in found["cautions"][0]
+    assert "only roughly" in outcome.err
+
+
+def test_counts_may_be_fitted_as_continuous(xlmc, measured):
+    found = json.loads(xlmc("fit", measured, "Tests!C2:C21", "--json", "--kind", "continuous").out)
+    assert "Normal" in {each["distribution"] for each in found["fits"]}
+
+
+def test_too_few_values_are_exit_code_1(xlmc, alone):
+    outcome = xlmc("fit", f"{alone}!A1:A6")
+    assert outcome.code == 1
+    assert "warning: 6 values cannot tell families of distributions apart" in outcome.err
+    assert "a uniform range, wide enough for every value that is possible, claims less" in outcome.err
+
+
+@pytest.mark.parametrize(
+    ("cells", "message"),
+    [
+        ("'My notes'!A1", "there is one value to fit. One measurement justifies a uniform range only"),
+        ("Tests!E2", "Tests!E2: The data cell holds the text 'text', not a number. Type a number."),
+        ("Tests!E1", "Tests!E1: The data cell has never been calculated"),
+        ("A2:A41", "'A2:A41' names no sheet. Write the sheet, too, such as Tests!A2:A41."),
+        ("Tets!A2:A41", "There is no worksheet 'Tets'. Did you mean Tests?"),
+        ("Nowhere", "'Nowhere' is no range of cells and no name of one"),
+        ("Skids[Frction]", "The table Skids has no column 'Frction'. Did you mean Friction?"),
+        ("Tests!Z1:Z9", "there is no value to fit"),
+    ],
+)
+def test_mistakes(xlmc, measured, cells, message):
+    outcome = xlmc("fit", measured, cells)
+    assert outcome.code == 2
+    assert message in outcome.err
+    assert outcome.out == ""
+
+
+def test_counts_are_refused_where_there_are_none(xlmc, measured):
+    outcome = xlmc("fit", measured, "Tests!A2:A41", "--kind", "counts")
+    assert outcome.code == 2
+    assert "not every value is a whole number" in outcome.err
+
+
+def test_a_book_without_a_range(xlmc, measured):
+    outcome = xlmc("fit", measured)
+    assert outcome.code == 2
+    assert "Name the range, too" in outcome.err
+
+
+def test_two_ranges(xlmc, measured):
+    outcome = xlmc("fit", f"{measured}!Tests!A2:A41", "Tests!C2:C9")
+    assert outcome.code == 2
+    assert "Two ranges are named" in outcome.err
+
+
+def test_a_book_that_is_not_there(xlmc):
+    outcome = xlmc("fit", "nowhere.xlsx!A1:A9")
+    assert outcome.code == 2
+    assert "there is no such file" in outcome.err

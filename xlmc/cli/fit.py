@@ -1,0 +1,191 @@
+"""`xlmc fit`: which distributions describe measurements in a workbook."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from xlmc.fitting import Fitted, Fitting
+
+__all__ = ["fit"]
+
+TOO_FEW = 1
+_BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm))!(?P<range>.+)", re.IGNORECASE)
+
+
+@click.command()
+@click.argument("source")
+@click.argument("cells", metavar="[RANGE]", required=False)
+@click.option(
+    "--kind",
+    type=click.Choice(["continuous", "counts"]),
+    help="What the values are.  [default: counts where all are whole numbers from 0 up]",
+)
+@click.option(
+    "--by", type=click.Choice(["aic", "bic", "ad", "ks"]), default="aic", show_default=True, help="What ranks them."
+)
+@click.option("--name", default="", help="Name of the assumption, for the row to paste.")
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+def fit(source: str, cells: str | None, kind: str | None, by: str, name: str, as_json: bool) -> None:
+    """Rank the distributions that describe the values in BOOK!RANGE, or in BOOK RANGE.
+
+    RANGE is a range of cells, with its sheet where the workbook has several (data.xlsx!Sheet1!A2:A50), a defined name,
+    or a column of a table (Tests[Friction]).
+    """
+    from xlmc import fitting
+
+    book, reference = _place(source, cells)
+    values, where, blank = _values(book, reference)
+    found = fitting.fit(values, kind=kind, by=by)
+    described = f"fitted by maximum likelihood to {book.name} {where}, n = {found.n}"
+    row = fitting.row_to_paste(found.fits[0], name or "…", described)
+    if as_json:
+        click.echo(json.dumps(_as_json(found, f"{book} {where}", blank, row), indent=2, ensure_ascii=False))
+    else:
+        _show(found, f"{book.name} {where}", blank, row)
+    for caution in found.cautions:
+        click.echo(f"warning: {caution}.", err=True)
+    if found.n < fitting.FEW:
+        raise click.exceptions.Exit(TOO_FEW)
+
+
+def _place(source: str, cells: str | None) -> tuple[Path, str]:
+    """The workbook, and the reference in it.
+
+    Raises:
+        UsageError: no range is named, or two are.
+    """
+    joined = _BOOK_AND_RANGE.fullmatch(source)
+    if joined and cells is not None:
+        raise click.UsageError(f"Two ranges are named: {joined['range']} and {cells}.")
+    if joined:
+        return Path(joined["book"]), joined["range"]
+    if cells is None:
+        raise click.UsageError(
+            f"Name the range, too: {source}!A2:A50, or a column of a table: '{source}!Tests[Value]'."
+        )
+    return Path(source), cells
+
+
+def _values(book: Path, reference: str) -> tuple[list[float], str, int]:
+    """The numbers, where they stand, and how many blank cells were left out.
+
+    Raises:
+        DefinitionError: there is no such range, or a cell in it holds something else.
+    """
+    from xlmc.definitions.area_reference import area_of_reference
+    from xlmc.definitions.computed import Computed
+    from xlmc.definitions.data import area_values
+    from xlmc.definitions.fields import number_in
+    from xlmc.workbook import read_workbook
+
+    workbook = read_workbook(book)
+    only_sheet = next(iter(workbook.sheets)) if len(workbook.sheets) == 1 else None
+    area = area_of_reference(workbook, reference, only_sheet, book)
+    held = [value for row in area_values(workbook, area, Computed(workbook, ())) for value in row if value is not None]
+    values = [
+        value if isinstance(value, float) else number_in("The data cell", workbook.content(value), value)
+        for value in held
+    ]
+    return values, str(area), area.rows * area.columns - len(values)
+
+
+def _as_json(found: Fitting, source: str, blank: int, row: dict[str, str]) -> dict[str, object]:
+    return {
+        "source": source,
+        "values": found.n,
+        "blank_cells": blank,
+        "kind": found.kind,
+        "ranked_by": found.by,
+        "fits": [_entry(fitted) for fitted in found.fits],
+        "not_fitted": dict(found.unfit),
+        "cautions": list(found.cautions),
+        "row": row,
+    }
+
+
+def _entry(fitted: Fitted) -> dict[str, object]:
+    return {
+        "distribution": fitted.name,
+        "parameters": dict(fitted.parameters),
+        "standard_errors": {heading: _finite(error) for heading, error in fitted.errors.items()},
+        "standard_errors_from": fitted.errors_from,
+        "not_estimated": sorted(fitted.fixed),
+        "log_likelihood": fitted.log_likelihood,
+        "aic": fitted.aic,
+        "bic": fitted.bic,
+        "anderson_darling": _finite(fitted.ad),
+        "kolmogorov_smirnov": fitted.ks,
+    }
+
+
+def _finite(value: float | None) -> float | None:
+    return value if value is not None and math.isfinite(value) else None
+
+
+def _show(found: Fitting, source: str, blank: int, row: dict[str, str]) -> None:
+    from xlmc.cli.printing import table
+
+    left_out = f"; {blank} blank cells left out" if blank else ""
+    title = f"{source}: {found.n} values as {found.kind}{left_out}; the best by {found.by.upper()} first"
+    best = min(fitted.aic for fitted in found.fits)
+    rows = [
+        (
+            fitted.name,
+            _parameters(fitted),
+            f"{fitted.aic - best:.1f}",
+            f"{fitted.aic:.1f}",
+            f"{fitted.bic:.1f}",
+            _statistic(fitted.ad),
+            _statistic(fitted.ks),
+        )
+        for fitted in found.fits
+    ]
+    headings = ("Distribution", "Parameters ± standard error", "ΔAIC", "AIC", "BIC", "A²", "D")
+    table(title, headings, rows, right=(2, 3, 4, 5, 6))
+    for name, reason in found.unfit.items():
+        click.echo(f"Not fitted: {name}: {reason}.")
+    for source_of_errors, names in _sources(found).items():
+        click.echo(f"Standard errors of {', '.join(names)}: {source_of_errors}.")
+    click.echo(_MEANING)
+    click.echo("\nThe first as a row of xlmc_assumptions, to paste under these headings:\n")
+    click.echo("\t".join(row))
+    click.echo("\t".join(row.values()))
+
+
+_MEANING = (
+    "A² (Anderson-Darling) and D (Kolmogorov-Smirnov) are distances, smaller is better; no p-values are given,\n"
+    "because the usual ones hold only for distributions that were not fitted to the same values."
+)
+
+
+def _parameters(fitted: Fitted) -> str:
+    from xlmc.statistics import format_estimate
+
+    parts = []
+    for heading, value in fitted.parameters.items():
+        error = fitted.errors[heading]
+        if heading in fitted.fixed:
+            parts.append(f"{heading} {value:g} (not estimated)")
+        elif error is None or not math.isfinite(error):
+            parts.append(f"{heading} {value:.6g}")
+        else:
+            parts.append(f"{heading} {format_estimate(value, error)}")
+    return ", ".join(parts)
+
+
+def _statistic(value: float | None) -> str:
+    return "–" if value is None else "∞" if math.isinf(value) else f"{value:.3f}"
+
+
+def _sources(found: Fitting) -> dict[str, list[str]]:
+    sources: dict[str, list[str]] = {}
+    for fitted in found.fits:
+        sources.setdefault(fitted.errors_from, []).append(fitted.name)
+    return sources

@@ -37,6 +37,10 @@ class Buffers:
         self._held[place] = buffer = self.take_for(kind)
         return buffer
 
+    def holds(self, place: int) -> bool:
+        """Whether the node's value lies in a buffer now."""
+        return place in self._held
+
     def take_for(self, kind: Kind) -> int:
         """A buffer of that kind, until `give_back`."""
         if self._idle[kind]:
@@ -55,6 +59,11 @@ class Buffers:
     def give_back(self, buffer: int) -> None:
         """A buffer that nothing reads any more."""
         self._idle[self._types[buffer]].append(buffer)
+
+    @property
+    def trial_bytes(self) -> int:
+        """What one trial takes in all of them."""
+        return sum(1 if kind is Kind.LOGICAL else 8 for kind in self._types)
 
     def allocate(self, block: int) -> list[NDArray[Any]]:
         """The arrays, `(block,)` each, on cache lines of their own."""

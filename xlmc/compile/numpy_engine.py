@@ -8,6 +8,7 @@ nothing where there are none.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,14 +23,21 @@ from xlmc.functions.values import Floats
 __all__ = ["NumpyProgram"]
 
 
+_LARGEST_BLOCK: Final = 1 << 20
+_SMALLEST_BLOCK: Final = 1 << 8
+_MOST_BYTES: Final = 1 << 25
+"""Of all buffers: what the caches of today's processors hold."""
+
+
 class NumpyProgram:
     """The graph of nodes, ready to run on NumPy.
 
     Args:
         may_err: the inputs whose draws may be errors (NaNs), which raise no flag.
-    """
 
-    largest_block = 1 << 20
+    Attributes:
+        largest_block: the largest, a power of two, whose buffers take no more than 32 MB.
+    """
 
     def __init__(
         self, lowering: Lowering, filters: Sequence[Target], forecasts: Sequence[Target], may_err: frozenset[str]
@@ -39,6 +47,11 @@ class NumpyProgram:
         self._forecasts = [lowering.target(target) for target in forecasts]
         self._plan = Plan(self._dag, self._filters, self._forecasts)
         self._may_err = may_err & self._plan.inputs
+        self.largest_block = _LARGEST_BLOCK
+        while (
+            self.largest_block > _SMALLEST_BLOCK and self.largest_block * self._plan.buffers.trial_bytes > _MOST_BYTES
+        ):
+            self.largest_block //= 2
 
     def evaluator(self, block: int) -> Evaluator:
         """See `Program`."""

@@ -56,6 +56,7 @@ class Plan:
         steps = Steps(self._dag, self.buffers, computed)
         for node in computed:
             done = [needed for needed in read[node] if last[needed] == node]
+            steps.drop(done)
             if node in branched:
                 self.buffers.free(done)
                 steps.append(branch_step(self._dag, self._placement, node))

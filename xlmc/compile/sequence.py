@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from xlmc.compile.buffers import Buffers
-from xlmc.compile.dag import Apply, Dag, Select, uses
+from xlmc.compile.dag import Apply, Constant, Dag, Select, uses
 from xlmc.compile.steps import Departure, Frame, Step, is_elementwise_ufunc, make_step
 from xlmc.functions import Kind
 from xlmc.functions.registry import Elementwise
@@ -47,6 +47,7 @@ class Steps:
         self._made: list[Step] = []
         self._dag, self._buffers = dag, buffers
         self._lines: list[_Line] = []
+        self._loose: list[int] = []
         self._pairs = _sines_with_cosines(dag, places)
         self._had: set[int] = set()
 
@@ -82,10 +83,18 @@ class Steps:
                 return
         self.append(make_step(self._dag, place, buffer))
 
+    def drop(self, done: Iterable[int]) -> None:
+        """Let go, after the next step, of values that are in no buffers."""
+        nodes, holds = self._dag.nodes, self._buffers.holds
+        self._loose += [place for place in done if type(nodes[place]) is not Constant and not holds(place)]
+
     def append(self, step: Step) -> None:
         """A step that has its memory already."""
         self._close()
         self._made.append(step)
+        if self._loose:
+            self._made.append(_letting_go(self._loose))
+            self._loose = []
 
     def finish(self) -> list[Step]:
         """All of them."""
@@ -163,6 +172,14 @@ def _pair(dag: Dag, angle: int, places: tuple[int, int], buffers: tuple[int, int
             raise Departure
         values[sine], values[cosine], work = (frame.buffers[buffer] for buffer in buffers)
         sine_and_cosine(values[angle], values[sine], values[cosine], work)
+
+    return step
+
+
+def _letting_go(places: list[int]) -> Step:
+    def step(frame: Frame) -> None:
+        for place in places:
+            frame.values[place] = None
 
     return step
 

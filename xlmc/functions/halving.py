@@ -39,11 +39,19 @@ def last_not_beyond(keys: Value, vector: Value, *, falling: bool = False) -> Pla
             mine = np.flatnonzero(keys.kinds[:, 0] == kind)
             rows = mine if len(vector.order) > 1 else np.zeros(1, np.intp)
             if mine.size:
-                values = _Values.of(vector.kinds[rows] == kind, sign * vector.order[rows])
-                result[mine] = values.halved(sign * keys.order[mine, 0])
+                result[mine] = _halved(
+                    sign * keys.order[mine, 0], vector.kinds[rows] == kind, sign * vector.order[rows]
+                )
         return result
 
     return searched(keys, vector, find)
+
+
+def _halved(keys: Floats, comparable: Bools, order: Floats) -> Places:
+    """The places of keys (m,) in values of (m, k) or, for all keys, (1, k)."""
+    if len(order) == 1 and comparable.all() and (order[0, :-1] <= order[0, 1:]).all():
+        return np.searchsorted(order[0], keys, side="right") - 1  # what halving comes to where all is in order
+    return _Values.of(comparable, order).halved(keys)
 
 
 @dataclass(frozen=True, slots=True)

@@ -52,7 +52,7 @@ def simulate(
     workers = min(jobs, len(starts))
     idle: SimpleQueue[Worker] = SimpleQueue()
     for _ in range(workers):
-        sampler, evaluator = model.sampler(settings.seed, block), program.evaluator(block)
+        sampler, evaluator = model.sampler(settings.seed, block, settings.engine), program.evaluator(block)
         idle.put(Worker(sampler, evaluator, block, len(model.forecasts), model.fallible))
 
     def run(start: int) -> Block:

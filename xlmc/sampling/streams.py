@@ -31,6 +31,13 @@ class Stream:
         self._start = self._bits.state
         self._generator = np.random.Generator(self._bits)
 
+    def state_at(self, trial: int) -> tuple[int, int]:
+        """The generator's state, 128 bits, before the number of a trial, and its increment."""
+        self._bits.state = self._start
+        self._bits.advance(trial)
+        inner = self._bits.state["state"]
+        return int(inner["state"]), int(inner["inc"])
+
     def uniforms(self, start: int, out: NDArray[np.float64]) -> None:
         """Fill `out` (n,) with the uniforms of trials `start` to `start + n - 1`, in [0, 1) on the grid k·2⁻⁵³."""
         self._bits.state = self._start

@@ -31,11 +31,10 @@ class Stream:
         self._start = self._bits.state
         self._generator = np.random.Generator(self._bits)
 
-    def state_at(self, trial: int) -> tuple[int, int]:
-        """The generator's state, 128 bits, before the number of a trial, and its increment."""
-        self._bits.state = self._start
-        self._bits.advance(trial)
-        inner = self._bits.state["state"]
+    @property
+    def beginning(self) -> tuple[int, int]:
+        """The generator's state before the first trial, 128 bits, and its increment."""
+        inner = self._start["state"]
         return int(inner["state"]), int(inner["inc"])
 
     def uniforms(self, start: int, out: NDArray[np.float64]) -> None:

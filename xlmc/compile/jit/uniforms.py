@@ -29,49 +29,86 @@ _WORDS: Final = 6
 _BYTE, _LONG, _STATE, _DOUBLE = ir.IntType(8), ir.IntType(64), ir.IntType(128), ir.DoubleType()
 
 
-class _Positioned(Protocol):
-    def state_at(self, trial: int) -> tuple[int, int]: ...
+_STATES: Final = 1 << 128
+_LOW_HALF: Final = (1 << 64) - 1
+
+
+class _Stream(Protocol):
+    @property
+    def beginning(self) -> tuple[int, int]: ...
 
 
 def filler(
-    streams: Sequence[_Positioned], maps: Sequence[tuple[float, float]], rows: NDArray[np.float64]
+    streams: Sequence[_Stream], maps: Sequence[tuple[float, float]], rows: NDArray[np.float64]
 ) -> Callable[[int], None]:
     """What fills `rows` (k, block) with offset + factor·uniform, from a trial on.
 
     Args:
-        streams: k of them; `state_at` gives state and increment before a trial's number.
+        streams: k of them; `beginning` gives the state before trial 0 and the increment.
         maps: the offset and the factor of each.
         rows: filled in place.
     """
     words = np.empty((len(streams), _WORDS), np.uint64)
+    for word, stream in zip(words, streams, strict=True):
+        word[:4] = [half for number in stream.beginning for half in _halves(number)]
+    jump = np.empty(4, np.uint64)
     words[:, 4:] = np.array(maps, np.float64).reshape(-1, 2).view(np.uint64)
-    addresses = [row.__array_interface__["data"][0] for row in (*rows, *words)]
+    addresses = [array.__array_interface__["data"][0] for array in (*rows, *words, jump)]
     calls: list[tuple[NativeLoop, Any]] = []
     for first in range(0, len(streams), _SIDE_BY_SIDE):
         chosen = range(first, min(first + _SIDE_BY_SIDE, len(streams)))
-        of_chosen = [addresses[i] for i in chosen] + [addresses[len(streams) + i] for i in chosen]
+        of_chosen = [addresses[i] for i in chosen] + [addresses[len(streams) + i] for i in chosen] + addresses[-1:]
         calls.append((machine().native(_module(len(chosen)), _NAME), (ctypes.c_void_p * len(of_chosen))(*of_chosen)))
-    low_half = (1 << 64) - 1
+    return _Fill(calls, words, jump, rows)
 
-    def fill(start: int) -> None:
-        for word, stream in zip(words, streams, strict=True):
-            state, increment = stream.state_at(start)
-            word[:4] = state & low_half, state >> 64, increment & low_half, increment >> 64
-        for call, arguments in calls:
-            call(arguments, rows.shape[1])
 
-    return fill
+class _Fill:
+    """Calls the loops; it keeps the arrays that these know by their addresses."""
+
+    def __init__(
+        self,
+        calls: Sequence[tuple[NativeLoop, Any]],
+        words: NDArray[np.uint64],
+        jump: NDArray[np.uint64],
+        rows: NDArray[np.float64],
+    ) -> None:
+        self._calls, self._words, self._jump, self._rows = calls, words, jump, rows
+
+    def __call__(self, start: int) -> None:
+        self._jump[:] = [half for number in _jump(start) for half in _halves(number)]
+        for call, arguments in self._calls:
+            call(arguments, self._rows.shape[1])
+
+
+def _halves(number: int) -> tuple[int, int]:
+    return number & _LOW_HALF, number >> 64
+
+
+def _jump(steps: int) -> tuple[int, int]:
+    """The state so many steps on is the first of these times the state plus the second times the increment.
+
+    Brown (1994), "Random number generation with arbitrary strides".
+    """
+    factor, summand = 1, 0
+    power, total = _MULTIPLIER, 1
+    while steps:
+        if steps & 1:
+            factor, summand = factor * power % _STATES, (summand * power + total) % _STATES
+        total, power = (power + 1) * total % _STATES, power * power % _STATES
+        steps >>= 1
+    return factor, summand
 
 
 def _module(k: int) -> ir.Module:
-    """The loop over the trials of `k` streams: its arguments are the addresses of k rows and of k streams' words."""
+    """The loop over the trials of `k` streams; it takes the addresses of k rows, of k streams' words and of the jump."""
     module = ir.Module()
     function = ir.Function(module, ir.FunctionType(_LONG, [_BYTE.as_pointer().as_pointer(), _LONG]), _NAME)
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     addresses, n = function.args
-    arrays = [builder.load(builder.gep(addresses, [_LONG(place)])) for place in range(2 * k)]
+    arrays = [builder.load(builder.gep(addresses, [_LONG(place)])) for place in range(2 * k + 1)]
     rows = [builder.bitcast(array, _DOUBLE.as_pointer()) for array in arrays[:k]]
-    held = [_held(builder, array) for array in arrays[k:]]
+    jump = _numbers(builder, arrays[-1])
+    held = [_held(builder, array, jump) for array in arrays[k:-1]]
     before, body, after = builder.block, *(function.append_basic_block(name) for name in ("body", "after"))
     builder.cbranch(builder.icmp_signed("<", _LONG(0), n), body, after)
 
@@ -93,11 +130,19 @@ def _module(k: int) -> ir.Module:
     return module
 
 
-def _held(builder: ir.IRBuilder, words: Any) -> tuple[Any, Any, Any, Any]:
-    """State, increment, offset and factor of a stream."""
-    longs, doubles = (builder.bitcast(words, kind.as_pointer()) for kind in (_LONG, _DOUBLE))
+def _numbers(builder: ir.IRBuilder, words: Any) -> tuple[Any, Any]:
+    """Two numbers of 128 bits, lower half first."""
+    longs = builder.bitcast(words, _LONG.as_pointer())
     parts = [builder.zext(builder.load(builder.gep(longs, [_LONG(place)])), _STATE) for place in range(4)]
-    state, increment = (builder.or_(low, builder.shl(high, _STATE(64))) for low, high in (parts[:2], parts[2:]))
+    first, second = (builder.or_(low, builder.shl(high, _STATE(64))) for low, high in (parts[:2], parts[2:]))
+    return first, second
+
+
+def _held(builder: ir.IRBuilder, words: Any, jump: tuple[Any, Any]) -> tuple[Any, Any, Any, Any]:
+    """State after the jump, increment, offset and factor of a stream."""
+    state, increment = _numbers(builder, words)
+    state = builder.add(builder.mul(state, jump[0]), builder.mul(increment, jump[1]))
+    doubles = builder.bitcast(words, _DOUBLE.as_pointer())
     offset, factor = (builder.load(builder.gep(doubles, [_LONG(place)])) for place in (4, 5))
     return state, increment, offset, factor
 

@@ -100,7 +100,7 @@ def _jump(steps: int) -> tuple[int, int]:
 
 
 def _module(k: int) -> ir.Module:
-    """The loop over the trials of `k` streams; it takes the addresses of k rows, of k streams' words and of the jump."""
+    """The loop over the trials of k streams; it takes the addresses of k rows, of k streams' words and of the jump."""
     module = ir.Module()
     function = ir.Function(module, ir.FunctionType(_LONG, [_BYTE.as_pointer().as_pointer(), _LONG]), _NAME)
     builder = ir.IRBuilder(function.append_basic_block("entry"))

@@ -128,7 +128,7 @@ def test_an_unknown_engine(model):
         model.program("jax")
     assert (caught.value.message, caught.value.hint) == (
         "there is no engine 'jax'",
-        "choose one of numpy, formulas",
+        "choose one of numpy, jit, formulas",
     )
 
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
 from xlmc.collecting import paused_collection
-from xlmc.compile import ENGINES, Lowering, Program, Target, widened
+from xlmc.compile import ENGINES, FILLERS, Lowering, Program, Target, widened
 from xlmc.definitions import Assumption, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key
 from xlmc.drawing import correlated_groups, draw_of, dynamic_parameters
@@ -194,12 +194,12 @@ class Model:
         with paused_collection():
             return ENGINES[engine](self._lowering, self._filter_targets, self._forecast_targets, self.fallible)
 
-    def sampler(self, seed: int, block: int) -> MonteCarlo:
-        """The draws, block by block; for one thread."""
+    def sampler(self, seed: int, block: int, engine: str = "numpy") -> MonteCarlo:
+        """The draws, block by block; for one thread. They are the same for every engine."""
         draws = [tuple(self._draws[a.name] for a in stage) for stage in self.scene.stages]
         stages = [Stage(stage, dynamic=i > 0) for i, stage in enumerate(draws)]
         parameters = [dynamic_parameters(stage, self._lowering, block) for stage in draws[1:]]
-        return MonteCarlo(seed, stages, self._groups, parameters, block)
+        return MonteCarlo(seed, stages, self._groups, parameters, block, FILLERS.get(engine))
 
     @property
     def _filter_targets(self) -> list[Target]:

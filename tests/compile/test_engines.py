@@ -215,6 +215,14 @@ def test_draws_that_are_errors(differences, engine):
     agree(differences(engine, cells, draws, ["C1", "C2", "C3", "C4", "A1"], [], may_err=["A1"]))
 
 
+@ENGINE
+def test_a_formula_that_names_an_empty_cell_gives_zero(differences, engine):
+    cells = {"C1": "=C9", "C2": "=C1&A1", "C3": "=C9+A1"}
+    found = differences(engine, cells, {"A1": [1.0, 2.0]}, ["C1", "C2", "C3", "C9"], [])
+    agree(found)
+    assert found[0][0][1].tolist() == [0.0, 0.0]
+
+
 @OURS
 @pytest.mark.parametrize("depth", [3, 30, 300])
 def test_branches_within_branches(differences, engine, depth):

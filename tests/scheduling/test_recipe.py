@@ -13,8 +13,8 @@ def test_a_recipe_makes_the_same_blocks(model):
     recipe = unpacked(Recipe.of(model, "numpy", 7, 100).packed())
     again = recipe.model()
     task = Task(300, 80, True)
-    mine = worker_of(model, model.program("numpy"), 7, 100).run(task)
-    theirs = worker_of(again, again.program(recipe.engine), recipe.seed, recipe.block).run(task)
+    mine = worker_of(model, model.program("numpy"), "numpy", 7, 100).run(task)
+    theirs = worker_of(again, again.program(recipe.engine), recipe.engine, recipe.seed, recipe.block).run(task)
     assert pickle.dumps(theirs) == pickle.dumps(mine)
     assert mine.accepted.size
 

@@ -39,6 +39,11 @@ class Uniform(Family):
         ),
     )
 
+    def offset_and_factor(self, low: float, high: float) -> tuple[float, float] | None:
+        """With these, offset + factor·u has the bits of `ppf(u)`; None where `ppf` must look further."""
+        width = high - low
+        return None if low + width > high else (low, width)
+
     def _ppf(self, u: Array, low: Values, high: Values) -> Array:
         width = high - low
         u *= width

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.distributions import Family, Truncated
+from xlmc.distributions.uniform import Uniform
 from xlmc.sampling.copula import GaussianCopula
 from xlmc.sampling.streams import Stream
 
@@ -43,6 +44,13 @@ class Draw:
             lower, upper = (_known(c, dynamic) for c in self.cutoffs)
             Truncated(self.family).ppf(u, lower, upper, *parameters, out=u)
 
+    def offset_and_factor(self) -> tuple[float, float] | None:
+        """With these, offset + factor·u is the draw, to the bit; None where it is not so simple."""
+        if not isinstance(self.family, Uniform) or self.cutoffs is not None:
+            return None
+        low, high = self.parameters
+        return self.family.offset_and_factor(low, high) if isinstance(low, float) and isinstance(high, float) else None
+
 
 def _known(parameter: Hashable, dynamic: Mapping[Hashable, Floats]) -> float | Floats:
     return parameter if isinstance(parameter, float) else dynamic[parameter]
@@ -64,6 +72,11 @@ class CorrelatedGroup:
     copula: GaussianCopula
 
 
+Filler = Callable[[Sequence[Stream], Sequence[tuple[float, float]], Floats], Callable[[int], None]]
+"""Takes streams, an offset and a factor for each, and rows `(k, block)`. What it gives takes the first trial of a
+block, and fills each row with offset + factor·uniform."""
+
+
 class MonteCarlo:
     """Draws blocks of independent trials. For one thread; its memory is used again with every block.
 
@@ -73,6 +86,7 @@ class MonteCarlo:
         groups: of correlated assumptions.
         parameters: for each dynamic stage, in order.
         block: trials per block.
+        filler: draws the uniforms in place of the streams, the same bits; None for the streams themselves.
     """
 
     def __init__(
@@ -82,6 +96,7 @@ class MonteCarlo:
         groups: Sequence[CorrelatedGroup],
         parameters: Sequence[DynamicParameters],
         block: int,
+        filler: Filler | None = None,
     ) -> None:
         names = [name for group in groups for name in group.names]
         names += [draw.name for stage in stages for draw in stage.draws if draw.name not in names]
@@ -90,11 +105,23 @@ class MonteCarlo:
         self._streams = [Stream(seed, name) for name in names]
         self._stages, self._groups, self._parameters = stages, groups, parameters
         self._block = block
+        self._filled: frozenset[str] = frozenset()
+        self._fill = self._by_streams if filler is None else self._by_filler(filler)
+
+    def _by_streams(self, start: int) -> None:
+        for stream, row in zip(self._streams, self._rows, strict=True):
+            stream.uniforms(start, row)
+
+    def _by_filler(self, filler: Filler) -> Callable[[int], None]:
+        grouped = {name for group in self._groups for name in group.names}
+        single = [draw for stage in self._stages for draw in stage.draws if draw.name not in grouped]
+        maps = {draw.name: found for draw in single if (found := draw.offset_and_factor()) is not None}
+        self._filled = frozenset(maps)
+        return filler(self._streams, [maps.get(name, (0.0, 1.0)) for name in self._places], self._rows)
 
     def draw(self, start: int) -> dict[str, Floats]:
         """The draws of trials `start` to `start + block - 1`, `(block,)` each; NaN for an error."""
-        for stream, row in zip(self._streams, self._rows, strict=True):
-            stream.uniforms(start, row)
+        self._fill(start)
         for group in self._groups:
             first = self._places[group.names[0]]
             group.copula.join(self._rows[first : first + len(group.names)])
@@ -104,5 +131,6 @@ class MonteCarlo:
             known = next(dynamic)(drawn, self._block) if stage.dynamic else {}
             for draw in stage.draws:
                 drawn[draw.name] = self._rows[self._places[draw.name]]
-                draw.fill(drawn[draw.name], known)
+                if draw.name not in self._filled:
+                    draw.fill(drawn[draw.name], known)
         return drawn

@@ -31,6 +31,12 @@ class Stream:
         self._start = self._bits.state
         self._generator = np.random.Generator(self._bits)
 
+    @property
+    def beginning(self) -> tuple[int, int]:
+        """The generator's state before the first trial, 128 bits, and its increment."""
+        inner = self._start["state"]
+        return int(inner["state"]), int(inner["inc"])
+
     def uniforms(self, start: int, out: NDArray[np.float64]) -> None:
         """Fill `out` (n,) with the uniforms of trials `start` to `start + n - 1`, in [0, 1) on the grid k·2⁻⁵³."""
         self._bits.state = self._start

@@ -145,7 +145,7 @@ class _Workers:
         try:
             return self._idle.get_nowait()
         except Empty:
-            return worker_of(self._model, self._program, self._recipe.seed, self._recipe.block)
+            return worker_of(self._model, self._program, self._recipe.engine, self._recipe.seed, self._recipe.block)
 
     def give(self, worker: Worker) -> None:
         self._idle.put(worker)

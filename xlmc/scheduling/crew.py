@@ -66,7 +66,8 @@ class Crew:
         jobs = min(self.jobs, blocks)
         scheduler = self.scheduler or _usual(settings.engine, jobs, blocks)
         if scheduler == "threads":
-            yield from in_order([worker_of(model, program, settings.seed, block) for _ in range(jobs)], tasks)
+            workers = [worker_of(model, program, settings.engine, settings.seed, block) for _ in range(jobs)]
+            yield from in_order(workers, tasks)
             return
         recipe = Recipe.of(model, settings.engine, settings.seed, block)
         if scheduler == "processes":

@@ -96,7 +96,7 @@ def serve() -> None:
     try:
         recipe = unpacked(pickle.load(source))
         model = recipe.model()
-        worker = worker_of(model, model.program(recipe.engine), recipe.seed, recipe.block)
+        worker = worker_of(model, model.program(recipe.engine), recipe.engine, recipe.seed, recipe.block)
         while True:
             task: Task = pickle.load(source)
             _send(answers, _answer(worker.run, task))

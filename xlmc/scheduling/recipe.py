@@ -7,7 +7,7 @@ import platform
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from xlmc import __version__
@@ -20,13 +20,13 @@ from xlmc.workbook import Workbook
 
 __all__ = ["Recipe", "check_software", "software", "worker_of"]
 
-LIBRARIES = ("numpy", "scipy", "formulas")
-"""A result depends on them to its last bit."""
+LIBRARIES = ("numpy", "scipy", "formulas", "llvmlite")
+"""A result depends on them to its last bit, on the last with the engine `jit` only."""
 
 
-def worker_of(model: Model, program: Program, seed: int, block: int) -> Worker:
+def worker_of(model: Model, program: Program, engine: str, seed: int, block: int) -> Worker:
     """What runs blocks of a model in this process, in one thread."""
-    sampler, evaluator = model.sampler(seed, block), program.evaluator(block)
+    sampler, evaluator = model.sampler(seed, block, engine), program.evaluator(block)
     return Worker(sampler, evaluator, block, len(model.forecasts), model.fallible)
 
 
@@ -76,7 +76,14 @@ def software() -> dict[str, str]:
     found: dict[str, list[str]] = numpy.show_config(mode="dicts")["SIMD Extensions"]  # type: ignore[assignment]
     own = {"xlmc": __version__, "Python": platform.python_version()}
     features = [platform.machine(), *found.get("baseline", []), *found.get("found", [])]
-    return own | {name: version(name) for name in LIBRARIES} | {"processor": " ".join(features)}
+    return own | {name: _version(name) for name in LIBRARIES} | {"processor": " ".join(features)}
+
+
+def _version(library: str) -> str:
+    try:
+        return version(library)
+    except PackageNotFoundError:
+        return "not installed"
 
 
 def check_software(ours: Mapping[str, str], theirs: Mapping[str, str], where: str) -> None:

@@ -7,17 +7,20 @@ between two loops (`stages`). A trial in which anything may be an error is compu
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.errors import SimulationError
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from xlmc.compile.engine import Program, Target
     from xlmc.compile.lower import Lowering
 
-__all__ = ["REPAYS_FROM", "available", "jit_program"]
+__all__ = ["REPAYS_FROM", "available", "jit_filler", "jit_program"]
 
 REPAYS_FROM: Final = 3_000_000
 """Trials of a model of some dozens of formulas from which the time to compile it, some 0.3 s, is surely repaid."""
@@ -48,3 +51,12 @@ def jit_program(
     from xlmc.compile.jit.program import JitProgram
 
     return JitProgram(lowering, filters, forecasts, may_err)
+
+
+def jit_filler(
+    streams: Sequence[Any], maps: Sequence[tuple[float, float]], rows: NDArray[np.float64]
+) -> Callable[[int], None]:
+    """See `uniforms.filler`; llvmlite is there."""
+    from xlmc.compile.jit.uniforms import filler
+
+    return filler(streams, maps, rows)

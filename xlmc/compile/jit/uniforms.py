@@ -1,0 +1,158 @@
+"""The uniforms of several random streams in one loop: the numbers that NumPy's PCG64DXSM gives, to the last bit.
+
+One stream waits for its own last state at every step; four side by side keep the processor's multiplier busy. Each
+uniform u is written as offset + factor·u, rounded twice as NumPy would: what `Uniform` makes of it, at no cost.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Sequence
+from typing import Any, Final, Protocol
+
+import numpy as np
+from llvmlite import ir
+from numpy.typing import NDArray
+
+from xlmc.compile.jit.machine import NativeLoop, machine
+
+__all__ = ["filler"]
+
+_NAME: Final = "fill"
+_SIDE_BY_SIDE: Final = 4
+_MULTIPLIER: Final = 0xDA942042E4DD58B5
+"""PCG64DXSM's, O'Neill's "cheap" multiplier, of the state and of its output function."""
+
+_WORDS: Final = 6
+"""Of a stream: state and increment, 128 bits each, offset and factor."""
+
+_BYTE, _LONG, _STATE, _DOUBLE = ir.IntType(8), ir.IntType(64), ir.IntType(128), ir.DoubleType()
+
+
+_STATES: Final = 1 << 128
+_LOW_HALF: Final = (1 << 64) - 1
+
+
+class _Stream(Protocol):
+    @property
+    def beginning(self) -> tuple[int, int]: ...
+
+
+def filler(
+    streams: Sequence[_Stream], maps: Sequence[tuple[float, float]], rows: NDArray[np.float64]
+) -> Callable[[int], None]:
+    """What fills `rows` (k, block) with offset + factor·uniform, from a trial on.
+
+    Args:
+        streams: k of them; `beginning` gives the state before trial 0 and the increment.
+        maps: the offset and the factor of each.
+        rows: filled in place.
+    """
+    words = np.empty((len(streams), _WORDS), np.uint64)
+    for word, stream in zip(words, streams, strict=True):
+        word[:4] = [half for number in stream.beginning for half in _halves(number)]
+    jump = np.empty(4, np.uint64)
+    words[:, 4:] = np.array(maps, np.float64).reshape(-1, 2).view(np.uint64)
+    addresses = [array.__array_interface__["data"][0] for array in (*rows, *words, jump)]
+    calls: list[tuple[NativeLoop, Any]] = []
+    for first in range(0, len(streams), _SIDE_BY_SIDE):
+        chosen = range(first, min(first + _SIDE_BY_SIDE, len(streams)))
+        of_chosen = [addresses[i] for i in chosen] + [addresses[len(streams) + i] for i in chosen] + addresses[-1:]
+        calls.append((machine().native(_module(len(chosen)), _NAME), (ctypes.c_void_p * len(of_chosen))(*of_chosen)))
+    return _Fill(calls, words, jump, rows)
+
+
+class _Fill:
+    """Calls the loops; it keeps the arrays that these know by their addresses."""
+
+    def __init__(
+        self,
+        calls: Sequence[tuple[NativeLoop, Any]],
+        words: NDArray[np.uint64],
+        jump: NDArray[np.uint64],
+        rows: NDArray[np.float64],
+    ) -> None:
+        self._calls, self._words, self._jump, self._rows = calls, words, jump, rows
+
+    def __call__(self, start: int) -> None:
+        self._jump[:] = [half for number in _jump(start) for half in _halves(number)]
+        for call, arguments in self._calls:
+            call(arguments, self._rows.shape[1])
+
+
+def _halves(number: int) -> tuple[int, int]:
+    return number & _LOW_HALF, number >> 64
+
+
+def _jump(steps: int) -> tuple[int, int]:
+    """The state so many steps on is the first of these times the state plus the second times the increment.
+
+    Brown (1994), "Random number generation with arbitrary strides".
+    """
+    factor, summand = 1, 0
+    power, total = _MULTIPLIER, 1
+    while steps:
+        if steps & 1:
+            factor, summand = factor * power % _STATES, (summand * power + total) % _STATES
+        total, power = (power + 1) * total % _STATES, power * power % _STATES
+        steps >>= 1
+    return factor, summand
+
+
+def _module(k: int) -> ir.Module:
+    """The loop over the trials of k streams; it takes the addresses of k rows, of k streams' words and of the jump."""
+    module = ir.Module()
+    function = ir.Function(module, ir.FunctionType(_LONG, [_BYTE.as_pointer().as_pointer(), _LONG]), _NAME)
+    builder = ir.IRBuilder(function.append_basic_block("entry"))
+    addresses, n = function.args
+    arrays = [builder.load(builder.gep(addresses, [_LONG(place)])) for place in range(2 * k + 1)]
+    rows = [builder.bitcast(array, _DOUBLE.as_pointer()) for array in arrays[:k]]
+    jump = _numbers(builder, arrays[-1])
+    held = [_held(builder, array, jump) for array in arrays[k:-1]]
+    before, body, after = builder.block, *(function.append_basic_block(name) for name in ("body", "after"))
+    builder.cbranch(builder.icmp_signed("<", _LONG(0), n), body, after)
+
+    builder.position_at_end(body)
+    i = builder.phi(_LONG)
+    states = [builder.phi(_STATE) for _ in range(k)]
+    for row, state, (first, increment, offset, factor) in zip(rows, states, held, strict=True):
+        value = builder.fadd(builder.fmul(_uniform(builder, state), factor), offset)
+        builder.store(value, builder.gep(row, [i]))
+        state.add_incoming(first, before)
+        state.add_incoming(builder.add(builder.mul(state, _STATE(_MULTIPLIER)), increment), body)
+    following = builder.add(i, _LONG(1))
+    i.add_incoming(_LONG(0), before)
+    i.add_incoming(following, body)
+    builder.cbranch(builder.icmp_signed("<", following, n), body, after)
+
+    builder.position_at_end(after)
+    builder.ret(_LONG(0))
+    return module
+
+
+def _numbers(builder: ir.IRBuilder, words: Any) -> tuple[Any, Any]:
+    """Two numbers of 128 bits, lower half first."""
+    longs = builder.bitcast(words, _LONG.as_pointer())
+    parts = [builder.zext(builder.load(builder.gep(longs, [_LONG(place)])), _STATE) for place in range(4)]
+    first, second = (builder.or_(low, builder.shl(high, _STATE(64))) for low, high in (parts[:2], parts[2:]))
+    return first, second
+
+
+def _held(builder: ir.IRBuilder, words: Any, jump: tuple[Any, Any]) -> tuple[Any, Any, Any, Any]:
+    """State after the jump, increment, offset and factor of a stream."""
+    state, increment = _numbers(builder, words)
+    state = builder.add(builder.mul(state, jump[0]), builder.mul(increment, jump[1]))
+    doubles = builder.bitcast(words, _DOUBLE.as_pointer())
+    offset, factor = (builder.load(builder.gep(doubles, [_LONG(place)])) for place in (4, 5))
+    return state, increment, offset, factor
+
+
+def _uniform(builder: ir.IRBuilder, state: Any) -> Any:
+    """The number of a state: the output function "DXSM", its upper 53 bits as a fraction of 1."""
+    high = builder.trunc(builder.lshr(state, _STATE(64)), _LONG)
+    odd = builder.or_(builder.trunc(state, _LONG), _LONG(1))
+    high = builder.xor(high, builder.lshr(high, _LONG(32)))
+    high = builder.mul(high, _LONG(_MULTIPLIER))
+    high = builder.xor(high, builder.lshr(high, _LONG(48)))
+    high = builder.lshr(builder.mul(high, odd), _LONG(11))
+    return builder.fmul(builder.uitofp(high, _DOUBLE), ir.Constant(_DOUBLE, 2.0**-53))

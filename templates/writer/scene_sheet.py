@@ -16,7 +16,7 @@ from templates.writer.styles import Styles
 
 __all__ = ["draw_scene"]
 
-_WIDTHS = (44, 14, 14, 60)
+_WIDTHS = (44, 24, 24, 40)
 _PLAN, _PLOT = (850, 680), (900, 560)
 """Width and height of a chart, in pixels."""
 _ROW = 20

@@ -14,10 +14,10 @@ from templates.writer.cached import Values
 from templates.writer.page import begin_sheet, protect, write_formula
 from templates.writer.styles import Styles
 
-__all__ = ["draw_scene"]
+__all__ = ["PLAN_SIZE", "draw_scene"]
 
 _WIDTHS = (44, 24, 24, 40)
-_PLAN, _PLOT = (850, 680), (900, 560)
+PLAN_SIZE, _PLOT_SIZE = (850, 680), (900, 560)
 """Width and height of a chart, in pixels."""
 _ROW = 20
 """Height of a row, in pixels."""
@@ -44,7 +44,7 @@ def draw_scene(workbook: Workbook, sheet: Worksheet, styles: Styles, diagram: Di
     """Write the sheet, locked: the chart, below it the points of every curve, in the order they are joined."""
     begin_sheet(sheet, styles, diagram.title, diagram.remark, _WIDTHS)
     chart = workbook.add_chart({"type": "scatter", "subtype": "straight"})
-    first = _TOP + (_PLAN if diagram.plan else _PLOT)[1] // _ROW + 3
+    first = _TOP + (PLAN_SIZE if diagram.plan else _PLOT_SIZE)[1] // _ROW + 3
     sheet.set_row(first - 1, 32)
     for column, header in enumerate(("Curve", diagram.x_title, diagram.y_title)):
         sheet.write_string(first - 1, column, header, styles("header"))
@@ -111,5 +111,5 @@ def _finish(chart: Chart, diagram: Diagram) -> None:
         chart.set_plotarea({"layout": {"x": 0.09, "y": 0.04, "width": 0.68, "height": 0.85}})
     chart.set_legend(legend)
     chart.set_title({"none": True})
-    width, height = _PLAN if diagram.plan else _PLOT
+    width, height = PLAN_SIZE if diagram.plan else _PLOT_SIZE
     chart.set_size({"width": width, "height": height})

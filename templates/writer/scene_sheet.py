@@ -41,7 +41,7 @@ _MARGIN = 1.1
 
 
 def draw_scene(workbook: Workbook, sheet: Worksheet, styles: Styles, diagram: Diagram, values: Values) -> None:
-    """Write the sheet, locked: the chart, below it the points of every curve, in the order they are joined."""
+    """Write the sheet, locked: the chart, which is printed; below it the points of every curve, in drawing order."""
     begin_sheet(sheet, styles, diagram.title, diagram.remark, _WIDTHS)
     chart = workbook.add_chart({"type": "scatter", "subtype": "straight"})
     first = _TOP + (PLAN_SIZE if diagram.plan else _PLOT_SIZE)[1] // _ROW + 3
@@ -56,6 +56,7 @@ def draw_scene(workbook: Workbook, sheet: Worksheet, styles: Styles, diagram: Di
         _draw_frame(sheet, styles, chart, first, row, values)
     _finish(chart, diagram)
     sheet.insert_chart(_TOP, 0, chart, {"object_position": 2})
+    sheet.print_area(0, 0, first - 2, len(_WIDTHS) - 1)
     protect(sheet)
 
 

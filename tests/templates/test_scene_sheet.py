@@ -12,7 +12,6 @@ import pytest
 
 from templates.build import TEMPLATES
 from templates.description import Look
-from templates.writer.scene_sheet import PLAN_SIZE
 
 DRAWN = [name for name, template in TEMPLATES.items() if template.diagram is not None]
 PLANS = [name for name in DRAWN if TEMPLATES[name].diagram.plan]
@@ -58,9 +57,10 @@ def test_a_plan_has_one_scale(name, book_path):
     np.testing.assert_array_equal(frame, [[-reach, -reach], [reach, reach]])
     assert all(np.abs(rows).max() < reach for curve, rows in drawn.items() if not curve.startswith("Frame"))
     with zipfile.ZipFile(book_path[name]) as book:
-        chart = book.read("xl/charts/chart1.xml").decode()
+        chart, drawing = (book.read(part).decode() for part in ("xl/charts/chart1.xml", "xl/drawings/drawing1.xml"))
     width, height = (float(re.search(rf'<c:{side} val="([\d.]+)"/>', chart)[1]) for side in "wh")
-    assert width * PLAN_SIZE[0] == pytest.approx(height * PLAN_SIZE[1])
+    [size] = re.findall(r'</xdr:from><xdr:ext cx="(\d+)" cy="(\d+)"/>', drawing)  # told, not left to column widths
+    assert width * int(size[0]) == pytest.approx(height * int(size[1]))
 
 
 @pytest.mark.parametrize("name", PLANS)

@@ -39,7 +39,7 @@ _ASSUMPTIONS = (
         "Friction of the body on the ground",
         "",
         0.66,
-        "Example for dry asphalt, about the values used with Searle's equation. Enter: tests on this surface",
+        "Placeholder, not a published value. Enter: tests of clothed dummies on this surface, as wide as they scatter",
         {"Low": 0.5, "Low likeliest": 0.6, "High likeliest": 0.7, "High": 0.8},
         "Trapezoid",
         "0.00",
@@ -162,8 +162,8 @@ _CHECKS = checks_section(
         "check_friction",
         "Friction is that of a body on the ground, up to 1.2",
         "AND(mu>0,mu<=1.2)",
-        "published values",
-        "FALSE: no published test slides so. A percentage entered as a number?",
+        "plausibility",
+        "FALSE: more than a body on the ground can have. A percentage entered as a number?",
     ),
     check(
         "check_angle",
@@ -224,7 +224,10 @@ _GUIDE = (
     ),
     GuideSection(
         "Friction: published values",
-        ("Values depend on clothing and surface. A sliding motorcycle is not a body, but is often on the same scene.",),
+        (
+            "Tests of clothed dummies on the surface in question give the friction of a body; none is quoted here. "
+            "The values below are of other things that slide on the same scene.",
+        ),
         (
             ("What slides", "Friction"),
             ("Motorcycle on its side", ".45 to .58"),
@@ -240,7 +243,7 @@ TEMPLATE = Template(
     subtitle="Searle: v between √(2 μ g s/(1 + μ²)) and √(2 μ g s)",
     rung=8,
     question="How fast was the vehicle that threw a pedestrian so far?",
-    needs="throw distance, friction of the body; angle and efficiency where known",
+    needs="throw distance, friction of the body on the ground",
     assumptions=_ASSUMPTIONS,
     constants=_CONSTANTS,
     optional=(),

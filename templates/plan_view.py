@@ -28,7 +28,7 @@ def outline(name: str, look: Look, centre: Point, heading: str, length: str, wid
 
 
 def arrow(name: str, look: Look, tail: Point, heading: str, length: str) -> Curve:
-    """An arrow from its tail along a heading; a negative length draws it to the tail instead of from it."""
+    """An arrow from its tail along a heading; a length that begins with a minus sign draws it to the tail instead."""
     start, tip = tail, turned(tail, heading, length, "0")
     if length.startswith("-"):
         start, tip = tip, tail

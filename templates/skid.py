@@ -23,7 +23,7 @@ from templates.units import CONVERSIONS, GRAVITY, MPH
 __all__ = ["TEMPLATE"]
 
 _SURFACES = (1, 2, 3)
-_FRICTION = "Example: dry asphalt; averages of published tests .72 to .78 (shape of SAE 2001-01-3347, Figure 4)"
+_FRICTION = "Example, dry asphalt: uniform .70 to .85, tails to .60 and .95 (SAE 2001-01-3347, Figure 4 and Table 1)"
 _FURTHER = "Example, held: set Frozen to FALSE, and a length, where the skid goes on over another surface"
 
 
@@ -37,7 +37,7 @@ def _surface(number: int) -> tuple[Input, Input]:
             "g",
             0.75,
             _FRICTION if first else _FURTHER,
-            {"Low": 0.60, "Low likeliest": 0.70, "High likeliest": 0.80, "High": 0.95}
+            {"Low": 0.60, "Low likeliest": 0.70, "High likeliest": 0.85, "High": 0.95}
             if first
             else {"Low": 0.60, "High": 0.95},
             "Trapezoid" if first else "Uniform",
@@ -206,7 +206,7 @@ _CHECKS = checks_section(
         "Frictions are those of road tyres, up to 1.2",
         "AND(MIN(f_1,f_2,f_3)>0,MAX(f_1,f_2,f_3)<=1.2,braking>0,braking<=1)",
         "published values",
-        "FALSE: no published test of a passenger car skids harder. A percentage entered as a number?",
+        "FALSE: more than road tyres give; the published range ends at 0.95. A percentage entered as a number?",
     ),
     check(
         "check_end",
@@ -281,7 +281,7 @@ TEMPLATE = Template(
     title="Speed from skid marks",
     subtitle="Friction and slope over up to three surfaces: v = √(2 g Σ a d + vend²)",
     rung=1,
-    question="How fast was a vehicle that skidded, and where was danger perceived?",
+    question="How fast was a skidding vehicle, and where was danger perceived?",
     needs="length and friction of each surface, grade",
     assumptions=_ASSUMPTIONS,
     constants=_CONSTANTS,

@@ -163,6 +163,11 @@ def test_groups_of_correlated_assumptions(pairs, groups):
     assert [group.names for group in found] == groups
 
 
+def test_a_correlation_of_0_is_none():
+    rows = [row("a", "b", 0.3), row("b", "c", 0), row("d", "e", 0)]
+    assert [group.names for group in correlated_groups(rows, ["a", "b", "c", "d", "e"])] == [("a", "b")]
+
+
 def test_contradictory_correlations(book):
     cells = dict.fromkeys(("A1", "A2", "A3"), 1.0) | {"B1": "=A1+A2+A3"}
     given = {name: {"cell": name, **UNIT} for name in ("A1", "A2", "A3")}

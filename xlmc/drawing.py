@@ -121,11 +121,13 @@ def dynamic_parameters(draws: Sequence[Draw], lowering: Lowering, block: int) ->
 def correlated_groups(correlations: Sequence[Correlation], live: Sequence[str]) -> list[CorrelatedGroup]:
     """The correlations among drawn assumptions, gathered in groups that have none between them.
 
+    A correlation of 0 is none: the draws are those of a workbook without its row, to the last bit.
+
     Raises:
         DefinitionError: the correlations of a group contradict each other.
     """
     order = [name_key(name) for name in live]
-    pairs = {(name_key(c.first), name_key(c.second)): c for c in correlations}
+    pairs = {(name_key(c.first), name_key(c.second)): c for c in correlations if c.value}
     pairs = {pair: c for pair, c in pairs.items() if pair[0] in order and pair[1] in order}
     groups = []
     for names in _connected(order, list(pairs)):

@@ -164,7 +164,7 @@ def describe(scene: Scene) -> Template:
         subtitle=scene.subtitle,
         rung=6,
         question="What do given impact speeds do: delta-V, spin, where to?",
-        needs="impact speeds, headings, restitution or impulse ratio, inertias, impact centre",
+        needs="impact speeds, headings, restitution, inertias, impact centre",
         assumptions=(*given, *_CLOSURES),
         constants=(_CLOSURE, *yaw_rates(vehicles), *constants_of_momentum(inches=True)),
         optional=(duration_input(), *drawing_inputs(vehicles)),

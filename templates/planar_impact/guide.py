@@ -14,10 +14,13 @@ _WHEN = GuideSection(
         "differ by more than about 10°. It gives impact speeds, delta-V, change in yaw rate, direction of force, "
         "restitution.",
         "Not for near-parallel approaches (|sin δ| small): momentum leaves the speeds undetermined. Use crush energy.",
-        "Not where tyre or other outside forces matter during the impact: at f = 0.8 they take about 1.8 mph for each "
-        "0.1 s of contact.",
+        "Not where tyre or other outside forces matter during the impact: at f = 0.8 they take about 1.8 mph (2.8 "
+        "km/h) for each 0.1 s of contact. Enter a duration on sheet Inputs to see how much.",
         "Both vehicles are rigid and move in the plane; the impulse acts at one point, at one instant, at full crush.",
-        "Rotation (inertia, impact centre, γ) enters the speeds and delta-V only through the restitution filters.",
+        "Rotation (inertia, impact centre, γ) enters the speeds and delta-V only through the restitution filters. The "
+        "rung below, momentum, gives the same speeds and delta-V in every trial, and needs none of them.",
+        "The rung above, planar-forward, is this model turned round: given speeds and restitution, where do they go? "
+        "crush-energy takes over where the approaches are near-parallel.",
     ),
 )
 

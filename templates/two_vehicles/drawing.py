@@ -24,7 +24,7 @@ def vehicle_curves(vehicles: tuple[str, str], centres: tuple[Point, Point]) -> t
         came = turned(centre, f"alpha_{j}", f"-0.5*length_{j}", "0")
         curves += [
             outline(who, solid, centre, f"alpha_{j}", f"length_{j}", f"width_{j}"),
-            arrow(f"{who} approach", solid, came, f"alpha_{j}", f"-0.9*length_{j}"),
+            arrow(f"{who} approach", solid, came, f"alpha_{j}", f"-0.9*length_{j}*(V{j}_i>0)"),
             arrow(f"{who} departure, to rest", dashed, centre, f"beta_{j}", f"s_{j}"),
         ]
     return tuple(curves)

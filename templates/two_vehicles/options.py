@@ -58,7 +58,7 @@ _TURN = (
 
 def duration_input() -> Input:
     """The impact's duration, blank."""
-    source = "Optional. Commonly 0.1 to 0.2 s. Gives mean acceleration and the tyre impulse neglected"
+    source = "Optional. 0.1 s, say. Gives the mean acceleration and the tyre impulse neglected"
     return Input("t_impact", "Δt", "Impact duration", "s", None, source, number_format="0.000")
 
 

@@ -10,12 +10,13 @@ from xlsxwriter.workbook import Workbook
 
 from templates.description import Template
 from templates.writer.cached import Values, computed
+from templates.writer.fixed_size import fix_chart_sizes
 from templates.writer.guide_sheet import draw_guide
 from templates.writer.inputs_sheet import draw_inputs
 from templates.writer.model_sheet import draw_model
 from templates.writer.places import places, reference
 from templates.writer.results_sheet import draw_results_wanted
-from templates.writer.scene_sheet import draw_scene
+from templates.writer.scene_sheet import chart_size, draw_scene
 from templates.writer.styles import Styles
 
 __all__ = ["write_book"]
@@ -36,6 +37,8 @@ def write_book(template: Template, path: Path) -> None:
         _write(template, draft, {})
         values = computed(draft)
     _write(template, path, values)
+    if template.diagram is not None:
+        fix_chart_sizes(path, *chart_size(template.diagram))
 
 
 def _write(template: Template, path: Path, values: Values) -> None:

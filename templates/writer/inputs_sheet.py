@@ -16,7 +16,7 @@ _DISTRIBUTIONS = ("Uniform", "Normal", "Triangular", "Trapezoid")
 _BEFORE = ("Name", "Symbol", "Cell name", "Value", "Units", "Distribution")
 _HEADERS = (*_BEFORE, *PARAMETER_COLUMNS, "Frozen", "Source")
 _SOURCE_WIDTH = 70
-_WIDTHS = (38, 8, 13, 10, 11, 13, *(10 for _ in PARAMETER_COLUMNS), 9, _SOURCE_WIDTH)
+_WIDTHS = (40, 10, 13, 13, 11, 13, *(12 for _ in PARAMETER_COLUMNS), 9, _SOURCE_WIDTH)
 _ALWAYS_SHOWN = 2
 """Of the parameter columns, Low and High; the others fold away until a distribution needs them."""
 _FROZEN = len(_HEADERS) - 2
@@ -49,7 +49,7 @@ def _draw_status(sheet: Worksheet, styles: Styles, values: Values) -> None:
     write_formula(sheet, 2, 0, formula, styles("status"), values)
     guard(sheet, (2, 0, 2, 0), "A formula", "This line tells whether the checks of sheet Model hold.", final=True)
     rule = {"type": "formula", "criteria": f"=NOT(IFERROR({ALL_CHECKS},FALSE))", "format": styles("wrong")}
-    sheet.conditional_format(2, 0, 2, 0, rule)
+    sheet.conditional_format(2, 0, 2, 2, rule)
 
 
 def _draw_assumption(sheet: Worksheet, styles: Styles, given: Input, row: int) -> None:

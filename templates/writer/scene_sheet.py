@@ -14,11 +14,13 @@ from templates.writer.cached import Values
 from templates.writer.page import begin_sheet, protect, write_formula
 from templates.writer.styles import Styles
 
-__all__ = ["draw_scene"]
+__all__ = ["chart_size", "draw_scene"]
 
-_WIDTHS = (44, 14, 14, 60)
-_PLAN, _PLOT = (850, 680), (900, 560)
+_WIDTHS = (44, 24, 24, 40)
+_PLAN_SIZE, _PLOT_SIZE = (980, 680), (900, 560)
 """Width and height of a chart, in pixels."""
+_PLAN_SHARE = 0.85
+"""Of a plan view's height, what its square takes."""
 _ROW = 20
 """Height of a row, in pixels."""
 _TOP = 3
@@ -41,10 +43,10 @@ _MARGIN = 1.1
 
 
 def draw_scene(workbook: Workbook, sheet: Worksheet, styles: Styles, diagram: Diagram, values: Values) -> None:
-    """Write the sheet, locked: the chart, below it the points of every curve, in the order they are joined."""
+    """Write the sheet, locked: the chart, which is printed; below it the points of every curve, in drawing order."""
     begin_sheet(sheet, styles, diagram.title, diagram.remark, _WIDTHS)
     chart = workbook.add_chart({"type": "scatter", "subtype": "straight"})
-    first = _TOP + (_PLAN if diagram.plan else _PLOT)[1] // _ROW + 3
+    first = _TOP + chart_size(diagram)[1] // _ROW + 3
     sheet.set_row(first - 1, 32)
     for column, header in enumerate(("Curve", diagram.x_title, diagram.y_title)):
         sheet.write_string(first - 1, column, header, styles("header"))
@@ -56,7 +58,13 @@ def draw_scene(workbook: Workbook, sheet: Worksheet, styles: Styles, diagram: Di
         _draw_frame(sheet, styles, chart, first, row, values)
     _finish(chart, diagram)
     sheet.insert_chart(_TOP, 0, chart, {"object_position": 2})
+    sheet.print_area(0, 0, first - 2, len(_WIDTHS) - 1)
     protect(sheet)
+
+
+def chart_size(diagram: Diagram) -> tuple[int, int]:
+    """Width and height of its chart, in pixels."""
+    return _PLAN_SIZE if diagram.plan else _PLOT_SIZE
 
 
 def _draw_points(sheet: Worksheet, styles: Styles, curve: Curve, row: int, values: Values) -> int:
@@ -108,8 +116,10 @@ def _finish(chart: Chart, diagram: Diagram) -> None:
     legend: dict[str, Any] = {"position": "right"}
     if diagram.plan:
         legend["delete_series"] = [len(diagram.curves)]
-        chart.set_plotarea({"layout": {"x": 0.09, "y": 0.04, "width": 0.68, "height": 0.85}})
+        width, height = _PLAN_SIZE
+        square = {"width": _PLAN_SHARE * height / width, "height": _PLAN_SHARE}
+        chart.set_plotarea({"layout": {"x": 0.08, "y": 0.04} | square})
     chart.set_legend(legend)
     chart.set_title({"none": True})
-    width, height = _PLAN if diagram.plan else _PLOT
+    width, height = chart_size(diagram)
     chart.set_size({"width": width, "height": height})

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
-import math
-
+import numpy as np
 import pytest
 
 from templates.build import TEMPLATES
@@ -69,19 +68,29 @@ def test_units_of_the_editions_are_counterparts(name):
         assert imperial.unit == si.unit or (imperial.unit, si.unit) in CONVERSION, imperial.symbol
 
 
+def drawn(given, rng, n):
+    """Values of an input over its range, `(n,)`."""
+    p = given.parameters
+    return rng.uniform(p["Low"], p["High"], n) if "Low" in p else rng.normal(p["Mean"], p["Std dev"], n)
+
+
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_both_editions_give_the_same_crash(name, cells, shown, described):
-    """The SI workbook, given the imperial base case in its own units, shows the imperial answers in its own units."""
-    inputs = {given.symbol for given in described[name].inputs}
-    imperial = shown(name)
-    rows = [(i, s) for i, s in pairs(name) if is_number(imperial[i.symbol])]
-    given = {s.symbol: converted(imperial[i.symbol], i, s) for i, s in rows if i.symbol in inputs}
-    wanted = {s.symbol: (i, s) for i, s in rows if i.symbol not in inputs}
-    found = cells(f"{name}-si", given, list(wanted))
+    """100 draws of the imperial assumptions; the SI workbook, given them in its own units, answers in its own units."""
+    template, rng, n = described[name], np.random.default_rng(9), 100
+    inputs = {given.symbol for given in template.inputs}
+    base = shown(name)
+    draws = {given.symbol: drawn(given, rng, n) for given in template.assumptions}
+    rows = [(i, s) for i, s in pairs(name) if is_number(base[i.symbol])]
+    wanted = [(i, s) for i, s in rows if i.symbol not in inputs]
+    imperial = cells(name, draws, [i.symbol for i, _ in wanted])
+    given = {s.symbol: converted(draws.get(i.symbol, base[i.symbol]), i, s) for i, s in rows if i.symbol in inputs}
+    si = cells(f"{name}-si", given, [s.symbol for _, s in wanted])
     assert len(wanted) > 5
-    for symbol, (row, counterpart) in wanted.items():
-        truth = converted(imperial[row.symbol], row, counterpart)
-        assert math.isclose(found[symbol].item(), truth, rel_tol=1e-9, abs_tol=1e-9), symbol
+    for i, s in wanted:
+        truth = converted(imperial[i.symbol], i, s)
+        scale = np.nanmax(np.abs(truth))
+        np.testing.assert_allclose(si[s.symbol], truth, rtol=1e-9, atol=1e-9 * scale, err_msg=s.symbol)
 
 
 def is_number(value):

@@ -80,6 +80,15 @@ EXAMPLES = [
         {"E_1": 0.5 * 3500 / 32.174 * (35 / MPH) ** 2},
         1e-6,
     ),
+    # Into a fixed barrier as the guide says to enter one: the speed of the test comes back.
+    (
+        "crush-energy",
+        {"b0_1": 5, "b1_1": 1.5, "w_test_1": 3500, "L_test_1": 60, "L_1": 60, "g": 32.174, "bias_1": 0, "theta_1": 0}
+        | {f"c_1_{i}": 20 for i in range(1, 7)}
+        | {"w_1": 3500, "h_1": 0, "h_2": 0, "e": 0, "L_2": 0, "w_2": 1e9},
+        {"closing_mph": 35, "dV1_mph": 35, "ratio": 1, "check_balance": 1, "E_2": 0},
+        2e-4,
+    ),
     ("pedestrian-throw", THROW, {"vmax_mph": 34.417, "vmin_mph": 28.725}, 1e-3),
     ("pedestrian-throw", THROW | {"angle": 0}, {"v_mph": 34.4178}, 5e-5),
     ("pedestrian-throw", THROW | {"angle": 33.42480}, {"v_mph": 28.7255}, 5e-5),  # atan .66

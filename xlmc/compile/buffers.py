@@ -37,10 +37,6 @@ class Buffers:
         self._held[place] = buffer = self.take_for(kind)
         return buffer
 
-    def holds(self, place: int) -> bool:
-        """Whether the node's value lies in a buffer now."""
-        return place in self._held
-
     def take_for(self, kind: Kind) -> int:
         """A buffer of that kind, until `give_back`."""
         if self._idle[kind]:
@@ -48,13 +44,30 @@ class Buffers:
         self._types.append(kind)
         return len(self._types) - 1
 
-    def free(self, places: Iterable[int]) -> None:
-        """Give back the buffers of values that nothing reads any more."""
-        held = self._held
+    def free(self, places: Iterable[int]) -> list[int]:
+        """Give back the buffers of values that nothing reads any more; those that are in no buffer."""
+        held, loose = self._held, []
         for place in places:
             buffer = held.pop(place, None)
-            if buffer is not None:
-                self.give_back(buffer)
+            if buffer is None:
+                loose.append(place)
+            else:
+                self._idle[self._types[buffer]].append(buffer)
+        return loose
+
+    def exchange(self, done: Iterable[int], place: int, loose: list[int]) -> int | None:
+        """`free`, what is in no buffer going to `loose`, and then `take` for a number or a logical."""
+        held, idle = self._held, self._idle
+        for gone in done:
+            buffer = held.pop(gone, None)
+            if buffer is None:
+                loose.append(gone)
+            else:
+                idle[self._types[buffer]].append(buffer)
+        kind = self._dag.types[place]
+        ready = idle[kind]
+        held[place] = taken = ready.pop() if ready else self.take_for(kind)
+        return taken
 
     def give_back(self, buffer: int) -> None:
         """A buffer that nothing reads any more."""

@@ -22,7 +22,7 @@ from xlmc.compile.running import RunningTotals
 from xlmc.compile.scope import Scope
 from xlmc.compile.settings import as_set
 from xlmc.errors import ErrorCode, FormulaError, Notice
-from xlmc.formula import Graph, Resolver, Stencil, ir
+from xlmc.formula import Filled, Graph, Resolver, ir
 from xlmc.functions import REGISTRY, Function, Kind, function_named
 from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.registry import Anything
@@ -125,14 +125,15 @@ class Lowering:
         """The node of an error."""
         return self.dag.constant(constant(code))
 
-    def _formula_cell(self, cell: Cell, placed: ir.Expression | Stencil) -> int:
-        if not isinstance(placed, Stencil):
+    def _formula_cell(self, cell: Cell, placed: ir.Expression | Filled) -> int:
+        if not isinstance(placed, Filled):
             return self._resolved_cell(cell, placed)
+        stencil, cells = placed
         if self._audit:
-            return self._resolved_cell(cell, placed.at(cell))
+            return self._resolved_cell(cell, stencil.at(cell))
         known = self._cells
-        leaves = [known[leaf] if leaf in known else self.cell(leaf) for leaf in placed.cells(cell)]
-        return self._recipes.lowered(placed, leaves, lambda: self._resolved_cell(cell, placed.at(cell)))
+        leaves = [known[leaf] if leaf in known else self.cell(leaf) for leaf in cells]
+        return self._recipes.lowered(stencil, leaves, lambda: self._resolved_cell(cell, stencil.at(cell)))
 
     def _resolved_cell(self, cell: Cell, tree: ir.Expression) -> int:
         formula = self.graph.workbook.content(cell).formula

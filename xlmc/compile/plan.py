@@ -56,10 +56,8 @@ class Plan:
         steps = Steps(self._dag, self.buffers, computed)
         for node in computed:
             done = [needed for needed in read[node] if last[needed] == node]
-            steps.drop(done)
             if node in branched:
-                self.buffers.free(done)
-                steps.append(branch_step(self._dag, self._placement, node))
+                steps.add_free(branch_step(self._dag, self._placement, node), done)
             else:
                 steps.add(node, read[node], done)
         self.buffers.free(node for node in free_at_end if node not in self._carried)

@@ -6,7 +6,7 @@ A line of the table costs little to make and to run; what does not fit one gets 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -20,18 +20,10 @@ from xlmc.functions.sine import sine_and_cosine
 __all__ = ["Steps"]
 
 
-class _Line(NamedTuple):
-    """`values[place] = ufunc(values[first], values[second], out=buffers[buffer])`; no `second` is -1.
-
-    Without a ufunc it is the choice between `first` and `second` by the logical in `guard_or_condition`.
-    """
-
-    ufunc: Elementwise | None
-    place: int
-    first: int
-    second: int
-    buffer: int
-    guard_or_condition: Any
+_Line = tuple[Elementwise | None, int, int, int, int, Any]
+"""(ufunc, place, first, second, buffer, guard): `values[place] = ufunc(values[first], values[second], out=buffers[buffer])`
+where the guard, if any, holds; no `second` is -1. Without a ufunc it is the choice between `first` and `second` by the
+logical at the place that stands for the guard."""
 
 
 class Steps:
@@ -59,21 +51,25 @@ class Steps:
             read: what it reads.
             done: what nothing reads after it.
         """
-        node, take, free = self._dag.nodes[place], self._buffers.take, self._buffers.free
+        node, types = self._dag.nodes[place], self._dag.types
         if place in self._pairs:
             if place not in self._had:
                 self._add_pair(*self._pairs[place])
-            free(done)
+            self._free(done)
             return
-        if type(node) is Apply and (ufunc := self._elementwise(node)) is not None:
-            free(done)  # it may write over what it reads
-            buffer = take(place)
-            if buffer is not None:
-                used = node.arguments
-                line = _Line(ufunc, place, used[0], used[1] if len(used) == 2 else -1, buffer, node.function.guard)
-                self._lines.append(line)
+        take, free = self._buffers.take, self._free
+        if type(node) is Apply and node.function.takes_plainly == len(node.arguments):
+            function, used = node
+            first, second = used[0], used[-1]
+            if types[first] is Kind.NUMBER and types[second] is Kind.NUMBER:
+                buffer = self._buffers.exchange(done, place, self._loose)  # it may write over what it reads
+                if buffer is not None:
+                    second = second if len(used) == 2 else -1
+                    self._lines.append((function.ufunc, place, first, second, buffer, function.guard))
+                    return
+                self._append(make_step(self._dag, place, buffer))
                 return
-        elif is_elementwise_ufunc(self._dag, place):
+        if is_elementwise_ufunc(self._dag, place):
             free(done)
             buffer = take(place)
         else:
@@ -81,34 +77,29 @@ class Steps:
             free(done)
             if buffer is not None and self._tabled(place, read, buffer):
                 return
-        self.append(make_step(self._dag, place, buffer))
+        self._append(make_step(self._dag, place, buffer))
 
-    def drop(self, done: Iterable[int]) -> None:
-        """Let go, after the next step, of values that are in no buffers."""
-        nodes, holds = self._dag.nodes, self._buffers.holds
-        self._loose += [place for place in done if type(nodes[place]) is not Constant and not holds(place)]
+    def add_free(self, step: Step, done: Iterable[int]) -> None:
+        """A step that has memory of its own; nothing reads `done` after it."""
+        self._free(done)
+        self._append(step)
 
-    def append(self, step: Step) -> None:
-        """A step that has its memory already."""
+    def _free(self, done: Iterable[int]) -> None:
+        """Give back buffers; let go, after the next step, of values that are in none."""
+        self._loose += self._buffers.free(done)
+
+    def _append(self, step: Step) -> None:
         self._close()
         self._made.append(step)
-        if self._loose:
-            self._made.append(_letting_go(self._loose))
-            self._loose = []
+        gone = [place for place in self._loose if type(self._dag.nodes[place]) is not Constant]
+        if gone:
+            self._made.append(_letting_go(gone))
+        self._loose.clear()
 
     def finish(self) -> list[Step]:
         """All of them."""
         self._close()
         return self._made
-
-    def _elementwise(self, node: Apply) -> Elementwise | None:
-        """The ufunc of a node that takes plain numbers, one or two."""
-        function, used = node
-        ufunc = function.ufunc
-        if ufunc is None or not function.on_numbers or len(used) != ufunc.nin or len(used) > 2:
-            return None
-        types = self._dag.types
-        return ufunc if types[used[0]] is Kind.NUMBER and types[used[-1]] is Kind.NUMBER else None
 
     def _tabled(self, place: int, read: Sequence[int], buffer: int) -> bool:
         """A choice between numbers, or a fold of numbers, as lines."""
@@ -118,7 +109,7 @@ class Steps:
         if type(node) is Select:
             plain = types[node.yes] is types[node.no] is Kind.NUMBER and types[node.condition] is Kind.LOGICAL
             if plain:
-                self._lines.append(_Line(None, place, node.yes, node.no, buffer, node.condition))
+                self._lines.append((None, place, node.yes, node.no, buffer, node.condition))
             return plain
         if type(node) is not Apply or not node.function.takes_sets or len(read) < 2:
             return False
@@ -127,8 +118,8 @@ class Steps:
             return False
         if not all(types[cell] is Kind.NUMBER for cell in read):
             return False
-        self._lines.append(_Line(ufunc, place, read[0], read[1], buffer, None))
-        self._lines += [_Line(ufunc, place, place, cell, buffer, None) for cell in read[2:]]
+        self._lines.append((ufunc, place, read[0], read[1], buffer, None))
+        self._lines += [(ufunc, place, place, cell, buffer, None) for cell in read[2:]]
         return True
 
     def _add_pair(self, sine: int, cosine: int) -> None:
@@ -136,12 +127,12 @@ class Steps:
         (angle,) = uses(self._dag.nodes[sine])
         first, second = self._buffers.take(sine), self._buffers.take(cosine)
         if first is None or second is None:
-            self.append(make_step(self._dag, sine, None))
-            self.append(make_step(self._dag, cosine, None))
+            self._append(make_step(self._dag, sine, None))
+            self._append(make_step(self._dag, cosine, None))
         else:
             work = self._buffers.take_for(Kind.NUMBER)
             self._buffers.give_back(work)
-            self.append(_pair(self._dag, angle, (sine, cosine), (first, second, work)))
+            self._append(_pair(self._dag, angle, (sine, cosine), (first, second, work)))
         self._had |= {sine, cosine}
 
     def _close(self) -> None:

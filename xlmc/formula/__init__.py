@@ -1,13 +1,14 @@
 """Formulas: text → tree (`parse`) → tree of cells (`resolve`) → what the forecasts need (`graph`)."""
 
 from xlmc.formula import ir
-from xlmc.formula.graph import Graph, build_graph
+from xlmc.formula.graph import Filled, Graph, build_graph
 from xlmc.formula.parse import compile_with_formulas, foreign_functions, parse
 from xlmc.formula.resolve import Resolver
 from xlmc.formula.stencil import Stencil
 from xlmc.formula.text import formula_text
 
 __all__ = [
+    "Filled",
     "Graph",
     "Resolver",
     "Stencil",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from xlmc.address import Area, Cell
 from xlmc.errors import FormulaError
@@ -15,18 +16,25 @@ from xlmc.formula.spills import Spills
 from xlmc.formula.stencil import Stencil
 from xlmc.workbook.model import Workbook
 
-__all__ = ["Graph", "Trees", "build_graph"]
+__all__ = ["Filled", "Graph", "Trees", "build_graph"]
+
+
+class Filled(NamedTuple):
+    """A cell that a stencil's formula stands in, with the cells that it reads."""
+
+    stencil: Stencil
+    cells: list[Cell]
 
 
 class Trees(Mapping[Cell, ir.Expression]):
     """The resolved trees of formula cells; those of a stencil are made when they are asked for."""
 
-    def __init__(self, placed: Mapping[Cell, ir.Expression | Stencil]) -> None:
+    def __init__(self, placed: Mapping[Cell, ir.Expression | Filled]) -> None:
         self.placed = placed
 
     def __getitem__(self, cell: Cell) -> ir.Expression:
         found = self.placed[cell]
-        return found.at(cell) if isinstance(found, Stencil) else found
+        return found.stencil.at(cell) if isinstance(found, Filled) else found
 
     def __iter__(self) -> Iterator[Cell]:
         return iter(self.placed)
@@ -101,13 +109,13 @@ class _Walk:
     ) -> None:
         self._resolver, self._given, self._more, self._strict = resolver, given, more, strict
         self._workbook, self._spills = resolver.workbook, Spills(resolver.workbook)
-        self.placed: dict[Cell, ir.Expression | Stencil] = {}
+        self.placed: dict[Cell, ir.Expression | Filled] = {}
         self.needs: dict[Cell, tuple[Cell, ...]] = {}
         self.reached: set[Cell] = set()
         self.faults: dict[Cell, FormulaError] = {}
         self.circular = False
         self._trail: dict[Cell, Iterator[Cell]] = {}
-        self._open: dict[Cell, ir.Expression | Stencil] = {}
+        self._open: dict[Cell, ir.Expression | Filled] = {}
         self._computed: dict[Cell, bool] = {}
 
     def upstream(self, target: Cell) -> None:
@@ -141,23 +149,24 @@ class _Walk:
             raise cycle([*self._trail][[*self._trail].index(cell) :])
         self.circular = True
 
-    def _read(self, cell: Cell) -> ir.Expression | Stencil | None:
+    def _read(self, cell: Cell) -> ir.Expression | Filled | None:
         formula = self._workbook.content(cell).formula
         if formula is None:
             return self._spills.anchor(cell)
         try:
-            return self._resolver.placed(cell, formula)
+            found = self._resolver.placed(cell, formula)
+            return Filled(found, found.cells(cell)) if isinstance(found, Stencil) else found
         except FormulaError as error:
             if self._strict:
                 raise
             self.faults[cell] = error
             return ir.Missing()
 
-    def _precedents(self, cell: Cell, found: ir.Expression | Stencil) -> tuple[Cell, ...]:
+    def _precedents(self, cell: Cell, found: ir.Expression | Filled) -> tuple[Cell, ...]:
         """The cells that one needs and that hold a formula or are given."""
-        if isinstance(found, Stencil):
+        if isinstance(found, Filled):
             known = self._computed
-            needs = [need for need in found.cells(cell) if (known[need] if need in known else self._counts(need))]
+            needs = [need for need in found.cells if (known[need] if need in known else self._counts(need))]
         else:
             needs = [need for place in dict.fromkeys(references(found)) for need in self._counted(place)]
         return (*needs, *self._more.get(cell, ()))

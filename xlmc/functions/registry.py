@@ -101,6 +101,7 @@ class Function:
         dated: the body takes `date1904`, keyword only: whether serial dates count from 1904.
         takes_values, takes_sets: whether any argument is of `ANY` kind, or all are one set.
         on_numbers: with arguments that are all numbers, the ufunc alone may be run.
+        takes_plainly: how many arguments that ufunc takes, one or two; 0 where there is none or it takes more.
     """
 
     name: str
@@ -114,6 +115,7 @@ class Function:
     takes_values: bool = field(init=False)
     takes_sets: bool = field(init=False)
     on_numbers: bool = field(init=False)
+    takes_plainly: int = field(init=False)
 
     def __post_init__(self) -> None:
         """Answer once what is asked of every node."""
@@ -121,7 +123,9 @@ class Function:
         sets = any(parameter.as_set for parameter in self.parameters)
         kinds = {parameter.kind for parameter in self.parameters}
         numbers = self.ufunc is not None and not sets and kinds <= {Kind.NUMBER, Kind.ANY}
-        for name, found in (("takes_values", values), ("takes_sets", sets), ("on_numbers", numbers)):
+        plainly = self.ufunc.nin if numbers and self.ufunc is not None and self.ufunc.nin < 3 else 0
+        answers = {"takes_values": values, "takes_sets": sets, "on_numbers": numbers, "takes_plainly": plainly}
+        for name, found in answers.items():
             object.__setattr__(self, name, found)
 
     def parameter(self, position: int) -> Parameter:

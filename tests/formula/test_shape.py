@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.address import Cell
+from xlmc.errors import FormulaError
 from xlmc.formula import Resolver
 from xlmc.formula.shape import Shapes, shape_of
 from xlmc.workbook.model import Formula
@@ -73,3 +74,39 @@ def test_what_a_shape_means_does_not_depend_on_where_it_was_first_met(workbook, 
     for row, column in hosts:
         host, formula = Cell("S", row, column), Formula(text, row, column)
         assert shown(one_for_all.formula(host, formula)) == shown(Resolver(book).formula(host, formula))
+
+
+SUFFIXES = [
+    "A1",
+    "A2",
+    "$A1",
+    "A$2",
+    "-1",
+    "A10",
+    "B2*3",
+    "%",
+    "%d",
+    "LOG10(A1)",
+    "Data!A3",
+    "1:2",
+    "YAW1",
+    '"A1"',
+    "A1048576",
+]
+
+
+@given(
+    st.lists(st.sampled_from(SUFFIXES), min_size=1, max_size=4),
+    st.lists(st.sampled_from(SUFFIXES), min_size=1, max_size=4),
+    st.integers(1, 12),
+    st.integers(1, 12),
+)
+def test_what_a_column_is_filled_with_is_of_one_shape(pieces, others, row, other_row):
+    shapes, text = Shapes(), "+".join(pieces)
+    shifted = text.replace("A1", f"A{1 + other_row - row}").replace("A2", f"A{2 + other_row - row}")
+    for other in (text, shifted, "+".join(others)):
+        try:
+            same = shapes.parse(text, row, 3) is shapes.parse(other, other_row, 3)
+        except FormulaError:
+            continue
+        assert same == (shape_of(text, row, 3) == shape_of(other, other_row, 3))

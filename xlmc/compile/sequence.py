@@ -21,9 +21,9 @@ __all__ = ["Steps"]
 
 
 _Line = tuple[Elementwise | None, int, int, int, int, Any]
-"""(ufunc, place, first, second, buffer, guard): `values[place] = ufunc(values[first], values[second], out=buffers[buffer])`
-where the guard, if any, holds; no `second` is -1. Without a ufunc it is the choice between `first` and `second` by the
-logical at the place that stands for the guard."""
+"""(ufunc, place, first, second, buffer, guard): the ufunc of `values[first]` and `values[second]` (-1 for none) goes to
+`values[place]`, in that buffer, where the guard, if any, holds. Without a ufunc it is the choice between `first` and
+`second` by the logical at the place that stands for the guard."""
 
 
 class Steps:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, column_number
 from xlmc.formula import ir
@@ -58,6 +59,41 @@ def _step(fixed: str, place: int, base: int) -> str | int:
     return f"${place}" if fixed else place - base
 
 
+class _Filling(NamedTuple):
+    """What a formula becomes in other rows of its column: a pattern for `%`, and its rows as seen from the host.
+
+    `least` and `most` are the rows in which no reference leaves the sheet.
+    """
+
+    pattern: str
+    steps: tuple[int, ...]
+    least: int
+    most: int
+
+    def gives(self, text: str, row: int) -> bool:
+        """Whether it is this in that row."""
+        if not self.least <= row <= self.most:
+            return False
+        return self.pattern % tuple([row + step for step in self.steps]) == text
+
+
+def _filling(text: str, row: int) -> _Filling | None:
+    """None where the text refers to whole rows."""
+    pieces, steps, end = [], [], 0
+    for found in _TOKEN.finditer(text):
+        if found["r1"] is not None:
+            return None
+        if found["r"] is not None and not found["rf"] and column_number(found["c"]) <= MAX_COLUMN:
+            if int(found["r"]) > MAX_ROW:
+                continue
+            start, stop = found.span("r")
+            pieces.append(text[end:start].replace("%", "%%") + "%d")
+            steps.append(int(found["r"]) - row)
+            end = stop
+    pieces.append(text[end:].replace("%", "%%"))
+    return _Filling("".join(pieces), tuple(steps), 1 - min(steps, default=0), MAX_ROW - max(steps, default=0))
+
+
 @dataclass(eq=False, slots=True)
 class Shape:
     """What all formulas of one shape have in common.
@@ -79,6 +115,7 @@ class Shapes:
     def __init__(self) -> None:
         self._known: dict[str, Shape] = {}
         self._texts: dict[tuple[str, int, int], Shape] = {}
+        self._columns: dict[int, tuple[_Filling, Shape]] = {}
 
     def parse(self, text: str, row: int, column: int) -> Shape:
         """The shape of a formula written for a cell.
@@ -89,9 +126,22 @@ class Shapes:
         written = text, row, column  # the cells of a shared formula have these in common
         found = self._texts.get(written)
         if found is None:
-            key = shape_of(text, row, column)
-            found = self._known.get(key)
-            if found is None:
-                self._known[key] = found = Shape(parse(text), (row, column))
-            self._texts[written] = found
+            self._texts[written] = found = self._filled(text, row, column) or self._shape(text, row, column)
+        return found
+
+    def _filled(self, text: str, row: int, column: int) -> Shape | None:
+        """The shape of the formula met last in the column, if filling that down gives this one."""
+        if column not in self._columns:
+            return None
+        filling, shape = self._columns[column]
+        return shape if filling.gives(text, row) else None
+
+    def _shape(self, text: str, row: int, column: int) -> Shape:
+        key = shape_of(text, row, column)
+        found = self._known.get(key)
+        if found is None:
+            self._known[key] = found = Shape(parse(text), (row, column))
+        filling = _filling(text, row)
+        if filling is not None:
+            self._columns[column] = filling, found
         return found

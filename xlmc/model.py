@@ -77,6 +77,7 @@ class Model:
         self.live: tuple[Assumption, ...] = self.scene.live
         self._draws = {a.name: draw_of(a, self._lowering) for a in self.live}
         self._groups = correlated_groups(definitions.correlations, [a.name for a in self.live])
+        self._programs: dict[str, Program] = {}
         self._check_targets()
         notices = workbook.notices, definitions.notices, self.scene.notices, self._lowering.notices
         self.notices: tuple[Notice, ...] = tuple(notice for part in notices for notice in part)
@@ -184,15 +185,19 @@ class Model:
             raise SimulationError(f"no values for the assumption {missing[0]!r}", hint="give every live assumption")
 
     def program(self, engine: str) -> Program:
-        """The filters and forecasts, compiled for an engine.
+        """The filters and forecasts, compiled for an engine once.
 
         Raises:
             SimulationError: there is no such engine.
         """
         if engine not in ENGINES:
             raise SimulationError(f"there is no engine {engine!r}", hint=f"choose one of {', '.join(ENGINES)}")
-        with paused_collection():
-            return ENGINES[engine](self._lowering, self._filter_targets, self._forecast_targets, self.fallible)
+        if engine not in self._programs:
+            with paused_collection():
+                make = ENGINES[engine]
+                made = make(self._lowering, self._filter_targets, self._forecast_targets, self.fallible)
+            self._programs[engine] = made
+        return self._programs[engine]
 
     def sampler(self, seed: int, block: int, engine: str = "numpy") -> MonteCarlo:
         """The draws, block by block; for one thread. They are the same for every engine."""

@@ -326,8 +326,10 @@ class Lowering:
 
     def call(self, name: str, arguments: tuple[int, ...]) -> int:
         """The node of an operator, or of a function that takes single values."""
-        if name == "+" and arguments[1] == self.number(0.0) and self.dag.types[arguments[0]] is Kind.NUMBER:
-            return arguments[0]
+        if name == "+" and self.number(0.0) in arguments:
+            other = arguments[arguments[0] == self.number(0.0)]
+            if self.dag.types[other] is Kind.NUMBER:
+                return other
         if name == "^" and arguments[1] == self.number(2.0):
             return self.call("*", (arguments[0], arguments[0]))
         return self.made(REGISTRY[name], arguments)

@@ -23,7 +23,7 @@ from xlmc.functions.values import Floats
 __all__ = ["NumpyProgram"]
 
 
-_LARGEST_BLOCK: Final = 1 << 20
+_LARGEST_BLOCK: Final = 1 << 14
 _SMALLEST_BLOCK: Final = 1 << 8
 _MOST_BYTES: Final = 1 << 25
 """Of all buffers: what the caches of today's processors hold."""
@@ -36,7 +36,7 @@ class NumpyProgram:
         may_err: the inputs whose draws may be errors (NaNs), which raise no flag.
 
     Attributes:
-        largest_block: the largest, a power of two, whose buffers take no more than 32 MB.
+        largest_block: 16,384, or the largest power of two whose buffers take no more than 32 MB: they stay in caches.
     """
 
     def __init__(

@@ -33,7 +33,8 @@ def _small(x: Floats) -> Bools:
 
 
 def _all_small(x: Floats) -> bool:
-    return bool(np.min(x, initial=0.0) > -_LIMIT and np.max(x, initial=0.0) < _LIMIT)
+    least, most = np.minimum.reduce(x, axis=None, initial=0.0), np.maximum.reduce(x, axis=None, initial=0.0)
+    return bool(least > -_LIMIT and most < _LIMIT)
 
 
 @excel("SIN", Number, ufunc=SINE, guard=_all_small)

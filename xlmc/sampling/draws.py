@@ -105,19 +105,12 @@ class MonteCarlo:
         self._streams = [Stream(seed, name) for name in names]
         self._stages, self._groups, self._parameters = stages, groups, parameters
         self._block = block
-        self._filled: frozenset[str] = frozenset()
-        self._fill = self._by_streams if filler is None else self._by_filler(filler)
-
-    def _by_streams(self, start: int) -> None:
-        for stream, row in zip(self._streams, self._rows, strict=True):
-            stream.uniforms(start, row)
-
-    def _by_filler(self, filler: Filler) -> Callable[[int], None]:
-        grouped = {name for group in self._groups for name in group.names}
-        single = [draw for stage in self._stages for draw in stage.draws if draw.name not in grouped]
+        grouped = {name for group in groups for name in group.names}
+        single = [draw for stage in stages for draw in stage.draws if draw.name not in grouped]
         maps = {draw.name: found for draw in single if (found := draw.offset_and_factor()) is not None}
         self._filled = frozenset(maps)
-        return filler(self._streams, [maps.get(name, (0.0, 1.0)) for name in self._places], self._rows)
+        ordered = [maps.get(name, (0.0, 1.0)) for name in self._places]
+        self._fill = (_by_streams if filler is None else filler)(self._streams, ordered, self._rows)
 
     def draw(self, start: int) -> dict[str, Floats]:
         """The draws of trials `start` to `start + block - 1`, `(block,)` each; NaN for an error."""
@@ -134,3 +127,17 @@ class MonteCarlo:
                 if draw.name not in self._filled:
                     draw.fill(drawn[draw.name], known)
         return drawn
+
+
+def _by_streams(streams: Sequence[Stream], maps: Sequence[tuple[float, float]], rows: Floats) -> Callable[[int], None]:
+    """The `Filler` that asks the streams themselves."""
+    parts = list(zip(streams, rows, maps, strict=True))
+
+    def fill(start: int) -> None:
+        for stream, row, (offset, factor) in parts:
+            stream.uniforms(start, row)
+            if (offset, factor) != (0.0, 1.0):
+                np.multiply(row, factor, out=row)
+                np.add(row, offset, out=row)
+
+    return fill

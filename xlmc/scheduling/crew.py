@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["PROCESS_BLOCKS", "Crew"]
 
-PROCESS_BLOCKS: Final[Mapping[str, int]] = {"numpy": 256, "formulas": 4}
+PROCESS_BLOCKS: Final[Mapping[str, int]] = {"numpy": 512, "formulas": 4}
 """Engine -> blocks from which processes make up for the half second they take to start: its threads share a lock."""
 
 

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 __all__ = ["BLOCK", "PRIOR_TRIALS", "Progress", "simulate"]
 
 BLOCK: Final = 32_768
-"""Trials evaluated at once, where the engine does not want fewer: enough that the calls cost little beside the arithmetic,
-few enough for the cache."""
+"""Trials evaluated at once, where the engine does not want fewer: enough that the calls cost little beside the
+arithmetic, few enough for the cache."""
 
 PRIOR_TRIALS: Final = 65_536
 """Trials whose draws are all kept, accepted or not, to show the prior."""

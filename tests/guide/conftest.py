@@ -74,6 +74,12 @@ def _valued(sheet: str, values) -> Callable[[re.Match[str]], str]:
 
 
 @pytest.fixture(scope="session")
+def tables() -> dict[str, list[tuple[str, ...]]]:
+    """What the guide's tables say: `ranges`, `filters`, and what `names` are replaced by what."""
+    return {"ranges": RANGES, "filters": FILTERS, "names": NAMES}
+
+
+@pytest.fixture(scope="session")
 def fill() -> Callable[[Path], None]:
     """`fill(path)`: into the template at `path` goes what the guide says."""
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import importlib.util
 import re
 import sys
+from pathlib import Path
 
 import pytest
 
-from tests.guide.conftest import GUIDE, ROOT
-
+ROOT = Path(__file__).resolve().parents[2]
+GUIDE = (ROOT / "docs" / "guide.md").read_text()
 FOLDER = ROOT / "docs" / "pictures"
 SHOWN = re.findall(r"!\[([^\]]+)\]\(pictures/(\S+)\.png\)", GUIDE)
 MOST_BYTES = 150_000

@@ -92,6 +92,19 @@ def fill() -> Callable[[Path], None]:
 
 
 @pytest.fixture(scope="session")
+def calculated() -> Callable[[Path], dict[tuple[str, str], object]]:
+    """`calculated(path)`: (sheet, cell) -> the value of each formula, as a spreadsheet program would show it."""
+    from templates.writer.cached import computed
+
+    def calculate(path: Path) -> dict[tuple[str, str], object]:
+        letter = openpyxl.utils.get_column_letter
+        values = computed(path).items()
+        return {(sheet, f"{letter(column + 1)}{row + 1}"): value for (sheet, row, column), value in values}
+
+    return calculate
+
+
+@pytest.fixture(scope="session")
 def case(fill, tmp_path_factory) -> Path:
     """The case as the guide leaves it before the first run."""
     path = tmp_path_factory.mktemp("guide") / "my-case.xlsx"

@@ -37,6 +37,9 @@ CHANGES = {
     "decelerations correlated by 0.8: one road": {("Results wanted", "C31"): 0.8},
 }
 
+CHECKS = ("energy", "closing", "angles", "forward", "restitution", "all")
+"""The rows of the physics checks at the end of sheet Model."""
+
 MADE = ("my-case", "my-case-results", "my-case-again")
 
 
@@ -157,6 +160,24 @@ def test_numbers_in_sentences(run):
     assert [each.name for each in run.model.filters][1:3] == ["Restitution, tangential", "Nissan impact speed"]
     missing = [phrase for phrase in told if phrase not in PROSE]
     assert not missing
+
+
+def test_a_wrong_angle_turns_checks_false(variant, calculated):
+    right, wrong = (calculated(variant({("Inputs", "D8"): angle})) for angle in (186, 278))
+    assert right["Inputs", "A3"] == "All physics checks hold at the base case"
+    assert "physics check fails" in wrong["Inputs", "A3"]
+    failing = {cell for (sheet, cell), value in wrong.items() if sheet == "Model" and value is False}
+    checks = {f"D{row}": check for row, check in enumerate(CHECKS, 89)}
+    assert [checks[cell] for cell in sorted(failing)] == ["angles", "forward", "restitution", "all"]
+    assert all(right["Model", cell] is True for cell in checks)
+
+
+def test_an_accepted_trial_can_be_typed_into_the_workbook(run, variant, calculated):
+    trial = run.frame().iloc[0]
+    typed_in = {("Inputs", f"D{row}"): float(trial[name]) for row, name in enumerate(list(trial.index[:17]), 6)}
+    values = calculated(variant(typed_in))
+    for forecast in run.model.forecasts:
+        assert values[forecast.cell.sheet, f"D{forecast.cell.row}"] == pytest.approx(trial[forecast.name], rel=1e-12)
 
 
 def test_the_check_of_near_parallel_approaches_says_what_the_guide_says(case):

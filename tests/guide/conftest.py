@@ -1,0 +1,134 @@
+"""A person who follows the guide: types what its tables say into a fresh template, saves in Excel, runs."""
+
+from __future__ import annotations
+
+import re
+import sys
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from xml.sax.saxutils import escape
+
+import openpyxl
+import pytest
+
+import xlmc
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT))
+
+GUIDE = (ROOT / "docs" / "guide.md").read_text()
+RANGES = re.findall(r"^\| `(\w+)` \| ([^|]+) \| ([-\d.]+) \| ([-\d.]+) \| ([^|]+) \|$", GUIDE, re.MULTILINE)
+FILTERS = re.findall(r"^\| ([^|]+) \| ((?:at least|above) [^|]+) \| ([^|]+) \|$", GUIDE, re.MULTILINE)
+NAMES = re.findall(r"`(Vehicle \d)` by `(\w+)`", GUIDE)
+COLUMNS = ("at least", "at most", "above", "below")
+
+_CELL = re.compile(r'<c r="([A-Z]+)(\d+)"([^>]*)>(<f>[^<]*</f>)<v\s*(?:/>|></v>)')
+
+
+def _type(book: openpyxl.Workbook) -> None:
+    for sheet in (book["Inputs"], book["Results wanted"]):
+        for cell in (cell for row in sheet.iter_rows() for cell in row):
+            for old, new in NAMES:
+                if isinstance(cell.value, str) and not cell.value.startswith("="):
+                    cell.value = cell.value.replace(old, new)
+    heads = {cell.value: cell.column for cell in book["Inputs"][5]}
+    rows = {row[heads["Cell name"] - 1].value: row[0].row for row in book["Inputs"].iter_rows(min_row=6)}
+    for symbol, _, low, high, source in RANGES:
+        told = {"Value": (float(low) + float(high)) / 2, "Low": float(low), "High": float(high), "Source": source}
+        for head, value in told.items():
+            book["Inputs"].cell(rows[symbol], heads[head], value)
+    wanted = book["Results wanted"]
+    rows = {row[0].value: row[0].row for row in wanted.iter_rows(min_row=20, max_row=28)}
+    for name, limits, because in FILTERS:
+        given = {text.rpartition(" ")[0]: float(text.rpartition(" ")[2]) for text in limits.split(", ")}
+        for column, limit in enumerate(COLUMNS, 3):
+            wanted.cell(rows[name], column, given.get(limit))
+        wanted.cell(rows[name], 7, because)
+
+
+def _saved_by_excel(book: openpyxl.Workbook, path: Path) -> None:
+    """Save with a value beside every formula, which openpyxl does not write."""
+    from templates.writer.cached import computed
+
+    book.save(path)
+    values = computed(path)
+    with zipfile.ZipFile(path) as package:
+        parts = {name: package.read(name) for name in package.namelist()}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as package:
+        for name, data in parts.items():
+            found = re.fullmatch(r"xl/worksheets/sheet(\d+)\.xml", name)
+            sheet = book.sheetnames[int(found[1]) - 1] if found else ""
+            package.writestr(name, _CELL.sub(_valued(sheet, values), data.decode()) if found else data)
+
+
+def _valued(sheet: str, values) -> Callable[[re.Match[str]], str]:
+    def write(found: re.Match[str]) -> str:
+        column, row, attributes, formula = found.groups()
+        value = values[sheet, int(row) - 1, openpyxl.utils.column_index_from_string(column) - 1]
+        kind = {bool: ' t="b"', str: ' t="str"'}.get(type(value), "")
+        text = str(int(value)) if isinstance(value, bool) else escape(value) if isinstance(value, str) else repr(value)
+        return f'<c r="{column}{row}"{attributes}{kind}>{formula}<v>{text}</v>'
+
+    return write
+
+
+@pytest.fixture(scope="session")
+def tables() -> dict[str, list[tuple[str, ...]]]:
+    """What the guide's tables say: `ranges`, `filters`, and what `names` are replaced by what."""
+    return {"ranges": RANGES, "filters": FILTERS, "names": NAMES}
+
+
+@pytest.fixture(scope="session")
+def fill() -> Callable[[Path], None]:
+    """`fill(path)`: into the template at `path` goes what the guide says."""
+
+    def filled(path: Path) -> None:
+        book = openpyxl.load_workbook(path)
+        _type(book)
+        _saved_by_excel(book, path)
+
+    return filled
+
+
+@pytest.fixture(scope="session")
+def calculated() -> Callable[[Path], dict[tuple[str, str], object]]:
+    """`calculated(path)`: (sheet, cell) -> the value of each formula, as a spreadsheet program would show it."""
+    from templates.writer.cached import computed
+
+    def calculate(path: Path) -> dict[tuple[str, str], object]:
+        letter = openpyxl.utils.get_column_letter
+        values = computed(path).items()
+        return {(sheet, f"{letter(column + 1)}{row + 1}"): value for (sheet, row, column), value in values}
+
+    return calculate
+
+
+@pytest.fixture(scope="session")
+def case(fill, tmp_path_factory) -> Path:
+    """The case as the guide leaves it before the first run."""
+    path = tmp_path_factory.mktemp("guide") / "my-case.xlsx"
+    path.write_bytes((ROOT / "templates" / "planar-impact.xlsx").read_bytes())
+    fill(path)
+    return path
+
+
+@pytest.fixture(scope="session")
+def run(case) -> xlmc.Simulation:
+    """The run of section 7."""
+    return xlmc.load(case).simulate()
+
+
+@pytest.fixture(scope="session")
+def variant(case, tmp_path_factory) -> Callable[..., Path]:
+    """`variant({("Inputs", "D8"): 278})`: the case with other cells, saved by openpyxl."""
+
+    def change(cells: dict[tuple[str, str], object]) -> Path:
+        book = openpyxl.load_workbook(case)
+        for (sheet, cell), value in cells.items():
+            book[sheet][cell] = value
+        path = tmp_path_factory.mktemp("variant") / "my-case.xlsx"
+        book.save(path)
+        return path
+
+    return change

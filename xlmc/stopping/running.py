@@ -26,6 +26,7 @@ class RunningMoments:
     def __init__(self, *, spread: bool = True) -> None:
         self._spread = spread
         self.n = 0
+        self._pivot = 0.0
         self._mean = self._m2 = self._m3 = self._m4 = 0.0
 
     def add(self, column: Floats) -> None:
@@ -33,7 +34,10 @@ class RunningMoments:
         x = column[~np.isnan(column)]
         if x.size == 0:
             return
+        if self.n == 0:
+            self._pivot = float(x[0])  # all is counted from here, so that 1e9 ± 1 keeps its digits
         with np.errstate(over="ignore", invalid="ignore"):  # beyond the largest number nothing is ever precise
+            x = x - self._pivot
             mean = float(x.mean())
             apart = x - mean
             square = apart * apart
@@ -48,7 +52,7 @@ class RunningMoments:
         step = delta / n
         self._m4 += (
             m4
-            + delta * step**3 * a * b * (a * a - a * b + b * b)
+            + delta * step * step * step * a * b * (a * a - a * b + b * b)
             + 6.0 * step * step * (a * a * m2 + b * b * self._m2)
             + 4.0 * step * (a * m3 - b * self._m3)
         )
@@ -66,7 +70,9 @@ class RunningMoments:
         """As `statistics.mean`, to rounding."""
         if self.n == 0:
             return Estimate(math.nan)
-        return with_error(self._mean, self.deviation / math.sqrt(self.n), self.n - 1.0, confidence, self.n)
+        return with_error(
+            self._pivot + self._mean, self.deviation / math.sqrt(self.n), self.n - 1.0, confidence, self.n
+        )
 
     def standard_deviation(self, confidence: float = 0.95) -> Estimate:
         """As `statistics.standard_deviation`, to rounding: Var(s²) ≈ (m₄ − s⁴(n − 3)/(n − 1))/n."""

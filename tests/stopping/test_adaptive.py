@@ -87,13 +87,13 @@ def test_it_ends_when_the_standard_would_but_not_before_enough_sequences(block, 
 
 
 def test_every_forecast_that_counts_must_be_stable(block, run_rule, monkeypatch):
-    monkeypatch.setattr(adaptive, "sequence_length", lambda share: 100)
+    monkeypatch.setattr(adaptive, "sequence_length", lambda share: 50)
     rng = np.random.default_rng(2)
-    blocks = [block(rng.normal(size=1000), 8.0 * rng.normal(size=1000)) for _ in range(60)]
-    assert run_rule(UntilStable(1, [(0, "x", 0.5)]), blocks)[0] == LEAST_SEQUENCES // 10
+    blocks = [block(rng.normal(size=1000), 9.0 * rng.normal(size=1000)) for _ in range(60)]
+    assert run_rule(UntilStable(1, [(0, "x", 0.5)]), blocks)[0] == LEAST_SEQUENCES * 50 // 1000
     both, _ = run_rule(UntilStable(1, [(0, "x", 0.5), (1, "y", 0.5)]), blocks)
     second, _ = run_rule(UntilStable(1, [(1, "y", 0.5)]), blocks)
-    assert both == second > LEAST_SEQUENCES // 10
+    assert both == second > LEAST_SEQUENCES * 50 // 1000
 
 
 @pytest.mark.parametrize("needed", [12, 15, 20, 30, 60])

@@ -136,7 +136,7 @@ COVERAGE = [
     ("exponential", "mean", 0.04, 1.0),
     ("lognormal", "mean", 0.08, math.exp(0.5)),
     ("standard_normal", "sd", 0.03, 1.0),
-    ("uniform", "sd", 0.004, math.sqrt(1 / 12)),
+    ("uniform", "sd", 0.006, math.sqrt(1 / 12)),
     ("standard_normal", "p75.5", 0.06, NORMAL_755),
     ("lognormal", "p75.5", 0.12, math.exp(NORMAL_755)),
 ]

@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import openpyxl
 import pytest
@@ -16,7 +17,7 @@ from xlmc.stopping import Standing
 
 @pytest.fixture
 def book(case_study, tmp_path):
-    return shutil.copy(case_study, tmp_path / "case.xlsx")
+    return Path(shutil.copy(case_study, tmp_path / "case.xlsx"))
 
 
 def record_of(path):
@@ -24,8 +25,9 @@ def record_of(path):
     return {row[0].value: row[2].value for row in sheet.iter_rows() if row[0].value}
 
 
-def texts_of(path, title):
-    sheet = next(sheet for sheet in openpyxl.load_workbook(path) if sheet.title.startswith(title))
+def texts_of_results(path):
+    sheets = openpyxl.load_workbook(path).worksheets
+    (sheet,) = (sheet for sheet in sheets if sheet["A1"].value == "Results of the simulation")
     return [cell.value for row in sheet.iter_rows() for cell in row if isinstance(cell.value, str)]
 
 
@@ -35,7 +37,7 @@ def texts_of(path, title):
         (("--until-accepted", 800), "Ended when 800 trials were accepted."),
         (
             ("--precision", "1%", "--precision-of", "mean", "--for", "Chevrolet delta-V", "--confidence", 90),
-            "Ended when mean of Chevrolet delta-V were known to within 1 % (90 % confidence).",
+            "Ended when mean of Chevrolet delta-V was known to within 1 % (90 % confidence).",
         ),
         (("--time-limit", "0.01s"), "Ended when the time limit of 0.01 s was reached."),
     ],
@@ -45,7 +47,7 @@ def test_what_ended_a_run_is_printed_and_recorded(xlmc, book, tmp_path, options,
     assert outcome.code == 0
     assert ended in outcome.out
     results = tmp_path / "case-results.xlsx"
-    assert f"The run ended when {ended.removeprefix('Ended when ')}" in texts_of(results, "Results")
+    assert f"The run ended when {ended.removeprefix('Ended when ')}" in texts_of_results(results)
     assert f"Ended when {record_of(results)['end.in_words']}." == ended
 
 
@@ -83,7 +85,7 @@ def test_options_that_cannot_be_meant(xlmc, book, tmp_path, options, message):
 
 
 def test_the_command_in_the_record_repeats_the_run(xlmc, book, tmp_path):
-    first = xlmc("simulate", book, "--until-accepted", 321)
+    first = xlmc("simulate", book.name, "--until-accepted", 321)
     record = record_of(tmp_path / "case-results.xlsx")
     words = record["run.repeat"].split()
     assert words[:3] == ["xlmc", "simulate", "case.xlsx"]
@@ -137,7 +139,7 @@ def test_ctrl_c_keeps_what_was_accepted(xlmc, book, tmp_path, options):
     assert err.splitlines()[-1].startswith("xlmc: interrupted after ")
     assert "Traceback" not in err
     results = tmp_path / "case-results.xlsx"
-    assert "Fewer trials than were asked for: it was interrupted" in texts_of(results, "Results")
+    assert "Fewer trials than were asked for: it was interrupted" in texts_of_results(results)
     record = record_of(results)
     assert record["end.by"] == "interruption"
     trials, blocks = record["counts.trials"], record["end.blocks"]

@@ -117,5 +117,5 @@ def test_with_so_many_sequences_an_average_is_within_the_tolerance_as_often_as_i
 
 
 def test_in_words():
-    assert UntilStable(1, [(0, "x", 0.5)]).goal == "x were stable to 1 significant digit (JCGM 101, 7.9)"
+    assert UntilStable(1, [(0, "x", 0.5)]).goal == "x was stable to 1 significant digit (JCGM 101, 7.9)"
     assert UntilStable(2, [(0, "x", 0.5), (1, "y", 0.5)]).goal.startswith("x and y were stable to 2 significant digits")

@@ -121,7 +121,7 @@ def test_what_is_asked_of_a_forecast():
 
 def test_its_goal_in_words():
     assert rule("1%", "mean,range").goal == "mean and range of x were known to within 1 % (95 % confidence)"
-    assert rule(0.1, "sd", 90).goal == "sd of x were known to within 0.1 (90 % confidence)"
+    assert rule(0.1, "sd", 90).goal == "sd of x was known to within 0.1 (90 % confidence)"
 
 
 def test_an_interval_without_an_end_is_wide():

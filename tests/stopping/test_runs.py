@@ -122,7 +122,7 @@ def test_the_precision_asked_for_is_there(model):
         ({"trials": 700, "until_accepted": 300}, "the limit of 700 trials was reached before 300 trials were accepted"),
         (
             {"trials": 5000, "precision": 1e-6, "precision_of": "mean", "forecasts": "y"},
-            "the limit of 5,000 trials was reached before mean of y were known to within 1e-06 (95 % confidence)",
+            "the limit of 5,000 trials was reached before mean of y was known to within 1e-06 (95 % confidence)",
         ),
         (
             {"trials": 900, "adaptive": 2},

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from xlmc.stopping.rule import Columns, Observed
 from xlmc.stopping.running import RunningMoments
-from xlmc.stopping.wording import list_of
+from xlmc.stopping.wording import be, list_of
 
 __all__ = ["LEAST_SEQUENCES", "Sequences", "UntilStable", "numerical_tolerance", "sequence_length"]
 
@@ -114,7 +114,7 @@ class UntilStable:
     @property
     def goal(self) -> str:
         digits = "1 significant digit" if self._digits == 1 else f"{self._digits} significant digits"
-        return f"{list_of(self._names)} were stable to {digits} (JCGM 101, 7.9)"
+        return f"{list_of(self._names)} {be(len(self._names))} stable to {digits} (JCGM 101, 7.9)"
 
     @property
     def share(self) -> float:

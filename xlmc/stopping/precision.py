@@ -20,7 +20,7 @@ from xlmc.statistics import Estimate, Sample, percentile
 from xlmc.stopping.rule import Columns, Observed
 from xlmc.stopping.running import RunningMoments
 from xlmc.stopping.schedule import Checkpoints
-from xlmc.stopping.wording import list_of
+from xlmc.stopping.wording import be, list_of
 
 __all__ = ["LEAST_NUMBERS", "UntilPrecise", "Wanted", "half_width", "wanted_of"]
 
@@ -85,7 +85,7 @@ class UntilPrecise:
         asked = self._asked
         width = f"{asked.tolerance:.6g}" if not asked.relative else f"{100.0 * asked.tolerance:.6g} %"
         what = f"{list_of(asked.numbers)} of {list_of(self._names)}"
-        return f"{what} were known to within {width} ({100.0 * asked.confidence:.6g} % confidence)"
+        return f"{what} {be(len(self._wanted))} known to within {width} ({100.0 * asked.confidence:.6g} % confidence)"
 
     @property
     def share(self) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-__all__ = ["duration", "list_of"]
+__all__ = ["be", "duration", "list_of"]
 
 
 def list_of(words: Sequence[str]) -> str:
@@ -16,6 +16,11 @@ def list_of(words: Sequence[str]) -> str:
     if len(words) == 1:
         return words[0]
     return f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def be(things: int) -> str:
+    """`was` of one thing, `were` of several."""
+    return "was" if things == 1 else "were"
 
 
 def duration(seconds: float) -> str:

@@ -17,7 +17,7 @@ FORECASTS = [Forecast("Delta-V", CELL, CELL), Forecast("Speed", CELL, CELL, cent
     [
         ({"accepted": 5}, "accepted", "5 trials"),
         ({"tolerance": "1%"}, "precision", "of Delta-V and Speed"),
-        ({"tolerance": 1, "forecasts": " speed"}, "precision", "of Speed were"),
+        ({"tolerance": 1, "numbers": "sd", "forecasts": " speed"}, "precision", "sd of Speed was"),
         ({"digits": 2, "forecasts": ["SPEED", "delta-v", "Speed"]}, "adaptive", "Speed and Delta-V were"),
     ],
 )

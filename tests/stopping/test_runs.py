@@ -79,6 +79,23 @@ def test_a_run_of_as_many_trials_has_the_same_trials(model, end):
     assert bits(model.simulate(run.trials, 3)) == bits(run)
 
 
+@pytest.mark.filterwarnings("ignore::ResourceWarning")  # Dask's, when it closes
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_a_cluster_ends_at_the_same_trial(model):
+    run = model.simulate(until_accepted=700, scheduler="local", workers=1)
+    assert bits(run) == bits(model.simulate(until_accepted=700))
+
+
+@pytest.mark.parametrize("engine", ["jit", "formulas"])
+def test_another_engine_ends_at_the_same_trial(model, engine):
+    if engine == "jit":
+        pytest.importorskip("llvmlite")
+    run, usual = model.simulate(until_accepted=15, engine=engine), model.simulate(until_accepted=15)
+    assert run.trial_index.tolist() == usual.trial_index.tolist()
+    assert run.trials == usual.trials
+    assert run.tally.rejected.tolist() == usual.tally.rejected.tolist()
+
+
 def test_it_ends_with_the_accepted_trial_that_was_waited_for(model):
     for wanted in (2, 3, 77, 78, 1000):
         run = model.simulate(until_accepted=wanted)

@@ -331,16 +331,16 @@ class TestDynamicParameters:
 def test_progress_tells_of_every_block_in_order(model):
     for jobs in (1, 3):
         seen = []
-        run = model.simulate(1000, jobs=jobs, progress=lambda *counts, seen=seen: seen.append(counts))
-        assert [done for done, _ in seen] == [128, 256, 384, 512, 640, 768, 896, 1000]
-        accepted = [kept for _, kept in seen]
+        run = model.simulate(1000, jobs=jobs, progress=seen.append)
+        assert [standing.trials for standing in seen] == [128, 256, 384, 512, 640, 768, 896, 1000]
+        accepted = [standing.accepted for standing in seen]
         assert accepted == sorted(accepted)
         assert accepted[-1] == run.accepted
 
 
 @pytest.mark.parametrize("jobs", [1, 3])
 def test_an_interruption_ends_the_run(model, jobs):
-    def stop(done, accepted):
+    def stop(standing):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):

@@ -14,6 +14,7 @@ from xlmc.collecting import paused_collection
 from xlmc.compile import ENGINES, FILLERS, Lowering, Program, Target, widened
 from xlmc.definitions import Assumption, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key
+from xlmc.definitions.stopping import stopping
 from xlmc.drawing import correlated_groups, draw_of, dynamic_parameters
 from xlmc.errors import DefinitionError, Notice, SimulationError
 from xlmc.sampling import MonteCarlo, Stage
@@ -104,27 +105,44 @@ class Model:
         trials: int | None = None,
         seed: int | None = None,
         *,
+        until_accepted: int | None = None,
+        precision: str | float | None = None,
+        precision_of: str | Sequence[str] | None = None,
+        confidence: str | float | None = None,
+        adaptive: int | None = None,
+        forecasts: str | Sequence[str] = (),
+        time_limit: str | float | None = None,
         engine: str | None = None,
         jobs: int = 1,
         scheduler: str | None = None,
         workers: int | None = None,
         keep_inputs: int | None = 1 << 20,
+        keep_interrupted: bool = False,
         progress: Progress | None = None,
     ) -> Simulation:
         """Run the simulation; what is not given comes from the workbook's settings.
 
-        However the work is divided, the result is the same to the last bit.
+        However the work is divided, the result is the same to the last bit. `trials` or a goal (`until_accepted`,
+        `precision`, `adaptive`) takes the place of all that the settings say of the length of the run.
 
         Args:
-            trials: how many, 1 or more.
+            trials: how many, 1 or more; with a goal the most, by default 10⁹.
             seed: 0 or more.
+            until_accepted: accepted trials, of which the last ends the run; 2 or more.
+            precision: largest half width of intervals, of the number itself (`"1%"`) or in its units (`0.1`).
+            precision_of: of which numbers: `mean`, `sd`, `range`, percentiles such as `p75.5`; by default `mean,range`.
+            confidence: of these intervals, by default 95 %.
+            adaptive: significant digits that must be stable, as in JCGM 101, 7.9.
+            forecasts: names of those whose precision or stability counts; by default all.
+            time_limit: seconds, or such as `5m`, after which the run ends with the block of trials it is in.
             engine: `numpy`, `jit`, compiled for long runs, or `formulas`, the slow reference.
             jobs: threads or processes.
             scheduler: `threads`; `processes`; `local`, a Dask cluster of this machine; or the address of a Dask
                 scheduler. By default processes for a long run with several jobs, else threads.
             workers: of the local cluster; by default one a processor.
             keep_inputs: of how many accepted trials, from the first on, the draws are kept; None for all.
-            progress: called with (trials done, trials accepted) after every block.
+            keep_interrupted: end the run with what it has when Ctrl-C is pressed, rather than raise KeyboardInterrupt.
+            progress: called with a `Standing` (trials, accepted, share done, means) after every block.
 
         Raises:
             SimulationError: an argument is out of its range, there is no room on the disk for the accepted trials, or
@@ -136,11 +154,13 @@ class Model:
             self,
             trials=trials,
             seed=seed,
+            stopping=stopping(until_accepted, precision, precision_of, confidence, adaptive, forecasts, time_limit),
             engine=engine,
             jobs=jobs,
             scheduler=scheduler,
             workers=workers,
             keep_inputs=keep_inputs,
+            keep_interrupted=keep_interrupted,
             progress=progress,
         )
 

@@ -2,20 +2,34 @@
 
 from __future__ import annotations
 
+import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from xlmc.blocks import Block, FilterTally, Task
 from xlmc.definitions.model import name_key
+from xlmc.definitions.stopping import LIMIT, NO_GOAL, Stopping
 from xlmc.errors import SimulationError
 from xlmc.scheduling import Crew
+from xlmc.scheduling.recipe import worker_of
 from xlmc.scratch import Keeper
 from xlmc.simulation import KEPT_INPUTS, Simulation
+from xlmc.stopping import (
+    Interruption,
+    Standing,
+    Stopped,
+    Teller,
+    Watch,
+    chosen_rule,
+    may_end_early,
+    refuse_other_sampling,
+)
 
 if TYPE_CHECKING:
     from xlmc.definitions import Settings
@@ -32,7 +46,7 @@ PRIOR_TRIALS: Final = 65_536
 
 MOST_TRIALS: Final = 10**12
 
-Progress = Callable[[int, int], None]
+Progress = Callable[[Standing], None]
 
 
 def simulate(
@@ -40,15 +54,20 @@ def simulate(
     *,
     trials: int | None = None,
     seed: int | None = None,
+    stopping: Stopping = NO_GOAL,
     engine: str | None = None,
     jobs: int = 1,
     scheduler: str | None = None,
     workers: int | None = None,
     keep_inputs: int | None = KEPT_INPUTS,
+    keep_interrupted: bool = False,
     progress: Progress | None = None,
 ) -> Simulation:
     """Run a model; see `Model.simulate`."""
-    settings = _settings(model, trials, seed, engine)
+    settings = _settings(model, trials, seed, engine, stopping)
+    rule = chosen_rule(settings.stopping, model.forecasts)
+    watch = Watch(rule, settings.trials, settings.stopping.seconds, time.monotonic)
+    teller = None if progress is None else Teller([forecast.name for forecast in model.forecasts])
     crew = Crew(jobs, scheduler, workers)
     if keep_inputs is not None and keep_inputs < 0:
         raise SimulationError(
@@ -57,23 +76,37 @@ def simulate(
     program = model.program(settings.engine)
     block = min(BLOCK, program.largest_block)
     gathered = _Gathered(model, block, settings.trials if keep_inputs is None else keep_inputs)
-    starts = range(0, settings.trials, block)
 
-    def tasks() -> Iterator[Task]:
-        for start in starts:
-            yield Task(start, min(block, settings.trials - start), start < PRIOR_TRIALS, gathered.wants_inputs)
+    def task(start: int, trials: int) -> Task:
+        return Task(start, trials, start < PRIOR_TRIALS, gathered.wants_inputs)
 
-    with closing(crew.blocks(model, program, settings, block, tasks())) as blocks:
-        for finished in blocks:
+    tasks = (task(start, min(block, settings.trials - start)) for start in range(0, settings.trials, block))
+    stopped = None
+    with (
+        Interruption(wanted=keep_interrupted and may_end_early(settings.sampling)) as interruption,
+        closing(crew.blocks(model, program, settings, block, tasks)) as blocks,
+    ):
+        while stopped is None:
+            finished = next(blocks)
+            counting = watch.counting(finished)
+            if counting < finished.trials:
+                finished = worker_of(model, program, settings.seed, block).run(task(gathered.trials, counting))
             gathered.add(finished)
-            if progress is not None:
-                progress(gathered.trials, gathered.accepted)
-    return gathered.simulation(settings)
+            interruption.keeping = True
+            stopped = watch.after(finished, gathered.forecast, interrupted=interruption.asked)
+            if progress is not None and teller is not None:
+                progress(teller.after(finished, watch.share))
+    return gathered.simulation(settings, stopped)
 
 
-def _settings(model: Model, trials: int | None, seed: int | None, engine: str | None) -> Settings:
+def _settings(model: Model, trials: int | None, seed: int | None, engine: str | None, stopping: Stopping) -> Settings:
     given = {"trials": trials, "seed": seed, "engine": engine}
     settings = replace(model.definitions.settings, **{k: v for k, v in given.items() if v is not None})  # type: ignore[arg-type]
+    if trials is not None or stopping.has_goal:
+        settings = replace(settings, trials=LIMIT if trials is None else trials, stopping=stopping)
+    elif stopping.seconds is not None:
+        settings = replace(settings, stopping=replace(settings.stopping, seconds=stopping.seconds))
+    refuse_other_sampling(settings.sampling, settings.stopping)
     if not 1 <= settings.trials <= MOST_TRIALS:
         raise SimulationError(f"{settings.trials} trials were asked for", hint=f"give 1 to {MOST_TRIALS:,}")
     if settings.seed < 0:
@@ -124,7 +157,11 @@ class _Gathered:
             self._keeper.add(("forecast", place), values)
         self._keeper.settle()
 
-    def simulation(self, settings: Settings) -> Simulation:
+    def forecast(self, place: int) -> NDArray[np.float64]:
+        """A forecast's accepted trials so far, `(m,)`, NaN where it has no number."""
+        return self._keeper.columns({"": ("forecast", place)})[""]
+
+    def simulation(self, settings: Settings, stopped: Stopped) -> Simulation:
         return Simulation(
             model=self._model,
             settings=settings,
@@ -138,4 +175,5 @@ class _Gathered:
             tally=self._tally,
             invalid=self._invalid,
             error_trials=self.lost,
+            stopped=stopped,
         )

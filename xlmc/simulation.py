@@ -19,6 +19,8 @@ from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
 from xlmc.scratch import numbers
 from xlmc.statistics import Description, Estimate, Sample
+from xlmc.stopping import Stopped
+from xlmc.stopping.stopped import ALL_TRIALS
 
 if TYPE_CHECKING:
     import pandas
@@ -107,6 +109,7 @@ class Simulation:
         invalid: assumption key -> trials in which its parameters were no distribution.
         error_trials: trials lost to errors: undecided by a filter, drawn from no distribution, or accepted without a
             number in some forecast. Each counts once.
+        stopped: what ended it.
     """
 
     model: Model
@@ -121,6 +124,7 @@ class Simulation:
     tally: FilterTally
     invalid: Counter[str]
     error_trials: int
+    stopped: Stopped = ALL_TRIALS
 
     def __getitem__(self, name: str) -> ForecastResult:
         """The result of a forecast, by name whatever its case.
@@ -150,7 +154,9 @@ class Simulation:
 
     @property
     def acceptance(self) -> Estimate:
-        """The share of accepted trials."""
+        """The share of accepted trials; the trials may have gone on until there were enough."""
+        if self.stopped.by == "accepted":
+            return statistics.inverse_proportion(self.accepted, self.trials)
         return statistics.proportion(self.accepted, self.trials)
 
     @property
@@ -159,6 +165,8 @@ class Simulation:
         found = []
         if self.accepted == 0:
             found.append("no trial was accepted: the filters contradict the assumptions")
+        if not self.stopped.reached and not self.stopped.interrupted:
+            found.append(self.stopped.sentence)
         if self.error_trials > ERROR_SHARE * self.trials:
             share = self.error_trials / self.trials
             found.append(f"{self.error_trials:,} trials ({share:.2%}) were lost to errors in cells")

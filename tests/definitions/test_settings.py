@@ -3,6 +3,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.definitions.model import Settings
+from xlmc.definitions.stopping import LIMIT, Precision, Stopping
 
 NAME, VALUE = "Answers!A31", "Answers!B31"
 
@@ -21,6 +22,18 @@ MISTAKES = [
     ("Sampling", "Sobol", VALUE, "Sobol sampling is not available in this version", "Use mc"),
     ("Sampling", "dice", VALUE, "There is no sampling method 'dice'", "Use mc"),
     ("Engine", "numpi", VALUE, "There is no engine 'numpi'", "Did you mean numpy?"),
+    ("Until accepted", 1, VALUE, "Until accepted must be a whole number from 2", "Correct the number"),
+    ("Until accepted", 2.5, VALUE, "Until accepted must be a whole number", "Correct the number"),
+    ("Precision", 0, VALUE, "Precision must be above 0, not 0", "Correct the number"),
+    ("Precision", "1%", VALUE, "Precision holds the text '1%', not a number", "Type a number"),
+    ("Precision %", 0.01, VALUE, "Precision % must be 0.1 or more, not 0.01", "Type 1 for 1 %"),
+    ("Precision of", "median", VALUE, "'median' is no number whose precision", "Choose from mean, sd, range"),
+    ("Precision of", "mean", "Answers!A30", "how well numbers must be known is not said", "Give a precision too"),
+    ("Confidence %", 200, VALUE, "'200.0' is no confidence", "such as 95"),
+    ("Significant digits", 9, VALUE, "Significant digits must be a whole number from 1 to 6", "Correct"),
+    ("Look at", "x", "Answers!A30", "forecasts to look at are named, but not what for", "stable digits too"),
+    ("Time limit", "soon", VALUE, "'soon' is no time", "such as 60s"),
+    ("Time limit", 1 / 288, VALUE, "Time limit must be 1 second or more", "not a clock time"),
     ("Range %", 100, VALUE, "Range % (100) must be above 0 and below 100", "such as 51"),
 ]
 
@@ -70,3 +83,50 @@ def test_two_tables(only_problem, blocks):
     copy = blocks("Copy!A1", [["Setting", "Value"], ["Trials", 6]])
     message = "xlmc_settings and xlmc_settings2 both hold settings"
     only_problem("Copy!A1", message, "came with a copied sheet", copy, tables={"xlmc_settings2": "Copy!A1:B2"})
+
+
+@pytest.mark.parametrize(
+    ("rows", "trials", "expected"),
+    [
+        ([["Until accepted", 500]], LIMIT, Stopping(accepted=500)),
+        ([["Until accepted", 500], ["Trials", 9000]], 9000, Stopping(accepted=500)),
+        ([["Precision %", 1]], LIMIT, Stopping(precision=Precision(0.01, relative=True))),
+        ([["precision", 0.25], ["Confidence %", 90]], LIMIT, Stopping(precision=Precision(0.25, confidence=0.9))),
+        (
+            [["Precision", 2], ["Precision of", "SD, p75.5"], ["Look at", "Delta V; Speed ;"]],
+            LIMIT,
+            Stopping(precision=Precision(2.0, numbers=("sd", "p75.5")), forecasts=("Delta V", "Speed")),
+        ),
+        ([["Significant digits", 2], ["Time limit", "5m"]], LIMIT, Stopping(digits=2, seconds=300.0)),
+        ([["Time limit", 90]], 200_000, Stopping(seconds=90.0)),
+    ],
+)
+def test_when_the_run_ends(read, blocks, rows, trials, expected):
+    table = blocks("End!A1", [["Setting", "Value"], *rows])
+    found = read(table, tables={"xlmc_settings": f"End!A1:B{len(rows) + 1}"})
+    assert found.problems == found.notices == ()
+    assert (found.settings.trials, found.settings.stopping) == (trials, expected)
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ([["Precision %", 1], ["Precision", 1]], "Precision and Precision % are both set"),
+        ([["Until accepted", 5], ["Precision", 1]], "accepted trials and a precision were both asked for"),
+    ],
+)
+def test_settings_that_exclude_each_other(read, blocks, rows, message):
+    found = read(blocks("End!A1", [["Setting", "Value"], *rows]), tables={"xlmc_settings": "End!A1:B3"})
+    assert [(str(problem.where), problem.message) for problem in found.problems] == [("End!A1", message)]
+
+
+def test_a_mistake_in_one_row_is_told_once(read, blocks):
+    rows = [["Setting", "Value"], ["Precision", -1], ["Precision of", "mean"]]
+    found = read(blocks("End!A1", rows), tables={"xlmc_settings": "End!A1:B3"})
+    assert [problem.message for problem in found.problems] == ["Precision must be above 0, not -1"]
+
+
+def test_a_precision_below_1_percent_is_told(read):
+    found = read({NAME: "Precision %", VALUE: 0.5})
+    assert [str(notice) for notice in found.notices] == ["Answers!B31: Precision % 0.5 is read as 0.5 %"]
+    assert found.settings.stopping.precision.tolerance == 0.005

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from xlmc.definitions import Settings
 from xlmc.record.repeat import quoted_argument, repeat_command
+from xlmc.stopping.stopped import ALL_TRIALS
 
 QUOTED = [
     ("book.xlsx", "book.xlsx"),
@@ -40,7 +41,7 @@ def test_other_settings_are_said_where_the_workbook_does_not_say_them():
     own = Settings(trials=10, seed=1, sampling="mc", engine="numpy")
     model = SimpleNamespace(definitions=SimpleNamespace(settings=own), workbook=SimpleNamespace(name="-b.xlsx"))
     used = replace(own, sampling="lhs", engine="formulas")
-    simulation = SimpleNamespace(settings=used, model=model, trials=20)
+    simulation = SimpleNamespace(settings=used, model=model, trials=20, stopped=ALL_TRIALS)
     command = "xlmc simulate ./-b.xlsx --trials 20 --seed 1 --sampling lhs --engine formulas"
     assert repeat_command(simulation) == command
 

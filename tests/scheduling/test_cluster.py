@@ -39,9 +39,9 @@ def test_workers_change_no_bit(model, bits, workers, threads):
 
 def test_processes_change_no_bit(model, bits, cluster):
     seen = []
-    run = model.simulate(3050, scheduler=cluster.scheduler_address, progress=lambda *counts: seen.append(counts))
+    run = model.simulate(3050, scheduler=cluster.scheduler_address, progress=seen.append)
     assert bits(run) == bits(model.simulate(3050))
-    assert [trials for trials, _ in seen] == [*range(100, 3001, 100), 3050]
+    assert [standing.trials for standing in seen] == [*range(100, 3001, 100), 3050]
 
 
 def test_a_local_cluster(model, bits):
@@ -53,8 +53,8 @@ def test_a_worker_that_is_killed_costs_only_time(model, bits, cluster):
         pids = list(client.run(os.getpid).values())
     killed = []
 
-    def kill(done, accepted):
-        if done > 300 and not killed:
+    def kill(standing):
+        if standing.trials > 300 and not killed:
             killed.append(pids[0])
             os.kill(pids[0], signal.SIGKILL)
 

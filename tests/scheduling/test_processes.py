@@ -45,7 +45,7 @@ def test_a_long_run_with_jobs_starts_processes(model, monkeypatch, children, tri
 
 
 def test_an_interruption_ends_the_processes(model, children):
-    def stop(done, accepted):
+    def stop(standing):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):

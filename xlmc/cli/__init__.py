@@ -1,7 +1,7 @@
 """The command line: `xlmc new`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc simulate`.
 
 Exit codes: 0 done; 1 the run finished but its answer must not be used as it stands; 2 bad input, with the cell and what
-to do. Modules here import what costs time inside their functions.
+to do; 130 interrupted by Ctrl-C. Modules here import what costs time inside their functions.
 """
 
 from __future__ import annotations
@@ -14,14 +14,13 @@ from xlmc import __version__
 from xlmc.cli.check import check
 from xlmc.cli.fit import fit
 from xlmc.cli.new import new
-from xlmc.cli.simulate import simulate
+from xlmc.cli.simulate import INTERRUPTED, simulate
 from xlmc.cli.verify import verify
 from xlmc.errors import XlmcError
 
 __all__ = ["main", "xlmc"]
 
 BAD_INPUT = 2
-INTERRUPTED = 130
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})

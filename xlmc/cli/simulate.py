@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
+
+from xlmc.cli.run_options import stopping_options
 
 if TYPE_CHECKING:
     from xlmc.errors import Notice
     from xlmc.model import Model
-    from xlmc.simulate import Progress
     from xlmc.simulation import Simulation
 
 __all__ = ["simulate"]
 
 NOT_TO_BE_USED = 1
+INTERRUPTED = 130
 
 
 @click.command()
 @click.argument("book", type=click.Path(path_type=Path))
 @click.option("-n", "--trials", type=click.IntRange(1), help="Trials to run.  [default: the book's, else 200000]")
+@stopping_options
 @click.option("--seed", type=click.IntRange(0), help="Seed of the random streams.  [default: the book's, else 999]")
 @click.option(
     "--engine",
@@ -51,9 +51,11 @@ def simulate(
     output: Path | None,
     in_place: bool,
     quiet: bool,
+    **length: Any,
 ) -> None:
     """Run BOOK, print the summary, and write result sheets and charts into a copy of it."""
     from xlmc.cli.printing import notices
+    from xlmc.cli.progress import progress_bar
     from xlmc.model import load
     from xlmc.report import save
     from xlmc.workbook.writer import refuse_if_open
@@ -65,15 +67,26 @@ def simulate(
     model = load(book)
     if not quiet:
         notices([*model.notices, *_hints(model, trials, engine)])
-    with _progress(trials or model.definitions.settings.trials, quiet) as progress:
+    with progress_bar(quiet) as progress:
         run = model.simulate(
-            trials, seed, engine=engine, jobs=jobs, scheduler=scheduler, workers=workers, progress=progress
+            trials,
+            seed,
+            **length,
+            engine=engine,
+            jobs=jobs,
+            scheduler=scheduler,
+            workers=workers,
+            keep_interrupted=True,
+            progress=progress,
         )
     save(run, target)
     _show(run)
     click.echo(f"Results are in {target}")
     for warning in run.warnings:
         click.echo(f"warning: {warning}; the answer must not be used as it stands.", err=True)
+    if run.stopped.interrupted:
+        click.echo(f"xlmc: interrupted after {run.trials:,} trials; what was accepted of them was written.", err=True)
+        raise click.exceptions.Exit(INTERRUPTED)
     if run.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 
@@ -89,32 +102,20 @@ def _hints(model: Model, trials: int | None, engine: str | None) -> list[Notice]
     return [Notice("a run of so many trials may be shorter with `--engine jit`, which compiles the model first")]
 
 
-@contextmanager
-def _progress(trials: int, quiet: bool) -> Iterator[Progress | None]:
-    """A bar on stderr while the trials run, where there is a terminal to draw it on."""
-    if quiet or not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-    accepted = TextColumn("{task.completed:,.0f} of {task.total:,.0f} trials, {task.fields[accepted]:,} accepted")
-    with Progress(BarColumn(), accepted, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("trials", total=trials, accepted=0)
-        yield lambda done, kept: bar.update(task, completed=done, accepted=kept)
-
-
 def _show(run: Simulation) -> None:
     """Print the paper's table, the acceptance and what each filter rejected."""
     from xlmc.cli.printing import table
     from xlmc.report.summary import ERROR_SENTENCE, summarise, summary_text
     from xlmc.statistics import format_estimate
+    from xlmc.stopping.stopped import ALL_TRIALS
 
     headings, rows = summary_text(summarise(run))
     table(f"{run.model.workbook.name}: accepted trials", headings, rows, right=range(2, len(headings)))
     share = run.acceptance
     percent = format_estimate(100 * share.value, 100 * (share.error or 0))
-    click.echo(f"Accepted {run.accepted:,} of {run.trials:,} trials, {percent} %; seed {run.settings.seed}.\n")
+    click.echo(f"Accepted {run.accepted:,} of {run.trials:,} trials, {percent} %; seed {run.settings.seed}.")
+    ended = "" if run.stopped == ALL_TRIALS else f"Ended when {run.stopped.sentence}.\n"
+    click.echo(ended)
     if run.model.filters:
         table("Trials rejected", ("Filter", "Keeps", "Rejected", "Only by it"), _rejections(run), right=(2, 3))
     click.echo(click.wrap_text(ERROR_SENTENCE, width=100))

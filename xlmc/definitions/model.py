@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from xlmc.address import Area, Cell
+from xlmc.definitions.stopping import NO_GOAL, Stopping
 from xlmc.distributions import FAMILIES, Family
 from xlmc.errors import DefinitionError, Notice
 
@@ -131,12 +132,18 @@ class Correlation:
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What a run is a function of, beside the workbook itself."""
+    """What a run is a function of, beside the workbook itself.
+
+    Attributes:
+        trials: how many; at most, where `stopping` has a goal or a time.
+        stopping: what else ends the run.
+    """
 
     trials: int = 200_000
     seed: int = 999
     sampling: str = "mc"
     engine: str = "numpy"
+    stopping: Stopping = NO_GOAL
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from xlmc.definitions.fields import central_share, number_in, required_text
+from xlmc.definitions.fields import central_share, required_text
 from xlmc.definitions.findings import Findings
 from xlmc.definitions.model import Settings
+from xlmc.definitions.setting_values import number_of, whole_number
+from xlmc.definitions.stopping import LIMIT, MOST_TRIALS
+from xlmc.definitions.stopping_settings import STOPPING_SETTINGS, read_stopping
 from xlmc.definitions.tables import DefinitionTable, Row, rows_of
-from xlmc.distributions.base import show
 from xlmc.distributions.naming import did_you_mean, plain
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import Workbook
@@ -19,7 +21,6 @@ __all__ = ["DEFAULT_CENTRAL", "read_settings"]
 DEFAULT_CENTRAL = 0.51
 """The share of the central range where neither the forecast nor the settings give one: the paper's 51 %."""
 
-_MOST_TRIALS = 10**12
 _LARGEST_SEED = 10**15  # a worksheet holds no more digits
 _KNOWN = ("Setting", "Value")
 _SAMPLINGS = {"mc": "mc", "montecarlo": "mc"}
@@ -36,8 +37,11 @@ def read_settings(workbook: Workbook, tables: list[DefinitionTable], findings: F
     for row in rows_of(workbook, tables[:1], _KNOWN, _KNOWN, findings):
         findings.attempt(_take, row, values, findings)
     central = values.pop("range%", None)
+    ends = read_stopping(tables, values, findings)
+    if ends.has_goal:
+        values.setdefault("trials", LIMIT)
     return (
-        Settings(**{key: value for key, value in values.items() if value is not None}),
+        Settings(**{key: value for key, value in values.items() if value is not None}, stopping=ends),
         DEFAULT_CENTRAL if central is None else central,
     )
 
@@ -51,7 +55,7 @@ def _take(row: Row, values: dict[str, Any], findings: Findings) -> None:
     typed = required_text(row, "Setting")
     key, where = plain(typed), row.cell("Setting")
     if key not in _READERS:
-        hint = did_you_mean(typed, _NAMES)
+        hint = did_you_mean(typed, _SETTINGS)
         raise DefinitionError(f"There is no setting {typed!r}", where=where, hint=hint)
     if key in values:
         raise DefinitionError(f"{typed} is set twice", where=where, hint="Keep one of the two rows")
@@ -63,11 +67,11 @@ def _take(row: Row, values: dict[str, Any], findings: Findings) -> None:
 
 
 def _trials(row: Row, _findings: Findings) -> int:
-    return _whole_number(row, "Trials", 1, _MOST_TRIALS)
+    return whole_number(row, "Trials", 1, MOST_TRIALS)
 
 
 def _seed(row: Row, _findings: Findings) -> int:
-    return _whole_number(row, "Seed", 0, _LARGEST_SEED)
+    return whole_number(row, "Seed", 0, _LARGEST_SEED)
 
 
 def _sampling(row: Row, _findings: Findings) -> str:
@@ -90,26 +94,15 @@ def _engine(row: Row, _findings: Findings) -> str:
 
 
 def _range(row: Row, findings: Findings) -> float:
-    return central_share("Range %", _number(row, "Range %"), row.cell("Value"), findings)
+    return central_share("Range %", number_of(row, "Range %"), row.cell("Value"), findings)
 
 
-def _number(row: Row, name: str) -> float:
-    return number_in(name, row.content("Value"), row.cell("Value"))
-
-
-def _whole_number(row: Row, name: str, least: int, most: int) -> int:
-    value = _number(row, name)
-    if not least <= value <= most or value != int(value):
-        message = f"{name} must be a whole number from {least:,} to {most:,}, not {show(value)}"
-        raise DefinitionError(message, where=row.cell("Value"), hint="Correct the number")
-    return int(value)
-
-
-_NAMES: Mapping[str, Callable[[Row, Findings], Any]] = {
+_SETTINGS: Mapping[str, Callable[[Row, Findings], Any]] = {
     "Trials": _trials,
     "Seed": _seed,
     "Sampling": _sampling,
     "Engine": _engine,
     "Range %": _range,
+    **STOPPING_SETTINGS,
 }
-_READERS = {plain(name): reader for name, reader in _NAMES.items()}
+_READERS = {plain(name): reader for name, reader in _SETTINGS.items()}

@@ -30,6 +30,12 @@ METHODS = {"mc": "Monte Carlo: independent trials"}
 
 _STREAMS = f"{GENERATOR}: a stream for each assumption, seeded by (seed, name), positioned by trial number"
 
+_SHARES = {
+    "trials": "accepted of all trials; its interval is Wilson's, 95 %",
+    "accepted": "(N − 1)/(n − 1) for n trials until the N-th was accepted; its interval is exact, 95 %",
+}
+"""How the share of accepted trials is estimated, by what ended the run."""
+
 _CONVENTIONS = (
     ("percentiles", "Percentiles", "linear between trials, as Excel's PERCENTILE.INC"),
     ("central_range", "Central range", "as many trials lie below it as above it; it is not the shortest such range"),
@@ -55,6 +61,7 @@ def make_record(simulation: Simulation, command: str | None = None) -> Record:
             _run(simulation, command),
             _file(simulation),
             _counts(simulation),
+            _end(simulation),
             _sampling(simulation),
             forecast_section(simulation),
             filter_section(simulation),
@@ -107,6 +114,21 @@ def _counts(simulation: Simulation) -> Section:
         Entry("invalid", "Draws whose parameters are no distribution", sum(simulation.invalid.values())),
     )
     return Section("counts", "Trials", entries)
+
+
+def _end(simulation: Simulation) -> Section:
+    stopped, asked = simulation.stopped, simulation.settings.stopping
+    entries = (
+        Entry("by", "Ended by", stopped.by),
+        Entry("in_words", "In words", stopped.sentence),
+        Entry("goal", "Was to go on until", stopped.goal),
+        Entry("reached", "Came to it", stopped.reached),
+        Entry("most_trials", "Trials at most", simulation.settings.trials),
+        Entry("time_limit", "Seconds at most", asked.seconds),
+        Entry("blocks", "Blocks of trials", -(-simulation.trials // simulation.block)),
+        Entry("share_accepted", "The share accepted is", _SHARES.get(stopped.by, _SHARES["trials"])),
+    )
+    return Section("end", "What ended the run", entries)
 
 
 def _sampling(simulation: Simulation) -> Section:

@@ -6,6 +6,8 @@ import re
 import shlex
 from typing import TYPE_CHECKING
 
+from xlmc.definitions.stopping import LIMIT
+
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
 
@@ -18,16 +20,24 @@ _SAFE_IN_DOUBLE_QUOTES = re.compile(r'[^"\\$`!%\n]+')
 def repeat_command(simulation: Simulation) -> str:
     """What to type, in the workbook's folder, to get the same numbers: `xlmc simulate book.xlsx --trials … --seed …`.
 
-    Other settings are named where they differ from the workbook's own, which the repeat reads again.
+    A run that ended with an accepted trial it waited for is repeated as that, any other by its number of trials. Other
+    settings are named where they differ from the workbook's own, which the repeat reads again.
     """
     settings, own = simulation.settings, simulation.model.definitions.settings
     book = simulation.model.workbook.name
-    options = [f"--trials {simulation.trials}", f"--seed {settings.seed}"]
+    options = [*_length(simulation), f"--seed {settings.seed}"]
     if settings.sampling != own.sampling:
         options.append(f"--sampling {settings.sampling}")
     if settings.engine != own.engine:
         options.append(f"--engine {settings.engine}")
     return " ".join(["xlmc simulate", quoted_argument(f"./{book}" if book.startswith("-") else book), *options])
+
+
+def _length(simulation: Simulation) -> list[str]:
+    if simulation.stopped.by != "accepted":
+        return [f"--trials {simulation.trials}"]
+    limit = [f"--trials {simulation.trials}"] if simulation.trials > LIMIT else []
+    return [*limit, f"--until-accepted {simulation.accepted}"]
 
 
 def quoted_argument(text: str) -> str:

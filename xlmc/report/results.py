@@ -11,6 +11,7 @@ from xlmc.report.base_case import base_case
 from xlmc.report.cells import Shown
 from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, range_heading, summarise
 from xlmc.statistics import Estimate, proportion
+from xlmc.stopping.stopped import ALL_TRIALS
 
 if TYPE_CHECKING:
     from xlmc.report.page import Page
@@ -29,6 +30,8 @@ def write_results(page: Page, simulation: Simulation) -> None:
     page.title("Results of the simulation", f"{book}, seed {settings.seed}, {simulation.trials:,} trials")
     for warning in simulation.warnings:
         page.wide(f"Do not use these results as they stand: {warning}", "warning", LAST)
+    if simulation.stopped.interrupted:
+        page.wide(f"Fewer trials than were asked for: {simulation.stopped.sentence}", "warning", LAST)
     _write_answers(page, simulation)
     _write_trials(page, simulation)
     write_accounting(page, simulation, LAST)
@@ -107,6 +110,9 @@ def _write_trials(page: Page, simulation: Simulation) -> None:
         [cells.text("Lost to errors in cells", "name"), cells.count(simulation.error_trials), *_share(lost)],
     ):
         page.spread(line, starts, 6)
+    if simulation.stopped != ALL_TRIALS:
+        page.row += 1
+        page.wide(f"The run ended when {simulation.stopped.sentence}.", "remark", LAST)
 
 
 def _share(found: Estimate) -> list[Shown]:

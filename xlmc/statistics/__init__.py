@@ -8,6 +8,7 @@ from xlmc.statistics.describe import Description, describe
 from xlmc.statistics.digits import format_estimate, supported_digits
 from xlmc.statistics.estimate import Estimate
 from xlmc.statistics.extremes import maximum, minimum, range_width
+from xlmc.statistics.inverse import inverse_proportion
 from xlmc.statistics.mode import mode
 from xlmc.statistics.proportions import probability_above, proportion, replicated_proportion, share
 from xlmc.statistics.quantiles import central_interval, median, percentile, percentiles
@@ -30,6 +31,7 @@ __all__ = [
     "coefficient_of_variation",
     "describe",
     "format_estimate",
+    "inverse_proportion",
     "kurtosis",
     "maximum",
     "mean",

@@ -44,7 +44,7 @@ def proportion(successes: int, trials: int, *, confidence: float = 0.95, method:
     if trials == 0:
         return Estimate(np.nan)
     p = successes / trials
-    error = max((p * (1.0 - p) / trials) ** 0.5, _least_error(trials))
+    error = max((p * (1.0 - p) / trials) ** 0.5, least_error(trials))
     return Estimate(p, error, _INTERVALS[method](p, float(trials), confidence), trials)
 
 
@@ -123,10 +123,10 @@ def _pooled(
 def error_of_share(hits: Floats, totals: Floats, effective: float, dof: float) -> float:
     """Standard error of Σhits/Σtotals, two sums over independent units worth `effective` equal trials in all."""
     apart = (hits - hits.sum() / totals.sum() * totals) / totals.sum()
-    return max(math.sqrt(np.sum(apart**2) * (dof + 1.0) / dof), _least_error(effective))
+    return max(math.sqrt(np.sum(apart**2) * (dof + 1.0) / dof), least_error(effective))
 
 
-def _least_error(trials: float) -> float:
+def least_error(trials: float) -> float:
     """The error of a share of 0: half of Wilson's 95 % interval over 1.96."""
     z = t_quantile(np.inf, 0.95)
     return z / (2.0 * (trials + z * z))

@@ -1,0 +1,183 @@
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import openpyxl
+import pytest
+
+from xlmc.cli.progress import errors_line, trials_line
+from xlmc.statistics import Estimate
+from xlmc.stopping import Standing
+
+
+@pytest.fixture
+def book(case_study, tmp_path):
+    return Path(shutil.copy(case_study, tmp_path / "case.xlsx"))
+
+
+def record_of(path):
+    sheet = next(sheet for sheet in openpyxl.load_workbook(path) if sheet.title.startswith("Record"))
+    return {row[0].value: row[2].value for row in sheet.iter_rows() if row[0].value}
+
+
+def texts_of_results(path):
+    sheets = openpyxl.load_workbook(path).worksheets
+    (sheet,) = (sheet for sheet in sheets if sheet["A1"].value == "Results of the simulation")
+    return [cell.value for row in sheet.iter_rows() for cell in row if isinstance(cell.value, str)]
+
+
+@pytest.mark.parametrize(
+    ("options", "ended"),
+    [
+        (("--until-accepted", 800), "Ended when 800 trials were accepted."),
+        (
+            ("--precision", "1%", "--precision-of", "mean", "--for", "Chevrolet delta-V", "--confidence", 90),
+            "Ended when mean of Chevrolet delta-V was known to within 1 % (90 % confidence).",
+        ),
+        (("--time-limit", "0.01s"), "Ended when the time limit of 0.01 s was reached."),
+    ],
+)
+def test_what_ended_a_run_is_printed_and_recorded(xlmc, book, tmp_path, options, ended):
+    outcome = xlmc("simulate", book, *options)
+    assert outcome.code == 0
+    assert ended in outcome.out
+    results = tmp_path / "case-results.xlsx"
+    assert f"The run ended when {ended.removeprefix('Ended when ')}" in texts_of_results(results)
+    assert f"Ended when {record_of(results)['end.in_words']}." == ended
+
+
+def test_a_plain_run_says_nothing_of_its_end(xlmc, book):
+    assert "Ended" not in xlmc("simulate", book, "-n", 1000).out
+
+
+@pytest.mark.parametrize(
+    "options", [("--until-accepted", 10**6), ("--precision", 1e-9), ("--adaptive", 3)], ids=lambda options: options[0]
+)
+def test_a_goal_that_was_not_reached_is_exit_code_1_and_still_written(xlmc, book, tmp_path, options):
+    outcome = xlmc("simulate", book, "-n", 5000, *options)
+    assert outcome.code == 1
+    assert "warning: the limit of 5,000 trials was reached before " in outcome.err
+    assert (tmp_path / "case-results.xlsx").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--until-accepted", 1), "--until-accepted"),
+        (("--precision", "much"), "'much' is no precision"),
+        (("--precision", 1, "--until-accepted", 9), "were both asked for"),
+        (("--precision-of", "mean"), "how well numbers must be known is not said"),
+        (("--precision", 1, "--for", "Ford"), "there is no forecast 'Ford'"),
+        (("--adaptive", 0), "--adaptive"),
+        (("--time-limit", "later"), "'later' is no time"),
+    ],
+)
+def test_options_that_cannot_be_meant(xlmc, book, tmp_path, options, message):
+    outcome = xlmc("simulate", book, *options)
+    assert outcome.code == 2
+    assert message in outcome.err
+    assert not (tmp_path / "case-results.xlsx").exists()
+
+
+def test_the_command_in_the_record_repeats_the_run(xlmc, book, tmp_path):
+    first = xlmc("simulate", book.name, "--until-accepted", 321)
+    record = record_of(tmp_path / "case-results.xlsx")
+    words = record["run.repeat"].split()
+    assert words[:3] == ["xlmc", "simulate", "case.xlsx"]
+    again = xlmc(*words[1:])
+    assert again.out == first.out
+    assert record_of(tmp_path / "case-results.xlsx")["run.fingerprint"] == record["run.fingerprint"]
+
+
+PROGRAM = """
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+from xlmc import simulate
+add = simulate._Gathered.add
+def told(self, block):
+    add(self, block)
+    print("block", file=sys.stderr, flush=True)
+simulate._Gathered.add = told
+from xlmc.cli import main
+main()
+"""
+CREWS = [
+    (),
+    ("-j", "2", "--scheduler", "threads"),
+    ("-j", "2", "--scheduler", "processes"),
+    ("--scheduler", "local", "--workers", "1"),
+]
+
+
+def interrupted(book, options):
+    """A run in a process group of its own, as a terminal starts it, and Ctrl-C for the group after three blocks."""
+    command = [sys.executable, "-c", PROGRAM, "simulate", str(book), "-n", "1000000000", "--quiet", *options]
+    where = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, **pipes, start_new_session=True, env=where) as process:
+        try:
+            told = [process.stderr.readline() for _ in range(3)]
+            os.killpg(process.pid, signal.SIGINT)
+            out, err = process.communicate(timeout=60)
+        finally:
+            process.kill()
+    assert told == ["block\n"] * 3
+    return process.returncode, out, err.replace("block\n", "")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="process groups are POSIX's")
+@pytest.mark.parametrize("options", CREWS, ids=" ".join)
+def test_ctrl_c_keeps_what_was_accepted(xlmc, book, tmp_path, options):
+    code, out, err = interrupted(book, options)
+    assert code == 130, err
+    assert "Ended when it was interrupted." in out
+    assert err.splitlines()[-1].startswith("xlmc: interrupted after ")
+    assert "Traceback" not in err
+    results = tmp_path / "case-results.xlsx"
+    assert "Fewer trials than were asked for: it was interrupted" in texts_of_results(results)
+    record = record_of(results)
+    assert record["end.by"] == "interruption"
+    trials, blocks = record["counts.trials"], record["end.blocks"]
+    assert trials == blocks * record["sampling.block"]
+    repeated = xlmc(*record["run.repeat"].split()[1:])
+    assert repeated.code == 0
+    assert record_of(results)["run.fingerprint"] == record["run.fingerprint"]
+
+
+STANDING = Standing(
+    65_536, 1_150, 0.5, {"Delta-V": Estimate(12.0, 0.0125), "e": Estimate(1.0), "v": Estimate(3.0, 45.6)}
+)
+
+
+def test_the_progress_bar():
+    assert trials_line(STANDING) == "65,536 trials, 1,150 accepted (1.75 %)"
+    assert errors_line(STANDING) == "± Delta-V 0.013, v 46"
+    assert errors_line(Standing(10, 0, 0.0, {"x": Estimate(float("nan"))})) == ""
+
+
+def test_the_progress_bar_on_a_terminal(case_study, tmp_path):
+    pty = pytest.importorskip("pty")
+    leader, follower = pty.openpty()
+    command = [sys.executable, "-m", "xlmc", "simulate", str(case_study), "-n", "3000000", "-o", tmp_path / "o.xlsx"]
+    where = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "TERM": "xterm", "COLUMNS": "150"}
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=follower, env=where) as process:
+        os.close(follower)
+        shown = b""
+        while True:
+            try:
+                part = os.read(leader, 65_536)
+            except OSError:  # the other end is closed
+                break
+            if not part:
+                break
+            shown += part
+    os.close(leader)
+    assert process.returncode == 0
+    text = shown.decode()
+    assert "accepted (1.7" in text
+    assert "± Chevrolet delta-V 0.0" in text

@@ -1,0 +1,56 @@
+"""How a run stands, on a terminal."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from xlmc.simulate import Progress
+    from xlmc.stopping import Standing
+
+__all__ = ["errors_line", "progress_bar", "trials_line"]
+
+
+def trials_line(standing: Standing) -> str:
+    """`65,536 trials, 1,150 accepted (1.75 %)`."""
+    share = 100.0 * standing.accepted / standing.trials
+    return f"{standing.trials:,} trials, {standing.accepted:,} accepted ({share:.3g} %)"
+
+
+def errors_line(standing: Standing) -> str:
+    """The standard error of every forecast's mean so far: `± Chevrolet delta-V 0.013, Nissan delta-V 0.02`."""
+    known = [(name, mean.error) for name, mean in standing.means.items() if mean.error is not None]
+    return f"± {', '.join(f'{name} {error:.2g}' for name, error in known)}" if known else ""
+
+
+@contextmanager
+def progress_bar(quiet: bool) -> Iterator[Progress | None]:
+    """A bar and the standard errors below it, on stderr while the trials run, where there is a terminal to draw on."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console, RenderableType
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.text import Text
+
+    class Bar(Progress):
+        """A bar with a line below it."""
+
+        below = ""
+
+        def get_renderables(self) -> Iterator[RenderableType]:
+            yield from super().get_renderables()
+            yield Text(self.below, no_wrap=True, overflow="ellipsis")
+
+    columns = BarColumn(), TextColumn("{task.description}"), TimeRemainingColumn()
+    with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("", total=1.0)
+
+        def show(standing: Standing) -> None:
+            bar.below = errors_line(standing)
+            bar.update(task, completed=standing.share, description=trials_line(standing))
+
+        yield show

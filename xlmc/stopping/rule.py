@@ -1,0 +1,60 @@
+"""What every rule that ends a run can do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Columns", "Observed", "Rule"]
+
+Floats = NDArray[np.float64]
+
+Columns = Callable[[int], Floats]
+"""A forecast's number -> its accepted trials so far, `(m,)`, NaN where it has no number."""
+
+
+class Observed(Protocol):
+    """What a rule sees of a block of trials.
+
+    Attributes:
+        trials: how many there are.
+        accepted: `(m,)` the accepted ones, numbered from the run's first trial.
+        forecasts: one a forecast, `(m,)`, NaN where it has no number.
+    """
+
+    @property
+    def trials(self) -> int: ...
+
+    @property
+    def accepted(self) -> NDArray[np.int64]: ...
+
+    @property
+    def forecasts(self) -> Sequence[Floats]: ...
+
+
+class Rule(Protocol):
+    """Looks at the blocks of a run, each once, in their order.
+
+    Attributes:
+        key: what programs know it by.
+        goal: what must come to pass, in words: `1,000 trials were accepted`.
+        share: how far it is on the way there, 0 to 1; an estimate.
+    """
+
+    @property
+    def key(self) -> str: ...
+
+    @property
+    def goal(self) -> str: ...
+
+    @property
+    def share(self) -> float: ...
+
+    def counting(self, block: Observed, start: int) -> int:
+        """How many of the block's trials count, the run's trial `start` being its first; fewer only in the last one."""
+
+    def reached(self, block: Observed, columns: Columns) -> bool:
+        """Whether the run may end with this block, cut to the trials that count."""

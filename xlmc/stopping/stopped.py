@@ -1,0 +1,41 @@
+"""What ended a run, as it is told, recorded and warned of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+__all__ = ["ALL_TRIALS", "Stopped"]
+
+
+@dataclass(frozen=True, slots=True)
+class Stopped:
+    """What ended a run.
+
+    Attributes:
+        by: `trials` (there were no more to run), `accepted`, `precision`, `adaptive`, `time` or `interruption`.
+        because: in words, without a full stop.
+        goal: in words, what the run was to go on until; None where it was to run its trials.
+    """
+
+    by: str
+    because: str
+    goal: str | None = None
+
+    @property
+    def reached(self) -> bool:
+        """Whether the run came to what it was to go on until."""
+        return self.goal is None or self.by not in ("trials", "time", "interruption")
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether somebody ended it."""
+        return self.by == "interruption"
+
+    @property
+    def sentence(self) -> str:
+        """What ended it, and before what."""
+        return self.because if self.reached else f"{self.because} before {self.goal}"
+
+
+ALL_TRIALS: Final = Stopped("trials", "all trials were run")

@@ -53,7 +53,7 @@ def survey(workbook: Workbook, definitions: Definitions, more: Mapping[Cell, Ite
     """
     live = {a.cell: a for a in definitions.assumptions if not a.frozen}
     held = frozenset(a.cell for a in definitions.assumptions if a.frozen)
-    resolver = Resolver(workbook, [*live, *held])
+    resolver = Resolver(workbook, [*live, *held], rewritten=definitions.rewritten)
     targets = targets_of(definitions)
     while True:  # the parameters of needed assumptions may need more cells, and these more assumptions
         graph = build_graph(resolver, targets, frozenset(live), held, more=more)

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 from xlmc.address import Area, Cell
 from xlmc.distributions import FAMILIES, Family
-from xlmc.errors import DefinitionError, Notice
+from xlmc.errors import DefinitionError, FormulaError, Notice
+from xlmc.formula.ir import Expression
 
 __all__ = [
     "Assumption",
@@ -39,12 +40,14 @@ class DataRange:
         rows: what stands there, row by row; None in a blank cell.
         cumulative: their weights are sums of those up to their row.
         bandwidth: of a smoothed distribution, where it is given.
+        text: what they are, for people, where that is more than the area.
     """
 
     area: Area
     rows: tuple[tuple[Parameter | None, ...], ...]
     cumulative: bool = False
     bandwidth: Parameter | None = None
+    text: str = ""
 
     @property
     def cells(self) -> Iterator[Cell]:
@@ -131,19 +134,25 @@ class Correlation:
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What a run is a function of, beside the workbook itself."""
+    """What a run is a function of, beside the workbook itself.
+
+    `lognorm` says whose `RiskLognorm` is meant, `@RISK` (also where it is empty) or `XLRisk`.
+    """
 
     trials: int = 200_000
     seed: int = 999
     sampling: str = "mc"
     engine: str = "numpy"
+    lognorm: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Definitions:
     """Everything a workbook asks of a run, as understood.
 
-    `problems` are the mistakes found, each with its cell; a run is refused while there are any.
+    `problems` are the mistakes found, each with its cell; a run is refused while there are any. `rewritten` are the
+    formulas in which calls stand for assumptions (`=10+RiskNormal(5,1)`), with these in their place, or why a cell
+    cannot be computed; `results` are the cells that show results of the run.
     """
 
     assumptions: tuple[Assumption, ...] = ()
@@ -153,3 +162,5 @@ class Definitions:
     settings: Settings = Settings()
     notices: tuple[Notice, ...] = ()
     problems: tuple[DefinitionError, ...] = ()
+    rewritten: Mapping[Cell, Expression | FormulaError] = field(default_factory=dict)
+    results: tuple[Cell, ...] = ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from xlmc.address import Area, Cell
+from xlmc.address import Area, Cell, host_of
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
 from xlmc.formula.circles import circular, cycle
@@ -57,7 +57,7 @@ class Graph:
 
     def text(self, cell: Cell) -> str:
         """The formula of a cell as the file holds it."""
-        formula = self.workbook.content(cell).formula
+        formula = self.workbook.content(host_of(cell)).formula
         return "" if formula is None else formula.text
 
 
@@ -143,10 +143,13 @@ class _Walk:
 
     def _read(self, cell: Cell) -> ir.Expression | Stencil | None:
         formula = self._workbook.content(cell).formula
-        if formula is None:
+        rewritten = self._resolver.rewritten.get(cell)
+        if formula is None and rewritten is None:
             return self._spills.anchor(cell)
         try:
-            return self._resolver.placed(cell, formula)
+            if isinstance(rewritten, FormulaError):
+                raise rewritten
+            return self._resolver.placed(cell, formula) if rewritten is None and formula is not None else rewritten
         except FormulaError as error:
             if self._strict:
                 raise
@@ -169,7 +172,8 @@ class _Walk:
     def _counts(self, cell: Cell) -> bool:
         known = self._computed.get(cell)
         if known is None:
-            known = cell in self._given or self._workbook.content(cell).formula is not None
+            known = cell in self._given or cell in self._resolver.rewritten
+            known = known or self._workbook.content(cell).formula is not None
             self._computed[cell] = known = known or self._spills.anchor(cell) is not None
         return known
 

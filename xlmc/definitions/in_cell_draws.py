@@ -67,6 +67,7 @@ class Drawn:
         data: what the family is built from, row by row; empty for one that has parameters alone.
         sources: the arguments that hold the data.
         grid: how many rows and columns of independent draws the call gives.
+        text: the call as written, every operation in brackets.
     """
 
     function: str
@@ -76,6 +77,7 @@ class Drawn:
     sources: tuple[ir.Expression, ...] = ()
     properties: Properties = field(default_factory=Properties)
     grid: tuple[int, int] | None = None
+    text: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -208,7 +208,8 @@ class _Reading:
             _refuse_calls_within(part)
         drawn = random_draw(part)
         if drawn is not None:
-            return self._placed(replace(drawn, parameters=self._each_rewritten(drawn.parameters)), self._next())
+            number, parameters = self._next(), self._each_rewritten(drawn.parameters)
+            return self._placed(replace(drawn, parameters=parameters, text=formula_text(part)), number)
         if not isinstance(part, ir.Call) or not part.name.startswith(("RISK", "CB.")):
             return None
         if self._depth and is_property(part):
@@ -228,7 +229,7 @@ class _Reading:
         if drawn is None:
             raise FormulaError(f"the function {call.name} is not supported", hint=_SUPPORTED)
         self.has_lognorm = self.has_lognorm or drawn.function == "RiskLognorm"
-        return self._placed(drawn, number)
+        return self._placed(replace(drawn, text=formula_text(call)), number)
 
     def _next(self) -> int:
         self._count += 1
@@ -319,6 +320,7 @@ class _Reading:
             units="" if properties.units is None else self._text("RiskUnits", properties.units),
             source=f"{drawn.function} in the cell{'' if properties.shift is None else ', before its shift'}",
             frozen=properties.locked,
+            notes={"Call": drawn.text},
             own_family=None if drawn.family is FAMILIES[drawn.family.name] else drawn.family,
             data=data,
         )
@@ -362,7 +364,7 @@ class _Reading:
         return DataRange(area or place, rows, text=text)
 
     def _element(self, tree: ir.Expression, label: str) -> Parameter | None:
-        if isinstance(tree, Cell) and not self._computed.at_all(tree):
+        if isinstance(tree, Cell) and tree not in self._bases and not self._computed.at_all(tree):
             content = self._workbook.content(tree)
             return None if is_blank(content) else number_in("The data cell", content, tree)
         return self._parameter(tree, label)
@@ -383,7 +385,7 @@ class _Reading:
 
     def _constant(self, cell: Cell) -> float | None:
         """What a cell holds that nothing changes."""
-        return None if self._computed.at_all(cell) or cell in self._bases else static_value(cell, self._workbook)
+        return None if cell in self._bases or self._computed.at_all(cell) else static_value(cell, self._workbook)
 
 
 def _draws(tree: ir.Expression) -> bool:

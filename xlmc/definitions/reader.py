@@ -33,7 +33,7 @@ def read_definitions(workbook: Workbook) -> Definitions:
     assumptions = read_assumptions(workbook, tables["xlmc_assumptions"], computed, uncertain, findings)
     forecasts = read_forecasts(workbook, tables["xlmc_forecasts"], computed, central, answers, findings)
     filters = read_filters(workbook, tables["xlmc_filters"], computed, tests, findings)
-    calls = read_in_cells(workbook, computed, settings.lognorm, uncertain, findings)
+    calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings)
     _remark_on_stored_assumptions(workbook, findings)
     if not (calls or any(tables.values())):
         _say_how_to_begin(workbook, findings)

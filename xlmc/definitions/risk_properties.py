@@ -59,7 +59,7 @@ def properties_of(function: str, calls: _Given) -> Properties:
         name, fewest, most, taken = _BY_NAME[call.name]
         if not fewest <= len(call.arguments) <= most:
             takes = str(fewest) if fewest == most else f"{fewest} to {most}"
-            raise FormulaError(f"{name} has {len(call.arguments)} arguments; it takes {takes}")
+            raise FormulaError(f"{name} has {len(call.arguments)} arguments; it takes {takes}", hint="correct them")
         if name in seen or (name.startswith("RiskTruncate") and any(each.startswith("RiskTruncate") for each in seen)):
             raise FormulaError(f"{function} is given {name} beside another like it", hint="keep one of them")
         seen.add(name)

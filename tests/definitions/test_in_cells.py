@@ -362,7 +362,7 @@ MATRIX = {"F1": 1.0, "F2": 0.5, "G2": 1.0, "F3": -0.2, "G3": 0.0, "H3": 1.0}
 
 def test_correlations(workbook):
     draws = {f"A{i}": f"=RiskNormal(0,1,RiskCorrmat($F$1:$H$3,{i}))" for i in (1, 2, 3)}
-    other = {"B1": '=RiskNormal(0,1,RiskCorrmat(F1:H3,1,"b"))', "B2": "=RiskNormal(0,1,RiskCorrmat(F1:H3,2,\"B\"))"}
+    other = {"B1": '=RiskNormal(0,1,RiskCorrmat(F1:H3,1,"b"))', "B2": '=RiskNormal(0,1,RiskCorrmat(F1:H3,2,"B"))'}
     found = read_definitions(workbook({**MATRIX, **draws, **other, "C1": "=RiskOutput()+SUM(A1:B3)"}))
     assert found.problems == ()
     assert {(c.first, c.second): c.value for c in found.correlations} == {
@@ -391,3 +391,14 @@ def test_mistakes_in_a_matrix(workbook, change, message):
 def test_crystal_balls_hidden_sheet_is_pointed_out(workbook):
     found = read_definitions(workbook({"A1": "=RiskOutput()+RAND()"}, sheets=["CB_DATA_"]))
     assert any("Crystal Ball's dialogs" in notice.message for notice in found.notices)
+
+
+def test_an_answer_that_cannot_be_read_is_never_left_out(workbook):
+    found = read_definitions(workbook({"A1": '=RiskOutput("x")+RiskSplice(1)', "A2": "=RiskOutput()+RAND()"}))
+    (problem,) = found.problems
+    assert (problem.where, problem.message) == ("S!A1", "the function RISKSPLICE is not supported")
+
+
+def test_a_refused_cell_that_nothing_needs_is_left_alone(workbook):
+    found = read_definitions(workbook({"A1": "=RiskSplice(1)", "A2": "=RiskOutput()+RAND()"}))
+    assert found.problems == ()

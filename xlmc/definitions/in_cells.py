@@ -28,7 +28,7 @@ from xlmc.definitions.risk_functions import risk_draw
 from xlmc.definitions.risk_properties import is_property
 from xlmc.definitions.tables import as_text, is_blank
 from xlmc.distributions import FAMILIES
-from xlmc.errors import FormulaError
+from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import Resolver, formula_text, ir
 from xlmc.formula.substitute import is_bound, substituted
 from xlmc.workbook.lazy_sheets import LazySheets
@@ -39,6 +39,7 @@ __all__ = ["InCells", "holds_call", "read_in_cells"]
 _CALL: Final = re.compile(
     r"(?<![\w.])(?:RAND|RANDBETWEEN|RANDARRAY|(?:_xll\.)?(?:Risk\w+|CB\.\w+))\s*\(", re.IGNORECASE
 )
+_OUTPUT: Final = re.compile(r"RiskOutput\s*\(", re.IGNORECASE)
 _TEXTS: Final = re.compile(r'"(?:[^"]|"")*"')
 _MARKS: Final = (b"rand", b"risk", b"cb.")
 _SUPPORTED: Final = 'see "Functions in cells" in docs/workbooks.md for what is; replace the call by one of those'
@@ -74,6 +75,13 @@ class InCells:
     def __bool__(self) -> bool:
         return bool(self.rewritten)
 
+    @property
+    def refused(self) -> Iterator[FormulaError]:
+        """Why cells cannot be computed that show no results."""
+        for cell, found in self.rewritten.items():
+            if isinstance(found, FormulaError) and cell not in self.results:
+                yield found
+
 
 @dataclass(frozen=True, slots=True)
 class Output:
@@ -102,7 +110,9 @@ def read_in_cells(workbook: Workbook, computed: Computed, lognorm: str, claims: 
             found.rewritten[cell] = reading.rewritten(resolver.formula(cell, formula))
             _take(reading, found, claims, findings)
         except FormulaError as error:
-            found.rewritten[cell] = _about(error, cell, formula)  # told of if a forecast or filter needs the cell
+            found.rewritten[cell] = refused = _about(error, cell, formula)
+            if _OUTPUT.search(formula.text) and not reading.asked:  # others are told of if anything needs the cell
+                findings.problems.append(DefinitionError(refused.message, where=cell, hint=refused.hint))
         if reading.asked:
             found.results[cell] = reading.asked
     return found

@@ -15,6 +15,7 @@ from xlmc.definitions.in_cells import InCells, read_in_cells
 from xlmc.definitions.model import Definitions, Settings, name_key
 from xlmc.definitions.settings import read_settings
 from xlmc.definitions.tables import DefinitionTable, definition_tables, holds_rows
+from xlmc.errors import DefinitionError
 from xlmc.workbook.model import Workbook
 
 __all__ = ["read_definitions"]
@@ -47,7 +48,7 @@ def read_definitions(workbook: Workbook) -> Definitions:
     forecasts = *forecasts, *in_cell_forecasts(calls, computed, central, answers, findings)
     _remark_on_calls(calls, settings, findings)
     if not calls.assumptions:
-        _refuse_none(workbook, "assumption", tables["xlmc_assumptions"], findings)
+        _refuse_no_assumption(workbook, calls, tables["xlmc_assumptions"], findings)
     if calls and not (forecasts or tables["xlmc_forecasts"]):
         _say_how_to_mark(workbook, findings)
     elif not forecasts:
@@ -87,7 +88,21 @@ def _remark_on_stored_assumptions(workbook: Workbook, findings: Findings) -> Non
         findings.notice(message, mark)
 
 
+def _refuse_no_assumption(
+    workbook: Workbook, calls: InCells, tables: list[DefinitionTable], findings: Findings
+) -> None:
+    """Say why no cell draws, where calls were meant to."""
+    refused = [error for error in calls.refused if not any(error.where == known.where for known in findings.problems)]
+    if any(holds_rows(workbook, table) for table in tables):
+        return
+    findings.problems += [DefinitionError(error.message, where=error.where, hint=error.hint) for error in refused]
+    if not any(calls.refused):
+        _refuse_none(workbook, "assumption", tables, findings)
+
+
 def _say_how_to_mark(workbook: Workbook, findings: Findings) -> None:
+    if findings.problems:
+        return  # the answer may be in a cell that cannot be read
     findings.problem(
         "The workbook draws at random, and marks no cell as an answer",
         workbook.name,

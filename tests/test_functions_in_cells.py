@@ -315,3 +315,11 @@ def test_beside_tables(tmp_path):
     assert abs(run.acceptance.value - 0.5) < 5 * 0.5 / math.sqrt(TRIALS)
     deviation = math.sqrt(25 / 12 + 1 + 1 / 12)
     assert abs(run["answer"].mean.value - 13) < 5 * deviation / math.sqrt(run.accepted)
+
+
+def test_draws_that_nothing_needs_are_told_of_together(model):
+    cells = {f"A{i}": "=RAND()" for i in range(1, 6)} | {"B1": "=RiskOutput()+A1"}
+    notices = model(cells).notices
+    assert [(str(n.where), n.message) for n in notices] == [
+        ("S!A2#1", "no forecast or filter needs 4 draws in cells, of which this is the first")
+    ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from xlmc.address import Cell
+from xlmc.address import Cell, InFormula
 from xlmc.definitions import Assumption, Definitions, Filter
 from xlmc.errors import DefinitionError, Notice
 from xlmc.formula import Graph, Resolver, build_graph, ir
@@ -35,8 +35,14 @@ class Scene:
 
     @property
     def notices(self) -> tuple[Notice, ...]:
-        """What was left out."""
-        return tuple(Notice(f"no forecast or filter needs the assumption {a.name!r}", a.cell) for a in self.idle)
+        """What was left out; draws in cells, which may be very many, together."""
+        calls = [a for a in self.idle if isinstance(a.cell, InFormula)]
+        rows = (a for a in self.idle if not isinstance(a.cell, InFormula))
+        found = [Notice(f"no forecast or filter needs the assumption {a.name!r}", a.cell) for a in rows]
+        if calls:
+            what = "this draw" if len(calls) == 1 else f"{len(calls):,} draws in cells, of which this is the first"
+            found.append(Notice(f"no forecast or filter needs {what}", calls[0].cell))
+        return tuple(found)
 
 
 def survey(workbook: Workbook, definitions: Definitions, more: Mapping[Cell, Iterable[Cell]] | None = None) -> Scene:

@@ -155,7 +155,7 @@ DRAWS = {
 @pytest.fixture
 def understood(workbook):
     def read(formula, **cells):
-        values = {"C1": 1.0, "C2": 2.0, "D1": 3.0, "D2": 1.0, "A1": 4.0, "A2": 2.0, **cells}
+        values = {"C1": 1.0, "C2": 2.0, "D1": 3.0, "D2": 1.0, "A1": 4.0, "A2": 2.0, "P1": "low", **cells}
         book = workbook({**values, "I9": f"={formula}", "Z1": "=RiskOutput()+I9"}, names={"Rate": "S!$A$1"})
         return read_definitions(book)
 
@@ -297,6 +297,7 @@ REFUSED = {
     "RANDBETWEEN(1)": "RANDBETWEEN takes two numbers",
     "RiskMean(A1)+RAND()": "both draws and shows results",
     "RiskMean(A1)": "RiskMean shows results of the run",
+    "RiskDUniform(P1:P2)": "The data cell holds the text 'low', not a number (S!P1)",
     "RiskMean(3)": "RiskMean must name the cell of an output",
 }
 

@@ -102,14 +102,14 @@ def read_in_cells(workbook: Workbook, computed: Computed, lognorm: str, claims: 
         findings: takes remarks.
     """
     found = InCells()
-    resolver = Resolver(workbook)
+    resolver = Resolver(workbook, claims.cells)
     bases: dict[Cell, float | None] = {}
     for cell, formula in _suspects(workbook):
         reading = _Reading(workbook, computed, lognorm, bases, cell)
         try:
             found.rewritten[cell] = reading.rewritten(resolver.formula(cell, formula))
             _take(reading, found, claims, findings)
-        except FormulaError as error:
+        except (FormulaError, DefinitionError) as error:
             found.rewritten[cell] = refused = _about(error, cell, formula)
             if _OUTPUT.search(formula.text) and not reading.asked:  # others are told of if anything needs the cell
                 findings.problems.append(DefinitionError(refused.message, where=cell, hint=refused.hint))
@@ -146,9 +146,12 @@ def _free_name(assumption: Assumption, claims: Claims, findings: Findings) -> st
     return claims.take_name(name, assumption.row)
 
 
-def _about(error: FormulaError, cell: Cell, formula: Formula) -> FormulaError:
-    text = formula.text if error.text is None else error.text
-    return FormulaError(error.message, where=cell, hint=error.hint, text=text, span=error.span)
+def _about(error: FormulaError | DefinitionError, cell: Cell, formula: Formula) -> FormulaError:
+    """The error, told of the cell; one about a cell that its formula names says so."""
+    if isinstance(error, FormulaError):
+        text = formula.text if error.text is None else error.text
+        return FormulaError(error.message, where=cell, hint=error.hint, text=text, span=error.span)
+    return FormulaError(f"{error.message} ({error.where})", where=cell, hint=error.hint, text=formula.text)
 
 
 def _suspects(workbook: Workbook) -> Iterator[tuple[Cell, Formula]]:

@@ -7,6 +7,7 @@ likewise, with the standard error of a proportion. The seed is fixed.
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +16,11 @@ from openpyxl import Workbook
 from scipy import stats
 
 import xlmc
+from xlmc.address import Area
+from xlmc.definitions import read_definitions
 from xlmc.errors import XlmcError
+from xlmc.model import Model
+from xlmc.workbook.model import CellContent, Formula
 
 TRIALS = 100_000
 
@@ -257,6 +262,25 @@ def test_the_slow_reference_agrees(model, name):
     fast, slow = made.simulate(trials=20), made.simulate(trials=20, engine="formulas")
     for forecast, values in fast.forecasts.items():
         np.testing.assert_allclose(values, slow.forecasts[forecast], rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["cost", "nested", "excel", "properties"])
+def test_the_compiled_engine_agrees(model, name):
+    pytest.importorskip("numba")
+    made = model(BOOKS[name][0])
+    fast, compiled = made.simulate(trials=2000), made.simulate(trials=2000, engine="jit")
+    for forecast, values in fast.forecasts.items():
+        np.testing.assert_allclose(values, compiled.forecasts[forecast], rtol=1e-12)
+
+
+def test_an_array_of_draws_spills(workbook):
+    """The cells that a dynamic array fills draw on their own: the variance of their sum is the sum of theirs."""
+    array = Formula("RANDARRAY(3,1,0,6)", 1, 1, Area("S", 1, 1, 3, 1), dynamic=True)
+    held = workbook({"A1": CellContent(1.0, array), "A2": 1.0, "A3": 1.0, "B1": "=RiskOutput()+SUM(A1:A3)"})
+    run = Model(held, read_definitions(held), Path("book.xlsx")).simulate(trials=TRIALS, seed=999)
+    found = run["S!B1"]
+    assert abs(found.mean.value - 9) < 5 * 3 / math.sqrt(TRIALS)
+    assert abs(found.standard_deviation.value - 3) < 5 * found.standard_deviation.error
 
 
 def test_a_locked_draw_is_held(model):

@@ -94,7 +94,7 @@ def _statistic(result: ForecastResult, what: str, number: float | None) -> float
         return _by_name(result, what)
     match what:
         case "statistic":
-            known = number == int(number) and 1 <= number <= len(CRYSTAL_BALL_STATISTICS)
+            known = number.is_integer() and 1 <= number <= len(CRYSTAL_BALL_STATISTICS)
             return _by_name(result, CRYSTAL_BALL_STATISTICS[int(number) - 1]) if known else None
         case "percent" | "share" | "share from above":
             percent = number if what == "percent" else 100 * (number if what == "share" else 1 - number)
@@ -104,7 +104,7 @@ def _statistic(result: ForecastResult, what: str, number: float | None) -> float
         case "certainty from above":
             return result.probability_above(number).value
         case "trial":
-            held = number == int(number) and 1 <= number <= result.values.size
+            held = number.is_integer() and 1 <= number <= result.values.size
             return float(result.values[int(number) - 1]) if held else None
         case _:
             raise ValueError(what)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from xlmc.address import Cell, InFormula
@@ -9,9 +11,11 @@ from xlmc.definitions import read_definitions
 from xlmc.definitions.crystal_ball_functions import CRYSTAL_BALL
 from xlmc.definitions.in_cells import holds_call
 from xlmc.definitions.random_functions import INVERSES
+from xlmc.definitions.result_functions import RESULTS
 from xlmc.definitions.risk_functions import RISK
 from xlmc.definitions.risk_percentiles import ALTERNATES
 from xlmc.errors import FormulaError
+from xlmc.workbook.model import CellContent, Formula
 
 A1, A2 = Cell("S", 1, 1), Cell("S", 2, 1)
 HERE = Cell("S", 9, 9)
@@ -286,6 +290,7 @@ REFUSED = {
     "RiskNormal(1,1,RiskName(Q1))": "RiskName needs a text",
     "RiskNormal(1,1,RiskCorrmat(C1:D1,1))": "RiskCorrmat's matrix is not a square range",
     "RiskNormal(1,1,RiskCorrmat(C1:D2,3))": "RiskCorrmat's position must be a whole number from 1 to 2",
+    "RiskNormal(1,1,RiskCorrmat(C1:D2,1E308*10))": "RiskCorrmat's position must be a whole number from 1 to 2",
     "RiskNormal(SQRT(Q1),1,RiskLock())": "RiskNormal is locked, and its value is not known",
     "RiskNormalAlt(10%,8)": "RiskNormalAlt",
     "RiskNormalAlt(10,8,90,12)": "a percentile that is not between 0 and 1",
@@ -403,3 +408,20 @@ def test_an_answer_that_cannot_be_read_is_never_left_out(workbook):
 def test_a_refused_cell_that_nothing_needs_is_left_alone(workbook):
     found = read_definitions(workbook({"A1": "=RiskSplice(1)", "A2": "=RiskOutput()+RAND()"}))
     assert found.problems == ()
+
+
+def test_a_shared_formula_draws_in_each_cell(workbook):
+    master = Formula("RiskNormal(B1,$C$1)", 1, 1)
+    cells = {f"A{row}": CellContent(1.0, master) for row in (1, 2, 3)}
+    found = read_definitions(workbook({**cells, "D1": "=RiskOutput()+SUM(A1:A3)"}))
+    assert {a.name: a.parameters["mean"] for a in found.assumptions} == {
+        f"S!A{row}#1": Cell("S", row, 2) for row in (1, 2, 3)
+    }
+
+
+def test_the_documentation_names_every_function():
+    text = (Path(__file__).parents[2] / "docs" / "workbooks.md").read_text()
+    section = text[text.index("## Functions in cells") : text.index("## What formulas may use")]
+    missing = [name for name in (*RISK, *CRYSTAL_BALL, *RESULTS) if f"`{name}" not in section]
+    assert missing == []
+    assert [name for name in ALTERNATES if name.removeprefix("Risk") not in section] == []

@@ -96,7 +96,7 @@ def _corrmat(found: Properties, arguments: _Given) -> Properties:
     if isinstance(matrix, Cell) or not isinstance(matrix, Area) or matrix.rows != matrix.columns:
         hint = "give it a range with as many rows as columns, without headings"
         raise FormulaError("RiskCorrmat's matrix is not a square range of cells", hint=hint)
-    if position is None or position != int(position) or not 1 <= position <= matrix.rows:
+    if position is None or not position.is_integer() or not 1 <= position <= matrix.rows:
         message = f"RiskCorrmat's position must be a whole number from 1 to {matrix.rows}"
         raise FormulaError(message, hint="write the row of the matrix that belongs to this draw, as a number")
     instance = _filled(arguments, 2)

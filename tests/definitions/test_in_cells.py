@@ -394,6 +394,25 @@ def test_mistakes_in_a_matrix(workbook, change, message):
     assert message in problem.message
 
 
+TABLE = {"J1": "First", "K1": "Second", "L1": "Correlation", "J2": "S!A1#1", "K2": "S!A2#1", "L2": 0.3}
+
+
+def test_a_table_may_correlate_draws_in_cells(workbook, table):
+    cells = {**TABLE, "A1": "=RAND()", "A2": "=RAND()", "A3": "=RiskOutput()+A1+A2"}
+    tables = [table("xlmc_correlations", "J1:L2", "First", "Second", "Correlation")]
+    found = read_definitions(workbook(cells, tables=tables))
+    assert [(c.first, c.second, c.value) for c in found.correlations] == [("S!A1#1", "S!A2#1", 0.3)]
+
+
+def test_a_pair_is_correlated_once(workbook, table):
+    draws = {f"A{i}": f"=RiskNormal(0,1,RiskCorrmat($F$1:$H$3,{i}))" for i in (1, 2)}
+    cells = {**MATRIX, **draws, **TABLE, "C1": "=RiskOutput()+A1+A2"}
+    tables = [table("xlmc_correlations", "J1:L2", "First", "Second", "Correlation")]
+    (problem,) = read_definitions(workbook(cells, tables=tables)).problems
+    assert "are correlated by this row and by the matrix" in problem.message
+    assert problem.where == "S!J2"
+
+
 def test_crystal_balls_hidden_sheet_is_pointed_out(workbook):
     found = read_definitions(workbook({"A1": "=RiskOutput()+RAND()"}, sheets=["CB_DATA_"]))
     assert any("Crystal Ball's dialogs" in notice.message for notice in found.notices)

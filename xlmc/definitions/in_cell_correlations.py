@@ -21,7 +21,11 @@ _Row = tuple[Assumption, MatrixPlace]
 
 
 def in_cell_correlations(
-    workbook: Workbook, assumptions: Iterable[Assumption], matrices: Mapping[str, MatrixPlace], findings: Findings
+    workbook: Workbook,
+    assumptions: Iterable[Assumption],
+    matrices: Mapping[str, MatrixPlace],
+    rows: Iterable[Correlation],
+    findings: Findings,
 ) -> list[Correlation]:
     """The correlations between draws that name rows of one matrix, in one instance of it; those of 0 left out.
 
@@ -29,6 +33,7 @@ def in_cell_correlations(
         workbook: holds the matrices.
         assumptions: drawn in cells.
         matrices: name of an assumption -> its row in a matrix.
+        rows: the correlations of tables, which may be about other pairs only.
         findings: takes mistakes.
     """
     groups: dict[tuple[Area, str], list[_Row]] = {}
@@ -36,9 +41,15 @@ def in_cell_correlations(
         place = matrices.get(assumption.name)
         if place is not None and not assumption.frozen:
             groups.setdefault((place.area, place.instance), []).append((assumption, place))
-    found = (
-        findings.attempt(_correlation, workbook, *pair) for group in groups.values() for pair in _pairs(group, findings)
-    )
+    taken = {frozenset((row.first, row.second)): row for row in rows}
+    found = []
+    for first, second in (pair for group in groups.values() for pair in _pairs(group, findings)):
+        row = taken.get(frozenset((first[0].name, second[0].name)))
+        if row is not None:
+            message = f"{row.first!r} and {row.second!r} are correlated by this row and by the matrix {first[1].area}"
+            findings.problem(message, row.row, "Keep one of them")
+            continue
+        found.append(findings.attempt(_correlation, workbook, first, second))
     return [each for each in found if each is not None and each.value != 0]
 
 

@@ -44,7 +44,7 @@ def read_definitions(workbook: Workbook) -> Definitions:
     assumptions = *assumptions, *calls.assumptions
     frozen = [name_key(each.name) for each in assumptions if each.frozen]
     correlations = read_correlations(workbook, tables["xlmc_correlations"], names, frozen, findings)
-    correlations = *correlations, *in_cell_correlations(workbook, calls.assumptions, calls.matrices, findings)
+    more = in_cell_correlations(workbook, calls.assumptions, calls.matrices, correlations, findings)
     forecasts = *forecasts, *in_cell_forecasts(calls, computed, central, answers, findings)
     _remark_on_calls(calls, settings, findings)
     if not calls.assumptions:
@@ -57,7 +57,7 @@ def read_definitions(workbook: Workbook) -> Definitions:
         assumptions=assumptions,
         forecasts=forecasts,
         filters=filters,
-        correlations=correlations,
+        correlations=(*correlations, *more),
         settings=settings,
         notices=tuple(findings.notices),
         problems=tuple(findings.problems),

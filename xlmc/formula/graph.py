@@ -131,7 +131,7 @@ class _Walk:
             self.reached.add(cell)
         elif cell in self._trail:
             self._close_circle(cell)
-        elif cell not in self.placed and (found := self._read(cell)) is not None:
+        elif cell not in self.placed and (found := self._rewritten(cell) or self._read(cell)) is not None:
             self._open[cell] = found
             self.needs[cell] = needs = self._precedents(cell, found)
             self._trail[cell] = iter(needs)
@@ -143,13 +143,10 @@ class _Walk:
 
     def _read(self, cell: Cell) -> ir.Expression | Stencil | None:
         formula = self._workbook.content(cell).formula
-        rewritten = self._resolver.rewritten.get(cell)
-        if formula is None and rewritten is None:
+        if formula is None:
             return self._spills.anchor(cell)
         try:
-            if isinstance(rewritten, FormulaError):
-                raise rewritten
-            return self._resolver.placed(cell, formula) if rewritten is None and formula is not None else rewritten
+            return self._resolver.placed(cell, formula)
         except FormulaError as error:
             if self._strict:
                 raise
@@ -164,6 +161,16 @@ class _Walk:
         else:
             needs = [need for place in dict.fromkeys(references(found)) for need in self._counted(place)]
         return (*needs, *self._more.get(cell, ()))
+
+    def _rewritten(self, cell: Cell) -> ir.Expression | None:
+        """What stands in place of a cell's own formula, if anything does."""
+        found = self._resolver.rewritten.get(cell)
+        if not isinstance(found, FormulaError):
+            return found
+        if self._strict:
+            raise found
+        self.faults[cell] = found
+        return ir.Missing()
 
     def _counted(self, place: Cell | Area) -> Iterator[Cell]:
         cells = (place,) if isinstance(place, Cell) else _held(self._workbook, place, self._given)

@@ -21,6 +21,7 @@ MISTAKES = [
     ("Sampling", "Sobol", VALUE, "Sobol sampling is not available in this version", "Use mc"),
     ("Sampling", "dice", VALUE, "There is no sampling method 'dice'", "Use mc"),
     ("Engine", "numpi", VALUE, "There is no engine 'numpi'", "Did you mean numpy?"),
+    ("Lognorm", "mine", VALUE, "There is no RiskLognorm of 'mine'", "Use @RISK"),
     ("Range %", 100, VALUE, "Range % (100) must be above 0 and below 100", "such as 51"),
 ]
 

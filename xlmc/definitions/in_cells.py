@@ -36,9 +36,7 @@ from xlmc.workbook.model import Formula, Workbook
 
 __all__ = ["InCells", "holds_call", "read_in_cells"]
 
-_CALL: Final = re.compile(
-    r"(?<![\w.])(?:RAND|RANDBETWEEN|RANDARRAY|(?:_xll\.)?(?:Risk\w+|CB\.\w+))\s*\(", re.IGNORECASE
-)
+_CALL: Final = re.compile(r"(?<![\w.])(?:_xl\w+\.)*(?:RAND|RANDBETWEEN|RANDARRAY|Risk\w+|CB\.\w+)\s*\(", re.IGNORECASE)
 _OUTPUT: Final = re.compile(r"RiskOutput\s*\(", re.IGNORECASE)
 _TEXTS: Final = re.compile(r'"(?:[^"]|"")*"')
 _MARKS: Final = (b"rand", b"risk", b"cb.")

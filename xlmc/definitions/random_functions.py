@@ -8,6 +8,7 @@ Source: Microsoft's pages on `NORM.INV`, `BETA.INV`, … ; degrees of freedom an
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 from xlmc.definitions.in_cell_draws import Arguments, Drawn, Properties, Signature
@@ -129,12 +130,19 @@ def _array(arguments: tuple[ir.Expression, ...]) -> Drawn:
         if is_whole
         else Drawn("RANDARRAY", FAMILIES["Uniform"], {"low": low, "high": high})
     )
-    return Drawn(drawn.function, drawn.family, drawn.parameters, grid=(_size(rows), _size(columns)))
+    size = _size(rows), _size(columns)
+    if size[0] * size[1] > _MOST:
+        raise _too_many()
+    return drawn if size == (1, 1) else replace(drawn, grid=size)
 
 
 def _size(tree: ir.Expression) -> int:
     number = 1.0 if is_left_out(tree) else number_of(tree)
     if number is None or not 1 <= number <= _MOST:
-        hint = "write its rows and columns as numbers, so that each draw keeps its own stream"
-        raise FormulaError(f"the size of RANDARRAY must be a number from 1 to {_MOST:,}", hint=hint)
+        raise _too_many()
     return int(number)
+
+
+def _too_many() -> FormulaError:
+    hint = "write its rows and columns as numbers, so that each draw keeps its own stream"
+    return FormulaError(f"RANDARRAY must have a fixed size of 1 to {_MOST:,} draws", hint=hint)

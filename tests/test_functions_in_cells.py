@@ -306,6 +306,7 @@ def test_parameters_that_are_no_distribution_are_error_trials(model):
         ({"A1": "=RiskNormal(A2,1)", "A2": "=A1+RiskOutput()"}, "S!A1", "need each other in a circle"),
         ({"A1": "=RiskDiscrete({1,2},{0.5,-1})+RiskOutput()"}, "S!A1", "-1"),
         ({"A1": "=RiskNormalAlt(10%,8,90%,7)+RiskOutput()"}, "S!A1", "P10 (8) is not below P90 (7)"),
+        ({"A1": "=SUM(RANDARRAY(100,100))+RAND()+RiskOutput()"}, "S!A1", "10,001 draws in cells"),
         ({"A1": "=RAND()"}, "book.xlsx", "marks no cell as an answer"),
     ],
 )

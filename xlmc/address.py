@@ -8,7 +8,18 @@ from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
 
-__all__ = ["MAX_COLUMN", "MAX_ROW", "Area", "Cell", "column_letters", "column_number", "parse_address", "quote_sheet"]
+__all__ = [
+    "MAX_COLUMN",
+    "MAX_ROW",
+    "Area",
+    "Cell",
+    "InFormula",
+    "column_letters",
+    "column_number",
+    "host_of",
+    "parse_address",
+    "quote_sheet",
+]
 
 MAX_ROW = 1_048_576
 MAX_COLUMN = 16_384
@@ -32,6 +43,37 @@ class Cell(NamedTuple):
 
     def __str__(self) -> str:
         return f"{quote_sheet(self.sheet)}!{self.a1}"
+
+
+class InFormula(Cell):
+    """A part of a cell's formula that is treated as a cell of its own, `Sheet1!B7#2`.
+
+    Its row and column are the cell's; its sheet is one that no workbook can have, for no sheet's name holds brackets.
+
+    >>> part = InFormula.of(Cell("Data", 7, 2), "2")
+    >>> str(part), str(part.host)
+    ('Data!B7#2', 'Data!B7')
+    """
+
+    __slots__ = ()
+
+    @classmethod
+    def of(cls, host: Cell, label: str) -> InFormula:
+        """The part of a cell's formula with this label."""
+        return cls(f"{host.sheet}[{label}]", host.row, host.column)
+
+    @property
+    def host(self) -> Cell:
+        """The cell whose formula it is part of."""
+        return Cell(self.sheet.partition("[")[0], self.row, self.column)
+
+    def __str__(self) -> str:
+        return f"{self.host}#{self.sheet.partition('[')[2][:-1]}"
+
+
+def host_of(cell: Cell) -> Cell:
+    """The cell itself, or the one whose formula it is part of."""
+    return cell.host if isinstance(cell, InFormula) else cell
 
 
 @dataclass(frozen=True, slots=True, order=True)

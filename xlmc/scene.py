@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final
 
-from xlmc.address import Cell
+from xlmc.address import Cell, InFormula
 from xlmc.definitions import Assumption, Definitions, Filter
 from xlmc.errors import DefinitionError, Notice
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.workbook import Workbook
 
 __all__ = ["Scene", "condition", "filter_limits", "parameter_cells", "survey", "targets_of"]
+
+
+MOST_CALLS: Final = 10_000
+"""Draws in cells that a run may need; a block of trials holds some 0.3 MB of each."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +40,14 @@ class Scene:
 
     @property
     def notices(self) -> tuple[Notice, ...]:
-        """What was left out."""
-        return tuple(Notice(f"no forecast or filter needs the assumption {a.name!r}", a.cell) for a in self.idle)
+        """What was left out; draws in cells, which may be very many, together."""
+        calls = [a for a in self.idle if isinstance(a.cell, InFormula)]
+        rows = (a for a in self.idle if not isinstance(a.cell, InFormula))
+        found = [Notice(f"no forecast or filter needs the assumption {a.name!r}", a.cell) for a in rows]
+        if calls:
+            what = "this draw" if len(calls) == 1 else f"{len(calls):,} draws in cells, of which this is the first"
+            found.append(Notice(f"no forecast or filter needs {what}", calls[0].cell))
+        return tuple(found)
 
 
 def survey(workbook: Workbook, definitions: Definitions, more: Mapping[Cell, Iterable[Cell]] | None = None) -> Scene:
@@ -49,11 +60,11 @@ def survey(workbook: Workbook, definitions: Definitions, more: Mapping[Cell, Ite
 
     Raises:
         FormulaError: a needed formula cannot be read, or needed cells form a circle.
-        DefinitionError: assumptions need each other in a circle.
+        DefinitionError: assumptions need each other in a circle, or there are too many draws in cells.
     """
     live = {a.cell: a for a in definitions.assumptions if not a.frozen}
     held = frozenset(a.cell for a in definitions.assumptions if a.frozen)
-    resolver = Resolver(workbook, [*live, *held])
+    resolver = Resolver(workbook, [*live, *held], rewritten=definitions.rewritten)
     targets = targets_of(definitions)
     while True:  # the parameters of needed assumptions may need more cells, and these more assumptions
         graph = build_graph(resolver, targets, frozenset(live), held, more=more)
@@ -62,8 +73,18 @@ def survey(workbook: Workbook, definitions: Definitions, more: Mapping[Cell, Ite
             break
         targets = list(dict.fromkeys(targets + wanted))
     reached = tuple(a for a in live.values() if a.cell in graph.reached)
+    _refuse_too_many(reached)
     idle = tuple(a for a in definitions.assumptions if a.cell not in graph.reached)
     return Scene(graph, _stages(graph, reached), idle)
+
+
+def _refuse_too_many(reached: Sequence[Assumption]) -> None:
+    """A sheet that repeats a model in thousands of rows draws more than a run, or its report, has room for."""
+    calls = [a for a in reached if isinstance(a.cell, InFormula)]
+    if len(calls) > MOST_CALLS:
+        message = f"the forecasts and filters need {len(calls):,} draws in cells, and there is room for {MOST_CALLS:,}"
+        hint = "where rows repeat one model, mark the answer of a single row, and let the run repeat it"
+        raise DefinitionError(message, where=calls[0].row, hint=hint)
 
 
 def targets_of(definitions: Definitions) -> list[Cell]:

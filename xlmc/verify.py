@@ -10,6 +10,7 @@ from typing import Final
 from xlmc.address import Cell
 from xlmc.compile import Lowering, widened
 from xlmc.definitions import Definitions
+from xlmc.definitions.in_cells import holds_call
 from xlmc.errors import ErrorCode
 from xlmc.formula import Resolver, build_graph
 from xlmc.scene import targets_of
@@ -22,6 +23,9 @@ TOLERANCE: Final = 1e-9
 
 ROUND_OFF: Final = 1e-13
 """Where Excel saved 0, a number up to this matches: Excel makes a difference that cancels to 15 digits 0."""
+
+
+NOT_COMPARABLE: Final = "draws at random or shows results of a simulation, so there is no one value to compare"
 
 
 class Status(Enum):
@@ -41,7 +45,7 @@ class CellCheck:
     Attributes:
         expected: what Excel saved.
         got: what xlmc computes; None where it computes nothing.
-        reason: why it is unsupported.
+        reason: why it is unsupported, or cannot be compared.
     """
 
     cell: Cell
@@ -116,6 +120,8 @@ def _checked(lowering: Lowering, cell: Cell) -> CellCheck:
     def made(status: Status, got: object = None, reason: str = "") -> CellCheck:
         return CellCheck(cell, text, status, content.value, got, reason)
 
+    if holds_call(text):
+        return made(Status.VOLATILE, reason=NOT_COMPARABLE)
     fault = lowering.faults.get(cell)
     if fault is not None:
         return made(Status.UNSUPPORTED, reason=fault.message)
@@ -147,7 +153,7 @@ def _relative(expected: float, got: float) -> float:
 
 
 def groups(cells: Iterable[CellCheck]) -> list[tuple[str, Sequence[CellCheck]]]:
-    """Unsupported cells by reason, the most frequent first."""
+    """Cells by reason, the most frequent first."""
     found: dict[str, list[CellCheck]] = {}
     for cell in cells:
         found.setdefault(cell.reason, []).append(cell)

@@ -34,6 +34,7 @@ MISTAKES = [
     ("Look at", "x", "Answers!A30", "forecasts to look at are named, but not what for", "stable digits too"),
     ("Time limit", "soon", VALUE, "'soon' is no time", "such as 60s"),
     ("Time limit", 1 / 288, VALUE, "Time limit must be 1 second or more", "not a clock time"),
+    ("Lognorm", "mine", VALUE, "There is no RiskLognorm of 'mine'", "Use @RISK"),
     ("Range %", 100, VALUE, "Range % (100) must be above 0 and below 100", "such as 51"),
 ]
 

@@ -54,3 +54,8 @@ def test_shared_strings_are_read_when_a_sheet_is(book):
 def test_it_can_go_to_another_process(book):
     found = pickle.loads(pickle.dumps(book({"One": NUMBER}).sheets))
     assert found["One"].cells[1, 1].value == 5.0
+
+
+def test_sheets_that_mention_a_word_are_found_without_parsing(book):
+    sheets = book({"One": NUMBER, "Two": "<f>Rand()", "Three": BROKEN, "Four": "<f>RAND"}).sheets
+    assert list(sheets.mentioning([b"rand", b"risk"])) == ["Two", "Four"]

@@ -82,10 +82,12 @@ def _show(found: Verification) -> None:
         ]
         table("Differing", ("Cell", "Formula", "Excel saved", "xlmc", "Relative"), rows, right=(4,))
         _say_how_many_more(len(differing))
-    for reason, cells in groups(found.of(Status.UNSUPPORTED)):
-        places = ", ".join(str(cell.cell) for cell in cells[:5])
-        more = f" and {len(cells) - 5:,} more" if len(cells) > 5 else ""
-        click.echo(f"unsupported: {reason} ({places}{more})")
+    volatile = [cell for cell in found.of(Status.VOLATILE) if cell.reason]
+    for status, listed in ((Status.UNSUPPORTED, found.of(Status.UNSUPPORTED)), (Status.VOLATILE, volatile)):
+        for reason, cells in groups(listed):
+            places = ", ".join(str(cell.cell) for cell in cells[:5])
+            more = f" and {len(cells) - 5:,} more" if len(cells) > 5 else ""
+            click.echo(f"{status.value}: {reason} ({places}{more})")
 
 
 def _percent(difference: float | None) -> str:

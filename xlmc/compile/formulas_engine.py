@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.address import Area, Cell, column_letters
+from xlmc.address import Area, Cell, column_letters, host_of
 from xlmc.compile.engine import Column, Evaluator, Target, column_of
 from xlmc.compile.lower import Lowering
 from xlmc.errors import ErrorCode, FormulaError
@@ -37,7 +37,7 @@ class FormulasProgram:
         self.held: Cells = {**lowering.saved, **lowering.held}
         computed = {cell: tree for cell, tree in graph.formulas.items() if cell not in lowering.saved}
         for cell in computed:
-            formula = graph.workbook.content(cell).formula
+            formula = graph.workbook.content(host_of(cell)).formula
             if formula is None or formula.array is not None or formula.dynamic:
                 raise FormulaError("the engine `formulas` has no array formulas", where=cell, hint=_OTHER_ENGINE)
         self.cells = [(cell, _Compiled(tree, cell)) for cell, tree in computed.items()]

@@ -9,7 +9,7 @@ from typing import assert_never
 
 import numpy as np
 
-from xlmc.address import Area, Cell
+from xlmc.address import Area, Cell, host_of
 from xlmc.compile import choices, lambdas
 from xlmc.compile.arrays import cell_by_cell, element, grid, size_of
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Range
@@ -136,7 +136,7 @@ class Lowering:
         return self._recipes.lowered(stencil, leaves, lambda: self._resolved_cell(cell, stencil.at(cell)))
 
     def _resolved_cell(self, cell: Cell, tree: ir.Expression) -> int:
-        formula = self.graph.workbook.content(cell).formula
+        formula = self.graph.workbook.content(host_of(cell)).formula
         try:
             if cell in self.graph.faults:
                 raise self.graph.faults[cell]

@@ -125,9 +125,11 @@ def _told(fault: DataError, area: Area) -> DefinitionError:
     def cell(row: int, column: int) -> Cell:
         return Cell(area.sheet, area.top + row, area.left + column)
 
-    where = area if fault.row is None else cell(fault.row, fault.column or 0)
+    if fault.row is None or cell(fault.row, fault.column or 0) not in area:  # a list that is written in a formula
+        message = fault.message if fault.also is None else fault.message.format(also=area)
+        return DefinitionError(message, where=area, hint=fault.hint)
     message = fault.message if fault.also is None else fault.message.format(also=cell(*fault.also))
-    return DefinitionError(message, where=where, hint=fault.hint)
+    return DefinitionError(message, where=cell(fault.row, fault.column or 0), hint=fault.hint)
 
 
 def cached_data_family(data: DataRange, family: Family, workbook: Workbook) -> Family | None:

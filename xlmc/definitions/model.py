@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from xlmc.address import Area, Cell
 from xlmc.definitions.stopping import NO_GOAL, Stopping
 from xlmc.distributions import FAMILIES, Family
-from xlmc.errors import DefinitionError, Notice
+from xlmc.errors import DefinitionError, FormulaError, Notice
+from xlmc.formula.ir import Expression
 
 __all__ = [
     "Assumption",
@@ -40,12 +41,14 @@ class DataRange:
         rows: what stands there, row by row; None in a blank cell.
         cumulative: their weights are sums of those up to their row.
         bandwidth: of a smoothed distribution, where it is given.
+        text: what they are, for people, where that is more than the area.
     """
 
     area: Area
     rows: tuple[tuple[Parameter | None, ...], ...]
     cumulative: bool = False
     bandwidth: Parameter | None = None
+    text: str = ""
 
     @property
     def cells(self) -> Iterator[Cell]:
@@ -137,6 +140,7 @@ class Settings:
     Attributes:
         trials: how many; at most, where `stopping` has a goal or a time.
         stopping: what else ends the run.
+        lognorm: whose `RiskLognorm` is meant, `@RISK` (also where it is empty) or `XLRisk`.
     """
 
     trials: int = 200_000
@@ -144,13 +148,16 @@ class Settings:
     sampling: str = "mc"
     engine: str = "numpy"
     stopping: Stopping = NO_GOAL
+    lognorm: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Definitions:
     """Everything a workbook asks of a run, as understood.
 
-    `problems` are the mistakes found, each with its cell; a run is refused while there are any.
+    `problems` are the mistakes found, each with its cell; a run is refused while there are any. `rewritten` are the
+    formulas in which calls stand for assumptions (`=10+RiskNormal(5,1)`), with these in their place, or why a cell
+    cannot be computed; `results` are the cells that show results of the run.
     """
 
     assumptions: tuple[Assumption, ...] = ()
@@ -160,3 +167,5 @@ class Definitions:
     settings: Settings = Settings()
     notices: tuple[Notice, ...] = ()
     problems: tuple[DefinitionError, ...] = ()
+    rewritten: Mapping[Cell, Expression | FormulaError] = field(default_factory=dict)
+    results: tuple[Cell, ...] = ()

@@ -26,6 +26,7 @@ _KNOWN = ("Setting", "Value")
 _SAMPLINGS = {"mc": "mc", "montecarlo": "mc"}
 _LATER = {"lhs": "Latin hypercube", "latinhypercube": "Latin hypercube", "sobol": "Sobol"}
 _ENGINES = ("numpy", "jit", "formulas")
+_LOGNORMS = ("@RISK", "XLRisk")
 
 
 def read_settings(workbook: Workbook, tables: list[DefinitionTable], findings: Findings) -> tuple[Settings, float]:
@@ -93,6 +94,15 @@ def _engine(row: Row, _findings: Findings) -> str:
     return plain(typed)
 
 
+def _lognorm(row: Row, _findings: Findings) -> str:
+    typed = required_text(row, "Value")
+    found = {plain(name): name for name in _LOGNORMS}.get(plain(typed))
+    if found is None:
+        hint = "Use @RISK (mean and std dev of the draw) or XLRisk (of its logarithm)"
+        raise DefinitionError(f"There is no RiskLognorm of {typed!r}", where=row.cell("Value"), hint=hint)
+    return found
+
+
 def _range(row: Row, findings: Findings) -> float:
     return central_share("Range %", number_of(row, "Range %"), row.cell("Value"), findings)
 
@@ -104,5 +114,6 @@ _SETTINGS: Mapping[str, Callable[[Row, Findings], Any]] = {
     "Engine": _engine,
     "Range %": _range,
     **STOPPING_SETTINGS,
+    "Lognorm": _lognorm,
 }
 _READERS = {plain(name): reader for name, reader in _SETTINGS.items()}

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from xlmc.address import Area, Cell
+from xlmc.address import Area, Cell, host_of
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
 from xlmc.formula.circles import circular, cycle
@@ -65,7 +65,7 @@ class Graph:
 
     def text(self, cell: Cell) -> str:
         """The formula of a cell as the file holds it."""
-        formula = self.workbook.content(cell).formula
+        formula = self.workbook.content(host_of(cell)).formula
         return "" if formula is None else formula.text
 
 
@@ -139,7 +139,7 @@ class _Walk:
             self.reached.add(cell)
         elif cell in self._trail:
             self._close_circle(cell)
-        elif cell not in self.placed and (found := self._read(cell)) is not None:
+        elif cell not in self.placed and (found := self._rewritten(cell) or self._read(cell)) is not None:
             self._open[cell] = found
             self.needs[cell] = needs = self._precedents(cell, found)
             self._trail[cell] = iter(needs)
@@ -171,6 +171,16 @@ class _Walk:
             needs = [need for place in dict.fromkeys(references(found)) for need in self._counted(place)]
         return (*needs, *self._more.get(cell, ()))
 
+    def _rewritten(self, cell: Cell) -> ir.Expression | None:
+        """What stands in place of a cell's own formula, if anything does."""
+        found = self._resolver.rewritten.get(cell)
+        if not isinstance(found, FormulaError):
+            return found
+        if self._strict:
+            raise found
+        self.faults[cell] = found
+        return ir.Missing()
+
     def _counted(self, place: Cell | Area) -> Iterator[Cell]:
         cells = (place,) if isinstance(place, Cell) else _held(self._workbook, place, self._given)
         return filter(self._counts, cells)
@@ -178,7 +188,8 @@ class _Walk:
     def _counts(self, cell: Cell) -> bool:
         known = self._computed.get(cell)
         if known is None:
-            known = cell in self._given or self._workbook.content(cell).formula is not None
+            known = cell in self._given or cell in self._resolver.rewritten
+            known = known or self._workbook.content(cell).formula is not None
             self._computed[cell] = known = known or self._spills.anchor(cell) is not None
         return known
 

@@ -7,7 +7,7 @@ blank have become areas.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from typing import Final, assert_never
 
@@ -40,10 +40,19 @@ class Resolver:
     Args:
         inputs: cells that count as used although the file may hold nothing there.
         strict: whether a name that is not there is a mistake to tell of; `#NAME?` otherwise, as in Excel.
+        rewritten: resolved trees that stand in place of cells' formulas, or why a cell cannot be computed.
     """
 
-    def __init__(self, workbook: Workbook, inputs: Iterable[Cell] = (), *, strict: bool = True) -> None:
+    def __init__(
+        self,
+        workbook: Workbook,
+        inputs: Iterable[Cell] = (),
+        *,
+        strict: bool = True,
+        rewritten: Mapping[Cell, ir.Expression | FormulaError] | None = None,
+    ) -> None:
         self.workbook = workbook
+        self.rewritten = rewritten or {}
         self._strict = strict
         self._inputs = tuple(inputs)
         self._used: dict[str, tuple[int, int]] = {}

@@ -35,7 +35,7 @@ def parameters_text(assumption: Assumption) -> str:
 def _data_text(data: DataRange) -> str:
     weights = ", cumulative weights" * data.cumulative
     bandwidth = "" if data.bandwidth is None else f", Bandwidth {bound_text(data.bandwidth)}"
-    return f"Data {data.area}{weights}{bandwidth}"
+    return f"Data {data.text or data.area}{weights}{bandwidth}"
 
 
 def cutoffs_text(assumption: Assumption) -> str:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from xlmc.errors import WorkbookError
 from xlmc.report.book import build_sheets
 from xlmc.report.trials import TRIAL_ROWS
+from xlmc.result_cells import filled_sheets
 from xlmc.workbook.inject import inject
 from xlmc.workbook.writer import package_bytes, refuse_if_open, write_workbook
 
@@ -20,6 +21,8 @@ __all__ = ["save"]
 
 def save(simulation: Simulation, path: Path, *, command: str | None = None, rows: int = TRIAL_ROWS) -> Path:
     """Write the workbook with result sheets behind its own; those of an earlier run are replaced.
+
+    Cells that show results of a run, such as `RiskMean(B9)`, show this one's.
 
     Args:
         simulation: the finished run.
@@ -38,7 +41,8 @@ def save(simulation: Simulation, path: Path, *, command: str | None = None, rows
     refuse_if_open(path)
     _refuse_changed(simulation, path)
     sheets = build_sheets(simulation, command=command, rows=rows)
-    write_workbook(path, package_bytes(inject(simulation.model.workbook.parts, sheets)))
+    parts = {**simulation.model.workbook.parts, **filled_sheets(simulation)}
+    write_workbook(path, package_bytes(inject(parts, sheets)))
     return path
 
 

@@ -62,6 +62,13 @@ class LazySheets(Mapping[str, Sheet]):
         suspects = (entry for entry in self._entries.values() if _may_hold_data_table(self._parts[entry.part]))
         return [area for entry in suspects for area in self._parse(entry).data_tables]
 
+    def mentioning(self, words: Iterable[bytes]) -> Iterator[str]:
+        """The names of the sheets whose part holds one of these words, in small letters, whatever its case there."""
+        for entry in self._entries.values():
+            xml = self._parts[entry.part].lower()
+            if b"\0" in xml[:4] or any(word in xml for word in words):  # zero bytes: an encoding of its own
+                yield entry.name
+
     def _parse(self, entry: SheetEntry) -> ParsedSheet:
         if entry.name not in self._parsed:
             with told_of(self._file):

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Mapping
 from xlmc.workbook.injection.app_properties import unlist_sheets
 from xlmc.workbook.injection.book_edit import drop_pointers
 from xlmc.workbook.injection.book_prune import marked_sheets, without_sheets
+from xlmc.workbook.injection.cached_values import without_formula_values
 from xlmc.workbook.injection.content_types import drop_types
 from xlmc.workbook.injection.reach import reached
 from xlmc.workbook.injection.roles import CONTENT_TYPES, roles
@@ -59,12 +60,13 @@ def original_hash(parts: Mapping[str, bytes]) -> str:
     It is `package.hash_parts` over the user's own parts (`remove_result_sheets`), byte for byte, but for the five
     that injection may change: content types, styles and docProps/app.xml are left out; of the workbook part and its
     pointers it takes what they say (sheets, defined names, calculation settings, …, in a canonical form), without
-    window positions and without the pointer to the styles.
+    window positions and without the pointer to the styles. Where functions of @RISK or Crystal Ball stand in cells,
+    whose results a run fills in, it takes no values of formulas either.
 
     Raises:
         WorkbookError: the package is damaged.
     """
-    own = remove_result_sheets(parts)
+    own = without_formula_values(remove_result_sheets(parts))
     role = roles(own)
     untouched = {name: content for name, content in own.items() if name not in role.changing}
     said = _said(parse_spans(as_utf8(own[role.workbook], role.workbook), role.workbook))

@@ -1,0 +1,103 @@
+"""Put other cached values into formula cells of a sheet, and leave every other byte as it is."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+from xlmc.address import parse_address
+from xlmc.errors import ErrorCode
+from xlmc.workbook.injection.spans import Element
+from xlmc.workbook.injection.splice import SplicedXml, render
+from xlmc.workbook.model import CellValue
+
+__all__ = ["with_values", "without_formula_values"]
+
+_FUNCTION: Final = re.compile(rb"(?:Risk\w+|CB\.\w+)\s*\(", re.IGNORECASE)
+_FORMULA_CELL: Final = re.compile(
+    rb"(?P<cell><(?:\w+:)?c\b[^>]*>)"
+    rb"(?P<formula><(?:\w+:)?f\b(?:[^>]*/>|[^>]*>[^<]*</(?:\w+:)?f>))"
+    rb"(?:<(?:\w+:)?v\b(?:[^>]*/>|[^>]*>[^<]*</(?:\w+:)?v>))?"
+)
+_TYPE: Final = re.compile(rb"""\s+t\s*=\s*(?:"[^"]*"|'[^']*')""")
+
+
+def with_values(xml: bytes, part: str, values: Mapping[tuple[int, int], CellValue]) -> bytes:
+    """A sheet's part with these values cached in cells that are there.
+
+    Args:
+        xml: the part.
+        part: its name, for messages.
+        values: by row and column, from 1.
+
+    Raises:
+        WorkbookError: the part is not XML.
+    """
+    document = SplicedXml(xml, part)
+    for place, cell in _cells(document.root):
+        if place in values:
+            _put(document, cell, values[place])
+    return document.result()
+
+
+def without_formula_values(parts: Mapping[str, bytes]) -> dict[str, bytes]:
+    """The parts, without the cached values of formulas where any sheet calls a function of @RISK or Crystal Ball.
+
+    A run may fill in results, and all that is computed from them; what Excel itself cached there was one random draw.
+    """
+    sheets = {name: xml for name, xml in parts.items() if name.casefold().endswith(".xml") and b"sheetData" in xml}
+    if not any(_FUNCTION.search(xml) for xml in sheets.values()):
+        return dict(parts)
+    return {**parts, **{name: _FORMULA_CELL.sub(_bare, xml) for name, xml in sheets.items()}}
+
+
+def _bare(found: re.Match[bytes]) -> bytes:
+    return _TYPE.sub(b"", found["cell"]) + found["formula"]
+
+
+def _cells(root: Element) -> Iterator[tuple[tuple[int, int], Element]]:
+    """Every cell with its place; rows and cells that name none follow the one before."""
+    data = root.find("sheetData")
+    row_number = 0
+    for row in data.find_all("row") if data is not None else ():
+        row_number = int(row.attributes.get("r", row_number + 1))
+        column = 0
+        for cell in row.find_all("c"):
+            name = cell.attributes.get("r")
+            column = column + 1 if name is None else parse_address(name, "-").column  # type: ignore[union-attr]
+            yield (row_number, column), cell
+
+
+def _put(document: SplicedXml, cell: Element, value: CellValue) -> None:
+    kind, text = _written(value)
+    if cell.attributes.get("t", "n") != kind:
+        document.set(cell, "t", kind)
+    old = cell.find("v")
+    new = render(document.prefix(cell) + "v", {}, text)
+    if old is not None:
+        document.before(old, new)
+        document.remove(old)
+        return
+    formula = cell.find("f")
+    if formula is not None:
+        document.after(formula, new)
+
+
+def _written(value: CellValue) -> tuple[str, str]:
+    """The type of a cell that holds the value, and its text as XML."""
+    match value:
+        case bool():
+            return "b", str(int(value))
+        case ErrorCode():
+            return "e", value.text
+        case str():
+            return "str", _escaped(value)
+        case None:
+            return "str", ""
+        case _:
+            return "n", repr(float(value)).removesuffix(".0")
+
+
+def _escaped(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -25,6 +25,7 @@ FLOORS = [
     {"simulation", "scheduling"},
     {"simulate"},
     {"record"},
+    {"analysis"},
     {"report"},
     {"cli"},
     {"__main__"},

@@ -91,7 +91,8 @@ class Screening:
         reduced: those assumptions held and the filters left out that may be, in one run; None where no filter may.
         constant: formula cells that then do not vary any more.
         dropped: formula cells that are needed no more once the filters are left out.
-        cells: formula cells that the book as it is needs.
+        cells: how many formula cells the book as it is needs.
+        varying: how many then vary.
         runs: how many were made.
     """
 
@@ -109,7 +110,15 @@ class Screening:
     constant: tuple[Cell, ...]
     dropped: tuple[Cell, ...]
     cells: int
+    varying: int
     runs: int
+
+    @property
+    def only_alone(self) -> tuple[str, ...]:
+        """Assumptions that may be held alone, but were left out of `joint`."""
+        joint = self.joint.names if self.joint else ()
+        alone = (cost.names[0] for cost in self.single if cost.judgement.verdict is Verdict.WITHIN)
+        return tuple(name for name in alone if name not in joint)
 
     @property
     def undecided(self) -> tuple[Cost, ...]:
@@ -195,7 +204,9 @@ class _Screen:
 
         filters = tuple(left_out([f.name]) for f in model.filters)
         reduced = self._together(filters, left_out)
-        constant, dropped = self._cells(frozen, reduced.names if reduced else ())
+        without = [*map(name_key, reduced.names if reduced else ())]
+        before = model.scene.graph
+        after = varied(model, frozen=[*map(name_key, frozen)], without=without).scene.graph
         return Screening(
             run=self._run,
             tolerances=self._tolerances,
@@ -208,9 +219,10 @@ class _Screen:
             sets=tuple(self._held(names) for names in sets),
             filters=filters,
             reduced=reduced,
-            constant=constant,
-            dropped=dropped,
-            cells=len(model.scene.graph.formulas),
+            constant=tuple(c for c in sorted(after.formulas) if c in before.varying and c not in after.varying),
+            dropped=tuple(cell for cell in sorted(before.formulas) if cell not in after.formulas),
+            cells=len(before.formulas),
+            varying=sum(cell in after.varying for cell in after.formulas),
             runs=self._runs,
         )
 
@@ -279,14 +291,6 @@ class _Screen:
             values, tolerance = self._run.forecasts[forecast.name][: drawn.size], self._tolerances[forecast.name][0]
             sizes.append(_moved(values, near, forecast, tolerance))
         return max(sizes)
-
-    def _cells(self, frozen: Sequence[str], without: Sequence[str]) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
-        model = self._run.model
-        after = varied(model, frozen=[*map(name_key, frozen)], without=[*map(name_key, without)]).scene.graph
-        before = model.scene.graph
-        dropped = tuple(cell for cell in before.formulas if cell not in after.formulas)
-        still = (cell for cell in after.formulas if cell in before.varying and cell not in after.varying)
-        return tuple(sorted(still)), tuple(sorted(dropped))
 
 
 def _moved(values: Floats, near: NDArray[np.bool_], forecast: Forecast, tolerance: float) -> float:

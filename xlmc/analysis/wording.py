@@ -121,14 +121,13 @@ def inputs_text(comparison: Comparison) -> list[str]:
 
 
 def cost_text(cost: Cost, trials: int) -> str:
-    """The verdict on a change of the book, and on which number: `beyond: Delta-V, mean`."""
+    """The verdict on a change of the book: `within`, `beyond`, `undecided: needs 260,000 trials`."""
     judgement = cost.judgement
     if judgement.verdict is not Verdict.UNDECIDED:
-        return f"{judgement.verdict.value}: {judgement.largest}"
-    more = (
-        "at the tolerance" if math.isinf(judgement.times) else f"needs {_two_digits(judgement.times * trials)} trials"
-    )
-    return f"undecided: {judgement.largest}; {more}"
+        return judgement.verdict.value
+    if math.isinf(judgement.times):
+        return "undecided: at the tolerance"
+    return f"undecided: needs {_two_digits(judgement.times * trials)} trials"
 
 
 def _name(each: ForecastComparison) -> str:

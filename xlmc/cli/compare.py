@@ -118,8 +118,9 @@ def _show(found: Comparison) -> None:
 
 
 _MEANING = (
-    "± is the standard error of each number (Monte Carlo error). That of a difference allows for the draws that both books "
-    "share. A verdict clears the tolerance by three errors. It says that two models agree, not that either fits the crash."
+    "± is the standard error of each number (Monte Carlo error). That of a difference allows for the draws that both "
+    "books share. A verdict clears the tolerance by three errors. It says that two models agree, not that either fits "
+    "the crash."
 )
 
 

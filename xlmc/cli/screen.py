@@ -158,6 +158,8 @@ def _sentences(found: Screening) -> Iterable[str]:
         )
     else:
         yield "Every assumption is needed, as far as these trials tell."
+    if found.only_alone:
+        yield f"Within the tolerance alone, but not surely together with those: {'; '.join(found.only_alone)}."
     if found.reduced:
         yield (
             f"Filters that then decide nothing here: {'; '.join(found.reduced.names)}. Without them no number moves by "
@@ -167,8 +169,7 @@ def _sentences(found: Screening) -> Iterable[str]:
         yield f"Formula cells that then do not vary: {', '.join(map(str, found.constant))}."
     if found.dropped:
         yield f"Formula cells that then are not needed: {', '.join(map(str, found.dropped))}."
-    left = found.cells - len(found.dropped) - len(found.constant)
-    yield f"Of {found.cells} formula cells that the book needs, {left} remain to be evaluated in every trial, or fewer."
+    yield f"Of {found.cells} formula cells that the book needs, {found.varying} then vary."
     if found.undecided:
         names = "; ".join(name for cost in found.undecided for name in cost.names)
         yield f"Undecided at {found.run.trials:,} trials, and therefore kept: {names}."
@@ -202,6 +203,7 @@ def _as_json(found: Screening) -> dict[str, object]:
         "filters_left_out_together": None if found.reduced is None else _entry(found.reduced, found),
         "cells": {
             "needed": found.cells,
+            "varying_then": found.varying,
             "constant_then": [str(cell) for cell in found.constant],
             "not_needed_then": [str(cell) for cell in found.dropped],
         },

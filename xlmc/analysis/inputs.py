@@ -20,7 +20,7 @@ from xlmc.simulation import Simulation
 __all__ = ["Inputs", "Unlike", "inputs_of"]
 
 SAME: Final = 1e-9
-"""Of the larger draw: draws that differ by less are of one distribution, rounded in another unit at most."""
+"""Of the largest draw: draws that differ by less are of one distribution, rounded in another unit at most."""
 
 Floats = NDArray[np.float64]
 
@@ -79,7 +79,11 @@ def _drawn_only(mine: Mapping[str, Assumption], theirs: Mapping[str, Assumption]
 
 def _draws_alike(first: Assumption, second: Assumption, mine: Floats, theirs: Floats) -> bool:
     factor = factor_between(second.units, first.units)
-    return factor is not None and np.allclose(theirs * factor, mine, rtol=SAME, atol=0.0, equal_nan=True)
+    if factor is None:
+        return False
+    n = min(mine.size, theirs.size)  # as many as both have kept
+    atol = SAME * float(np.nanmax(np.abs(mine), initial=0.0))
+    return np.allclose(theirs[:n] * factor, mine[:n], rtol=0.0, atol=atol, equal_nan=True)
 
 
 def _held_alike(first: Assumption, second: Assumption) -> bool:

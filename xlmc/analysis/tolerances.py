@@ -32,8 +32,8 @@ CERTAINTY: Final = 3.0
 SHARE_OF_SD: Final = 0.1
 """Of a forecast's standard deviation: the tolerance where none is stated."""
 
-MOST_TIMES: Final = 1e4
-"""So many times the trials, and more, are not worth asking for."""
+AT_THE_TOLERANCE: Final = 0.05
+"""Of the tolerance: a difference known to be this near to it is as large as the tolerance, and stays undecided."""
 
 
 class Verdict(Enum):
@@ -50,8 +50,8 @@ class Judgement:
 
     Attributes:
         largest: the name of the number that is farthest off, measured in its tolerance.
-        times: how many times the trials would decide, about; 1 where they have, infinite where the difference is as
-            large as the tolerance.
+        times: how many times the trials would decide, about, and at most 9, for the difference itself is a guess as
+            yet; 1 where they have, infinite where the difference is as large as the tolerance.
     """
 
     verdict: Verdict
@@ -88,9 +88,10 @@ def _judge(difference: Estimate, tolerance: float) -> tuple[Verdict, float]:
         return Verdict.WITHIN, 1.0
     if size - margin > tolerance:
         return Verdict.BEYOND, 1.0
-    room = abs(tolerance - size)
-    times = (margin / room) ** 2 if room else math.inf
-    return Verdict.UNDECIDED, times if times < MOST_TIMES else math.inf
+    if margin < AT_THE_TOLERANCE * tolerance:
+        return Verdict.UNDECIDED, math.inf
+    # How near it is to the tolerance is known to an error only: nearer than that may be chance.
+    return Verdict.UNDECIDED, (margin / max(abs(tolerance - size), difference.error)) ** 2
 
 
 def in_tolerances(difference: Estimate, tolerance: float) -> float:

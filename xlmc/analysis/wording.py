@@ -104,7 +104,7 @@ def _more(judgement: Judgement, comparison: Comparison) -> str:
 
 def _two_digits(trials: float) -> str:
     """Rounded up, for the number is a guess: 10,423,263 -> 11,000,000."""
-    step = 10 ** max(0, math.floor(math.log10(trials)) - 1)
+    step = int(10.0 ** max(0, math.floor(math.log10(trials)) - 1))
     return f"{math.ceil(trials / step) * step:,}"
 
 

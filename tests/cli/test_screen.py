@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 
 def test_the_case_study(xlmc, case_study):
@@ -19,6 +20,21 @@ def test_the_case_study(xlmc, case_study):
     spread = asked["forecasts"]["Nissan impact speed"]["standard_deviation"]["difference"]
     assert spread["value"] < -3 * spread["error"]
     assert {"Model!D7", "Model!D8"} <= set(found["cells"]["constant_then"])  # the masses
+
+
+def test_the_case_study_in_words(xlmc, case_study):
+    geometry = "*impact centre*, Orientation of tangent"
+    outcome = xlmc("screen", case_study, "--tolerance", "0.4 mph", "--freeze", geometry, "-n", "100000")
+    assert outcome.code == 0
+    alone, _, rest = outcome.out.partition("Held at once, as asked")
+    asked, _, text = rest.partition("Each filter left out")
+    assert re.search(r"Orientation of (tangent)? +\d", alone)  # its row, with the cost; names go on in the next line
+    assert re.search(r"Chevrolet impact (centre)? +\d", alone)
+    assert re.search(r"Chevrolet impact (centre)? +\d", asked)
+    needless = " ".join(text.split()).partition("Not needed: ")[2].partition("With all of them held")[0]
+    assert "Chevrolet yaw moment of inertia" in needless
+    assert "Nissan yaw moment of inertia" in needless
+    assert "Formula cells that then do not vary: Model!D7, Model!D8" in text
 
 
 def test_what_is_printed(xlmc, case_study):

@@ -10,7 +10,7 @@ from xlmc.analysis.screening import Cost
 from xlmc.analysis.tolerances import Judgement, Verdict
 from xlmc.statistics import Estimate, format_estimate
 
-__all__ = ["book_names", "cost_text", "inputs_text", "verdict_text"]
+__all__ = ["book_names", "inputs_text", "undecided_text", "verdict_text"]
 
 
 def book_names(comparison: Comparison) -> tuple[str, str]:
@@ -104,8 +104,8 @@ def _more(judgement: Judgement, comparison: Comparison) -> str:
 
 def _two_digits(trials: float) -> str:
     """Rounded up, for the number is a guess: 10,423,263 -> 11,000,000."""
-    step = int(10.0 ** max(0, math.floor(math.log10(trials)) - 1))
-    return f"{math.ceil(trials / step) * step:,}"
+    step = math.pow(10.0, max(0, math.floor(math.log10(trials)) - 1))
+    return f"{math.ceil(trials / step) * step:,.0f}"
 
 
 def inputs_text(comparison: Comparison) -> list[str]:
@@ -120,14 +120,12 @@ def inputs_text(comparison: Comparison) -> list[str]:
     return lines
 
 
-def cost_text(cost: Cost, trials: int) -> str:
-    """The verdict on a change of the book: `within`, `beyond`, `undecided: needs 260,000 trials`."""
-    judgement = cost.judgement
-    if judgement.verdict is not Verdict.UNDECIDED:
-        return judgement.verdict.value
-    if math.isinf(judgement.times):
-        return "undecided: at the tolerance"
-    return f"undecided: needs {_two_digits(judgement.times * trials)} trials"
+def undecided_text(cost: Cost, trials: int) -> str:
+    """A change that is undecided, and what would decide it: `Weight (about 260,000 trials would decide)`."""
+    names = ", ".join(cost.names)
+    if math.isinf(cost.judgement.times):
+        return f"{names} (as large as the tolerance)"
+    return f"{names} (about {_two_digits(cost.judgement.times * trials)} trials would decide)"
 
 
 def _name(each: ForecastComparison) -> str:

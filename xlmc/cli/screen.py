@@ -86,12 +86,14 @@ def screen(
 
 def _show(found: Screening) -> None:
     name, trials = found.run.model.workbook.name, found.run.trials
-    _table(found, f"{name}: each assumption held at its base value, the least expected cost first", found.single)
+    expected = [f"{each.size:.2g}" for each in found.expected]
+    title = f"{name}: each assumption held at its base value, the least expected cost first"
+    _table(found, title, found.single, ("Held", _names(found.single)), ("Expected", expected))
     if found.sets:
-        _table(found, "Held at once, as asked", found.sets)
+        _table(found, "Held at once, as asked", found.sets, ("Held", _names(found.sets)))
     if found.filters:
         held = " with the assumptions below held" if found.joint else ""
-        _table(found, f"Each filter left out{held}", found.filters)
+        _table(found, f"Each filter left out{held}", found.filters, ("Left out", _names(found.filters)))
     for sentence in _sentences(found):
         click.echo(click.wrap_text(sentence, width=100))
     click.echo(
@@ -103,26 +105,27 @@ def _show(found: Screening) -> None:
     )
 
 
-def _table(found: Screening, title: str, costs: Sequence[Cost]) -> None:
-    """What each change moves: of every forecast, the number that it moves most."""
-    from xlmc.analysis.wording import cost_text
+def _table(found: Screening, title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> None:
+    """What each change moves: of every forecast, the number that it moves most. `first` are columns with headings."""
     from xlmc.cli.printing import table
 
-    headings = ["Held" if costs and costs[0] not in found.filters else "Left out", "Expected", "Cost", "Accepted, %"]
+    headings = [*(heading for heading, _ in first), "Cost", "Accepted, %"]
     headings += [_heading(found, name) for name in found.tolerances]
-    expected = {each.name: f"{each.size:.2g}" for each in found.expected}
     rows = [
         [
-            ", ".join(cost.names),
-            expected.get(cost.names[0], "") if len(cost.names) == 1 else "",
+            *(column[place] for _, column in first),
             f"{cost.size:.2g}",
             _percent(cost),
             *(_most_moved(cost, name) for name in found.tolerances),
-            cost_text(cost, found.run.trials),
+            cost.judgement.verdict.value,
         ]
-        for cost in costs
+        for place, cost in enumerate(costs)
     ]
     table(title, [*headings, "Verdict"], rows, right=range(1, len(headings)))
+
+
+def _names(costs: Sequence[Cost]) -> list[str]:
+    return [", ".join(cost.names) for cost in costs]
 
 
 def _heading(found: Screening, name: str) -> str:
@@ -146,7 +149,12 @@ def _most_moved(cost: Cost, name: str) -> str:
 
 
 def _sentences(found: Screening) -> Iterable[str]:
-    yield f"Tolerances: {_tolerances(found)}. Cost and expected cost are the largest move, measured in its tolerance."
+    from xlmc.analysis.wording import undecided_text
+
+    yield (
+        "Under each forecast: the largest move of mean, SD and both ends of its central range. Cost and expected cost: the "
+        f"largest of all moves, measured in its tolerance. Tolerances: {_tolerances(found)}."
+    )
     if found.idle:
         yield f"No forecast or filter needs {'; '.join(found.idle)}."
     if found.baseless:
@@ -171,7 +179,7 @@ def _sentences(found: Screening) -> Iterable[str]:
         yield f"Formula cells that then are not needed: {', '.join(map(str, found.dropped))}."
     yield f"Of {found.cells} formula cells that the book needs, {found.varying} then vary."
     if found.undecided:
-        names = "; ".join(name for cost in found.undecided for name in cost.names)
+        names = "; ".join(undecided_text(cost, found.run.trials) for cost in found.undecided)
         yield f"Undecided at {found.run.trials:,} trials, and therefore kept: {names}."
 
 

@@ -101,9 +101,9 @@ def quantile_of(run: Accepted, p: float) -> Statistic:
     if found.error is None:
         return Statistic(found, None)
     below = run.values <= found.value
+    if below.all():  # the quantile is the largest value, which many trials have: the first of them count as below
+        below[np.argsort(run.values, kind="stable")[max(1, int(p * run.m)) :]] = False
     share = float(below.mean())
-    if not 0.0 < share < 1.0:
-        return Statistic(found, None)
     step = found.error / (run.m * share * (1.0 - share)) ** 0.5
     return Statistic(found, Influence((share - below) * step, step))
 

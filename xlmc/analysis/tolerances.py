@@ -49,7 +49,7 @@ class Judgement:
     """A verdict.
 
     Attributes:
-        largest: the name of the number that is farthest off, measured in its tolerance.
+        largest: of the numbers that make the verdict, the one that is farthest off, measured in its tolerance.
         times: how many times the trials would decide, about, and at most 9, for the difference itself is a guess as
             yet; 1 where they have, infinite where the difference is as large as the tolerance.
     """
@@ -69,15 +69,12 @@ def judge(differences: Mapping[str, tuple[Estimate, float]]) -> Judgement:
     <Verdict.WITHIN: 'within'>
     """
     single = {name: _judge(*each) for name, each in differences.items()}
-    largest = max(differences, key=lambda name: in_tolerances(*differences[name]), default="")
-    verdicts = {verdict for verdict, _ in single.values()}
-    if Verdict.BEYOND in verdicts:
-        beyond = (name for name in differences if single[name][0] is Verdict.BEYOND)
-        return Judgement(Verdict.BEYOND, max(beyond, key=lambda name: in_tolerances(*differences[name])))
-    if Verdict.UNDECIDED in verdicts:
-        times = max(times for verdict, times in single.values() if verdict is Verdict.UNDECIDED)
-        return Judgement(Verdict.UNDECIDED, largest, times)
-    return Judgement(Verdict.WITHIN, largest)
+    for verdict in (Verdict.BEYOND, Verdict.UNDECIDED, Verdict.WITHIN):
+        names = [name for name, (found, _) in single.items() if found is verdict]
+        if names:
+            largest = max(names, key=lambda name: in_tolerances(*differences[name]))
+            return Judgement(verdict, largest, max(single[name][1] for name in names))
+    raise ValueError("there is no difference to judge")
 
 
 def _judge(difference: Estimate, tolerance: float) -> tuple[Verdict, float]:

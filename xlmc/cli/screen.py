@@ -152,8 +152,8 @@ def _sentences(found: Screening) -> Iterable[str]:
     from xlmc.analysis.wording import undecided_text
 
     yield (
-        "Under each forecast: the largest move of mean, SD and both ends of its central range. Cost and expected cost: the "
-        f"largest of all moves, measured in its tolerance. Tolerances: {_tolerances(found)}."
+        "Under each forecast: the largest move of mean, SD and both ends of its central range. Cost and expected cost: "
+        f"the largest of all moves, measured in its tolerance. Tolerances: {_tolerances(found)}."
     )
     if found.idle:
         yield f"No forecast or filter needs {'; '.join(found.idle)}."

@@ -6,11 +6,13 @@ Holding b at 1/2 leaves the mean and takes w²/12 from the variance: the SD fall
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
-from xlmc.analysis import Verdict, screen
+from xlmc.analysis import Verdict, compare, screen
 from xlmc.errors import SimulationError
+from xlmc.model import Model
 
 SIZE = {"trials": 20_000, "seed": 1}
 
@@ -141,6 +143,16 @@ def test_the_model_stays_as_it_is(weighted):
     screen(model, **SIZE)
     assert model.definitions is before
     assert not any(a.frozen for a in model.assumptions)
+
+
+def test_the_trials_are_independent_whatever_the_book_says(weighted):
+    model = weighted({"a": 1.0, "b": 0.01})
+    settings = replace(model.definitions.settings, sampling="sobol")
+    other = Model(model.workbook, replace(model.definitions, settings=settings), model.path)
+    found, plain = screen(other, **SIZE), screen(model, **SIZE)
+    assert found.run.settings.sampling == "mc"
+    assert cost_of(found, "b").size == cost_of(plain, "b").size
+    assert compare(other, other, **SIZE).second.settings.sampling == "mc"
 
 
 INERTIAS = {"Chevrolet yaw moment of inertia", "Nissan yaw moment of inertia"}

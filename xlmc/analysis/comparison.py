@@ -13,6 +13,7 @@ from xlmc.analysis.influences import Accepted
 from xlmc.analysis.inputs import Inputs, inputs_of
 from xlmc.analysis.tolerances import Judgement, Tolerances, Verdict, in_tolerances, judge, read_tolerances
 from xlmc.analysis.units import factor_between
+from xlmc.analysis.variations import plainly_sampled
 from xlmc.definitions import Forecast
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
@@ -114,7 +115,8 @@ def compare(
 ) -> Comparison:
     """Run two books of one scene over the same trials, and judge whether their answers agree.
 
-    An assumption of the same name takes the same random numbers in both. Forecasts are paired by name.
+    An assumption of the same name takes the same random numbers in both. Forecasts are paired by name. The trials are
+    plain Monte Carlo, whatever the books' settings say.
 
     Args:
         first: a book; numbers are given in its units.
@@ -133,6 +135,7 @@ def compare(
         SimulationError: no forecast has a counterpart, a pair has units of two kinds, or an argument is out of its
             range.
     """
+    first, second = plainly_sampled(first), plainly_sampled(second)
     matched = _matched(first, second, pairs or {})
     factors = [_factor(*pair) for pair in matched]
     stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, [mine for mine, _ in matched])

@@ -26,7 +26,7 @@ from xlmc.address import Cell
 from xlmc.analysis.differences import Acceptance, Difference, acceptance, difference
 from xlmc.analysis.influences import Accepted
 from xlmc.analysis.tolerances import Judgement, Tolerances, Verdict, in_tolerances, judge, read_tolerances
-from xlmc.analysis.variations import varied
+from xlmc.analysis.variations import plainly_sampled, varied
 from xlmc.definitions import Assumption, Forecast
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
@@ -141,7 +141,7 @@ def screen(
 ) -> Screening:
     """Find which assumptions may be held, and which filters left out, without moving an answer beyond the tolerance.
 
-    The model and its workbook stay as they are.
+    The model and its workbook stay as they are. The trials are plain Monte Carlo, whatever its settings say.
 
     Args:
         model: to screen.
@@ -165,7 +165,7 @@ def screen(
     wanted = [_names_of(pattern, model) for pattern in sets]
     tell = told or (lambda _: None)
     tell("the book as it is")
-    run = model.simulate(trials, seed, engine=engine, jobs=jobs)
+    run = plainly_sampled(model).simulate(trials, seed, engine=engine, jobs=jobs)
     if run.accepted < 2:
         message = f"{run.accepted} of {run.trials:,} trials were accepted, too few to compare anything with"
         raise SimulationError(message, hint="run more trials, or see whether the filters contradict the assumptions")

@@ -14,7 +14,7 @@ from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
 from xlmc.model import Model
 
-__all__ = ["varied"]
+__all__ = ["plainly_sampled", "varied"]
 
 
 def varied(
@@ -40,6 +40,15 @@ def varied(
         assumptions=tuple(_assumption(a, frozen, drawn_as or {}) for a in model.assumptions),
         filters=tuple(f for f in model.filters if name_key(f.name) not in without),
     )
+    return Model(model.workbook, definitions, model.path)
+
+
+def plainly_sampled(model: Model) -> Model:
+    """The model with plain Monte Carlo for its sampling: differences are judged from trials that are independent."""
+    settings = model.definitions.settings
+    if settings.sampling == "mc":
+        return model
+    definitions = replace(model.definitions, settings=replace(settings, sampling="mc"))
     return Model(model.workbook, definitions, model.path)
 
 

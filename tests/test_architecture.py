@@ -25,6 +25,7 @@ FLOORS = [
     {"simulation", "scheduling"},
     {"simulate", "result_cells"},
     {"record"},
+    {"analysis"},
     {"report"},
     {"cli"},
     {"__main__"},

@@ -12,14 +12,22 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from xlmc.analysis import compare, screen
     from xlmc.model import Model, load
     from xlmc.simulation import ForecastResult, Simulation
 
-__all__ = ["ForecastResult", "Model", "Simulation", "__version__", "load"]
+__all__ = ["ForecastResult", "Model", "Simulation", "__version__", "compare", "load", "screen"]
 
 __version__ = "0.1.0"
 
-_HOMES = {"ForecastResult": "simulation", "Model": "model", "Simulation": "simulation", "load": "model"}
+_HOMES = {
+    "ForecastResult": "simulation",
+    "Model": "model",
+    "Simulation": "simulation",
+    "compare": "analysis",
+    "load": "model",
+    "screen": "analysis",
+}
 
 
 def __getattr__(name: str) -> Any:

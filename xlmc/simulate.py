@@ -90,7 +90,9 @@ def simulate(
             finished = next(blocks)
             counting = watch.counting(finished)
             if counting < finished.trials:
-                finished = worker_of(model, program, settings.engine, settings.seed, block).run(task(gathered.trials, counting))
+                finished = worker_of(model, program, settings.engine, settings.seed, block).run(
+                    task(gathered.trials, counting)
+                )
             gathered.add(finished)
             interruption.keeping = True
             stopped = watch.after(finished, gathered.forecast, interrupted=interruption.asked)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import click
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
 
     from xlmc.errors import Notice
 
-__all__ = ["console", "notices", "table"]
+__all__ = ["console", "notices", "table", "telling"]
 
 _PIPE_WIDTH = 160
 
@@ -43,3 +44,16 @@ def notices(found: Sequence[Notice]) -> None:
     """Print what the person should know, to stderr."""
     for notice in found:
         click.echo(f"note: {notice}", err=True)
+
+
+@contextmanager
+def telling(quiet: bool) -> Iterator[Callable[[str], None] | None]:
+    """On stderr, what is running, while it runs; None where there is no terminal to say it on."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.markup import escape
+
+    with Console(stderr=True).status("") as status:
+        yield lambda what: status.update(escape(f"running: {what}"))

@@ -1,0 +1,123 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import openpyxl
+import pytest
+from openpyxl.worksheet.table import Table
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+QUICK = "-n", "20000"
+
+
+def book(path, formula, units="mph", name="Speed", above=None):
+    """`a` and `b`, uniform on (0, 1), in Inputs!B2:B3; one forecast and perhaps one filter on `a`."""
+    made = openpyxl.Workbook()
+    sheet = made.active
+    sheet.title = "Inputs"
+    for row in (["Name", "Value", "Low", "High"], ["a", 0.5, 0, 1], ["b", 0.5, 0, 1]):
+        sheet.append(row)
+    sheet["F1"] = formula
+    sheet.add_table(Table(displayName="xlmc_assumptions", ref="A1:D3"))
+    answers = made.create_sheet("Answers")
+    answers.append(["Name", "Cell", "Units"])
+    answers.append([name, "=Inputs!F1", units])
+    answers.add_table(Table(displayName="xlmc_forecasts", ref="A1:C2"))
+    if above is not None:
+        answers["E1"], answers["F1"], answers["G1"], answers["H1"] = "Name", "Cell", "Above", "Because"
+        answers["E2"], answers["F2"], answers["G2"], answers["H2"] = "fast", "=Inputs!B2", above, "seen"
+        answers.add_table(Table(displayName="xlmc_filters", ref="E1:H2"))
+    made.save(path)
+    return path
+
+
+@pytest.fixture
+def books(tmp_path):
+    first = book(tmp_path / "rich.xlsx", "=B2+B3", above=0.5)
+    return first, book(tmp_path / "plain.xlsx", "=B2+B3")
+
+
+def test_within(xlmc, books):
+    outcome = xlmc("compare", *books, "--tolerance", "0.5 mph", *QUICK)
+    assert outcome.code == 0
+    assert "The simpler model, plain.xlsx, is enough for Speed to 0.5 mph." in outcome.out
+    assert "rich.xlsx alone 0" in outcome.out
+    assert "Wasserstein-1" in outcome.out
+
+
+def test_beyond_is_a_verdict_with_its_cause(xlmc, books):
+    outcome = xlmc("compare", *books, "--tolerance", "Speed=0.1", *QUICK)
+    assert outcome.code == 0
+    text = " ".join(outcome.out.split())
+    assert "is not enough for Speed to 0.1 mph" in text
+    assert "because the filter 'fast' of rich.xlsx conditions it; without it" in text
+
+
+def test_no_causes_makes_no_further_runs(xlmc, books):
+    outcome = xlmc("compare", *books, "--tolerance", "0.1", "--no-causes", "--json", *QUICK)
+    found = json.loads(outcome.out)
+    assert found["runs"] == 2
+    assert "cause" not in found["forecasts"][0]
+
+
+def test_undecided_is_exit_code_1(xlmc, books):
+    outcome = xlmc("compare", *books, "--tolerance", "0.25", "-n", "200")
+    assert outcome.code == 1
+    assert "Undecided for Speed at 200 trials" in outcome.out
+
+
+def test_json(xlmc, books):
+    outcome = xlmc("compare", *books, "--tolerance", "0.1", "--json", *QUICK)
+    assert outcome.code == 0
+    found = json.loads(outcome.out)
+    assert found["simpler"] == "plain.xlsx"
+    (speed,) = found["forecasts"]
+    assert speed["verdict"] == "beyond"
+    assert speed["cause"]["taken_out"] == [{"kind": "filter", "book": "rich.xlsx", "name": "fast"}]
+    mean = speed["mean"]["difference"]
+    assert abs(mean["value"] + 0.25) < 4 * mean["error"]
+    assert found["filters_only_in"] == {"rich.xlsx": ["fast"], "plain.xlsx": []}
+
+
+def test_pairs_and_units(xlmc, tmp_path):
+    first = book(tmp_path / "mph.xlsx", "=B2+B3")
+    second = book(tmp_path / "metric.xlsx", "=(B2+B3)*1.609344", "km/h", "v")
+    assert "no forecast has the same name" in xlmc("compare", first, second).err
+    outcome = xlmc("compare", first, second, "--pair", "Speed=v", "--tolerance", "1e-6", *QUICK)
+    assert outcome.code == 0
+    assert "Speed (second converted)" in outcome.out
+    third = book(tmp_path / "angle.xlsx", "=B2", "deg", "Speed")
+    outcome = xlmc("compare", first, third)
+    assert outcome.code == 2
+    assert "Inputs!F1: the forecasts 'Speed' and 'Speed' have the units 'mph' and 'deg'" in outcome.err
+
+
+@pytest.mark.parametrize("pair", ["Speed", "=v", "Speed="])
+def test_pairs_that_are_none(xlmc, books, pair):
+    outcome = xlmc("compare", *books, "--pair", pair)
+    assert outcome.code == 2
+    assert "must be written" in outcome.err
+
+
+def test_a_forecast_in_two_pairs(xlmc, books):
+    outcome = xlmc("compare", *books, "--pair", "Speed=v", "--pair", "Speed=w")
+    assert outcome.code == 2
+    assert "names a forecast that another pair names" in outcome.err
+
+
+def test_nothing_accepted_is_a_warning_and_exit_code_1(xlmc, books, tmp_path):
+    never = book(tmp_path / "never.xlsx", "=B2+B3", above=2)
+    outcome = xlmc("compare", books[1], never, *QUICK)
+    assert outcome.code == 1
+    assert "never.xlsx: no trial was accepted" in outcome.err
+
+
+def test_the_case_study_on_two_rungs(xlmc):
+    rungs = EXAMPLES / "intersection.xlsx", EXAMPLES / "intersection-momentum.xlsx"
+    outcome = xlmc("compare", *rungs, "--tolerance", "1.5 mph", "-n", "100000")
+    assert outcome.code == 0
+    text = " ".join(outcome.out.split())
+    assert "is enough for Chevrolet delta-V to 1.5 mph, Nissan delta-V to 1.5 mph and Chevrolet impact speed" in text
+    assert "because the filter 'Restitution, tangential' of intersection.xlsx conditions it" in text
+    assert "they give one number: only what they accept differs" in text

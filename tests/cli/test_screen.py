@@ -1,0 +1,63 @@
+from __future__ import annotations
+
+import json
+import re
+
+
+def test_the_case_study(xlmc, case_study):
+    """The inertias are not needed; what impact centre and tangent cost stands in the table, alone and together."""
+    geometry = "*impact centre*, Orientation of tangent"
+    outcome = xlmc("screen", case_study, "--tolerance", "0.4 mph", "--freeze", geometry, "-n", "100000", "--json")
+    assert outcome.code == 0
+    found = json.loads(outcome.out)
+    held = set(found["held_together"]["names"])
+    assert {"Chevrolet yaw moment of inertia", "Nissan yaw moment of inertia"} <= held
+    costs = {entry["names"][0]: entry for entry in found["held_alone"]}
+    assert len(costs) == 17
+    assert sum("impact centre" in name for name in costs) == 4
+    (asked,) = found["held_as_asked"]
+    assert len(asked["names"]) == 5
+    spread = asked["forecasts"]["Nissan impact speed"]["standard_deviation"]["difference"]
+    assert spread["value"] < -3 * spread["error"]
+    assert {"Model!D7", "Model!D8"} <= set(found["cells"]["constant_then"])  # the masses
+
+
+def test_the_case_study_in_words(xlmc, case_study):
+    geometry = "*impact centre*, Orientation of tangent"
+    outcome = xlmc("screen", case_study, "--tolerance", "0.4 mph", "--freeze", geometry, "-n", "100000")
+    assert outcome.code == 0
+    alone, _, rest = outcome.out.partition("Held at once, as asked")
+    asked, _, text = rest.partition("Each filter left out")
+    assert re.search(r"Orientation of (tangent)? +\d", alone)  # its row, with the cost; names go on in the next line
+    assert re.search(r"Chevrolet impact (centre)? +\d", alone)
+    assert re.search(r"Chevrolet impact[a-z ,]* \d", asked)
+    needless = " ".join(text.split()).partition("Not needed: ")[2].partition("With all of them held")[0]
+    assert "Chevrolet yaw moment of inertia" in needless
+    assert "Nissan yaw moment of inertia" in needless
+    assert "Formula cells that then do not vary: Model!D7, Model!D8" in text
+
+
+def test_what_is_printed(xlmc, case_study):
+    outcome = xlmc(
+        "screen", case_study, "--tolerance", "Nissan impact speed=1 mph", "--acceptance", "25", "-n", "30000"
+    )
+    assert outcome.code == 0
+    text = " ".join(outcome.out.split())
+    assert "Nissan impact speed 1 mph; acceptance 25 % of itself" in text
+    assert "Chevrolet delta-V" in text
+    assert "(a tenth of the SD)" in text
+    assert "Undecided at 30,000 trials, and therefore kept:" in text
+    assert "Of 42 formula cells that the book needs" in text
+    assert "runs of 30,000 trials, seed 999" in text
+
+
+def test_a_pattern_that_fits_nothing(xlmc, case_study):
+    outcome = xlmc("screen", case_study, "--freeze", "*wheelbase*")
+    assert outcome.code == 2
+    assert "no assumption that is drawn has the name '*wheelbase*'" in outcome.err
+
+
+def test_a_tolerance_that_cannot_be_read(xlmc, case_study):
+    outcome = xlmc("screen", case_study, "--tolerance", "small")
+    assert outcome.code == 2
+    assert "the tolerance 'small' cannot be read" in outcome.err

@@ -1,0 +1,192 @@
+"""`xlmc compare`: do two models of a scene give the same answer?"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from xlmc.analysis import Comparison, ForecastComparison
+    from xlmc.analysis.causes import Step
+
+__all__ = ["compare"]
+
+UNDECIDED = 1
+
+
+@click.command()
+@click.argument("first", type=click.Path(path_type=Path))
+@click.argument("second", type=click.Path(path_type=Path))
+@click.option(
+    "--tolerance",
+    multiple=True,
+    help="What difference counts as none: 0.5, '0.5 mph', '10 %' of the SD, 'Name=0.5 mph'; may be given several"
+    " times.  [default: 10 %]",
+)
+@click.option("--pair", multiple=True, help="'A=B': forecast A of the first book is forecast B of the second.")
+@click.option("-n", "--trials", type=click.IntRange(1), help="Trials of each run.  [default: the books' larger number]")
+@click.option("--seed", type=click.IntRange(0), help="Seed of each run.  [default: the first book's]")
+@click.option("--engine", type=click.Choice(["numpy", "jit", "formulas"]), help="As for xlmc simulate.")
+@click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes.")
+@click.option("--no-causes", is_flag=True, help="Do not look for what makes the difference.")
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+def compare(
+    first: Path,
+    second: Path,
+    tolerance: tuple[str, ...],
+    pair: tuple[str, ...],
+    trials: int | None,
+    seed: int | None,
+    engine: str | None,
+    jobs: int,
+    no_causes: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Run FIRST and SECOND over the same trials, and say whether the simpler one is enough."""
+    from xlmc import analysis
+    from xlmc.cli.printing import telling
+    from xlmc.model import load
+
+    books = load(first), load(second)
+    with telling(quiet) as told:
+        found = analysis.compare(
+            *books,
+            tolerance,
+            pairs=_pairs(pair),
+            trials=trials,
+            seed=seed,
+            engine=engine,
+            jobs=jobs,
+            causes=not no_causes,
+            told=told,
+        )
+    if as_json:
+        click.echo(json.dumps(_as_json(found), indent=2, ensure_ascii=False))
+    else:
+        _show(found)
+    warnings = [f"{run.model.path.name}: {warning}" for run in (found.first, found.second) for warning in run.warnings]
+    for warning in warnings:
+        click.echo(f"warning: {warning}; the answer must not be used as it stands.", err=True)
+    if warnings or found.of(analysis.Verdict.UNDECIDED):
+        raise click.exceptions.Exit(UNDECIDED)
+
+
+def _pairs(given: tuple[str, ...]) -> dict[str, str]:
+    """Name in the first book -> name in the second.
+
+    Raises:
+        UsageError: a pair is not written as one, or a forecast is in two.
+    """
+    found: dict[str, str] = {}
+    for text in given:
+        mine, equals, theirs = (part.strip() for part in text.partition("="))
+        if not (mine and equals and theirs):
+            raise click.UsageError(f"--pair {text!r} must be written 'name in the first=name in the second'.")
+        if mine in found or theirs in found.values():
+            raise click.UsageError(f"--pair {text!r} names a forecast that another pair names.")
+        found[mine] = theirs
+    return found
+
+
+def _show(found: Comparison) -> None:
+    from xlmc.analysis.wording import book_names, inputs_text, verdict_text
+    from xlmc.cli.printing import table
+    from xlmc.report.summary import estimate_text
+
+    books = book_names(found)
+    rows = [row for each in found.forecasts for row in _rows(each)]
+    headings = ("Forecast", "Units", "", *books, "Difference", "Tolerance")
+    table(f"{books[0]} and {books[1]}: accepted trials", headings, rows, right=(3, 4, 5, 6))
+    accepted, trials = found.acceptance, found.first.trials
+    click.echo(
+        f"Of {trials:,} trials both accept {accepted.both:,}; {books[0]} alone {accepted.first_only:,}, "
+        f"{books[1]} alone {accepted.second_only:,}; seed {found.first.settings.seed}."
+    )
+    if accepted.both and not accepted.first_only + accepted.second_only:
+        click.echo(f"The acceptance is the same in both: {estimate_text(accepted.first)}.")
+    for line in inputs_text(found):
+        click.echo(line)
+    click.echo()
+    for line in verdict_text(found):
+        click.echo(click.wrap_text(line, width=100))
+    click.echo(click.wrap_text(_MEANING, width=100))
+
+
+_MEANING = (
+    "± is the standard error of each number (Monte Carlo error). That of a difference allows for the draws that both "
+    "books share. A verdict clears the tolerance by three errors. It says that two models agree, not that either fits "
+    "the crash."
+)
+
+
+def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
+    from xlmc.report.summary import estimate_text, percent
+
+    found, tolerance = each.difference, f"{each.tolerance:.4g}"
+    name = each.first.name if each.factor == 1.0 else f"{each.first.name} (second converted)"
+    rows = []
+    for number, change in found.changes:
+        label = f"{percent(found.share)} range, {number}" if number.endswith("end") else number
+        values = (estimate_text(estimate) for estimate in (change.first, change.second, change.difference))
+        rows.append(("", "", label, *values, tolerance))
+    rows[0] = (name, each.first.units, *rows[0][2:])
+    rows.append(("", "", "Wasserstein-1", "", "", estimate_text(found.wasserstein), ""))
+    rows.append(("", "", "Kolmogorov", "", "", estimate_text(found.kolmogorov), ""))
+    return rows
+
+
+def _as_json(found: Comparison) -> dict[str, object]:
+    from xlmc.analysis.wording import book_names, verdict_text
+    from xlmc.cli.plain import acceptance_json
+
+    books, inputs = book_names(found), found.inputs
+    return {
+        "books": books,
+        "simpler": None if found.simpler is None else books[found.simpler],
+        "trials": found.first.trials,
+        "seed": found.first.settings.seed,
+        "acceptance": acceptance_json(found.acceptance),
+        "assumptions": {
+            "alike": inputs.alike,
+            "unlike": [{"name": u.name, "first": u.first, "second": u.second} for u in (*inputs.unlike, *inputs.held)],
+            "drawn_only_in": dict(zip(books, inputs.drawn, strict=True)),
+        },
+        "filters_only_in": dict(zip(books, inputs.filters, strict=True)),
+        "forecasts_only_in": dict(zip(books, found.unpaired, strict=True)),
+        "forecasts": [_entry(each, books) for each in found.forecasts],
+        "verdict": verdict_text(found),
+        "trials_needed": found.trials_needed,
+        "runs": found.runs,
+    }
+
+
+def _entry(each: ForecastComparison, books: tuple[str, str]) -> dict[str, object]:
+    from xlmc.cli.plain import difference_json, estimate_json
+
+    entry: dict[str, object] = {
+        "name": each.first.name,
+        "name_in_second": each.second.name,
+        "units": each.first.units,
+        "second_multiplied_by": each.factor,
+        "tolerance": each.tolerance,
+        "tolerance_stated": each.stated,
+        "verdict": each.judgement.verdict.value,
+        "decided_by": each.judgement.largest,
+        "same_in_every_trial_both_accept": each.same_in_every_trial,
+        **difference_json(each.difference),
+    }
+    if each.cause is not None:
+        entry["cause"] = {
+            "taken_out": [_step(step, books) for step in each.cause.steps],
+            "largest_left": {"number": each.cause.number, "difference": estimate_json(each.cause.left)},
+        }
+    return entry
+
+
+def _step(step: Step, books: tuple[str, str]) -> dict[str, str]:
+    return {"kind": step.kind, "book": books[step.side], "name": step.name}

@@ -7,7 +7,7 @@ uniform u is written as offset + factor·u, rounded twice as NumPy would: what `
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, Final, Protocol
 
 import numpy as np
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from xlmc.compile.jit.machine import NativeLoop, machine
 
-__all__ = ["filler"]
+__all__ = ["Fill", "filler", "halves", "jump"]
 
 _NAME: Final = "fill"
 _SIDE_BY_SIDE: Final = 4
@@ -38,9 +38,7 @@ class _Stream(Protocol):
     def beginning(self) -> tuple[int, int]: ...
 
 
-def filler(
-    streams: Sequence[_Stream], maps: Sequence[tuple[float, float]], rows: NDArray[np.float64]
-) -> Callable[[int], None]:
+def filler(streams: Sequence[_Stream], maps: Sequence[tuple[float, float]], rows: NDArray[np.float64]) -> Fill:
     """What fills `rows` (k, block) with offset + factor·uniform, from a trial on.
 
     Args:
@@ -50,20 +48,25 @@ def filler(
     """
     words = np.empty((len(streams), _WORDS), np.uint64)
     for word, stream in zip(words, streams, strict=True):
-        word[:4] = [half for number in stream.beginning for half in _halves(number)]
-    jump = np.empty(4, np.uint64)
+        word[:4] = [half for number in stream.beginning for half in halves(number)]
+    place = np.empty(4, np.uint64)
     words[:, 4:] = np.array(maps, np.float64).reshape(-1, 2).view(np.uint64)
-    addresses = [array.__array_interface__["data"][0] for array in (*rows, *words, jump)]
+    addresses = [array.__array_interface__["data"][0] for array in (*rows, *words, place)]
     calls: list[tuple[NativeLoop, Any]] = []
     for first in range(0, len(streams), _SIDE_BY_SIDE):
         chosen = range(first, min(first + _SIDE_BY_SIDE, len(streams)))
         of_chosen = [addresses[i] for i in chosen] + [addresses[len(streams) + i] for i in chosen] + addresses[-1:]
         calls.append((machine().native(_module(len(chosen)), _NAME), (ctypes.c_void_p * len(of_chosen))(*of_chosen)))
-    return _Fill(calls, words, jump, rows)
+    return Fill(calls, words, place, rows)
 
 
-class _Fill:
-    """Calls the loops; it keeps the arrays that these know by their addresses."""
+class Fill:
+    """Calls the loops; it keeps the arrays that these know by their addresses.
+
+    Attributes:
+        calls: the loops, with the addresses that each takes.
+        jump: `(4,)` where these take the first trial from; see `go_to`.
+    """
 
     def __init__(
         self,
@@ -72,19 +75,23 @@ class _Fill:
         jump: NDArray[np.uint64],
         rows: NDArray[np.float64],
     ) -> None:
-        self._calls, self._words, self._jump, self._rows = calls, words, jump, rows
+        self.calls, self.jump, self._words, self._rows = calls, jump, words, rows
 
     def __call__(self, start: int) -> None:
-        self._jump[:] = [half for number in _jump(start) for half in _halves(number)]
-        for call, arguments in self._calls:
+        self.go_to(start)
+        for call, arguments in self.calls:
             call(arguments, self._rows.shape[1])
 
+    def go_to(self, start: int) -> None:
+        """Let the loops begin at a trial."""
+        self.jump[:] = [half for number in jump(start) for half in halves(number)]
 
-def _halves(number: int) -> tuple[int, int]:
+
+def halves(number: int) -> tuple[int, int]:
     return number & _LOW_HALF, number >> 64
 
 
-def _jump(steps: int) -> tuple[int, int]:
+def jump(steps: int) -> tuple[int, int]:
     """The state so many steps on is the first of these times the state plus the second times the increment.
 
     Brown (1994), "Random number generation with arbitrary strides".

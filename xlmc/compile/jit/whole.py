@@ -97,6 +97,8 @@ class WholeBlocks:
         self._wrong = np.zeros((2, self._chunk), np.uint8)
         f = len(parts.filters)
         self._counts = np.zeros(f * (f + 1) // 2 + f, np.int64)
+        rows_of, columns_of = np.maximum(*np.indices((f, f))), np.minimum(*np.indices((f, f)))
+        self._pairs = rows_of * (rows_of + 1) // 2 + columns_of
         self._write()
 
     def __call__(self, start: int, inputs: bool) -> Kept | None:
@@ -112,7 +114,7 @@ class WholeBlocks:
         if inputs:
             self._words[self._gathers] += len(self._names)
         self._counts.fill(0)
-        m = self._sweep(self._words.ctypes.data, self._chunks)
+        m = self._sweep(self._address, self._chunks)
         if m < 0:
             self._careful += 1
             self._wrong.fill(0)
@@ -120,16 +122,12 @@ class WholeBlocks:
         return self._result(m, inputs)
 
     def _result(self, m: int, inputs: bool) -> Kept:
-        f = len(self._parts.filters)
-        together = np.zeros((f, f), np.int64)
-        lower = np.tril_indices(f)
-        together[lower] = together.T[lower] = self._counts[: self._counts.size - f]
         return Kept(
             self._trials[:m].copy(),
             dict(zip(self._names, self._kept[:, :m].copy(), strict=True)) if inputs else {},
             [self._forecasts[place][:m].copy() for place in self._parts.forecasts],
-            together,
-            self._counts[self._counts.size - f :].copy(),
+            self._counts[self._pairs],
+            self._counts[self._counts.size - len(self._parts.filters) :].copy(),
         )
 
     def _read_from(self, drawn: Mapping[str, Floats]) -> None:
@@ -166,8 +164,9 @@ class WholeBlocks:
             pages.add(_start(kept))
         self._book = np.array(pages.words, np.uint64)
         self._words = self._book.copy()
+        self._address = _start(self._words)
         for at, place in lists:
-            self._book[at] = self._words.ctypes.data + 8 * place
+            self._book[at] = self._address + 8 * place
         drawn = sorted(pages.draws)
         self._slots = np.array(drawn, np.intp)
         self._slot_rows = np.array([self._names.index(pages.draws[slot]) for slot in drawn], np.intp)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
 from xlmc.collecting import paused_collection
-from xlmc.compile import ENGINES, FILLERS, Lowering, Program, Target, widened
+from xlmc.compile import ENGINES, FILLERS, Lowering, Program, Target, options_of, widened
 from xlmc.definitions import Assumption, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key
 from xlmc.drawing import correlated_groups, draw_of, dynamic_parameters
@@ -104,6 +104,7 @@ class Model:
         seed: int | None = None,
         *,
         engine: str | None = None,
+        arithmetic: str | None = None,
         jobs: int = 1,
         scheduler: str | None = None,
         workers: int | None = None,
@@ -118,6 +119,7 @@ class Model:
             trials: how many, 1 or more.
             seed: 0 or more.
             engine: `numpy`, `jit`, compiled for long runs, or `formulas`, the slow reference.
+            arithmetic: `float64`, or `float32` with the engine `jit`.
             jobs: threads or processes.
             scheduler: `threads`; `processes`; `local`, a Dask cluster of this machine; or the address of a Dask
                 scheduler. By default processes for a long run with several jobs, else threads.
@@ -126,8 +128,8 @@ class Model:
             progress: called with (trials done, trials accepted) after every block.
 
         Raises:
-            SimulationError: an argument is out of its range, there is no room on the disk for the accepted trials, or
-                the workers cannot be used.
+            SimulationError: an argument is out of its range, there is no room on the disk for the accepted trials,
+                the workers cannot be used, or float32 is too coarse for the model.
         """
         from xlmc.simulate import simulate
 
@@ -136,6 +138,7 @@ class Model:
             trials=trials,
             seed=seed,
             engine=engine,
+            arithmetic=arithmetic,
             jobs=jobs,
             scheduler=scheduler,
             workers=workers,
@@ -183,16 +186,19 @@ class Model:
         if missing:
             raise SimulationError(f"no values for the assumption {missing[0]!r}", hint="give every live assumption")
 
-    def program(self, engine: str) -> Program:
+    def program(self, engine: str, arithmetic: str = "float64") -> Program:
         """The filters and forecasts, compiled for an engine.
 
         Raises:
-            SimulationError: there is no such engine.
+            SimulationError: there is no such engine, or it does not know the arithmetic.
         """
         if engine not in ENGINES:
             raise SimulationError(f"there is no engine {engine!r}", hint=f"choose one of {', '.join(ENGINES)}")
         with paused_collection():
-            return ENGINES[engine](self._lowering, self._filter_targets, self._forecast_targets, self.fallible)
+            return ENGINES[engine](
+                *(self._lowering, self._filter_targets, self._forecast_targets, self.fallible),
+                **options_of(engine, arithmetic),
+            )
 
     def sampler(self, seed: int, block: int, engine: str = "numpy") -> MonteCarlo:
         """The draws, block by block; for one thread. They are the same for every engine."""

@@ -13,6 +13,7 @@ import numpy as np
 from xlmc.blocks import Block, FilterTally, Task
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
+from xlmc.rounding import Rounding, checked_rounding
 from xlmc.scheduling import Crew
 from xlmc.scratch import Keeper
 from xlmc.simulation import KEPT_INPUTS, Simulation
@@ -40,6 +41,7 @@ def simulate(
     trials: int | None = None,
     seed: int | None = None,
     engine: str | None = None,
+    arithmetic: str | None = None,
     jobs: int = 1,
     scheduler: str | None = None,
     workers: int | None = None,
@@ -47,14 +49,15 @@ def simulate(
     progress: Progress | None = None,
 ) -> Simulation:
     """Run a model; see `Model.simulate`."""
-    settings = _settings(model, trials, seed, engine)
+    settings = _settings(model, trials, seed, engine, arithmetic)
     crew = Crew(jobs, scheduler, workers)
     if keep_inputs is not None and keep_inputs < 0:
         raise SimulationError(
             f"the draws of {keep_inputs} trials were asked for", hint="give 0 or more, or None for all"
         )
-    program = model.program(settings.engine)
+    program = model.program(settings.engine, settings.arithmetic)
     block = min(BLOCK, program.largest_block)
+    rounding = checked_rounding(model, program, settings, block) if settings.arithmetic == "float32" else None
     gathered = _Gathered(model, block, settings.trials if keep_inputs is None else keep_inputs)
     starts = range(0, settings.trials, block)
 
@@ -67,11 +70,13 @@ def simulate(
             gathered.add(finished)
             if progress is not None:
                 progress(gathered.trials, gathered.accepted)
-    return gathered.simulation(settings)
+    return gathered.simulation(settings, rounding)
 
 
-def _settings(model: Model, trials: int | None, seed: int | None, engine: str | None) -> Settings:
-    given = {"trials": trials, "seed": seed, "engine": engine}
+def _settings(
+    model: Model, trials: int | None, seed: int | None, engine: str | None, arithmetic: str | None
+) -> Settings:
+    given = {"trials": trials, "seed": seed, "engine": engine, "arithmetic": arithmetic}
     settings = replace(model.definitions.settings, **{k: v for k, v in given.items() if v is not None})  # type: ignore[arg-type]
     if not 1 <= settings.trials <= MOST_TRIALS:
         raise SimulationError(f"{settings.trials} trials were asked for", hint=f"give 1 to {MOST_TRIALS:,}")
@@ -123,7 +128,7 @@ class _Gathered:
             self._keeper.add(("forecast", place), values)
         self._keeper.settle()
 
-    def simulation(self, settings: Settings) -> Simulation:
+    def simulation(self, settings: Settings, rounding: Rounding | None) -> Simulation:
         return Simulation(
             model=self._model,
             settings=settings,
@@ -137,4 +142,5 @@ class _Gathered:
             tally=self._tally,
             invalid=self._invalid,
             error_trials=self.lost,
+            rounding=rounding,
         )

@@ -23,7 +23,9 @@ from xlmc.statistics import Description, Estimate, Sample
 if TYPE_CHECKING:
     import pandas
 
+    from xlmc.errors import Notice
     from xlmc.model import Model
+    from xlmc.rounding import Rounding
 
 __all__ = ["ERROR_SHARE", "KEPT_INPUTS", "ForecastResult", "Simulation"]
 
@@ -107,6 +109,7 @@ class Simulation:
         invalid: assumption key -> trials in which its parameters were no distribution.
         error_trials: trials lost to errors: undecided by a filter, drawn from no distribution, or accepted without a
             number in some forecast. Each counts once.
+        rounding: what float32 changed in the first trials; None with float64.
     """
 
     model: Model
@@ -121,6 +124,7 @@ class Simulation:
     tally: FilterTally
     invalid: Counter[str]
     error_trials: int
+    rounding: Rounding | None = None
 
     def __getitem__(self, name: str) -> ForecastResult:
         """The result of a forecast, by name whatever its case.
@@ -152,6 +156,11 @@ class Simulation:
     def acceptance(self) -> Estimate:
         """The share of accepted trials."""
         return statistics.proportion(self.accepted, self.trials)
+
+    @property
+    def notices(self) -> tuple[Notice, ...]:
+        """What the person should know of the model and of this run."""
+        return self.model.notices if self.rounding is None else (*self.model.notices, self.rounding.notice)
 
     @property
     def warnings(self) -> list[str]:

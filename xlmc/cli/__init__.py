@@ -14,9 +14,9 @@ from xlmc import __version__
 from xlmc.cli.check import check
 from xlmc.cli.fit import fit
 from xlmc.cli.new import new
-from xlmc.cli.simulate import simulate
+from xlmc.cli.simulate import NOT_TO_BE_USED, simulate
 from xlmc.cli.verify import verify
-from xlmc.errors import XlmcError
+from xlmc.errors import RoundingError, XlmcError
 
 __all__ = ["main", "xlmc"]
 
@@ -35,7 +35,7 @@ for _command in (new, check, fit, verify, simulate):
 
 
 def main() -> None:
-    """Run the command line; a mistake in the input is a message and exit code 2."""
+    """Run the command line; a mistake in the input is a message and exit code 2, too coarse an arithmetic 1."""
     try:
         sys.exit(xlmc.main(standalone_mode=False) or 0)  # a command that asks for an exit code returns it
     except click.ClickException as error:
@@ -43,7 +43,7 @@ def main() -> None:
         sys.exit(BAD_INPUT)
     except XlmcError as error:
         click.echo(f"xlmc: {error}", err=True)
-        sys.exit(BAD_INPUT)
+        sys.exit(NOT_TO_BE_USED if isinstance(error, RoundingError) else BAD_INPUT)
     except (click.Abort, KeyboardInterrupt):
         click.echo("xlmc: interrupted; nothing was written.", err=True)
         sys.exit(INTERRUPTED)

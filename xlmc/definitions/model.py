@@ -137,6 +137,7 @@ class Settings:
     seed: int = 999
     sampling: str = "mc"
     engine: str = "numpy"
+    arithmetic: str = "float64"
 
 
 @dataclass(frozen=True, slots=True)

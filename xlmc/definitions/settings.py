@@ -25,6 +25,7 @@ _KNOWN = ("Setting", "Value")
 _SAMPLINGS = {"mc": "mc", "montecarlo": "mc"}
 _LATER = {"lhs": "Latin hypercube", "latinhypercube": "Latin hypercube", "sobol": "Sobol"}
 _ENGINES = ("numpy", "jit", "formulas")
+_ARITHMETICS = ("float64", "float32")
 
 
 def read_settings(workbook: Workbook, tables: list[DefinitionTable], findings: Findings) -> tuple[Settings, float]:
@@ -89,6 +90,14 @@ def _engine(row: Row, _findings: Findings) -> str:
     return plain(typed)
 
 
+def _arithmetic(row: Row, _findings: Findings) -> str:
+    typed = required_text(row, "Value")
+    if plain(typed) not in _ARITHMETICS:
+        message = f"There is no arithmetic {typed!r}"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Use float64 or float32")
+    return plain(typed)
+
+
 def _range(row: Row, findings: Findings) -> float:
     return central_share("Range %", _number(row, "Range %"), row.cell("Value"), findings)
 
@@ -110,6 +119,7 @@ _NAMES: Mapping[str, Callable[[Row, Findings], Any]] = {
     "Seed": _seed,
     "Sampling": _sampling,
     "Engine": _engine,
+    "Arithmetic": _arithmetic,
     "Range %": _range,
 }
 _READERS = {plain(name): reader for name, reader in _NAMES.items()}

@@ -20,6 +20,9 @@ __all__ = ["Fill", "filler", "halves", "jump"]
 
 _NAME: Final = "fill"
 _SIDE_BY_SIDE: Final = 4
+_TILE: Final = 128
+"""Steps of a stream whose states are written down, in the first-level cache, before numbers are made of them."""
+
 _MULTIPLIER: Final = 0xDA942042E4DD58B5
 """PCG64DXSM's, O'Neill's "cheap" multiplier, of the state and of its output function."""
 
@@ -109,32 +112,88 @@ def jump(steps: int) -> tuple[int, int]:
 def _module(k: int) -> ir.Module:
     """The loop over the trials of k streams; it takes the addresses of k rows, of k streams' words and of the jump."""
     module = ir.Module()
+    finished = _finished(module)
     function = ir.Function(module, ir.FunctionType(_LONG, [_BYTE.as_pointer().as_pointer(), _LONG]), _NAME)
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     addresses, n = function.args
     arrays = [builder.load(builder.gep(addresses, [_LONG(place)])) for place in range(2 * k + 1)]
     rows = [builder.bitcast(array, _DOUBLE.as_pointer()) for array in arrays[:k]]
-    jump = _numbers(builder, arrays[-1])
-    held = [_held(builder, array, jump) for array in arrays[k:-1]]
+    jump_ = _numbers(builder, arrays[-1])
+    held = [_held(builder, array, jump_) for array in arrays[k:-1]]
+    buffers = [tuple(builder.alloca(_LONG, _TILE) for _ in range(2)) for _ in range(k)]
     before, body, after = builder.block, *(function.append_basic_block(name) for name in ("body", "after"))
     builder.cbranch(builder.icmp_signed("<", _LONG(0), n), body, after)
 
     builder.position_at_end(body)
-    i = builder.phi(_LONG)
+    first = builder.phi(_LONG)
     states = [builder.phi(_STATE) for _ in range(k)]
-    for row, state, (first, increment, offset, factor) in zip(rows, states, held, strict=True):
-        value = builder.fadd(builder.fmul(_uniform(builder, state), factor), offset)
-        builder.store(value, builder.gep(row, [i]))
-        state.add_incoming(first, before)
-        state.add_incoming(builder.add(builder.mul(state, _STATE(_MULTIPLIER)), increment), body)
-    following = builder.add(i, _LONG(1))
-    i.add_incoming(_LONG(0), before)
-    i.add_incoming(following, body)
+    left = builder.sub(n, first)
+    size = builder.select(builder.icmp_signed("<", left, _LONG(_TILE)), left, _LONG(_TILE))
+    advanced = _advanced(builder, states, [increment for _, increment, _, _ in held], buffers, size)
+    for row, halves_, (_, _, offset, factor) in zip(rows, buffers, held, strict=True):
+        builder.call(finished, [*halves_, builder.gep(row, [first]), offset, factor, size])
+    following = builder.add(first, size)
+    first.add_incoming(_LONG(0), before)
+    first.add_incoming(following, builder.block)
+    for state, (beginning, _, _, _), ahead in zip(states, held, advanced, strict=True):
+        state.add_incoming(beginning, before)
+        state.add_incoming(ahead, builder.block)
     builder.cbranch(builder.icmp_signed("<", following, n), body, after)
 
     builder.position_at_end(after)
     builder.ret(_LONG(0))
     return module
+
+
+def _advanced(
+    builder: ir.IRBuilder, states: Sequence[Any], increments: Sequence[Any], buffers: Sequence[Any], n: Any
+) -> list[Any]:
+    """The states `n` steps on; the states on the way are written down by halves, the upper first."""
+    before, body, after = builder.block, *(builder.append_basic_block(name) for name in ("steps", "stepped"))
+    builder.branch(body)
+    builder.position_at_end(body)
+    i, moved = builder.phi(_LONG), []
+    here = [builder.phi(_STATE) for _ in states]
+    for state, beginning, increment, (high, low) in zip(here, states, increments, buffers, strict=True):
+        builder.store(builder.trunc(builder.lshr(state, _STATE(64)), _LONG), builder.gep(high, [i]))
+        builder.store(builder.trunc(state, _LONG), builder.gep(low, [i]))
+        ahead = builder.add(builder.mul(state, _STATE(_MULTIPLIER)), increment)
+        state.add_incoming(beginning, before)
+        state.add_incoming(ahead, body)
+        moved.append(ahead)
+    following = builder.add(i, _LONG(1))
+    i.add_incoming(_LONG(0), before)
+    i.add_incoming(following, body)
+    builder.cbranch(builder.icmp_signed("<", following, n), body, after)
+    builder.position_at_end(after)
+    return moved
+
+
+def _finished(module: ir.Module) -> ir.Function:
+    """States by halves to offset + factor·uniform, several at a time, for no number waits for another."""
+    words, doubles = _LONG.as_pointer(), _DOUBLE.as_pointer()
+    types = [words, words, doubles, _DOUBLE, _DOUBLE, _LONG]
+    function = ir.Function(module, ir.FunctionType(ir.VoidType(), types), "finished")
+    function.linkage = "internal"
+    function.attributes.add("noinline")  # see `loop`
+    for argument in function.args[:3]:
+        argument.add_attribute("noalias")
+    high, low, row, offset, factor, n = function.args
+    builder = ir.IRBuilder(function.append_basic_block("entry"))
+    before, body, after = builder.block, *(function.append_basic_block(name) for name in ("body", "after"))
+    builder.branch(body)
+    builder.position_at_end(body)
+    i = builder.phi(_LONG)
+    halves_ = (builder.load(builder.gep(half, [i])) for half in (high, low))
+    value = builder.fadd(builder.fmul(_uniform(builder, *halves_), factor), offset)
+    builder.store(value, builder.gep(row, [i]))
+    following = builder.add(i, _LONG(1), flags=["nuw", "nsw"])
+    i.add_incoming(_LONG(0), before)
+    i.add_incoming(following, body)
+    builder.cbranch(builder.icmp_signed("<", following, n), body, after)
+    builder.position_at_end(after)
+    builder.ret_void()
+    return function
 
 
 def _numbers(builder: ir.IRBuilder, words: Any) -> tuple[Any, Any]:
@@ -154,10 +213,9 @@ def _held(builder: ir.IRBuilder, words: Any, jump: tuple[Any, Any]) -> tuple[Any
     return state, increment, offset, factor
 
 
-def _uniform(builder: ir.IRBuilder, state: Any) -> Any:
+def _uniform(builder: ir.IRBuilder, high: Any, low: Any) -> Any:
     """The number of a state: the output function "DXSM", its upper 53 bits as a fraction of 1."""
-    high = builder.trunc(builder.lshr(state, _STATE(64)), _LONG)
-    odd = builder.or_(builder.trunc(state, _LONG), _LONG(1))
+    odd = builder.or_(low, _LONG(1))
     high = builder.xor(high, builder.lshr(high, _LONG(32)))
     high = builder.mul(high, _LONG(_MULTIPLIER))
     high = builder.xor(high, builder.lshr(high, _LONG(48)))

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Parts", "WholeBlocks", "sweepable"]
 
-_CHUNK: Final = 4096
+_CHUNK: Final = 2048
 """Trials at a time: few enough for the second-level cache, enough that the calls of the loops cost nothing."""
 
 _MOST_FILTERS: Final = 16

@@ -34,7 +34,7 @@ def main(rounds: int) -> None:
     native = _least(rounds, lambda: _run(workers[0]), _NativeTime())
     print(f"processor time: {processor / BLOCKS / BLOCK * 1e9:.1f} ns a trial")
     print(
-        f"outside of native code: {(processor - native) / BLOCKS * 1e6:.0f} µs of {processor / BLOCKS * 1e6:.0f} a block"
+        f"outside of native code: {(processor - native) / BLOCKS * 1e6:.0f} of {processor / BLOCKS * 1e6:.0f} µs a block"
     )
     with ThreadPoolExecutor(2) as pool:
         one, two = _in_turn(rounds, lambda: _run(workers[0]), lambda: [*pool.map(_run, workers)])

@@ -55,8 +55,8 @@ class Rounding:
         largest = max(self.differences.values(), default=0.0)
         return Notice(
             f"computed in float32: results carry its rounding. Of the first {self.trials:,} trials, {self.decisions:,} "
-            f"were accepted or rejected otherwise than in float64; forecasts differ by up to {largest:.1g} of their value "
-            "or standard deviation"
+            f"were accepted or rejected otherwise than in float64; forecasts differ by up to {largest:.1g} of their "
+            "value or standard deviation"
         )
 
 
@@ -64,7 +64,10 @@ def checked_rounding(model: Model, program: Program, settings: Settings, block: 
     """What float32 changes in the first trials of a run.
 
     Args:
-        program: in float32.
+        model: what is run.
+        program: its, in float32.
+        settings: of the run.
+        block: trials per block.
 
     Raises:
         RoundingError: more than it may.

@@ -104,7 +104,9 @@ class _JitEvaluator:
     def sweeper(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> Sweeper | None:
         """See `Sweeping`."""
         program = self._program
-        parts = sweepable(program.dag, program.first, program.late, program.filter_places, program.forecast_places)
+        parts = sweepable(
+            program.dag, program.first, program.late, program.filter_places, program.forecast_places, self._block
+        )
         return None if parts is None else WholeBlocks(parts, draw, linear, self._block)
 
     def filters(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:

@@ -9,6 +9,7 @@ import ctypes
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from math import gcd
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -54,10 +55,14 @@ class Parts:
         return frozenset(place for loop in self.late for place in loop.stores)
 
 
-def sweepable(dag: Dag, first: Phase, late: Phase, filters: Sequence[int], forecasts: Sequence[int]) -> Parts | None:
+def sweepable(
+    dag: Dag, first: Phase, late: Phase, filters: Sequence[int], forecasts: Sequence[int], block: int
+) -> Parts | None:
     """The parts of a model that can be run in whole blocks; None where it cannot."""
     early_loops, late_loops = first.loops, late.loops
-    if early_loops is None or late_loops is None or len(filters) > _MOST_FILTERS or sys.byteorder != "little":
+    if early_loops is None or late_loops is None:
+        return None
+    if len(filters) > _MOST_FILTERS or block % WORD or sys.byteorder != "little":
         return None
     stored = {*first.stores, *late.stores}
     logical = all(place in first.stores and dag.types[place] is Kind.LOGICAL for place in filters)
@@ -80,9 +85,7 @@ class WholeBlocks:
         self, parts: Parts, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None, block: int
     ) -> None:
         self._parts, self._draw = parts, draw
-        self._chunk = min(_CHUNK, block)
-        assert block % self._chunk == 0
-        assert self._chunk % WORD == 0
+        self._chunk = gcd(_CHUNK, block)
         self._chunks = block // self._chunk
         self._runs = self._careful = 0
         drawn = {} if linear is not None else draw(0)
@@ -110,7 +113,9 @@ class WholeBlocks:
         if self._fill is not None:
             self._fill.go_to(start)
         else:
-            self._read_from(self._draw(start))
+            drawn = self._draw(start)
+            rows = [np.ascontiguousarray(drawn[name], np.float64) for name in self._names]
+            self._words[self._slots] = np.array([_start(row) for row in rows], np.uint64)[self._slot_rows]
         if inputs:
             self._words[self._gathers] += len(self._names)
         self._counts.fill(0)
@@ -129,11 +134,6 @@ class WholeBlocks:
             self._counts[self._pairs],
             self._counts[self._counts.size - len(self._parts.filters) :].copy(),
         )
-
-    def _read_from(self, drawn: Mapping[str, Floats]) -> None:
-        """Point the book to a block's draws."""
-        rows = np.array([drawn[name].__array_interface__["data"][0] for name in self._names], np.uint64)
-        self._words[self._slots] = rows[self._slot_rows]
 
     def _write(self) -> None:
         """The book as every block finds it, and the code that reads it."""

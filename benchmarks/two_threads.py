@@ -33,9 +33,8 @@ def main(rounds: int) -> None:
     processor = _least(rounds, lambda: _run(workers[0]), time.thread_time)
     native = _least(rounds, lambda: _run(workers[0]), _NativeTime())
     print(f"processor time: {processor / BLOCKS / BLOCK * 1e9:.1f} ns a trial")
-    print(
-        f"outside of native code: {(processor - native) / BLOCKS * 1e6:.0f} of {processor / BLOCKS * 1e6:.0f} µs a block"
-    )
+    outside, whole = ((seconds / BLOCKS * 1e6) for seconds in (processor - native, processor))
+    print(f"outside of native code: {outside:.0f} of {whole:.0f} µs a block")
     with ThreadPoolExecutor(2) as pool:
         one, two = _in_turn(rounds, lambda: _run(workers[0]), lambda: [*pool.map(_run, workers)])
     print(f"bare threads: {2 * one / two:.2f} ×")

@@ -8,7 +8,7 @@ NAME, VALUE = "Answers!A31", "Answers!B31"
 
 MISTAKES = [
     ("Trails", 100, NAME, "There is no setting 'Trails'", "Did you mean Trials?"),
-    ("Colour", "red", NAME, "There is no setting 'Colour'", "Use one of Trials, Seed, Sampling, Engine, Range %"),
+    ("Colour", "red", NAME, "There is no setting 'Colour'", "Engine, Arithmetic, Range %"),
     (None, 5, NAME, "Setting is blank", "Fill in Setting"),
     ("Seed", 5, "Answers!A32", "Seed is set twice", "Keep one of the two rows"),
     ("Trials", None, VALUE, "Trials has no value", "or delete the row"),
@@ -21,6 +21,7 @@ MISTAKES = [
     ("Sampling", "Sobol", VALUE, "Sobol sampling is not available in this version", "Use mc"),
     ("Sampling", "dice", VALUE, "There is no sampling method 'dice'", "Use mc"),
     ("Engine", "numpi", VALUE, "There is no engine 'numpi'", "Did you mean numpy?"),
+    ("Arithmetic", "float16", VALUE, "There is no arithmetic 'float16'", "Use float64 or float32"),
     ("Range %", 100, VALUE, "Range % (100) must be above 0 and below 100", "such as 51"),
 ]
 
@@ -46,6 +47,7 @@ def test_bad_seeds(only_problem, seed):
         ("Engine", "NumPy", Settings(seed=7)),
         ("Engine", "formulas", Settings(seed=7, engine="formulas")),
         ("Engine", "JIT", Settings(seed=7, engine="jit")),
+        ("Arithmetic", "Float32", Settings(seed=7, arithmetic="float32")),
         ("Range %", 90, Settings(seed=7)),
     ],
 )

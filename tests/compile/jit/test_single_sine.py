@@ -32,7 +32,7 @@ def columns(request, lower, monkeypatch):
 
     def compute(angles):
         evaluator = JitProgram(lowering, targets, [], frozenset(), single=True).evaluator(angles.size)
-        return [column.as_floats() for column in evaluator.filters({"S!A1": angles}, angles.size)]
+        return [column.as_floats() for column in evaluator.filters({"A1": angles}, angles.size)]
 
     return compute
 

@@ -30,7 +30,7 @@ CELLS = {
     "C5": "=A1>0.9999",
     "C6": "=1/(A1-2)>-1",
 }
-NORMAL = GIVEN | {"A2": {"cell": "A2", "distribution": "Normal", "mean": 0.5, "sd": 0.2}}
+NORMAL = GIVEN | {"A2": {"cell": "A2", "distribution": "Normal", "mean": 0.5, "std_dev": 0.2}}
 BELOW = {"cell": "C2", "at_least": -0.5, "below": 0.5}
 
 MODELS = {
@@ -77,7 +77,7 @@ def test_the_case_study_in_whole_blocks():
 
 
 def test_correlated_draws(book):
-    model = book(CELLS, GIVEN, {"x": "B3"}, {"f": "C1"}, correlations=[("A1", "A2", 0.7)])
+    model = book(CELLS, GIVEN, {"x": "B3"}, {"f": "C1"}, correlations={("A1", "A2"): 0.7})
     assert list(map(bits, ran(model, True))) == list(map(bits, ran(model, False)))
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
+from functools import cache
 from typing import Any, Final, Protocol
 
 import numpy as np
@@ -32,7 +33,7 @@ _WORDS: Final = 6
 _BYTE, _LONG, _STATE, _DOUBLE = ir.IntType(8), ir.IntType(64), ir.IntType(128), ir.DoubleType()
 
 
-_STATES: Final = 1 << 128
+_ALL_BITS: Final = (1 << 128) - 1
 _LOW_HALF: Final = (1 << 64) - 1
 
 
@@ -100,13 +101,20 @@ def jump(steps: int) -> tuple[int, int]:
     Brown (1994), "Random number generation with arbitrary strides".
     """
     factor, summand = 1, 0
-    power, total = _MULTIPLIER, 1
     while steps:
-        if steps & 1:
-            factor, summand = factor * power % _STATES, (summand * power + total) % _STATES
-        total, power = (power + 1) * total % _STATES, power * power % _STATES
-        steps >>= 1
+        power, total = _doubled(steps.bit_length() - 1)
+        factor, summand = factor * power & _ALL_BITS, (summand * power + total) & _ALL_BITS
+        steps ^= 1 << (steps.bit_length() - 1)
     return factor, summand
+
+
+@cache
+def _doubled(times: int) -> tuple[int, int]:
+    """The jump of 2^times steps."""
+    if times == 0:
+        return _MULTIPLIER, 1
+    factor, summand = _doubled(times - 1)
+    return factor * factor & _ALL_BITS, (factor + 1) * summand & _ALL_BITS
 
 
 def _module(k: int) -> ir.Module:

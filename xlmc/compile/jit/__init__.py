@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["REPAYS_FROM", "available", "jit_filler", "jit_program"]
 
 REPAYS_FROM: Final = 3_000_000
-"""Trials of a model of some dozens of formulas from which the time to compile it, some 0.3 s, is surely repaid."""
+"""Trials of a model of some dozens of formulas from which the time to compile it, some 0.45 s, is surely repaid."""
 
 
 def available() -> bool:

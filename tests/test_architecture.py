@@ -23,6 +23,7 @@ FLOORS = [
     {"model", "verify"},
     {"blocks"},
     {"simulation", "scheduling"},
+    {"rounding"},
     {"simulate", "result_cells"},
     {"record"},
     {"analysis"},

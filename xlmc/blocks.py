@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.compile import Column, Evaluator
-from xlmc.compile.engine import BLANK_RESULT, TEXT_RESULT
+from xlmc.compile.engine import BLANK_RESULT, TEXT_RESULT, Kept, Sweeper, Sweeping
 from xlmc.errors import ErrorCode
 from xlmc.sampling import MonteCarlo
 
@@ -110,9 +110,16 @@ class Worker:
     ) -> None:
         self._sampler, self._evaluator, self._block = sampler, evaluator, block
         self._width, self._fallible = forecasts, fallible
+        self._sweep: Sweeper | None = None
+        if isinstance(evaluator, Sweeping) and not fallible:
+            self._sweep = evaluator.sweeper(sampler.draw, sampler.linear)
 
     def run(self, task: Task) -> Block:
         """See `Runner`."""
+        if self._sweep is not None and task.trials == self._block and not task.prior:
+            swept = self._sweep(task.start, task.inputs)
+            if swept is not None:
+                return _block_of(swept, task)
         start, trials = task.start, task.trials
         draws = self._sampler.draw(start)
         columns = self._evaluator.filters(draws, self._block)
@@ -145,6 +152,15 @@ class Worker:
         if survivors.size:
             return self._evaluator.forecasts(survivors)
         return [Column(np.empty(0)) for _ in range(self._width)]
+
+
+def _block_of(kept: Kept, task: Task) -> Block:
+    """A whole block without errors."""
+    faults: list[Counter[str]] = [Counter() for _ in kept.forecasts]
+    errors: list[Counter[str]] = [Counter() for _ in kept.only]
+    tally = FilterTally(np.diagonal(kept.together).copy(), kept.only, kept.together, errors, 0)
+    accepted = kept.survivors + task.start
+    return Block(task.trials, accepted, kept.draws, kept.forecasts, faults, tally, Counter(), 0, None)
 
 
 def _any(masks: Sequence[Bools], n: int) -> Bools:

@@ -14,6 +14,7 @@ __all__ = [
     "ErrorCode",
     "FormulaError",
     "Notice",
+    "RoundingError",
     "SimulationError",
     "WorkbookError",
     "XlmcError",
@@ -98,6 +99,10 @@ class DefinitionError(XlmcError):
 
 class SimulationError(XlmcError):
     """The run cannot be done as asked."""
+
+
+class RoundingError(SimulationError):
+    """The arithmetic asked for is too coarse for the model."""
 
 
 class FormulaError(XlmcError):

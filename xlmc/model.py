@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
 from xlmc.collecting import paused_collection
-from xlmc.compile import ENGINES, FILLERS, Lowering, Program, Target, widened
+from xlmc.compile import ENGINES, FILLERS, Lowering, Program, Target, options_of, widened
 from xlmc.definitions import Assumption, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key
 from xlmc.definitions.stopping import stopping
@@ -78,7 +78,7 @@ class Model:
         self.live: tuple[Assumption, ...] = self.scene.live
         self._draws = {a.name: draw_of(a, self._lowering) for a in self.live}
         self._groups = correlated_groups(definitions.correlations, [a.name for a in self.live])
-        self._programs: dict[str, Program] = {}
+        self._programs: dict[tuple[str, str], Program] = {}
         self._check_targets()
         notices = workbook.notices, definitions.notices, self.scene.notices, self._lowering.notices
         self.notices: tuple[Notice, ...] = tuple(notice for part in notices for notice in part)
@@ -113,6 +113,7 @@ class Model:
         forecasts: str | Sequence[str] = (),
         time_limit: str | float | None = None,
         engine: str | None = None,
+        arithmetic: str | None = None,
         jobs: int = 1,
         scheduler: str | None = None,
         workers: int | None = None,
@@ -136,6 +137,7 @@ class Model:
             forecasts: names of those whose precision or stability counts; by default all.
             time_limit: seconds, or such as `5m`, after which the run ends with the block of trials it is in.
             engine: `numpy`, `jit`, compiled for long runs, or `formulas`, the slow reference.
+            arithmetic: `float64`, or `float32` with the engine `jit`.
             jobs: threads or processes.
             scheduler: `threads`; `processes`; `local`, a Dask cluster of this machine; or the address of a Dask
                 scheduler. By default processes for a long run with several jobs, else threads.
@@ -145,8 +147,8 @@ class Model:
             progress: called with a `Standing` (trials, accepted, share done, means) after every block.
 
         Raises:
-            SimulationError: an argument is out of its range, there is no room on the disk for the accepted trials, or
-                the workers cannot be used.
+            SimulationError: an argument is out of its range, there is no room on the disk for the accepted trials,
+                the workers cannot be used, or float32 is too coarse for the model.
         """
         from xlmc.simulate import simulate
 
@@ -156,6 +158,7 @@ class Model:
             seed=seed,
             stopping=stopping(until_accepted, precision, precision_of, confidence, adaptive, forecasts, time_limit),
             engine=engine,
+            arithmetic=arithmetic,
             jobs=jobs,
             scheduler=scheduler,
             workers=workers,
@@ -204,20 +207,19 @@ class Model:
         if missing:
             raise SimulationError(f"no values for the assumption {missing[0]!r}", hint="give every live assumption")
 
-    def program(self, engine: str) -> Program:
+    def program(self, engine: str, arithmetic: str = "float64") -> Program:
         """The filters and forecasts, compiled for an engine once.
 
         Raises:
-            SimulationError: there is no such engine.
+            SimulationError: there is no such engine, or it does not know the arithmetic.
         """
         if engine not in ENGINES:
             raise SimulationError(f"there is no engine {engine!r}", hint=f"choose one of {', '.join(ENGINES)}")
-        if engine not in self._programs:
+        if (engine, arithmetic) not in self._programs:
+            parts = self._lowering, self._filter_targets, self._forecast_targets, self.fallible
             with paused_collection():
-                make = ENGINES[engine]
-                made = make(self._lowering, self._filter_targets, self._forecast_targets, self.fallible)
-            self._programs[engine] = made
-        return self._programs[engine]
+                self._programs[engine, arithmetic] = ENGINES[engine](*parts, **options_of(engine, arithmetic))
+        return self._programs[engine, arithmetic]
 
     def sampler(self, seed: int, block: int, engine: str = "numpy") -> MonteCarlo:
         """The draws, block by block; for one thread. They are the same for every engine."""

@@ -16,6 +16,7 @@ from xlmc.blocks import Block, FilterTally, Task
 from xlmc.definitions.model import name_key
 from xlmc.definitions.stopping import LIMIT, NO_GOAL, Stopping
 from xlmc.errors import SimulationError
+from xlmc.rounding import Rounding, checked_rounding
 from xlmc.scheduling import Crew
 from xlmc.scheduling.recipe import worker_of
 from xlmc.scratch import Keeper
@@ -56,6 +57,7 @@ def simulate(
     seed: int | None = None,
     stopping: Stopping = NO_GOAL,
     engine: str | None = None,
+    arithmetic: str | None = None,
     jobs: int = 1,
     scheduler: str | None = None,
     workers: int | None = None,
@@ -64,7 +66,7 @@ def simulate(
     progress: Progress | None = None,
 ) -> Simulation:
     """Run a model; see `Model.simulate`."""
-    settings = _settings(model, trials, seed, engine, stopping)
+    settings = _settings(model, trials, seed, engine, arithmetic, stopping)
     rule = chosen_rule(settings.stopping, model.forecasts)
     watch = Watch(rule, settings.trials, settings.stopping.seconds, time.monotonic)
     teller = None if progress is None else Teller([forecast.name for forecast in model.forecasts])
@@ -73,8 +75,9 @@ def simulate(
         raise SimulationError(
             f"the draws of {keep_inputs} trials were asked for", hint="give 0 or more, or None for all"
         )
-    program = model.program(settings.engine)
+    program = model.program(settings.engine, settings.arithmetic)
     block = min(BLOCK, program.largest_block)
+    rounding = checked_rounding(model, program, settings, block) if settings.arithmetic == "float32" else None
     gathered = _Gathered(model, block, settings.trials if keep_inputs is None else keep_inputs)
 
     def task(start: int, trials: int) -> Task:
@@ -98,11 +101,18 @@ def simulate(
             stopped = watch.after(finished, gathered.forecast, interrupted=interruption.asked)
             if progress is not None and teller is not None:
                 progress(teller.after(finished, watch.share))
-    return gathered.simulation(settings, stopped)
+    return gathered.simulation(settings, stopped, rounding)
 
 
-def _settings(model: Model, trials: int | None, seed: int | None, engine: str | None, stopping: Stopping) -> Settings:
-    given = {"trials": trials, "seed": seed, "engine": engine}
+def _settings(
+    model: Model,
+    trials: int | None,
+    seed: int | None,
+    engine: str | None,
+    arithmetic: str | None,
+    stopping: Stopping,
+) -> Settings:
+    given = {"trials": trials, "seed": seed, "engine": engine, "arithmetic": arithmetic}
     settings = replace(model.definitions.settings, **{k: v for k, v in given.items() if v is not None})  # type: ignore[arg-type]
     if trials is not None or stopping.has_goal:
         settings = replace(settings, trials=LIMIT if trials is None else trials, stopping=stopping)
@@ -163,7 +173,7 @@ class _Gathered:
         """A forecast's accepted trials so far, `(m,)`, NaN where it has no number."""
         return self._keeper.columns({"": ("forecast", place)})[""]
 
-    def simulation(self, settings: Settings, stopped: Stopped) -> Simulation:
+    def simulation(self, settings: Settings, stopped: Stopped, rounding: Rounding | None) -> Simulation:
         return Simulation(
             model=self._model,
             settings=settings,
@@ -178,4 +188,5 @@ class _Gathered:
             invalid=self._invalid,
             error_trials=self.lost,
             stopped=stopped,
+            rounding=rounding,
         )

@@ -25,7 +25,9 @@ from xlmc.stopping.stopped import ALL_TRIALS
 if TYPE_CHECKING:
     import pandas
 
+    from xlmc.errors import Notice
     from xlmc.model import Model
+    from xlmc.rounding import Rounding
 
 __all__ = ["ERROR_SHARE", "KEPT_INPUTS", "ForecastResult", "Simulation"]
 
@@ -110,6 +112,7 @@ class Simulation:
         error_trials: trials lost to errors: undecided by a filter, drawn from no distribution, or accepted without a
             number in some forecast. Each counts once.
         stopped: what ended it.
+        rounding: what float32 changed in the first trials; None with float64.
     """
 
     model: Model
@@ -125,6 +128,7 @@ class Simulation:
     invalid: Counter[str]
     error_trials: int
     stopped: Stopped = ALL_TRIALS
+    rounding: Rounding | None = None
 
     def __getitem__(self, name: str) -> ForecastResult:
         """The result of a forecast, by name whatever its case.
@@ -158,6 +162,11 @@ class Simulation:
         if self.stopped.by == "accepted":
             return statistics.inverse_proportion(self.accepted, self.trials)
         return statistics.proportion(self.accepted, self.trials)
+
+    @property
+    def notices(self) -> tuple[Notice, ...]:
+        """What the person should know of the model and of this run."""
+        return self.model.notices if self.rounding is None else (*self.model.notices, self.rounding.notice)
 
     @property
     def warnings(self) -> list[str]:

@@ -9,7 +9,7 @@ NAME, VALUE = "Answers!A31", "Answers!B31"
 
 MISTAKES = [
     ("Trails", 100, NAME, "There is no setting 'Trails'", "Did you mean Trials?"),
-    ("Colour", "red", NAME, "There is no setting 'Colour'", "Use one of Trials, Seed, Sampling, Engine, Range %"),
+    ("Colour", "red", NAME, "There is no setting 'Colour'", "Engine, Arithmetic, Range %"),
     (None, 5, NAME, "Setting is blank", "Fill in Setting"),
     ("Seed", 5, "Answers!A32", "Seed is set twice", "Keep one of the two rows"),
     ("Trials", None, VALUE, "Trials has no value", "or delete the row"),
@@ -35,6 +35,7 @@ MISTAKES = [
     ("Time limit", "soon", VALUE, "'soon' is no time", "such as 60s"),
     ("Time limit", 1 / 288, VALUE, "Time limit must be 1 second or more", "not a clock time"),
     ("Lognorm", "mine", VALUE, "There is no RiskLognorm of 'mine'", "Use @RISK"),
+    ("Arithmetic", "float16", VALUE, "There is no arithmetic 'float16'", "Use float64 or float32"),
     ("Range %", 100, VALUE, "Range % (100) must be above 0 and below 100", "such as 51"),
 ]
 
@@ -60,6 +61,7 @@ def test_bad_seeds(only_problem, seed):
         ("Engine", "NumPy", Settings(seed=7)),
         ("Engine", "formulas", Settings(seed=7, engine="formulas")),
         ("Engine", "JIT", Settings(seed=7, engine="jit")),
+        ("Arithmetic", "Float32", Settings(seed=7, arithmetic="float32")),
         ("Range %", 90, Settings(seed=7)),
     ],
 )

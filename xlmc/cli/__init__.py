@@ -17,9 +17,9 @@ from xlmc.cli.compare import compare
 from xlmc.cli.fit import fit
 from xlmc.cli.new import new
 from xlmc.cli.screen import screen
-from xlmc.cli.simulate import INTERRUPTED, simulate
+from xlmc.cli.simulate import INTERRUPTED, NOT_TO_BE_USED, simulate
 from xlmc.cli.verify import verify
-from xlmc.errors import XlmcError
+from xlmc.errors import RoundingError, XlmcError
 
 __all__ = ["main", "xlmc"]
 
@@ -37,7 +37,7 @@ for _command in (new, check, fit, verify, simulate, compare, screen):
 
 
 def main() -> None:
-    """Run the command line; a mistake in the input is a message and exit code 2."""
+    """Run the command line; a mistake in the input is a message and exit code 2, too coarse an arithmetic 1."""
     try:
         sys.exit(xlmc.main(standalone_mode=False) or 0)  # a command that asks for an exit code returns it
     except click.ClickException as error:
@@ -45,7 +45,7 @@ def main() -> None:
         sys.exit(BAD_INPUT)
     except XlmcError as error:
         click.echo(f"xlmc: {error}", err=True)
-        sys.exit(BAD_INPUT)
+        sys.exit(NOT_TO_BE_USED if isinstance(error, RoundingError) else BAD_INPUT)
     except (click.Abort, KeyboardInterrupt):
         click.echo("xlmc: interrupted; nothing was written.", err=True)
         sys.exit(INTERRUPTED)

@@ -30,6 +30,11 @@ INTERRUPTED = 130
     type=click.Choice(["numpy", "jit", "formulas"]),
     help="numpy; jit: compiled, for long runs; formulas: the slow reference.  [default: the book's, else numpy]",
 )
+@click.option(
+    "--arithmetic",
+    type=click.Choice(["float64", "float32"]),
+    help="float32: half the digits, with --engine jit only.  [default: the book's, else float64]",
+)
 @click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes.")
 @click.option(
     "--scheduler",
@@ -45,6 +50,7 @@ def simulate(
     trials: int | None,
     seed: int | None,
     engine: str | None,
+    arithmetic: str | None,
     jobs: int,
     scheduler: str | None,
     workers: int | None,
@@ -73,6 +79,7 @@ def simulate(
             seed,
             **length,
             engine=engine,
+            arithmetic=arithmetic,
             jobs=jobs,
             scheduler=scheduler,
             workers=workers,
@@ -119,6 +126,8 @@ def _show(run: Simulation) -> None:
     if run.model.filters:
         table("Trials rejected", ("Filter", "Keeps", "Rejected", "Only by it"), _rejections(run), right=(2, 3))
     click.echo(click.wrap_text(ERROR_SENTENCE, width=100))
+    if run.rounding is not None:
+        click.echo(click.wrap_text(f"{run.rounding.notice}.", width=100))
 
 
 def _rejections(run: Simulation) -> list[tuple[str, ...]]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Final, Protocol
+from typing import TYPE_CHECKING, Final, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,21 @@ from xlmc.address import Cell
 from xlmc.formula import ir
 from xlmc.functions.values import BLANK, ERROR, TEXT, Bools, Codes, Floats, Value
 
-__all__ = ["BLANK_RESULT", "TEXT_RESULT", "Column", "Evaluator", "Program", "Target", "column_of"]
+if TYPE_CHECKING:
+    from xlmc.sampling.draws import Linear
+
+__all__ = [
+    "BLANK_RESULT",
+    "TEXT_RESULT",
+    "Column",
+    "Evaluator",
+    "Kept",
+    "Program",
+    "Sweeper",
+    "Sweeping",
+    "Target",
+    "column_of",
+]
 
 TEXT_RESULT: Final = 200
 BLANK_RESULT: Final = 201
@@ -52,6 +66,42 @@ class Evaluator(Protocol):
 
     def forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
         """The forecasts of the surviving trials of the block that `filters` saw, `(m,)` each."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Kept:
+    """A whole block without errors, evaluated and filtered.
+
+    Attributes:
+        survivors: `(m,)` the accepted trials, counted from the block's first.
+        draws: assumption -> `(m,)`; empty when not asked for.
+        forecasts: one a forecast, `(m,)`.
+        together: `(f, f)` trials that both of two filters reject.
+        only: `(f,)` trials that one filter alone rejects.
+    """
+
+    survivors: NDArray[np.int64]
+    draws: dict[str, Floats]
+    forecasts: list[Floats]
+    together: NDArray[np.int64]
+    only: NDArray[np.int64]
+
+
+Sweeper = Callable[[int, bool], Kept | None]
+"""Takes a block's first trial and whether to keep draws; None where a trial needs care, and nothing is known then."""
+
+
+@runtime_checkable
+class Sweeping(Protocol):
+    """What an evaluator may do besides: run a whole block in one piece, which spares memory, calls and locks."""
+
+    def sweeper(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> Sweeper | None:
+        """What runs whole blocks to the same numbers; None where the model is not of the kind.
+
+        Args:
+            draw: makes the draws of a block from its first trial on, `(block,)` each.
+            linear: makes them too, where they are so simple.
+        """
 
 
 class Program(Protocol):

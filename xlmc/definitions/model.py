@@ -149,6 +149,7 @@ class Settings:
     engine: str = "numpy"
     stopping: Stopping = NO_GOAL
     lognorm: str = ""
+    arithmetic: str = "float64"
 
 
 @dataclass(frozen=True, slots=True)

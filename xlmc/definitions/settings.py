@@ -27,6 +27,7 @@ _SAMPLINGS = {"mc": "mc", "montecarlo": "mc"}
 _LATER = {"lhs": "Latin hypercube", "latinhypercube": "Latin hypercube", "sobol": "Sobol"}
 _ENGINES = ("numpy", "jit", "formulas")
 _LOGNORMS = ("@RISK", "XLRisk")
+_ARITHMETICS = ("float64", "float32")
 
 
 def read_settings(workbook: Workbook, tables: list[DefinitionTable], findings: Findings) -> tuple[Settings, float]:
@@ -103,6 +104,14 @@ def _lognorm(row: Row, _findings: Findings) -> str:
     return found
 
 
+def _arithmetic(row: Row, _findings: Findings) -> str:
+    typed = required_text(row, "Value")
+    if plain(typed) not in _ARITHMETICS:
+        message = f"There is no arithmetic {typed!r}"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Use float64 or float32")
+    return plain(typed)
+
+
 def _range(row: Row, findings: Findings) -> float:
     return central_share("Range %", number_of(row, "Range %"), row.cell("Value"), findings)
 
@@ -112,6 +121,7 @@ _SETTINGS: Mapping[str, Callable[[Row, Findings], Any]] = {
     "Seed": _seed,
     "Sampling": _sampling,
     "Engine": _engine,
+    "Arithmetic": _arithmetic,
     "Range %": _range,
     **STOPPING_SETTINGS,
     "Lognorm": _lognorm,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from xlmc.record.definition_tables import (
@@ -21,6 +21,7 @@ from xlmc.sampling.streams import GENERATOR
 from xlmc.workbook.inject import original_hash
 
 if TYPE_CHECKING:
+    from xlmc.rounding import Rounding
     from xlmc.simulation import Simulation
 
 __all__ = ["METHODS", "make_record"]
@@ -68,7 +69,7 @@ def make_record(simulation: Simulation, command: str | None = None) -> Record:
             assumption_section(simulation),
             correlation_section(simulation),
             _messages("warnings", "Warnings", simulation.warnings),
-            _messages("notices", "Notices", [str(notice) for notice in simulation.model.notices]),
+            _messages("notices", "Notices", [str(notice) for notice in simulation.notices]),
             _errors(simulation),
             Section("conventions", "Conventions", tuple(Entry(*convention) for convention in _CONVENTIONS)),
             Section("software", "Software", _entries(versions(simulation.settings.engine))),
@@ -140,9 +141,18 @@ def _sampling(simulation: Simulation) -> Section:
         Entry("method_in_words", "In words", METHODS.get(settings.sampling, settings.sampling)),
         Entry("generator", "Generator", _STREAMS),
         Entry("engine", "Engine", settings.engine),
+        Entry("arithmetic", "Arithmetic", settings.arithmetic),
         Entry("block", "Trials in a block", simulation.block),
+        *(() if simulation.rounding is None else _rounding(simulation.rounding)),
     )
     return Section("sampling", "Sampling", entries)
+
+
+def _rounding(found: Rounding) -> Iterator[Entry]:
+    yield Entry("rounding_trials", "First trials that were also computed in float64", found.trials)
+    yield Entry("rounding_decisions", "Of them accepted by one and rejected by the other", found.decisions)
+    for number, (name, difference) in enumerate(found.differences.items(), 1):
+        yield Entry(f"rounding_{number}", f"Largest relative difference of {name}", plain(difference))
 
 
 def _errors(simulation: Simulation) -> Section:

@@ -30,6 +30,8 @@ def repeat_command(simulation: Simulation) -> str:
         options.append(f"--sampling {settings.sampling}")
     if settings.engine != own.engine:
         options.append(f"--engine {settings.engine}")
+    if settings.arithmetic != own.arithmetic:
+        options.append(f"--arithmetic {settings.arithmetic}")
     return " ".join(["xlmc simulate", quoted_argument(f"./{book}" if book.startswith("-") else book), *options])
 
 

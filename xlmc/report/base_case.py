@@ -40,7 +40,8 @@ def base_case(simulation: Simulation) -> BaseCase | None:
     known = {key: np.full(1, value) for key, value in base.items() if value is not None}
     if len(known) < len(base):
         return None
-    evaluator = model.program(simulation.settings.engine).evaluator(1)
+    settings = simulation.settings  # always in float64
+    evaluator = model.program(settings.engine if settings.arithmetic == "float64" else "numpy").evaluator(1)
     filters = [_fails(column) for column in evaluator.filters(known, 1)]
     columns = evaluator.forecasts(np.zeros(1, np.intp))
     return BaseCase(

@@ -120,8 +120,8 @@ def _share(found: Estimate) -> list[Shown]:
 
 
 def _write_notices(page: Page, simulation: Simulation) -> None:
-    if not simulation.model.notices:
+    if not simulation.notices:
         return
     page.heading("Notices")
-    for notice in simulation.model.notices:
+    for notice in simulation.notices:
         page.wide(str(notice), "notice", LAST)

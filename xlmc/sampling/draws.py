@@ -13,7 +13,7 @@ from xlmc.distributions.uniform import Uniform
 from xlmc.sampling.copula import GaussianCopula
 from xlmc.sampling.streams import Stream
 
-__all__ = ["CorrelatedGroup", "Draw", "DynamicParameters", "MonteCarlo", "Stage"]
+__all__ = ["CorrelatedGroup", "Draw", "DynamicParameters", "Linear", "MonteCarlo", "Stage"]
 
 Floats = NDArray[np.float64]
 
@@ -72,6 +72,15 @@ class CorrelatedGroup:
     copula: GaussianCopula
 
 
+@dataclass(frozen=True, slots=True)
+class Linear:
+    """Draws that are offset + factor·uniform, all of them, in the order of their stages."""
+
+    names: tuple[str, ...]
+    streams: tuple[Stream, ...]
+    maps: tuple[tuple[float, float], ...]
+
+
 Filler = Callable[[Sequence[Stream], Sequence[tuple[float, float]], Floats], Callable[[int], None]]
 """Takes streams, an offset and a factor for each, and rows `(k, block)`. What it gives takes the first trial of a
 block, and fills each row with offset + factor·uniform."""
@@ -111,6 +120,16 @@ class MonteCarlo:
         self._filled = frozenset(maps)
         ordered = [maps.get(name, (0.0, 1.0)) for name in self._places]
         self._fill = (_by_streams if filler is None else filler)(self._streams, ordered, self._rows)
+
+    @property
+    def linear(self) -> Linear | None:
+        """All draws as offset + factor·uniform; None where any is more."""
+        draws = [draw for stage in self._stages for draw in stage.draws]
+        maps = [draw.offset_and_factor() for draw in draws]
+        if self._groups or None in maps:
+            return None
+        streams = tuple(self._streams[self._places[draw.name]] for draw in draws)
+        return Linear(tuple(draw.name for draw in draws), streams, tuple(found for found in maps if found is not None))
 
     def draw(self, start: int) -> dict[str, Floats]:
         """The draws of trials `start` to `start + block - 1`, `(block,)` each; NaN for an error."""

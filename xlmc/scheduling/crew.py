@@ -69,7 +69,7 @@ class Crew:
             workers = [worker_of(model, program, settings.engine, settings.seed, block) for _ in range(jobs)]
             yield from in_order(workers, tasks)
             return
-        recipe = Recipe.of(model, settings.engine, settings.seed, block)
+        recipe = Recipe.of(model, settings.engine, settings.seed, block, settings.arithmetic)
         if scheduler == "processes":
             yield from by_processes(recipe, jobs, tasks)
         else:

@@ -96,7 +96,8 @@ def serve() -> None:
     try:
         recipe = unpacked(pickle.load(source))
         model = recipe.model()
-        worker = worker_of(model, model.program(recipe.engine), recipe.engine, recipe.seed, recipe.block)
+        program = model.program(recipe.engine, recipe.arithmetic)
+        worker = worker_of(model, program, recipe.engine, recipe.seed, recipe.block)
         while True:
             task: Task = pickle.load(source)
             _send(answers, _answer(worker.run, task))

@@ -40,12 +40,13 @@ class Recipe:
     engine: str
     seed: int
     block: int
+    arithmetic: str = "float64"
 
     @classmethod
-    def of(cls, model: Model, engine: str, seed: int, block: int) -> Recipe:
+    def of(cls, model: Model, engine: str, seed: int, block: int, arithmetic: str = "float64") -> Recipe:
         """The recipe of a run."""
         bare = replace(model.workbook, parts={})  # the file as it was: only the result sheets need it
-        return cls(bare, model.definitions, model.path, engine, seed, block)
+        return cls(bare, model.definitions, model.path, engine, seed, block, arithmetic)
 
     def packed(self) -> bytes:
         """The recipe with the software it was made with, for `unpacked`."""

@@ -17,11 +17,17 @@ from xlmc.compile.dag import Constant, Dag, Select
 from xlmc.compile.jit.contexts import ROOT, Context, branch
 from xlmc.compile.jit.recipes import Literal, Operand, Recipe, literal
 from xlmc.compile.jit.sine import sine_and_cosine
+from xlmc.compile.jit.single_sine import LARGEST_ANGLE, single_sine_and_cosine
+from xlmc.errors import SimulationError
 from xlmc.functions import Kind
 
 __all__ = ["Body", "Loaded"]
 
-_DOUBLE, _BIT = ir.DoubleType(), ir.IntType(1)
+_BIT = ir.IntType(1)
+
+_EXCELS_LARGEST_ANGLE = 2.0**27
+_LARGEST, _SMALLEST = (2 - 2.0**-23) * 2.0**127, 2.0**-126
+"""Of float32, but for zero and numbers of fewer digits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,9 +45,11 @@ class Body:
         loaded: the nodes from outside the loop, each as its own kind or, where that is none of the loop's, as wanted.
         contexts: of the nodes of the loop.
         fused: whether the processor multiplies and adds in one instruction.
+        single: compute in float32.
 
     Attributes:
         builder: where instructions go.
+        real: the type of numbers.
     """
 
     def __init__(
@@ -51,8 +59,11 @@ class Body:
         loaded: Mapping[Operand, Loaded],
         contexts: Mapping[int, Context],
         fused: bool,
+        single: bool = False,
     ) -> None:
         self.builder: Any = builder
+        self.real: Any = ir.FloatType() if single else ir.DoubleType()
+        self._single = single
         self._dag, self._contexts, self._fused = dag, contexts, fused
         self._known = dict(loaded)
         self._checked: set[tuple[Operand, Context]] = set()
@@ -62,22 +73,35 @@ class Body:
         self._context = ROOT
 
     def number(self, value: float) -> Any:
-        """A constant."""
-        return ir.Constant(_DOUBLE, value)
+        """A constant.
+
+        Raises:
+            SimulationError: it is out of the range of float32.
+        """
+        if self._single and value and not _SMALLEST <= abs(value) <= _LARGEST:
+            hint = "use float64"
+            raise SimulationError(f"the number {value:g} in a formula is out of the range of float32", hint=hint)
+        return ir.Constant(self.real, value)
 
     def truth(self, value: bool) -> Any:
         """A constant truth value."""
         return ir.Constant(_BIT, int(value))
 
     def intrinsic(self, name: str, *arguments: Any) -> Any:
-        """A call of one of LLVM's own functions of doubles."""
-        of = ir.FunctionType(_DOUBLE, [_DOUBLE] * len(arguments))
-        return self.builder.call(self.builder.module.declare_intrinsic(name, [_DOUBLE], of), arguments)
+        """A call of one of LLVM's own functions of numbers."""
+        of = ir.FunctionType(self.real, [self.real] * len(arguments))
+        return self.builder.call(self.builder.module.declare_intrinsic(name, [self.real], of), arguments)
+
+    @property
+    def largest_angle(self) -> float:
+        """Above it a sine is computed again: Excel refuses it, or it has too few digits in float32."""
+        return LARGEST_ANGLE if self._single else _EXCELS_LARGEST_ANGLE
 
     def sine_and_cosine(self, angle: Any) -> tuple[Any, Any]:
         """Both, computed once for each angle."""
         if id(angle) not in self._turns:
-            self._turns[id(angle)] = angle, sine_and_cosine(self.builder, angle, self._fused)
+            both = single_sine_and_cosine if self._single else sine_and_cosine
+            self._turns[id(angle)] = angle, both(self.builder, angle, self._fused)
         return self._turns[id(angle)][1]
 
     def flag(self, wrong: Any) -> None:
@@ -134,14 +158,14 @@ class Body:
         if isinstance(part, Literal):
             return self.truth(part.value) if isinstance(part.value, bool) else self.number(part.value)
         value = self._source(part)[1].value
-        is_number = value.type == _DOUBLE
+        is_number = value.type == self.real
         if part.kind is Kind.NUMBER:
-            return value if is_number else self.builder.uitofp(value, _DOUBLE)
+            return value if is_number else self.builder.uitofp(value, self.real)
         return self.builder.fcmp_unordered("!=", value, self.number(0.0)) if is_number else value
 
     def _is_truth_of_number(self, part: Operand) -> bool:
         """Whether taking a number as a truth value hides that it is infinite or NaN."""
-        return part.kind is Kind.LOGICAL and bool(self._source(part)[1].value.type == _DOUBLE)
+        return part.kind is Kind.LOGICAL and bool(self._source(part)[1].value.type == self.real)
 
     def _check(self, part: Operand) -> None:
         """See the module."""

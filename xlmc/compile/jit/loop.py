@@ -18,7 +18,8 @@ from xlmc.functions import Kind
 __all__ = ["Load", "compiled"]
 
 _NAME = "over_trials"
-_BYTE, _BIT, _LONG, _DOUBLE = ir.IntType(8), ir.IntType(1), ir.IntType(64), ir.DoubleType()
+_BYTE, _BIT, _LONG = ir.IntType(8), ir.IntType(1), ir.IntType(64)
+_DOUBLE, _SINGLE = ir.DoubleType(), ir.FloatType()
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,15 +40,21 @@ class Load:
 
 
 def compiled(
-    dag: Dag, machine: Machine, recipes: Mapping[int, Recipe], loads: Sequence[Load], stores: Sequence[int]
+    dag: Dag,
+    machine: Machine,
+    recipes: Mapping[int, Recipe],
+    loads: Sequence[Load],
+    stores: Sequence[int],
+    single: bool,
 ) -> NativeLoop:
     """The loop that computes the nodes of `recipes`, as native code.
 
     It takes the addresses of: the loads, the stores, the survivors (int64; not read where no load is picked), and one
-    byte a trial, which it sets to 1 where the trial must be computed again.
+    byte a trial, which it sets to 1 where the trial must be computed again. With `single` it computes in float32; its
+    arrays are doubles all the same.
     """
     module = ir.Module()
-    inner = _inner(dag, module, machine, recipes, loads, stores)
+    inner = _inner(dag, module, machine, recipes, loads, stores, single)
     _entry(module, inner)
     return machine.native(module, _NAME)
 
@@ -63,6 +70,7 @@ def _inner(
     recipes: Mapping[int, Recipe],
     loads: Sequence[Load],
     stores: Sequence[int],
+    single: bool,
 ) -> ir.Function:
     """The loop itself; its arrays do not overlap, which is what lets it run several trials at once."""
     arrays = [*(load.stored for load in loads), *(dag.types[place] for place in stores)]
@@ -81,15 +89,16 @@ def _inner(
     i, count = builder.phi(_LONG), builder.phi(_LONG)
     picked = builder.load(builder.gep(survivors, [i])) if any(load.picked for load in loads) else i
     loaded = {
-        load.operand: Loaded(_loaded(builder, pointer, picked if load.picked else i), load.fallible)
+        load.operand: Loaded(_loaded(builder, pointer, picked if load.picked else i, single), load.fallible)
         for load, pointer in zip(loads, pointers, strict=False)
     }
-    body = Body(dag, builder, loaded, contexts(dag, recipes, stores), machine.fused)
+    body = Body(dag, builder, loaded, contexts(dag, recipes, stores), machine.fused, single)
     for place, recipe in recipes.items():
         body.compute(place, recipe)
     for place, pointer in zip(stores, pointers[len(loads) :], strict=True):
         result = body.result(place)
         stored = builder.zext(result, _BYTE) if result.type == _BIT else result
+        stored = builder.fpext(stored, _DOUBLE) if stored.type == _SINGLE else stored
         builder.store(stored, builder.gep(pointer, [i]))
     wrong = body.wrong()
     counted = count
@@ -112,9 +121,11 @@ def _inner(
     return function
 
 
-def _loaded(builder: ir.IRBuilder, pointer: Any, i: Any) -> Any:
+def _loaded(builder: ir.IRBuilder, pointer: Any, i: Any, single: bool) -> Any:
     value = builder.load(builder.gep(pointer, [i]))
-    return value if value.type == _DOUBLE else builder.icmp_unsigned("!=", value, _BYTE(0))
+    if value.type == _BYTE:
+        return builder.icmp_unsigned("!=", value, _BYTE(0))
+    return builder.fptrunc(value, _SINGLE) if single else value
 
 
 def _entry(module: ir.Module, inner: ir.Function) -> None:

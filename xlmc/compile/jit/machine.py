@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
 from functools import cache, lru_cache
 from typing import Any, Final
 
@@ -13,8 +12,24 @@ __all__ = ["Machine", "NativeLoop", "machine", "this_machine"]
 
 _KEPT: Final = 64
 
-NativeLoop = Callable[[Any, int], int]
-"""Takes the addresses of the arrays and the number of trials; gives how many of them must be computed again."""
+
+class NativeLoop:
+    """Takes the addresses of the arrays and the number of trials; gives how many of them must be computed again.
+
+    Args:
+        keep: what must live as long as the code.
+
+    Attributes:
+        address: of the code, for other native code.
+    """
+
+    def __init__(self, address: int, keep: Any) -> None:
+        self.address, self._keep = address, keep
+        self._call = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64)(address)
+
+    def __call__(self, addresses: Any, n: int) -> int:
+        found: int = self._call(addresses, n)
+        return found
 
 
 class Machine:
@@ -57,14 +72,7 @@ class Machine:
         passes.getModulePassManager().run(parsed, passes)
         engine = binding.create_mcjit_compiler(parsed, target)
         engine.finalize_object()
-        address = engine.get_function_address(name)
-        call = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64)(address)
-
-        def loop(addresses: Any, n: int, _keep: Any = engine) -> int:
-            found: int = call(addresses, n)
-            return found
-
-        return loop
+        return NativeLoop(engine.get_function_address(name), engine)
 
 
 def this_machine() -> Machine:

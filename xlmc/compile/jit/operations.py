@@ -17,9 +17,6 @@ __all__ = ["operation"]
 
 _ALL: Final = range(255)
 
-_LIMIT: Final = 2.0**27
-"""Excel refuses the sine and its kin of larger angles."""
-
 
 @dataclass(frozen=True, slots=True)
 class _Row:
@@ -74,9 +71,9 @@ def _sign(body: Body, parts: Sequence[Any]) -> Any:
 
 
 def _of_angle(body: Body, angle: Any) -> tuple[Any, Any]:
-    """Sine and cosine; angles that Excel refuses are flagged, NaN among them."""
+    """Sine and cosine; angles too large are flagged, NaN among them."""
     size = body.intrinsic("llvm.fabs", angle)
-    body.flag(body.builder.fcmp_unordered(">=", size, body.number(_LIMIT)))
+    body.flag(body.builder.fcmp_unordered(">=", size, body.number(body.largest_angle)))
     return body.sine_and_cosine(angle)
 
 

@@ -19,7 +19,7 @@ from xlmc.compile.jit.stages import Stage, stages
 from xlmc.compile.jit.trials import Trials
 from xlmc.functions import Kind
 
-__all__ = ["Memory", "Phase"]
+__all__ = ["Loop", "Memory", "Phase"]
 
 
 class Memory:
@@ -41,7 +41,7 @@ class Memory:
 
 
 @dataclass(frozen=True, slots=True)
-class _Loop:
+class Loop:
     """A stage as native code, with the arrays it reads and the nodes it writes."""
 
     call: NativeLoop
@@ -56,6 +56,7 @@ class Phase:
         keep: the nodes whose values are wanted afterwards.
         early: the nodes that were computed before, on a wider set of trials; None where this is the first phase.
         may_err: the inputs whose draws may be errors.
+        single: compute in float32.
 
     Attributes:
         stores: the nodes that need memory.
@@ -70,22 +71,24 @@ class Phase:
         keep: Iterable[int],
         early: frozenset[int] | None,
         may_err: frozenset[str],
+        single: bool = False,
     ) -> None:
+        self._single = single
         self._dag, self._machine, self._recipes, self._may_err = dag, machine, recipes, may_err
         self._early = early
         parts = stages(dag, [place for place in places if not isinstance(dag.nodes[place], Input)], recipes)
         read = [self._read_from_outside(stage) for stage in parts]
-        self._steps: list[_Loop | tuple[int, ...]] = []
+        self._steps: list[Loop | tuple[int, ...]] = []
         for position, stage in enumerate(parts):
             wanted = set(keep).union(*(found for other, found in enumerate(read) if other != position))
             self._steps.append(self._loop(stage, read[position], wanted) if stage.loop else stage.places)
-        self.stores = tuple(place for step in self._steps if isinstance(step, _Loop) for place in step.stores)
+        self.stores = tuple(place for step in self._steps if isinstance(step, Loop) for place in step.stores)
 
     def _read_from_outside(self, stage: Stage) -> set[int]:
         read = {used for place in stage.places for used in reads(self._dag, place, self._recipes.get(place))}
         return read - set(stage.places)
 
-    def _loop(self, stage: Stage, read: set[int], wanted: set[int]) -> _Loop:
+    def _loop(self, stage: Stage, read: set[int], wanted: set[int]) -> Loop:
         recipes = {place: self._recipes[place] for place in stage.places}
         loads: dict[Operand, Load] = {}
         for recipe in recipes.values():
@@ -96,7 +99,7 @@ class Phase:
                         loads[load.operand] = load
         stores = tuple(place for place in stage.places if place in wanted)
         found = tuple(loads.values())
-        return _Loop(compiled(self._dag, self._machine, recipes, found, stores), found, stores)
+        return Loop(compiled(self._dag, self._machine, recipes, found, stores, self._single), found, stores)
 
     def _load(self, part: Operand) -> Load | None:
         """How a node from outside is read; None for a constant."""
@@ -106,23 +109,31 @@ class Phase:
         is_input = isinstance(node, Input)
         picked = self._early is not None and (is_input or part.place in self._early)
         if isinstance(node, Input):
-            return Load(Operand(part.place, Kind.NUMBER), Kind.NUMBER, picked, node.name in self._may_err)
+            return Load(
+                Operand(part.place, Kind.NUMBER), Kind.NUMBER, picked, self._single or node.name in self._may_err
+            )
         if part.place in self._recipes:
             own = self._dag.types[part.place]
             return Load(Operand(part.place, own), own, picked, False)  # it was checked when it was written
         return Load(part, Kind.NUMBER, picked, True)
 
+    @property
+    def loops(self) -> tuple[Loop, ...] | None:
+        """The stages, where all are loops."""
+        loops = tuple(step for step in self._steps if isinstance(step, Loop))
+        return loops if len(loops) == len(self._steps) else None
+
     def run(self, trials: Trials, memory: Memory) -> bool:
         """Compute all nodes; whether any trial must be computed again."""
         wrong = 0
         for step in self._steps:
-            if isinstance(step, _Loop):
+            if isinstance(step, Loop):
                 wrong += self._run_loop(step, trials, memory)
             else:
                 self._run_outside(step, trials)
         return wrong > 0
 
-    def _run_loop(self, step: _Loop, trials: Trials, memory: Memory) -> int:
+    def _run_loop(self, step: Loop, trials: Trials, memory: Memory) -> int:
         address, places = memory.addresses.of, []
         for load in step.loads:
             source = trials.wider if load.picked else trials

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Final
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.compile.dag import Dag, Input
-from xlmc.compile.engine import Column, Evaluator, Target
+from xlmc.compile.engine import Column, Evaluator, Sweeper, Target
 from xlmc.compile.jit.machine import machine
 from xlmc.compile.jit.phase import Memory, Phase
 from xlmc.compile.jit.recipes import Recipe, reads, recipe_of
 from xlmc.compile.jit.trials import Trials
+from xlmc.compile.jit.whole import WholeBlocks, sweepable
 from xlmc.compile.lower import Lowering
 from xlmc.compile.tracking import TrackingEvaluator
 from xlmc.functions.values import Floats
+
+if TYPE_CHECKING:
+    from xlmc.sampling.draws import Linear
 
 __all__ = ["JitProgram"]
 
@@ -30,13 +34,19 @@ class JitProgram:
 
     Args:
         may_err: the inputs whose draws may be errors (NaNs).
+        single: compute in float32, but for what is left to NumPy and the careful path.
 
     Attributes:
         largest_block: the largest block, a power of two, whose arrays take no more than 256 MB.
     """
 
     def __init__(
-        self, lowering: Lowering, filters: Sequence[Target], forecasts: Sequence[Target], may_err: frozenset[str]
+        self,
+        lowering: Lowering,
+        filters: Sequence[Target],
+        forecasts: Sequence[Target],
+        may_err: frozenset[str],
+        single: bool = False,
     ) -> None:
         self.dag, self.may_err = lowering.dag, may_err
         self.filter_places = [lowering.target(target) for target in filters]
@@ -51,8 +61,8 @@ class JitProgram:
         late = [place for place in self.dag.upstream(self.forecast_places, needed) if place not in early]
         carried = {used for place in late for used in needed(place)} | set(self.forecast_places)
         keep = {*self.filter_places, *(carried & early)}
-        self.first = Phase(self.dag, machine(), recipes, first, keep, None, may_err)
-        self.late = Phase(self.dag, machine(), recipes, late, set(self.forecast_places), early, may_err)
+        self.first = Phase(self.dag, machine(), recipes, first, keep, None, may_err, single)
+        self.late = Phase(self.dag, machine(), recipes, late, set(self.forecast_places), early, may_err, single)
         self.inputs = _inputs(self.dag, [*first, *late])
         self.careful_inputs = _inputs(self.dag, self.dag.upstream([*self.filter_places, *self.forecast_places]))
         self.stores = (*self.first.stores, *self.late.stores)
@@ -77,7 +87,7 @@ def _recipes(dag: Dag) -> dict[int, Recipe]:
 
 class _JitEvaluator:
     def __init__(self, program: JitProgram, block: int) -> None:
-        self._program = program
+        self._program, self._block = program, block
         self._memory = Memory(program.dag, program.stores, block)
         self._tracking = TrackingEvaluator(program.dag, program.filter_places, program.forecast_places)
         self._all = np.empty(0, np.intp)
@@ -90,6 +100,14 @@ class _JitEvaluator:
             for place, name in self._program.inputs.items():
                 trials.arrays[place] = np.ascontiguousarray(inputs[name])
         return trials
+
+    def sweeper(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> Sweeper | None:
+        """See `Sweeping`."""
+        program = self._program
+        parts = sweepable(
+            program.dag, program.first, program.late, program.filter_places, program.forecast_places, self._block
+        )
+        return None if parts is None else WholeBlocks(parts, draw, linear, self._block)
 
     def filters(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:
         """See `Evaluator`."""

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from llvmlite import ir
 
-__all__ = ["HALF_PI", "sine_and_cosine"]
+__all__ = ["HALF_PI", "Arithmetic", "sine_and_cosine"]
 
 HALF_PI: Final = (1.5707963267948966, 6.123233995736766e-17, -1.4973849048591698e-33)
 """π/2 as a sum of three doubles."""
@@ -33,17 +33,20 @@ _SPLIT: Final = 2.0**27 + 1
 _DOUBLE, _INTEGER = ir.DoubleType(), ir.IntType(64)
 
 
-class _Arithmetic:
-    """Doubles and 64-bit integers on a builder; `fused` says whether the processor multiplies and adds at once."""
+class Arithmetic:
+    """Reals and integers of their size on a builder, doubles by default.
 
-    def __init__(self, builder: Any, fused: bool) -> None:
-        self._builder, self._fused = builder, fused
+    `fused` says whether the processor multiplies and adds at once.
+    """
+
+    def __init__(self, builder: Any, fused: bool, real: ir.Type = _DOUBLE, integer: ir.IntType = _INTEGER) -> None:
+        self._builder, self._fused, self._real, self._integer = builder, fused, real, integer
         self.add, self.sub, self.mul, self.select = builder.fadd, builder.fsub, builder.fmul, builder.select
-        of = ir.FunctionType(_DOUBLE, [_DOUBLE] * 3)
-        self._fma = builder.module.declare_intrinsic("llvm.fma", [_DOUBLE], of)
+        of = ir.FunctionType(real, [real] * 3)
+        self._fma = builder.module.declare_intrinsic("llvm.fma", [real], of)
 
     def number(self, value: float) -> Any:
-        return ir.Constant(_DOUBLE, value)
+        return ir.Constant(self._real, value)
 
     def plus(self, z: Any, x: Any, y: Any) -> Any:
         """Z + x·y, rounded once or twice."""
@@ -76,7 +79,7 @@ class _Arithmetic:
         return self.sub(self.sub(angle, product), self.lost(k, constant, product))
 
     def bits(self, x: Any) -> Any:
-        return self._builder.bitcast(x, _INTEGER)
+        return self._builder.bitcast(x, self._integer)
 
     def odd(self, whole: Any) -> Any:
         return self._builder.trunc(whole, ir.IntType(1))
@@ -84,15 +87,17 @@ class _Arithmetic:
     def turned(self, x: Any, quadrant: Any, one_more: bool) -> Any:
         """`x` negated where the second bit of the quadrant, or of the one after it, is set."""
         if one_more:
-            quadrant = self._builder.add(quadrant, ir.Constant(_INTEGER, 1))
-        sign = self._builder.and_(quadrant, ir.Constant(_INTEGER, 2))
-        flipped = self._builder.xor(self.bits(x), self._builder.shl(sign, ir.Constant(_INTEGER, 62)))
-        return self._builder.bitcast(flipped, _DOUBLE)
+            quadrant = self._builder.add(quadrant, ir.Constant(self._integer, 1))
+        sign = self._builder.and_(quadrant, ir.Constant(self._integer, 2))
+        flipped = self._builder.xor(
+            self.bits(x), self._builder.shl(sign, ir.Constant(self._integer, self._integer.width - 2))
+        )
+        return self._builder.bitcast(flipped, self._real)
 
 
 def sine_and_cosine(builder: Any, angle: Any, fused: bool) -> tuple[Any, Any]:
     """The instructions for both; what is not used of them the compiler takes out again."""
-    do = _Arithmetic(builder, fused)
+    do = Arithmetic(builder, fused)
     x, rest, quadrant = _reduced(do, angle)
     square = do.mul(x, x)
     first = do.minus(do.number(1.0), do.number(0.5), square)
@@ -104,7 +109,7 @@ def sine_and_cosine(builder: Any, angle: Any, fused: bool) -> tuple[Any, Any]:
     )
 
 
-def _reduced(do: _Arithmetic, angle: Any) -> tuple[Any, Any, Any]:
+def _reduced(do: Arithmetic, angle: Any) -> tuple[Any, Any, Any]:
     """The angle less the nearest multiple k of π/2, as a sum of two doubles, and k modulo 4 in its last two bits."""
     first, second, third = HALF_PI
     shifted = do.plus(do.number(_TO_WHOLE), angle, do.number(1 / first))
@@ -118,13 +123,13 @@ def _reduced(do: _Arithmetic, angle: Any) -> tuple[Any, Any, Any]:
     return whole, do.add(do.sub(x, whole), rest), do.bits(shifted)
 
 
-def _sine(do: _Arithmetic, x: Any, rest: Any, square: Any, first: Any) -> Any:
+def _sine(do: Arithmetic, x: Any, rest: Any, square: Any, first: Any) -> Any:
     """The sum x + (x³·p + rest·(1 - x²/2))."""
     cubic = do.mul(do.mul(square, x), do.polynomial(square, _SINE))
     return do.add(x, do.plus(cubic, rest, first))
 
 
-def _cosine(do: _Arithmetic, x: Any, rest: Any, square: Any, first: Any) -> Any:
+def _cosine(do: Arithmetic, x: Any, rest: Any, square: Any, first: Any) -> Any:
     """1 - x²/2 + (x⁴·p - x·rest), with what the first difference loses."""
     lost = do.minus(do.sub(do.number(1.0), first), do.number(0.5), square)
     fourth = do.minus(do.mul(do.mul(square, square), do.polynomial(square, _COSINE)), x, rest)

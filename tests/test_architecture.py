@@ -19,7 +19,7 @@ FLOORS = [
     {"formula"},
     {"functions"},
     {"compile", "sampling"},
-    {"scene", "drawing"},
+    {"scene", "drawing", "correlating"},
     {"model", "verify"},
     {"blocks"},
     {"simulation", "scheduling"},

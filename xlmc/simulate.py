@@ -13,6 +13,7 @@ import numpy as np
 from xlmc.blocks import Block, FilterTally, Task
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
+from xlmc.sampling import METHODS, Plan
 from xlmc.scheduling import Crew
 from xlmc.scratch import Keeper
 from xlmc.simulation import KEPT_INPUTS, Simulation
@@ -40,6 +41,7 @@ def simulate(
     trials: int | None = None,
     seed: int | None = None,
     engine: str | None = None,
+    sampling: str | None = None,
     jobs: int = 1,
     scheduler: str | None = None,
     workers: int | None = None,
@@ -47,7 +49,8 @@ def simulate(
     progress: Progress | None = None,
 ) -> Simulation:
     """Run a model; see `Model.simulate`."""
-    settings = _settings(model, trials, seed, engine)
+    settings = _settings(model, trials, seed, engine, sampling)
+    plan = Plan.of(settings.sampling, settings.trials)
     crew = Crew(jobs, scheduler, workers)
     if keep_inputs is not None and keep_inputs < 0:
         raise SimulationError(
@@ -55,12 +58,12 @@ def simulate(
         )
     program = model.program(settings.engine)
     block = min(BLOCK, program.largest_block)
-    gathered = _Gathered(model, block, settings.trials if keep_inputs is None else keep_inputs)
-    starts = range(0, settings.trials, block)
+    gathered = _Gathered(model, block, plan.trials if keep_inputs is None else keep_inputs)
+    starts = range(0, plan.trials, block)
 
     def tasks() -> Iterator[Task]:
         for start in starts:
-            yield Task(start, min(block, settings.trials - start), start < PRIOR_TRIALS, gathered.wants_inputs)
+            yield Task(start, min(block, plan.trials - start), start < PRIOR_TRIALS, gathered.wants_inputs)
 
     with closing(crew.blocks(model, program, settings, block, tasks())) as blocks:
         for finished in blocks:
@@ -70,13 +73,16 @@ def simulate(
     return gathered.simulation(settings)
 
 
-def _settings(model: Model, trials: int | None, seed: int | None, engine: str | None) -> Settings:
-    given = {"trials": trials, "seed": seed, "engine": engine}
+def _settings(model: Model, trials: int | None, seed: int | None, engine: str | None, sampling: str | None) -> Settings:
+    given = {"trials": trials, "seed": seed, "engine": engine, "sampling": sampling}
     settings = replace(model.definitions.settings, **{k: v for k, v in given.items() if v is not None})  # type: ignore[arg-type]
     if not 1 <= settings.trials <= MOST_TRIALS:
         raise SimulationError(f"{settings.trials} trials were asked for", hint=f"give 1 to {MOST_TRIALS:,}")
     if settings.seed < 0:
         raise SimulationError(f"the seed {settings.seed} is negative", hint="give a whole number from 0 up")
+    if settings.sampling not in METHODS:
+        message = f"there is no sampling method {settings.sampling!r}"
+        raise SimulationError(message, hint=f"choose one of {', '.join(METHODS)}")
     return settings
 
 

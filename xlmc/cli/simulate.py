@@ -30,6 +30,12 @@ NOT_TO_BE_USED = 1
     type=click.Choice(["numpy", "jit", "formulas"]),
     help="numpy; jit: compiled, for long runs; formulas: the slow reference.  [default: the book's, else numpy]",
 )
+@click.option(
+    "--sampling",
+    type=click.Choice(["mc", "lhs", "lhs500", "sobol"]),
+    help="mc: Monte Carlo; lhs: Latin hypercube; lhs500: in blocks of 500; sobol: scrambled Sobol."
+    "  [default: the book's, else mc]",
+)
 @click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes.")
 @click.option(
     "--scheduler",
@@ -45,6 +51,7 @@ def simulate(
     trials: int | None,
     seed: int | None,
     engine: str | None,
+    sampling: str | None,
     jobs: int,
     scheduler: str | None,
     workers: int | None,
@@ -56,6 +63,7 @@ def simulate(
     from xlmc.cli.printing import notices
     from xlmc.model import load
     from xlmc.report import save
+    from xlmc.sampling import Plan
     from xlmc.workbook.writer import refuse_if_open
 
     if in_place and output is not None:
@@ -65,9 +73,17 @@ def simulate(
     model = load(book)
     if not quiet:
         notices([*model.notices, *_hints(model, trials, engine)])
-    with _progress(trials or model.definitions.settings.trials, quiet) as progress:
+    own = model.definitions.settings
+    with _progress(Plan.of(sampling or own.sampling, trials or own.trials).trials, quiet) as progress:
         run = model.simulate(
-            trials, seed, engine=engine, jobs=jobs, scheduler=scheduler, workers=workers, progress=progress
+            trials,
+            seed,
+            engine=engine,
+            sampling=sampling,
+            jobs=jobs,
+            scheduler=scheduler,
+            workers=workers,
+            progress=progress,
         )
     save(run, target)
     _show(run)
@@ -107,6 +123,7 @@ def _progress(trials: int, quiet: bool) -> Iterator[Progress | None]:
 def _show(run: Simulation) -> None:
     """Print the paper's table, the acceptance and what each filter rejected."""
     from xlmc.cli.printing import table
+    from xlmc.record.sampling_words import sampling_sentence
     from xlmc.report.summary import ERROR_SENTENCE, summarise, summary_text
     from xlmc.statistics import format_estimate
 
@@ -114,7 +131,8 @@ def _show(run: Simulation) -> None:
     table(f"{run.model.workbook.name}: accepted trials", headings, rows, right=range(2, len(headings)))
     share = run.acceptance
     percent = format_estimate(100 * share.value, 100 * (share.error or 0))
-    click.echo(f"Accepted {run.accepted:,} of {run.trials:,} trials, {percent} %; seed {run.settings.seed}.\n")
+    click.echo(f"Accepted {run.accepted:,} of {run.trials:,} trials, {percent} %; seed {run.settings.seed}.")
+    click.echo(f"{sampling_sentence(run)}\n")
     if run.model.filters:
         table("Trials rejected", ("Filter", "Keeps", "Rejected", "Only by it"), _rejections(run), right=(2, 3))
     click.echo(click.wrap_text(ERROR_SENTENCE, width=100))

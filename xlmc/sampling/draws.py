@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from xlmc.distributions import Family, Truncated
 from xlmc.sampling.copula import GaussianCopula
-from xlmc.sampling.streams import Stream
+from xlmc.sampling.plan import Plan
 
-__all__ = ["CorrelatedGroup", "Draw", "DynamicParameters", "MonteCarlo", "Stage"]
+__all__ = ["CorrelatedGroup", "Draw", "DynamicParameters", "Sampler", "Stage"]
 
 Floats = NDArray[np.float64]
 
@@ -64,8 +64,8 @@ class CorrelatedGroup:
     copula: GaussianCopula
 
 
-class MonteCarlo:
-    """Draws blocks of independent trials. For one thread; its memory is used again with every block.
+class Sampler:
+    """Draws blocks of trials. For one thread; its memory is used again with every block.
 
     Args:
         seed: of the run.
@@ -73,6 +73,7 @@ class MonteCarlo:
         groups: of correlated assumptions.
         parameters: for each dynamic stage, in order.
         block: trials per block.
+        plan: the method and its replicates; by default independent trials.
     """
 
     def __init__(
@@ -82,19 +83,20 @@ class MonteCarlo:
         groups: Sequence[CorrelatedGroup],
         parameters: Sequence[DynamicParameters],
         block: int,
+        plan: Plan | None = None,
     ) -> None:
         names = [name for group in groups for name in group.names]
         names += [draw.name for stage in stages for draw in stage.draws if draw.name not in names]
         self._rows = np.empty((len(names), block))
         self._places = {name: row for row, name in enumerate(names)}
-        self._streams = [Stream(seed, name) for name in names]
+        self._margins = (plan or Plan.of("mc", block)).margins(seed, names)
         self._stages, self._groups, self._parameters = stages, groups, parameters
         self._block = block
 
     def draw(self, start: int) -> dict[str, Floats]:
         """The draws of trials `start` to `start + block - 1`, `(block,)` each; NaN for an error."""
-        for stream, row in zip(self._streams, self._rows, strict=True):
-            stream.uniforms(start, row)
+        for margin, row in zip(self._margins, self._rows, strict=True):
+            margin.uniforms(start, row)
         for group in self._groups:
             first = self._places[group.names[0]]
             group.copula.join(self._rows[first : first + len(group.names)])

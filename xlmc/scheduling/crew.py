@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.blocks import Block, Task
 from xlmc.errors import SimulationError
+from xlmc.sampling import Plan
 from xlmc.scheduling.cluster import by_cluster
 from xlmc.scheduling.processes import by_processes
 from xlmc.scheduling.recipe import Recipe, worker_of
@@ -62,13 +63,14 @@ class Crew:
         Raises:
             SimulationError: the crew cannot be had, or did not finish.
         """
-        blocks = -(-settings.trials // block)
+        plan = Plan.of(settings.sampling, settings.trials)
+        blocks = -(-plan.trials // block)
         jobs = min(self.jobs, blocks)
         scheduler = self.scheduler or _usual(settings.engine, jobs, blocks)
         if scheduler == "threads":
-            yield from in_order([worker_of(model, program, settings.seed, block) for _ in range(jobs)], tasks)
+            yield from in_order([worker_of(model, program, settings.seed, block, plan) for _ in range(jobs)], tasks)
             return
-        recipe = Recipe.of(model, settings.engine, settings.seed, block)
+        recipe = Recipe.of(model, settings.engine, settings.seed, block, plan)
         if scheduler == "processes":
             yield from by_processes(recipe, jobs, tasks)
         else:

@@ -16,6 +16,7 @@ from xlmc.compile import Program
 from xlmc.definitions import Definitions
 from xlmc.errors import SimulationError
 from xlmc.model import Model
+from xlmc.sampling import Plan
 from xlmc.workbook import Workbook
 
 __all__ = ["Recipe", "check_software", "software", "worker_of"]
@@ -24,9 +25,9 @@ LIBRARIES = ("numpy", "scipy", "formulas")
 """A result depends on them to its last bit."""
 
 
-def worker_of(model: Model, program: Program, seed: int, block: int) -> Worker:
+def worker_of(model: Model, program: Program, seed: int, block: int, plan: Plan | None = None) -> Worker:
     """What runs blocks of a model in this process, in one thread."""
-    sampler, evaluator = model.sampler(seed, block), program.evaluator(block)
+    sampler, evaluator = model.sampler(seed, block, plan), program.evaluator(block)
     return Worker(sampler, evaluator, block, len(model.forecasts), model.fallible)
 
 
@@ -40,12 +41,13 @@ class Recipe:
     engine: str
     seed: int
     block: int
+    plan: Plan | None = None
 
     @classmethod
-    def of(cls, model: Model, engine: str, seed: int, block: int) -> Recipe:
+    def of(cls, model: Model, engine: str, seed: int, block: int, plan: Plan | None = None) -> Recipe:
         """The recipe of a run."""
         bare = replace(model.workbook, parts={})  # the file as it was: only the result sheets need it
-        return cls(bare, model.definitions, model.path, engine, seed, block)
+        return cls(bare, model.definitions, model.path, engine, seed, block, plan)
 
     def packed(self) -> bytes:
         """The recipe with the software it was made with, for `unpacked`."""
@@ -54,6 +56,10 @@ class Recipe:
     def model(self) -> Model:
         """The model again."""
         return Model(self.workbook, self.definitions, self.path)
+
+    def worker(self, model: Model, program: Program) -> Worker:
+        """What runs its blocks, given its model again and that model's program."""
+        return worker_of(model, program, self.seed, self.block, self.plan)
 
 
 def unpacked(packed: bytes) -> Recipe:

@@ -58,7 +58,7 @@ def _spearman(x: Floats, y: Floats) -> float:
     if x.size == 0:
         return math.nan
     first, second = _centred_ranks(x), _centred_ranks(y)
-    scale = math.sqrt(float(np.sum(first**2))) * math.sqrt(float(np.sum(second**2)))
+    scale = math.sqrt(float(np.sum(first**2)) * float(np.sum(second**2)))
     return min(1.0, max(-1.0, float(np.sum(first * second)) / scale)) if scale else math.nan
 
 

@@ -30,7 +30,7 @@ PAGE = HERE.parent / "docs" / "sampling.md"
 RESULTS = HERE / "results" / "sobol.json"
 
 TRIALS = 131_072
-SEEDS = {"without filters": 100, "with filters": 800}
+SEEDS = {"without filters": 100, "with filters": 500}
 LEAST = {"without filters": 1_000.0, "with filters": 1.3}
 RESAMPLES = 4_000
 

@@ -23,6 +23,7 @@ FLOORS = [
     {"model", "verify"},
     {"blocks"},
     {"simulation", "scheduling"},
+    {"pilot"},
     {"simulate"},
     {"record"},
     {"report"},

@@ -13,7 +13,8 @@ import numpy as np
 from xlmc.blocks import Block, FilterTally, Task
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
-from xlmc.sampling import METHODS, Plan
+from xlmc.pilot import planned
+from xlmc.sampling import METHODS
 from xlmc.scheduling import Crew
 from xlmc.scratch import Keeper
 from xlmc.simulation import KEPT_INPUTS, Simulation
@@ -21,6 +22,7 @@ from xlmc.simulation import KEPT_INPUTS, Simulation
 if TYPE_CHECKING:
     from xlmc.definitions import Settings
     from xlmc.model import Model
+    from xlmc.sampling import Plan
 
 __all__ = ["BLOCK", "PRIOR_TRIALS", "Progress", "simulate"]
 
@@ -50,7 +52,7 @@ def simulate(
 ) -> Simulation:
     """Run a model; see `Model.simulate`."""
     settings = _settings(model, trials, seed, engine, sampling)
-    plan = Plan.of(settings.sampling, settings.trials)
+    plan = planned(model, settings)
     crew = Crew(jobs, scheduler, workers)
     if keep_inputs is not None and keep_inputs < 0:
         raise SimulationError(
@@ -65,12 +67,12 @@ def simulate(
         for start in starts:
             yield Task(start, min(block, plan.trials - start), start < PRIOR_TRIALS, gathered.wants_inputs)
 
-    with closing(crew.blocks(model, program, settings, block, tasks())) as blocks:
+    with closing(crew.blocks(model, program, settings, plan, block, tasks())) as blocks:
         for finished in blocks:
             gathered.add(finished)
             if progress is not None:
                 progress(gathered.trials, gathered.accepted)
-    return gathered.simulation(settings)
+    return gathered.simulation(settings, plan)
 
 
 def _settings(model: Model, trials: int | None, seed: int | None, engine: str | None, sampling: str | None) -> Settings:
@@ -129,10 +131,11 @@ class _Gathered:
             self._keeper.add(("forecast", place), values)
         self._keeper.settle()
 
-    def simulation(self, settings: Settings) -> Simulation:
+    def simulation(self, settings: Settings, plan: Plan) -> Simulation:
         return Simulation(
             model=self._model,
             settings=settings,
+            plan=plan,
             block=self._block,
             trials=self.trials,
             trial_index=self._keeper.columns({"trial": ("trial", 0)})["trial"],

@@ -110,6 +110,7 @@ class Simulation:
 
     Attributes:
         model, settings, block: what it is a function of.
+        plan: the sampling method, and how it divides the trials into replicates.
         trials: how many were run.
         trial_index: `(m,)` the accepted ones, counted from 0.
         inputs: assumption -> its accepted draws, `(m,)`, or of the first accepted trials where not all were asked for.
@@ -124,6 +125,7 @@ class Simulation:
 
     model: Model
     settings: Settings
+    plan: Plan
     block: int
     trials: int
     trial_index: NDArray[np.int64]
@@ -158,11 +160,6 @@ class Simulation:
             )
             for f in self.model.forecasts
         }
-
-    @cached_property
-    def plan(self) -> Plan:
-        """The sampling method, and how it divides the trials into replicates."""
-        return Plan.of(self.settings.sampling, self.settings.trials)
 
     @property
     def replicate(self) -> Replicates | None:

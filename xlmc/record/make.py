@@ -118,6 +118,7 @@ def _sampling(simulation: Simulation) -> Section:
         *(replicates if plan.size else ()),
         Entry("errors", "Errors come", errors_text(simulation)),
         Entry("generator", "Generator", generator_text(simulation)),
+        *([Entry("dimensions", "Sobol dimensions", ", ".join(plan.order))] if plan.order else []),
         Entry("engine", "Engine", settings.engine),
         Entry("block", "Trials in a block", simulation.block),
     )

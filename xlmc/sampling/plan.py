@@ -48,11 +48,13 @@ class Plan:
         method: `mc`, `lhs`, `lhs500` or `sobol`.
         trials: that are run: whole replicates, and so sometimes more than were asked for.
         size: trials in a replicate; 0 where the trials themselves are independent.
+        order: the assumptions in the order of their Sobol dimensions; empty to take them as they are listed.
     """
 
     method: str
     trials: int
     size: int = 0
+    order: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, method: str, trials: int) -> Plan:
@@ -62,7 +64,7 @@ class Plan:
             ValueError: there is no such method.
 
         >>> Plan.of("sobol", 200_000)
-        Plan(method='sobol', trials=204800, size=8192)
+        Plan(method='sobol', trials=204800, size=8192, order=())
         >>> Plan.of("lhs", 200_000).replicates
         16
         """
@@ -91,7 +93,8 @@ class Plan:
         if len(names) > DIMENSIONS:
             message = f"Sobol points have {DIMENSIONS:,} dimensions, and {len(names):,} assumptions are drawn"
             raise SimulationError(message, hint="Use --sampling lhs or mc")
-        return [ScrambledSobol(seed, name, place, self.size) for place, name in enumerate(names)]
+        places = {name: place for place, name in enumerate(self.order or names)}
+        return [ScrambledSobol(seed, name, places[name], self.size) for name in names]
 
     def replicate_of(self, trials: NDArray[np.int64]) -> NDArray[np.int64] | None:
         """The replicate of each trial, (n,); None where the trials themselves are independent."""

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.blocks import Block, Task
 from xlmc.errors import SimulationError
-from xlmc.sampling import Plan
 from xlmc.scheduling.cluster import by_cluster
 from xlmc.scheduling.processes import by_processes
 from xlmc.scheduling.recipe import Recipe, worker_of
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
     from xlmc.compile import Program
     from xlmc.definitions import Settings
     from xlmc.model import Model
+    from xlmc.sampling import Plan
 
 __all__ = ["PROCESS_BLOCKS", "Crew"]
 
@@ -56,14 +56,13 @@ class Crew:
             raise SimulationError(f"there is no scheduler {self.scheduler!r}", hint=hint)
 
     def blocks(
-        self, model: Model, program: Program, settings: Settings, block: int, tasks: Iterator[Task]
+        self, model: Model, program: Program, settings: Settings, plan: Plan, block: int, tasks: Iterator[Task]
     ) -> Generator[Block, None, None]:
         """The blocks of a run, of `block` trials each, in the order of their tasks.
 
         Raises:
             SimulationError: the crew cannot be had, or did not finish.
         """
-        plan = Plan.of(settings.sampling, settings.trials)
         blocks = -(-plan.trials // block)
         jobs = min(self.jobs, blocks)
         scheduler = self.scheduler or _usual(settings.engine, jobs, blocks)

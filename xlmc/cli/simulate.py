@@ -132,7 +132,7 @@ def _show(run: Simulation) -> None:
     share = run.acceptance
     percent = format_estimate(100 * share.value, 100 * (share.error or 0))
     click.echo(f"Accepted {run.accepted:,} of {run.trials:,} trials, {percent} %; seed {run.settings.seed}.")
-    click.echo(f"{sampling_sentence(run)}\n")
+    click.echo(click.wrap_text(sampling_sentence(run), width=100) + "\n")
     if run.model.filters:
         table("Trials rejected", ("Filter", "Keeps", "Rejected", "Only by it"), _rejections(run), right=(2, 3))
     click.echo(click.wrap_text(ERROR_SENTENCE, width=100))

@@ -188,13 +188,13 @@ def test_a_long_run_is_told_of_the_engine_jit(xlmc, book, monkeypatch, trials, o
     ("method", "words"),
     [
         ("mc", "Monte Carlo: independent trials; errors come from the trials"),
-        ("lhs", "Latin hypercube: 16 independent replicates of 1,250 trials; errors come from the differences between"),
-        ("lhs500", "Latin hypercube in blocks of 500: 40 independent replicates of 500 trials; errors come from"),
-        ("sobol", "scrambled Sobol: 20 independent replicates of 1,024 trials, whole ones, for the 20,000 trials"),
+        ("lhs", "Latin hypercube: 16 independent replicates of 2,500 trials; errors come from the differences between"),
+        ("lhs500", "Latin hypercube in blocks of 500: 80 independent replicates of 500 trials; errors come from"),
+        ("sobol", "scrambled Sobol: 20 independent replicates of 2,048 trials, whole ones, for the 40,000 trials"),
     ],
 )
 def test_the_sampling_method_is_said(xlmc, book, method, words):
-    outcome = xlmc("simulate", book, "-n", 20_000, "--sampling", method)
+    outcome = xlmc("simulate", book, "-n", 40_000, "--sampling", method)
     assert outcome.code == 0
     assert words in " ".join(outcome.out.split())
 

@@ -47,7 +47,10 @@ class Recipe:
     def of(cls, model: Model, engine: str, seed: int, block: int, plan: Plan | None = None) -> Recipe:
         """The recipe of a run."""
         bare = replace(model.workbook, parts={})  # the file as it was: only the result sheets need it
-        return cls(bare, model.definitions, model.path, engine, seed, block, plan)
+        needed = (
+            plan if plan is not None and plan.size else None
+        )  # independent trials do not depend on how many there are
+        return cls(bare, model.definitions, model.path, engine, seed, block, needed)
 
     def packed(self) -> bytes:
         """The recipe with the software it was made with, for `unpacked`."""

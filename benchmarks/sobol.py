@@ -66,7 +66,12 @@ def table(found: Mapping[str, Any]) -> str:
 
 
 def _shown(ratio: float, interval: tuple[float, float]) -> str:
-    return "{} ({} to {})".format(*(f"{each:,.0f}" if each >= 10 else f"{each:.2f}" for each in (ratio, *interval)))
+    return "{} ({} to {})".format(*map(_digits, (ratio, *interval)))
+
+
+def _digits(ratio: float) -> str:
+    """Two significant digits of a large one, two decimals of a small one: seeds tell no more."""
+    return f"{float(f'{ratio:.2g}'):,.0f}" if ratio >= 10.0 else f"{ratio:.2f}"
 
 
 def main() -> None:

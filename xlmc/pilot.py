@@ -2,8 +2,8 @@
 
 Some dimensions of a net are less even together than others, and with some thousand points in a replicate it shows: in
 the order of the workbook, the case study's filtered means vary as with Monte Carlo; in this one, two thirds as much
-(docs/sampling.md has the orders that were tried). Which assumptions matter, a short run by Monte Carlo says, with streams
-that the Sobol points have nothing to do with.
+(docs/sampling.md has the orders that were tried). Which assumptions matter, a short run by Monte Carlo says, with
+streams that the Sobol points have nothing to do with.
 """
 
 from __future__ import annotations

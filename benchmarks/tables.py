@@ -13,7 +13,7 @@ from accuracy import STATISTICS
 from figures import TITLES
 from machine import sentence
 
-__all__ = ["PAGE", "TABLES", "filled", "write"]
+__all__ = ["PAGE", "TABLES", "filled", "placed", "write"]
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "speed.md"
 
@@ -43,14 +43,14 @@ def filled(text: str, results: Path) -> str:
     if not found:
         return text
     machine = next(iter(found.values()))["machine"]
-    text = _placed(text, "machine", _machine(machine))
+    text = placed(text, "machine", _machine(machine))
     for name, given in found.items():
         table = TABLES[name](given["found"])
-        text = _placed(text, name, table if given["machine"] == machine else f"{table}\n\n{_machine(given['machine'])}")
+        text = placed(text, name, table if given["machine"] == machine else f"{table}\n\n{_machine(given['machine'])}")
     return text
 
 
-def _placed(text: str, name: str, body: str) -> str:
+def placed(text: str, name: str, body: str) -> str:
     marked = re.compile(rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)", re.DOTALL)
     if not marked.search(text):
         raise ValueError(f"the page has no markers for the table {name!r}")

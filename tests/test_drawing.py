@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from xlmc.address import Cell
-from xlmc.definitions import Assumption, Correlation
+from xlmc.definitions import Assumption
 from xlmc.distributions import FAMILIES, ByPercentiles
-from xlmc.drawing import correlated_groups
 from xlmc.errors import DefinitionError
 from xlmc.model import Model
 
@@ -139,49 +138,3 @@ def test_a_parameter_may_come_to_terms_with_an_error(book):
     assert (draws["a"] < 0).any()
     assert (draws["c"][draws["a"] < 0] == 5).all()
     assert (draws["c"][draws["a"] > 0] > 5).all()
-
-
-def row(first, second, value):
-    return Correlation(first, second, value, Cell("C", 1, 1))
-
-
-@pytest.mark.parametrize(
-    ("pairs", "groups"),
-    [
-        ([], []),
-        ([("a", "b")], [("a", "b")]),
-        ([("d", "b")], [("b", "d")]),  # in the order in which they are drawn
-        ([("a", "b"), ("c", "d")], [("a", "b"), ("c", "d")]),
-        ([("a", "c"), ("c", "e"), ("b", "d")], [("a", "c", "e"), ("b", "d")]),
-        ([("a", "b"), ("c", "d"), ("b", "c")], [("a", "b", "c", "d")]),
-        ([("a", "elsewhere"), ("b", "c")], [("b", "c")]),  # an assumption that is not drawn
-        ([(" A ", "B")], [("a", "b")]),
-    ],
-)
-def test_groups_of_correlated_assumptions(pairs, groups):
-    found = correlated_groups([row(*pair, 0.3) for pair in pairs], ["a", "b", "c", "d", "e"])
-    assert [group.names for group in found] == groups
-
-
-def test_a_correlation_of_0_is_none():
-    rows = [row("a", "b", 0.3), row("b", "c", 0), row("d", "e", 0)]
-    assert [group.names for group in correlated_groups(rows, ["a", "b", "c", "d", "e"])] == [("a", "b")]
-
-
-def test_contradictory_correlations(book):
-    cells = dict.fromkeys(("A1", "A2", "A3"), 1.0) | {"B1": "=A1+A2+A3"}
-    given = {name: {"cell": name, **UNIT} for name in ("A1", "A2", "A3")}
-    contradictory = {("A1", "A2"): 0.9, ("A2", "A3"): 0.9, ("A1", "A3"): -0.9}
-    with pytest.raises(DefinitionError) as caught:
-        book(cells, given, {"x": "B1"}, correlations=contradictory)
-    error = caught.value
-    assert error.message == "these correlations contradict each other: no assumptions can have all of them at once"
-    assert (error.where, error.hint) == ("Correlations!A1", "bring them closer to 0")
-
-
-def test_correlated_draws(book):
-    given = {name: {"cell": name, **UNIT} for name in ("A1", "A2")}
-    model = book({"A1": 1.0, "A2": 1.0, "B1": "=A1+A2"}, given, {"x": "B1"}, correlations={("A1", "A2"): 0.8})
-    draws = model.sampler(1, 20_000).draw(0)
-    ranks = [np.argsort(np.argsort(draws[name])) for name in ("a1", "a2")]
-    assert abs(np.corrcoef(ranks)[0, 1] - 0.8) < 4 * (1 - 0.8**2) * np.sqrt((1 + 0.8**2 / 2) / 20_000)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from xlmc.compile import Column, Evaluator
 from xlmc.compile.engine import BLANK_RESULT, TEXT_RESULT, Kept, Sweeper, Sweeping
 from xlmc.errors import ErrorCode
-from xlmc.sampling import MonteCarlo
+from xlmc.sampling import Sampler
 
 __all__ = ["Block", "FilterTally", "Runner", "Task", "Worker", "fault_text"]
 
@@ -106,7 +106,7 @@ class Worker:
     """
 
     def __init__(
-        self, sampler: MonteCarlo, evaluator: Evaluator, block: int, forecasts: int, fallible: frozenset[str]
+        self, sampler: Sampler, evaluator: Evaluator, block: int, forecasts: int, fallible: frozenset[str]
     ) -> None:
         self._sampler, self._evaluator, self._block = sampler, evaluator, block
         self._width, self._fallible = forecasts, fallible

@@ -1,4 +1,4 @@
-"""Assumptions of a workbook as draws: constant parameters checked, dynamic ones compiled, correlated ones grouped."""
+"""Assumptions of a workbook as draws: constant parameters checked, dynamic ones compiled."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 
 from xlmc.address import Cell
 from xlmc.compile import ENGINES, Lowering, Target
-from xlmc.definitions import Assumption, Correlation
+from xlmc.definitions import Assumption
 from xlmc.definitions.data import data_family
 from xlmc.definitions.model import Parameter, name_key
 from xlmc.distributions import ByPercentiles, Family, Truncated
 from xlmc.errors import DefinitionError
 from xlmc.formula import ir
 from xlmc.functions.values import ERROR, TEXT
-from xlmc.sampling import CorrelatedGroup, Draw, DynamicParameters, GaussianCopula
+from xlmc.sampling import Draw, DynamicParameters
 
-__all__ = ["correlated_groups", "draw_of", "dynamic_parameters", "parameter_target"]
+__all__ = ["draw_of", "dynamic_parameters", "parameter_target"]
 
 
 def parameter_target(cell: Cell) -> Target:
@@ -116,45 +116,3 @@ def dynamic_parameters(draws: Sequence[Draw], lowering: Lowering, block: int) ->
         return {cell: column.as_floats() for cell, column in zip(places, columns, strict=True)}
 
     return parameters
-
-
-def correlated_groups(correlations: Sequence[Correlation], live: Sequence[str]) -> list[CorrelatedGroup]:
-    """The correlations among drawn assumptions, gathered in groups that have none between them.
-
-    A correlation of 0 is none: the draws are those of a workbook without its row, to the last bit.
-
-    Raises:
-        DefinitionError: the correlations of a group contradict each other.
-    """
-    order = [name_key(name) for name in live]
-    pairs = {(name_key(c.first), name_key(c.second)): c for c in correlations if c.value}
-    pairs = {pair: c for pair, c in pairs.items() if pair[0] in order and pair[1] in order}
-    groups = []
-    for names in _connected(order, list(pairs)):
-        matrix = np.eye(len(names))
-        rows = [c for pair, c in pairs.items() if pair[0] in names]
-        for correlation in rows:
-            i, j = (names.index(name_key(name)) for name in (correlation.first, correlation.second))
-            matrix[i, j] = matrix[j, i] = correlation.value
-        groups.append(CorrelatedGroup(names, _copula(matrix, rows[0])))
-    return groups
-
-
-def _copula(matrix: NDArray[np.float64], row: Correlation) -> GaussianCopula:
-    try:
-        return GaussianCopula(matrix)
-    except ValueError as error:
-        raise DefinitionError(
-            f"{error}: no assumptions can have all of them at once", where=row.row, hint="bring them closer to 0"
-        ) from None
-
-
-def _connected(order: Sequence[str], pairs: Sequence[tuple[str, str]]) -> list[tuple[str, ...]]:
-    """The names that pairs join, directly or through others, in groups of two or more."""
-    group = {name: {name} for name in order}
-    for first, second in pairs:
-        joined = group[first] | group[second]
-        for name in joined:
-            group[name] = joined
-    distinct = {id(names): names for names in group.values() if len(names) > 1}
-    return [tuple(name for name in order if name in names) for names in distinct.values()]

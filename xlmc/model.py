@@ -12,12 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from xlmc.address import Cell
 from xlmc.collecting import paused_collection
 from xlmc.compile import ENGINES, FILLERS, Lowering, Program, Target, options_of, widened
+from xlmc.correlating import correlated_groups, repair_notices
 from xlmc.definitions import Assumption, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key
 from xlmc.definitions.stopping import stopping
-from xlmc.drawing import correlated_groups, draw_of, dynamic_parameters
+from xlmc.drawing import draw_of, dynamic_parameters
 from xlmc.errors import DefinitionError, Notice, SimulationError
-from xlmc.sampling import MonteCarlo, Stage
+from xlmc.sampling import CorrelatedGroup, Plan, Sampler, Stage
 from xlmc.scene import Scene, condition, survey
 from xlmc.workbook import Workbook, read_workbook
 
@@ -69,6 +70,7 @@ class Model:
         workbook, definitions, path: what it was made from.
         assumptions, forecasts, filters: as defined.
         live: the assumptions that are drawn: needed and not frozen.
+        groups: of correlated ones among them.
         notices: what the person should know.
     """
 
@@ -77,10 +79,12 @@ class Model:
         self.scene, self._lowering = _understood(workbook, definitions)
         self.live: tuple[Assumption, ...] = self.scene.live
         self._draws = {a.name: draw_of(a, self._lowering) for a in self.live}
-        self._groups = correlated_groups(definitions.correlations, [a.name for a in self.live])
+        names = [a.name for a in self.live]
+        self.groups: tuple[CorrelatedGroup, ...] = tuple(correlated_groups(definitions.correlations, names))
         self._programs: dict[tuple[str, str], Program] = {}
         self._check_targets()
-        notices = workbook.notices, definitions.notices, self.scene.notices, self._lowering.notices
+        repairs = repair_notices(self.groups, definitions.correlations, names)
+        notices = workbook.notices, definitions.notices, self.scene.notices, self._lowering.notices, repairs
         self.notices: tuple[Notice, ...] = tuple(notice for part in notices for notice in part)
 
     @property
@@ -114,6 +118,7 @@ class Model:
         time_limit: str | float | None = None,
         engine: str | None = None,
         arithmetic: str | None = None,
+        sampling: str | None = None,
         jobs: int = 1,
         scheduler: str | None = None,
         workers: int | None = None,
@@ -138,6 +143,8 @@ class Model:
             time_limit: seconds, or such as `5m`, after which the run ends with the block of trials it is in.
             engine: `numpy`, `jit`, compiled for long runs, or `formulas`, the slow reference.
             arithmetic: `float64`, or `float32` with the engine `jit`.
+            sampling: `mc`, Monte Carlo; `lhs`, Latin hypercube; `lhs500`, the same in blocks of 500; or `sobol`,
+                scrambled Sobol. All but the first run whole replicates, and so sometimes a few more trials.
             jobs: threads or processes.
             scheduler: `threads`; `processes`; `local`, a Dask cluster of this machine; or the address of a Dask
                 scheduler. By default processes for a long run with several jobs, else threads.
@@ -159,6 +166,7 @@ class Model:
             stopping=stopping(until_accepted, precision, precision_of, confidence, adaptive, forecasts, time_limit),
             engine=engine,
             arithmetic=arithmetic,
+            sampling=sampling,
             jobs=jobs,
             scheduler=scheduler,
             workers=workers,
@@ -221,12 +229,12 @@ class Model:
                 self._programs[engine, arithmetic] = ENGINES[engine](*parts, **options_of(engine, arithmetic))
         return self._programs[engine, arithmetic]
 
-    def sampler(self, seed: int, block: int, engine: str = "numpy") -> MonteCarlo:
-        """The draws, block by block; for one thread. They are the same for every engine."""
+    def sampler(self, seed: int, block: int, engine: str = "numpy", plan: Plan | None = None) -> Sampler:
+        """The draws, block by block; for one thread. They are the same for every engine; by default independent."""
         draws = [tuple(self._draws[a.name] for a in stage) for stage in self.scene.stages]
         stages = [Stage(stage, dynamic=i > 0) for i, stage in enumerate(draws)]
         parameters = [dynamic_parameters(stage, self._lowering, block) for stage in draws[1:]]
-        return MonteCarlo(seed, stages, self._groups, parameters, block, FILLERS.get(engine))
+        return Sampler(seed, stages, self.groups, parameters, block, plan, FILLERS.get(engine))
 
     @property
     def _filter_targets(self) -> list[Target]:

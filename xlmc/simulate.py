@@ -16,7 +16,9 @@ from xlmc.blocks import Block, FilterTally, Task
 from xlmc.definitions.model import name_key
 from xlmc.definitions.stopping import LIMIT, NO_GOAL, Stopping
 from xlmc.errors import SimulationError
+from xlmc.pilot import planned
 from xlmc.rounding import Rounding, checked_rounding
+from xlmc.sampling import METHODS
 from xlmc.scheduling import Crew
 from xlmc.scheduling.recipe import worker_of
 from xlmc.scratch import Keeper
@@ -35,6 +37,7 @@ from xlmc.stopping import (
 if TYPE_CHECKING:
     from xlmc.definitions import Settings
     from xlmc.model import Model
+    from xlmc.sampling import Plan
 
 __all__ = ["BLOCK", "PRIOR_TRIALS", "Progress", "simulate"]
 
@@ -58,6 +61,7 @@ def simulate(
     stopping: Stopping = NO_GOAL,
     engine: str | None = None,
     arithmetic: str | None = None,
+    sampling: str | None = None,
     jobs: int = 1,
     scheduler: str | None = None,
     workers: int | None = None,
@@ -66,9 +70,10 @@ def simulate(
     progress: Progress | None = None,
 ) -> Simulation:
     """Run a model; see `Model.simulate`."""
-    settings = _settings(model, trials, seed, engine, arithmetic, stopping)
+    settings = _settings(model, trials, seed, engine, arithmetic, sampling, stopping)
+    plan = planned(model, settings)
     rule = chosen_rule(settings.stopping, model.forecasts)
-    watch = Watch(rule, settings.trials, settings.stopping.seconds, time.monotonic)
+    watch = Watch(rule, plan.trials, settings.stopping.seconds, time.monotonic)
     teller = None if progress is None else Teller([forecast.name for forecast in model.forecasts])
     crew = Crew(jobs, scheduler, workers)
     if keep_inputs is not None and keep_inputs < 0:
@@ -78,22 +83,22 @@ def simulate(
     program = model.program(settings.engine, settings.arithmetic)
     block = min(BLOCK, program.largest_block)
     rounding = checked_rounding(model, program, settings, block) if settings.arithmetic == "float32" else None
-    gathered = _Gathered(model, block, settings.trials if keep_inputs is None else keep_inputs)
+    gathered = _Gathered(model, block, plan.trials if keep_inputs is None else keep_inputs)
 
     def task(start: int, trials: int) -> Task:
         return Task(start, trials, start < PRIOR_TRIALS, gathered.wants_inputs)
 
-    tasks = (task(start, min(block, settings.trials - start)) for start in range(0, settings.trials, block))
+    tasks = (task(start, min(block, plan.trials - start)) for start in range(0, plan.trials, block))
     stopped = None
     with (
         Interruption(wanted=keep_interrupted and may_end_early(settings.sampling)) as interruption,
-        closing(crew.blocks(model, program, settings, block, tasks)) as blocks,
+        closing(crew.blocks(model, program, settings, plan, block, tasks)) as blocks,
     ):
         while stopped is None:
             finished = next(blocks)
             counting = watch.counting(finished)
             if counting < finished.trials:
-                finished = worker_of(model, program, settings.engine, settings.seed, block).run(
+                finished = worker_of(model, program, settings.engine, settings.seed, block, plan).run(
                     task(gathered.trials, counting)
                 )
             gathered.add(finished)
@@ -101,7 +106,7 @@ def simulate(
             stopped = watch.after(finished, gathered.forecast, interrupted=interruption.asked)
             if progress is not None and teller is not None:
                 progress(teller.after(finished, watch.share))
-    return gathered.simulation(settings, stopped, rounding)
+    return gathered.simulation(settings, plan, stopped, rounding)
 
 
 def _settings(
@@ -110,9 +115,10 @@ def _settings(
     seed: int | None,
     engine: str | None,
     arithmetic: str | None,
+    sampling: str | None,
     stopping: Stopping,
 ) -> Settings:
-    given = {"trials": trials, "seed": seed, "engine": engine, "arithmetic": arithmetic}
+    given = {"trials": trials, "seed": seed, "engine": engine, "arithmetic": arithmetic, "sampling": sampling}
     settings = replace(model.definitions.settings, **{k: v for k, v in given.items() if v is not None})  # type: ignore[arg-type]
     if trials is not None or stopping.has_goal:
         settings = replace(settings, trials=LIMIT if trials is None else trials, stopping=stopping)
@@ -123,6 +129,9 @@ def _settings(
         raise SimulationError(f"{settings.trials} trials were asked for", hint=f"give 1 to {MOST_TRIALS:,}")
     if settings.seed < 0:
         raise SimulationError(f"the seed {settings.seed} is negative", hint="give a whole number from 0 up")
+    if settings.sampling not in METHODS:
+        message = f"there is no sampling method {settings.sampling!r}"
+        raise SimulationError(message, hint=f"choose one of {', '.join(METHODS)}")
     return settings
 
 
@@ -173,10 +182,11 @@ class _Gathered:
         """A forecast's accepted trials so far, `(m,)`, NaN where it has no number."""
         return self._keeper.columns({"": ("forecast", place)})[""]
 
-    def simulation(self, settings: Settings, stopped: Stopped, rounding: Rounding | None) -> Simulation:
+    def simulation(self, settings: Settings, plan: Plan, stopped: Stopped, rounding: Rounding | None) -> Simulation:
         return Simulation(
             model=self._model,
             settings=settings,
+            plan=plan,
             block=self._block,
             trials=self.trials,
             trial_index=self._keeper.columns({"trial": ("trial", 0)})["trial"],

@@ -17,8 +17,10 @@ from xlmc.blocks import FilterTally
 from xlmc.definitions import Forecast, Settings
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
-from xlmc.scratch import numbers
+from xlmc.sampling import METHODS, Plan
+from xlmc.scratch import numbers, parts
 from xlmc.statistics import Description, Estimate, Sample
+from xlmc.statistics.sample import MOST_GROUPS
 from xlmc.stopping import Stopped
 from xlmc.stopping.stopped import ALL_TRIALS
 
@@ -37,7 +39,11 @@ ERROR_SHARE: Final = 0.001
 KEPT_INPUTS: Final = 1 << 20
 """Accepted trials whose draws are kept, unless asked otherwise: more than a sheet has rows."""
 
+LEAST_ACCEPTED: Final = 10
+"""Accepted trials for each replicate that errors come from, on average, if they are to be trusted: docs/sampling.md."""
+
 Floats = NDArray[np.float64]
+Replicates = NDArray[np.int64]
 
 
 class ForecastResult:
@@ -47,9 +53,15 @@ class ForecastResult:
         faults: error, `text` or `blank` -> accepted trials in which it is none.
     """
 
-    def __init__(self, definition: Forecast, column: Callable[[], Floats], faults: Counter[str]) -> None:
+    def __init__(
+        self,
+        definition: Forecast,
+        column: Callable[[], Floats],
+        faults: Counter[str],
+        replicate: Callable[[], Replicates | None] = lambda: None,
+    ) -> None:
         self.definition, self.faults = definition, faults
-        self._column = column
+        self._column, self._replicate = column, replicate
 
     @cached_property
     def values(self) -> Floats:
@@ -58,8 +70,9 @@ class ForecastResult:
 
     @cached_property
     def sample(self) -> Sample:
-        """The same in ascending order, from which the statistics come."""
-        return Sample.of(self.values)
+        """The same in ascending order with their replicates, from which the statistics come."""
+        replicate, column = self._replicate(), self._column()
+        return Sample.of(self.values, None, None if replicate is None else replicate[~np.isnan(column)])
 
     def __repr__(self) -> str:
         return f"<{self.definition.name}: {self.values.size} accepted trials>"
@@ -101,6 +114,7 @@ class Simulation:
 
     Attributes:
         model, settings, block: what it is a function of.
+        plan: the sampling method, and how it divides the trials into replicates.
         trials: how many were run.
         trial_index: `(m,)` the accepted ones, counted from 0.
         inputs: assumption -> its accepted draws, `(m,)`, or of the first accepted trials where not all were asked for.
@@ -117,6 +131,7 @@ class Simulation:
 
     model: Model
     settings: Settings
+    plan: Plan
     block: int
     trials: int
     trial_index: NDArray[np.int64]
@@ -148,9 +163,16 @@ class Simulation:
     def results(self) -> dict[str, ForecastResult]:
         """Every forecast's result, in the order of the workbook."""
         return {
-            f.name: ForecastResult(f, partial(self.forecasts.__getitem__, f.name), self.faults[f.name])
+            f.name: ForecastResult(
+                f, partial(self.forecasts.__getitem__, f.name), self.faults[f.name], lambda: self.replicate
+            )
             for f in self.model.forecasts
         }
+
+    @property
+    def replicate(self) -> Replicates | None:
+        """`(m,)` the replicate of each accepted trial; None where the trials themselves are independent."""
+        return self.plan.replicate_of(self.trial_index)
 
     @property
     def accepted(self) -> int:
@@ -161,7 +183,20 @@ class Simulation:
         """The share of accepted trials; the trials may have gone on until there were enough."""
         if self.stopped.by == "accepted":
             return statistics.inverse_proportion(self.accepted, self.trials)
-        return statistics.proportion(self.accepted, self.trials)
+        if not self.plan.size:
+            return statistics.proportion(self.accepted, self.trials)
+        sizes = np.full(-(-self.trials // self.plan.size), self.plan.size)
+        sizes[-1] -= sizes.sum() - self.trials
+        return statistics.replicated_proportion(self.accepted_by_replicate, sizes)
+
+    @cached_property
+    def accepted_by_replicate(self) -> Replicates:
+        """How many trials each replicate has accepted; of none where the trials themselves are independent."""
+        count = -(-self.trials // self.plan.size) if self.plan.size else 0
+        found = np.zeros(count, np.int64)
+        for part in parts(self.trial_index) if count else ():
+            found += np.bincount(part // self.plan.size, minlength=count)
+        return found
 
     @property
     def notices(self) -> tuple[Notice, ...]:
@@ -179,7 +214,18 @@ class Simulation:
         if self.error_trials > ERROR_SHARE * self.trials:
             share = self.error_trials / self.trials
             found.append(f"{self.error_trials:,} trials ({share:.2%}) were lost to errors in cells")
-        return found
+        return [*found, *self._sparse()]
+
+    def _sparse(self) -> list[str]:
+        """Whether too few trials were accepted in a replicate for the errors to be told from the replicates."""
+        groups = min(self.plan.replicates, MOST_GROUPS)
+        if not 0 < self.accepted < LEAST_ACCEPTED * groups:
+            return []
+        return [
+            f"only {self.accepted:,} trials were accepted in {self.plan.replicates:,} replicates, fewer than "
+            f"{LEAST_ACCEPTED * groups:,}, so errors and intervals are not to be trusted: run more trials, or sample "
+            f"by {METHODS['mc']}"
+        ]
 
     @property
     def kept_inputs(self) -> int:

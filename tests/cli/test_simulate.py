@@ -204,3 +204,24 @@ def test_a_long_run_is_told_of_the_engine_jit(xlmc, book, monkeypatch, trials, o
     monkeypatch.setattr("xlmc.model.Model.simulate", stopped)
     monkeypatch.setattr("xlmc.compile.jit.find_spec", lambda name: object() if installed else None)
     assert ("--engine jit" in xlmc("simulate", book, "-n", trials, *options).err) is hinted
+
+
+@pytest.mark.parametrize(
+    ("method", "words"),
+    [
+        ("mc", "Monte Carlo: independent trials; errors come from the trials"),
+        ("lhs", "Latin hypercube: 16 independent replicates of 2,500 trials; errors come from the differences between"),
+        ("lhs500", "Latin hypercube in blocks of 500: 80 independent replicates of 500 trials; errors come from"),
+        ("sobol", "scrambled Sobol: 20 independent replicates of 2,048 trials, whole ones, for the 40,000 trials"),
+    ],
+)
+def test_the_sampling_method_is_said(xlmc, book, method, words):
+    outcome = xlmc("simulate", book, "-n", 40_000, "--sampling", method)
+    assert outcome.code == 0
+    assert words in " ".join(outcome.out.split())
+
+
+def test_too_few_accepted_trials_in_a_replicate_are_exit_code_1(xlmc, book):
+    outcome = xlmc("simulate", book, "-n", 5_000, "--sampling", "lhs")
+    assert outcome.code == 1
+    assert "trials were accepted in 16 replicates, fewer than 160" in " ".join(outcome.err.split())

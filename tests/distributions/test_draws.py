@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, ByPercentiles
-from xlmc.sampling import Draw, MonteCarlo, Stage
+from xlmc.sampling import Draw, Sampler, Stage
 
 TRIALS, BLOCK, BINS = 1_000_000, 50_000, 1000
 CUMUL = FAMILIES["Cumul"].built(np.array([[1.0, 0.25], [1.5, 0.75]]))
@@ -38,7 +38,7 @@ CASES = {
 
 def drawn(family, parameters, cutoffs=None):
     draw = Draw("speed", family, parameters, cutoffs)
-    sampler = MonteCarlo(999, [Stage((draw,))], [], [], BLOCK)
+    sampler = Sampler(999, [Stage((draw,))], [], [], BLOCK)
     return np.concatenate([sampler.draw(start)["speed"].copy() for start in range(0, TRIALS, BLOCK)])
 
 

@@ -8,6 +8,7 @@ import pytest
 import xlmc
 from xlmc.record import make_record
 from xlmc.record.errors_met import errors_met
+from xlmc.statistics import rank_correlation
 from xlmc.workbook.inject import original_hash
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/intersection.xlsx"
@@ -104,8 +105,17 @@ def test_forecasts_with_results_at_full_precision(run, record):
 
 
 def test_correlations_warnings_and_notices(run, record):
-    pair = {"first": "width", "second": "length", "rank_correlation": 0.4, "cell": "S!A9"}
-    assert record.rows("correlations") == [pair]
+    [pair] = record.rows("correlations")
+    found = rank_correlation(run.inputs["width"], run.inputs["length"])
+    assert pair == {
+        "first": "width",
+        "second": "length",
+        "rank_correlation": 0.4,
+        "used": pytest.approx(0.4),
+        "accepted": found.value,
+        "accepted_error": found.error,
+        "cell": "S!A9",
+    }
     assert [row["message"] for row in record.rows("warnings")] == run.warnings != []
     assert [row["message"] for row in record.rows("notices")] == [
         "book.xlsx: calculation is manual",

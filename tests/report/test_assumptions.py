@@ -6,6 +6,7 @@ import pytest
 from xlmc.definitions import Correlation
 from xlmc.report.assumptions import HEADER
 from xlmc.report.conditioning import conditioning
+from xlmc.statistics import rank_correlation
 
 
 @pytest.fixture
@@ -66,4 +67,29 @@ def test_correlations_are_listed(make, opened, row_of):
     )
     sheet = opened(run)["Assumptions"]
     rows = [row for row in sheet.iter_rows(values_only=True) if row[0] == "a" and row[1] == "b"]
-    assert [row[3] for row in rows] == [0.7]
+    assert [row[3:5] for row in rows] == [(0.7, 0.7)]
+    found = rank_correlation(run.inputs["a"], run.inputs["b"])
+    assert [row[5:7] for row in rows] == [(found.value, found.error)]
+
+
+def test_the_sheets_of_a_run_in_replicates(make, opened, rows_of):
+    """How it was sampled stands on Results, and errors of accepted draws come from the replicates."""
+    assumptions = [make.uniform(name, cell, 0.0, 1.0, base=0.5) for name, cell in (("a", "A1"), ("b", "A2"))]
+    cells = {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2", "C1": "=A1>0.3"}
+    model = make.simulate(cells, assumptions, [make.forecast("x", "B1")], [make.filter("f", "C1")]).model
+    run = model.simulate(4_000, 1, sampling="lhs")
+    book = opened(run)
+    results = [row[0] for row in rows_of(book["Results"]) if row]
+    sentence = "Latin hypercube: 16 independent replicates of 250 trials; errors come from the differences between "
+    assert any(str(text).startswith(sentence) for text in results)
+    assert any("independent trials, which these samples hardly ever exceed" in str(text) for text in results)
+    texts = [row[0] for row in rows_of(book["Assumptions"]) if row]
+    assert any(str(text).startswith("Before filtering ± is that of independent trials") for text in texts)
+    found = conditioning(run.prior["b"], run.inputs["b"], run.replicate)
+    assert found.accepted.mean.error < conditioning(run.prior["b"], run.inputs["b"]).accepted.mean.error
+    line = next(
+        row
+        for row in rows_of(book["Assumptions"])
+        if len(row) > 6 and row[3] == "accepted" and row[5] == found.accepted.mean.value
+    )
+    assert line[6] == found.accepted.mean.error

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from xlmc.distributions import FAMILIES
-from xlmc.sampling import CorrelatedGroup, Draw, GaussianCopula, MonteCarlo, Stage, Stream
+from xlmc.sampling import CorrelatedGroup, Draw, GaussianCopula, Sampler, Stage, Stream
 
 UNIFORM, NORMAL = FAMILIES["Uniform"], FAMILIES["Normal"]
 PAIR = np.array([[1.0, 0.8], [0.8, 1.0]])
@@ -15,7 +15,7 @@ def uniform(name, low=0.0, high=1.0):
 
 
 def sampler(*draws, groups=(), block=64, seed=999):
-    return MonteCarlo(seed, [Stage(draws)], groups, [], block)
+    return Sampler(seed, [Stage(draws)], groups, [], block)
 
 
 def drawn(montecarlo, blocks, block=64):
@@ -83,7 +83,7 @@ def test_parameters_may_depend_on_earlier_stages():
         return {"2a": 2 * earlier["a"][:n]}
 
     stages = [Stage((uniform("a"),)), Stage((Draw("b", UNIFORM, ("2a", 3.0)),), dynamic=True)]
-    found = MonteCarlo(999, stages, [], [parameters], 64).draw(0)
+    found = Sampler(999, stages, [], [parameters], 64).draw(0)
     u = np.empty(64)
     Stream(999, "b").uniforms(0, u)
     assert np.array_equal(found["b"], UNIFORM.ppf(u, 2 * found["a"], 3.0))
@@ -95,7 +95,7 @@ def test_trials_whose_parameters_are_no_distribution_are_nan(bad):
         return {"low": np.where(earlier["a"] > 0.5, bad, 0.0)}
 
     stages = [Stage((uniform("a"),)), Stage((Draw("b", UNIFORM, ("low", 3.0)),), dynamic=True)]
-    found = MonteCarlo(999, stages, [], [parameters], 64).draw(0)
+    found = Sampler(999, stages, [], [parameters], 64).draw(0)
     assert np.array_equal(np.isnan(found["b"]), found["a"] > 0.5)
 
 
@@ -111,5 +111,5 @@ def test_stages_have_parameters_of_their_own_in_order():
 
     stages = [Stage((uniform("a"),))]
     stages += [Stage((Draw(name, UNIFORM, (0.0, f"{name} high")),), dynamic=True) for name in ("b", "c")]
-    MonteCarlo(1, stages, [], [note("b"), note("c")], 8).draw(0)
+    Sampler(1, stages, [], [note("b"), note("c")], 8).draw(0)
     assert seen == [("b", ["a"]), ("c", ["a", "b"])]

@@ -35,6 +35,12 @@ INTERRUPTED = 130
     type=click.Choice(["float64", "float32"]),
     help="float32: half the digits, with --engine jit only.  [default: the book's, else float64]",
 )
+@click.option(
+    "--sampling",
+    type=click.Choice(["mc", "lhs", "lhs500", "sobol"]),
+    help="mc: Monte Carlo; lhs: Latin hypercube; lhs500: in blocks of 500; sobol: scrambled Sobol."
+    "  [default: the book's, else mc]",
+)
 @click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes.")
 @click.option(
     "--scheduler",
@@ -51,6 +57,7 @@ def simulate(
     seed: int | None,
     engine: str | None,
     arithmetic: str | None,
+    sampling: str | None,
     jobs: int,
     scheduler: str | None,
     workers: int | None,
@@ -80,6 +87,7 @@ def simulate(
             **length,
             engine=engine,
             arithmetic=arithmetic,
+            sampling=sampling,
             jobs=jobs,
             scheduler=scheduler,
             workers=workers,
@@ -112,6 +120,7 @@ def _hints(model: Model, trials: int | None, engine: str | None) -> list[Notice]
 def _show(run: Simulation) -> None:
     """Print the paper's table, the acceptance and what each filter rejected."""
     from xlmc.cli.printing import table
+    from xlmc.record.sampling_words import sampling_sentence
     from xlmc.report.summary import ERROR_SENTENCE, summarise, summary_text
     from xlmc.statistics import format_estimate
     from xlmc.stopping.stopped import ALL_TRIALS
@@ -122,7 +131,7 @@ def _show(run: Simulation) -> None:
     percent = format_estimate(100 * share.value, 100 * (share.error or 0))
     click.echo(f"Accepted {run.accepted:,} of {run.trials:,} trials, {percent} %; seed {run.settings.seed}.")
     ended = "" if run.stopped == ALL_TRIALS else f"Ended when {run.stopped.sentence}.\n"
-    click.echo(ended)
+    click.echo(ended + click.wrap_text(sampling_sentence(run), width=100) + "\n")
     if run.model.filters:
         table("Trials rejected", ("Filter", "Keeps", "Rejected", "Only by it"), _rejections(run), right=(2, 3))
     click.echo(click.wrap_text(ERROR_SENTENCE, width=100))

@@ -23,8 +23,15 @@ DEFAULT_CENTRAL = 0.51
 
 _LARGEST_SEED = 10**15  # a worksheet holds no more digits
 _KNOWN = ("Setting", "Value")
-_SAMPLINGS = {"mc": "mc", "montecarlo": "mc"}
-_LATER = {"lhs": "Latin hypercube", "latinhypercube": "Latin hypercube", "sobol": "Sobol"}
+_SAMPLINGS = {
+    "mc": "mc",
+    "montecarlo": "mc",
+    "lhs": "lhs",
+    "latinhypercube": "lhs",
+    "lhs500": "lhs500",
+    "sobol": "sobol",
+    "scrambledsobol": "sobol",
+}
 _ENGINES = ("numpy", "jit", "formulas")
 _LOGNORMS = ("@RISK", "XLRisk")
 _ARITHMETICS = ("float64", "float32")
@@ -78,12 +85,9 @@ def _seed(row: Row, _findings: Findings) -> int:
 
 def _sampling(row: Row, _findings: Findings) -> str:
     typed = required_text(row, "Value")
-    where = row.cell("Value")
-    if plain(typed) in _LATER:
-        message = f"{_LATER[plain(typed)]} sampling is not available in this version"
-        raise DefinitionError(message, where=where, hint="Use mc, plain Monte Carlo")
     if plain(typed) not in _SAMPLINGS:
-        raise DefinitionError(f"There is no sampling method {typed!r}", where=where, hint="Use mc, plain Monte Carlo")
+        message = f"There is no sampling method {typed!r}"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Use mc, lhs, lhs500 or sobol")
     return _SAMPLINGS[plain(typed)]
 
 

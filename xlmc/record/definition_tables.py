@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from xlmc.record.correlations_met import correlations_met
 from xlmc.record.model import RecordTable, Section, Value
 from xlmc.record.wording import cutoffs_text, limits_text, notes_text, parameters_text, status
 
@@ -49,7 +50,15 @@ _ASSUMPTION = (
     ("source", "Source"),
     ("notes", "Notes"),
 )
-_CORRELATION = (("first", "First"), ("second", "Second"), ("rank_correlation", "Rank correlation"), ("cell", "Row"))
+_CORRELATION = (
+    ("first", "First"),
+    ("second", "Second"),
+    ("rank_correlation", "Rank correlation"),
+    ("used", "Drawn with"),
+    ("accepted", "Accepted"),
+    ("accepted_error", "±"),
+    ("cell", "Row"),
+)
 
 
 def plain(value: float | None) -> float | None:
@@ -120,7 +129,17 @@ def _assumption_row(simulation: Simulation, assumption: Assumption) -> tuple[Val
 
 
 def correlation_section(simulation: Simulation) -> Section:
-    """The rank correlations asked for."""
-    pairs = simulation.model.definitions.correlations
-    rows = tuple((pair.first, pair.second, pair.value, str(pair.row)) for pair in pairs)
+    """The rank correlations asked for, those drawn with, and those of the accepted trials."""
+    rows = tuple(
+        (
+            met.first,
+            met.second,
+            met.asked,
+            met.used,
+            None if met.accepted is None else plain(met.accepted.value),
+            None if met.accepted is None else plain(met.accepted.error),
+            None if met.row is None else str(met.row),
+        )
+        for met in correlations_met(simulation)
+    )
     return Section("correlations", "Correlations", table=RecordTable(_CORRELATION, rows))

@@ -17,19 +17,14 @@ from xlmc.record.errors_met import errors_met
 from xlmc.record.fingerprint import fingerprint
 from xlmc.record.model import Entry, Record, RecordTable, Section
 from xlmc.record.repeat import repeat_command
-from xlmc.sampling.streams import GENERATOR
+from xlmc.record.sampling_words import errors_text, generator_text, method_text
 from xlmc.workbook.inject import original_hash
 
 if TYPE_CHECKING:
     from xlmc.rounding import Rounding
     from xlmc.simulation import Simulation
 
-__all__ = ["METHODS", "make_record"]
-
-METHODS = {"mc": "Monte Carlo: independent trials"}
-"""Sampling methods by their name in the settings."""
-
-_STREAMS = f"{GENERATOR}: a stream for each assumption, seeded by (seed, name), positioned by trial number"
+__all__ = ["make_record"]
 
 _SHARES = {
     "trials": "accepted of all trials; its interval is Wilson's, 95 %",
@@ -40,7 +35,6 @@ _SHARES = {
 _CONVENTIONS = (
     ("percentiles", "Percentiles", "linear between trials, as Excel's PERCENTILE.INC"),
     ("central_range", "Central range", "as many trials lie below it as above it; it is not the shortest such range"),
-    ("variance", "Variance", "of a sample: divided by n − 1, as Excel's VAR.S"),
     ("kurtosis", "Kurtosis", "3 for the normal distribution"),
     ("mode", "Mode", "half-sample mode"),
     ("errors", "Standard errors (±)", "Monte Carlo error alone"),
@@ -71,7 +65,7 @@ def make_record(simulation: Simulation, command: str | None = None) -> Record:
             _messages("warnings", "Warnings", simulation.warnings),
             _messages("notices", "Notices", [str(notice) for notice in simulation.notices]),
             _errors(simulation),
-            Section("conventions", "Conventions", tuple(Entry(*convention) for convention in _CONVENTIONS)),
+            _conventions(simulation),
             Section("software", "Software", _entries(versions(simulation.settings.engine))),
             Section("processor", "Processor", _entries(processor())),
         )
@@ -133,13 +127,21 @@ def _end(simulation: Simulation) -> Section:
 
 
 def _sampling(simulation: Simulation) -> Section:
-    settings = simulation.settings
+    settings, plan = simulation.settings, simulation.plan
+    replicates = (
+        Entry("asked", "Trials that were asked for", settings.trials),
+        Entry("replicates", "Independent replicates", plan.replicates),
+        Entry("replicate", "Trials in a replicate", plan.size),
+    )
     entries = (
         Entry("trials", "Trials", simulation.trials),
         Entry("seed", "Seed", settings.seed),
         Entry("method", "Method", settings.sampling),
-        Entry("method_in_words", "In words", METHODS.get(settings.sampling, settings.sampling)),
-        Entry("generator", "Generator", _STREAMS),
+        Entry("method_in_words", "In words", method_text(simulation)),
+        *(replicates if plan.size else ()),
+        Entry("errors", "Errors come", errors_text(simulation)),
+        Entry("generator", "Generator", generator_text(simulation)),
+        *([Entry("dimensions", "Sobol dimensions", ", ".join(plan.order))] if plan.order else []),
         Entry("engine", "Engine", settings.engine),
         Entry("arithmetic", "Arithmetic", settings.arithmetic),
         Entry("block", "Trials in a block", simulation.block),
@@ -159,6 +161,14 @@ def _errors(simulation: Simulation) -> Section:
     columns = (("kind", "In a"), ("name", "Name"), ("cell", "Cell"), ("error", "Error"), ("trials", "Trials"))
     rows = tuple((met.kind, met.name, str(met.cell), met.error, met.trials) for met in errors_met(simulation))
     return Section("errors", "Errors in cells", table=RecordTable(columns, rows))
+
+
+def _conventions(simulation: Simulation) -> Section:
+    replicates = "of a sample: the mean square about the mean, and the squared error of the mean"
+    variance = replicates if simulation.plan.size else "of a sample: divided by n − 1, as Excel's VAR.S"
+    entries = [Entry(*convention) for convention in _CONVENTIONS]
+    entries.insert(2, Entry("variance", "Variance", variance))
+    return Section("conventions", "Conventions", tuple(entries))
 
 
 def _messages(key: str, title: str, messages: Sequence[str]) -> Section:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from xlmc.record.errors_met import errors_met
+from xlmc.record.sampling_words import REJECTED_SENTENCE
 from xlmc.record.wording import limits_text
 from xlmc.report import cells
 from xlmc.report.cells import Shown
@@ -35,6 +36,8 @@ def write_accounting(page: Page, simulation: Simulation, last: int) -> None:
         _write_filters(page, simulation, last)
         page.heading("Trials rejected by the filters")
         _write_rejections(page, simulation)
+        if simulation.plan.size:
+            page.wide(REJECTED_SENTENCE, "remark", last)
     _write_errors(page, simulation)
 
 

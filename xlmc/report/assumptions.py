@@ -6,8 +6,10 @@ accepted draws.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
+from xlmc.record.correlations_met import correlations_met
 from xlmc.record.wording import distribution_text, status
 from xlmc.report import cells
 from xlmc.report.cells import Shown
@@ -38,6 +40,17 @@ _MEANING = (
     f"{_NARROWED:g} of what it was or less."
 )
 
+_STRATIFIED = (
+    "Before filtering ± is that of independent trials: the draws of these samples are more even than that. Of the "
+    "accepted draws it comes from the differences between replicates."
+)
+
+_CORRELATIONS = (
+    "Asked for and drawn with: before filtering. They differ where no assumptions can have all the correlations that "
+    "were asked for. Filters change correlations as they change assumptions: beside them stand those of the accepted "
+    "trials."
+)
+
 
 def write_assumptions(page: Page, simulation: Simulation) -> None:
     """Write the sheet."""
@@ -51,6 +64,8 @@ def write_assumptions(page: Page, simulation: Simulation) -> None:
     page.wide(_MEANING, "paragraph", _READABLE)
     early = max((values.size for values in simulation.prior.values()), default=0)
     page.wide(f"Before filtering: the first {early:,} trials. ± is the standard error.", "paragraph", _READABLE)
+    if simulation.plan.size:
+        page.wide(_STRATIFIED, "paragraph", _READABLE)
     if simulation.kept_inputs < simulation.accepted:
         kept = f"Accepted: the first {simulation.kept_inputs:,} of {simulation.accepted:,} accepted trials."
         page.wide(kept, "paragraph", _READABLE)
@@ -72,7 +87,9 @@ def _lines(simulation: Simulation, assumption: Assumption) -> list[list[Shown]]:
     if assumption.name not in simulation.inputs:
         why = cells.text(status(simulation.model, assumption))
         return [[*first, why, *_blank(_STATISTICS + 1)], [*second, *_blank(_STATISTICS + 2, "second")]]
-    found = conditioning(simulation.prior[assumption.name], simulation.inputs[assumption.name])
+    accepted, replicate = simulation.inputs[assumption.name], simulation.replicate
+    kept = None if replicate is None else replicate[: accepted.size]
+    found = conditioning(simulation.prior[assumption.name], accepted, kept)
     return [[*first, *_before(found)], [*second, *_accepted(found)]]
 
 
@@ -104,11 +121,19 @@ def _blank(columns: int, look: str = "number") -> list[Shown]:
 
 
 def _write_correlations(page: Page, simulation: Simulation) -> None:
-    pairs = simulation.model.definitions.correlations
-    if not pairs:
+    met = correlations_met(simulation)
+    if not met:
         return
     page.heading("Rank correlations")
-    starts, last = (0, 1, 3), 3
-    page.spread([cells.text(header, "header left") for header in ("First", "Second", "Correlation")], starts, last)
-    for pair in pairs:
-        page.spread([cells.text(pair.first), cells.text(pair.second), cells.exact(pair.value)], starts, last)
+    starts, last = (0, 1, 3, 4, 5, 6), 6
+    headers = ("First", "Second", "Asked for", "Drawn with", "Accepted", "±")
+    page.spread([cells.text(header, "header left") for header in headers], starts, last)
+    for pair in met:
+        found = pair.accepted or Estimate(math.nan)
+        line = [cells.text(pair.first), cells.text(pair.second), cells.exact(pair.asked)]
+        line += [
+            cells.text(cells.NONE) if pair.used is None else cells.exact(round(pair.used, 6)),
+            *cells.estimate(found),
+        ]
+        page.spread(line, starts, last)
+    page.wide(_CORRELATIONS, "paragraph", _READABLE)

@@ -47,9 +47,10 @@ class Conditioning:
     narrowing: Estimate
 
 
-def marginal(draws: NDArray[np.float64]) -> Marginal:
+def marginal(draws: NDArray[np.float64], replicate: NDArray[np.int64] | None = None) -> Marginal:
     """The marginal of `(n,)` draws; NaN, a trial whose parameters were no distribution, is left out."""
-    sample = statistics.Sample.of(numbers(draws))
+    ids = None if replicate is None else replicate[~np.isnan(draws)]
+    sample = statistics.Sample.of(numbers(draws), None, ids)
     return Marginal(
         trials=sample.n,
         mean=statistics.mean(sample),
@@ -58,13 +59,15 @@ def marginal(draws: NDArray[np.float64]) -> Marginal:
     )
 
 
-def conditioning(prior: NDArray[np.float64], accepted: NDArray[np.float64]) -> Conditioning:
+def conditioning(
+    prior: NDArray[np.float64], accepted: NDArray[np.float64], replicate: NDArray[np.int64] | None = None
+) -> Conditioning:
     """Compare `(n,)` draws before filtering with the `(m,)` accepted ones.
 
     Errors are those of independent samples; that the accepted draws may be among the others makes them a little
-    large.
+    large. With the `(m,)` replicates of the accepted draws, those of the accepted come from the replicates.
     """
-    before, after = marginal(prior), marginal(accepted)
+    before, after = marginal(prior), marginal(accepted, replicate)
     return Conditioning(before, after, _shift(before, after), _narrowing(before, after))
 
 

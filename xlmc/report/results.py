@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from xlmc.record.sampling_words import sampling_sentence
 from xlmc.report import cells
 from xlmc.report.accounting import write_accounting
 from xlmc.report.base_case import base_case
@@ -44,7 +45,12 @@ def _write_answers(page: Page, simulation: Simulation) -> None:
     page.heading("Answers, from the accepted trials")
     page.table(_headers(rows), [_answer(row, rows) for row in rows])
     page.row += 1
-    for sentence in (ERROR_SENTENCE, *_range_sentences(rows), *_base_sentences(simulation)):
+    for sentence in (
+        sampling_sentence(simulation),
+        ERROR_SENTENCE,
+        *_range_sentences(rows),
+        *_base_sentences(simulation),
+    ):
         page.wide(sentence, "remark", LAST)
 
 

@@ -5,34 +5,42 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.sampling.nearest import nearest_correlation
+
 __all__ = ["GaussianCopula"]
+
+Floats = NDArray[np.float64]
 
 _HALF_STEP = 2.0**-54
 
+_ROUNDING = 1e-9
+"""An eigenvalue so little below 0 is one of 0: no correlation need change by more than this."""
+
 
 class GaussianCopula:
-    """Joins k uniforms so that their Spearman correlations are those of `spearman`.
+    """Joins k uniforms so that their Spearman correlations are those of `spearman`, or the nearest possible ones.
 
     The first keeps its own draws; each other mixes its own with those before it.
 
     Args:
         spearman: the target matrix `(k, k)`, symmetric with a diagonal of 1.
 
-    Raises:
-        ValueError: no joint distribution has these correlations: the matrix is not positive definite.
+    Attributes:
+        spearman: the matrix that the draws have.
+        repaired: whether that is another one than was asked for, because no joint distribution of this kind has it.
 
-    Source: Pearson correlation of the normals ρ = 2 sin(π r_s / 6) (Kruskal 1958), which is exact.
+    Source: Pearson correlation of the normals ρ = 2 sin(π r_s / 6) (Kruskal 1958), which is exact. These are what must
+    be positive semidefinite, so it is they that are repaired (Higham 2002), and the ranks follow from them.
     """
 
-    def __init__(self, spearman: NDArray[np.float64]) -> None:
+    def __init__(self, spearman: Floats) -> None:
         pearson = 2 * np.sin(np.pi / 6 * spearman)
         np.fill_diagonal(pearson, 1.0)
-        try:
-            self._mix = np.linalg.cholesky(pearson)
-        except np.linalg.LinAlgError:
-            raise ValueError("these correlations contradict each other") from None
+        self.repaired = bool(np.linalg.eigvalsh(pearson)[0] < -_ROUNDING)
+        self._mix = _triangular_root(nearest_correlation(pearson) if self.repaired else pearson)
+        self.spearman = 6 / np.pi * np.arcsin(np.clip(self._mix @ self._mix.T, -1.0, 1.0) / 2)
 
-    def join(self, u: NDArray[np.float64]) -> None:
+    def join(self, u: Floats) -> None:
         """Replace the rows of `u` (k, n), independent uniforms in [0, 1), by joined ones."""
         from scipy.special import ndtr, ndtri
 
@@ -42,3 +50,14 @@ class GaussianCopula:
             for j in range(1, i + 1):
                 joined += self._mix[i, j] * z[j]
             u[i] = np.minimum(ndtr(joined), 1 - 2.0**-53)
+
+
+def _triangular_root(matrix: Floats) -> Floats:
+    """The lower triangle (k, k), rows of length 1, that times its transpose is the matrix, which may be singular.
+
+    A square root by eigenvalues, turned until it is triangular: as accurate where correlations are ±1 as elsewhere.
+    """
+    values, vectors = np.linalg.eigh(matrix)
+    turned: Floats = np.linalg.qr((vectors * np.sqrt(np.maximum(values, 0.0))).T, mode="r")  # type: ignore[assignment]
+    triangle = turned.T * np.where(np.diagonal(turned) < 0.0, -1.0, 1.0)
+    return np.asarray(triangle / np.linalg.norm(triangle, axis=1, keepdims=True))

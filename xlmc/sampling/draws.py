@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from xlmc.distributions import Family, Truncated
 from xlmc.distributions.uniform import Uniform
 from xlmc.sampling.copula import GaussianCopula
+from xlmc.sampling.plan import Margin, Plan
 from xlmc.sampling.streams import Stream
 
-__all__ = ["CorrelatedGroup", "Draw", "DynamicParameters", "Linear", "MonteCarlo", "Stage"]
+__all__ = ["CorrelatedGroup", "Draw", "DynamicParameters", "Linear", "Sampler", "Stage"]
 
 Floats = NDArray[np.float64]
 
@@ -82,12 +83,12 @@ class Linear:
 
 
 Filler = Callable[[Sequence[Stream], Sequence[tuple[float, float]], Floats], Callable[[int], None]]
-"""Takes streams, an offset and a factor for each, and rows `(k, block)`. What it gives takes the first trial of a
-block, and fills each row with offset + factor·uniform."""
+"""Takes streams of independent trials, an offset and a factor for each, and rows `(k, block)`. What it gives takes the
+first trial of a block, and fills each row with offset + factor·uniform."""
 
 
-class MonteCarlo:
-    """Draws blocks of independent trials. For one thread; its memory is used again with every block.
+class Sampler:
+    """Draws blocks of trials. For one thread; its memory is used again with every block.
 
     Args:
         seed: of the run.
@@ -95,6 +96,7 @@ class MonteCarlo:
         groups: of correlated assumptions.
         parameters: for each dynamic stage, in order.
         block: trials per block.
+        plan: the method and its replicates; by default independent trials.
         filler: draws the uniforms in place of the streams, the same bits; None for the streams themselves.
     """
 
@@ -105,13 +107,14 @@ class MonteCarlo:
         groups: Sequence[CorrelatedGroup],
         parameters: Sequence[DynamicParameters],
         block: int,
+        plan: Plan | None = None,
         filler: Filler | None = None,
     ) -> None:
         names = [name for group in groups for name in group.names]
         names += [draw.name for stage in stages for draw in stage.draws if draw.name not in names]
         self._rows = np.empty((len(names), block))
         self._places = {name: row for row, name in enumerate(names)}
-        self._streams = [Stream(seed, name) for name in names]
+        self._margins = (plan or Plan.of("mc", block)).margins(seed, names)
         self._stages, self._groups, self._parameters = stages, groups, parameters
         self._block = block
         grouped = {name for group in groups for name in group.names}
@@ -119,14 +122,19 @@ class MonteCarlo:
         maps = {draw.name: found for draw in single if (found := draw.offset_and_factor()) is not None}
         self._filled = frozenset(maps)
         ordered = [maps.get(name, (0.0, 1.0)) for name in self._places]
-        self._fill = (_by_streams if filler is None else filler)(self._streams, ordered, self._rows)
+        self._streams = [margin for margin in self._margins if isinstance(margin, Stream)]
+        self._fill: Callable[[int], None]
+        if filler is None or len(self._streams) < len(names):
+            self._fill = _by_margins(self._margins, ordered, self._rows)
+        else:
+            self._fill = filler(self._streams, ordered, self._rows)
 
     @property
     def linear(self) -> Linear | None:
-        """All draws as offset + factor·uniform; None where any is more."""
+        """All draws as offset + factor·uniform of independent trials; None where any is more."""
         draws = [draw for stage in self._stages for draw in stage.draws]
         maps = [draw.offset_and_factor() for draw in draws]
-        if self._groups or None in maps:
+        if self._groups or None in maps or len(self._streams) < len(draws):
             return None
         streams = tuple(self._streams[self._places[draw.name]] for draw in draws)
         return Linear(tuple(draw.name for draw in draws), streams, tuple(found for found in maps if found is not None))
@@ -148,13 +156,13 @@ class MonteCarlo:
         return drawn
 
 
-def _by_streams(streams: Sequence[Stream], maps: Sequence[tuple[float, float]], rows: Floats) -> Callable[[int], None]:
-    """The `Filler` that asks the streams themselves."""
-    parts = list(zip(streams, rows, maps, strict=True))
+def _by_margins(margins: Sequence[Margin], maps: Sequence[tuple[float, float]], rows: Floats) -> Callable[[int], None]:
+    """As a `Filler`, by asking each margin."""
+    parts = list(zip(margins, rows, maps, strict=True))
 
     def fill(start: int) -> None:
-        for stream, row, (offset, factor) in parts:
-            stream.uniforms(start, row)
+        for margin, row, (offset, factor) in parts:
+            margin.uniforms(start, row)
             if (offset, factor) != (0.0, 1.0):
                 np.multiply(row, factor, out=row)
                 np.add(row, offset, out=row)

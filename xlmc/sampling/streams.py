@@ -21,13 +21,15 @@ class Stream:
     Args:
         seed: of the run.
         name: of the assumption, as `name_key` folds it.
+        purpose: what the numbers are for, where they are not the draws themselves: a stream of its own.
 
-    The generator is PCG64DXSM with `SeedSequence(seed, spawn_key=SHA-256(name))`; trial i takes its i-th number.
+    The generator is PCG64DXSM with `SeedSequence(seed, spawn_key=SHA-256(name))`; trial i takes its i-th number. A
+    purpose adds the words of its own SHA-256 to the key.
     """
 
-    def __init__(self, seed: int, name: str) -> None:
-        words = np.frombuffer(hashlib.sha256(name.encode()).digest(), dtype="<u4")
-        self._bits = np.random.PCG64DXSM(np.random.SeedSequence(seed, spawn_key=tuple(int(w) for w in words)))
+    def __init__(self, seed: int, name: str, purpose: str = "") -> None:
+        key = _words(name) + (_words(purpose) if purpose else ())
+        self._bits = np.random.PCG64DXSM(np.random.SeedSequence(seed, spawn_key=key))
         self._start = self._bits.state
         self._generator = np.random.Generator(self._bits)
 
@@ -39,6 +41,18 @@ class Stream:
 
     def uniforms(self, start: int, out: NDArray[np.float64]) -> None:
         """Fill `out` (n,) with the uniforms of trials `start` to `start + n - 1`, in [0, 1) on the grid k·2⁻⁵³."""
+        self._go_to(start)
+        self._generator.random(out=out)
+
+    def raw(self, start: int, count: int) -> NDArray[np.uint64]:
+        """The 64 random bits at each place from `start` on, `(count,)`."""
+        self._go_to(start)
+        return np.asarray(self._bits.random_raw(count), dtype=np.uint64)
+
+    def _go_to(self, start: int) -> None:
         self._bits.state = self._start
         self._bits.advance(start)
-        self._generator.random(out=out)
+
+
+def _words(text: str) -> tuple[int, ...]:
+    return tuple(np.frombuffer(hashlib.sha256(text.encode()).digest(), dtype="<u4").tolist())

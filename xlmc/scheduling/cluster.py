@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 from xlmc.blocks import Block, Task, Worker
 from xlmc.errors import SimulationError
-from xlmc.scheduling.recipe import LIBRARIES, Recipe, check_software, software, unpacked, worker_of
+from xlmc.scheduling.recipe import LIBRARIES, Recipe, check_software, software, unpacked
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -145,7 +145,7 @@ class _Workers:
         try:
             return self._idle.get_nowait()
         except Empty:
-            return worker_of(self._model, self._program, self._recipe.engine, self._recipe.seed, self._recipe.block)
+            return self._recipe.worker(self._model, self._program)
 
     def give(self, worker: Worker) -> None:
         self._idle.put(worker)

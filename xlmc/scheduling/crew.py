@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from xlmc.compile import Program
     from xlmc.definitions import Settings
     from xlmc.model import Model
+    from xlmc.sampling import Plan
 
 __all__ = ["PROCESS_BLOCKS", "Crew"]
 
@@ -55,21 +56,21 @@ class Crew:
             raise SimulationError(f"there is no scheduler {self.scheduler!r}", hint=hint)
 
     def blocks(
-        self, model: Model, program: Program, settings: Settings, block: int, tasks: Iterator[Task]
+        self, model: Model, program: Program, settings: Settings, plan: Plan, block: int, tasks: Iterator[Task]
     ) -> Generator[Block, None, None]:
         """The blocks of a run, of `block` trials each, in the order of their tasks.
 
         Raises:
             SimulationError: the crew cannot be had, or did not finish.
         """
-        blocks = -(-settings.trials // block)
+        blocks = -(-plan.trials // block)
         jobs = min(self.jobs, blocks)
         scheduler = self.scheduler or _usual(settings.engine, jobs, blocks)
         if scheduler == "threads":
-            workers = [worker_of(model, program, settings.engine, settings.seed, block) for _ in range(jobs)]
+            workers = [worker_of(model, program, settings.engine, settings.seed, block, plan) for _ in range(jobs)]
             yield from in_order(workers, tasks)
             return
-        recipe = Recipe.of(model, settings.engine, settings.seed, block, settings.arithmetic)
+        recipe = Recipe.of(model, settings.engine, settings.seed, block, settings.arithmetic, plan)
         if scheduler == "processes":
             yield from by_processes(recipe, jobs, tasks)
         else:

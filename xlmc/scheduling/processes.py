@@ -15,7 +15,7 @@ from typing import Any, BinaryIO
 
 from xlmc.blocks import Block, Task
 from xlmc.errors import SimulationError
-from xlmc.scheduling.recipe import Recipe, unpacked, worker_of
+from xlmc.scheduling.recipe import Recipe, unpacked
 from xlmc.scheduling.threads import in_order
 
 __all__ = ["by_processes", "serve"]
@@ -96,8 +96,7 @@ def serve() -> None:
     try:
         recipe = unpacked(pickle.load(source))
         model = recipe.model()
-        program = model.program(recipe.engine, recipe.arithmetic)
-        worker = worker_of(model, program, recipe.engine, recipe.seed, recipe.block)
+        worker = recipe.worker(model, model.program(recipe.engine, recipe.arithmetic))
         while True:
             task: Task = pickle.load(source)
             _send(answers, _answer(worker.run, task))

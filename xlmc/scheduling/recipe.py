@@ -16,6 +16,7 @@ from xlmc.compile import Program
 from xlmc.definitions import Definitions
 from xlmc.errors import SimulationError
 from xlmc.model import Model
+from xlmc.sampling import Plan
 from xlmc.workbook import Workbook
 
 __all__ = ["Recipe", "check_software", "software", "worker_of"]
@@ -24,9 +25,9 @@ LIBRARIES = ("numpy", "scipy", "formulas", "llvmlite")
 """A result depends on them to its last bit, on the last with the engine `jit` only."""
 
 
-def worker_of(model: Model, program: Program, engine: str, seed: int, block: int) -> Worker:
+def worker_of(model: Model, program: Program, engine: str, seed: int, block: int, plan: Plan | None = None) -> Worker:
     """What runs blocks of a model in this process, in one thread."""
-    sampler, evaluator = model.sampler(seed, block, engine), program.evaluator(block)
+    sampler, evaluator = model.sampler(seed, block, engine, plan), program.evaluator(block)
     return Worker(sampler, evaluator, block, len(model.forecasts), model.fallible)
 
 
@@ -41,12 +42,22 @@ class Recipe:
     seed: int
     block: int
     arithmetic: str = "float64"
+    plan: Plan | None = None
 
     @classmethod
-    def of(cls, model: Model, engine: str, seed: int, block: int, arithmetic: str = "float64") -> Recipe:
+    def of(
+        cls,
+        model: Model,
+        engine: str,
+        seed: int,
+        block: int,
+        arithmetic: str = "float64",
+        plan: Plan | None = None,
+    ) -> Recipe:
         """The recipe of a run."""
         bare = replace(model.workbook, parts={})  # the file as it was: only the result sheets need it
-        return cls(bare, model.definitions, model.path, engine, seed, block, arithmetic)
+        needed = plan if plan is not None and plan.size else None  # independent trials may be any number
+        return cls(bare, model.definitions, model.path, engine, seed, block, arithmetic, needed)
 
     def packed(self) -> bytes:
         """The recipe with the software it was made with, for `unpacked`."""
@@ -55,6 +66,10 @@ class Recipe:
     def model(self) -> Model:
         """The model again."""
         return Model(self.workbook, self.definitions, self.path)
+
+    def worker(self, model: Model, program: Program) -> Worker:
+        """What runs its blocks, given its model again and that model's program."""
+        return worker_of(model, program, self.engine, self.seed, self.block, self.plan)
 
 
 def unpacked(packed: bytes) -> Recipe:

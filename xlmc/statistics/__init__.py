@@ -4,6 +4,7 @@ Pure functions of (values, weights=None, replicate=None). Errors come from indep
 independent replicates (Latin hypercube, scrambled Sobol), and are Monte Carlo error only, not reconstruction error.
 """
 
+from xlmc.statistics.association import rank_correlation
 from xlmc.statistics.describe import Description, describe
 from xlmc.statistics.digits import format_estimate, supported_digits
 from xlmc.statistics.estimate import Estimate
@@ -44,6 +45,7 @@ __all__ = [
     "probability_above",
     "proportion",
     "range_width",
+    "rank_correlation",
     "replicated_proportion",
     "share",
     "skewness",

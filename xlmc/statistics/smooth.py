@@ -49,7 +49,8 @@ def mean(
 def variance(
     values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None, *, confidence: float = 0.95
 ) -> Estimate:
-    """Sample variance, divided by n − 1 as Excel's VAR.S; with weights by the effective size less one.
+    """Sample variance, divided by n − 1 as Excel's VAR.S; with weights by the effective size less one; of replicates
+    the mean square about the mean, and the squared error of the mean.
 
     Error from the fourth moment, for independent trials Var(s²) ≈ (m₄ − s⁴(n − 3)/(n − 1))/n. One trial has none: nan.
 
@@ -127,9 +128,16 @@ def _error(sample: Sample, gradient: Gradient) -> float:
 
 
 def _deviation(sample: Sample) -> float:
-    """Square root of the sample variance, which for very large or small units could not be formed first."""
+    """Square root of the sample variance, which for very large or small units could not be formed first.
+
+    The mean square about the sample's own mean falls short of the variance by what the mean itself varies: s²/n for
+    independent trials, which dividing by n − 1 makes good; between replicates the squared error of the mean, which
+    stratified trials make much smaller than that.
+    """
     if sample.effective <= 1.0:
         return float("nan")
+    if sample.group is not None and sample.dof >= LEAST_DOF:
+        return sample.moments.scale * math.sqrt(1.0 + float(sample.moments.covariance[0, 0]))
     return sample.moments.scale * math.sqrt(sample.effective / (sample.effective - 1.0))
 
 

@@ -1,0 +1,95 @@
+"""The committed coverage and variance tables: they meet their bars, and the scripts that made them make them again."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from xlmc.sampling import METHODS
+
+BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
+
+
+def script(name):
+    """By its path: there is a well-known package of the name `coverage`."""
+    spec = importlib.util.spec_from_file_location(f"script_{name}", BENCHMARKS / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def coverage():
+    return script("coverage")
+
+
+@pytest.fixture(scope="module")
+def sobol():
+    return script("sobol")
+
+
+def page_table(page, name):
+    return re.search(rf"<!-- {name} -->\n\n(.*?)\n\n<!-- /{name} -->", page.read_text(), re.DOTALL)[1]
+
+
+def test_the_committed_table_meets_the_bar(coverage):
+    found = json.loads(coverage.RESULTS.read_text())
+    cells = [coverage.Cell(*each) for each in found["cells"]]
+    assert found["runs"] == 4_000
+    assert {(cell.problem, cell.method) for cell in cells} == {(p, m) for p in coverage.PROBLEMS for m in METHODS}
+    assert coverage.faults(cells, found["runs"]) == []
+    assert page_table(coverage.PAGE, "coverage") == coverage.table(found)
+
+
+def test_the_bar_can_be_missed(coverage):
+    cell = coverage.Cell("speed", "mc", (3_700, 3_800, 3_760, 3_941, 3_939), 1, None, 0, 1)
+    assert coverage.faults([cell], 4_000) == ["speed, mc, mean: 92.50%", "speed, mc, 24.5 %: 98.52%"]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_some_of_the_runs_again(coverage, method):
+    """200 runs with other seeds: 95 % ± 4 binomial standard errors, which 98.5 % is within, so from below only."""
+    for name in ("speed, 33 % kept", "speed, 3 % kept"):
+        cell = coverage.measure(name, method, 200, first=50_000)
+        assert min(cell.hits) > 200 * (0.95 - 4 * math.sqrt(0.95 * 0.05 / 200))
+
+
+@pytest.mark.parametrize("name", ["sum of normals, 16 % kept", "speed", "speed, 33 % kept", "speed, 3 % kept"])
+def test_the_truths_are_true(coverage, name):
+    """Beside a Monte Carlo run of 4 million trials, or 100,000 accepted ones: within 4.5 of its errors."""
+    problem = coverage.PROBLEMS[name]
+    sample = coverage.one_run(problem, coverage.Plan.of("mc", 4_000_000), 77)
+    assert sample.n > 100_000
+    for estimate, truth in zip(coverage.estimates(sample), problem.truth(), strict=True):
+        assert abs(estimate.value - truth) < 4.5 * estimate.error
+
+
+def test_the_committed_gains_meet_the_bar(sobol):
+    found = json.loads(sobol.RESULTS.read_text())
+    assert found["trials"] == 131_072
+    for case, least in sobol.LEAST.items():
+        ratios, _ = found["gains"][case]["sobol"]
+        assert ratios[-1] >= least
+    assert page_table(sobol.PAGE, "sobol") == sobol.table(found)
+
+
+def test_gains_of_known_variances(sobol):
+    """A variance ratio of 4 from 2,000 seeds is known to 4.5 %: four of those."""
+    rng = np.random.default_rng(1)
+    ratios, intervals = sobol.gains(2 * rng.normal(size=(2_000, 2)), rng.normal(size=(2_000, 2)))
+    assert ratios == pytest.approx([4.0] * 3, rel=0.18)
+    assert all(low < ratio < high < 1.2 * ratio for ratio, (low, high) in zip(ratios, intervals, strict=True))
+
+
+def test_unfiltered_sobol_means_of_the_case_study_hardly_vary(sobol):
+    """Six seeds: the bar of 1,000 is missed by a hundred times what it is passed by."""
+    book = sobol.load(sobol.CASE_STUDY)
+    free = sobol.Model(book.workbook, sobol.replace(book.definitions, filters=()), book.path)
+    plain, even = (sobol.means(free, method, range(6)) for method in ("mc", "sobol"))
+    assert (plain.var(axis=0) > 1_000 * even.var(axis=0)).all()

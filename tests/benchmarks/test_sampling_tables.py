@@ -17,7 +17,7 @@ BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 
 
 def script(name):
-    """By its path: there is a well-known package of the name `coverage`."""
+    """By its path."""
     spec = importlib.util.spec_from_file_location(f"script_{name}", BENCHMARKS / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -26,7 +26,7 @@ def script(name):
 
 @pytest.fixture(scope="module")
 def coverage():
-    return script("coverage")
+    return script("interval_coverage")
 
 
 @pytest.fixture(scope="module")

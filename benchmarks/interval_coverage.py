@@ -1,6 +1,6 @@
 """Do 95 % intervals hold the truth 95 times in 100, whatever the sampling method, with and without filters?
 
-`python benchmarks/coverage.py` makes 4,000 seeded runs of each problem by each method, and writes
+`python benchmarks/interval_coverage.py` makes 4,000 seeded runs of each problem by each method, and writes
 `results/coverage.json` and the table of docs/sampling.md. Samplers and statistics are xlmc's own; the problems are
 functions of three uniforms whose answers are known to 1e-5 of a standard deviation. No figure depends on the machine.
 

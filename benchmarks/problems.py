@@ -1,4 +1,4 @@
-"""Problems of three uniforms with known answers, for interval_coverage.py: mean, spread, ranks of what a filter leaves."""
+"""Problems of three uniforms with known answers, for interval_coverage.py: mean, spread, ranks after a filter."""
 
 from __future__ import annotations
 

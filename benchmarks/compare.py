@@ -23,7 +23,8 @@ from typing import Any
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
-import accuracy  # noqa: E402 (the paths above make a plain `python benchmarks/compare.py` work)
+# The paths above make a plain `python benchmarks/compare.py` work: E402 is about imports below code.
+import accuracy  # noqa: E402
 import figures  # noqa: E402
 import hand_c  # noqa: E402
 import machine  # noqa: E402

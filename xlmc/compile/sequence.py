@@ -57,24 +57,23 @@ class Steps:
                 self._add_pair(*self._pairs[place])
             self._free(done)
             return
-        take, free = self._buffers.take, self._free
-        if type(node) is Apply and node.function.takes_plainly == len(node.arguments):
+        if (
+            type(node) is Apply
+            and node.function.takes_plainly == len(node.arguments)
+            and (types[node.arguments[0]] is types[node.arguments[-1]] is Kind.NUMBER)
+        ):
             function, used = node
-            first, second = used[0], used[-1]
-            if types[first] is Kind.NUMBER and types[second] is Kind.NUMBER:
-                buffer = self._buffers.exchange(done, place, self._loose)  # it may write over what it reads
-                if buffer is not None:
-                    second = second if len(used) == 2 else -1
-                    self._lines.append((function.ufunc, place, first, second, buffer, function.guard))
-                    return
-                self._append(make_step(self._dag, place, buffer))
+            buffer = self._buffers.exchange(done, place, self._loose)  # it may write over what it reads
+            if buffer is not None:
+                second = used[1] if len(used) == 2 else -1
+                self._lines.append((function.ufunc, place, used[0], second, buffer, function.guard))
                 return
-        if is_elementwise_ufunc(self._dag, place):
-            free(done)
-            buffer = take(place)
+        elif is_elementwise_ufunc(self._dag, place):
+            self._free(done)
+            buffer = self._buffers.take(place)
         else:
-            buffer = take(place)
-            free(done)
+            buffer = self._buffers.take(place)
+            self._free(done)
             if buffer is not None and self._tabled(place, read, buffer):
                 return
         self._append(make_step(self._dag, place, buffer))

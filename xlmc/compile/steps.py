@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -91,8 +90,6 @@ def is_elementwise_ufunc(dag: Dag, place: int) -> bool:
 
 
 def _apply(dag: Dag, place: int, function: Function, arguments: tuple[int, ...], buffer: int | None) -> Step:
-    if _on_numbers(dag, function, arguments):
-        return _numeric(function, place, arguments, buffer)
     node = Apply(function, arguments)
     if function.takes_sets:
         folded = _folded(dag, node)
@@ -113,25 +110,6 @@ def _on_numbers(dag: Dag, function: Function, arguments: tuple[int, ...]) -> boo
     if not function.on_numbers or function.ufunc is None or len(arguments) != function.ufunc.nin:
         return False
     return all(dag.types[argument] is Kind.NUMBER for argument in arguments)
-
-
-def _numeric(function: Function, place: int, arguments: tuple[int, ...], buffer: int | None) -> Step:
-    ufunc, guard = function.ufunc, function.guard
-    assert ufunc is not None
-    first, last = arguments[0], arguments[-1]
-
-    def one(frame: Frame) -> None:
-        values = frame.values
-        values[place] = ufunc(values[first], out=None if buffer is None else frame.buffers[buffer])
-
-    def two(frame: Frame) -> None:
-        values = frame.values
-        values[place] = ufunc(values[first], values[last], out=None if buffer is None else frame.buffers[buffer])
-
-    if guard is None and len(arguments) < 3:
-        return one if len(arguments) == 1 else two
-    readers: list[Reader] = [itemgetter(argument) for argument in arguments]
-    return _ufunc(ufunc, guard, place, readers, buffer)
 
 
 def _fast_ufunc(dag: Dag, node: Apply) -> bool:

@@ -47,16 +47,13 @@ class Stencil:
         self._spots = tuple(dict.fromkeys(spots))
         rows = [spot.row for spot in self._spots if spot.row_moves]
         columns = [spot.column for spot in self._spots if spot.column_moves]
-        self._rows = 1 - min(rows, default=1), MAX_ROW - max(rows, default=MAX_ROW)
-        self._columns = 1 - min(columns, default=1), MAX_COLUMN - max(columns, default=MAX_COLUMN)
-        self._free = not rows, not columns
+        self._rows = 1 - min(rows, default=MAX_ROW), MAX_ROW - max(rows, default=1)
+        self._columns = 1 - min(columns, default=MAX_COLUMN), MAX_COLUMN - max(columns, default=1)
 
     def fits(self, host: Cell) -> bool:
         """Whether nothing leaves the sheet when the formula stands in `host`."""
         down, right = host.row - self.home.row, host.column - self.home.column
-        return (self._free[0] or self._rows[0] <= down <= self._rows[1]) and (
-            self._free[1] or self._columns[0] <= right <= self._columns[1]
-        )
+        return self._rows[0] <= down <= self._rows[1] and self._columns[0] <= right <= self._columns[1]
 
     def cells(self, host: Cell) -> list[Cell]:
         """The cells that the formula reads when it stands in `host`, areas cell by cell.

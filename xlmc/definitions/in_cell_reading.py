@@ -1,4 +1,4 @@
-"""The calls of one cell, read as assumptions: in the formula a cell of its own stands for each, and for its arguments."""
+"""The calls of one cell, read as assumptions: cells of their own stand in the formula for each and for arguments."""
 
 from __future__ import annotations
 

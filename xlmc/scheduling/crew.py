@@ -7,7 +7,7 @@ from collections.abc import Generator, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from xlmc.blocks import Block, Task
+from xlmc.blocks import Block, Task, Worker
 from xlmc.errors import SimulationError
 from xlmc.scheduling.cluster import by_cluster
 from xlmc.scheduling.processes import by_processes
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 __all__ = ["PROCESS_BLOCKS", "Crew"]
 
-PROCESS_BLOCKS: Final[Mapping[str, int]] = {"numpy": 512, "formulas": 4}
-"""Engine -> blocks from which processes make up for the half second they take to start: its threads share a lock."""
+PROCESS_BLOCKS: Final[Mapping[str, int]] = {"numpy": 256, "formulas": 4}
+"""Engine -> blocks that take longer than a process to start, which is half a second: its threads share a lock."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,13 +66,16 @@ class Crew:
         blocks = -(-plan.trials // block)
         jobs = min(self.jobs, blocks)
         scheduler = self.scheduler or _usual(settings.engine, jobs, blocks)
+
+        def worker() -> Worker:
+            return worker_of(model, program, settings.engine, settings.seed, block, plan)
+
         if scheduler == "threads":
-            workers = [worker_of(model, program, settings.engine, settings.seed, block, plan) for _ in range(jobs)]
-            yield from in_order(workers, tasks)
+            yield from in_order([worker() for _ in range(jobs)], tasks)
             return
         recipe = Recipe.of(model, settings.engine, settings.seed, block, settings.arithmetic, plan)
         if scheduler == "processes":
-            yield from by_processes(recipe, jobs, tasks)
+            yield from by_processes(recipe, worker(), jobs - 1, tasks)
         else:
             yield from by_cluster(recipe, scheduler, self.workers, blocks, tasks)
 

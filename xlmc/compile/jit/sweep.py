@@ -7,6 +7,7 @@ loops that it calls. A `Layout` says what is where.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Final
 
 from llvmlite import ir
@@ -20,6 +21,9 @@ WORD: Final = 64
 """Trials whose filters are compared at once, a bit each."""
 
 _NAME: Final = "sweep"
+_KEPT: Final = 16
+"""Layouts whose code is kept: every thread of a run asks for the same."""
+
 _BYTE, _LONG, _STATE, _DOUBLE = ir.IntType(8), ir.IntType(64), ir.IntType(128), ir.DoubleType()
 _LOOP: Final = ir.FunctionType(_LONG, [_BYTE.as_pointer().as_pointer(), _LONG])
 
@@ -56,6 +60,7 @@ class Layout:
     gathers: int
 
 
+@lru_cache(_KEPT)
 def compiled(machine: Machine, layout: Layout) -> NativeLoop:
     """Native code that takes the book's address and the number of chunks; it uses up the book.
 

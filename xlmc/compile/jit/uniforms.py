@@ -60,7 +60,7 @@ def filler(streams: Sequence[_Stream], maps: Sequence[tuple[float, float]], rows
     for first in range(0, len(streams), _SIDE_BY_SIDE):
         chosen = range(first, min(first + _SIDE_BY_SIDE, len(streams)))
         of_chosen = [addresses[i] for i in chosen] + [addresses[len(streams) + i] for i in chosen] + addresses[-1:]
-        calls.append((machine().native(_module(len(chosen)), _NAME), (ctypes.c_void_p * len(of_chosen))(*of_chosen)))
+        calls.append((_loop(len(chosen)), (ctypes.c_void_p * len(of_chosen))(*of_chosen)))
     return Fill(calls, words, place, rows)
 
 
@@ -117,7 +117,8 @@ def _doubled(times: int) -> tuple[int, int]:
     return factor * factor & _ALL_BITS, (factor + 1) * summand & _ALL_BITS
 
 
-def _module(k: int) -> ir.Module:
+@cache
+def _loop(k: int) -> NativeLoop:
     """The loop over the trials of k streams; it takes the addresses of k rows, of k streams' words and of the jump."""
     module = ir.Module()
     finished = _finished(module)
@@ -150,7 +151,7 @@ def _module(k: int) -> ir.Module:
 
     builder.position_at_end(after)
     builder.ret(_LONG(0))
-    return module
+    return machine().native(module, _NAME)
 
 
 def _advanced(

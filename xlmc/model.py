@@ -226,8 +226,15 @@ class Model:
         if (engine, arithmetic) not in self._programs:
             parts = self._lowering, self._filter_targets, self._forecast_targets, self.fallible
             with paused_collection():
-                self._programs[engine, arithmetic] = ENGINES[engine](*parts, **options_of(engine, arithmetic))
+                options = options_of(engine, arithmetic, self._supports)
+                self._programs[engine, arithmetic] = ENGINES[engine](*parts, **options)
         return self._programs[engine, arithmetic]
+
+    @property
+    def _supports(self) -> dict[str, tuple[float, float]]:
+        """Key of an assumption -> its least and largest draw, where both are known and finite."""
+        found = {draw.name: draw.support() for draw in self._draws.values()}
+        return {name: ends for name, ends in found.items() if ends is not None}
 
     def sampler(self, seed: int, block: int, engine: str = "numpy", plan: Plan | None = None) -> Sampler:
         """The draws, block by block; for one thread. They are the same for every engine; by default independent."""

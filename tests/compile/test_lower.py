@@ -33,6 +33,11 @@ def names(found):
         ("+A1", ["Input"]),
         ("--A1", ["Input", "u-", "u-"]),
         ("RADIANS(A1)", ["Input", "*"]),
+        ("A1/2", ["Input", "*"]),  # by a power of two the same to the last bit, and quicker
+        ("A1/-0.25", ["Input", "*"]),
+        ("A1/3", ["Input", "/"]),
+        ("A1/0", ["Input", "/"]),
+        ("2/A1", ["Input", "/"]),
         ("IF(TRUE,A1,A2)", ["Input"]),  # the branch that is not taken is not looked at
         ("IF(B1=1,A1,1/A2)", ["Input"]),
         ("IF(B1=2,A1,NOSUCH(A2))", []),

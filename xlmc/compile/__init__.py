@@ -1,7 +1,9 @@
 """Graph of formulas → one callable over blocks of trials, by the engine of one's choice."""
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
+from xlmc.compile.bounds import Bounds
 from xlmc.compile.engine import Column, Evaluator, Program, Target
 from xlmc.compile.formulas_engine import FormulasProgram
 from xlmc.compile.jit import jit_filler, jit_program
@@ -20,14 +22,19 @@ ENGINES: Mapping[str, Callable[..., Program]] = {
 """Name of an engine -> program of (lowering, filters, forecasts, inputs whose draws may be errors)."""
 
 
-def options_of(engine: str, arithmetic: str) -> dict[str, bool]:
-    """What a program of the engine takes besides, to compute in `float64` or `float32`.
+def options_of(engine: str, arithmetic: str, between: Mapping[str, Bounds]) -> dict[str, Any]:
+    """What a program of the engine takes besides.
+
+    Args:
+        engine: its name.
+        arithmetic: `float64` or `float32`.
+        between: name of an input -> its bounds, for engines that make use of them.
 
     Raises:
         SimulationError: there is no such arithmetic, or the engine does not know it.
     """
     if arithmetic == "float64":
-        return {}
+        return {"between": between} if engine == "numpy" else {}
     if arithmetic != "float32":
         raise SimulationError(f"there is no arithmetic {arithmetic!r}", hint="choose float64 or float32")
     if engine != "jit":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from difflib import get_close_matches
 from functools import cached_property
@@ -303,6 +304,8 @@ class Lowering:
         """The node of a function of nodes, cell by cell where it takes single values and is given many."""
         if function.name in _FACTORS:
             return self.call("*", (arguments[0], self.number(_FACTORS[function.name])))
+        if function.name == "/" and (factor := self._inverse(arguments[1])) is not None:
+            return self.call("*", (arguments[0], self.number(factor)))
         if function.takes_sets:
             return self._totals.made(function, arguments)
         if all(self.dag.sizes[place] is None for place in arguments):
@@ -310,6 +313,14 @@ class Lowering:
         loose = tuple(p for i, p in enumerate(arguments) if not function.parameter(i).ranged)
         spread = cell_by_cell(self.dag, loose, lambda picked: self.made(function, _merged(function, arguments, picked)))
         return self.dag.add(Apply(function, arguments)) if spread is None else spread
+
+    def _inverse(self, place: int) -> float | None:
+        """1 / the number, where to multiply by it is to divide by the number, to the last bit: of powers of two."""
+        node = self.dag.nodes[place]
+        if not isinstance(node, Constant) or self.dag.types[place] is not Kind.NUMBER:
+            return None
+        number = float(node.value.numbers[0])
+        return 1.0 / number if abs(math.frexp(number)[0]) == 0.5 and 2.0**-60 < abs(number) < 2.0**60 else None
 
     def whole(self, tree: ir.Expression, scope: Scope) -> list[int]:
         """An argument that may be a range: ranges whole, joined areas one by one, anything else as it computes."""

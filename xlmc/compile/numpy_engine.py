@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.compile.bounds import Bounds
 from xlmc.compile.engine import Column, Evaluator, Target
 from xlmc.compile.lower import Lowering
 from xlmc.compile.plan import Plan, Space
@@ -23,7 +24,7 @@ from xlmc.functions.values import Floats
 __all__ = ["NumpyProgram"]
 
 
-_LARGEST_BLOCK: Final = 1 << 14
+_LARGEST_BLOCK: Final = 1 << 15
 _SMALLEST_BLOCK: Final = 1 << 8
 _MOST_BYTES: Final = 1 << 25
 """Of all buffers: what the caches of today's processors hold."""
@@ -34,18 +35,24 @@ class NumpyProgram:
 
     Args:
         may_err: the inputs whose draws may be errors (NaNs), which raise no flag.
+        between: name of an input -> the bounds that it will be given within; none are known of the others.
 
     Attributes:
-        largest_block: 16,384, or the largest power of two whose buffers take no more than 32 MB: they stay in caches.
+        largest_block: 32,768, or the largest power of two whose buffers take no more than 32 MB: they stay in caches.
     """
 
     def __init__(
-        self, lowering: Lowering, filters: Sequence[Target], forecasts: Sequence[Target], may_err: frozenset[str]
+        self,
+        lowering: Lowering,
+        filters: Sequence[Target],
+        forecasts: Sequence[Target],
+        may_err: frozenset[str],
+        between: Mapping[str, Bounds] | None = None,
     ) -> None:
         self._dag = lowering.dag
         self._filters = [lowering.target(target) for target in filters]
         self._forecasts = [lowering.target(target) for target in forecasts]
-        self._plan = Plan(self._dag, self._filters, self._forecasts)
+        self._plan = Plan(self._dag, self._filters, self._forecasts, between)
         self._may_err = may_err & self._plan.inputs
         self.largest_block = _LARGEST_BLOCK
         while (

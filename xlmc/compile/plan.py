@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.compile.bounds import Bounds, bounds
 from xlmc.compile.branches import branch_step
 from xlmc.compile.buffers import Buffers
 from xlmc.compile.dag import Dag, Input, constants
@@ -24,12 +25,22 @@ __all__ = ["Plan", "Space"]
 class Plan:
     """How to run a graph of nodes: which steps, on which trials, into which buffers.
 
+    Args:
+        between: name of an input -> its bounds, where they are known.
+
     Attributes:
         inputs: the names of those it reads.
     """
 
-    def __init__(self, dag: Dag, filters: Sequence[int], forecasts: Sequence[int]) -> None:
+    def __init__(
+        self,
+        dag: Dag,
+        filters: Sequence[int],
+        forecasts: Sequence[int],
+        between: Mapping[str, Bounds] | None = None,
+    ) -> None:
         self._dag, self._filters, self._forecasts = dag, filters, forecasts
+        self._between = bounds(dag, dag.upstream([*filters, *forecasts]), between) if between else {}
         self._placement = Placement(dag, filters, forecasts)
         self._template: list[Any] = [None] * len(dag.nodes)
         for node, value in constants(dag):
@@ -53,7 +64,7 @@ class Plan:
         computed = [node for node in self._placement.members(context) if type(nodes[node]) is not Input]
         read = self._placement.reads | {node: self._reads(node) for node in computed if node in branched}
         last = {needed: node for node in computed for needed in read[node]} | dict.fromkeys(keep, -1)
-        steps = Steps(self._dag, self.buffers, computed)
+        steps = Steps(self._dag, self.buffers, computed, self._between)
         for node in computed:
             done = [needed for needed in read[node] if last[needed] == node]
             if node in branched:

@@ -5,15 +5,17 @@ A line of the table costs little to make and to run; what does not fit one gets 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from xlmc.compile.bounds import Bounds
 from xlmc.compile.buffers import Buffers
 from xlmc.compile.dag import Apply, Constant, Dag, Select, uses
 from xlmc.compile.steps import Departure, Frame, Step, is_elementwise_ufunc, make_step
 from xlmc.functions import Kind
+from xlmc.functions.guards import Within
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.sine import sine_and_cosine
 
@@ -33,15 +35,19 @@ class Steps:
         dag: of the nodes.
         buffers: to take from.
         places: the nodes to come.
+        between: node -> its bounds, where they are known: a guard that they answer is not asked.
     """
 
-    def __init__(self, dag: Dag, buffers: Buffers, places: Iterable[int]) -> None:
+    def __init__(
+        self, dag: Dag, buffers: Buffers, places: Iterable[int], between: Mapping[int, Bounds] | None = None
+    ) -> None:
         self._made: list[Step] = []
         self._dag, self._buffers = dag, buffers
         self._lines: list[_Line] = []
         self._loose: list[int] = []
         self._pairs = _sines_with_cosines(dag, places)
         self._had: set[int] = set()
+        self._between = between or {}
 
     def add(self, place: int, read: Sequence[int], done: list[int]) -> None:
         """The step of a node.
@@ -66,7 +72,7 @@ class Steps:
             buffer = self._buffers.exchange(done, place, self._loose)  # it may write over what it reads
             if buffer is not None:
                 second = used[1] if len(used) == 2 else -1
-                self._lines.append((function.ufunc, place, used[0], second, buffer, function.guard))
+                self._lines.append((function.ufunc, place, used[0], second, buffer, self._guard(place)))
                 return
         elif is_elementwise_ufunc(self._dag, place):
             self._free(done)
@@ -131,8 +137,18 @@ class Steps:
         else:
             work = self._buffers.take_for(Kind.NUMBER)
             self._buffers.give_back(work)
-            self._append(_pair(self._dag, angle, (sine, cosine), (first, second, work)))
+            self._append(_pair(angle, self._guard(sine), (sine, cosine), (first, second, work)))
         self._had |= {sine, cosine}
+
+    def _guard(self, place: int) -> Callable[..., bool] | None:
+        """The guard of an `Apply`; None where there is none to ask."""
+        node = self._dag.nodes[place]
+        assert type(node) is Apply
+        guard = node.function.guard
+        if guard is None or not isinstance(guard, Within):
+            return guard
+        known = self._between.get(node.arguments[0])
+        return None if known is not None and guard.surely(*known) else guard
 
     def _close(self) -> None:
         if self._lines:
@@ -151,10 +167,10 @@ def _sines_with_cosines(dag: Dag, places: Iterable[int]) -> dict[int, tuple[int,
     return {place: pair for pair in both for place in pair}
 
 
-def _pair(dag: Dag, angle: int, places: tuple[int, int], buffers: tuple[int, int, int]) -> Step:
+def _pair(
+    angle: int, guard: Callable[..., bool] | None, places: tuple[int, int], buffers: tuple[int, int, int]
+) -> Step:
     sine, cosine = places
-    node = dag.nodes[sine]
-    guard = node.function.guard if isinstance(node, Apply) else None
 
     def step(frame: Frame) -> None:
         values = frame.values

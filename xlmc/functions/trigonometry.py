@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from xlmc.functions.guards import Within
 from xlmc.functions.registry import Number, excel
 from xlmc.functions.sine import COSINE, SINE
 from xlmc.functions.values import DIV0, NUM, Bools, Floats
@@ -32,24 +33,22 @@ def _small(x: Floats) -> Bools:
     return np.abs(x) < _LIMIT
 
 
-def _all_small(x: Floats) -> bool:
-    least, most = np.minimum.reduce(x, axis=None, initial=0.0), np.maximum.reduce(x, axis=None, initial=0.0)
-    return bool(least > -_LIMIT and most < _LIMIT)
+_ALL_SMALL: Final = Within(_LIMIT)
 
 
-@excel("SIN", Number, ufunc=SINE, guard=_all_small)
+@excel("SIN", Number, ufunc=SINE, guard=_ALL_SMALL)
 def sin(x: Floats) -> Floats:
     """Sine."""
     return np.where(_small(x), SINE(x), NUM)
 
 
-@excel("COS", Number, ufunc=COSINE, guard=_all_small)
+@excel("COS", Number, ufunc=COSINE, guard=_ALL_SMALL)
 def cos(x: Floats) -> Floats:
     """Cosine."""
     return np.where(_small(x), COSINE(x), NUM)
 
 
-@excel("TAN", Number, ufunc=np.tan, guard=_all_small)
+@excel("TAN", Number, ufunc=np.tan, guard=_ALL_SMALL)
 def tan(x: Floats) -> Floats:
     """Tangent."""
     return np.where(_small(x), np.tan(x), NUM)

@@ -45,6 +45,15 @@ class Draw:
             lower, upper = (_known(c, dynamic) for c in self.cutoffs)
             Truncated(self.family).ppf(u, lower, upper, *parameters, out=u)
 
+    def support(self) -> tuple[float, float] | None:
+        """The least and the largest draw; None where either is infinite, or where the parameters vary."""
+        if not all(isinstance(p, float) for p in (*self.parameters, *(self.cutoffs or ()))):
+            return None
+        ends = np.array([0.0, 1.0])
+        with np.errstate(all="ignore"):
+            self.fill(ends, {})
+        return (float(ends[0]), float(ends[1])) if np.isfinite(ends).all() else None
+
     def offset_and_factor(self) -> tuple[float, float] | None:
         """With these, offset + factor·u is the draw, to the bit; None where it is not so simple."""
         if not isinstance(self.family, Uniform) or self.cutoffs is not None:

@@ -32,6 +32,7 @@ class Stream:
         self._bits = np.random.PCG64DXSM(np.random.SeedSequence(seed, spawn_key=key))
         self._start = self._bits.state
         self._generator = np.random.Generator(self._bits)
+        self._at = 0
 
     @property
     def beginning(self) -> tuple[int, int]:
@@ -41,17 +42,20 @@ class Stream:
 
     def uniforms(self, start: int, out: NDArray[np.float64]) -> None:
         """Fill `out` (n,) with the uniforms of trials `start` to `start + n - 1`, in [0, 1) on the grid k·2⁻⁵³."""
-        self._go_to(start)
+        self._go_to(start, out.size)
         self._generator.random(out=out)
 
     def raw(self, start: int, count: int) -> NDArray[np.uint64]:
         """The 64 random bits at each place from `start` on, `(count,)`."""
-        self._go_to(start)
+        self._go_to(start, count)
         return np.asarray(self._bits.random_raw(count), dtype=np.uint64)
 
-    def _go_to(self, start: int) -> None:
-        self._bits.state = self._start
-        self._bits.advance(start)
+    def _go_to(self, start: int, count: int) -> None:
+        """To the place `start`, from which `count` numbers will be taken."""
+        if start != self._at:
+            self._bits.state = self._start
+            self._bits.advance(start)
+        self._at = start + count
 
 
 def _words(text: str) -> tuple[int, ...]:

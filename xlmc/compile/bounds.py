@@ -1,0 +1,77 @@
+"""Between which numbers a node's values lie, as far as sums, products and choices tell."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Final
+
+from xlmc.compile.dag import Apply, Constant, Dag, Input, Select
+from xlmc.functions.values import NUMBER
+
+__all__ = ["Bounds", "bounds"]
+
+Bounds = tuple[float, float]
+"""The least and the largest number, but for the rounding of the operations that led to them."""
+
+_ANY: Final[Bounds] = (-math.inf, math.inf)
+
+
+def bounds(dag: Dag, places: Iterable[int], inputs: Mapping[str, Bounds]) -> dict[int, Bounds]:
+    """The finite bounds among the nodes at `places`, which come in order.
+
+    Args:
+        dag: of the nodes.
+        places: those that vary.
+        inputs: name of an input -> its bounds, where it has any.
+    """
+    found: dict[int, Bounds] = {}
+    for place in places:
+        between = _of(dag, place, inputs, found)
+        if math.isfinite(between[0]) and math.isfinite(between[1]):
+            found[place] = between
+    return found
+
+
+def _of(dag: Dag, place: int, inputs: Mapping[str, Bounds], found: Mapping[int, Bounds]) -> Bounds:
+    def part(used: int) -> Bounds:
+        return found[used] if used in found else _known(dag, used)
+
+    match dag.nodes[place]:
+        case Input(name):
+            return inputs.get(name, _ANY)
+        case Select(_, yes, no):
+            return _around((*part(yes), *part(no)))
+        case Apply(function, (first, second)) if function.name in ("+", "-", "*"):
+            return _combined(function.name, part(first), part(second))
+        case Apply(function, (first, second)) if function.name == "/":
+            low, high = part(second)
+            away = low > 0.0 or high < 0.0
+            return _combined("*", part(first), _around((1.0 / low, 1.0 / high))) if away else _ANY
+        case Apply(function, (only,)) if function.name == "u-":
+            low, high = part(only)
+            return -high, -low
+        case _:
+            return _ANY
+
+
+def _known(dag: Dag, place: int) -> Bounds:
+    node = dag.nodes[place]
+    if isinstance(node, Constant) and dag.sizes[place] is None and int(node.value.kinds[0]) == NUMBER:
+        number = float(node.value.numbers[0])
+        return number, number
+    return _ANY
+
+
+def _combined(operator: str, left: Bounds, right: Bounds) -> Bounds:
+    if operator == "+":
+        return left[0] + right[0], left[1] + right[1]
+    if operator == "-":
+        return left[0] - right[1], left[1] - right[0]
+    return _around([a * b for a in left for b in right])
+
+
+def _around(numbers: Iterable[float]) -> Bounds:
+    """What holds all the numbers; where one is none, nothing is known."""
+    numbers = tuple(numbers)
+    return _ANY if any(math.isnan(number) for number in numbers) else (min(numbers), max(numbers))

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["PROCESS_BLOCKS", "Crew"]
 
-PROCESS_BLOCKS: Final[Mapping[str, int]] = {"numpy": 256, "formulas": 4}
+PROCESS_BLOCKS: Final[Mapping[str, int]] = {"numpy": 128, "formulas": 4}
 """Engine -> blocks that take longer than a process to start, which is half a second: its threads share a lock."""
 
 

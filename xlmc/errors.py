@@ -86,7 +86,8 @@ class XlmcError(Exception):
     def __str__(self) -> str:
         place = f"{self.where}: " if self.where else ""
         advice = f". {self.hint}" if self.hint else ""
-        return f"{place}{self.message}{advice}."
+        text = f"{place}{self.message}{advice}"
+        return text if text.endswith("?") else f"{text}."
 
 
 class WorkbookError(XlmcError):

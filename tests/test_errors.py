@@ -1,0 +1,18 @@
+from __future__ import annotations
+
+import pytest
+
+from xlmc.errors import DefinitionError, XlmcError
+
+
+@pytest.mark.parametrize(
+    ("error", "text"),
+    [
+        (XlmcError("the file is empty"), "the file is empty."),
+        (XlmcError("the file is empty", hint="Save it again"), "the file is empty. Save it again."),
+        (XlmcError("no such function", where="Sheet1!A1"), "Sheet1!A1: no such function."),
+        (DefinitionError("there is no Nrmal", hint="Did you mean Normal?"), "there is no Nrmal. Did you mean Normal?"),
+    ],
+)
+def test_a_message_is_a_sentence(error, text):
+    assert str(error) == text

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import builtins
+import gc
 import os
 import signal
 
@@ -113,6 +114,8 @@ def test_no_scheduler(model, monkeypatch, scheme):
     with pytest.raises(SimulationError, match=rf"{scheme}://127\.0\.0\.1:9: no scheduler answers") as caught:
         model.simulate(1000, scheduler=f"{scheme}://127.0.0.1:9")
     assert "dask scheduler" in caught.value.hint
+    clients = [thing for thing in gc.get_objects() if type(thing).__name__ == "Closing"]
+    assert all(client.status in ("closed", "newly-created") for client in clients)
 
 
 def test_no_workers(model, monkeypatch):

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from functools import lru_cache
 from itertools import islice
 from queue import Empty, SimpleQueue
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from xlmc.blocks import Block, Task, Worker
 from xlmc.errors import SimulationError
@@ -72,8 +72,19 @@ def _client(scheduler: str, workers: int | None) -> Iterator[Client]:
         with LocalCluster(n_workers=workers, **settings) as cluster, Client(cluster, set_as_default=False) as client:
             yield client
         return
+
+    class Closing(Client):
+        """Closes itself where it cannot start: one that is deleted open may wait for a lock that the next one holds."""
+
+        def start(self, **options: Any) -> None:
+            try:
+                super().start(**options)
+            except BaseException:
+                self.close()
+                raise
+
     try:
-        client = Client(scheduler, timeout=PATIENCE, set_as_default=False)
+        client = Closing(scheduler, timeout=PATIENCE, set_as_default=False)
     except (OSError, TimeoutError, ValueError, TypeError) as error:  # TypeError: no certificates for tls
         hint = "Start one with `dask scheduler`, and give the address it prints"
         raise SimulationError(f"no scheduler answers: {error}", where=scheduler, hint=hint) from error

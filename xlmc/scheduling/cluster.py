@@ -73,7 +73,7 @@ def _client(scheduler: str, workers: int | None) -> Iterator[Client]:
             yield client
         return
 
-    class Closing(Client):
+    class Closing(Client):  # type: ignore[misc]  # Dask tells mypy nothing of its types
         """Closes itself where it cannot start: one that is deleted open may wait for a lock that the next one holds."""
 
         def start(self, **options: Any) -> None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from xlmc.simulation import ForecastResult, Simulation
     from xlmc.statistics import Estimate
 
-__all__ = ["WIDTHS", "write_statistics"]
+__all__ = ["WIDTHS", "write_forecast", "write_statistics"]
 
 _BLOCK = (26, 9, 11, 10, 10, 10)
 WIDTHS = (*_BLOCK, 2, 18, 11, 10, 10, 10)
@@ -35,11 +35,12 @@ def write_statistics(page: Page, simulation: Simulation) -> None:
     for number, result in enumerate(simulation.results.values()):
         if number and number % _ON_A_PAGE == 0:
             breaks.append(page.row)
-        _write_forecast(page, result)
+        write_forecast(page, result)
     page.printed(name, breaks=breaks, scale=_SCALE)
 
 
-def _write_forecast(page: Page, result: ForecastResult) -> None:
+def write_forecast(page: Page, result: ForecastResult) -> None:
+    """Write everything about one forecast: its statistics, and its percentiles beside them."""
     page.heading(result.definition.name)
     top = page.row
     page.table(["Statistic", "Units", *_ENDS], _statistics(result))

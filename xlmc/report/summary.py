@@ -13,7 +13,16 @@ from xlmc.statistics import Estimate, format_estimate
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
 
-__all__ = ["ERROR_SENTENCE", "SummaryRow", "estimate_text", "percent", "range_heading", "share_text", "summarise", "summary_text"]
+__all__ = [
+    "ERROR_SENTENCE",
+    "SummaryRow",
+    "estimate_text",
+    "percent",
+    "range_heading",
+    "share_text",
+    "summarise",
+    "summary_text",
+]
 
 ERROR_SENTENCE = (
     "± is the standard error that comes from a limited number of trials (Monte Carlo error): infinitely many trials "

@@ -93,11 +93,15 @@ def _table(rows: Sequence[SummaryRow]) -> Html:
         "div",
         element(
             "table",
-            element("thead", element("tr", *(element("th", head, scope="col") for head in heads))),
+            element("thead", element("tr", *(_head(head, place > 1) for place, head in enumerate(heads)))),
             element("tbody", *(_line(row, mixed, thresholds) for row in rows)),
         ),
         class_="wide-table answers",
     )
+
+
+def _head(text: str, numbers: bool) -> Html:
+    return element("th", text, scope="col", class_="number" if numbers else None)
 
 
 def _line(row: SummaryRow, mixed: bool, thresholds: bool) -> Html:

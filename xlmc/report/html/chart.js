@@ -11,8 +11,11 @@ function widthOf(place) {
   return Math.max(260, Math.min(WIDEST, Math.floor(place.clientWidth)));
 }
 
-/** Draw a forecast into `place`; `state` has `view`, `low`, `high` and is read whenever the chart is drawn again. */
-function drawForecast(place, forecast, trials, state, onCursor) {
+/**
+ * Draw a forecast into `place`; `state` has `view`, `low`, `high` and is read whenever the chart is drawn again. `drawn()`
+ * is called then, and `pointed(value)` when the pointer is somewhere else; null when it has left.
+ */
+function drawForecast(place, forecast, trials, state, { drawn, pointed }) {
   const { edges, counts } = forecast.bins;
   const ends = [edges[0], edges[edges.length - 1]];
   const top = state.view === "frequency" ? Math.max(...counts) * 1.08 : 100;
@@ -20,8 +23,8 @@ function drawForecast(place, forecast, trials, state, onCursor) {
   const options = chartOptions(widthOf(place), ends, top, forecast.units, state.view);
   options.hooks = {
     drawClear: [(chart) => band(chart, forecast.range)],
-    draw: [(chart) => paint(chart, shape, forecast.marks, state)],
-    setCursor: [(chart) => onCursor(chart.cursor.left < 0 ? null : chart.posToVal(chart.cursor.left, "x"))],
+    draw: [(chart) => paint(chart, shape, forecast.marks, state), drawn],
+    setCursor: [(chart) => pointed(chart.cursor.left < 0 ? null : chart.posToVal(chart.cursor.left, "x"))],
   };
   return new uPlot(options, [ends, [0, top]], place);
 }
@@ -38,7 +41,7 @@ function chartOptions(width, ends, top, units, view) {
     cursor: { y: false, points: { show: false }, drag: { x: false, y: false } },
     scales: { x: { time: false, range: ends }, y: { range: [0, top] } },
     axes: [
-      { ...axis, label: units || " ", grid: { show: false }, border: { show: true, stroke: "#8994A1", width: 1 } },
+      { ...axis, label: units || " ", size: 42, gap: 12, labelSize: 18, grid: { show: false }, border: { show: true, stroke: "#8994A1", width: 1 } },
       { ...axis, label: percent ? "Accepted trials, %" : "Accepted trials", size: 58, ticks: { show: false },
         grid: { stroke: GRID, width: 1 }, values: (_, splits) => splits.map((n) => (Number.isInteger(n) ? countText(n) : "")) },
     ],

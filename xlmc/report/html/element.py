@@ -1,4 +1,4 @@
-"""HTML built from the inside out: a text becomes HTML only by being escaped, so that no name in a workbook is markup."""
+"""HTML built from the inside out: a text becomes HTML only by being escaped, so no name in a workbook is markup."""
 
 from __future__ import annotations
 

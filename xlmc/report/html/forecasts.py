@@ -23,8 +23,8 @@ _VIEWS = (("frequency", "Frequency"), ("cumulative", "Cumulative"), ("reverse", 
 
 _HOW = (
     "Drag the two grabbers below a chart, or move them with the arrow keys: the certainty is the share of the accepted "
-    "trials between them, both ends included. Or type the ends, or a certainty, which sets the grabbers so that as many "
-    "trials lie below as above. Shaded: the central range of the answer above."
+    "trials between them, both ends included. Or type the ends, or a certainty: as many trials then lie below the "
+    "grabbers as above. Shaded: the central range of the answer above."
 )
 
 _PLAIN_SHARE = (
@@ -55,9 +55,9 @@ def _explained(simulation: Simulation, figures: Sequence[Figure]) -> Iterator[Ht
     if max(figure.answer.trials for figure in figures) > most:
         yield element(
             "p",
-            f"Of a forecast with more than {most:,} trials the page holds {most:,} values at equal distances of rank and "
-            f"the number of trials between them: the count at an end may be off by fewer than {percent(1 / (most - 1))} "
-            "of the trials, which the certainty says, and is exact at the ends of the central range.",
+            f"Of a forecast with more than {most:,} trials the page holds {most:,} values at equal distances of rank, "
+            f"and how many trials lie between them. The count at an end may be off by {100 / (most - 1):.2g} % of the "
+            "trials at most, as the certainty says; it is exact at the ends of the central range.",
             class_="remark",
         )
 

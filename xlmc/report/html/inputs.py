@@ -9,7 +9,7 @@ from xlmc.record.wording import distribution_text, status
 from xlmc.report.assumptions import MEANING, MOVED, NARROWED, STRATIFIED, write_correlations
 from xlmc.report.cells import NONE
 from xlmc.report.conditioning import PERCENTS, Conditioning, Marginal, conditioning
-from xlmc.report.html.element import EMPTY, Html, element
+from xlmc.report.html.element import Html, element
 from xlmc.report.html.flow import Flow
 from xlmc.report.html.shown import estimate_html, number
 from xlmc.statistics import Estimate
@@ -20,15 +20,17 @@ if TYPE_CHECKING:
 
 __all__ = ["inputs"]
 
-_HEADS = ("Assumption", "Trials", "", "Mean", "Standard deviation", *(f"{each:g} %" for each in PERCENTS))
+_HEADS = ("Assumption", "Trials", "Mean", "Standard deviation", *(f"{each:g} %" for each in PERCENTS))
 _CHANGES = ("Shift of mean in SDs", "SD accepted / before")
+_COLUMNS = len(_HEADS) + len(_CHANGES)
 
 
 def inputs(simulation: Simulation) -> Html:
     """The section."""
     correlations = Flow()
     write_correlations(correlations, simulation)
-    heads = (element("th", head, scope="col") for head in (*_HEADS, *_CHANGES))
+    names = enumerate((*_HEADS, *_CHANGES))
+    heads = (element("th", head, scope="col", class_="number" if place else None) for place, head in names)
     bodies = (_assumption(simulation, assumption) for assumption in simulation.model.assumptions)
     table = element("table", element("thead", element("tr", *heads)), *bodies)
     return element(
@@ -52,29 +54,28 @@ def _remarks(simulation: Simulation) -> Iterator[str]:
 
 
 def _assumption(simulation: Simulation, assumption: Assumption) -> Html:
-    """Two rows, in a body of their own so that they stay together."""
-    named = element("th", *_named(assumption), scope="rowgroup", rowspan="2")
+    """Its name above two rows, in a body of their own so that they stay together."""
+    named = element("tr", element("th", *_named(assumption), scope="rowgroup", colspan=str(_COLUMNS)))
     if assumption.name not in simulation.inputs:
-        why = element("td", status(simulation.model, assumption), colspan="9")
-        return element("tbody", element("tr", named, why), element("tr"))
+        why = element("td", status(simulation.model, assumption), colspan=str(_COLUMNS))
+        return element("tbody", named, element("tr", why))
     accepted, replicate = simulation.inputs[assumption.name], simulation.replicate
     kept = None if replicate is None else replicate[: accepted.size]
     found = conditioning(simulation.prior[assumption.name], accepted, kept)
-    before = element("tr", named, *_marginal(found.prior, "before"), element("td"), element("td"))
-    return element("tbody", before, element("tr", *_marginal(found.accepted, "accepted"), *_changes(found)))
+    before = element("tr", *_marginal(found.prior, "before"), element("td"), element("td"))
+    return element("tbody", named, before, element("tr", *_marginal(found.accepted, "accepted"), *_changes(found)))
 
 
-def _named(assumption: Assumption) -> Iterator[Html]:
-    units = f", {assumption.units}" if assumption.units else ""
-    yield element("b", assumption.name, units)
+def _named(assumption: Assumption) -> Iterator[Html | str]:
     base = NONE if assumption.base is None else f"{assumption.base:.9g}"
-    yield element("small", f"{assumption.cell}, base case {base}. {distribution_text(assumption)}")
-    yield element("small", assumption.source) if assumption.source else EMPTY
+    yield element("b", assumption.name, f", {assumption.units}" if assumption.units else "")
+    yield " "
+    yield element("small", f"{assumption.cell}, base case {base}. {distribution_text(assumption)}. {assumption.source}")
 
 
 def _marginal(found: Marginal, when: str) -> Iterator[Html]:
-    yield element("td", number(found.trials, f"{found.trials:,}"), class_="number")
     yield element("td", when)
+    yield element("td", number(found.trials, f"{found.trials:,}"), class_="number")
     for estimate in (found.mean, found.standard_deviation, *found.percentiles.values()):
         yield element("td", estimate_html(estimate), class_="number")
 

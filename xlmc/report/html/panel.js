@@ -9,6 +9,7 @@ class Panel {
     this.step = stepOf(forecast.bins, forecast.values);
     this.decimals = Math.max(0, -Math.round(Math.log10(this.step)));
     this.find = (selector) => place.querySelector(selector);
+    this.box = (key) => place.querySelector(`.boxes .${key}`);
     this.state = { view: "frequency" };
     this.listen(place);
     this.draw();
@@ -23,7 +24,7 @@ class Panel {
       });
     }
     for (const key of ["low", "high", "share"]) {
-      this.find(`.${key}`).addEventListener("change", () => this.type(key));
+      this.box(key).addEventListener("change", () => this.type(key));
     }
     this.find(".reset").addEventListener("click", () => this.toOwnRange());
     new ResizeObserver(() => {
@@ -34,7 +35,10 @@ class Panel {
   /** Draw everything again, as for another view or width. */
   draw() {
     this.chart?.destroy();
-    this.chart = drawForecast(this.find(".chart"), this.forecast, this.trials, this.state, (value) => this.read(value));
+    this.chart = drawForecast(this.find(".chart"), this.forecast, this.trials, this.state, {
+      drawn: () => this.place(),
+      pointed: (value) => this.read(value),
+    });
     const { step, state } = this;
     const grabber = (which, label, now, move) => addGrabber(this.chart, which, label, step, now, move);
     this.grabbers = {
@@ -60,7 +64,7 @@ class Panel {
   /** What was typed into a box. */
   type(key) {
     const { low, high } = this.state;
-    const value = typed(this.find(`.${key}`).value, { low: -Infinity, high: Infinity, share: null }[key]);
+    const value = typed(this.box(key).value, { low: -Infinity, high: Infinity, share: null }[key]);
     if (value === null) this.refuse(key, "Type a number.");
     else if (key === "share" && !(value >= 0 && value <= 100)) this.refuse(key, "A certainty lies between 0 and 100 %.");
     else if (key === "share") this.toCentral(value / 100);
@@ -70,7 +74,7 @@ class Panel {
   }
 
   refuse(key, why) {
-    this.find(`.${key}`).setAttribute("aria-invalid", "true");
+    this.box(key).setAttribute("aria-invalid", "true");
     this.find(".fault").textContent = why;
   }
 
@@ -89,17 +93,23 @@ class Panel {
 
   /** Bring chart, grabbers, boxes and certainty up to date. */
   show() {
-    const { low, high, share, lowText, highText } = this.state;
+    const { share, lowText, highText } = this.state;
     this.chart.redraw(false);
-    this.grabbers.low(low, lowText);
-    this.grabbers.high(high, highText);
     const found = this.certainty();
-    this.find(".low").value = lowText;
-    this.find(".high").value = highText;
-    this.find(".share").value = share === null ? found.text.split(" ")[0] : String(Number((100 * share).toPrecision(12)));
-    for (const box of ["low", "high", "share"]) this.find(`.${box}`).removeAttribute("aria-invalid");
+    this.box("low").value = lowText;
+    this.box("high").value = highText;
+    this.box("share").value = share === null ? found.text.split(" ")[0] : String(Number((100 * share).toPrecision(12)));
+    for (const box of ["low", "high", "share"]) this.box(box).removeAttribute("aria-invalid");
     this.find(".fault").textContent = "";
     this.say(found);
+  }
+
+  /** Put the grabbers where the chart, which is drawn a moment later than asked, has room for them. */
+  place() {
+    const { low, high, lowText, highText } = this.state;
+    if (low === undefined) return;
+    this.grabbers.low(low, lowText);
+    this.grabbers.high(high, highText);
   }
 
   /** The share of trials between the grabbers. */

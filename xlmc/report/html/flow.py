@@ -6,7 +6,6 @@ Places, widths and heights mean nothing here: sections, tables and paragraphs fo
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import zip_longest
 from typing import Any
 
 from xlmc.report.cells import Shown
@@ -81,14 +80,14 @@ class Flow(Page):
 def table_html(headers: Sequence[str], rows: Sequence[Sequence[Shown]]) -> Html:
     """A table of a sheet's cells, which can be pushed aside where it is wider than the page."""
     numbers = [shown.look in _NUMBERS for shown in rows[0]] if rows else []
-    heads = (_head(text, right) for text, right in zip_longest(headers, numbers[: len(headers)], fillvalue=False))
+    heads = (_head(text, any(numbers[place : place + 1])) for place, text in enumerate(headers))
     body = [element("tr", *(_cell(shown, place) for place, shown in enumerate(row))) for row in rows]
     parts = [element("thead", element("tr", *heads))] if headers else []
     return element("div", element("table", *parts, element("tbody", *body)), class_="wide-table")
 
 
-def _head(text: str | bool, right: str | bool) -> Html:
-    return element("th", str(text), scope="col", class_="number" if right else None)
+def _head(text: str, right: bool) -> Html:
+    return element("th", text, scope="col", class_="number" if right else None)
 
 
 def _cell(shown: Shown, place: int) -> Html:

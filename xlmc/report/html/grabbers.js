@@ -4,10 +4,12 @@
 const ARROWS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 };
 
 /**
- * Put a grabber on a chart. `move(value)` is told where it wants to be, `step` is the grid it moves on; beyond the edge of
- * the chart the end is open: it takes in the trials that are not drawn.
+ * Put a grabber on a chart that reaches from `min` to `max`. `move(value)` is told where it wants to be, `step` is the grid
+ * it moves on; at the edge of the chart the end is open: it takes in the trials that are not drawn.
+ *
+ * Returns a function that puts it at a value, with a text beside it.
  */
-function addGrabber(chart, which, label, step, now, move) {
+function addGrabber(chart, which, label, { step, min, max }, now, move) {
   const line = document.createElement("div");
   const grip = document.createElement("div");
   const tag = document.createElement("span");
@@ -20,7 +22,6 @@ function addGrabber(chart, which, label, step, now, move) {
   line.append(grip, tag);
   chart.over.append(line);
 
-  const { min, max } = chart.scales.x;
   const snapped = (value) => Number((Math.round(value / step) * step).toPrecision(12));
   const placed = (value) => (value <= min ? -Infinity : value >= max ? Infinity : snapped(value));
 

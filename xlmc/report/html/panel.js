@@ -39,8 +39,9 @@ class Panel {
       drawn: () => this.place(),
       pointed: (value) => this.read(value),
     });
-    const { step, state } = this;
-    const grabber = (which, label, now, move) => addGrabber(this.chart, which, label, step, now, move);
+    const { step, state, forecast: { bins } } = this;
+    const grid = { step, min: bins.edges[0], max: bins.edges.at(-1) };
+    const grabber = (which, label, now, move) => addGrabber(this.chart, which, label, grid, now, move);
     this.grabbers = {
       low: grabber("low", "Lower end of the range", () => state.low, (value) => this.set(Math.min(value, state.high), state.high)),
       high: grabber("high", "Upper end of the range", () => state.high, (value) => this.set(state.low, Math.max(value, state.low))),

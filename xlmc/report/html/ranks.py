@@ -61,8 +61,15 @@ def rank_table(x: Floats, most: int, marks: Iterable[float] = ()) -> RankTable:
         marks: further values at which counts must be exact; those that are not finite are left out.
     """
     ranks = np.arange(x.size) if x.size <= most else np.rint(np.linspace(0, x.size - 1, most)).astype(np.intp)
-    finite = [mark for mark in marks if np.isfinite(mark)]
+    finite: list[float] = [mark for mark in marks if np.isfinite(mark)]
     values = np.unique(np.concatenate([picked(x, ranks), finite]))
-    below, upto = np.searchsorted(x, values, side="left"), np.searchsorted(x, values, side="right")
+    while True:
+        below, upto = np.searchsorted(x, values, side="left"), np.searchsorted(x, values, side="right")
+        gaps = below[1:] - upto[:-1]
+        wide = np.flatnonzero(gaps)[: max(most - values.size, 0)]
+        if not wide.size:
+            break
+        # Ranks of whole numbers fall on the same values: there is room for those between.
+        values = np.union1d(values, picked(x, upto[wide] + gaps[wide] // 2))
     release(x)
-    return RankTable(values, upto - below, below[1:] - upto[:-1])
+    return RankTable(values, upto - below, gaps)

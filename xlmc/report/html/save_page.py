@@ -44,9 +44,8 @@ def check_page_path(path: Path) -> None:
         WorkbookError: it is one of these.
     """
     if path.suffix.casefold() not in ENDINGS:
-        raise WorkbookError(
-            "the page must end in .html", where=path, hint=f"Name it {path.with_suffix('.html').name!r}"
-        )
+        hint = f"Name it '{path.stem or 'results'}.html'"
+        raise WorkbookError("the page must end in .html", where=path, hint=hint)
     if not path.absolute().parent.is_dir():
         hint = "Create it or name another"
         raise WorkbookError(f"there is no folder {str(path.absolute().parent)!r}", where=path, hint=hint)

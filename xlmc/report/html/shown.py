@@ -64,5 +64,10 @@ def _formatted(value: float, number_format: str) -> str:
     if ending == "E+00":
         return f"{value:.{decimals}e}"
     if ending == "%":
-        return f"{100.0 * value:.{decimals}f} %"
+        return f"{_rounded(100.0 * value, decimals):.{decimals}f} %"
+    value = _rounded(value, decimals)
     return f"{value:,.{decimals}f}" if found["grouped"] else f"{value:.{decimals}f}"
+
+
+def _rounded(value: float, decimals: int) -> float:
+    return round(value, decimals) + 0.0  # no negative zero

@@ -1,4 +1,4 @@
-"""A result sheet being written, from the top down. It writes no formula, and no number that is none."""
+"""A result sheet being written, from the top down. It writes no number that is none, and texts are never formulas."""
 
 from __future__ import annotations
 
@@ -53,6 +53,10 @@ class Page:
         else:
             self.sheet.write_string(row, column, _in_words(value), style)
 
+    def formula(self, row: int, column: int, formula: str, shown: Shown) -> None:
+        """Write one cell whose value, shown until somebody changes what it depends on, is known."""
+        self.sheet.write_formula(row, column, formula, self._styles(shown.look, shown.format), shown.value)
+
     def line(self, cells: Iterable[Shown], column: int = 0) -> None:
         """Write cells side by side, in a row as high as their texts need, and go to the next row."""
         cells = list(cells)
@@ -102,11 +106,11 @@ class Page:
         Args:
             name: of the workbook, for the foot of the page.
             repeat: the row to stand on top of every page, counted from 0.
-            scale: in percent, where there are breaks: Excel heeds none on pages that it fits to a width.
+            scale: in percent; 100 fits the sheet to the page's width unless there are breaks, for Excel heeds none then.
             breaks: the rows that begin a new page, counted from 0.
         """
         self.sheet.set_landscape()
-        if breaks:
+        if breaks or scale != 100:
             self.sheet.set_print_scale(scale)
             self.sheet.set_h_pagebreaks(list(breaks))
             self.sheet.center_horizontally()

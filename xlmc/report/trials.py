@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from xlmc.report.page import Page
     from xlmc.simulation import Simulation
 
-__all__ = ["HEADER", "MOST_ROWS", "TRIAL_ROWS", "WIDTHS", "write_trials"]
+__all__ = ["HEADER", "MOST_ROWS", "TRIAL_ROWS", "WIDTHS", "TrialsAt", "write_trials"]
 
 TRIAL_ROWS = 10_000
 """Accepted trials on the sheet, unless asked otherwise: more make the file slow to open."""
@@ -29,7 +30,29 @@ MOST_ROWS = 1_048_576 - HEADER - 1
 _WIDTH = 13
 
 
-def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> None:
+@dataclass(frozen=True, slots=True)
+class TrialsAt:
+    """Where the trials stand.
+
+    Attributes:
+        sheet: its name.
+        shown: trials on it, the first accepted ones.
+        first_forecast: the column of the first forecast, counted from 0; the others follow.
+    """
+
+    sheet: str
+    shown: int
+    first_forecast: int
+
+    def column(self, place: int) -> str:
+        """The cells of a forecast, `Trials!$H$5:$H$3546`; there is none without trials."""
+        from xlsxwriter.utility import xl_range_formula
+
+        column = self.first_forecast + place
+        return str(xl_range_formula(self.sheet, HEADER + 1, column, HEADER + self.shown, column))
+
+
+def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> TrialsAt:
     """Write the sheet with the first `rows` accepted trials, and say so where there are more."""
     shown = max(0, min(rows, simulation.kept_inputs, MOST_ROWS))
     name = simulation.model.workbook.name
@@ -46,6 +69,7 @@ def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> 
     page.sheet.freeze_panes(HEADER + 1, 1)
     page.sheet.autofilter(HEADER, 0, HEADER + shown, len(columns))
     page.printed(name, repeat=HEADER)
+    return TrialsAt(page.sheet.get_name(), shown, 1 + len(simulation.model.live))
 
 
 def _said(shown: int, accepted: int) -> Shown:

@@ -59,14 +59,13 @@ def build_sheets(simulation: Simulation, *, command: str | None = None, rows: in
         certain = page("Certainty", certainty_sheet.WIDTHS)
         together = page("Pairs", pairs_sheet.WIDTHS)
         assumptions.write_assumptions(page("Assumptions", assumptions.WIDTHS), simulation)
-        certainty_sheet.write_certainty(
-            certain, simulation, trials.write_trials(page("Trials", trials.WIDTHS), simulation, rows)
-        )
+        shown = trials.write_trials(page("Trials", trials.WIDTHS), simulation, rows)
+        certainty_sheet.write_certainty(certain, simulation, shown)
         figures, name = figures_of(simulation), simulation.model.workbook.name
         places = bins.write_bins(page("Bins", ()), figures, name)
         curves = Curves(page("Curves", ()), name)
         charts.write_charts(drawing, book, simulation, figures, places, curves)
-        pairs_sheet.write_pairs(together, book, simulation, curves)
+        pairs_sheet.write_pairs(together, book, simulation, curves, shown)
         curves.finish()
         record_sheet.write_record(page("Record", record_sheet.WIDTHS), make_record(simulation, command), name)
     return packed.getvalue()

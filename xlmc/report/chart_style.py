@@ -39,7 +39,7 @@ def finish(chart: Chart, title: Reference, *, legend: bool = True) -> None:
 
 def across(name: Reference | None = None, **more: Any) -> dict[str, Any]:
     """The horizontal axis."""
-    named = {} if name is None else {"name": name, "name_font": {**FONT, "bold": False}}
+    named: dict[str, Any] = {} if name is None else {"name": name, "name_font": {**FONT, "bold": False}}
     return {
         **named,
         "num_font": FONT,

@@ -97,9 +97,7 @@ def _place_row(page: Page, drawings: Sequence[Drawing]) -> None:
     page.row += 1
 
 
-def _compared(
-    book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]
-) -> Iterator[Drawing]:
+def _compared(book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]) -> Iterator[Drawing]:
     number = len(figures)
     for group in alike(figures):
         units, few = group[0].answer.units, f" (at most {MOST} in a chart)" if len(group) == MOST else ""
@@ -111,9 +109,7 @@ def _compared(
         number += 2
 
 
-def _cumulative(
-    book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]
-) -> Iterator[Drawing]:
+def _cumulative(book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]) -> Iterator[Drawing]:
     first = len(figures) + 2 * len(alike(figures))
     for place, figure in enumerate(figures):
         charts = cumulative_charts(book, curves, simulation, figure)

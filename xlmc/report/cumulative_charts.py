@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
-
-import numpy as np
-from numpy.typing import NDArray
 
 from xlmc.report import cells
 from xlmc.report.cells import Shown
@@ -24,42 +22,32 @@ if TYPE_CHECKING:
 
 __all__ = ["cumulative_charts"]
 
-_KINDS = (("cumulative", "Cumulative probability"), ("reverse cumulative", "Reverse cumulative probability"))
-"""The name of each chart, and of its axis."""
+_KINDS = ((0, 2, "cumulative", "Cumulative"), (4, 4, "reverse cumulative", "Reverse cumulative"))
+"""The columns of a chart's title and of its shares inside the central range, which those outside follow; its names."""
 
 
-def cumulative_charts(
-    book: Workbook, curves: Curves, simulation: Simulation, figure: Figure
-) -> list[ChartArea]:
-    """Write the curve's tables, and draw the cumulative chart and the reverse cumulative one."""
+def cumulative_charts(book: Workbook, curves: Curves, simulation: Simulation, figure: Figure) -> list[ChartArea]:
+    """Write the curve's table, and draw the cumulative chart and the reverse cumulative one."""
     result, answer = simulation.results[figure.answer.name], figure.answer
     curve = cumulative(result.sample, figure.bins, answer.low.value, answer.high.value)
     share = percent(answer.share)
-    drawn = []
-    for (kind, axis), shares in zip(_KINDS, (curve.at_most, curve.above), strict=True):
-        heads = ["Label", "Value", f"Inside {share} range", "Outside"]
-        table = curves.write(f"{figure.name}: {kind}", answer.units or "Value", heads, _rows(curve, shares))
-        drawn.append(_chart(book, table, curve, axis))
-    return drawn
+    heads = ["Label", "Value", *[f"Inside {share} range", "Outside"] * len(_KINDS)]
+    titles = {title: f"{figure.name}: {words}" for title, _, words, _ in _KINDS}
+    table = curves.write(titles, answer.units or "Value", heads, _rows(curve))
+    return [_chart(book, table, curve, title, inside, axis) for title, inside, _, axis in _KINDS]
 
 
-def _rows(curve: Cumulative, shares: NDArray[np.float64]) -> list[list[Shown]]:
-    columns = zip(curve.labels, curve.at.tolist(), shares.tolist(), curve.central.tolist(), strict=True)
-    return [
-        [
-            cells.text(label),
-            Shown(at, "General"),
-            Shown(share if central else 0.0, SHARE),
-            Shown(0.0 if central else share, SHARE),
-        ]
-        for label, at, share, central in columns
-    ]
+def _rows(curve: Cumulative) -> Iterator[list[Shown]]:
+    columns = (curve.at.tolist(), curve.at_most.tolist(), curve.above.tolist(), curve.central.tolist())
+    for label, at, at_most, above, central in zip(curve.labels, *columns, strict=True):
+        shares = (at_most, 0.0, above, 0.0) if central else (0.0, at_most, 0.0, above)
+        yield [cells.text(label), Shown(at), *(Shown(share, SHARE) for share in shares)]
 
 
-def _chart(book: Workbook, table: TableAt, curve: Cumulative, axis: str) -> ChartArea:
+def _chart(book: Workbook, table: TableAt, curve: Cumulative, title: int, inside: int, axis: str) -> ChartArea:
     """Two areas, of which one is 0 where the other is not: their sum is the curve whichever way they overlap."""
     chart = book.add_chart({"type": "area", "subtype": "stacked"})
-    for column, colour in ((2, DARK), (3, LIGHT)):
+    for column, colour in ((inside, DARK), (inside + 1, LIGHT)):
         chart.add_series(
             {
                 "name": table.heading(column),
@@ -69,8 +57,8 @@ def _chart(book: Workbook, table: TableAt, curve: Cumulative, axis: str) -> Char
                 "border": {"none": True},
             }
         )
-    marks = {"interval_unit": curve.step, "interval_tick": curve.step, "position_axis": "on_tick", "major_tick_mark": "none"}
-    chart.set_x_axis(across(table.axis, **marks))
-    chart.set_y_axis(upwards(axis, "0%", min=0, max=1, major_unit=0.1))
-    finish(chart, table.title)
+    marks = {"interval_unit": curve.step, "interval_tick": curve.step}
+    chart.set_x_axis(across(table.axis, position_axis="on_tick", major_tick_mark="none", **marks))
+    chart.set_y_axis(upwards(f"{axis} probability", "0%", min=0, max=1, major_unit=0.1))
+    finish(chart, table.title(title))
     return chart

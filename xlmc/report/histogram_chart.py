@@ -17,6 +17,7 @@ __all__ = ["COUNTS", "BinsAt", "histogram_chart"]
 
 COUNTS = (3, 4)
 
+
 @dataclass(frozen=True, slots=True)
 class BinsAt:
     """Where a table of bins stands; rows and columns are counted from 0.

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.report import cells
 from xlmc.report.cells import Shown
 from xlmc.report.chart_style import COLOURS, across, finish, upwards
-from xlmc.report.curves import Curves
+from xlmc.report.curves import Curves, TableAt
 from xlmc.report.figure import Figure
 from xlmc.report.styles import DARK, INK
 from xlmc.report.summary import percent
@@ -52,10 +52,10 @@ def overlay_chart(book: Workbook, curves: Curves, group: Sequence[Figure]) -> Ch
     """The frequency curves of figures with the same units."""
     units = group[0].answer.units
     chart = book.add_chart({"type": "scatter", "subtype": "straight"})
-    tables = []
+    tables: list[TableAt] = []
     for figure, colour in zip(group, COLOURS, strict=False):
         title = f"Overlay of forecasts in {units}" if not tables else figure.name
-        table = curves.write(title, units, ["Middle of bar", figure.name], _polygon(figure))
+        table = curves.write({0: title}, units, ["Middle of bar", figure.name], _polygon(figure))
         tables.append(table)
         chart.add_series(
             {
@@ -70,7 +70,7 @@ def overlay_chart(book: Workbook, curves: Curves, group: Sequence[Figure]) -> Ch
     limits = {"min": 0} if 0.0 <= first < max(figure.bins.width for figure in group) else {}  # no room for none below 0
     chart.set_x_axis(across(tables[0].axis, num_format="General", **limits))
     chart.set_y_axis(upwards("Probability per unit of the axis", "General", min=0))
-    finish(chart, tables[0].title)
+    finish(chart, tables[0].title())
     return chart
 
 
@@ -89,17 +89,15 @@ def trend_chart(book: Workbook, curves: Curves, simulation: Simulation, group: S
     units, shares = group[0].answer.units, {figure.answer.share for figure in group}
     central = f"{percent(shares.pop())} range" if len(shares) == 1 else "Central range"
     heads = ["Forecast", f"{central} from", "95th percentile", "5th percentile", f"{central} to"]
-    table = curves.write(f"Trend of forecasts in {units}", units, heads, _ranges(simulation, group))
+    table = curves.write({0: f"Trend of forecasts in {units}"}, units, heads, _ranges(simulation, group))
     chart = book.add_chart({"type": "stock"})
     for column in range(1, len(heads)):
-        chart.add_series(
-            {"name": table.heading(column), "categories": table.column(0), "values": table.column(column)}
-        )
+        chart.add_series({"name": table.heading(column), "categories": table.column(0), "values": table.column(column)})
     chart.set_up_down_bars({"up": _BOX, "down": _BOX})
     chart.set_high_low_lines({"line": {"color": INK, "width": 1.5}})
     chart.set_x_axis(across(text_axis=True))
     chart.set_y_axis(upwards(table.axis, "General"))
-    finish(chart, table.title, legend=False)
+    finish(chart, table.title(), legend=False)
     return chart
 
 

@@ -11,7 +11,7 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from xlsxwriter.utility import xl_rowcol_to_cell
+from xlsxwriter.utility import xl_range_formula, xl_rowcol_to_cell
 
 from xlmc.report import cells
 from xlmc.report.cells import Shown
@@ -46,7 +46,7 @@ def write_own_ranges(page: Page, simulation: Simulation, trials: TrialsAt, last:
     errors = simulation.plan.size == 0
     page.table([*heads[:5], "±", heads[5]] if errors else heads, [])
     for place, result, values in found:
-        _write_line(page, result, values, trials.column(place), errors)
+        _write_line(page, result, values, xl_range_formula(*trials.column(place)), errors)
 
 
 def _said(simulation: Simulation, trials: TrialsAt) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 
 from xlmc.report import cells, number_format
 from xlmc.report.cells import BLANK, Shown
-from xlmc.report.chart_style import across, bounds, finish, upwards
+from xlmc.report.chart_style import Reference, across, bounds, finish, upwards
 from xlmc.report.charts import Drawing, place_drawings
 from xlmc.report.curves import Curves, TableAt
 from xlmc.report.styles import DARK
@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from xlsxwriter.chart_scatter import ChartScatter
     from xlsxwriter.workbook import Workbook
 
+    from xlmc.definitions import Forecast
     from xlmc.report.page import Page
+    from xlmc.report.trials import TrialsAt
     from xlmc.simulation import Simulation
 
 __all__ = ["POINTS", "WIDTHS", "write_pairs"]
@@ -37,14 +39,15 @@ _SCALE = 60
 
 @dataclass(frozen=True, slots=True)
 class _Points:
-    """A forecast's points: where they stand, and the limits of an axis for them."""
+    """A forecast's points: where its name and its values stand, and the limits of an axis for them."""
 
-    at: TableAt
+    axis: Reference
+    values: Reference
     limits: dict[str, float]
 
 
-def write_pairs(page: Page, book: Workbook, simulation: Simulation, curves: Curves) -> None:
-    """Write the sheet; `curves` takes the points of the charts."""
+def write_pairs(page: Page, book: Workbook, simulation: Simulation, curves: Curves, trials: TrialsAt) -> None:
+    """Write the sheet; its charts draw the trials where `trials` says, or points that `curves` takes."""
     name = simulation.model.workbook.name
     page.title("Forecasts two at a time", f"{name}: {simulation.accepted:,} accepted trials")
     pairs = pairs_of(simulation)
@@ -59,7 +62,7 @@ def write_pairs(page: Page, book: Workbook, simulation: Simulation, curves: Curv
         page.wide(sentence, "remark", _LAST)
     page.row += 1
     breaks = [page.row] if len(pairs) > 2 else []
-    breaks += place_drawings(page, _drawings(book, curves, simulation, pairs))
+    breaks += place_drawings(page, _drawings(book, curves, simulation, pairs, trials))
     page.printed(name, scale=_SCALE, breaks=breaks)
 
 
@@ -94,7 +97,7 @@ def _limited(pair: Pair, place: int) -> str:
 
 def _sentences(simulation: Simulation, pairs: Sequence[Pair]) -> list[str]:
     trials, ranked = {pair.trials for pair in pairs}, {pair.ranked for pair in pairs}
-    said = "A limit is the forecast's threshold, or its median where it has none, taken as the number that stands here."
+    said = "A limit is the forecast's threshold, or where it has none its median, taken as the number that stands here."
     said += " Probabilities are shares of the accepted trials in which both forecasts are numbers"
     said += f" ({min(trials):,})." if len(trials) == 1 else f" ({min(trials):,} to {max(trials):,})."
     if max(ranked) < max(trials):
@@ -107,43 +110,56 @@ def _sentences(simulation: Simulation, pairs: Sequence[Pair]) -> list[str]:
     return found
 
 
-def _drawings(book: Workbook, curves: Curves, simulation: Simulation, pairs: Sequence[Pair]) -> list[Drawing]:
+def _drawings(
+    book: Workbook, curves: Curves, simulation: Simulation, pairs: Sequence[Pair], trials: TrialsAt
+) -> list[Drawing]:
     """A scatter chart a pair, from the first trials in which all forecasts of these pairs are numbers."""
-    forecasts = {each.name: each for pair in pairs for each in (pair.first, pair.second)}
-    columns = _points([simulation.forecasts[name] for name in forecasts])
-    if not columns[0].size:
+    names = {forecast.name for pair in pairs for forecast in (pair.first, pair.second)}
+    forecasts = [forecast for forecast in simulation.model.forecasts if forecast.name in names]
+    known = _known([simulation.forecasts[each.name] for each in forecasts])
+    if not known.size:
         return []
-    tables: dict[str, _Points] = {}
-    for (name, forecast), values in zip(forecasts.items(), columns, strict=True):
-        digits = number_format.exact(float(np.ptp(values)))
-        axis = f"{name} ({forecast.units})" if forecast.units else name
-        at = curves.write("Points of the scatter charts", axis, [name], [[Shown(v, digits)] for v in values.tolist()])
-        tables[name] = _Points(at, bounds(float(values.min()), float(values.max())))
+    found = {each.name: _points(curves, simulation, trials, each, known) for each in forecasts}
     titles = [f"{pair.first.name} and {pair.second.name}" for pair in pairs]
-    names = curves.write("Titles of the scatter charts", "", ["Title"], [[cells.text(title)] for title in titles])
-    points = f"the first {columns[0].size:,} accepted trials in which all of these forecasts are numbers"
+    titled = curves.write({0: "Titles of the scatter charts"}, "", ["Title"], [[cells.text(title)] for title in titles])
+    points = f"the first {known.size:,} accepted trials in which all of these forecasts are numbers"
     return [
         Drawing(
-            _scatter(book, tables[pair.first.name], tables[pair.second.name], names, place),
+            _scatter(book, found[pair.first.name], found[pair.second.name], titled, place),
             f"Scatter chart {place + 1}. {titles[place]}: {points}.",
         )
         for place, pair in enumerate(pairs)
     ]
 
 
-def _points(columns: Sequence[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
-    """The first points of which all are numbers; a text among them would turn a chart's axis into 1, 2, 3."""
+def _known(columns: Sequence[NDArray[np.float64]]) -> NDArray[np.intp]:
+    """The first trials in which all are numbers: a text among the points would turn a chart's axis into 1, 2, 3."""
     early = [column[: 20 * POINTS] for column in columns]
-    known = np.flatnonzero(~np.any([np.isnan(column) for column in early], axis=0))[:POINTS]
-    return [column[known] for column in early]
+    return np.flatnonzero(~np.any([np.isnan(column) for column in early], axis=0))[:POINTS]
+
+
+def _points(
+    curves: Curves, simulation: Simulation, trials: TrialsAt, forecast: Forecast, known: NDArray[np.intp]
+) -> _Points:
+    """A forecast's values in these trials: where they stand on the sheet Trials, or else in a table of their own."""
+    values = simulation.forecasts[forecast.name][known]
+    limits = bounds(float(values.min()), float(values.max()))
+    if known[-1] < min(known.size, trials.shown):
+        place = simulation.model.forecasts.index(forecast)
+        return _Points(trials.heading(place), trials.column(place, known.size), limits)
+    digits = number_format.exact(float(np.ptp(values)))
+    axis = f"{forecast.name} ({forecast.units})" if forecast.units else forecast.name
+    rows = [[Shown(value, digits)] for value in values.tolist()]
+    table = curves.write({0: "Points of the scatter charts"}, axis, [forecast.name], rows)
+    return _Points(table.axis, table.column(0), limits)
 
 
 def _scatter(book: Workbook, first: _Points, second: _Points, titles: TableAt, place: int) -> ChartScatter:
     chart = book.add_chart({"type": "scatter"})
     chart.add_series(
         {
-            "categories": first.at.column(0),
-            "values": second.at.column(0),
+            "categories": first.values,
+            "values": second.values,
             "marker": {
                 "type": "circle",
                 "size": 3,
@@ -152,9 +168,7 @@ def _scatter(book: Workbook, first: _Points, second: _Points, titles: TableAt, p
             },
         }
     )
-    chart.set_x_axis(across(first.at.axis, num_format="General", **first.limits))
-    chart.set_y_axis(upwards(second.at.axis, "General", **second.limits))
-    sheet, row, column, *_ = titles.column(0)
-    assert isinstance(row, int)
-    finish(chart, [sheet, row + place, column], legend=False)
+    chart.set_x_axis(across(first.axis, num_format="General", **first.limits))
+    chart.set_y_axis(upwards(second.axis, "General", **second.limits))
+    finish(chart, titles.cell(place), legend=False)
     return chart

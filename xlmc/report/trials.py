@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from xlmc.report import number_format
 from xlmc.report.cells import Shown
+from xlmc.report.chart_style import Reference
 
 if TYPE_CHECKING:
     from xlmc.report.page import Page
@@ -44,12 +45,14 @@ class TrialsAt:
     shown: int
     first_forecast: int
 
-    def column(self, place: int) -> str:
-        """The cells of a forecast, `Trials!$H$5:$H$3546`; there is none without trials."""
-        from xlsxwriter.utility import xl_range_formula
+    def heading(self, place: int) -> Reference:
+        """The heading of a forecast, its name and units."""
+        return [self.sheet, HEADER, self.first_forecast + place]
 
-        column = self.first_forecast + place
-        return str(xl_range_formula(self.sheet, HEADER + 1, column, HEADER + self.shown, column))
+    def column(self, place: int, most: int | None = None) -> Reference:
+        """The cells of a forecast, or its first `most`; there is none without trials."""
+        column, rows = self.first_forecast + place, self.shown if most is None else most
+        return [self.sheet, HEADER + 1, column, HEADER + rows, column]
 
 
 def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> TrialsAt:

@@ -12,7 +12,7 @@ from xlmc.statistics import Estimate, probability_between
 if TYPE_CHECKING:
     from xlmc.statistics import Sample
 
-__all__ = ["RoundedRange", "percent_text", "rounded_range"]
+__all__ = ["RoundedRange", "percent_text", "rounded_range", "rounded_value"]
 
 _DIGITS = 6
 """Significant digits of a number without an error."""
@@ -47,7 +47,7 @@ def rounded_range(sample: Sample, ends: tuple[Estimate, Estimate], nominal: floa
     low, high = (end.value for end in ends)
     if math.isnan(low) or math.isnan(high):
         return None
-    decimals = _common_decimals(ends)
+    decimals = _common_decimals(*ends)
     best: RoundedRange | None = None
     for down, up in ((False, False), (False, True), (True, False), (True, True)):
         first = _rounded(low, decimals, ROUND_FLOOR if down else ROUND_HALF_EVEN)
@@ -57,6 +57,16 @@ def rounded_range(sample: Sample, ends: tuple[Estimate, Estimate], nominal: floa
         if share.value >= nominal and (best is None or share.value < best.share.value):
             best = found
     return best if best is not None else found
+
+
+def rounded_value(found: Estimate) -> tuple[float, str]:
+    """A number in the digits that its error supports, and the same in words; not for nan.
+
+    >>> rounded_value(Estimate(11.8435, 0.019))
+    (11.84, '11.84')
+    """
+    value = _rounded(found.value, _common_decimals(found), ROUND_HALF_EVEN)
+    return float(value), _text(value)
 
 
 def percent_text(share: Estimate) -> str:
@@ -92,8 +102,8 @@ def _bound(share: Estimate) -> str:
     return f"{trials}; at least {100 - reach:f} % with 95 % confidence"
 
 
-def _common_decimals(ends: tuple[Estimate, Estimate]) -> int | None:
-    """Of both ends, the finest that is no less than half the larger error; None where neither has an error."""
+def _common_decimals(*ends: Estimate) -> int | None:
+    """The finest that are no less than half the largest error; None where there is no error."""
     errors = [end.error for end in ends if end.error]
     return math.floor(-math.log10(max(errors) / 2.0)) if errors else None
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.scratch import parts
+from xlmc.statements.digits import rounded_value
 from xlmc.statistics import Estimate, proportion, rank_correlation, replicated_proportion
 
 if TYPE_CHECKING:
@@ -41,7 +42,8 @@ class Pair:
 
     Attributes:
         first, second: the forecasts.
-        limits: what each is compared with: its threshold, or where it has none its median.
+        limits: what each is compared with: its threshold, or where it has none its median, in the digits that its error
+            supports.
         thresholds: whether each limit is a threshold.
         trials: in which both are numbers.
         both_above: P(first > its limit and second > its limit).
@@ -96,7 +98,8 @@ def _pair(simulation: Simulation, first: Forecast, second: Forecast) -> Pair | N
 def _limit(simulation: Simulation, forecast: Forecast) -> float:
     if forecast.threshold is not None:
         return forecast.threshold
-    return simulation.results[forecast.name].statistics.median.value
+    median = simulation.results[forecast.name].statistics.median
+    return median.value if math.isnan(median.value) else rounded_value(median)[0]
 
 
 @dataclass(frozen=True, slots=True)

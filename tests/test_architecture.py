@@ -25,7 +25,7 @@ FLOORS = [
     {"simulation", "scheduling"},
     {"rounding", "pilot"},
     {"simulate", "result_cells"},
-    {"record"},
+    {"record", "statements"},
     {"analysis"},
     {"report"},
     {"cli"},

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from xlmc.scratch import parts, release
 from xlmc.statistics.sample import Sample, Values
 
-__all__ = ["Histogram", "histogram"]
+__all__ = ["Histogram", "histogram", "multiples"]
 
 Floats = NDArray[np.float64]
 
@@ -63,13 +63,18 @@ class Histogram:
 
     @property
     def upper_edges(self) -> Floats:
-        return _multiples(self.width, round(float(self.edges[0] / self.width)) + 1, self.edges.size)
+        return multiples(self.width, round(float(self.edges[0] / self.width)) + 1, self.edges.size)
 
     @property
     def labels(self) -> list[str]:
         """The lower end in text for every `step`-th bin, nothing for the others."""
         decimals = _decimals(self.width * self.step)
         return ["" if i % self.step else self._text(edge, decimals) for i, edge in enumerate(self.edges)]
+
+    @property
+    def last_label(self) -> str:
+        """The upper end of the last bin in text; bins fill whole steps, so that it is due a label."""
+        return self._text(float(self.upper_edges[-1]), _decimals(self.width * self.step))
 
     @property
     def edge_format(self) -> str:
@@ -96,7 +101,7 @@ def histogram(values: Values, low: float, high: float) -> Histogram | None:
     start, stop = math.floor(first / width), math.floor(last / width) + 1
     step = _step(width, stop - start)
     start, stop = step * math.floor(start / step), step * math.ceil(stop / step)
-    edges = _multiples(width, start, stop - start + 1)
+    edges = multiples(width, start, stop - start + 1)
     reached = np.searchsorted(x, edges, side="left")
     central = reached.clip(np.searchsorted(x, low, side="left"), np.searchsorted(x, high, side="right"))
     release(x)
@@ -172,7 +177,7 @@ def _step(width: float, bins: int) -> int:
     return _STEPS[-1]
 
 
-def _multiples(width: float, first: int, count: int) -> Floats:
+def multiples(width: float, first: int, count: int) -> Floats:
     """(count,) multiples of a round width, as people write them: 0.3, not 0.30000000000000004."""
     return np.array([float(f"{multiple * width:.13g}") for multiple in range(first, first + count)])
 

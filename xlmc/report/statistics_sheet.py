@@ -19,8 +19,8 @@ _BLOCK = (26, 9, 11, 10, 10, 10)
 WIDTHS = (*_BLOCK, 2, 18, 11, 10, 10, 10)
 _RIGHT = len(_BLOCK) + 1
 _LAST = len(WIDTHS) - 1
-_ON_A_PAGE, _SCALE = 2, 66
-"""Forecasts, and the percentage at which so many fit."""
+_SCALE = 76
+"""The percentage at which one forecast fits on a page."""
 
 _ENDS = ["Value", "±", "95 % from", "to"]
 
@@ -33,7 +33,7 @@ def write_statistics(page: Page, simulation: Simulation) -> None:
     page.wide(ERROR_SENTENCE, "remark", _LAST)
     breaks = []
     for number, result in enumerate(simulation.results.values()):
-        if number and number % _ON_A_PAGE == 0:
+        if number:
             breaks.append(page.row)
         write_forecast(page, result)
     page.printed(name, breaks=breaks, scale=_SCALE)

@@ -26,7 +26,7 @@ FLOORS = [
     {"rounding", "pilot"},
     {"simulate", "result_cells"},
     {"record"},
-    {"analysis"},
+    {"analysis", "sensitivity"},
     {"report"},
     {"cli"},
     {"__main__"},

@@ -14,6 +14,7 @@ from xlmc.sensitivity.results import (
     Sensitivities,
     Slope,
 )
+from xlmc.sensitivity.sensitivities import sensitivities
 
 __all__ = [
     "PERCENTS",
@@ -25,4 +26,5 @@ __all__ = [
     "LimitPoint",
     "Sensitivities",
     "Slope",
+    "sensitivities",
 ]

@@ -34,7 +34,7 @@ from xlmc.sensitivity.ranked import Classes, Ranked
 from xlmc.sensitivity.units import Units
 from xlmc.statistics import Estimate
 
-__all__ = ["explained", "explained_floor", "shares"]
+__all__ = ["CHANCE", "explained", "explained_floor", "shares", "standardised"]
 
 Floats = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ CHANCE = 0.05
 def explained(x: Ranked, y: Floats, units: Units) -> Estimate:
     """The share of the variance of `(n,)` y that x explains; nan where y does not vary or the trials are too few."""
     classes, n = x.classes, x.n
-    z = _standardised(y)
+    z = standardised(y)
     if z is None or n <= classes.freedom:
         return Estimate(math.nan, n=n)
     z = z[x.order]
@@ -91,7 +91,7 @@ def _fitted(classes: Classes, y: Floats) -> Floats:
     return np.asarray(np.repeat(means, classes.sizes) + np.repeat(slopes, classes.sizes) * classes.centred)
 
 
-def _standardised(y: Floats) -> Floats | None:
+def standardised(y: Floats) -> Floats | None:
     """Mean 0 and mean square 1; None where y does not vary."""
     apart = y - y.mean()
     scale = float(np.max(np.abs(apart), initial=0.0))

@@ -20,6 +20,7 @@ from xlmc.statistics.estimate import t_quantile
 
 __all__ = ["contributions", "rank_correlation"]
 
+
 def rank_correlation(x: Ranked, y: Ranked, units: Units) -> Estimate:
     """Spearman's correlation, −1 to 1, of the `(n,)` columns x and y; nan where one of them does not vary.
 

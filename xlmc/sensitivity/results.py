@@ -113,10 +113,10 @@ class ForecastSensitivity:
     Attributes:
         forecast, units: its name and unit.
         trials: accepted trials that the influences rest on, in which it is a number.
-        influences: by the size of the rank correlation, the largest first; empty where the trials are too few, or
+        influences: by the variance explained, the largest first; empty where the trials are too few, or
             the forecast or every assumption does not vary.
         base: the forecast with every assumption at its base value; None where that is no number.
-        bars: tornado and spider, by `span`, the widest first; empty where there is no base case.
+        bars: tornado and spider, by `span`, the widest first.
     """
 
     forecast: str
@@ -152,7 +152,7 @@ class LimitPoint:
         limit: the value.
         trials: accepted then; where the limit is loosened, an estimate from fewer trials, rounded.
         acceptance: the share of all trials that are accepted then.
-        answers: one a forecast, in the order of the workbook.
+        answers: one a forecast, in the order of the workbook; of very many, of the first ones.
     """
 
     limit: float
@@ -180,7 +180,8 @@ class FilterLimit:
         points: in ascending order of the limit; the one with the limit as it is is among them. Empty where no
             accepted trial says how far the limit may be moved.
         slopes: one a forecast; from the points next to the limit as it is.
-        loosened_trials: of the run's trials, how many were evaluated again to find those that only this limit rejects.
+        trials: of the run's trials, those whose accepted ones the points rest on.
+        loosened_trials: those that were evaluated again to find the ones that only this limit rejects; 0 where no points are.
     """
 
     filter: str
@@ -189,6 +190,7 @@ class FilterLimit:
     limit: float
     points: tuple[LimitPoint, ...]
     slopes: tuple[Slope, ...]
+    trials: int
     loosened_trials: int
 
 
@@ -203,11 +205,11 @@ class Sensitivities:
         forecasts: one a forecast, in the order of the workbook.
         omitted: live assumptions that were left out, because there are very many: those with the smallest rank
             correlations in a first, coarse look.
-        base_reason: why there is no tornado and no spider; empty where there is one.
         medians: assumptions without a base value, which tornado and spider hold at their median.
         sobol_reason: why there are no Sobol indices; empty where there are.
         sobol_trials: pairs of trials that the Sobol indices rest on; 0 where there are none.
         filter_limits: one a limit, in the order of the workbook.
+        omitted_limits: further ones that were left out, because there are very many.
         varying_limits: filters, by name, with a limit that varies with the assumptions and so cannot be moved.
     """
 
@@ -215,11 +217,11 @@ class Sensitivities:
     examined: int
     forecasts: tuple[ForecastSensitivity, ...]
     omitted: int
-    base_reason: str
     medians: tuple[str, ...]
     sobol_reason: str
     sobol_trials: int
     filter_limits: tuple[FilterLimit, ...]
+    omitted_limits: int
     varying_limits: tuple[str, ...]
 
     def __getitem__(self, forecast: str) -> ForecastSensitivity:

@@ -6,8 +6,8 @@
 function of X; the same whatever increasing scale either is measured on. It needs no density, as δ of Borgonovo 2007
 does, and like it holds for correlated inputs and for trials that passed filters.
 
-**Estimate.** The share that X explains (`explained.py`, the same classes and lines) of the indicators [Y ≤ t], pooled over
-31 values of t at equal steps of Y's ranks. **Error** likewise, from pulls.
+**Estimate.** The share that X explains (`explained.py`, the same classes and lines) of the indicators [Y ≤ t], pooled
+over 31 values of t at equal steps of Y's ranks. **Error** likewise, from pulls.
 
 **Floor.** Without influence the pooled square of the fit is Σ χ²/(π²j²) with k − 1 degrees of freedom each (Anderson &
 Darling 1952); its upper quantile is taken from the χ² with the same mean and variance, 2.5 (k − 1) degrees of freedom

@@ -1,7 +1,7 @@
 """Which accepted trials the influences rest on: all, or as many of the first as make every error small enough.
 
-Of independent trials the first ones; of a Latin hypercube or Sobol run the first ones of each of its first replicates, for
-later ones of a Sobol replicate fill the gaps that earlier ones left and are no sample by themselves.
+Of independent trials the first ones; of a Latin hypercube or Sobol run the first ones of each of its first replicates,
+for later ones of a Sobol replicate fill the gaps that earlier ones left and are no sample by themselves.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def trials_for(pairs: int) -> int:
 
 
 def examined_places(simulation: Simulation, most: int) -> tuple[NDArray[np.intp], NDArray[np.int64] | None]:
-    """The places of at most `most` accepted trials with known draws, ascending, and their replicates if there are any."""
+    """The places of at most `most` accepted trials with known draws, ascending, and their replicates, if any."""
     kept = simulation.kept_inputs if simulation.model.live else 0
     if not simulation.plan.size:
         return np.arange(min(kept, most)), None

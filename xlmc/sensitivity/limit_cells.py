@@ -1,4 +1,4 @@
-"""The limits of a model's filters, and what decides them: the filters' cells and the limits themselves, trial by trial."""
+"""The limits of a model's filters, and the cells that decide them, trial by trial."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class TriedLimit:
-    """A limit that is a number, its trials, and the limits to try: ascending, itself among them; none where none can."""
+    """A limit that is a number, its trials, and the limits to try, ascending, itself among them; or none."""
 
     limit: Limit
     trials: LimitTrials

@@ -248,7 +248,9 @@ class Model:
         Returns:
             Name of the assumption -> `(q,)`; NaN where the parameters are no distribution.
         """
-        wanted, held, found = np.atleast_1d(np.asarray(probabilities, np.float64)), {}, {}
+        wanted = np.atleast_1d(np.asarray(probabilities, np.float64))
+        held: dict[str, NDArray[np.float64]] = {}
+        found: dict[str, NDArray[np.float64]] = {}
         for place, stage in enumerate(self.scene.stages):
             draws = [self._draws[a.name] for a in stage]
             varying = dynamic_parameters(draws, self._lowering, 1)(held, 1) if place else {}

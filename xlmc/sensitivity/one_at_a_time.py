@@ -1,8 +1,8 @@
 """Tornado and spider: one assumption moved at a time, all others at their base values.
 
-The model is evaluated, nothing is drawn: there is no noise, and there are no probabilities. An assumption's place is one
-of `PERCENTS` of its own distribution, before filtering and whatever it is correlated with, so that a case may be one
-that the filters would reject; that is marked.
+The model is evaluated, nothing is drawn: there is no noise, and there are no probabilities. An assumption's place is
+one of `PERCENTS` of its own distribution, before filtering and whatever it is correlated with, so that a case may be
+one that the filters would reject; that is marked.
 """
 
 from __future__ import annotations

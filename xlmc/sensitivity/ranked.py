@@ -17,7 +17,7 @@ MOST_CLASSES = 16
 """With a straight line in each they follow two periods of a sine to 0.1 % of its variance."""
 
 LEAST_IN_A_CLASS = 50
-"""Trials, as long as there is more than one class: the noise of a class's line stays small beside that of its trials."""
+"""Trials, where there is more than one class: enough to lay a line through."""
 
 _FLAT = 1e-24
 """Of the column's variance: less within a class is rounding, and no line is laid through it."""

@@ -181,7 +181,7 @@ class FilterLimit:
             accepted trial says how far the limit may be moved.
         slopes: one a forecast; from the points next to the limit as it is.
         trials: of the run's trials, those whose accepted ones the points rest on.
-        loosened_trials: those that were evaluated again to find the ones that only this limit rejects; 0 where no points are.
+        loosened_trials: those that were evaluated again to find the ones that only this limit rejects.
     """
 
     filter: str

@@ -48,8 +48,7 @@ class Units:
         return self.count - 1.0
 
     def error(self, pulls: Floats) -> float:
-        """The standard error of a mean of `(n,)` pulls, which sum to about 0; nan where fewer than two units stand
-        behind it."""
+        """The standard error of a mean of `(n,)` pulls, which sum to about 0; nan of fewer than two units."""
         if self.dof < LEAST_DOF:
             return float("nan")
         sums = pulls if self.replicate is None else np.bincount(self.replicate, pulls, self.count)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.record import make_record
 from xlmc.report import assumptions, bins, charts, record_sheet, results, statistics_sheet, trials
+from xlmc.report.dependence_sheets import write_dependence
 from xlmc.report.figure import figures_of
 from xlmc.report.page import Page
 from xlmc.report.styles import Styles
@@ -22,7 +23,8 @@ _CREATED: Final = datetime(2000, 1, 1)
 
 
 def build_sheets(simulation: Simulation, *, command: str | None = None, rows: int = trials.TRIAL_ROWS) -> bytes:
-    """The result sheets of a run: Results, Charts, Statistics, Assumptions, Trials, Bins, Record.
+    """The result sheets of a run: Results, Charts, Statistics, Assumptions, Sensitivity, Filter limits, Trials,
+    Bins, Record.
 
     Args:
         simulation: the finished run.
@@ -45,6 +47,7 @@ def build_sheets(simulation: Simulation, *, command: str | None = None, rows: in
         drawing = page("Charts", charts.WIDTHS)
         statistics_sheet.write_statistics(page("Statistics", statistics_sheet.WIDTHS), simulation)
         assumptions.write_assumptions(page("Assumptions", assumptions.WIDTHS), simulation)
+        write_dependence(book, page, simulation)
         trials.write_trials(page("Trials", trials.WIDTHS), simulation, rows)
         figures, name = figures_of(simulation), simulation.model.workbook.name
         places = bins.write_bins(page("Bins", ()), figures, name)

@@ -75,7 +75,7 @@ def kept(relation: str, values: Floats, limit: float | Floats) -> Bools:
 
 
 def grid(relation: str, limit: float, values: Floats) -> tuple[float, ...]:
-    """Limits to try, ascending, in round steps about the limit as it is; none where accepted values `(m,)` tell no step.
+    """Limits to try, ascending, in round steps about the limit as it is; none where the accepted values tell no step.
 
     Up to half of the accepted trials are cut off by `STEPS` steps on the tight side.
     """

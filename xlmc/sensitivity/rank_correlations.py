@@ -3,7 +3,8 @@
 A trial pulls the correlation directly and through the ranks of all others. With grades u and v (ranks from −½ to ½),
 the covariance is the mean of uv, a statistic of three trials at a time; its first-order pulls are
 uᵢvᵢ + a(xᵢ) + b(yᵢ) less their mean, where a(x) is the mean of v·[x′ > x] over the trials, half of those with x′ = x
-among them, and b likewise (Hoeffding 1948, Borkowf 2002). The spread of the grades, which equal values make smaller, is treated in the same way.
+among them, and b likewise (Hoeffding 1948, Borkowf 2002). The spread of the grades, which equal values make smaller, is
+treated in the same way.
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ FLOORS = [
     {"rounding", "pilot"},
     {"simulate", "result_cells"},
     {"record", "statements"},
-    {"analysis"},
+    {"analysis", "sensitivity"},
     {"report"},
     {"cli"},
     {"__main__"},

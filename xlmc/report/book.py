@@ -19,6 +19,7 @@ from xlmc.report import (
     trials,
 )
 from xlmc.report.curves import Curves
+from xlmc.report.dependence_sheets import write_dependence
 from xlmc.report.figure import figures_of
 from xlmc.report.page import Page
 from xlmc.report.styles import Styles
@@ -33,8 +34,8 @@ _CREATED: Final = datetime(2000, 1, 1)
 
 
 def build_sheets(simulation: Simulation, *, command: str | None = None, rows: int = trials.TRIAL_ROWS) -> bytes:
-    """The result sheets of a run: Results, Charts, Statistics, Certainty, Pairs, Assumptions, Trials, Bins,
-    Curves, Record.
+    """The result sheets of a run: Results, Charts, Statistics, Certainty, Pairs, Assumptions, Sensitivity, Filter
+    limits, Trials, Bins, Curves, Record.
 
     Args:
         simulation: the finished run.
@@ -59,6 +60,7 @@ def build_sheets(simulation: Simulation, *, command: str | None = None, rows: in
         certain = page("Certainty", certainty_sheet.WIDTHS)
         together = page("Pairs", pairs_sheet.WIDTHS)
         assumptions.write_assumptions(page("Assumptions", assumptions.WIDTHS), simulation)
+        write_dependence(book, page, simulation)
         shown = trials.write_trials(page("Trials", trials.WIDTHS), simulation, rows)
         certainty_sheet.write_certainty(certain, simulation, shown)
         figures, name = figures_of(simulation), simulation.model.workbook.name

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from xlmc.simulation import Simulation
     from xlmc.statements import Certainty
 
-__all__ = ["LAST", "WIDTHS", "write_certainty"]
+__all__ = ["LAST", "WIDTHS", "write_certainty", "write_ranges"]
 
 WIDTHS = (34, 26, 12, 12, 11, 11, 11)
 LAST = len(WIDTHS) - 1
@@ -35,12 +35,13 @@ def write_certainty(page: Page, simulation: Simulation, trials: TrialsAt) -> Non
     page.row += 1
     page.wide(MEANING, "remark", LAST)
     page.heading("Certainty of ranges")
-    _write_ranges(page, simulation)
+    write_ranges(page, simulation)
     write_own_ranges(page, simulation, trials, LAST)
     page.printed(name, scale=_SCALE)
 
 
-def _write_ranges(page: Page, simulation: Simulation) -> None:
+def write_ranges(page: Page, simulation: Simulation) -> None:
+    """Write the certainty of every forecast's central range and threshold."""
     rows = [_line(name, each) for name, result in simulation.results.items() for each in certainties(result)]
     if not rows:
         page.wide("No forecast has a number in an accepted trial.", "paragraph", LAST)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from xlmc.sensitivity import FilterLimit, LimitAnswer, LimitPoint, Sensitivities
     from xlmc.statistics import Estimate
 
-__all__ = ["WIDTHS", "write_limits"]
+__all__ = ["WIDTHS", "limit_sentences", "moved_caption", "write_acceptance", "write_answers", "write_limits"]
 
 WIDTHS = (38, 10, *[9] * 14)
 _LAST: Final = len(WIDTHS) - 1
@@ -31,7 +31,7 @@ _LIMIT, _CHANGE, _OF_RANGE = 1, 4, 10
 def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) -> None:
     """Write the sheet."""
     page.title("Filter limits: how the answers move as each limit moves", name)
-    for sentence in _sentences(found):
+    for sentence in limit_sentences(found):
         page.wide(sentence, "remark", _LAST)
     breaks = []
     for number, limit in enumerate(found.filter_limits):
@@ -41,7 +41,8 @@ def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) ->
     page.printed(name, breaks=breaks, scale=_SCALE)
 
 
-def _sentences(found: Sensitivities) -> list[str]:
+def limit_sentences(found: Sensitivities) -> list[str]:
+    """What moving a limit means."""
     told = [
         "One limit is moved, all others stay. Tightened, it keeps some of the accepted trials. Loosened, it lets in trials "
         "that nothing else rejects, found among the run's first ones, so their errors are larger. The errors of changes "
@@ -63,18 +64,20 @@ def _write_limit(page: Page, book: Workbook, limit: FilterLimit, units: dict[str
         return
     top = page.row
     page.row += _CHART_ROWS + 1
-    acceptance = _write_acceptance(page, limit)
+    acceptance = write_acceptance(page, limit)
     page.row += 1
-    tables = _write_answers(page, limit)
+    tables = write_answers(page, limit)
     bottom, page.row = page.row, top
     _write_charts(page, book, limit, (acceptance, tables), units)
     page.row = bottom
 
 
-def _write_acceptance(page: Page, limit: FilterLimit) -> TableAt:
-    """On the left; the slopes stand beside it."""
+def write_acceptance(page: Page, limit: FilterLimit) -> TableAt:
+    """Write the shares accepted, and the slopes beside them; where the shares stand is returned."""
     header = page.row
-    page.table(["Limit", "Value", "Accepted trials", "Share", "±"], [_acceptance(point, limit) for point in limit.points])
+    page.table(
+        ["Limit", "Value", "Accepted trials", "Share", "±"], [_acceptance(point, limit) for point in limit.points]
+    )
     bottom, page.row = page.row, header
     starts, last = (_RIGHT, 12, 13), 13
     headers = ("Slope: mean of the forecast per unit of the limit", "Slope", "±")
@@ -101,7 +104,8 @@ def _place(value: float, limit: FilterLimit) -> str:
     return "looser" if looser else "tighter"
 
 
-def _write_answers(page: Page, limit: FilterLimit) -> list[TableAt]:
+def write_answers(page: Page, limit: FilterLimit) -> list[TableAt]:
+    """Write every forecast at every value of the limit; where each forecast's rows stand is returned."""
     header = page.row
     headers = ["Forecast", "Limit", "Mean", "±", "Change of mean", "±", "Range from", "±", "to", "±", "Change / range"]
     page.table(headers, [])
@@ -134,7 +138,7 @@ def _write_charts(
     value, error = (_CHANGE, _CHANGE + 1) if unit is not None else (_OF_RANGE, _OF_RANGE)
     moved = limit_chart(book, tables, "Change of each mean", across, axis, (0, _LIMIT, value, error))
     share = limit_chart(book, [acceptance], "Share of trials accepted", across, "Accepted", (0, 1, 3, 4))
-    captions = (_moved_caption(limit), _share_caption(limit))
+    captions = (moved_caption(limit), _share_caption(limit))
     for chart, column, caption in zip((moved, share), (0, _RIGHT), captions, strict=True):
         page.sheet.insert_chart(page.row, column, chart, {"object_position": 1, "description": caption})
     page.row += _CHART_ROWS
@@ -143,7 +147,8 @@ def _write_charts(
     page.spread([texts[0], gap, texts[1], gap], [0, _RIGHT - 1, _RIGHT, _LAST], _LAST)
 
 
-def _moved_caption(limit: FilterLimit) -> str:
+def moved_caption(limit: FilterLimit) -> str:
+    """What the chart of the changes shows."""
     return (
         f"How far each forecast's mean moves from that with the limit as it is ({number_text(limit.limit)}); whiskers are "
         "standard errors of the change. Other filters and limits stay."

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from xlmc.report.trials import TrialsAt
     from xlmc.simulation import Simulation
 
-__all__ = ["POINTS", "WIDTHS", "write_pairs"]
+__all__ = ["POINTS", "WIDTHS", "pair_sentences", "write_pair_table", "write_pairs"]
 
 POINTS: Final = 1_000
 """In a scatter chart: more hide each other and make the file slow to open."""
@@ -57,8 +57,8 @@ def write_pairs(page: Page, book: Workbook, simulation: Simulation, curves: Curv
         page.printed(name, scale=_SCALE)
         return
     page.heading("Joint probability and rank correlation")
-    _write_table(page, pairs)
-    for sentence in _sentences(simulation, pairs):
+    write_pair_table(page, pairs)
+    for sentence in pair_sentences(simulation, pairs):
         page.wide(sentence, "remark", _LAST)
     page.row += 1
     breaks = [page.row] if len(pairs) > 2 else []
@@ -66,7 +66,8 @@ def write_pairs(page: Page, book: Workbook, simulation: Simulation, curves: Curv
     page.printed(name, scale=_SCALE, breaks=breaks)
 
 
-def _write_table(page: Page, pairs: Sequence[Pair]) -> None:
+def write_pair_table(page: Page, pairs: Sequence[Pair]) -> None:
+    """Write the table."""
     heads = ["First (A) and its limit a", "Second (B) and its limit b", "A > a and B > b", "±", "95 % from", "to"]
     heads += ["A > a or B > b", "±", "A > B", "±", "Rank correlation", "±", "95 % from", "to"]
     looks = ["header left", "header left", *["header"] * 12]
@@ -95,7 +96,8 @@ def _limited(pair: Pair, place: int) -> str:
     return f"{forecast.name}, {what} {limit:.6g}{units}"
 
 
-def _sentences(simulation: Simulation, pairs: Sequence[Pair]) -> list[str]:
+def pair_sentences(simulation: Simulation, pairs: Sequence[Pair]) -> list[str]:
+    """What the table is of."""
     trials, ranked = {pair.trials for pair in pairs}, {pair.ranked for pair in pairs}
     said = "A limit is the forecast's threshold, or where it has none its median, taken as the number that stands here."
     said += " Probabilities are shares of the accepted trials in which both forecasts are numbers"

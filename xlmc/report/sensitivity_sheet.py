@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from xlmc.report.page import Page
     from xlmc.sensitivity import ForecastSensitivity, Sensitivities
 
-__all__ = ["WIDTHS", "write_sensitivity"]
+__all__ = ["WIDTHS", "sensitivity_sentences", "write_sensitivity"]
 
 WIDTHS = (38, 10, *[9] * 14)
 _LAST: Final = len(WIDTHS) - 1
@@ -30,7 +30,7 @@ _SCALE: Final = 62
 def write_sensitivity(page: Page, book: Workbook, found: Sensitivities, name: str) -> None:
     """Write the sheet."""
     page.title("Sensitivity: what the answers depend on", f"{name}: {found.accepted:,} accepted trials")
-    for sentence in _sentences(found):
+    for sentence in sensitivity_sentences(found):
         page.wide(sentence, "remark", _LAST)
     breaks: list[int] = []
     for number, forecast in enumerate(found.forecasts):
@@ -40,7 +40,8 @@ def write_sensitivity(page: Page, book: Workbook, found: Sensitivities, name: st
     page.printed(name, breaks=breaks, scale=_SCALE)
 
 
-def _sentences(found: Sensitivities) -> list[str]:
+def sensitivity_sentences(found: Sensitivities) -> list[str]:
+    """What the numbers are, and rest on."""
     told = [
         "Influences are those among the accepted trials: filters change which assumptions matter. ± is the standard error "
         "from a limited number of trials; no sensitivity says that the model fits the crash."

@@ -17,6 +17,20 @@ from xlmc.scratch import columns
 RUNS = ["run", "none_accepted", "one_accepted"]
 EVIL = "</script><img src=x onerror=alert(1)>"
 MOST_BYTES = 3_000_000
+SECTIONS = (
+    "answer",
+    "forecasts",
+    "overlay",
+    "certainty",
+    "pairs",
+    "statistics",
+    "sensitivity",
+    "filters",
+    "limits",
+    "assumptions",
+    "notices",
+    "record",
+)
 
 
 def numbers_of(sheet):
@@ -70,7 +84,7 @@ def test_what_does_not_depend_on_how_it_was_run(run):
 def test_the_sections_are_there_in_order(run, page_of):
     page = page_of(run)
     ids = [node.attributes["id"] for node in page.all("section")]
-    assert ids == ["answer", "forecasts", "overlay", "statistics", "filters", "assumptions", "notices", "record"]
+    assert ids == list(SECTIONS)
     assert [node.attributes["href"] for node in page.all("nav")[0].all("a")] == [f"#{each}" for each in ids]
     assert ERROR_SENTENCE in page.all("section", id="answer")[0].text
 

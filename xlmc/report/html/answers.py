@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -11,11 +10,13 @@ from xlmc.record.wording import limits_text
 from xlmc.report.html.element import EMPTY, Html, element
 from xlmc.report.html.shown import estimate_html, number
 from xlmc.report.results import base_sentences, range_sentences
-from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, estimate_text, percent, range_heading, share_text, summarise
+from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, range_heading, share_text, summarise
+from xlmc.statements import MEANING, statements
 from xlmc.stopping.stopped import ALL_TRIALS
 
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
+    from xlmc.statements import Statement
 
 __all__ = ["answers"]
 
@@ -28,7 +29,8 @@ def answers(simulation: Simulation) -> Html:
         element("h2", "The answer"),
         *_warnings(simulation),
         element("p", *_question(simulation)),
-        element("ul", *(element("li", *_statement(row)) for row in rows), class_="statements") if rows else EMPTY,
+        element("ul", *(element("li", *_said(each)) for each in statements(simulation)), class_="statements"),
+        element("p", MEANING, class_="remark"),
         _table(rows),
         element("p", ERROR_SENTENCE, class_="meaning"),
         *(element("p", sentence, class_="remark") for sentence in _remarks(simulation, rows)),
@@ -69,19 +71,14 @@ def _counted(count: int, one: str, several: str = "") -> str:
     return f"{count} {one if count == 1 else several or f'{one}s'}"
 
 
-def _statement(row: SummaryRow) -> Iterator[Html | str]:
-    units = f" {row.units}" if row.units else ""
-    yield element("b", element("bdi", row.name))
-    if math.isnan(row.mean.value):
-        yield ": no accepted trial has a number."
-        return
-    yield (
-        f": {percent(row.share)} of the accepted trials lie from {estimate_text(row.low)} to "
-        f"{estimate_text(row.high)}{units}; their mean is {estimate_text(row.mean)}{units}."
-    )
-    if row.above is not None and row.threshold is not None and row.above.interval is not None:
-        low, high = (100.0 * end for end in row.above.interval)
-        yield f" {share_text(row.above)} lie above {row.threshold:g}{units} (95 % interval {low:.3g} to {high:.3g} %)."
+def _said(statement: Statement) -> Iterator[Html | str]:
+    """The sentence, with the name before its colon in bold."""
+    name = f"{statement.forecast}: "
+    if statement.text.startswith(name):
+        yield element("b", element("bdi", statement.forecast))
+        yield f": {statement.text.removeprefix(name)}."
+    else:
+        yield element("bdi", f"{statement.text}.")
 
 
 def _table(rows: Sequence[SummaryRow]) -> Html:

@@ -5,7 +5,7 @@ Places, widths and heights mean nothing here: sections, tables and paragraphs fo
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from xlmc.report.cells import Shown
@@ -13,7 +13,7 @@ from xlmc.report.html.element import Html, element, joined
 from xlmc.report.html.shown import shown_html
 from xlmc.report.page import Page
 
-__all__ = ["Flow", "table_html"]
+__all__ = ["Flow"]
 
 _HEADER = "header"
 _NUMBERS = frozenset({"number", "answer", "error", "second number", "second error", "moved", "trial"})
@@ -38,8 +38,8 @@ class Flow(Page):
         self.wide(str(shown.value or ""), shown.look, column, column)
 
     def spread(self, cells: Sequence[Shown], starts: Sequence[int], last: int) -> None:
-        """A row of the table that is being written, if one is."""
-        if self._open and len(self._open[-1]) != len(cells):
+        """A row of the table that is being written, or the first of another."""
+        if self._open and (len(self._open[-1]) != len(cells) or _heads(cells)):
             self._close()
         self._open.append(list(cells))
         self.row += 1
@@ -47,10 +47,6 @@ class Flow(Page):
     def wide(self, value: str, look: str, last: int, first: int = 0) -> None:
         """A paragraph."""
         self._add(element("p", value, class_=look))
-
-    def table(self, headers: Sequence[str], rows: Iterable[Sequence[Shown]], column: int = 0) -> None:
-        """A table."""
-        self._add(table_html(headers, list(rows)))
 
     def title(self, value: str, below: str, column: int = 0) -> None:
         """The heading of the whole, and the line below it."""
@@ -61,7 +57,7 @@ class Flow(Page):
         """The heading of a section."""
         self._add(element("h3", value))
 
-    def printed(self, name: str, *, repeat: int | None = None, scale: int = 100, breaks: Sequence[int] = ()) -> None:
+    def printed(self, name: str, **options: Any) -> None:
         """Nothing: the page has a print style of its own."""
 
     def _add(self, found: Html) -> None:
@@ -70,17 +66,20 @@ class Flow(Page):
         self.row += 1
 
     def _close(self) -> None:
-        if not self._open:
-            return
-        rows, self._open = self._open, []
-        headers = [str(shown.value or "") for shown in rows[0]] if rows[0][0].look.startswith(_HEADER) else []
-        self._found.append(table_html(headers, rows[1:] if headers else rows))
+        if self._open:
+            rows, self._open = self._open, []
+            headers = [str(shown.value or "") for shown in rows[0]] if _heads(rows[0]) else []
+            self._found.append(_table(headers, rows[1:] if headers else rows))
 
 
-def table_html(headers: Sequence[str], rows: Sequence[Sequence[Shown]]) -> Html:
+def _heads(cells: Sequence[Shown]) -> bool:
+    return cells[0].look.startswith(_HEADER)
+
+
+def _table(headers: Sequence[str], rows: Sequence[Sequence[Shown]]) -> Html:
     """A table of a sheet's cells, which can be pushed aside where it is wider than the page."""
-    numbers = [shown.look in _NUMBERS for shown in rows[0]] if rows else []
-    heads = (_head(text, any(numbers[place : place + 1])) for place, text in enumerate(headers))
+    numbers = {place for row in rows for place, shown in enumerate(row) if shown.look in _NUMBERS}
+    heads = (_head(text, place in numbers) for place, text in enumerate(headers))
     body = [element("tr", *(_cell(shown, place) for place, shown in enumerate(row))) for row in rows]
     parts = [element("thead", element("tr", *heads))] if headers else []
     return element("div", element("table", *parts, element("tbody", *body)), class_="wide-table")

@@ -15,16 +15,21 @@ from typing import TYPE_CHECKING
 
 from xlmc.record import make_record
 from xlmc.report.accounting import write_accounting
+from xlmc.report.certainty_sheet import write_ranges
 from xlmc.report.figure import figures_of
 from xlmc.report.html.answers import answers
+from xlmc.report.html.dependence import dependence, limits
 from xlmc.report.html.element import EMPTY, Html, element, joined
 from xlmc.report.html.flow import Flow
 from xlmc.report.html.forecasts import charts, overlays
 from xlmc.report.html.inputs import inputs
 from xlmc.report.html.payload import payload_text
 from xlmc.report.html.recorded import recorded
+from xlmc.report.pairs_sheet import pair_sentences, write_pair_table
 from xlmc.report.results import LAST, write_counts
 from xlmc.report.statistics_sheet import write_forecast
+from xlmc.sensitivity import sensitivities
+from xlmc.statements import pairs_of
 
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
@@ -49,8 +54,12 @@ _LINKS = {
     "answer": "The answer",
     "forecasts": "Forecasts",
     "overlay": "Overlay",
+    "certainty": "Certainty",
+    "pairs": "Pairs",
     "statistics": "Statistics",
+    "sensitivity": "Sensitivity",
     "filters": "Filters",
+    "limits": "Filter limits",
     "assumptions": "Assumptions",
     "notices": "Notices",
     "record": "Record",
@@ -65,12 +74,17 @@ def page_text(simulation: Simulation, *, command: str | None = None) -> str:
         command: what the person typed, for the record.
     """
     figures, name = figures_of(simulation), simulation.model.workbook.name
+    found = sensitivities(simulation)
     parts = {
         "answer": answers(simulation),
         "forecasts": charts(simulation, figures),
         "overlay": overlays(figures),
+        "certainty": _certainty(simulation),
+        "pairs": _pairs(simulation),
         "statistics": _statistics(simulation),
+        "sensitivity": dependence(found),
         "filters": _filters(simulation),
+        "limits": limits(found),
         "assumptions": inputs(simulation),
         "notices": _notices(simulation),
         "record": recorded(make_record(simulation, command)),
@@ -131,6 +145,25 @@ def _statistics(simulation: Simulation) -> Html:
     return element(
         "section", element("h2", "Statistics"), element("p", said, class_="remark"), *forecasts, id="statistics"
     )
+
+
+def _certainty(simulation: Simulation) -> Html:
+    flow = Flow()
+    write_ranges(flow, simulation)
+    said = "The share of the accepted trials below, in and above each central range, as it is rounded here."
+    return element(
+        "section", element("h2", "Certainty of ranges"), element("p", said, class_="remark"), flow.html, id="certainty"
+    )
+
+
+def _pairs(simulation: Simulation) -> Html:
+    pairs = pairs_of(simulation)
+    if not pairs:
+        return EMPTY
+    flow = Flow()
+    write_pair_table(flow, pairs)
+    remarks = (element("p", said, class_="remark") for said in pair_sentences(simulation, pairs))
+    return element("section", element("h2", "Forecasts two at a time"), flow.html, *remarks, id="pairs")
 
 
 def _filters(simulation: Simulation) -> Html:

@@ -65,7 +65,7 @@ def test_trials_on_disk_give_the_same_table(make, monkeypatch):
         assert getattr(in_memory, name).tolist() == getattr(on_disk, name).tolist()
 
 
-@pytest.mark.parametrize(("forecasts", "most"), [(0, MOST_VALUES), (1, MOST_VALUES), (8, 10_000), (40, 2000)])
+@pytest.mark.parametrize(("forecasts", "most"), [(0, MOST_VALUES), (1, MOST_VALUES), (8, 6250), (40, 1250)])
 def test_forecasts_share_the_page(forecasts, most):
     assert most_values(forecasts) == most
     assert forecasts * most <= ALL_VALUES

@@ -20,8 +20,8 @@ __all__ = ["ALL_VALUES", "MOST_VALUES", "RankTable", "most_values", "rank_table"
 Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
-ALL_VALUES = 80_000
-"""On a page, of all its forecasts: some 1.6 MB."""
+ALL_VALUES = 50_000
+"""On a page, of all its forecasts: some 1.2 MB."""
 
 MOST_VALUES, _FEWEST = 20_000, 200
 """Of a forecast."""

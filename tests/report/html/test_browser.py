@@ -239,6 +239,43 @@ def test_many_trials_are_counted_to_within_what_is_said(shown, many):
         assert chart.ends == pytest.approx(wanted, rel=1e-3)
 
 
+def test_whole_numbers_move_in_whole_steps_and_belong_to_the_range_that_ends_at_them(shown, make):
+    assumptions = [make.uniform("a", "A1", 0.0, 10.0, base=5.0)]
+    run = make.simulate({"A1": 5.0, "B1": "=ROUND(A1,0)"}, assumptions, [make.forecast("whole", "B1")], trials=3000)
+    chart, values = Chart(shown(run)), run["whole"].values
+    chart.type("low", "3")
+    chart.type("high", "6")
+    check(chart, values)
+    chart.press("high", "\ue014")
+    assert chart.ends == (3.0, 7.0)
+    check(chart, values)
+    chart.drag("low", 60)
+    assert chart.ends[0] == 4.0
+    check(chart, values)
+    from selenium.webdriver import ActionChains
+
+    grip, over = chart.one(".grabber.high .grip"), chart.one(".u-over")
+    ActionChains(chart.browser).move_to_element(grip).move_by_offset(0, -over.rect["height"] // 2).perform()
+    seven = int(np.count_nonzero(values == 7))
+    assert chart.one(".readout").text == f"7: {seven} trials, {100 * seven / values.size:.2f} %"
+
+
+def test_the_pointer_is_told_what_it_is_at(shown, run):
+    from selenium.webdriver import ActionChains
+
+    chart, values = Chart(shown(run)), run["area"].values
+    over = chart.one(".u-over")
+    chart.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", over)
+    ActionChains(chart.browser).move_to_element(over).perform()
+    found = re.fullmatch(r"(\S+) to below (\S+) ft: (\S+) trials, (\S+) %", chart.one(".readout").text)
+    inside = np.count_nonzero((values >= float(found[1])) & (values < float(found[2])))
+    assert int(found[3]) == inside
+    assert found[4] == f"{100 * inside / values.size:.2f}"
+    chart.one(".views input[value=cumulative]").click()
+    ActionChains(chart.browser).move_to_element_with_offset(chart.one(".u-over"), 30, 0).perform()
+    assert re.fullmatch(r"Up to \S+ ft: \S+ ± \S+ %", chart.one(".readout").text)
+
+
 def test_nothing_is_asked_of_a_network_and_nothing_could_be(chromium, run, tmp_path, requests_of):
     path = tmp_path / "page.html"
     run.save_page(path)

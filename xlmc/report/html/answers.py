@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from xlmc.record.sampling_words import sampling_sentence
 from xlmc.record.wording import limits_text
 from xlmc.report.html.element import EMPTY, Html, element
-from xlmc.report.html.shown import estimate_html, number
+from xlmc.report.html.shown import estimate_html, number, share_html
 from xlmc.report.results import base_sentences, range_sentences
 from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, range_heading, share_text, summarise
 from xlmc.statements import MEANING, statements
@@ -52,8 +52,8 @@ def _warning(sentence: str) -> Html:
 def _question(simulation: Simulation) -> Iterator[Html | str]:
     model = simulation.model
     yield (
-        f"The workbook computes {_counted(len(model.forecasts), 'answer')} (forecasts) from "
-        f"{_counted(len(model.live), 'quantity', 'quantities')} that are known only within ranges (assumptions). "
+        f"The workbook computes {_counted(len(model.forecasts), 'answer (forecast)', 'answers (forecasts)')} from "
+        f"{_counted(len(model.live), 'quantity', 'quantities')} known only within ranges (assumptions). "
         f"{simulation.trials:,} combinations of values from these ranges were tried. "
     )
     if not model.filters:
@@ -67,8 +67,8 @@ def _question(simulation: Simulation) -> Iterator[Html | str]:
     yield ". The answers are those of these accepted trials."
 
 
-def _counted(count: int, one: str, several: str = "") -> str:
-    return f"{count} {one if count == 1 else several or f'{one}s'}"
+def _counted(count: int, one: str, several: str) -> str:
+    return f"{count} {one if count == 1 else several}"
 
 
 def _said(statement: Statement) -> Iterator[Html | str]:
@@ -108,7 +108,7 @@ def _line(row: SummaryRow, mixed: bool, thresholds: bool) -> Html:
         cells.append(element("span", percent(row.share)))
     if thresholds:
         cells.append(EMPTY if row.threshold is None else number(row.threshold, f"{row.threshold:g}"))
-        cells.append(EMPTY if row.above is None else number(row.above.value, share_text(row.above)))
+        cells.append(EMPTY if row.above is None else share_html(row.above))
     found = (element("td", cell, class_="number") for cell in cells)
     return element("tr", element("th", row.name, scope="row"), element("td", row.units), *found)
 

@@ -1,7 +1,7 @@
 "use strict";
 // One forecast drawn: bars or curves, dark between the grabbers, light outside.
 
-const INK = "#1F3044", GREY = "#52606D", GRID = "#E3E8EE", DARK = "#2F6DA8", LIGHT = "#BCD3E8", BAND = "#F3EFE2";
+const INK = "#1F3044", GRID = "#E3E8EE", DARK = "#2F6DA8", LIGHT = "#BCD3E8", BAND = "#F3EFE2";
 const MARKS = { "Mean": [], "Base case": [7, 4], "Threshold": [2, 3] }; // dashes
 const FONT = "12px system-ui, sans-serif";
 const WIDEST = 660, HIGHEST = 300, POINTS = 600;
@@ -12,21 +12,35 @@ function widthOf(place) {
 }
 
 /**
- * Draw a forecast into `place`; `state` has `view`, `low`, `high` and is read whenever the chart is drawn again. `drawn()`
+ * Draw a forecast with its bars into `place`; `state` has `view`, `low`, `high` and is read whenever the chart is drawn again. `drawn()`
  * is called then, and `pointed(value)` when the pointer is somewhere else; null when it has left.
  */
-function drawForecast(place, forecast, trials, state, { drawn, pointed }) {
-  const { edges, counts } = forecast.bins;
+function drawForecast(place, forecast, trials, bins, state, { drawn, pointed }) {
+  const { edges, counts } = bins;
   const ends = [edges[0], edges[edges.length - 1]];
   const top = state.view === "frequency" ? Math.max(...counts) * 1.08 : 100;
   const shape = state.view === "frequency" ? bars(edges, counts) : curve(trials, ends, state.view);
   const options = chartOptions(widthOf(place), ends, top, forecast.units, state.view);
   options.hooks = {
     drawClear: [(chart) => band(chart, forecast.range)],
-    draw: [(chart) => paint(chart, shape, forecast.marks, state), drawn],
+    draw: [(chart) => paint(chart, shape, forecast.marks, bins.covered(state.low, state.high)), drawn],
     setCursor: [(chart) => pointed(chart.cursor.left < 0 ? null : chart.posToVal(chart.cursor.left, "x"))],
   };
   return new uPlot(options, [ends, [0, top]], place);
+}
+
+/**
+ * The bars of a forecast, and what part of the chart a range covers. Those of whole numbers stand over their numbers: a range
+ * that ends at 6 holds the trials of 6.
+ */
+function barsOf({ bins, values }) {
+  if (bins.width !== 1 || !values.every(Number.isInteger)) return { ...bins, whole: false, covered: (low, high) => [low, high] };
+  return {
+    ...bins,
+    whole: true,
+    edges: bins.edges.map((edge) => edge - 0.5),
+    covered: (low, high) => [Math.ceil(low) - 0.5, Math.floor(high) + 0.5],
+  };
 }
 
 /** What all charts of the page have in common. */
@@ -36,7 +50,7 @@ function chartOptions(width, ends, top, units, view) {
   return {
     width,
     height: Math.round(Math.max(220, Math.min(HIGHEST, width * 0.55))),
-    padding: [22, 14, 0, 0],
+    padding: [27, 14, 0, 0],
     legend: { show: false },
     cursor: { y: false, points: { show: false }, drag: { x: false, y: false } },
     scales: { x: { time: false, range: ends }, y: { range: [0, top] } },
@@ -72,7 +86,7 @@ function band(chart, { low, high }) {
   chart.ctx.fillRect(from, top, to - from, height);
 }
 
-function paint(chart, shape, marks, state) {
+function paint(chart, shape, marks, [from, to]) {
   const { ctx } = chart;
   const { left, right, top, height } = plot(chart);
   const path = outline(chart, shape);
@@ -84,7 +98,7 @@ function paint(chart, shape, marks, state) {
   for (const { label, value } of marks) mark(ctx, chart.valToPos(value, "x", true), top, height, MARKS[label]);
   ctx.restore();
   ctx.save();
-  clip(ctx, at(state.low), top, at(state.high) - at(state.low), height);
+  clip(ctx, at(from), top, Math.max(0, at(to) - at(from)), height);
   ctx.fillStyle = DARK;
   ctx.fill(path);
   for (const { label, value } of marks) mark(ctx, chart.valToPos(value, "x", true), top, height, MARKS[label]);

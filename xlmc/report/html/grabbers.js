@@ -65,7 +65,6 @@ function addGrabber(chart, which, label, { step, min, max }, now, move) {
 }
 
 /** The step that grabbers move in: a power of ten, at most a fifth of a bar; 1 where the trials are whole numbers. */
-function stepOf({ width }, values) {
-  if (width === 1 && values.every(Number.isInteger)) return 1;
-  return Number(`1e${Math.floor(Math.log10(width / 5) + 1e-9)}`);
+function stepOf({ width, whole }) {
+  return whole ? 1 : Number(`1e${Math.floor(Math.log10(width / 5) + 1e-9)}`);
 }

@@ -25,7 +25,7 @@ class Overlay {
 
   draw() {
     this.chart?.destroy();
-    const edges = this.panels.flatMap(({ forecast }) => [forecast.bins.edges[0], forecast.bins.edges.at(-1)]);
+    const edges = this.panels.flatMap(({ bins }) => [bins.edges[0], bins.edges.at(-1)]);
     const ends = [Math.min(...edges), Math.max(...edges)];
     const shapes = this.panels.map((panel) => this.shape(panel, ends));
     const top = this.view === "frequency" ? 1.08 * Math.max(...shapes.flat().map(([, y]) => y)) : 100;
@@ -40,9 +40,9 @@ class Overlay {
   }
 
   /** Bars as a share of the trials for each unit, so that forecasts with other bars compare; or the curve. */
-  shape({ forecast, trials }, ends) {
+  shape({ forecast, trials, bins }, ends) {
     if (this.view !== "frequency") return curve(trials, ends, this.view);
-    const { edges, counts, width } = forecast.bins;
+    const { edges, counts, width } = bins;
     const heights = counts.map((count) => (100 * count) / forecast.trials / width);
     return [[edges[0], 0], ...bars(edges, heights), [edges.at(-1), 0]];
   }

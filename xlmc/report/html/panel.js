@@ -6,7 +6,8 @@ class Panel {
     this.forecast = forecast;
     this.z = z;
     this.trials = new Trials(forecast);
-    this.step = stepOf(forecast.bins, forecast.values);
+    this.bins = barsOf(forecast);
+    this.step = stepOf(this.bins);
     this.decimals = Math.max(0, -Math.round(Math.log10(this.step)));
     this.find = (selector) => place.querySelector(selector);
     this.box = (key) => place.querySelector(`.boxes .${key}`);
@@ -35,11 +36,11 @@ class Panel {
   /** Draw everything again, as for another view or width. */
   draw() {
     this.chart?.destroy();
-    this.chart = drawForecast(this.find(".chart"), this.forecast, this.trials, this.state, {
+    this.chart = drawForecast(this.find(".chart"), this.forecast, this.trials, this.bins, this.state, {
       drawn: () => this.place(),
       pointed: (value) => this.read(value),
     });
-    const { step, state, forecast: { bins } } = this;
+    const { step, state, bins } = this;
     const grid = { step, min: bins.edges[0], max: bins.edges.at(-1) };
     const grabber = (which, label, now, move) => addGrabber(this.chart, which, label, grid, now, move);
     this.grabbers = {
@@ -147,13 +148,14 @@ class Panel {
   }
 
   readout(value) {
-    const { units, trials, bins } = this.forecast;
+    const { bins, forecast: { units, trials } } = this;
     const unit = units ? ` ${units}` : "";
     if (this.state.view === "frequency") {
       const i = Math.min(Math.max(lastUpTo(bins.edges, value), 0), bins.counts.length - 1);
       const [from, to] = [bins.edges[i], bins.edges[i + 1]].map((edge) => valueText(edge, bins.decimals));
+      const bar = bins.whole ? String(bins.edges[i] + 0.5) : `${from} to below ${to}`;
       const percent = ((100 * bins.counts[i]) / trials).toFixed(2);
-      return `${from} to below ${to}${unit}: ${countText(bins.counts[i])} trials, ${percent} %`;
+      return `${bar}${unit}: ${countText(bins.counts[i])} trials, ${percent} %`;
     }
     const reverse = this.state.view === "reverse";
     const { count } = reverse ? this.trials.between(value, Infinity) : this.trials.between(-Infinity, value);
@@ -166,6 +168,6 @@ class Panel {
     const { marks, units } = this.forecast;
     const lines = { "Mean": "—", "Base case": "– –", "Threshold": "····" };
     const unit = units ? ` ${units}` : "";
-    return marks.map(({ label, value }) => `${lines[label]} ${label} ${valueText(value, this.decimals + 1)}${unit}`).join("    ");
+    return marks.map(({ label, text }) => `${lines[label]} ${label} ${text}${unit}`).join("    ");
   }
 }

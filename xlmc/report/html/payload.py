@@ -74,7 +74,7 @@ def _forecast(simulation: Simulation, figure: Figure, most: int) -> dict[str, An
             "highText": _alone(answer.high),
         },
         "bins": _bins(figure),
-        "marks": [{"label": label, "value": value} for label, value in _marks(figure)],
+        "marks": [{"label": label, "value": value, "text": text} for label, value, text in _marks(figure)],
     }
 
 
@@ -99,8 +99,9 @@ def _bins(figure: Figure) -> dict[str, Any]:
     }
 
 
-def _marks(figure: Figure) -> Iterator[tuple[str, float]]:
+def _marks(figure: Figure) -> Iterator[tuple[str, float, str]]:
     answer = figure.answer
-    for label, value in (("Mean", answer.mean.value), ("Base case", answer.base), ("Threshold", answer.threshold)):
-        if value is not None and math.isfinite(value):
-            yield label, value
+    yield "Mean", answer.mean.value, _alone(answer.mean)
+    for label, value in (("Base case", answer.base), ("Threshold", answer.threshold)):
+        if value is not None:
+            yield label, value, f"{value:.6g}"

@@ -8,10 +8,10 @@ import re
 from xlmc.record.wording import number_text
 from xlmc.report.cells import NONE, Shown
 from xlmc.report.html.element import Html, element
-from xlmc.report.summary import estimate_text
+from xlmc.report.summary import estimate_text, share_text
 from xlmc.statistics import Estimate
 
-__all__ = ["estimate_html", "number", "shown_html", "shown_text"]
+__all__ = ["estimate_html", "number", "share_html", "shown_html", "shown_text"]
 
 _FORMAT = re.compile(r"(?P<grouped>#,##)?0(\.(?P<decimals>0+))?(?P<ending>%|E\+00)?")
 _LONGEST = 11
@@ -49,6 +49,11 @@ def number(value: float, shown: str) -> Html:
 def estimate_html(found: Estimate) -> Html:
     """`11.799 ± 0.013` with the full value; a dash where there is no number."""
     return number(found.value, estimate_text(found)) if math.isfinite(found.value) else element("span", NONE)
+
+
+def share_html(found: Estimate) -> Html:
+    """`12.3 ± 0.5 %`, likewise."""
+    return number(found.value, share_text(found)) if math.isfinite(found.value) else element("span", NONE)
 
 
 def _general(value: float) -> str:

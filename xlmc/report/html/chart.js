@@ -21,6 +21,7 @@ function drawForecast(place, forecast, trials, bins, state, { drawn, pointed }) 
   const top = state.view === "frequency" ? Math.max(...counts) * 1.08 : 100;
   const shape = state.view === "frequency" ? bars(edges, counts) : curve(trials, ends, state.view);
   const options = chartOptions(widthOf(place), ends, top, forecast.units, state.view);
+  if (bins.whole) options.axes[0].incrs = [1, 2, 5, 10, 20, 50, 100];
   options.hooks = {
     drawClear: [(chart) => band(chart, forecast.range)],
     draw: [(chart) => paint(chart, shape, forecast.marks, bins.covered(state.low, state.high)), drawn],

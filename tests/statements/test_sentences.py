@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 
 import numpy as np
@@ -56,9 +57,9 @@ def test_the_threshold_has_a_sentence_of_its_own(threshold, text):
 def test_without_units_numbers_or_variation():
     assert sentences([], threshold=1.0) == ["speed: no accepted trial has a number"]
     assert sentences([math.nan, math.nan]) == ["speed: no accepted trial has a number"]
-    (text,) = sentences([2.0] * 40)
-    assert text.startswith("speed: all 40 trials; at least ")
-    assert text.endswith(" % with 95 % confidence, between 2 and 2")
+    assert sentences([2.0] * 40, units="mph") == ["speed: 2 mph in all 40 trials"]
+    (text,) = sentences([1.0] * 20 + [2.0] * 20)
+    assert re.fullmatch(r"speed: all 40 trials; at least [\d.]+ % with 95 % confidence, between 1 and 2", text)
 
 
 @pytest.mark.parametrize("values", [GRID, GRID[:7], [1.0, 1.0, 2.0], [5.0]])

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from xlmc.report import cells
 from xlmc.report.cumulative_charts import cumulative_charts
 from xlmc.report.curves import Curves
-from xlmc.report.figure import Figure
+from xlmc.report.figure import Figure, varying
 from xlmc.report.histogram_chart import BinsAt, histogram_chart
 from xlmc.report.overlay_chart import MOST, alike, overlay_chart, trend_chart
 from xlmc.report.summary import percent
@@ -99,7 +99,7 @@ def _place_row(page: Page, drawings: Sequence[Drawing]) -> None:
 
 def _compared(book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]) -> Iterator[Drawing]:
     number = len(figures)
-    for group in alike(figures):
+    for group in alike(varying(figures)):
         units, few = group[0].answer.units, f" (at most {MOST} in a chart)" if len(group) == MOST else ""
         caption = f"Figure {number + 1}. Overlay chart: the forecasts in {units} as frequency curves{few}."
         yield Drawing(overlay_chart(book, curves, group), caption)
@@ -110,8 +110,9 @@ def _compared(book: Workbook, curves: Curves, simulation: Simulation, figures: S
 
 
 def _cumulative(book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]) -> Iterator[Drawing]:
-    first = len(figures) + 2 * len(alike(figures))
-    for place, figure in enumerate(figures):
+    varied = varying(figures)
+    first = len(figures) + 2 * len(alike(varied))
+    for place, figure in enumerate(varied):
         charts = cumulative_charts(book, curves, simulation, figure)
         share, number = percent(figure.answer.share), first + 2 * place
         for offset, (chart, words) in enumerate(zip(charts, ("at most", "above"), strict=True), 1):

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 __all__ = ["cumulative_charts"]
 
-_KINDS = ((0, 2, "cumulative", "Cumulative"), (4, 4, "reverse cumulative", "Reverse cumulative"))
-"""The columns of a chart's title and of its shares inside the central range, which those outside follow; its names."""
+_KINDS = ((2, "cumulative", "Cumulative probability"), (4, "reverse cumulative", "Reverse cumulative probability"))
+"""The column of each chart's shares inside the central range, which those outside follow; its name; its axis."""
 
 
 def cumulative_charts(book: Workbook, curves: Curves, simulation: Simulation, figure: Figure) -> list[ChartArea]:
@@ -32,9 +32,9 @@ def cumulative_charts(book: Workbook, curves: Curves, simulation: Simulation, fi
     curve = cumulative(result.sample, figure.bins, answer.low.value, answer.high.value)
     share = percent(answer.share)
     heads = ["Label", "Value", *[f"Inside {share} range", "Outside"] * len(_KINDS)]
-    titles = {title: f"{figure.name}: {words}" for title, _, words, _ in _KINDS}
+    titles = [f"{figure.name}: {kind}" for _, kind, _ in _KINDS]
     table = curves.write(titles, answer.units or "Value", heads, _rows(curve))
-    return [_chart(book, table, curve, title, inside, axis) for title, inside, _, axis in _KINDS]
+    return [_chart(book, table, curve, number) for number in range(len(_KINDS))]
 
 
 def _rows(curve: Cumulative) -> Iterator[list[Shown]]:
@@ -44,8 +44,9 @@ def _rows(curve: Cumulative) -> Iterator[list[Shown]]:
         yield [cells.text(label), Shown(at), *(Shown(share, SHARE) for share in shares)]
 
 
-def _chart(book: Workbook, table: TableAt, curve: Cumulative, title: int, inside: int, axis: str) -> ChartArea:
+def _chart(book: Workbook, table: TableAt, curve: Cumulative, number: int) -> ChartArea:
     """Two areas, of which one is 0 where the other is not: their sum is the curve whichever way they overlap."""
+    inside, _, axis = _KINDS[number]
     chart = book.add_chart({"type": "area", "subtype": "stacked"})
     for column, colour in ((inside, DARK), (inside + 1, LIGHT)):
         chart.add_series(
@@ -59,6 +60,6 @@ def _chart(book: Workbook, table: TableAt, curve: Cumulative, title: int, inside
         )
     marks = {"interval_unit": curve.step, "interval_tick": curve.step}
     chart.set_x_axis(across(table.axis, position_axis="on_tick", major_tick_mark="none", **marks))
-    chart.set_y_axis(upwards(f"{axis} probability", "0%", min=0, max=1, major_unit=0.1))
-    finish(chart, table.title(title))
+    chart.set_y_axis(upwards(axis, "0%", min=0, max=1, major_unit=0.1))
+    finish(chart, table.title(number))
     return chart

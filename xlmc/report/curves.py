@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,9 +15,10 @@ if TYPE_CHECKING:
 
 __all__ = ["HEADER", "SHARE", "Curves", "TableAt"]
 
-HEADER = 4
+HEADER = 5
 """The row of the headings, counted from 0."""
 
+_TITLES = HEADER - 3
 SHARE = "0.00%"
 _WIDTH = 11
 _ON_A_PAGE, _SCALE = 14, 75
@@ -35,8 +36,9 @@ class TableAt:
     left: int
     rows: int
 
-    def title(self, column: int = 0) -> Reference:
-        return [self.sheet, HEADER - 2, self.left + column]
+    def title(self, number: int = 0) -> Reference:
+        """The first title or the second."""
+        return [self.sheet, _TITLES + number, self.left]
 
     @property
     def axis(self) -> Reference:
@@ -65,21 +67,27 @@ class Curves:
         page.sheet.freeze_panes(HEADER + 1, 0)
 
     def write(
-        self, titles: Mapping[int, str], axis: str, heads: Sequence[str], rows: Iterable[Sequence[Shown]]
+        self,
+        titles: Sequence[str],
+        axis: str,
+        heads: Sequence[str],
+        rows: Iterable[Sequence[Shown]],
+        width: float = _WIDTH,
     ) -> TableAt:
         """Write the next table; what it returns says where.
 
         Args:
-            titles: of the charts that draw it, each above one of its columns.
+            titles: of the charts that draw it, at most two.
             axis: the name of their horizontal axis.
             heads: the headings of its columns.
             rows: of cells.
+            width: of a column.
         """
         page, left = self._page, self._left
-        page.sheet.set_column(left, left + len(heads) - 1, _WIDTH)
+        page.sheet.set_column(left, left + len(heads) - 1, width)
         page.sheet.set_column(left + len(heads), left + len(heads), 3)
-        for column, title in titles.items():
-            page.put(HEADER - 2, left + column, Shown(title, look="heading"))
+        for row, title in enumerate(titles, _TITLES):
+            page.put(row, left, Shown(title, look="heading"))
         page.put(HEADER - 1, left, Shown(axis, look="subtitle"))
         page.row = HEADER
         page.table(heads, rows, left)
@@ -94,4 +102,4 @@ class Curves:
         """Say so where there is nothing, and set it up for printing."""
         if not self._left:
             self._page.put(HEADER - 1, 0, cells.text("No forecast has a number in an accepted trial.", "alarm"))
-        self._page.printed(self._name, repeat=HEADER, repeat_from=HEADER - 2, scale=_SCALE, columns=self._breaks)
+        self._page.printed(self._name, repeat=HEADER, repeat_from=_TITLES, scale=_SCALE, columns=self._breaks)

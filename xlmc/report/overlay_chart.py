@@ -54,8 +54,8 @@ def overlay_chart(book: Workbook, curves: Curves, group: Sequence[Figure]) -> Ch
     chart = book.add_chart({"type": "scatter", "subtype": "straight"})
     tables: list[TableAt] = []
     for figure, colour in zip(group, COLOURS, strict=False):
-        title = f"Overlay of forecasts in {units}" if not tables else figure.name
-        table = curves.write({0: title}, units, ["Middle of bar", figure.name], _polygon(figure))
+        titles = [] if tables else [f"Overlay of forecasts in {units}"]
+        table = curves.write(titles, units, ["Middle of bar", figure.name], _polygon(figure))
         tables.append(table)
         chart.add_series(
             {
@@ -89,7 +89,7 @@ def trend_chart(book: Workbook, curves: Curves, simulation: Simulation, group: S
     units, shares = group[0].answer.units, {figure.answer.share for figure in group}
     central = f"{percent(shares.pop())} range" if len(shares) == 1 else "Central range"
     heads = ["Forecast", f"{central} from", "95th percentile", "5th percentile", f"{central} to"]
-    table = curves.write({0: f"Trend of forecasts in {units}"}, units, heads, _ranges(simulation, group))
+    table = curves.write([f"Trend of forecasts in {units}"], units, heads, _ranges(simulation, group))
     chart = book.add_chart({"type": "stock"})
     for column in range(1, len(heads)):
         chart.add_series({"name": table.heading(column), "categories": table.column(0), "values": table.column(column)})

@@ -11,7 +11,6 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from xlsxwriter.utility import xl_range_formula, xl_rowcol_to_cell
 
 from xlmc.report import cells
 from xlmc.report.cells import Shown
@@ -40,6 +39,8 @@ def write_own_ranges(page: Page, simulation: Simulation, trials: TrialsAt, last:
     found = [each for each in found if not np.isnan(each[2]).all()]
     if not found:
         return
+    from xlsxwriter.utility import xl_range_formula
+
     page.heading("Certainty of a range of your own")
     page.wide(_said(simulation, trials), "paragraph", last)
     heads = ["Forecast", "Units", "From", "to", "Certainty", "Trials"]
@@ -63,6 +64,8 @@ def _said(simulation: Simulation, trials: TrialsAt) -> str:
 
 
 def _write_line(page: Page, result: ForecastResult, values: NDArray[np.float64], column: str, errors: bool) -> None:
+    from xlsxwriter.utility import xl_rowcol_to_cell
+
     definition, row = result.definition, page.row
     spoken = rounded_range(result.sample, result.statistics.central, definition.central)
     assert spoken is not None  # there are numbers

@@ -53,6 +53,15 @@ class Page:
         else:
             self.sheet.write_string(row, column, _in_words(value), style)
 
+    def numbers(self, row: int, column: int, values: Iterable[float], number_format: str, look: str = "number") -> None:
+        """Write a column of numbers that look alike, from a row on down: what `put` does for each, in less time."""
+        style, write = self._styles(look, number_format), self.sheet.write_number
+        for place, value in enumerate(values, row):
+            if math.isfinite(value):
+                write(place, column, value, style)
+            else:
+                self.sheet.write_string(place, column, _in_words(value), style)
+
     def formula(self, row: int, column: int, formula: str, shown: Shown) -> None:
         """Write one cell whose value, shown until somebody changes what it depends on, is known."""
         self.sheet.write_formula(row, column, formula, self._styles(shown.look, shown.format), shown.value)

@@ -123,7 +123,7 @@ def _drawings(
         return []
     found = {each.name: _points(curves, simulation, trials, each, known) for each in forecasts}
     titles = [f"{pair.first.name} and {pair.second.name}" for pair in pairs]
-    titled = curves.write({0: "Titles of the scatter charts"}, "", ["Title"], [[cells.text(title)] for title in titles])
+    titled = curves.write(["Titles of the scatter charts"], "", ["Title"], [[cells.text(each)] for each in titles], 60)
     points = f"the first {known.size:,} accepted trials in which all of these forecasts are numbers"
     return [
         Drawing(
@@ -152,7 +152,7 @@ def _points(
     digits = number_format.exact(float(np.ptp(values)))
     axis = f"{forecast.name} ({forecast.units})" if forecast.units else forecast.name
     rows = [[Shown(value, digits)] for value in values.tolist()]
-    table = curves.write({0: "Points of the scatter charts"}, axis, [forecast.name], rows)
+    table = curves.write(["Points of a scatter chart"], axis, [forecast.name], rows)
     return _Points(table.axis, table.column(0), limits)
 
 

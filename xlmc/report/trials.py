@@ -98,12 +98,9 @@ def _heading(name: str, units: str, look: str) -> Shown:
 
 
 def _write_values(page: Page, index: NDArray[np.int64], columns: list[NDArray[np.float64]]) -> None:
-    for row, trial in enumerate(index.tolist(), page.row):
-        page.put(row, 0, Shown(trial, "0", "trial"))
+    page.numbers(page.row, 0, index.tolist(), "0", "trial")
     for place, values in enumerate(columns, 1):
-        digits = number_format.exact(_spread(values))
-        for row, value in enumerate(values.tolist(), page.row):
-            page.put(row, place, Shown(value, digits))
+        page.numbers(page.row, place, values.tolist(), number_format.exact(_spread(values)))
     page.row += index.size
 
 

@@ -60,6 +60,8 @@ def _of(result: ForecastResult) -> list[Statement]:
 def _range_text(found: RoundedRange, units: str) -> str:
     """`more probable than not (52.1 % ± 0.8 %) between 22.0 and 24.2 mph`, where that is so."""
     share, between = found.share, f"between {found.low_text} and {found.high_text}{units}"
+    if found.low == found.high and share.value == 1.0:
+        return f"{found.low_text}{units} in all {share.n:,} trials"
     if share.value == 1.0:
         return f"{percent_text(share)}, {between}"
     lowest = share.value if share.interval is None else share.interval[0]

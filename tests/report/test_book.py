@@ -12,7 +12,7 @@ import pytest
 from xlmc.report.book import build_sheets
 from xlmc.scratch import columns, on_disk
 
-SHEETS = ["Results", "Charts", "Statistics", "Assumptions", "Trials", "Bins", "Record"]
+SHEETS = ["Results", "Charts", "Statistics", "Assumptions", "Sensitivity", "Filter limits", "Trials", "Bins", "Record"]
 RUNS = ["run", "none_accepted", "one_accepted"]
 
 

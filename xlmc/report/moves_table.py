@@ -70,8 +70,9 @@ def move_captions(found: ForecastSensitivity) -> list[str]:
     at = "" if found.base is None else f" of {found.base:.6g} {found.units}".rstrip()
     bent = any(bar.monotonic is False for bar in found.bars[:BARS])
     tornado = (
-        f"Tornado: how far the forecast moves from its base case{at} when one assumption goes to its 10 % or 90 % point "
-        "and all others stay at their base values. No trial is behind it: no probability, no filter, no correlation."
+        f"Tornado: how far the forecast moves from its base case{at} when one assumption goes to its 10 % or 90 % "
+        "point and all others stay at their base values. No trial is behind it: no probability, no filter, no "
+        "correlation."
     )
     if bent:
         tornado += " Where the table says that it does not only rise or fall, the bar hides what lies between."

@@ -1,8 +1,8 @@
 """The measures that need nothing but trials, against closed forms.
 
-A value must lie within 4 of its standard errors of the truth (6·10⁻⁵ a comparison, with fixed seeds). Errors: the spread
-of 300 independent values is known to 1/√600 = 4.1 %, and must agree with the mean stated error to 4 times that and 8 %
-for what is only true of many trials.
+A value must lie within 4 of its standard errors of the truth (6·10⁻⁵ a comparison, with fixed seeds). Errors: the
+spread of 300 independent values is known to 1/√600 = 4.1 %, and must agree with the mean stated error to 4 times that
+and 8 % for what is only true of many trials.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def test_shares_have_no_bias(r):
 
 
 def test_noise_stays_below_the_floor_as_often_as_it_says():
-    """Of 1,000 tables with 5 assumptions and no influence 5 % exceed a floor; the binomial's 1 − 10⁻⁵ quantile is 8.3 %."""
+    """Of 1,000 tables with 5 assumptions without influence 5 % exceed a floor; 83 is the binomial's 1 − 10⁻⁵ point."""
     rng = np.random.default_rng(13)
     beyond = np.zeros(2)
     for _ in range(1000):

@@ -100,10 +100,10 @@ def test_a_case_in_closed_form(below):
 
 
 def test_errors_are_the_spread_between_runs(below, monkeypatch):
-    """With further trials that each stand for four. The spread of 60 is known to 9 %; 4 times that is asked."""
+    """With further trials that each stand for four. The spread of 40 is known to 11 %; 4 times that is asked."""
     monkeypatch.setattr("xlmc.sensitivity.limit_trials.LEAST_AGAIN", 4000)
     runs = []
-    for seed in range(60):
+    for seed in range(40):
         (tried,) = limit_trials(below.simulate(16_000, seed), 1, 1).tried
         runs.append(moved_limit(tried.trials, tried.grid, ["y"], [0.51]))
     numbers = {
@@ -117,7 +117,7 @@ def test_errors_are_the_spread_between_runs(below, monkeypatch):
     for name, number in numbers.items():
         each = [number(limit) for limit in runs]
         spread = np.std([estimate.value for estimate in each], ddof=1)
-        assert np.mean([estimate.error for estimate in each]) == pytest.approx(spread, rel=0.36), name
+        assert np.mean([estimate.error for estimate in each]) == pytest.approx(spread, rel=0.45), name
 
 
 def test_a_limit_in_a_cell_is_moved_and_one_that_varies_is_named(book):

@@ -31,7 +31,7 @@ def influence(found, forecast, assumption):
     [("Nissan departure angle", 0.76), ("Chevrolet approach angle", -0.71), ("Chevrolet departure angle", -0.12)],
 )
 def test_rank_correlations_of_the_case_study(case, assumption, correlation):
-    """Known to two decimals from another program's run of some 3,500 accepted trials: an error of 0.017 or less each."""
+    """Reference values of two decimals, from some 3,500 accepted trials of another run: errors of 0.017 or less."""
     each = influence(case, "Nissan impact speed", assumption).rank_correlation
     assert each.value == pytest.approx(correlation, abs=4.0 * math.hypot(each.error, 0.017) + 0.005)
 
@@ -43,8 +43,10 @@ def test_what_is_irrelevant_is_not_seen(case):
 
 
 def test_the_filters_decide_what_matters(case):
-    """The tornado knows no filter: to it the Chevrolet's approach angle moves its delta-V; among the accepted it is tied
-    to the other angles, and explains nothing of it."""
+    """The tornado knows no filter, and says that the Chevrolet's approach angle moves its delta-V.
+
+    Among the accepted trials it is tied to the other angles, and explains nothing of it.
+    """
     first = [bar.assumption for bar in case["Chevrolet delta-V"].bars[:2]]
     assert "Chevrolet approach angle" in first
     assert not influence(case, "Chevrolet delta-V", "Chevrolet approach angle").seen

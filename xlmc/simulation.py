@@ -263,3 +263,13 @@ class Simulation:
         from xlmc.report import save
 
         save(self, Path(path))
+
+    def save_page(self, path: str | Path) -> None:
+        """Write the results as one page for a browser, which needs no network.
+
+        Raises:
+            WorkbookError: the file does not end in `.html`, or cannot be written.
+        """
+        from xlmc.report.html import save_page
+
+        save_page(self, Path(path))

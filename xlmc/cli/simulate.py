@@ -50,6 +50,7 @@ INTERRUPTED = 130
 @click.option("--workers", type=click.IntRange(1), help="Workers of --scheduler local.  [default: one a processor]")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Result workbook.  [default: BOOK-results.xlsx]")
 @click.option("--in-place", is_flag=True, help="Write the result sheets into BOOK itself.")
+@click.option("--html", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write one web page, too.")
 @click.option("--quiet", is_flag=True, help="Print no progress bar and no notes.")
 def simulate(
     book: Path,
@@ -63,6 +64,7 @@ def simulate(
     workers: int | None,
     output: Path | None,
     in_place: bool,
+    html: Path | None,
     quiet: bool,
     **length: Any,
 ) -> None:
@@ -77,6 +79,10 @@ def simulate(
         raise click.UsageError("--in-place and --output exclude each other.")
     target = book if in_place else output or book.with_name(f"{book.stem}-results{book.suffix}")
     refuse_if_open(target)
+    if html is not None:
+        from xlmc.report.html import check_page_path
+
+        check_page_path(html)
     model = load(book)
     if not quiet:
         notices([*model.notices, *_hints(model, trials, engine)])
@@ -95,8 +101,12 @@ def simulate(
             progress=progress,
         )
     save(run, target)
+    if html is not None:
+        run.save_page(html)
     _show(run)
     click.echo(f"Results are in {target}")
+    if html is not None:
+        click.echo(f"The page is {html}")
     for warning in run.warnings:
         click.echo(f"warning: {warning}; the answer must not be used as it stands.", err=True)
     if run.stopped.interrupted:

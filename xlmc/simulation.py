@@ -26,6 +26,7 @@ from xlmc.stopping.stopped import ALL_TRIALS
 
 if TYPE_CHECKING:
     import pandas
+    from matplotlib.figure import Figure
 
     from xlmc.errors import Notice
     from xlmc.model import Model
@@ -289,3 +290,34 @@ class Simulation:
         from xlmc.saved import keep
 
         keep(self, Path(path))
+
+    def extract(self, path: str | Path) -> None:
+        """Write the accepted trials, with assumptions and forecasts, to a `.csv` or a `.parquet` file.
+
+        Raises:
+            WorkbookError: the file has another ending, or cannot be written.
+            SimulationError: Parquet needs pyarrow, which is not installed.
+        """
+        from xlmc.report.extract import extract
+
+        extract(self, Path(path))
+
+    def save_json(self, path: str | Path) -> None:
+        """Write all results as JSON; docs/json.md describes it.
+
+        Raises:
+            WorkbookError: the file cannot be written, or does not end in `.json`.
+        """
+        from xlmc.report.document import save_json
+
+        save_json(self, Path(path))
+
+    def plot(self) -> Figure:
+        """A figure of matplotlib: every forecast's histogram and cumulative share, with the central range shaded.
+
+        Raises:
+            SimulationError: matplotlib is not installed, or there is nothing to draw.
+        """
+        from xlmc.report.plot import plot
+
+        return plot(self)

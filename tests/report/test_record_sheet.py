@@ -16,7 +16,7 @@ def read_back(run, opened):
         key = row[0].value
         if key is None:
             keys = [(cell.value, cell.column) for cell in row[1:] if cell.value is not None]
-            columns = keys if row[1].value in ("name", "first", "message", "kind") else None
+            columns = keys if row[1].value in ("name", "first", "message", "kind", "what", "cell") else None
             tables["columns"] = columns or tables.get("columns")
         elif indexed := re.fullmatch(r"(\w+)\[(\d+)\]", key):
             values = {name: sheet.cell(row[0].row, column).value for name, column in tables["columns"]}

@@ -73,9 +73,13 @@ def text_at(text: str, down: int, right: int) -> str:
                 return found[0]
             return f"{_column_at(column_fixed, letters, right)}{_row_at(row_fixed, digits, down)}"
         if found["c1"] is not None:
-            return ":".join(_column_at(end[:-len(end.lstrip("$"))], end.lstrip("$"), right) for end in found.group("c1", "c2"))
+            return ":".join(
+                _column_at(end[: -len(end.lstrip("$"))], end.lstrip("$"), right) for end in found.group("c1", "c2")
+            )
         if found["r1"] is not None:
-            return ":".join(_row_at(end[:-len(end.lstrip("$"))], end.lstrip("$"), down) for end in found.group("r1", "r2"))
+            return ":".join(
+                _row_at(end[: -len(end.lstrip("$"))], end.lstrip("$"), down) for end in found.group("r1", "r2")
+            )
         return found[0]
 
     return _TOKEN.sub(moved, text) if down or right else text

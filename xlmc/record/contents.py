@@ -23,10 +23,10 @@ SAVED: Final = "  (Excel saved "
 
 
 def needed_contents(model: Model) -> dict[Cell, str]:
-    """The cells that a run of the model is a function of, in the order of sheets, rows and columns, with their contents.
+    """The cells that a run of the model is a function of, with their contents, by sheets, rows and columns.
 
-    These are the cells that forecasts and filters read, those of assumptions and of their data, and the reserved tables.
-    Blank cells are left out.
+    These are the cells that forecasts and filters read, those of assumptions and of their data, and the reserved
+    tables. Blank cells are left out.
     """
     workbook, saved = model.workbook, model.saved
     places = {name: place for place, name in enumerate(workbook.sheets)}
@@ -48,7 +48,7 @@ def definition_cells(workbook: Workbook) -> set[Cell]:
 
 
 def content_text(workbook: Workbook, cell: Cell, saved: Container[Cell] = ()) -> str:
-    """What a cell holds, as a formula would write it: `=A1*2`, `6661`, `"text"`, `TRUE`, `#N/A`; empty where it is blank.
+    """What a cell holds, as a formula would write it: `=A1*2`, `6661`, `"text"`, `TRUE`, `#N/A`; empty if it is blank.
 
     Args:
         workbook: that it stands in.

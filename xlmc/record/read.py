@@ -1,8 +1,8 @@
 """Read a record back from the sheet of a result workbook that holds it.
 
-The sheet is found by what it holds, so a person may have renamed or moved it: the first column has the keys, `run.repeat`
-beside an entry, `forecasts` beside a section's title, `forecasts[0]` beside the first row of its table; the columns' keys
-stand two rows above that.
+The sheet is found by what it holds, so a person may have renamed or moved it. Its first column has the keys:
+`run.repeat` beside an entry, `forecasts` beside a section's title, `forecasts[0]` beside the first row of its table.
+The columns' keys stand two rows above that.
 """
 
 from __future__ import annotations

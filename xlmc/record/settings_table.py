@@ -33,7 +33,9 @@ def settings_section(simulation: Simulation) -> Section:
         Entry("precision_of", "Of these numbers", None if precision is None else ",".join(precision.numbers)),
         Entry("confidence", "At this confidence", None if precision is None else precision.confidence),
         Entry("adaptive", "Stable digits", asked.digits),
-        Entry("for", "Of these forecasts", json.dumps(asked.forecasts, ensure_ascii=False) if asked.forecasts else None),
+        Entry(
+            "for", "Of these forecasts", json.dumps(asked.forecasts, ensure_ascii=False) if asked.forecasts else None
+        ),
         Entry("time_limit", "Seconds at most", asked.seconds),
     )
     return Section("settings", "Settings", entries)

@@ -20,6 +20,9 @@ _WORD: Final = re.compile(r"[^\W\d][\w.\\?]*")
 _NOT_HIDDEN: Final = frozenset({"subtotal", "aggregate"})
 """Functions that can leave out hidden rows."""
 
+_LONGEST: Final = 30_000
+"""Characters that a cell of the record holds."""
+
 _COLUMNS: Final = (("what", "What"), ("name", "Name"), ("means", "Means"))
 
 
@@ -33,17 +36,21 @@ def structure_section(model: Model, contents: Collection[str]) -> Section:
     workbook = model.workbook
     words = _words(contents) | {name_key(a.name) for a in model.assumptions}
     words |= {name_key(each.name) for each in (*model.forecasts, *model.filters)}
-    names = sorted(_mentioned(workbook.names, words), key=lambda name: (name.name.casefold(), name.sheet or ""))
+    names = sorted(_mentioned(workbook.names, words), key=_order)
     words |= _words([name.text for name in names])
     rows = [("defined name", f"{name.sheet}!{name.name}" if name.sheet else name.name, name.text) for name in names]
-    for table in workbook.tables:
-        if table.name.casefold().startswith(KINDS) or table.name.casefold() in words:
-            rows.append(("table", table.name, _table_text(table)))
+    tables = (t for t in workbook.tables if t.name.casefold().startswith(KINDS) or t.name.casefold() in words)
+    rows += [("table", table.name, _table_text(table)) for table in tables]
     if words & _NOT_HIDDEN:
         rows += [("hidden rows", name, _ranges(workbook.sheets[name].hidden_rows)) for name in _sheets_read(model)]
     if workbook.date1904:
         rows.append(("dates", "count from", "1904"))
-    return Section("structure", "Names and tables that the run needed", table=RecordTable(_COLUMNS, tuple(rows)))
+    listed = tuple((what, name, means[:_LONGEST]) for what, name, means in rows)
+    return Section("structure", "Names and tables that the run needed", table=RecordTable(_COLUMNS, listed))
+
+
+def _order(name: DefinedName) -> tuple[str, str]:
+    return name.name.casefold(), name.sheet or ""
 
 
 def _words(texts: Collection[str]) -> set[str]:

@@ -133,11 +133,17 @@ def number_changes(recorded: Record, found: Record) -> list[NumberChange]:
         old, new = (_rows(record, section, ("name",)) for record in (recorded, found))
         for name in (name for name in old if name in new):
             scale = _as_number(new[name].get("standard_deviation")) or 0.0
-            for key in _COUNTED[section]:
-                changes.append(_number(f"{name}: {key}", old[name].get(key), new[name].get(key), 0.0))
-            for key in _STATISTICS if section == "forecasts" else ():
-                label = f"{name}: {key.replace('_', ' ')}"
-                changes.append(_number(label, old[name].get(key), new[name].get(key), SAME, scale))
+            counted, measured = _COUNTED[section], _STATISTICS if section == "forecasts" else ()
+            changes += [
+                _number(
+                    f"{name}: {key.replace('_', ' ')}",
+                    old[name].get(key),
+                    new[name].get(key),
+                    0.0 if key in counted else SAME,
+                    scale,
+                )
+                for key in (*counted, *measured)
+            ]
     return [change for change in changes if change.recorded != change.repeated]
 
 

@@ -23,7 +23,7 @@ from xlmc.replay.changes import (
     number_changes,
     structure_changes,
 )
-from xlmc.saved import is_saved_run, open_run
+from xlmc.saved import SUFFIX, is_saved_run, open_run
 from xlmc.simulation import KEPT_INPUTS
 from xlmc.workbook import read_workbook
 
@@ -87,7 +87,7 @@ def replay(path: str | Path, *, jobs: int = 1, progress: Progress | None = None)
         XlmcError: the workbook cannot be run, though nothing that was recorded of it has changed.
     """
     path = Path(path)
-    if is_saved_run(path):
+    if path.suffix.casefold() == SUFFIX or is_saved_run(path):
         run = open_run(path)
         return _replayed(run.model.workbook, make_record(run), run.model, jobs, progress)
     workbook = read_workbook(path)

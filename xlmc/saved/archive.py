@@ -23,7 +23,15 @@ _NAMES: Final = re.compile(r"run\.json|workbook|columns/\d{1,6}\.npy")
 _EPOCH: Final = (1980, 1, 1, 0, 0, 0)  # the earliest time a zip can hold
 _ENCRYPTED: Final = 0x1
 _MOST_ENTRIES: Final = 100_000
-_DAMAGE: Final = (zipfile.BadZipFile, struct.error, EOFError, OverflowError, RuntimeError, ValueError, NotImplementedError)
+_DAMAGE: Final = (
+    zipfile.BadZipFile,
+    struct.error,
+    EOFError,
+    OverflowError,
+    RuntimeError,
+    ValueError,
+    NotImplementedError,
+)
 
 
 def write_entries(file: BinaryIO, entries: Iterable[tuple[str, int, Iterable[bytes]]]) -> None:

@@ -17,7 +17,18 @@ from xlmc.sampling import METHODS, Plan
 from xlmc.simulation import Origin
 from xlmc.stopping import Stopped
 
-__all__ = ["FORMAT", "VERSION", "origin_of", "plan_of", "rounding_of", "settings_of", "stopped_of", "tally_document", "tally_of", "told"]
+__all__ = [
+    "FORMAT",
+    "VERSION",
+    "origin_of",
+    "plan_of",
+    "rounding_of",
+    "settings_of",
+    "stopped_of",
+    "tally_document",
+    "tally_of",
+    "told",
+]
 
 FORMAT: Final = "xlmc saved run"
 VERSION: Final = 1

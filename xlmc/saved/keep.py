@@ -23,7 +23,7 @@ from xlmc.workbook.writer import whole_file
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
 
-__all__ = ["keep"]
+__all__ = ["check_run_path", "keep"]
 
 
 class _Column(NamedTuple):
@@ -51,15 +51,24 @@ def keep(simulation: Simulation, path: Path) -> Path:
         WorkbookError: the file cannot be written, or has another ending.
         SimulationError: the workbook was not read from a file.
     """
-    if path.suffix.casefold() != SUFFIX:
-        hint = f"Name it {path.with_suffix(SUFFIX).name!r}"
-        raise WorkbookError(f"a saved run must end in {SUFFIX}", where=path, hint=hint)
+    check_run_path(path)
     if not simulation.model.workbook.data:
         message = "the run cannot be saved: its workbook was not read from a file"
         raise SimulationError(message, hint="read it with xlmc.load")
     with whole_file(path) as file:
         write_entries(file, _entries(simulation))
     return path
+
+
+def check_run_path(path: Path) -> None:
+    """Refuse to write a saved run over what is none.
+
+    Raises:
+        WorkbookError: the name does not end in `.xlmcrun`.
+    """
+    if path.suffix.casefold() != SUFFIX:
+        hint = f"Name it {path.stem + SUFFIX!r}"
+        raise WorkbookError(f"a saved run must end in {SUFFIX}", where=path, hint=hint)
 
 
 def _entries(simulation: Simulation) -> Iterator[tuple[str, int, Iterator[bytes]]]:

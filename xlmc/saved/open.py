@@ -6,7 +6,7 @@ import hashlib
 import json
 import zipfile
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -120,8 +120,10 @@ class _Columns:
         told(self._names["input"] == self._names["prior"] == live, "its assumptions, which this xlmc reads otherwise")
         told(self._names["forecast"] == [f.name for f in model.forecasts], "its forecasts, which are read otherwise")
         told(len(listed) == sum(map(len, self._names.values())), "a column of a kind that there is not")
-        types = {self._key(each): np.dtype(_KINDS[each["kind"]]).newbyteorder("=") for each in listed}
-        self._keeper = Keeper(dict(types))
+        types: dict[Hashable, np.dtype[Any]] = {
+            self._key(each): np.dtype(_KINDS[each["kind"]]).newbyteorder("=") for each in listed
+        }
+        self._keeper = Keeper(types)
 
     @staticmethod
     def _key(about: Document) -> tuple[str, str]:

@@ -15,7 +15,7 @@ from typing import BinaryIO
 
 from xlmc.errors import WorkbookError
 
-__all__ = ["package_bytes", "refuse_if_open", "whole_file", "write_workbook"]
+__all__ = ["check_folder", "package_bytes", "refuse_if_open", "whole_file", "write_workbook"]
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time a zip can hold
 _FIRST = ("[Content_Types].xml", "_rels/.rels")  # where programs that read a package as it arrives look first
@@ -74,6 +74,19 @@ def _written_whole(path: str | os.PathLike[str]) -> Iterator[Path]:
         _sync_folder(target.parent)
     except OSError as error:
         raise _told(error, path) from error
+
+
+def check_folder(path: str | os.PathLike[str]) -> None:
+    """Refuse, before any work, a file that has no folder to go to, or is a folder.
+
+    Raises:
+        WorkbookError: so it is.
+    """
+    target = Path(os.path.realpath(path))
+    if target.is_dir():
+        raise _told(IsADirectoryError(errno.EISDIR, "is a folder"), path)
+    if not target.parent.is_dir():
+        raise _told(FileNotFoundError(errno.ENOENT, "no folder"), path)
 
 
 def refuse_if_open(path: str | os.PathLike[str]) -> None:
@@ -138,7 +151,7 @@ def _told(error: OSError, path: str | os.PathLike[str]) -> WorkbookError:
         folder = str(Path(path).absolute().parent)
         return WorkbookError(f"there is no folder {folder!r}", where=path, hint="Create it or name another")
     if Path(path).is_dir():
-        return WorkbookError("this is a folder, not a workbook", where=path, hint="Name a file")
+        return WorkbookError("this is a folder, not a file", where=path, hint="Name a file")
     if error.errno in _FULL:
         return WorkbookError("the disk is full", where=path, hint="Free some space or name another folder")
     if error.errno in _REFUSED:

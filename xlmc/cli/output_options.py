@@ -61,7 +61,7 @@ class Outputs:
             SimulationError: a library is missing.
         """
         if self.run is not None:
-            from xlmc.saved.keep import check_run_path
+            from xlmc.saved.keeping import check_run_path
 
             check_run_path(self.run)
         if self.json is not None:

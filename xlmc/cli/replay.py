@@ -72,13 +72,9 @@ def _changes(changes: Sequence[Change], heading: str) -> Iterator[str]:
         yield heading
     for change in changes[:_MOST]:
         yield f"  {change.kind} {change.where}"
-        yield f"    was  {_shown(change.old)}"
-        yield f"    is   {_shown(change.new)}"
+        yield f"    was  {change.old or ('blank, or not needed' if change.kind == 'cell' else 'nothing')}"
+        yield f"    is   {change.new or ('blank' if change.kind == 'cell' else 'nothing')}"
     yield from _rest(changes)
-
-
-def _shown(content: str | None) -> str:
-    return content or "nothing"
 
 
 def _numbers(numbers: Sequence[NumberChange]) -> Iterator[str]:

@@ -35,7 +35,7 @@ def structure_section(model: Model, contents: Collection[str]) -> Section:
     """
     workbook = model.workbook
     words = _words(contents) | {name_key(a.name) for a in model.assumptions}
-    words |= {name_key(each.name) for each in (*model.forecasts, *model.filters)}
+    words |= {name_key(f.name) for f in model.forecasts} | {name_key(f.name) for f in model.filters}
     names = sorted(_mentioned(workbook.names, words), key=_order)
     words |= _words([name.text for name in names])
     rows = [("defined name", f"{name.sheet}!{name.name}" if name.sheet else name.name, name.text) for name in names]

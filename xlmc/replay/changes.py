@@ -44,11 +44,13 @@ K = TypeVar("K", bound=Hashable)
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One thing that is not as it was; None where it was not there, or is not there any more.
+    """One thing that is not as it was.
 
     Attributes:
         kind: `cell`, `defined name`, `table`, `assumption`, `software` and so on.
         where: which one.
+        old: None where the record does not have it: a cell was blank, or was not needed.
+        new: None where it is not there any more.
     """
 
     kind: str
@@ -72,7 +74,7 @@ class NumberChange:
 
 
 def contents_now(workbook: Workbook, recorded: Mapping[Cell, str]) -> dict[Cell, str]:
-    """The recorded cells as they are now, and all of the reserved tables, where the workbook cannot be understood."""
+    """The recorded cells as they are now, needed or not, and those of the reserved tables."""
     saved = {cell for cell, text in recorded.items() if SAVED in text}
     cells = [*recorded, *sorted(definition_cells(workbook) - recorded.keys())]
     found = {cell: content_text(workbook, cell, saved) for cell in cells if cell.sheet in workbook.sheets}

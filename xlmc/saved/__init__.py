@@ -7,7 +7,7 @@ and so on, and `run.json`, which has the settings, the counts, and a SHA-256 of 
 from __future__ import annotations
 
 from xlmc.saved.archive import SUFFIX
-from xlmc.saved.keep import keep
-from xlmc.saved.open import is_saved_run, open_run
+from xlmc.saved.keeping import keep
+from xlmc.saved.opening import is_saved_run, open_run
 
 __all__ = ["SUFFIX", "is_saved_run", "keep", "open_run"]

@@ -147,12 +147,12 @@ SMALL_BOOK = {
         ["Seed", 7],
     ],
 }
-"""Two assumptions, one with a name that looks like a formula; a forecast that may be an error; a filter that may be one."""
+"""Two assumptions, one with a name that looks like a formula; a forecast and a filter that may be errors."""
 
 
 @pytest.fixture(scope="session")
 def small_book(tmp_path_factory):
-    """A workbook file of two assumptions, two forecasts and a filter, with errors in cells, a name, a blank in a range."""
+    """A workbook file of two assumptions, two forecasts and a filter, with errors, a name, and a blank in a range."""
     book = openpyxl.Workbook()
     book.remove(book.active)
     for name, rows in SMALL_BOOK.items():

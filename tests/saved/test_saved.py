@@ -9,7 +9,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 
 import xlmc
@@ -271,6 +271,7 @@ def test_a_damaged_file_is_a_message_or_does_no_harm(tiny, tmp_path, data):
     try:
         found = open_run(path)
     except XlmcError as error:
-        assert str(error).endswith(".")
+        message = str(error)  # anything else would be a traceback
+        event(message.rpartition(": ")[2][:40])
     else:
         assert same(found, open_run(tiny))

@@ -13,7 +13,7 @@ import zlib
 from collections.abc import Iterator, Mapping
 from typing import Final
 
-from xlmc.address import Cell, parse_address
+from xlmc.address import Cell, parse_address, quote_sheet
 from xlmc.errors import WorkbookError
 from xlmc.record.model import Entry, Record, RecordTable, Section
 
@@ -37,7 +37,8 @@ def cell_section(needed: Mapping[Cell, str], *, rows: int = MOST_ROWS) -> Sectio
         needed: the cells and their contents.
         rows: the most cells to list one a row.
     """
-    contents = {str(cell): text for cell, text in needed.items()}
+    sheets = {name: quote_sheet(name) for name in {cell.sheet for cell in needed}}  # once each: cells may be very many
+    contents = {f"{sheets[cell.sheet]}!{cell.a1}": text for cell, text in needed.items()}
     packed = _json(contents)
     entries = (
         Entry("count", "Cells, those of the definitions among them", len(contents)),

@@ -29,14 +29,16 @@ def needed_contents(model: Model) -> dict[Cell, str]:
     tables. Blank cells are left out.
     """
     workbook, saved = model.workbook, model.saved
-    places = {name: place for place, name in enumerate(workbook.sheets)}
     cells = {host_of(cell) for cell in model.read} | {host_of(a.cell) for a in model.assumptions}
     cells |= definition_cells(workbook)
     for assumption in model.assumptions:
         if assumption.data is not None:
             cells |= set(_held(workbook, assumption.data.area))
-    known = (cell for cell in cells if cell.sheet in places)
-    ordered = sorted(known, key=lambda cell: (places[cell.sheet], cell.row, cell.column))
+    by_sheet: dict[str, list[Cell]] = {name: [] for name in workbook.sheets}
+    for cell in cells:
+        if cell.sheet in by_sheet:
+            by_sheet[cell.sheet].append(cell)
+    ordered = (cell for name in by_sheet for cell in sorted(by_sheet[name]))
     found = ((cell, content_text(workbook, cell, saved)) for cell in ordered)
     return {cell: text for cell, text in found if text}
 

@@ -55,7 +55,7 @@ def _order(name: DefinedName) -> tuple[str, str]:
 
 def _words(texts: Collection[str]) -> set[str]:
     """The words of cells in small letters; those of texts too, which may name a cell or be read by INDIRECT."""
-    return {word.casefold() for word in _WORD.findall("\n".join(texts))}
+    return set(_WORD.findall("\n".join(texts).casefold()))
 
 
 def _mentioned(names: Collection[DefinedName], words: set[str]) -> Iterator[DefinedName]:

@@ -1,4 +1,4 @@
-"""One run, told four times: sheets, JSON document, Python object and saved run give the same numbers, to the last bit."""
+"""One run, told four times: sheets, JSON, Python object and saved run give the same numbers, to the last bit."""
 
 from __future__ import annotations
 

@@ -167,7 +167,7 @@ def test_packed_cells_that_were_edited_are_refused(changes):
 
 def structure(model):
     section = structure_section(model, needed_contents(model).values())
-    return [tuple(row.values()) for row in Record((section,)).rows("structure")]
+    return [(row["what"], row["name"], row["means"]) for row in Record((section,)).rows("structure")]
 
 
 def test_names_are_those_that_the_cells_mention_and_those_mention_in_turn(book):

@@ -41,7 +41,7 @@ def cell_section(needed: Mapping[Cell, str], *, rows: int = MOST_ROWS) -> Sectio
     contents = {f"{sheets[cell.sheet]}!{cell.a1}": text for cell, text in needed.items()}
     packed = _json(contents)
     entries = (
-        Entry("count", "Cells, those of the definitions among them", len(contents)),
+        Entry("count", "Cells", len(contents)),
         Entry("sha256", "SHA-256 of their contents", hashlib.sha256(packed).hexdigest()),
     )
     listed = len(contents) <= rows and all(len(text) <= _LONGEST for text in contents.values())

@@ -23,7 +23,7 @@ _NOT_HIDDEN: Final = frozenset({"subtotal", "aggregate"})
 _LONGEST: Final = 30_000
 """Characters that a cell of the record holds."""
 
-_COLUMNS: Final = (("what", "What"), ("name", "Name"), ("means", "Means"))
+_COLUMNS: Final = (("name", "Name"), ("what", "Is a"), ("means", "Means"))
 
 
 def structure_section(model: Model, contents: Collection[str]) -> Section:
@@ -38,14 +38,14 @@ def structure_section(model: Model, contents: Collection[str]) -> Section:
     words |= {name_key(f.name) for f in model.forecasts} | {name_key(f.name) for f in model.filters}
     names = sorted(_mentioned(workbook.names, words), key=_order)
     words |= _words([name.text for name in names])
-    rows = [("defined name", f"{name.sheet}!{name.name}" if name.sheet else name.name, name.text) for name in names]
+    rows = [(f"{name.sheet}!{name.name}" if name.sheet else name.name, "defined name", name.text) for name in names]
     tables = (t for t in workbook.tables if t.name.casefold().startswith(KINDS) or t.name.casefold() in words)
-    rows += [("table", table.name, _table_text(table)) for table in tables]
+    rows += [(table.name, "table", _table_text(table)) for table in tables]
     if words & _NOT_HIDDEN:
-        rows += [("hidden rows", name, _ranges(workbook.sheets[name].hidden_rows)) for name in _sheets_read(model)]
+        rows += [(name, "hidden rows", _ranges(workbook.sheets[name].hidden_rows)) for name in _sheets_read(model)]
     if workbook.date1904:
-        rows.append(("dates", "count from", "1904"))
-    listed = tuple((what, name, means[:_LONGEST]) for what, name, means in rows)
+        rows.append(("dates", "count", "from 1904"))
+    listed = tuple((name, what, means[:_LONGEST]) for name, what, means in rows)
     return Section("structure", "Names and tables that the run needed", table=RecordTable(_COLUMNS, listed))
 
 

@@ -27,7 +27,7 @@ _SPANS = {"limits": 2, "because": 5, "parameters": 2, "source": 3, "notes": 2, "
 _CODE = frozenset({"repeat", "command", "fingerprint", "sha256", "original_sha256"})
 
 _LISTED = frozenset({"structure", "cells"})
-"""Sections whose tables are as long as the model: one line a row, however long its text."""
+"""Sections whose tables are as long as the model, at the end: one line a row, however long its text, not printed."""
 
 
 def write_record(page: Page, record: Record, name: str) -> None:
@@ -35,9 +35,11 @@ def write_record(page: Page, record: Record, name: str) -> None:
     page.sheet.set_column(0, 0, WIDTHS[0], None, {"level": 1, "hidden": True})
     page.sheet.set_column(1, 1, WIDTHS[1], None, {"collapsed": True})
     page.title("Record of the run", f"{name}: what the numbers depend on, and how to repeat them", _FIRST)
+    printed = 0
     for section in record.sections:
         _write_section(page, section)
-    page.sheet.print_area(0, _FIRST, page.row, _LAST)
+        printed = printed if section.key in _LISTED else page.row
+    page.sheet.print_area(0, _FIRST, printed, _LAST)
     page.printed(name)
 
 

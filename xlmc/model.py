@@ -255,6 +255,35 @@ class Model:
         parameters = [dynamic_parameters(stage, self._lowering, block) for stage in draws[1:]]
         return Sampler(seed, stages, self.groups, parameters, block, plan, FILLERS.get(engine))
 
+    def quantiles(self, probabilities: ArrayLike) -> dict[str, NDArray[np.float64]]:
+        """The quantiles of every live assumption, before filtering and whatever it is correlated with.
+
+        Where parameters vary, they are those with all other assumptions at their base values, or at their medians where
+        they have none.
+
+        Args:
+            probabilities: `(q,)`, between 0 and 1.
+
+        Returns:
+            Name of the assumption -> `(q,)`; NaN where the parameters are no distribution.
+        """
+        wanted = np.atleast_1d(np.asarray(probabilities, np.float64))
+        held: dict[str, NDArray[np.float64]] = {}
+        found: dict[str, NDArray[np.float64]] = {}
+        for place, stage in enumerate(self.scene.stages):
+            draws = [self._draws[a.name] for a in stage]
+            varying = dynamic_parameters(draws, self._lowering, 1)(held, 1) if place else {}
+            for assumption, draw in zip(stage, draws, strict=True):
+                values = np.append(wanted, 0.5)
+                draw.fill(values, varying)
+                found[assumption.name] = values[:-1]
+                held[draw.name] = values[-1:] if assumption.base is None else np.full(1, assumption.base)
+        return found
+
+    def program_of(self, filters: Sequence[Target]) -> Program:
+        """Other targets in place of the filters, and the forecasts, compiled for the engine `numpy`."""
+        return ENGINES["numpy"](self._lowering, filters, self._forecast_targets, self.fallible)
+
     @property
     def _filter_targets(self) -> list[Target]:
         return [Target(condition(filter_), filter_.cell) for filter_ in self.filters]

@@ -280,6 +280,16 @@ class Simulation:
 
         save(self, Path(path))
 
+    def save_page(self, path: str | Path) -> None:
+        """Write the results as one page for a browser, which needs no network.
+
+        Raises:
+            WorkbookError: the file does not end in `.html`, or cannot be written.
+        """
+        from xlmc.report.html import save_page
+
+        save_page(self, Path(path))
+
     def keep(self, path: str | Path) -> None:
         """Save the run in a file that ends in `.xlmcrun`; `xlmc.open_run` gives it back.
 

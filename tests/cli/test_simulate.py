@@ -225,3 +225,23 @@ def test_too_few_accepted_trials_in_a_replicate_are_exit_code_1(xlmc, book):
     outcome = xlmc("simulate", book, "-n", 5_000, "--sampling", "lhs")
     assert outcome.code == 1
     assert "trials were accepted in 16 replicates, fewer than 160" in " ".join(outcome.err.split())
+
+
+def test_html_writes_the_page_beside_the_workbook(xlmc, book, tmp_path):
+    outcome = xlmc("simulate", book, "-n", 5_000, "--html", "page.html")
+    assert outcome.code == 0
+    assert "The page is page.html" in outcome.out
+    page = (tmp_path / "page.html").read_text("utf-8")
+    assert page.startswith("<!doctype html>")
+    assert "Chevrolet delta-V" in page
+    assert (tmp_path / "case-results.xlsx").exists()
+
+
+@pytest.mark.parametrize(
+    ("path", "why"), [("page.xlsx", "must end in .html"), ("none/page.html", "there is no folder")]
+)
+def test_a_page_that_cannot_be_written_is_refused_before_the_run(xlmc, book, tmp_path, path, why):
+    outcome = xlmc("simulate", book, "-n", 5_000, "--html", path)
+    assert outcome.code == 2
+    assert why in outcome.err
+    assert not (tmp_path / "case-results.xlsx").exists()

@@ -13,6 +13,10 @@ from xlmc.report import save
 from xlmc.workbook.package import read_parts
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/intersection.xlsx"
+SHEETS = [
+    *("Results", "Charts", "Statistics", "Certainty", "Pairs", "Assumptions"),
+    *("Trials", "Bins", "Curves", "Record"),
+]
 MAY_CHANGE = {
     "[Content_Types].xml",
     "xl/workbook.xml",
@@ -37,7 +41,7 @@ def test_results_stand_behind_the_users_sheets(case, book, tmp_path):
     path = save(case, tmp_path / "out.xlsx", command="xlmc simulate scene.xlsx")
     names = openpyxl.load_workbook(path).sheetnames
     own = openpyxl.load_workbook(book).sheetnames
-    assert names == [*own, "Results", "Charts", "Statistics", "Assumptions", "Trials", "Bins", "Record"]
+    assert names == [*own, *SHEETS]
     assert book.read_bytes() == before
 
 

@@ -37,7 +37,7 @@ def test_holds_what_the_single_functions_say(columns):
     assert everything.trials == 400
     for name in SINGLE:
         assert getattr(everything, name) == getattr(xs, name)(*columns), name
-    assert everything.percentiles == xs.percentiles(columns[0], range(0, 101, 10), *columns[1:])
+    assert everything.percentiles == xs.percentiles(columns[0], range(0, 101, 5), *columns[1:])
     assert everything.central == xs.central_interval(columns[0], 0.51, *columns[1:])
     assert everything.probability_above == xs.probability_above(columns[0], 3.0, *columns[1:])
 
@@ -81,7 +81,7 @@ def estimates_of(description):
 @pytest.mark.parametrize("columns", [([],), ([], []), ([], None, []), ([1.0, 2.0], [0.0, 0.0])])
 def test_no_trials_are_no_error(columns):
     everything = list(estimates_of(xs.describe(*columns, threshold=1.0)))
-    assert len(everything) == 12 + 11 + 2 + 1
+    assert len(everything) == 12 + 21 + 2 + 1
     assert all(math.isnan(each.value) and each.error is each.interval is None and each.n == 0 for each in everything)
 
 

@@ -8,7 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from xlmc.statistics import mean, probability_above, proportion, replicated_proportion, share
+from xlmc.statistics import (
+    mean,
+    probability_above,
+    probability_between,
+    proportion,
+    replicated_proportion,
+    share,
+)
 
 EXAMPLES = settings(max_examples=50, deadline=None)
 
@@ -151,3 +158,21 @@ def test_one_replicate_gives_a_value_without_an_error():
     estimate = replicated_proportion([39], [40])
     assert (estimate.value, estimate.error, estimate.interval) == (0.975, None, None)
     assert share([True, False], replicate=[1, 1]).error is None
+
+
+@pytest.mark.parametrize("replicated", [False, True])
+def test_the_share_between_is_the_rest_of_those_below_and_above(replicated):
+    x = np.random.default_rng(3).normal(0.0, 1.0, 2000)
+    replicate = np.arange(2000) // 125 if replicated else None
+    found = probability_between(x, -0.5, np.inf, replicate=replicate)
+    below = probability_above(-x, 0.5, replicate=replicate)
+    assert found.value == pytest.approx(1.0 - below.value, abs=1e-12)
+    assert found.error == pytest.approx(below.error, rel=1e-9)
+    inside = share((x >= -0.5) & (x <= 0.3), replicate=replicate)
+    assert probability_between(x, -0.5, 0.3, replicate=replicate) == inside
+
+
+def test_ends_belong_to_the_range_and_a_range_runs_upwards():
+    assert probability_between([1.0, 2.0, 2.0, 3.0], 2.0, 2.0).value == 0.5
+    with pytest.raises(ValueError, match="cannot reach from 2 to 1"):
+        probability_between([1.0], 2, 1)

@@ -18,6 +18,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 _PATH = click.Path(path_type=Path)
 _OPTIONS = (
+    click.option("--html", type=_PATH, metavar="PAGE.html", help="Write the results as one web page."),
     click.option("--json", "json_path", type=_PATH, metavar="FILE.json", help="Write all results as JSON."),
     click.option(
         "--extract",
@@ -30,7 +31,7 @@ _OPTIONS = (
 
 
 def output_options(command: F) -> F:
-    """Adds the options; the command is given `json_path` and `extract`."""
+    """Adds the options; the command is given `html`, `json_path` and `extract`."""
     for option in reversed(_OPTIONS):
         command = option(command)
     return command
@@ -42,16 +43,18 @@ class Outputs:
 
     Attributes:
         run: a saved run.
+        html: a page for a browser.
         json: all results.
         extract: the accepted trials.
     """
 
     run: Path | None = None
+    html: Path | None = None
     json: Path | None = None
     extract: tuple[Path, ...] = ()
 
     def __bool__(self) -> bool:
-        return self.run is not None or self.json is not None or bool(self.extract)
+        return bool(self._paths)
 
     def check(self) -> None:
         """Refuse before a run what could not be written after it.
@@ -64,6 +67,10 @@ class Outputs:
             from xlmc.saved.keeping import check_run_path
 
             check_run_path(self.run)
+        if self.html is not None:
+            from xlmc.report.html import check_page_path
+
+            check_page_path(self.html)
         if self.json is not None:
             from xlmc.report.document import check_json_path
 
@@ -79,13 +86,16 @@ class Outputs:
 
     @property
     def _paths(self) -> tuple[Path, ...]:
-        return tuple(path for path in (self.run, self.json, *self.extract) if path is not None)
+        return tuple(path for path in (self.run, self.html, self.json, *self.extract) if path is not None)
 
     def write(self, run: Simulation) -> None:
         """Write them all, and say where they are."""
         if self.run is not None:
             run.keep(self.run)
             click.echo(f"The run is saved in {self.run}")
+        if self.html is not None:
+            run.save_page(self.html)
+            click.echo(f"The page is {self.html}")
         if self.json is not None:
             run.save_json(self.json)
             click.echo(f"Results as JSON are in {self.json}")

@@ -1,4 +1,4 @@
-"""`xlmc report`: result sheets, JSON and tables of a saved run, without simulating."""
+"""`xlmc report`: result sheets, page, JSON and tables of a saved run, without simulating."""
 
 from __future__ import annotations
 
@@ -23,7 +23,14 @@ NOT_TO_BE_USED = 1
 )
 @output_options
 @click.option("--quiet", is_flag=True, help="Print no notes.")
-def report(run: Path, output: Path | None, json_path: Path | None, extract: tuple[Path, ...], quiet: bool) -> None:
+def report(
+    run: Path,
+    output: Path | None,
+    html: Path | None,
+    json_path: Path | None,
+    extract: tuple[Path, ...],
+    quiet: bool,
+) -> None:
     """Write the results of a saved run again, without simulating: the same as when it was run."""
     from xlmc.cli.printing import notices
     from xlmc.cli.simulate import show_run
@@ -31,7 +38,7 @@ def report(run: Path, output: Path | None, json_path: Path | None, extract: tupl
     from xlmc.saved import open_run
     from xlmc.workbook.writer import refuse_if_open
 
-    others = Outputs(json=json_path, extract=extract)
+    others = Outputs(html=html, json=json_path, extract=extract)
     others.check()
     found = open_run(run)
     if not quiet:

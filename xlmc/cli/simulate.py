@@ -72,6 +72,7 @@ def simulate(
     output: Path | None,
     in_place: bool,
     save_run: Path | None,
+    html: Path | None,
     json_path: Path | None,
     extract: tuple[Path, ...],
     quiet: bool,
@@ -89,7 +90,7 @@ def simulate(
         raise click.UsageError("--in-place and --output exclude each other.")
     target = book if in_place else output or book.with_name(f"{book.stem}-results{book.suffix}")
     refuse_if_open(target)
-    others = Outputs(save_run, json_path, extract)
+    others = Outputs(save_run, html, json_path, extract)
     others.check()
     model = load(book)
     if not quiet:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from xlmc.report.page import Page
     from xlmc.simulation import Simulation
 
-__all__ = ["HEADER", "WIDTHS", "write_assumptions"]
+__all__ = ["HEADER", "MEANING", "MOVED", "NARROWED", "STRATIFIED", "WIDTHS", "write_assumptions", "write_correlations"]
 
 HEADER = 3
 """The row of the headings, counted from 0."""
@@ -31,16 +31,16 @@ WIDTHS = (36, 12, 44, 10, 8, *[9] * _STATISTICS)
 _READABLE = 10
 """The column that paragraphs reach to, so that they can be read without scrolling."""
 
-_MOVED, _NARROWED = 0.5, 0.8
+MOVED, NARROWED = 0.5, 0.8
 
-_MEANING = (
+MEANING = (
     "Filters keep only the combinations that agree with the evidence. That is conditioning: an assumption that the "
     "evidence speaks about is distributed differently among the accepted trials, although its range is the same. "
-    f"Marked: a mean that moved by {_MOVED:g} standard deviations or more; a standard deviation that shrank to "
-    f"{_NARROWED:g} of what it was or less."
+    f"Marked: a mean that moved by {MOVED:g} standard deviations or more; a standard deviation that shrank to "
+    f"{NARROWED:g} of what it was or less."
 )
 
-_STRATIFIED = (
+STRATIFIED = (
     "Before filtering ± is that of independent trials: the draws of these samples are more even than that. Of the "
     "accepted draws it comes from the differences between replicates."
 )
@@ -59,13 +59,13 @@ def write_assumptions(page: Page, simulation: Simulation) -> None:
     page.row = HEADER
     page.table(_headers(), [line for a in simulation.model.assumptions for line in _lines(simulation, a)])
     page.sheet.freeze_panes(HEADER + 1, 1)
-    _write_correlations(page, simulation)
+    write_correlations(page, simulation)
     page.heading("What this shows")
-    page.wide(_MEANING, "paragraph", _READABLE)
+    page.wide(MEANING, "paragraph", _READABLE)
     early = max((values.size for values in simulation.prior.values()), default=0)
     page.wide(f"Before filtering: the first {early:,} trials. ± is the standard error.", "paragraph", _READABLE)
     if simulation.plan.size:
-        page.wide(_STRATIFIED, "paragraph", _READABLE)
+        page.wide(STRATIFIED, "paragraph", _READABLE)
     if simulation.kept_inputs < simulation.accepted:
         kept = f"Accepted: the first {simulation.kept_inputs:,} of {simulation.accepted:,} accepted trials."
         page.wide(kept, "paragraph", _READABLE)
@@ -102,8 +102,8 @@ def _accepted(found: Conditioning) -> list[Shown]:
         cells.text("accepted", "second"),
         Shown(found.accepted.trials, cells.count(0).format, "second number"),
         *_marginal(found.accepted, "second number", "second error"),
-        *_change(found.shift, abs(found.shift.value) >= _MOVED),
-        *_change(found.narrowing, found.narrowing.value <= _NARROWED),
+        *_change(found.shift, abs(found.shift.value) >= MOVED),
+        *_change(found.narrowing, found.narrowing.value <= NARROWED),
     ]
 
 
@@ -120,7 +120,8 @@ def _blank(columns: int, look: str = "number") -> list[Shown]:
     return [Shown(None, look=look)] * columns
 
 
-def _write_correlations(page: Page, simulation: Simulation) -> None:
+def write_correlations(page: Page, simulation: Simulation) -> None:
+    """Write the rank correlations, where there are any."""
     met = correlations_met(simulation)
     if not met:
         return

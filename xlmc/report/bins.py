@@ -23,13 +23,17 @@ HEADER = 4
 TABLE = 6
 """Columns of a table; a narrow one follows."""
 
+_ON_A_PAGE, _SCALE = 2, 80
+"""Tables side by side, and the percentage at which so many fit."""
+
 
 def write_bins(page: Page, figures: Sequence[Figure], name: str) -> list[BinsAt]:
     """Write the sheet with the tables of bins side by side; the place of each is returned."""
     page.title("Bins of the histograms", f"{name}: the numbers that the charts draw")
     places = [_write_table(page, figure) for figure in figures]
     page.sheet.freeze_panes(HEADER + 1, 0)
-    page.printed(name, repeat=HEADER)
+    breaks = [place.left for place in places[_ON_A_PAGE::_ON_A_PAGE]]
+    page.printed(name, repeat=HEADER, repeat_from=HEADER - 2, scale=_SCALE, columns=breaks)
     return places
 
 

@@ -7,7 +7,19 @@ from datetime import datetime
 from typing import TYPE_CHECKING, Final
 
 from xlmc.record import make_record
-from xlmc.report import assumptions, bins, charts, record_sheet, results, statistics_sheet, trials
+from xlmc.report import (
+    assumptions,
+    bins,
+    certainty_sheet,
+    charts,
+    pairs_sheet,
+    record_sheet,
+    results,
+    statistics_sheet,
+    trials,
+)
+from xlmc.report.curves import Curves
+from xlmc.report.dependence_sheets import write_dependence
 from xlmc.report.figure import figures_of
 from xlmc.report.page import Page
 from xlmc.report.styles import Styles
@@ -22,7 +34,8 @@ _CREATED: Final = datetime(2000, 1, 1)
 
 
 def build_sheets(simulation: Simulation, *, command: str | None = None, rows: int = trials.TRIAL_ROWS) -> bytes:
-    """The result sheets of a run: Results, Charts, Statistics, Assumptions, Trials, Bins, Record.
+    """The result sheets of a run: Results, Charts, Statistics, Certainty, Pairs, Assumptions, Sensitivity, Filter
+    limits, Trials, Bins, Curves, Record.
 
     Args:
         simulation: the finished run.
@@ -44,10 +57,17 @@ def build_sheets(simulation: Simulation, *, command: str | None = None, rows: in
         results.write_results(page("Results", results.WIDTHS), simulation)
         drawing = page("Charts", charts.WIDTHS)
         statistics_sheet.write_statistics(page("Statistics", statistics_sheet.WIDTHS), simulation)
+        certain = page("Certainty", certainty_sheet.WIDTHS)
+        together = page("Pairs", pairs_sheet.WIDTHS)
         assumptions.write_assumptions(page("Assumptions", assumptions.WIDTHS), simulation)
-        trials.write_trials(page("Trials", trials.WIDTHS), simulation, rows)
+        write_dependence(book, page, simulation)
+        shown = trials.write_trials(page("Trials", trials.WIDTHS), simulation, rows)
+        certainty_sheet.write_certainty(certain, simulation, shown)
         figures, name = figures_of(simulation), simulation.model.workbook.name
         places = bins.write_bins(page("Bins", ()), figures, name)
-        charts.write_charts(drawing, book, simulation, figures, places)
+        curves = Curves(page("Curves", ()), name)
+        charts.write_charts(drawing, book, simulation, figures, places, curves)
+        pairs_sheet.write_pairs(together, book, simulation, curves, shown)
+        curves.finish()
         record_sheet.write_record(page("Record", record_sheet.WIDTHS), make_record(simulation, command), name)
     return packed.getvalue()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ from xlmc.report.summary import SummaryRow, estimate_text, percent, summarise
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
 
-__all__ = ["Figure", "figures_of"]
+__all__ = ["Figure", "figures_of", "varying"]
 
 _LONGEST_NAME = 90
 
@@ -59,3 +60,8 @@ def figures_of(simulation: Simulation) -> list[Figure]:
         if bins is not None:
             found.append(Figure(len(found) + 1, row, bins))
     return found
+
+
+def varying(figures: Sequence[Figure]) -> list[Figure]:
+    """Without forecasts that are the same in all trials, whose curve would be a step."""
+    return [figure for figure in figures if figure.answer.standard_deviation.value > 0.0]

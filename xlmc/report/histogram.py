@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from xlmc.scratch import parts, release
 from xlmc.statistics.sample import Sample, Values
 
-__all__ = ["Histogram", "histogram"]
+__all__ = ["Histogram", "histogram", "multiples"]
 
 Floats = NDArray[np.float64]
 
@@ -31,7 +31,10 @@ _FEWEST, _MOST = 10, 60
 _ROUND = (1.0, 2.0, 2.5, 5.0)
 _ROUND_LABELS = (1.0, 2.0, 5.0)
 _STEPS = (1, 2, 4, 5, 10, 20)
-_MOST_LABELS = 12
+_MOST_LABELS, _FEWEST_LABELS = 12, 4
+_LINE, _POWER = 84, 7
+"""Characters that an axis has room for, and of a label with a power of ten."""
+
 _FENCE, _VAST = 5.0, 1e300
 _MOST_DECIMALS, _LONGEST = 6, 1e7
 """Beyond these a label has a power of ten."""
@@ -63,13 +66,18 @@ class Histogram:
 
     @property
     def upper_edges(self) -> Floats:
-        return _multiples(self.width, round(float(self.edges[0] / self.width)) + 1, self.edges.size)
+        return multiples(self.width, round(float(self.edges[0] / self.width)) + 1, self.edges.size)
 
     @property
     def labels(self) -> list[str]:
         """The lower end in text for every `step`-th bin, nothing for the others."""
         decimals = _decimals(self.width * self.step)
         return ["" if i % self.step else self._text(edge, decimals) for i, edge in enumerate(self.edges)]
+
+    @property
+    def last_label(self) -> str:
+        """The upper end of the last bin in text; bins fill whole steps, so that it is due a label."""
+        return self._text(float(self.upper_edges[-1]), _decimals(self.width * self.step))
 
     @property
     def edge_format(self) -> str:
@@ -94,9 +102,9 @@ def histogram(values: Values, low: float, high: float) -> Histogram | None:
     first, last = _shown(x)
     width = _width(x, first, last)
     start, stop = math.floor(first / width), math.floor(last / width) + 1
-    step = _step(width, stop - start)
+    step = _step(width, stop - start, _longest_label(width, start, stop))
     start, stop = step * math.floor(start / step), step * math.ceil(stop / step)
-    edges = _multiples(width, start, stop - start + 1)
+    edges = multiples(width, start, stop - start + 1)
     reached = np.searchsorted(x, edges, side="left")
     central = reached.clip(np.searchsorted(x, low, side="left"), np.searchsorted(x, high, side="right"))
     release(x)
@@ -164,15 +172,24 @@ def _scaled(factor: float, like: float) -> float:
     return float(f"{factor}e{f'{like:.6e}'.partition('e')[2]}")  # 0.1, not 0.1 and a rounding error
 
 
-def _step(width: float, bins: int) -> int:
-    """The fewest bins from one label to the next that keep labels round and apart."""
+def _step(width: float, bins: int, longest: int) -> int:
+    """The fewest bins from one label of so many characters to the next that keep labels round and apart."""
+    most = min(_MOST_LABELS, max(_FEWEST_LABELS, _LINE // (longest + 2)))
     for step in _STEPS:
-        if bins <= step * _MOST_LABELS and _mantissa(width * step) in _ROUND_LABELS:
+        if bins <= step * most and _mantissa(width * step) in _ROUND_LABELS:
             return step
     return _STEPS[-1]
 
 
-def _multiples(width: float, first: int, count: int) -> Floats:
+def _longest_label(width: float, first: int, last: int) -> int:
+    """Characters of the longest edge in full, or as many as a power of ten takes."""
+    largest = max(abs(first), abs(last)) * width
+    if _decimals(width) > _MOST_DECIMALS or largest >= _LONGEST:
+        return _POWER
+    return len(f"{-largest if first < 0 else largest:.{_decimals(width)}f}")
+
+
+def multiples(width: float, first: int, count: int) -> Floats:
     """(count,) multiples of a round width, as people write them: 0.3, not 0.30000000000000004."""
     return np.array([float(f"{multiple * width:.13g}") for multiple in range(first, first + count)])
 

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from xlmc.report.chart_style import Reference, across, finish, upwards
 from xlmc.report.histogram import Histogram
-from xlmc.report.styles import DARK, GRID, INK, LIGHT
+from xlmc.report.styles import DARK, LIGHT
 
 if TYPE_CHECKING:
     from xlsxwriter.chart_column import ChartColumn
     from xlsxwriter.workbook import Workbook
 
-__all__ = ["COUNTS", "SIZE", "BinsAt", "histogram_chart"]
+__all__ = ["COUNTS", "BinsAt", "histogram_chart"]
 
 COUNTS = (3, 4)
-SIZE = (560, 360)
-"""In pixels."""
-
-_AXIS: dict[str, Any] = {"color": "#8994A1", "width": 0.75}
-_FONT: dict[str, Any] = {"size": 9, "color": INK}
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,11 +33,11 @@ class BinsAt:
     last: int
     left: int
 
-    def cell(self, row: int, column: int = 0) -> list[str | int]:
+    def cell(self, row: int, column: int = 0) -> Reference:
         """A reference to one cell, its column counted from `left`."""
         return [self.sheet, row, self.left + column]
 
-    def column(self, column: int) -> list[str | int]:
+    def column(self, column: int) -> Reference:
         """A reference to the bins of one column."""
         return [self.sheet, self.header + 1, self.left + column, self.last, self.left + column]
 
@@ -60,35 +56,8 @@ def histogram_chart(book: Workbook, at: BinsAt, bins: Histogram) -> ChartColumn:
                 "gap": 4,
             }
         )
-    chart.set_title({"name": at.cell(at.header - 2), "name_font": {"size": 12, "bold": True, "color": INK}})
-    chart.set_x_axis(_across(at, bins))
-    chart.set_y_axis(_upwards())
-    chart.set_legend({"position": "bottom", "font": _FONT})
-    chart.set_size({"width": SIZE[0], "height": SIZE[1]})
-    chart.set_chartarea({"border": {"color": GRID}})
+    marks = {"interval_unit": bins.step, "interval_tick": bins.step}
+    chart.set_x_axis(across(at.cell(at.header - 1), **marks))
+    chart.set_y_axis(upwards("Accepted trials", min=0))
+    finish(chart, at.cell(at.header - 2))
     return chart
-
-
-def _across(at: BinsAt, bins: Histogram) -> dict[str, Any]:
-    return {
-        "name": at.cell(at.header - 1),
-        "name_font": {**_FONT, "bold": False},
-        "num_font": _FONT,
-        "interval_unit": bins.step,
-        "interval_tick": bins.step,
-        "label_position": "low",
-        "line": _AXIS,
-        "major_tick_mark": "outside",
-    }
-
-
-def _upwards() -> dict[str, Any]:
-    return {
-        "name": "Accepted trials",
-        "name_font": {**_FONT, "bold": False, "rotation": -90},
-        "num_font": _FONT,
-        "num_format": "#,##0",
-        "min": 0,
-        "line": {"none": True},
-        "major_gridlines": {"visible": True, "line": {"color": GRID, "width": 0.5}},
-    }

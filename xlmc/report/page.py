@@ -1,4 +1,4 @@
-"""A result sheet being written, from the top down. It writes no formula, and no number that is none."""
+"""A result sheet being written, from the top down. It writes no number that is none, and texts are never formulas."""
 
 from __future__ import annotations
 
@@ -53,6 +53,19 @@ class Page:
         else:
             self.sheet.write_string(row, column, _in_words(value), style)
 
+    def numbers(self, row: int, column: int, values: Iterable[float], number_format: str, look: str = "number") -> None:
+        """Write a column of numbers that look alike, from a row on down: what `put` does for each, in less time."""
+        style, write = self._styles(look, number_format), self.sheet.write_number
+        for place, value in enumerate(values, row):
+            if math.isfinite(value):
+                write(place, column, value, style)
+            else:
+                self.sheet.write_string(place, column, _in_words(value), style)
+
+    def formula(self, row: int, column: int, formula: str, shown: Shown) -> None:
+        """Write one cell whose value, shown until somebody changes what it depends on, is known."""
+        self.sheet.write_formula(row, column, formula, self._styles(shown.look, shown.format), shown.value)
+
     def line(self, cells: Iterable[Shown], column: int = 0) -> None:
         """Write cells side by side, in a row as high as their texts need, and go to the next row."""
         cells = list(cells)
@@ -96,26 +109,38 @@ class Page:
         self.put(self.row + 1, column, Shown(value, look="heading"))
         self.row += 2
 
-    def printed(self, name: str, *, repeat: int | None = None, scale: int = 100, breaks: Sequence[int] = ()) -> None:
-        """Make it print one page wide.
+    def printed(
+        self,
+        name: str,
+        *,
+        repeat: int | None = None,
+        repeat_from: int | None = None,
+        scale: int = 100,
+        breaks: Sequence[int] = (),
+        columns: Sequence[int] = (),
+    ) -> None:
+        """Make it print, one page wide unless it is told the columns to break at.
 
         Args:
             name: of the workbook, for the foot of the page.
             repeat: the row to stand on top of every page, counted from 0.
-            scale: in percent, where there are breaks: Excel heeds none on pages that it fits to a width.
+            repeat_from: the first of several such rows.
+            scale: in percent; 100 without breaks fits the sheet to the page's width, where Excel heeds no break.
             breaks: the rows that begin a new page, counted from 0.
+            columns: the columns that do.
         """
         self.sheet.set_landscape()
-        if breaks:
+        if breaks or columns or scale != 100:
             self.sheet.set_print_scale(scale)
             self.sheet.set_h_pagebreaks(list(breaks))
+            self.sheet.set_v_pagebreaks(list(columns))
             self.sheet.center_horizontally()
         else:
             self.sheet.fit_to_pages(1, 0)
         self.sheet.set_margins(left=0.5, right=0.5, top=0.6, bottom=0.7)
         self.sheet.set_footer(f"&L{name.replace('&', '&&')[:120]}&C&A&RPage &P of &N")
         if repeat is not None:
-            self.sheet.repeat_rows(repeat)
+            self.sheet.repeat_rows(repeat if repeat_from is None else repeat_from, repeat)
 
     def _lines(self, shown: Shown, first: int, last: int) -> int:
         """How many lines a text takes, of letters somewhat narrower than the digits that widths are counted in."""

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from xlmc.report.page import Page
     from xlmc.simulation import Simulation
 
-__all__ = ["LAST", "WIDTHS", "write_results"]
+__all__ = ["LAST", "WIDTHS", "base_sentences", "range_sentences", "write_counts", "write_results"]
 
 WIDTHS = (30, 9, *[10] * 16)
 LAST = 11
@@ -34,7 +34,7 @@ def write_results(page: Page, simulation: Simulation) -> None:
     if simulation.stopped.interrupted:
         page.wide(f"Fewer trials than were asked for: {simulation.stopped.sentence}", "warning", LAST)
     _write_answers(page, simulation)
-    _write_trials(page, simulation)
+    write_counts(page, simulation)
     write_accounting(page, simulation, LAST)
     _write_notices(page, simulation)
     page.printed(book)
@@ -48,8 +48,8 @@ def _write_answers(page: Page, simulation: Simulation) -> None:
     for sentence in (
         sampling_sentence(simulation),
         ERROR_SENTENCE,
-        *_range_sentences(rows),
-        *_base_sentences(simulation),
+        *range_sentences(rows),
+        *base_sentences(simulation),
     ):
         page.wide(sentence, "remark", LAST)
 
@@ -84,7 +84,8 @@ def _above(row: SummaryRow) -> list[Shown]:
     return [cells.exact(row.threshold), *_share(row.above)]
 
 
-def _range_sentences(rows: Sequence[SummaryRow]) -> list[str]:
+def range_sentences(rows: Sequence[SummaryRow]) -> list[str]:
+    """What a central range is."""
     shares = {row.share for row in rows}
     if len(shares) != 1:
         return ["Central ranges leave out as many accepted trials below as above."]
@@ -93,7 +94,8 @@ def _range_sentences(rows: Sequence[SummaryRow]) -> list[str]:
     return [f"The {percent(share)} range is central: {outside} of the accepted trials lie below it, {outside} above."]
 
 
-def _base_sentences(simulation: Simulation) -> list[str]:
+def base_sentences(simulation: Simulation) -> list[str]:
+    """What the base case is, and which filters it would not pass."""
     found = base_case(simulation)
     if found is None:
         return ["There is no base case: the cell of an assumption is blank."]
@@ -103,7 +105,8 @@ def _base_sentences(simulation: Simulation) -> list[str]:
     return [f"{meaning}. As a trial it would be rejected by: {', '.join(found.rejected_by)}."]
 
 
-def _write_trials(page: Page, simulation: Simulation) -> None:
+def write_counts(page: Page, simulation: Simulation) -> None:
+    """Write how many trials were run, accepted and lost."""
     page.heading("Trials")
     total = simulation.trials
     lost = proportion(min(simulation.error_trials, total), total)

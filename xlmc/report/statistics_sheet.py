@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from xlmc.simulation import ForecastResult, Simulation
     from xlmc.statistics import Estimate
 
-__all__ = ["WIDTHS", "write_statistics"]
+__all__ = ["WIDTHS", "write_forecast", "write_statistics"]
 
 _BLOCK = (26, 9, 11, 10, 10, 10)
 WIDTHS = (*_BLOCK, 2, 18, 11, 10, 10, 10)
 _RIGHT = len(_BLOCK) + 1
 _LAST = len(WIDTHS) - 1
-_ON_A_PAGE, _SCALE = 2, 66
-"""Forecasts, and the percentage at which so many fit."""
+_SCALE = 76
+"""The percentage at which one forecast fits on a page."""
 
 _ENDS = ["Value", "±", "95 % from", "to"]
 
@@ -33,13 +33,14 @@ def write_statistics(page: Page, simulation: Simulation) -> None:
     page.wide(ERROR_SENTENCE, "remark", _LAST)
     breaks = []
     for number, result in enumerate(simulation.results.values()):
-        if number and number % _ON_A_PAGE == 0:
+        if number:
             breaks.append(page.row)
-        _write_forecast(page, result)
+        write_forecast(page, result)
     page.printed(name, breaks=breaks, scale=_SCALE)
 
 
-def _write_forecast(page: Page, result: ForecastResult) -> None:
+def write_forecast(page: Page, result: ForecastResult) -> None:
+    """Write everything about one forecast: its statistics, and its percentiles beside them."""
     page.heading(result.definition.name)
     top = page.row
     page.table(["Statistic", "Units", *_ENDS], _statistics(result))

@@ -13,7 +13,16 @@ from xlmc.statistics import Estimate, format_estimate
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
 
-__all__ = ["ERROR_SENTENCE", "SummaryRow", "estimate_text", "percent", "range_heading", "summarise", "summary_text"]
+__all__ = [
+    "ERROR_SENTENCE",
+    "SummaryRow",
+    "estimate_text",
+    "percent",
+    "range_heading",
+    "share_text",
+    "summarise",
+    "summary_text",
+]
 
 ERROR_SENTENCE = (
     "± is the standard error that comes from a limited number of trials (Monte Carlo error): infinitely many trials "
@@ -92,7 +101,7 @@ def _line(row: SummaryRow, heading: str) -> dict[str, str]:
         "Range": "" if heading != MIXED else percent(row.share),
         "Base case": "" if row.base is None else f"{row.base:.6g}",
         "Threshold": threshold,
-        "P(above)": "" if row.above is None else _percent_text(row.above),
+        "P(above)": "" if row.above is None else share_text(row.above),
     }
 
 
@@ -115,7 +124,8 @@ def estimate_text(estimate: Estimate) -> str:
     return "" if math.isnan(estimate.value) else format_estimate(estimate.value, estimate.error)
 
 
-def _percent_text(estimate: Estimate) -> str:
+def share_text(estimate: Estimate) -> str:
+    """A share in percent, `1.771 ± 0.029 %`; empty where there is no number."""
     if math.isnan(estimate.value) or estimate.error is None:
         return ""
     return f"{format_estimate(100.0 * estimate.value, 100.0 * estimate.error)} %"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,12 +10,13 @@ from numpy.typing import NDArray
 
 from xlmc.report import number_format
 from xlmc.report.cells import Shown
+from xlmc.report.chart_style import Reference
 
 if TYPE_CHECKING:
     from xlmc.report.page import Page
     from xlmc.simulation import Simulation
 
-__all__ = ["HEADER", "MOST_ROWS", "TRIAL_ROWS", "WIDTHS", "write_trials"]
+__all__ = ["HEADER", "MOST_ROWS", "TRIAL_ROWS", "WIDTHS", "TrialsAt", "write_trials"]
 
 TRIAL_ROWS = 10_000
 """Accepted trials on the sheet, unless asked otherwise: more make the file slow to open."""
@@ -29,7 +31,31 @@ MOST_ROWS = 1_048_576 - HEADER - 1
 _WIDTH = 13
 
 
-def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> None:
+@dataclass(frozen=True, slots=True)
+class TrialsAt:
+    """Where the trials stand.
+
+    Attributes:
+        sheet: its name.
+        shown: trials on it, the first accepted ones.
+        first_forecast: the column of the first forecast, counted from 0; the others follow.
+    """
+
+    sheet: str
+    shown: int
+    first_forecast: int
+
+    def heading(self, place: int) -> Reference:
+        """The heading of a forecast, its name and units."""
+        return [self.sheet, HEADER, self.first_forecast + place]
+
+    def column(self, place: int, most: int | None = None) -> Reference:
+        """The cells of a forecast, or its first `most`; there is none without trials."""
+        column, rows = self.first_forecast + place, self.shown if most is None else most
+        return [self.sheet, HEADER + 1, column, HEADER + rows, column]
+
+
+def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> TrialsAt:
     """Write the sheet with the first `rows` accepted trials, and say so where there are more."""
     shown = max(0, min(rows, simulation.kept_inputs, MOST_ROWS))
     name = simulation.model.workbook.name
@@ -46,6 +72,7 @@ def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> 
     page.sheet.freeze_panes(HEADER + 1, 1)
     page.sheet.autofilter(HEADER, 0, HEADER + shown, len(columns))
     page.printed(name, repeat=HEADER)
+    return TrialsAt(page.sheet.get_name(), shown, 1 + len(simulation.model.live))
 
 
 def _said(shown: int, accepted: int) -> Shown:
@@ -71,12 +98,9 @@ def _heading(name: str, units: str, look: str) -> Shown:
 
 
 def _write_values(page: Page, index: NDArray[np.int64], columns: list[NDArray[np.float64]]) -> None:
-    for row, trial in enumerate(index.tolist(), page.row):
-        page.put(row, 0, Shown(trial, "0", "trial"))
+    page.numbers(page.row, 0, index.tolist(), "0", "trial")
     for place, values in enumerate(columns, 1):
-        digits = number_format.exact(_spread(values))
-        for row, value in enumerate(values.tolist(), page.row):
-            page.put(row, place, Shown(value, digits))
+        page.numbers(page.row, place, values.tolist(), number_format.exact(_spread(values)))
     page.row += index.size
 
 

@@ -11,7 +11,13 @@ from xlmc.statistics.estimate import Estimate
 from xlmc.statistics.extremes import maximum, minimum, range_width
 from xlmc.statistics.inverse import inverse_proportion
 from xlmc.statistics.mode import mode
-from xlmc.statistics.proportions import probability_above, proportion, replicated_proportion, share
+from xlmc.statistics.proportions import (
+    probability_above,
+    probability_between,
+    proportion,
+    replicated_proportion,
+    share,
+)
 from xlmc.statistics.quantiles import central_interval, median, percentile, percentiles
 from xlmc.statistics.sample import Sample
 from xlmc.statistics.smooth import (
@@ -43,6 +49,7 @@ __all__ = [
     "percentile",
     "percentiles",
     "probability_above",
+    "probability_between",
     "proportion",
     "range_width",
     "rank_correlation",

@@ -16,7 +16,8 @@ from xlmc.statistics.sample import Sample, Values
 
 __all__ = ["Description", "describe"]
 
-DECILES = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0, 100.0)
+PERCENTS = tuple(float(percent) for percent in range(0, 101, 5))
+"""Crystal Ball's deciles, and the ones between."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +54,7 @@ def describe(
     weights: ArrayLike | None = None,
     replicate: ArrayLike | None = None,
     *,
-    percentiles: Sequence[float] = DECILES,
+    percentiles: Sequence[float] = PERCENTS,
     central: float = 0.51,
     threshold: float | None = None,
     confidence: float = 0.95,

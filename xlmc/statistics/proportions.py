@@ -22,7 +22,7 @@ from xlmc.scratch import release
 from xlmc.statistics.estimate import LEAST_DOF, Estimate, one_tail, t_quantile
 from xlmc.statistics.sample import Sample, Values
 
-__all__ = ["Method", "probability_above", "proportion", "replicated_proportion", "share"]
+__all__ = ["Method", "probability_above", "probability_between", "proportion", "replicated_proportion", "share"]
 
 Floats = NDArray[np.float64]
 Method = Literal["wilson", "clopper-pearson"]
@@ -94,12 +94,44 @@ def probability_above(
     sample = Sample.of(values, weights, replicate)
     first = int(np.searchsorted(sample.x, threshold, side="right"))
     release(sample.x)
+    return _between_ranks(sample, first, sample.n, confidence, method)
+
+
+def probability_between(
+    values: Values,
+    low: float,
+    high: float,
+    weights: ArrayLike | None = None,
+    replicate: ArrayLike | None = None,
+    *,
+    confidence: float = 0.95,
+    method: Method = "wilson",
+) -> Estimate:
+    """P(low ≤ value ≤ high) among (n,) values, what Crystal Ball calls certainty; an end may be infinite.
+
+    Raises:
+        ValueError: the range ends below its beginning.
+
+    >>> probability_between([1.0, 2.0, 3.0, 4.0], 2.0, 3.0).value
+    0.5
+    """
+    if not low <= high:
+        raise ValueError(f"a range cannot reach from {low} to {high}")
+    sample = Sample.of(values, weights, replicate)
+    first, stop = int(np.searchsorted(sample.x, low, "left")), int(np.searchsorted(sample.x, high, "right"))
+    release(sample.x)
+    return _between_ranks(sample, first, stop, confidence, method)
+
+
+def _between_ranks(sample: Sample, first: int, stop: int, confidence: float, method: Method) -> Estimate:
+    """The share of the trials from one rank to before another, counted from 0."""
     if sample.w is None and sample.group is None:
-        return proportion(sample.n - first, sample.n, confidence=confidence, method=method)
+        return proportion(stop - first, sample.n, confidence=confidence, method=method)
     if sample.n == 0:
         return Estimate(np.nan)
     w = np.ones(sample.n) if sample.w is None else sample.w
-    hits = np.where(np.arange(sample.n) >= first, w, 0.0)
+    hits = np.zeros(sample.n)
+    hits[first:stop] = w[first:stop]
     return _pooled(
         sample.per_unit(hits), sample.per_unit(w), sample.effective, sample.dof, sample.n, confidence, method
     )

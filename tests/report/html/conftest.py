@@ -1,0 +1,145 @@
+"""Pages read back: as elements by the standard library, and in Chromium where it is installed."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from dataclasses import dataclass, field
+from html.parser import HTMLParser
+
+import pytest
+
+from xlmc.report.html import page_text
+
+_VOID = frozenset({"meta", "link", "input", "br", "img"})
+
+_CHROMIUM = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-dev-shm-usage",
+    "--window-size=1280,1000",
+)
+
+
+@dataclass
+class Node:
+    """An element, with everything in it in order."""
+
+    tag: str
+    attributes: dict[str, str | None]
+    children: list[Node | str] = field(default_factory=list)
+
+    @property
+    def text(self) -> str:
+        return "".join(child if isinstance(child, str) else child.text for child in self.children)
+
+    def all(self, tag: str | None = None, **attributes: str) -> list[Node]:
+        wanted = {key.rstrip("_").replace("_", "-"): value for key, value in attributes.items()}
+        found = []
+        for child in self.children:
+            if isinstance(child, Node):
+                fits = all(child.attributes.get(key) == value for key, value in wanted.items())
+                found += [child] if fits and tag in (None, child.tag) else []
+                found += child.all(tag, **attributes)
+        return found
+
+    @property
+    def numbers(self) -> list[float]:
+        """The full values of all numbers shown in it."""
+        return [float(each.attributes["value"] or "nan") for each in self.all("data")]
+
+
+class _Reader(HTMLParser):
+    def __init__(self) -> None:
+        super().__init__()
+        self.open = [Node("", {})]
+
+    def handle_starttag(self, tag, attributes):
+        node = Node(tag, dict(attributes))
+        self.open[-1].children.append(node)
+        if tag not in _VOID:
+            self.open.append(node)
+
+    def handle_endtag(self, tag):
+        assert self.open[-1].tag == tag, f"<{self.open[-1].tag}> is ended by </{tag}>"
+        self.open.pop()
+
+    def handle_data(self, data):
+        self.open[-1].children.append(data)
+
+
+def read(text):
+    """The page as elements; every one that begins must end, in order."""
+    reader = _Reader()
+    reader.feed(text)
+    reader.close()
+    assert len(reader.open) == 1
+    return reader.open[0]
+
+
+@pytest.fixture(scope="session")
+def page_of():
+    """A run's page as elements."""
+    return lambda simulation, **options: read(page_text(simulation, **options))
+
+
+@pytest.fixture(scope="session")
+def payload_of(page_of):
+    """What the charts of a run's page are drawn from."""
+    return lambda simulation: json.loads(page_of(simulation).all("script", id="payload")[0].text)
+
+
+@pytest.fixture(scope="session")
+def chromium(tmp_path_factory):
+    """A browser, or a skipped test where there is none."""
+    selenium = pytest.importorskip("selenium.webdriver")
+    browser, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    if browser is None or driver is None:
+        pytest.skip("Chromium and its driver are not installed")
+    options = selenium.ChromeOptions()
+    options.binary_location = browser
+    for argument in (*_CHROMIUM, f"--user-data-dir={tmp_path_factory.mktemp('profile')}"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    found = selenium.Chrome(options=options, service=selenium.ChromeService(driver))
+    yield found
+    found.quit()
+
+
+@pytest.fixture
+def shown(chromium, tmp_path):
+    """Opens a run's page in the browser; whatever it complained of by the end of the test is an error."""
+
+    def show(simulation):
+        path = tmp_path / "page.html"
+        simulation.save_page(path)
+        chromium.get("about:blank")
+        for log in ("browser", "performance"):
+            chromium.get_log(log)
+        chromium.get(path.as_uri())
+        return chromium
+
+    yield show
+    assert [entry["message"] for entry in chromium.get_log("browser")] == []
+
+
+@pytest.fixture(scope="session")
+def requests_of():
+    """The addresses that a browser asked for since its log was last read."""
+
+    def requests(browser):
+        events = (json.loads(entry["message"])["message"] for entry in browser.get_log("performance"))
+        return [
+            re.sub(r"^data:.*", "data:", event["params"]["request"]["url"])
+            for event in events
+            if event["method"] == "Network.requestWillBeSent"
+        ]
+
+    return requests

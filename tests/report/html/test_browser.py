@@ -1,0 +1,365 @@
+"""The page in Chromium, its grabbers moved by a driver: the certainty shown is that of the accepted trials."""
+
+from __future__ import annotations
+
+import base64
+import re
+
+import numpy as np
+import pytest
+
+from xlmc.statistics import format_estimate, proportion
+
+EVIL = "</script><img src=x onerror=window.stolen=1>"
+
+
+@pytest.fixture
+def many(make):
+    """A run of more trials than the page holds of a forecast."""
+    cells = {"A1": 0.5, "B1": "=A1*A1", "B2": "=A1*3"}
+    forecasts = [make.forecast("square", "B1"), make.forecast("triple", "B2", units="m")]
+    return make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0, base=0.5)], forecasts, trials=60_000)
+
+
+class Chart:
+    """One forecast on the page."""
+
+    def __init__(self, browser, place=0):
+        self.browser = browser
+        self.root = self.all("article.forecast", browser)[place]
+
+    def all(self, selector, within=None):
+        return (within or self.root).find_elements("css selector", selector)
+
+    def one(self, selector):
+        (found,) = self.all(selector)
+        return found
+
+    def drag(self, which, pixels):
+        from selenium.webdriver import ActionChains
+
+        grip = self.one(f".grabber.{which} .grip")
+        self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", grip)
+        chain = ActionChains(self.browser, duration=20).click_and_hold(grip)
+        chain.move_by_offset(pixels // 2, 0).move_by_offset(pixels - pixels // 2, 3).release().perform()
+
+    def press(self, which, *keys):
+        self.one(f".grabber.{which} .grip").send_keys(*keys)
+
+    def type(self, box, text):
+        control, delete, enter = "\ue009", "\ue017", "\ue007"
+        self.one(f".boxes .{box}").send_keys(control, "a", control, delete, text, enter)
+
+    @property
+    def ends(self):
+        said = self.one(".certainty")
+        return tuple(float(said.get_attribute(f"data-{end}")) for end in ("low", "high"))
+
+    @property
+    def count(self):
+        return float(self.one(".certainty").get_attribute("data-count"))
+
+    @property
+    def said(self):
+        return self.one(".certainty").text.replace("\n", " ")
+
+    def box(self, name):
+        return self.one(f".boxes .{name}").get_property("value")
+
+    def left(self, which):
+        return self.one(f".grabber.{which}").rect["x"]
+
+
+def in_words(values, low, high):
+    """The certainty as `xlmc.statistics` has it, in the words of the page."""
+    count = int(np.count_nonzero((values >= low) & (values <= high)))
+    share = proportion(count, values.size)
+    return count, f"{format_estimate(100 * share.value, 100 * share.error)} %", share.interval
+
+
+def check(chart, values):
+    """What the page says of the range between its grabbers is what NumPy counts there."""
+    count, words, interval = in_words(values, *chart.ends)
+    assert chart.count == count
+    assert chart.said.startswith(f"{words} of the accepted trials lie ")
+    assert f": {count:,} of {values.size:,}; 95 % interval " in chart.said
+    found = re.search(r"interval (\S+) to (\S+) %", chart.said)
+    decimals = len(found[1].partition(".")[2])
+    assert found[1] == f"{100 * interval[0]:.{decimals}f}"
+    assert found[2] == f"{100 * interval[1]:.{decimals}f}"
+
+
+def test_it_opens_at_the_central_range(shown, run):
+    browser = shown(run)
+    for place, result in enumerate(run.results.values()):
+        chart = Chart(browser, place)
+        assert chart.ends == tuple(end.value for end in result.central())
+        check(chart, result.values)
+        assert chart.box("share") == "51"
+        for box, end in zip(("low", "high"), result.central(), strict=True):
+            assert chart.box(box) == format_estimate(end.value, end.error).partition(" ± ")[0]
+
+
+@pytest.mark.parametrize(("which", "pixels"), [("low", 60), ("low", -45), ("high", -70), ("high", 33)])
+def test_certainty_follows_a_dragged_grabber(shown, run, which, pixels):
+    chart, values = Chart(shown(run)), run["area"].values
+    before, at = chart.ends, chart.left(which)
+    chart.drag(which, pixels)
+    after = chart.ends
+    moved, still = (0, 1) if which == "low" else (1, 0)
+    assert (after[moved] - before[moved]) * pixels > 0
+    assert after[still] == before[still]
+    assert chart.left(which) == pytest.approx(at + pixels, abs=3)  # the step that ends move in
+    assert float(chart.box(which)) == after[moved]
+    assert chart.box("share") == in_words(values, *after)[1].split(" ")[0]
+    check(chart, values)
+
+
+def test_a_grabber_does_not_pass_the_other(shown, run):
+    chart = Chart(shown(run))
+    chart.drag("low", 400)
+    low, high = chart.ends
+    assert low == high
+    check(chart, run["area"].values)
+
+
+def test_a_grabber_at_the_edge_takes_in_all_that_lies_beyond(shown, run):
+    chart, values = Chart(shown(run)), run["area"].values
+    edges = chart.one(".u-over").rect
+    chart.drag("low", round(edges["x"] - chart.left("low")) - 5)
+    chart.drag("high", round(edges["x"] + edges["width"] - chart.left("high")) + 5)
+    assert chart.ends == (-np.inf, np.inf)
+    assert (chart.box("low"), chart.box("high")) == ("−∞", "∞")
+    check(chart, values)
+    assert f"{values.size:,} of {values.size:,}" in chart.said
+
+
+def test_grabbers_move_with_the_keyboard(shown, run):
+    chart, values = Chart(shown(run)), run["area"].values
+    chart.type("low", "14")
+    for keys, end in (
+        (["\ue014"], 14.01),  # right
+        (["\ue014", "\ue014"], 14.03),
+        (["\ue012"], 14.02),  # left
+        (["\ue00e"], 14.12),  # page up
+        (["\ue00f"], 14.02),  # page down
+        (["\ue008", "\ue014"], 14.12),  # shift and right
+    ):
+        chart.press("low", *keys)
+        assert chart.ends[0] == pytest.approx(end, abs=1e-12)
+        assert chart.one(".grabber.low .grip").get_attribute("aria-valuetext") == chart.box("low")
+        check(chart, values)
+    chart.press("low", "\ue011")  # home
+    chart.press("high", "\ue010")  # end
+    assert chart.ends == (-np.inf, np.inf)
+    check(chart, values)
+
+
+@pytest.mark.parametrize("percent", ["90", "51", "0", "100", "33.3 %"])
+def test_a_typed_certainty_sets_a_central_range(shown, run, percent):
+    chart, values = Chart(shown(run)), run["area"].values
+    chart.type("low", "12")
+    chart.type("share", percent)
+    share = float(percent.split(" ")[0])
+    wanted = np.percentile(values, [50 - share / 2, 50 + share / 2])
+    assert chart.ends == pytest.approx(wanted, rel=1e-12)
+    assert float(chart.box("share")) == share
+    check(chart, values)
+
+
+def test_typed_ends_are_taken_as_they_are(shown, run):
+    chart, values = Chart(shown(run)), run["area"].values
+    chart.type("low", "13.25")
+    chart.type("high", "1.9e1")
+    assert chart.ends == (13.25, 19.0)
+    assert chart.left("low") < chart.left("high")
+    check(chart, values)
+    chart.type("high", "")
+    assert chart.ends == (13.25, np.inf)
+    check(chart, values)
+
+
+@pytest.mark.parametrize(
+    ("box", "text", "why"),
+    [
+        ("low", "many", "Type a number."),
+        ("low", "99", "must not lie above"),
+        ("high", "1,5", "Type a number."),
+        ("share", "101", "between 0 and 100"),
+        ("share", "", "Type a number."),
+    ],
+)
+def test_what_cannot_be_meant_is_refused_and_said(shown, run, box, text, why):
+    chart = Chart(shown(run))
+    before = chart.ends, chart.said
+    chart.type(box, text)
+    assert why in chart.one(".fault").text
+    assert chart.one(f".boxes .{box}").get_attribute("aria-invalid") == "true"
+    assert (chart.ends, chart.said) == before
+    chart.one(".reset").click()
+    assert chart.one(".fault").text == ""
+    assert chart.one(f".boxes .{box}").get_attribute("aria-invalid") is None
+
+
+def test_the_button_returns_to_the_central_range(shown, run):
+    chart = Chart(shown(run))
+    before = chart.ends, chart.said, [chart.box(name) for name in ("low", "high", "share")]
+    chart.type("low", "12")
+    assert chart.ends != before[0]
+    chart.one(".reset").click()
+    assert (chart.ends, chart.said, [chart.box(name) for name in ("low", "high", "share")]) == before
+
+
+@pytest.mark.parametrize("view", ["cumulative", "reverse"])
+def test_another_chart_leaves_the_grabbers_where_they_are(shown, run, view):
+    chart, values = Chart(shown(run)), run["area"].values
+    chart.drag("low", -40)
+    before = chart.ends, chart.left("low"), chart.left("high")
+    chart.one(f".views input[value={view}]").click()
+    assert chart.ends == before[0]
+    assert (chart.left("low"), chart.left("high")) == pytest.approx(before[1:], abs=2)
+    chart.drag("high", 20)
+    assert chart.ends[1] > before[0][1]
+    check(chart, values)
+
+
+def test_many_trials_are_counted_to_within_what_is_said(shown, many):
+    browser = shown(many)
+    for place, result in enumerate(many.results.values()):
+        chart, values = Chart(browser, place), result.values
+        check(chart, values)  # the forecast's own range is exact
+        for step in (35, -61, 17):
+            chart.drag("low", step)
+            doubt = int(re.search(r"about .* off by (\d+) at most", chart.said)[1])
+            exact, _, _ = in_words(values, *chart.ends)
+            assert abs(chart.count - exact) <= doubt <= 2 * values.size / 19_999
+        chart.type("share", "80")
+        wanted = np.percentile(values, [10, 90])
+        # a gap holds at most two trials, whose distance is some 1/60,000 of the range
+        assert chart.ends == pytest.approx(wanted, rel=1e-3)
+
+
+def test_whole_numbers_move_in_whole_steps_and_belong_to_the_range_that_ends_at_them(shown, make):
+    assumptions = [make.uniform("a", "A1", 0.0, 10.0, base=5.0)]
+    run = make.simulate({"A1": 5.0, "B1": "=ROUND(A1,0)"}, assumptions, [make.forecast("whole", "B1")], trials=3000)
+    chart, values = Chart(shown(run)), run["whole"].values
+    chart.type("low", "3")
+    chart.type("high", "6")
+    check(chart, values)
+    chart.press("high", "\ue014")
+    assert chart.ends == (3.0, 7.0)
+    check(chart, values)
+    chart.drag("low", 60)
+    assert chart.ends[0] == 4.0
+    check(chart, values)
+    from selenium.webdriver import ActionChains
+
+    grip, over = chart.one(".grabber.high .grip"), chart.one(".u-over")
+    ActionChains(chart.browser).move_to_element(grip).move_by_offset(0, -over.rect["height"] // 2).perform()
+    seven = int(np.count_nonzero(values == 7))
+    assert chart.one(".readout").text == f"7: {seven} trials, {100 * seven / values.size:.2f} %"
+
+
+def test_the_pointer_is_told_what_it_is_at(shown, run):
+    from selenium.webdriver import ActionChains
+
+    chart, values = Chart(shown(run)), run["area"].values
+    over = chart.one(".u-over")
+    chart.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", over)
+    ActionChains(chart.browser).move_to_element(over).perform()
+    found = re.fullmatch(r"(\S+) to below (\S+) ft: (\S+) trials, (\S+) %", chart.one(".readout").text)
+    inside = np.count_nonzero((values >= float(found[1])) & (values < float(found[2])))
+    assert int(found[3]) == inside
+    assert found[4] == f"{100 * inside / values.size:.2f}"
+    chart.one(".views input[value=cumulative]").click()
+    ActionChains(chart.browser).move_to_element_with_offset(chart.one(".u-over"), 30, 0).perform()
+    assert re.fullmatch(r"Up to \S+ ft: \S+ ± \S+ %", chart.one(".readout").text)
+
+
+def test_nothing_is_asked_of_a_network_and_nothing_could_be(chromium, run, tmp_path, requests_of):
+    path = tmp_path / "page.html"
+    run.save_page(path)
+    chromium.get("about:blank")
+    chromium.get_log("performance")
+    chromium.get(path.as_uri())
+    chart = Chart(chromium)
+    chart.drag("low", 20)
+    chart.one(".views input[value=cumulative]").click()
+    assert set(requests_of(chromium)) <= {path.as_uri(), "data:"}
+    assert chromium.get_log("browser") == []
+    refused = chromium.execute_async_script(
+        """
+        const done = arguments[0], refused = [];
+        addEventListener("securitypolicyviolation", (event) => refused.push(event.effectiveDirective));
+        fetch("https://example.org/").catch(() => 0);
+        document.body.append(Object.assign(new Image(), {src: "https://example.org/a.png"}));
+        const script = document.createElement("script");
+        script.textContent = "window.stolen = 1";
+        document.body.append(script);
+        setTimeout(() => done([refused.sort(), window.stolen ?? null]), 300);
+        """
+    )
+    assert refused == [["connect-src", "img-src", "script-src-elem"], None]
+    chromium.get_log("browser")
+
+
+def test_names_are_shown_and_not_run(shown, make):
+    assumptions = [make.uniform(EVIL, "A1", 0.0, 1.0, base=0.5, units=EVIL, source=EVIL)]
+    forecasts = [make.forecast(EVIL, "B1", units=EVIL), make.forecast(f"{EVIL}2", "B1", units=EVIL)]
+    filters = [make.filter(EVIL, "B1", at_most=0.9, because=EVIL)]
+    browser = shown(make.simulate({"A1": 0.5, "B1": "=A1"}, assumptions, forecasts, filters, trials=500))
+    chart = Chart(browser)
+    chart.drag("low", 10)
+    assert EVIL in chart.said
+    assert chart.one("h3").text == EVIL
+    assert EVIL in browser.find_element("css selector", "#overlay .legend").text
+    assert browser.execute_script("return [document.images.length, window.stolen ?? null]") == [0, None]
+
+
+@pytest.mark.parametrize("name", ["none_accepted", "one_accepted"])
+def test_few_trials_are_no_trouble(request, shown, name):
+    run = request.getfixturevalue(name)
+    browser = shown(run)
+    charts = browser.find_elements("css selector", "article.forecast")
+    assert len(charts) == (0 if name == "none_accepted" else 1)
+    if charts:
+        chart = Chart(browser)
+        assert chart.count == 1
+        chart.drag("high", -50)
+        chart.type("share", "50")
+        assert chart.count == 1
+
+
+def test_on_paper_everything_is_open_and_nothing_is_to_be_pressed(shown, run):
+    browser = shown(run)
+    pages = base64.b64decode(browser.execute_cdp_cmd("Page.printToPDF", {"printBackground": True})["data"])
+    assert pages.startswith(b"%PDF")
+    closed = "return document.querySelectorAll('details:not([open])').length"
+    before = browser.execute_script(closed)
+    assert before > 0
+    browser.execute_script("dispatchEvent(new Event('beforeprint'))")
+    assert browser.execute_script(closed) == 0
+    browser.execute_script("dispatchEvent(new Event('afterprint'))")
+    assert browser.execute_script(closed) == before
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    try:
+        for selector in ("nav", ".boxes", ".reset", ".views"):
+            assert not browser.find_element("css selector", selector).is_displayed()
+        for selector in (".chart canvas", ".certainty", "#statistics table"):
+            assert browser.find_element("css selector", selector).is_displayed()
+    finally:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+
+
+def test_a_narrow_screen_needs_no_scrolling_aside(shown, run):
+    browser = shown(run)
+    metrics = {"width": 360, "height": 740, "deviceScaleFactor": 1, "mobile": True}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+    try:
+        chart = Chart(browser)
+        fits = "return new Promise((done) => setTimeout(() => done(document.documentElement.scrollWidth), 200))"
+        assert browser.execute_script(fits) <= 360
+        chart.drag("low", 20)
+        check(chart, run["area"].values)
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})

@@ -1,0 +1,157 @@
+"""The case study's result sheets as LibreOffice prints them: every sheet has a page, every chart draws something."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from dataclasses import dataclass
+from html import unescape
+from pathlib import Path
+
+import numpy as np
+import openpyxl
+import pytest
+
+import xlmc
+from xlmc.report import save
+
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples/intersection.xlsx"
+TOOLS = ("soffice", "pdftotext", "pdftoppm")
+OWN = {"Results", "Charts", "Statistics", "Certainty", "Pairs", "Assumptions", "Trials", "Bins", "Curves", "Record"}
+DPI, POINTS = 60, 72
+
+CHART = (230.0, 150.0)
+"""A chart's width and height on paper, in points, at the scale of 60 %: what is looked at lies within it."""
+
+pytestmark = pytest.mark.skipif(not all(map(shutil.which, TOOLS)), reason="needs LibreOffice and poppler")
+
+
+@dataclass(frozen=True)
+class Printed:
+    """A page: the sheet it shows, its words as (text, left, top) in points, and `(rows, columns, 3)` pixels."""
+
+    sheet: str
+    words: list[tuple[str, float, float]]
+    pixels: np.ndarray
+
+    @property
+    def text(self):
+        return " ".join(word for word, _, _ in self.words)
+
+
+def converted(book, to, folder):
+    profile = f"-env:UserInstallation={(folder / 'profile').as_uri()}"
+    command = ["soffice", profile, "--headless", "--convert-to", to, "--outdir", str(folder / "out"), str(book)]
+    subprocess.run(command, check=True, capture_output=True, timeout=300)
+    return folder / "out" / f"{book.stem}.{to}"
+
+
+@pytest.fixture(scope="module")
+def case():
+    return xlmc.load(EXAMPLE).simulate(trials=50_000)
+
+
+@pytest.fixture(scope="module")
+def book(case, tmp_path_factory):
+    return save(case, tmp_path_factory.mktemp("rendering") / "results.xlsx", rows=60)
+
+
+@pytest.fixture(scope="module")
+def pages(book):
+    pdf = converted(book, "pdf", book.parent)
+    shown = subprocess.run(["pdftotext", "-bbox", str(pdf), "-"], check=True, capture_output=True, text=True).stdout
+    subprocess.run(["pdftoppm", "-r", str(DPI), str(pdf), str(book.parent / "page")], check=True)
+    pictures = sorted(book.parent.glob("page-*.ppm"))
+    pieces = re.split(r"<page [^>]*>", shown)[1:]
+    return [_printed(piece, _pixels(picture)) for piece, picture in zip(pieces, pictures, strict=True)]
+
+
+def _printed(piece, pixels):
+    found = re.findall(r'<word xMin="([\d.]+)" yMin="([\d.]+)"[^>]*>([^<]*)<', piece)
+    words = [(unescape(text), float(left), float(top)) for left, top, text in found]
+    foot = max((top for _, _, top in words), default=0.0)
+    footer = [text for text, _, top in words if foot - top < 3.0]
+    return Printed(" ".join(footer[1 : footer.index("Page")]) if "Page" in footer else "", words, pixels)
+
+
+def _pixels(path):
+    data = path.read_bytes()
+    _, size, _, pixels = data.split(b"\n", 3)
+    width, height = map(int, size.split())
+    return np.frombuffer(pixels, np.uint8).reshape(height, width, 3).astype(int)
+
+
+def captions(pages, word):
+    """Where each chart's caption begins: number -> page, left, top."""
+    found = {}
+    for page in pages:
+        following = zip(page.words, page.words[1:], page.words[2:], strict=False)
+        for (text, left, top), (second, _, _), (third, _, _) in following:
+            number = {"Figure": second, "Scatter": third}.get(word) if text == word else None
+            if number and re.fullmatch(r"\d+\.", number):
+                found[int(number[:-1])] = page, left, top
+    return found
+
+
+def coloured(page, left, top):
+    """The share of coloured pixels above a caption, where its chart stands."""
+    width, height = CHART
+    rows, columns = (
+        slice(int(a * DPI / POINTS), int(b * DPI / POINTS)) for a, b in ((top - height, top), (left, left + width))
+    )
+    area = page.pixels[rows, columns]
+    return float(np.mean(area.max(axis=2) - area.min(axis=2) > 60))
+
+
+def test_every_sheet_has_a_page_with_something_on_it(pages):
+    assert {page.sheet for page in pages} >= OWN
+    assert all(len(page.words) > 8 for page in pages)
+
+
+@pytest.mark.parametrize(("word", "count"), [("Figure", 14), ("Scatter", 6)])
+def test_every_chart_draws_something_above_its_caption(pages, word, count):
+    found = captions(pages, word)
+    assert sorted(found) == list(range(1, count + 1))
+    for number, place in found.items():
+        assert coloured(*place) > 0.004, f"{word} {number}"
+
+
+def test_charts_show_their_titles_and_axes(pages, case):
+    drawn = " ".join(page.text for page in pages if page.sheet == "Charts")
+    for name in case.forecasts:
+        assert f"{name}: cumulative" in drawn
+        assert f"{name}: reverse cumulative" in drawn
+    assert "Overlay of forecasts in mph" in drawn
+    assert "Trend of forecasts in mph" in drawn
+    assert "Inside 51 % range" in drawn
+
+
+def test_the_sentences_are_printed_whole(pages, case):
+    from xlmc.statements import statements
+
+    printed = " ".join(page.text for page in pages if page.sheet == "Certainty")
+    for statement in statements(case):
+        assert statement.text in printed
+
+
+def test_no_cell_is_too_narrow_for_its_number(pages):
+    assert not [page.sheet for page in pages if page.sheet in OWN and "###" in page.text]
+
+
+def test_ranges_that_a_person_types_are_counted_anew(book, case):
+    """openpyxl saves no values with formulas, so that LibreOffice has to compute them."""
+    typed = openpyxl.load_workbook(book)
+    sheet = typed["Certainty"]
+    rows = [row[0].row for row in sheet.iter_rows() if str(row[4].value).startswith("=SUMPRODUCT")]
+    ends = [(11.5, 12.5), (None, 23.0), (33.0, None), (None, None)]
+    for row, (low, high) in zip(rows, ends, strict=True):
+        sheet.cell(row, 3).value, sheet.cell(row, 4).value = low, high
+    typed.save(book.parent / "typed.xlsx")
+    path = converted(book.parent / "typed.xlsx", "xlsx", book.parent)
+    counted = openpyxl.load_workbook(path, data_only=True)["Certainty"]
+    for row, (low, high), result in zip(rows, ends, case.results.values(), strict=True):
+        values = result.values[:60]
+        inside = (values >= (-np.inf if low is None else low)) & (values <= (np.inf if high is None else high))
+        assert counted.cell(row, 5).value == pytest.approx(inside.mean(), abs=1e-12)
+        assert counted.cell(row, 7).value == 60

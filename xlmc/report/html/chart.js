@@ -1,0 +1,139 @@
+"use strict";
+// One forecast drawn: bars or curves, dark between the grabbers, light outside.
+
+const INK = "#1F3044", GRID = "#E3E8EE", DARK = "#2F6DA8", LIGHT = "#BCD3E8", BAND = "#F3EFE2";
+const MARKS = { "Mean": [], "Base case": [7, 4], "Threshold": [2, 3] }; // dashes
+const FONT = "12px system-ui, sans-serif";
+const WIDEST = 660, HIGHEST = 300, POINTS = 600;
+
+/** How wide a chart is: what its place has room for, but never wider than a printed page. */
+function widthOf(place) {
+  return Math.max(260, Math.min(WIDEST, Math.floor(place.clientWidth)));
+}
+
+/**
+ * Draw a forecast with its bars into `place`; `state` has `view`, `low`, `high` and is read whenever the chart is drawn again. `drawn()`
+ * is called then, and `pointed(value)` when the pointer is somewhere else; null when it has left.
+ */
+function drawForecast(place, forecast, trials, bins, state, { drawn, pointed }) {
+  const { edges, counts } = bins;
+  const ends = [edges[0], edges[edges.length - 1]];
+  const top = state.view === "frequency" ? Math.max(...counts) * 1.08 : 100;
+  const shape = state.view === "frequency" ? bars(edges, counts) : curve(trials, ends, state.view);
+  const options = chartOptions(widthOf(place), ends, top, forecast.units, state.view);
+  if (bins.whole) options.axes[0].incrs = [1, 2, 5, 10, 20, 50, 100];
+  options.hooks = {
+    drawClear: [(chart) => band(chart, forecast.range)],
+    draw: [(chart) => paint(chart, shape, forecast.marks, bins.covered(state.low, state.high)), drawn],
+    setCursor: [(chart) => pointed(chart.cursor.left < 0 ? null : chart.posToVal(chart.cursor.left, "x"))],
+  };
+  return new uPlot(options, [ends, [0, top]], place);
+}
+
+/**
+ * The bars of a forecast, and what part of the chart a range covers. Those of whole numbers stand over their numbers: a range
+ * that ends at 6 holds the trials of 6.
+ */
+function barsOf({ bins, values }) {
+  if (bins.width !== 1 || !values.every(Number.isInteger)) return { ...bins, whole: false, covered: (low, high) => [low, high] };
+  return {
+    ...bins,
+    whole: true,
+    edges: bins.edges.map((edge) => edge - 0.5),
+    covered: (low, high) => [Math.ceil(low) - 0.5, Math.floor(high) + 0.5],
+  };
+}
+
+/** What all charts of the page have in common. */
+function chartOptions(width, ends, top, units, view) {
+  const axis = { stroke: INK, font: FONT, labelFont: FONT, labelSize: 22, ticks: { stroke: "#8994A1", width: 1, size: 5 } };
+  const percent = view !== "frequency";
+  return {
+    width,
+    height: Math.round(Math.max(220, Math.min(HIGHEST, width * 0.55))),
+    padding: [27, 14, 0, 0],
+    legend: { show: false },
+    cursor: { y: false, points: { show: false }, drag: { x: false, y: false } },
+    scales: { x: { time: false, range: ends }, y: { range: [0, top] } },
+    axes: [
+      { ...axis, label: units || " ", size: 42, gap: 12, labelSize: 18, grid: { show: false }, border: { show: true, stroke: "#8994A1", width: 1 } },
+      { ...axis, label: percent ? "Accepted trials, %" : "Accepted trials", size: 58, ticks: { show: false },
+        grid: { stroke: GRID, width: 1 }, values: (_, splits) => splits.map((n) => (Number.isInteger(n) ? countText(n) : "")) },
+    ],
+    series: [{}, { paths: () => null, points: { show: false } }],
+  };
+}
+
+/** Corners [x, y] of the bars' outline, which stands on 0. */
+function bars(edges, counts) {
+  return counts.flatMap((count, i) => [[edges[i], count], [edges[i + 1], count]]);
+}
+
+/** The share of trials up to each of many values, or from it on. */
+function curve(trials, [first, last], view) {
+  return Array.from({ length: POINTS + 1 }, (_, i) => {
+    const x = i === POINTS ? last : first + ((last - first) * i) / POINTS;
+    const { count } = view === "reverse" ? trials.between(x, Infinity) : trials.between(-Infinity, x);
+    return [x, (100 * count) / trials.trials];
+  });
+}
+
+/** The forecast's own central range, behind everything. */
+function band(chart, { low, high }) {
+  const { left, right, top, height } = plot(chart);
+  const from = Math.max(left, chart.valToPos(low, "x", true));
+  const to = Math.min(right, chart.valToPos(high, "x", true));
+  chart.ctx.fillStyle = BAND;
+  chart.ctx.fillRect(from, top, to - from, height);
+}
+
+function paint(chart, shape, marks, [from, to]) {
+  const { ctx } = chart;
+  const { left, right, top, height } = plot(chart);
+  const path = outline(chart, shape);
+  const at = (value) => Math.min(right, Math.max(left, chart.valToPos(value, "x", true)));
+  ctx.save();
+  clip(ctx, left, top, right - left, height);
+  ctx.fillStyle = LIGHT;
+  ctx.fill(path);
+  for (const { label, value } of marks) mark(ctx, chart.valToPos(value, "x", true), top, height, MARKS[label]);
+  ctx.restore();
+  ctx.save();
+  clip(ctx, at(from), top, Math.max(0, at(to) - at(from)), height);
+  ctx.fillStyle = DARK;
+  ctx.fill(path);
+  for (const { label, value } of marks) mark(ctx, chart.valToPos(value, "x", true), top, height, MARKS[label]);
+  ctx.restore();
+}
+
+function plot(chart) {
+  const { left, top, width, height } = chart.bbox;
+  return { left, top, height, right: left + width };
+}
+
+function clip(ctx, left, top, width, height) {
+  ctx.beginPath();
+  ctx.rect(left, top, width, height);
+  ctx.clip();
+}
+
+function outline(chart, shape) {
+  const path = new Path2D();
+  const ground = chart.valToPos(0, "y", true);
+  path.moveTo(chart.valToPos(shape[0][0], "x", true), ground);
+  for (const [x, y] of shape) path.lineTo(chart.valToPos(x, "x", true), chart.valToPos(y, "y", true));
+  path.lineTo(chart.valToPos(shape[shape.length - 1][0], "x", true), ground);
+  path.closePath();
+  return path;
+}
+
+function mark(ctx, x, top, height, dashes) {
+  ctx.beginPath();
+  ctx.setLineDash(dashes.map((dash) => dash * uPlot.pxRatio));
+  ctx.lineWidth = 1.5 * uPlot.pxRatio;
+  ctx.strokeStyle = INK;
+  ctx.moveTo(x, top);
+  ctx.lineTo(x, top + height);
+  ctx.stroke();
+  ctx.setLineDash([]);
+}

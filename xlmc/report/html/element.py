@@ -1,0 +1,47 @@
+"""HTML built from the inside out: a text becomes HTML only by being escaped, so no name in a workbook is markup."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from html import escape
+
+__all__ = ["EMPTY", "Html", "element", "joined", "void"]
+
+
+@dataclass(frozen=True, slots=True)
+class Html:
+    """Text that is HTML already. Only this module and the page's own template make one from a plain text."""
+
+    source: str
+
+    def __add__(self, other: Html) -> Html:
+        return Html(self.source + other.source)
+
+
+EMPTY = Html("")
+
+
+def element(name: str, /, *children: Html | str, **attributes: str | None) -> Html:
+    """An element; strings in it are escaped, attributes that are None are left out.
+
+    An attribute's underscores stand for hyphens, one at its end for nothing: `class_`, `data_forecast`.
+
+    >>> element("b", "a < b", class_="x").source
+    '<b class="x">a &lt; b</b>'
+    """
+    return Html(f"<{name}{_written(attributes)}>{joined(children).source}</{name}>")
+
+
+def void(name: str, /, **attributes: str | None) -> Html:
+    """An element that holds nothing and has no end: `input`."""
+    return Html(f"<{name}{_written(attributes)}>")
+
+
+def joined(children: tuple[Html | str, ...] | list[Html]) -> Html:
+    """One after the other."""
+    return Html("".join(each.source if isinstance(each, Html) else escape(each) for each in children))
+
+
+def _written(attributes: dict[str, str | None]) -> str:
+    found = ((key.rstrip("_").replace("_", "-"), value) for key, value in attributes.items() if value is not None)
+    return "".join(f' {key}="{escape(value)}"' for key, value in found)

@@ -1,0 +1,173 @@
+"use strict";
+// One forecast: its chart, its grabbers, its boxes and its certainty, which always say the same.
+
+class Panel {
+  constructor(place, forecast, z) {
+    this.forecast = forecast;
+    this.z = z;
+    this.trials = new Trials(forecast);
+    this.bins = barsOf(forecast);
+    this.step = stepOf(this.bins);
+    this.decimals = Math.max(0, -Math.round(Math.log10(this.step)));
+    this.find = (selector) => place.querySelector(selector);
+    this.box = (key) => place.querySelector(`.boxes .${key}`);
+    this.state = { view: "frequency" };
+    this.listen(place);
+    this.draw();
+    this.toOwnRange();
+  }
+
+  listen(place) {
+    for (const radio of place.querySelectorAll(".views input")) {
+      radio.addEventListener("change", () => {
+        this.state.view = radio.value;
+        this.draw();
+      });
+    }
+    for (const key of ["low", "high", "share"]) {
+      this.box(key).addEventListener("change", () => this.type(key));
+    }
+    this.find(".reset").addEventListener("click", () => this.toOwnRange());
+    new ResizeObserver(() => {
+      if (this.chart.width !== widthOf(this.find(".chart"))) this.draw();
+    }).observe(this.find(".chart"));
+  }
+
+  /** Draw everything again, as for another view or width. */
+  draw() {
+    this.chart?.destroy();
+    this.chart = drawForecast(this.find(".chart"), this.forecast, this.trials, this.bins, this.state, {
+      drawn: () => this.place(),
+      pointed: (value) => this.read(value),
+    });
+    const { step, state, bins } = this;
+    const grid = { step, min: bins.edges[0], max: bins.edges.at(-1) };
+    const grabber = (which, label, now, move) => addGrabber(this.chart, which, label, grid, now, move);
+    this.grabbers = {
+      low: grabber("low", "Lower end of the range", () => state.low, (value) => this.set(Math.min(value, state.high), state.high)),
+      high: grabber("high", "Upper end of the range", () => state.high, (value) => this.set(state.low, Math.max(value, state.low))),
+    };
+    this.read(null);
+    if (state.low !== undefined) this.show();
+  }
+
+  /** The forecast's own central range, with the texts that the sheets have. */
+  toOwnRange() {
+    const { low, high, share, lowText, highText } = this.forecast.range;
+    this.set(low, high, { share, lowText, highText });
+  }
+
+  /** The central range of a share of the trials. */
+  toCentral(share) {
+    if (share === this.forecast.range.share) this.toOwnRange();
+    else this.set(this.trials.quantile((1 - share) / 2), this.trials.quantile(1 - (1 - share) / 2), { share });
+  }
+
+  /** What was typed into a box. */
+  type(key) {
+    const { low, high } = this.state;
+    const value = typed(this.box(key).value, { low: -Infinity, high: Infinity, share: null }[key]);
+    if (value === null) this.refuse(key, "Type a number.");
+    else if (key === "share" && !(value >= 0 && value <= 100)) this.refuse(key, "A certainty lies between 0 and 100 %.");
+    else if (key === "share") this.toCentral(value / 100);
+    else if (key === "low" ? value > high : value < low) this.refuse(key, "The lower end must not lie above the upper end.");
+    else if (key === "low") this.set(value, high, { lowText: String(value), highText: this.state.highText });
+    else this.set(low, value, { lowText: this.state.lowText, highText: String(value) });
+  }
+
+  refuse(key, why) {
+    this.box(key).setAttribute("aria-invalid", "true");
+    this.find(".fault").textContent = why;
+  }
+
+  set(low, high, { share = null, lowText = null, highText = null } = {}) {
+    Object.assign(this.state, { low, high, share });
+    this.state.lowText = Number.isFinite(low) && lowText ? lowText : this.text(low);
+    this.state.highText = Number.isFinite(high) && highText ? highText : this.text(high);
+    this.show();
+  }
+
+  /** An end as text, one digit finer than the step where it is not on it. */
+  text(value) {
+    const onStep = Math.abs(value / this.step - Math.round(value / this.step)) < 1e-6;
+    return valueText(value, onStep ? this.decimals : this.decimals + 1);
+  }
+
+  /** Bring chart, grabbers, boxes and certainty up to date. */
+  show() {
+    const { share, lowText, highText } = this.state;
+    this.chart.redraw(false);
+    const found = this.certainty();
+    this.box("low").value = lowText;
+    this.box("high").value = highText;
+    this.box("share").value = share === null ? found.text.split(" ")[0] : String(Number((100 * share).toPrecision(12)));
+    for (const box of ["low", "high", "share"]) this.box(box).removeAttribute("aria-invalid");
+    this.find(".fault").textContent = "";
+    this.say(found);
+  }
+
+  /** Put the grabbers where the chart, which is drawn a moment later than asked, has room for them. */
+  place() {
+    const { low, high, lowText, highText } = this.state;
+    if (low === undefined) return;
+    this.grabbers.low(low, lowText);
+    this.grabbers.high(high, highText);
+  }
+
+  /** The share of trials between the grabbers. */
+  certainty() {
+    const { count, doubt } = this.trials.between(this.state.low, this.state.high);
+    const share = shareOf(count, this.trials.trials, this.z);
+    return { count, doubt, share, text: estimateText(100 * share.value, 100 * share.error) };
+  }
+
+  say({ count, doubt, share, text }) {
+    const { low, high, lowText, highText } = this.state;
+    const { units, trials } = this.forecast;
+    const place = this.find(".certainty");
+    const decimals = Math.max(0, 1 - exponentOf(100 * share.error));
+    const ends = [share.low, share.high].map((end) => (100 * end).toFixed(decimals));
+    const about = doubt ? `about ${countText(count)}` : countText(count);
+    const off = doubt ? `, off by ${countText(Math.ceil(doubt))} at most` : "";
+    const unit = units ? ` ${units}` : "";
+    const range = low === -Infinity && high === Infinity ? "everywhere" : `from ${lowText} to ${highText}${unit}`;
+    const main = document.createElement("strong");
+    main.textContent = `${text} %`;
+    const detail = document.createElement("span");
+    detail.textContent =
+      `of the accepted trials lie ${range}: ${about} of ${countText(trials)}${off}; 95 % interval ${ends[0]} to ${ends[1]} %.`;
+    place.replaceChildren(main, " ", detail);
+    place.dataset.count = String(count);
+    place.dataset.low = String(low);
+    place.dataset.high = String(high);
+  }
+
+  /** What the pointer is at. */
+  read(value) {
+    this.find(".readout").textContent = value === null ? this.legend() : this.readout(value);
+  }
+
+  readout(value) {
+    const { bins, forecast: { units, trials } } = this;
+    const unit = units ? ` ${units}` : "";
+    if (this.state.view === "frequency") {
+      const i = Math.min(Math.max(lastUpTo(bins.edges, value), 0), bins.counts.length - 1);
+      const [from, to] = [bins.edges[i], bins.edges[i + 1]].map((edge) => valueText(edge, bins.decimals));
+      const bar = bins.whole ? String(bins.edges[i] + 0.5) : `${from} to below ${to}`;
+      const percent = ((100 * bins.counts[i]) / trials).toFixed(2);
+      return `${bar}${unit}: ${countText(bins.counts[i])} trials, ${percent} %`;
+    }
+    const reverse = this.state.view === "reverse";
+    const { count } = reverse ? this.trials.between(value, Infinity) : this.trials.between(-Infinity, value);
+    const { error } = shareOf(count, trials, this.z);
+    return `${reverse ? "From" : "Up to"} ${valueText(value, this.decimals)}${unit}: ${estimateText((100 * count) / trials, 100 * error)} %`;
+  }
+
+  /** What the lines stand for. */
+  legend() {
+    const { marks, units } = this.forecast;
+    const lines = { "Mean": "—", "Base case": "– –", "Threshold": "····" };
+    const unit = units ? ` ${units}` : "";
+    return marks.map(({ label, text }) => `${lines[label]} ${label} ${text}${unit}`).join("    ");
+  }
+}

@@ -1,0 +1,51 @@
+"""Write a run's page into a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from xlmc.errors import WorkbookError
+from xlmc.report.html.page import page_text
+from xlmc.workbook.writer import write_workbook
+
+if TYPE_CHECKING:
+    from xlmc.simulation import Simulation
+
+__all__ = ["check_page_path", "save_page"]
+
+ENDINGS = (".html", ".htm")
+
+
+def save_page(simulation: Simulation, path: Path, *, command: str | None = None) -> Path:
+    """Write the page whole or not at all; an existing one is replaced.
+
+    Args:
+        simulation: the finished run.
+        path: where to; it ends in `.html` or `.htm`.
+        command: what the person typed, for the record.
+
+    Returns:
+        The path.
+
+    Raises:
+        WorkbookError: the file has another ending, or cannot be written.
+    """
+    check_page_path(path)
+    # Half of a surrogate pair, which a damaged name can hold, has no UTF-8: the browser shows a reference's mark.
+    write_workbook(path, page_text(simulation, command=command).encode("utf-8", "xmlcharrefreplace"))
+    return path
+
+
+def check_page_path(path: Path) -> None:
+    """Refuse, before a long run, what no page can be written to: another kind of file, a missing folder.
+
+    Raises:
+        WorkbookError: it is one of these.
+    """
+    if path.suffix.casefold() not in ENDINGS:
+        hint = f"Name it '{path.stem or 'results'}.html'"
+        raise WorkbookError("the page must end in .html", where=path, hint=hint)
+    if not path.absolute().parent.is_dir():
+        hint = "Create it or name another"
+        raise WorkbookError(f"there is no folder {str(path.absolute().parent)!r}", where=path, hint=hint)

@@ -1,0 +1,110 @@
+"""The table of influences of one forecast, and its charts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from xlmc.report import cells, number_format
+from xlmc.report.bar_charts import bar_chart
+from xlmc.report.cells import Shown
+from xlmc.report.ranges import TableAt
+
+if TYPE_CHECKING:
+    from xlsxwriter.workbook import Workbook
+
+    from xlmc.report.page import Page
+    from xlmc.sensitivity import ForecastSensitivity, Influence
+    from xlmc.statistics import Estimate
+
+__all__ = ["BARS", "ROWS", "influence_captions", "influence_charts", "write_influences"]
+
+BARS: Final = 12
+"""On a chart: as many as have readable names."""
+
+ROWS: Final = 40
+"""In a table."""
+
+_EXPLAINED, _DEPENDENCE, _RANK, _CONTRIBUTION, _FIRST, _TOTAL = 2, 5, 8, 10, 12, 14
+"""The columns of the values; their errors follow them."""
+
+
+def write_influences(page: Page, found: ForecastSensitivity, sobol: bool) -> TableAt:
+    """Write the table; where its rows to draw stand is returned."""
+    headers = ["Assumption", "Units", "Variance explained", "±", "Noise up to", "Depend-ence", "±", "Noise up to"]
+    headers += ["Rank correlation", "±", "Contribution to variance", "±"]
+    shown = found.influences[:ROWS]
+    header = page.row
+    page.table(
+        [*headers, *(["First order", "±", "Total effect", "±"] if sobol else [])], [_row(i, sobol) for i in shown]
+    )
+    return TableAt(page.sheet.get_name(), header, header + 1, header + min(len(shown), BARS))
+
+
+def _row(found: Influence, sobol: bool) -> list[Shown]:
+    row = [
+        cells.text(found.assumption, "name"),
+        cells.text(found.units),
+        *_with_floor(found.explained, found.explained_floor),
+        *_with_floor(found.dependence, found.dependence_floor),
+        *cells.estimate(found.rank_correlation),
+        *cells.share(found.contribution),
+    ]
+    for index in (found.first_order, found.total) if sobol else ():
+        row += [cells.BLANK, cells.BLANK] if index is None else cells.share(index)
+    return row
+
+
+def _with_floor(found: Estimate, floor: float) -> list[Shown]:
+    return [*cells.share(found), Shown(floor, number_format.share_paired(found), "error")]
+
+
+def influence_charts(book: Workbook, at: TableAt, found: ForecastSensitivity, sobol: bool) -> list[Any]:
+    """Variance explained, dependence or total effects, rank correlation and contribution to variance."""
+    drawn = found.influences[:BARS]
+    weak = [each.explained.value <= each.explained_floor for each in drawn]
+    unseen = [each.dependence.value <= each.dependence_floor for each in drawn]
+    plain = [False] * len(drawn)
+    second = (
+        bar_chart(
+            book, at, "Total effect (Sobol)", "Share of the variance, alone and with others", _TOTAL, _TOTAL + 1, plain
+        )
+        if sobol
+        else bar_chart(book, at, "Dependence", "Cramér–von Mises index", _DEPENDENCE, _DEPENDENCE + 1, unseen)
+    )
+    rank = "Rank correlation with the forecast (Spearman)"
+    share = "Squared rank correlations, scaled to 100 %, with their sign"
+    return [
+        bar_chart(book, at, "Variance explained", "Share of the variance", _EXPLAINED, _EXPLAINED + 1, weak),
+        second,
+        bar_chart(book, at, "Rank correlation", rank, _RANK, _RANK + 1, plain, "0.0"),
+        bar_chart(book, at, "Contribution to variance (approximate)", share, _CONTRIBUTION, _CONTRIBUTION + 1, plain),
+    ]
+
+
+def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
+    """One a chart: what it is and what it is not."""
+    explained = (
+        "Variance explained: how much of the forecast's variance would go, on average, if the assumption's true value "
+        "were known. From the accepted trials as they are, so it holds with filters and correlations; shares need not "
+        "add up to 100 %. Pale: no more than noise."
+    )
+    dependence = (
+        "Dependence: 0 only if no part of the forecast's distribution depends on the assumption, 100 % if nothing else "
+        "matters. Unlike variance explained it also sees what widens the forecast or acts only together with others; it "
+        "is not a share of the variance."
+    )
+    total = (
+        f"Total effect (Sobol), from {pairs:,} pairs of trials of their own: the variance that would be left, on "
+        "average, if all other assumptions were known. It counts what the assumption does together with others, so the "
+        "effects add up to 100 % or more."
+    )
+    rank = (
+        f"Rank correlation on {found.trials:,} accepted trials: whether the forecast rises or falls with the assumption. It "
+        "is blind to effects that rise and fall, and is not a share of anything."
+    )
+    contribution = (
+        "Contribution to variance as Crystal Ball shows it: squared rank correlations scaled to 100 %. Approximate, and "
+        "wrong where filters or correlations tie assumptions together or an effect rises and falls: trust variance "
+        "explained then."
+    )
+    return [explained, total if pairs else dependence, rank, contribution]

@@ -1,0 +1,123 @@
+"""A column of trials in ascending order, cut into classes of equal probability: what every given-data measure needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["LEAST_IN_A_CLASS", "MOST_CLASSES", "Classes", "Ranked"]
+
+Floats = NDArray[np.float64]
+Places = NDArray[np.intp]
+
+MOST_CLASSES = 16
+"""With a straight line in each they follow two periods of a sine to 0.1 % of its variance."""
+
+LEAST_IN_A_CLASS = 50
+"""Trials, where there is more than one class: enough to lay a line through."""
+
+_FLAT = 1e-24
+"""Of the column's variance: less within a class is rounding, and no line is laid through it."""
+
+
+@dataclass(frozen=True)
+class Classes:
+    """A column's classes, with a straight line in each: the functions of it that a forecast is compared with.
+
+    Attributes:
+        starts, sizes: `(c,)` of each class, in ascending order of the column.
+        label: `(n,)` the class of each trial, in that order.
+        centred: `(n,)` the column less its mean in the class, in that order; all 0 in a class without a line.
+        squares: `(c,)` sums of squares of `centred`; 1 in a class without a line.
+        freedom: parameters of the fit: a mean a class, and a slope where there is a line.
+    """
+
+    starts: Places
+    sizes: Places
+    label: Places
+    centred: Floats
+    squares: Floats
+    freedom: int
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """`(n,)` values with their order.
+
+    Attributes:
+        values: as they came.
+        order: the places of the values, ascending.
+    """
+
+    values: Floats
+    order: Places
+
+    @classmethod
+    def of(cls, values: Floats) -> Ranked:
+        return cls(values, np.argsort(values))
+
+    @property
+    def n(self) -> int:
+        return int(self.values.size)
+
+    @cached_property
+    def ties(self) -> tuple[Places, Places]:
+        """For every place in ascending order, `(n,)`: the first of those with the same value, and one past the last."""
+        ascending = self.values[self.order]
+        starts = np.flatnonzero(np.concatenate([[True], ascending[1:] != ascending[:-1]]))
+        ends = np.append(starts[1:], self.n)
+        return np.repeat(starts, ends - starts), np.repeat(ends, ends - starts)
+
+    @cached_property
+    def grades(self) -> Floats:
+        """`(n,)` the share of values below each, −½ to ½ about the median; equal values share their mean."""
+        first, end = self.ties
+        grades = np.empty(self.n)
+        grades[self.order] = (first + end) / (2.0 * self.n) - 0.5
+        return grades
+
+    @cached_property
+    def spread(self) -> float:
+        """The mean square of the grades: 1/12 without equal values, 0 where all are equal."""
+        return float(np.mean(self.grades**2))
+
+    def above(self, amounts: Floats) -> Floats:
+        """`(n,)` for each trial the sum over n of amounts that sum to 0, at larger values, and half at equal ones."""
+        first, end = self.ties
+        reached = np.concatenate([[0.0], np.cumsum(amounts[self.order])])
+        found = np.empty(self.n)
+        found[self.order] = -(reached[first] + reached[end]) / (2.0 * self.n)
+        return found
+
+    @cached_property
+    def pulls(self) -> Floats:
+        """`(n,)` of the spread: see `rank_correlations.py`."""
+        found = self.grades**2 + 2.0 * self.above(self.grades)
+        return np.asarray(found - found.mean())
+
+    @property
+    def varies(self) -> bool:
+        first, _ = self.ties
+        return bool(first[-1] > 0)
+
+    def labels(self, classes: int) -> Places:
+        """`(n,)` classes of equal probability, in ascending order of the values; equal values stay together."""
+        raw = np.floor((self.grades[self.order] + 0.5) * classes).astype(np.intp)
+        return np.cumsum(np.concatenate([[0], raw[1:] != raw[:-1]]))
+
+    @cached_property
+    def classes(self) -> Classes:
+        label = self.labels(min(MOST_CLASSES, max(1, self.n // LEAST_IN_A_CLASS)))
+        starts = np.flatnonzero(np.concatenate([[True], label[1:] != label[:-1]]))
+        sizes = np.diff(np.append(starts, self.n))
+        x = self.values[self.order]
+        x = x - x.mean()
+        centred = x - np.repeat(np.add.reduceat(x, starts) / sizes, sizes)
+        squares = np.add.reduceat(centred**2, starts)
+        flat = squares <= _FLAT * max(float(np.dot(x, x)), np.finfo(float).tiny)
+        centred[np.repeat(flat, sizes)] = 0.0
+        freedom = int(starts.size + np.count_nonzero(~flat))
+        return Classes(starts, sizes, label, centred, np.where(flat, 1.0, squares), freedom)

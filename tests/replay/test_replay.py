@@ -23,7 +23,7 @@ def model(small_book):
     return xlmc.load(small_book)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def results(model, tmp_path_factory):
     path = tmp_path_factory.mktemp("results") / "small-results.xlsx"
     model.simulate().save(path)

@@ -12,6 +12,8 @@ from xlmc.errors import WorkbookError
 from xlmc.record import make_record
 from xlmc.report.document import SCHEMA, STATISTICS, document, save_json
 from xlmc.report.estimate_json import NO_ERROR, NO_VALUE, UNBOUNDED, estimate_json
+from xlmc.sensitivity import sensitivities
+from xlmc.statements import certainties, pairs_of, statements
 from xlmc.statistics import Estimate
 
 
@@ -178,3 +180,24 @@ def test_where_it_cannot_be_written(run, tmp_path, name):
     with pytest.raises(WorkbookError):
         run.save_json(tmp_path / name)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_statements_certainties_pairs_and_sensitivities_are_those_of_python(run):
+    found = json.loads(json.dumps(document(run)))
+    assert found["statements"] == [{"forecast": s.forecast, "kind": s.kind, "text": s.text} for s in statements(run)]
+    for each, result in zip(found["forecasts"], run.results.values(), strict=True):
+        for told, certainty in zip(each["certainties"], certainties(result), strict=True):
+            assert (told["kind"], told["words"]) == (certainty.kind, certainty.words)
+            assert (told["low"] is None) == math.isinf(certainty.low)
+            assert_same(told["share"], certainty.share)
+    [told], [pair] = found["pairs"], pairs_of(run)
+    assert (told["first"], told["second"], told["limits"]) == ("area", "difference", list(pair.limits))
+    assert_same(told["correlation"], pair.correlation)
+    expected = sensitivities(run)
+    assert found["sensitivity"]["examined"] == expected.examined
+    for told, each in zip(found["sensitivity"]["forecasts"], expected.forecasts, strict=True):
+        assert [i["assumption"] for i in told["influences"]] == [i.assumption for i in each.influences] != []
+        assert_same(told["influences"][0]["rank_correlation"], each.influences[0].rank_correlation)
+        assert told["bars"][0]["answers"] == list(each.bars[0].answers)
+    for told, limit in zip(found["sensitivity"]["filter_limits"], expected.filter_limits, strict=True):
+        assert [point["limit"] for point in told["points"]] == [point.limit for point in limit.points]

@@ -46,7 +46,7 @@ def block(sheet, name):
     """The rows of a forecast's block on Statistics: label -> (value, ±, from, to)."""
     top = next(row for row in range(1, sheet.max_row + 1) if sheet.cell(row, 1).value == name)
     found = {}
-    for row in range(top + 2, top + 16):
+    for row in range(top + 2, top + 30):
         for label, first in ((1, 3), (8, 9)):
             numbers = tuple(plain(sheet.cell(row, first + place).value) for place in range(4))
             if sheet.cell(row, label).value is not None:

@@ -13,6 +13,7 @@ from xlmc.record.errors_met import errors_met
 from xlmc.record.wording import cutoffs_text, limits_text, parameters_text, status
 from xlmc.report.base_case import BaseCase, base_case
 from xlmc.report.conditioning import Marginal, conditioning
+from xlmc.report.dependence_json import certainties_json, pairs_json, sensitivity_json, statements_json
 from xlmc.report.estimate_json import estimate_json, number_json
 from xlmc.statistics import proportion
 from xlmc.workbook.writer import whole_file
@@ -62,6 +63,9 @@ def document(simulation: Simulation, *, command: str | None = None) -> Json:
         "forecasts": [_forecast(result, base) for result in simulation.results.values()],
         "filters": [_filter(simulation, place, each) for place, each in enumerate(simulation.model.filters)],
         "assumptions": [_assumption(simulation, each) for each in simulation.model.assumptions],
+        "statements": statements_json(simulation),
+        "pairs": pairs_json(simulation),
+        "sensitivity": sensitivity_json(simulation),
         "correlations": [_correlation(met) for met in correlations_met(simulation)],
         "errors": [
             {"in": met.kind, "name": met.name, "cell": str(met.cell), "error": met.error, "trials": met.trials}
@@ -129,6 +133,7 @@ def _forecast(result: ForecastResult, base: BaseCase | None) -> Json:
         "certainty": None
         if above is None
         else {"threshold": definition.threshold, "probability_above": estimate_json(above)},
+        "certainties": certainties_json(result),
         "base_case": None if base is None else number_json(base.forecasts[definition.name]),
         "without_number": {error: count for error, count in sorted(result.faults.items()) if count},
     }

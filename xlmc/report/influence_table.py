@@ -34,9 +34,7 @@ def write_influences(page: Page, found: ForecastSensitivity, sobol: bool) -> Tab
     headers += ["Rank correlation", "±", "Contribution to variance", "±"]
     shown = found.influences[:ROWS]
     header = page.row
-    page.table(
-        [*headers, *(["First order", "±", "Total effect", "±"] if sobol else [])], [_row(i, sobol) for i in shown]
-    )
+    page.table([*headers, *(["First order", "±", "Total effect", "±"] if sobol else [])], [_row(i, sobol) for i in shown])
     return TableAt(page.sheet.get_name(), header, header + 1, header + min(len(shown), BARS))
 
 
@@ -65,9 +63,7 @@ def influence_charts(book: Workbook, at: TableAt, found: ForecastSensitivity, so
     unseen = [each.dependence.value <= each.dependence_floor for each in drawn]
     plain = [False] * len(drawn)
     second = (
-        bar_chart(
-            book, at, "Total effect (Sobol)", "Share of the variance, alone and with others", _TOTAL, _TOTAL + 1, plain
-        )
+        bar_chart(book, at, "Total effect (Sobol)", "Share of the variance, alone and with others", _TOTAL, _TOTAL + 1, plain)
         if sobol
         else bar_chart(book, at, "Dependence", "Cramér–von Mises index", _DEPENDENCE, _DEPENDENCE + 1, unseen)
     )

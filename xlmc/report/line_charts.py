@@ -67,9 +67,7 @@ def limit_chart(
                 "y_error_bars": {**bars, "line": {"color": colour, "width": 0.75}},
             }
         )
-    chart.set_x_axis(
-        {"name": across, **_axis(), "line": AXIS, "num_format": "General", "major_gridlines": {"visible": False}}
-    )
+    chart.set_x_axis({"name": across, **_axis(), "line": AXIS, "num_format": "General", "major_gridlines": {"visible": False}})
     chart.set_y_axis({"name": axis, **_axis(upwards=True), "num_format": "General", **_GRIDLINES})
     chart.set_legend({"position": "bottom", "font": FONT} if len(tables) > 1 else {"none": True})
     return dressed(chart, title)

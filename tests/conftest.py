@@ -9,8 +9,11 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import openpyxl
 import pytest
 from hypothesis import settings
+from openpyxl.workbook.defined_name import DefinedName as WrittenName
+from openpyxl.worksheet.table import Table as WrittenTable
 
 from xlmc.address import Area, parse_address
 from xlmc.definitions import Assumption, Correlation, Definitions, Filter, Forecast
@@ -115,3 +118,56 @@ def book():
         return Model(held, found, Path("book.xlsx"))
 
     return make
+
+
+SMALL_BOOK = {
+    "Inputs": [
+        ["Name", "Value", "Low", "High", "Units", "Source"],
+        ["width", 2.0, 1.0, 3.0, "ft", "tape"],
+        ["=length", 3.0, 2.0, 4.0, "ft", "plan"],
+        [],
+        ["Rate", 2.5],
+        ["Extra", 1.0, None, 2.0],
+    ],
+    "Model": [
+        ["=Inputs!B2*Inputs!B3*Rate", "=SUM(Inputs!B6:D6)"],
+        ["=A1+B1", "=1/MAX(Inputs!B2-1.2,0)"],
+        ["=SQRT(Inputs!B3-2.1)"],
+    ],
+    "Wanted": [
+        ["Name", "Cell", "Units", "Threshold"],
+        ["area", "=Model!A2", "ft²", 20.0],
+        ["inverse", "=Model!B2", None, None],
+        [],
+        ["Name", "Cell", "At most", "Because"],
+        ["root", "=Model!A3", 1.2, "seen"],
+        [],
+        ["Setting", "Value"],
+        ["Trials", 400],
+        ["Seed", 7],
+    ],
+}
+"""Two assumptions, one with a name that looks like a formula; a forecast and a filter that may be errors."""
+
+
+@pytest.fixture(scope="session")
+def small_book(tmp_path_factory):
+    """A workbook file of two assumptions, two forecasts and a filter, with errors, a name, and a blank in a range."""
+    book = openpyxl.Workbook()
+    book.remove(book.active)
+    for name, rows in SMALL_BOOK.items():
+        sheet = book.create_sheet(name)
+        for row in rows:
+            sheet.append(row)
+    book["Inputs"]["A3"].data_type = "s"
+    for name, sheet, area in (
+        ("xlmc_assumptions", "Inputs", "A1:F3"),
+        ("xlmc_forecasts", "Wanted", "A1:D3"),
+        ("xlmc_filters", "Wanted", "A5:D6"),
+        ("xlmc_settings", "Wanted", "A8:B10"),
+    ):
+        book[sheet].add_table(WrittenTable(displayName=name, ref=area))
+    book.defined_names["Rate"] = WrittenName("Rate", attr_text="Inputs!$B$5")
+    path = tmp_path_factory.mktemp("small") / "small.xlsx"
+    book.save(path)
+    return path

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from xlmc.analysis import compare, screen
     from xlmc.model import Model, load
+    from xlmc.saved import open_run
     from xlmc.simulation import ForecastResult, Simulation
 
-__all__ = ["ForecastResult", "Model", "Simulation", "__version__", "compare", "load", "screen"]
+__all__ = ["ForecastResult", "Model", "Simulation", "__version__", "compare", "load", "open_run", "screen"]
 
 __version__ = "0.1.0"
 
@@ -26,6 +27,7 @@ _HOMES = {
     "Simulation": "simulation",
     "compare": "analysis",
     "load": "model",
+    "open_run": "saved",
     "screen": "analysis",
 }
 

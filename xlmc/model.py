@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from xlmc.simulate import Progress
     from xlmc.simulation import Simulation
 
-__all__ = ["Model", "load"]
+__all__ = ["Model", "load", "understood"]
 
 
 def load(path: str | Path) -> Model:
@@ -38,11 +38,20 @@ def load(path: str | Path) -> Model:
         FormulaError: a needed cell cannot be computed.
     """
     with paused_collection():
-        workbook = read_workbook(path)
+        return understood(read_workbook(path), Path(path))
+
+
+def understood(workbook: Workbook, path: Path) -> Model:
+    """The model of a workbook that was read.
+
+    Raises:
+        DefinitionError, FormulaError: as for `load`.
+    """
+    with paused_collection():
         definitions = read_definitions(workbook)
         if definitions.problems:
             raise _joined(definitions.problems)
-        return Model(workbook, definitions, Path(path))
+        return Model(workbook, definitions, path)
 
 
 def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:
@@ -98,6 +107,16 @@ class Model:
     @property
     def filters(self) -> tuple[Filter, ...]:
         return self.definitions.filters
+
+    @property
+    def read(self) -> frozenset[Cell]:
+        """Every cell that the forecasts and filters read, blank cells of ranges among them."""
+        return self._lowering.read
+
+    @property
+    def saved(self) -> frozenset[Cell]:
+        """The cells among them that xlmc cannot compute, and that hold what Excel saved."""
+        return frozenset(self._lowering.saved)
 
     @property
     def fallible(self) -> frozenset[str]:

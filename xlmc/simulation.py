@@ -26,12 +26,13 @@ from xlmc.stopping.stopped import ALL_TRIALS
 
 if TYPE_CHECKING:
     import pandas
+    from matplotlib.figure import Figure
 
     from xlmc.errors import Notice
     from xlmc.model import Model
     from xlmc.rounding import Rounding
 
-__all__ = ["ERROR_SHARE", "KEPT_INPUTS", "ForecastResult", "Simulation"]
+__all__ = ["ERROR_SHARE", "KEPT_INPUTS", "ForecastResult", "Origin", "Simulation"]
 
 ERROR_SHARE: Final = 0.001
 """Above this share of error trials the answer must not be used as it stands."""
@@ -108,6 +109,19 @@ class ForecastResult:
         return statistics.probability_above(self.sample, threshold)
 
 
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a saved run was made.
+
+    Attributes:
+        software: name -> version.
+        processor: what it was, for people and for comparing.
+    """
+
+    software: Mapping[str, str]
+    processor: Mapping[str, str]
+
+
 @dataclass(frozen=True, eq=False)
 class Simulation:
     """A finished run. Of a large one the columns lie in temporary files, as read-only arrays, for as long as it lives.
@@ -127,6 +141,7 @@ class Simulation:
             number in some forecast. Each counts once.
         stopped: what ended it.
         rounding: what float32 changed in the first trials; None with float64.
+        origin: where it was made, if it was saved and opened again; None for one that was made here.
     """
 
     model: Model
@@ -144,6 +159,7 @@ class Simulation:
     error_trials: int
     stopped: Stopped = ALL_TRIALS
     rounding: Rounding | None = None
+    origin: Origin | None = None
 
     def __getitem__(self, name: str) -> ForecastResult:
         """The result of a forecast, by name whatever its case.
@@ -273,3 +289,45 @@ class Simulation:
         from xlmc.report.html import save_page
 
         save_page(self, Path(path))
+
+    def keep(self, path: str | Path) -> None:
+        """Save the run in a file that ends in `.xlmcrun`; `xlmc.open_run` gives it back.
+
+        Raises:
+            WorkbookError: the file cannot be written.
+            SimulationError: the workbook was not read from a file.
+        """
+        from xlmc.saved import keep
+
+        keep(self, Path(path))
+
+    def extract(self, path: str | Path) -> None:
+        """Write the accepted trials, with assumptions and forecasts, to a `.csv` or a `.parquet` file.
+
+        Raises:
+            WorkbookError: the file has another ending, or cannot be written.
+            SimulationError: Parquet needs pyarrow, which is not installed.
+        """
+        from xlmc.report.extract import extract
+
+        extract(self, Path(path))
+
+    def save_json(self, path: str | Path) -> None:
+        """Write all results as JSON; docs/json.md describes it.
+
+        Raises:
+            WorkbookError: the file cannot be written, or does not end in `.json`.
+        """
+        from xlmc.report.document import save_json
+
+        save_json(self, Path(path))
+
+    def plot(self) -> Figure:
+        """A figure of matplotlib: every forecast's histogram and cumulative share, with the central range shaded.
+
+        Raises:
+            SimulationError: matplotlib is not installed, or there is nothing to draw.
+        """
+        from xlmc.report.plot import plot
+
+        return plot(self)

@@ -16,7 +16,7 @@ def read_back(run, opened):
         key = row[0].value
         if key is None:
             keys = [(cell.value, cell.column) for cell in row[1:] if cell.value is not None]
-            columns = keys if row[1].value in ("name", "first", "message", "kind") else None
+            columns = keys if row[1].value in ("name", "first", "message", "kind", "cell") else None
             tables["columns"] = columns or tables.get("columns")
         elif indexed := re.fullmatch(r"(\w+)\[(\d+)\]", key):
             values = {name: sheet.cell(row[0].row, column).value for name, column in tables["columns"]}
@@ -52,6 +52,8 @@ def test_keys_are_folded_away_and_not_printed(book):
     sheet = book["Record"]
     assert sheet.column_dimensions["A"].hidden
     assert sheet.print_area.startswith("'Record'!$B$1:")
+    last = int(sheet.print_area.rpartition("$")[2])
+    assert sheet.cell(last - 1, 2).value == "Vector instructions"  # the model's names and cells are not printed
 
 
 def test_empty_tables_say_none(book, row_of):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from xlmc.cli.output_options import Outputs, output_options
 from xlmc.cli.run_options import stopping_options
 
 if TYPE_CHECKING:
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from xlmc.model import Model
     from xlmc.simulation import Simulation
 
-__all__ = ["simulate"]
+__all__ = ["show_run", "simulate"]
 
 NOT_TO_BE_USED = 1
 INTERRUPTED = 130
@@ -50,7 +51,13 @@ INTERRUPTED = 130
 @click.option("--workers", type=click.IntRange(1), help="Workers of --scheduler local.  [default: one a processor]")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Result workbook.  [default: BOOK-results.xlsx]")
 @click.option("--in-place", is_flag=True, help="Write the result sheets into BOOK itself.")
-@click.option("--html", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write one web page, too.")
+@click.option(
+    "--save-run",
+    type=click.Path(path_type=Path),
+    metavar="FILE.xlmcrun",
+    help="Save the run, for xlmc report and xlmc replay.",
+)
+@output_options
 @click.option("--quiet", is_flag=True, help="Print no progress bar and no notes.")
 def simulate(
     book: Path,
@@ -64,7 +71,10 @@ def simulate(
     workers: int | None,
     output: Path | None,
     in_place: bool,
+    save_run: Path | None,
     html: Path | None,
+    json_path: Path | None,
+    extract: tuple[Path, ...],
     quiet: bool,
     **length: Any,
 ) -> None:
@@ -73,16 +83,15 @@ def simulate(
     from xlmc.cli.progress import progress_bar
     from xlmc.model import load
     from xlmc.report import save
+    from xlmc.simulation import KEPT_INPUTS
     from xlmc.workbook.writer import refuse_if_open
 
     if in_place and output is not None:
         raise click.UsageError("--in-place and --output exclude each other.")
     target = book if in_place else output or book.with_name(f"{book.stem}-results{book.suffix}")
     refuse_if_open(target)
-    if html is not None:
-        from xlmc.report.html import check_page_path
-
-        check_page_path(html)
+    others = Outputs(save_run, html, json_path, extract)
+    others.check()
     model = load(book)
     if not quiet:
         notices([*model.notices, *_hints(model, trials, engine)])
@@ -97,16 +106,14 @@ def simulate(
             jobs=jobs,
             scheduler=scheduler,
             workers=workers,
+            keep_inputs=None if extract else KEPT_INPUTS,
             keep_interrupted=True,
             progress=progress,
         )
     save(run, target)
-    if html is not None:
-        run.save_page(html)
-    _show(run)
+    show_run(run)
     click.echo(f"Results are in {target}")
-    if html is not None:
-        click.echo(f"The page is {html}")
+    others.write(run)
     for warning in run.warnings:
         click.echo(f"warning: {warning}; the answer must not be used as it stands.", err=True)
     if run.stopped.interrupted:
@@ -127,7 +134,7 @@ def _hints(model: Model, trials: int | None, engine: str | None) -> list[Notice]
     return [Notice("a run of so many trials may be shorter with `--engine jit`, which compiles the model first")]
 
 
-def _show(run: Simulation) -> None:
+def show_run(run: Simulation) -> None:
     """Print the paper's table, the acceptance and what each filter rejected."""
     from xlmc.cli.printing import table
     from xlmc.record.sampling_words import sampling_sentence

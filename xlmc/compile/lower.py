@@ -105,6 +105,12 @@ class Lowering:
         """What a formula cell computes where that is constant; None where it is not."""
         return self.known_single(self._computed[cell])
 
+    @property
+    def read(self) -> frozenset[Cell]:
+        """Every cell that the targets read: formulas, inputs, constants, and blank cells of ranges."""
+        unread = (self.inputs.keys() | self.held.keys()) - self.graph.reached
+        return frozenset(self._cells) - unread
+
     def awaits(self, cell: Cell) -> bool:
         """Whether a cell must be lowered before it can be referred to, and was not."""
         if cell in self.inputs:

@@ -9,12 +9,12 @@ import re
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from xlmc.address import MAX_COLUMN, MAX_ROW, column_number
+from xlmc.address import MAX_COLUMN, MAX_ROW, column_letters, column_number
 from xlmc.formula import ir
 from xlmc.formula.parse import parse
 from xlmc.formula.stencil import Stencil
 
-__all__ = ["Shape", "Shapes", "shape_of"]
+__all__ = ["Shape", "Shapes", "shape_of", "text_at"]
 
 _TOKEN = re.compile(
     r'"(?:[^"]|"")*"'  # a text
@@ -57,6 +57,40 @@ def shape_of(text: str, row: int, column: int) -> str:
 
 def _step(fixed: str, place: int, base: int) -> str | int:
     return f"${place}" if fixed else place - base
+
+
+def text_at(text: str, down: int, right: int) -> str:
+    """A formula as it reads when it is filled so many rows down and columns to the right.
+
+    >>> text_at("A1*$B$2+SUM(C:C)", 2, 1)
+    'B3*$B$2+SUM(D:D)'
+    """
+
+    def moved(found: re.Match[str]) -> str:
+        column_fixed, letters, row_fixed, digits = found.group("cf", "c", "rf", "r")
+        if digits is not None:
+            if column_number(letters) > MAX_COLUMN or int(digits) > MAX_ROW:
+                return found[0]
+            return f"{_column_at(column_fixed, letters, right)}{_row_at(row_fixed, digits, down)}"
+        if found["c1"] is not None:
+            return ":".join(
+                _column_at(end[: -len(end.lstrip("$"))], end.lstrip("$"), right) for end in found.group("c1", "c2")
+            )
+        if found["r1"] is not None:
+            return ":".join(
+                _row_at(end[: -len(end.lstrip("$"))], end.lstrip("$"), down) for end in found.group("r1", "r2")
+            )
+        return found[0]
+
+    return _TOKEN.sub(moved, text) if down or right else text
+
+
+def _column_at(fixed: str, letters: str, right: int) -> str:
+    return f"${letters}" if fixed else column_letters((column_number(letters) + right - 1) % MAX_COLUMN + 1)
+
+
+def _row_at(fixed: str, digits: str, down: int) -> str:
+    return f"${digits}" if fixed else str((int(digits) + down - 1) % MAX_ROW + 1)
 
 
 class _Filling(NamedTuple):

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
+from xlmc.record.cell_table import cell_section
+from xlmc.record.contents import needed_contents
 from xlmc.record.definition_tables import (
     assumption_section,
     correlation_section,
@@ -18,6 +20,8 @@ from xlmc.record.fingerprint import fingerprint
 from xlmc.record.model import Entry, Record, RecordTable, Section
 from xlmc.record.repeat import repeat_command
 from xlmc.record.sampling_words import errors_text, generator_text, method_text
+from xlmc.record.settings_table import settings_section
+from xlmc.record.structure_table import structure_section
 from xlmc.workbook.inject import original_hash
 
 if TYPE_CHECKING:
@@ -25,6 +29,9 @@ if TYPE_CHECKING:
     from xlmc.simulation import Simulation
 
 __all__ = ["make_record"]
+
+FORMAT: Final = 2
+"""Of the record: from 2 on it holds the settings and the cells that a run can be repeated and checked by."""
 
 _SHARES = {
     "trials": "accepted of all trials; its interval is Wilson's, 95 %",
@@ -51,6 +58,8 @@ def make_record(simulation: Simulation, command: str | None = None) -> Record:
         simulation: the finished run.
         command: what the person typed; None for a run from Python.
     """
+    contents = needed_contents(simulation.model)
+    software, machine = _environment(simulation)
     return Record(
         (
             _run(simulation, command),
@@ -58,6 +67,7 @@ def make_record(simulation: Simulation, command: str | None = None) -> Record:
             _counts(simulation),
             _end(simulation),
             _sampling(simulation),
+            settings_section(simulation),
             forecast_section(simulation),
             filter_section(simulation),
             assumption_section(simulation),
@@ -66,10 +76,20 @@ def make_record(simulation: Simulation, command: str | None = None) -> Record:
             _messages("notices", "Notices", [str(notice) for notice in simulation.notices]),
             _errors(simulation),
             _conventions(simulation),
-            Section("software", "Software", _entries(versions(simulation.settings.engine))),
-            Section("processor", "Processor", _entries(processor())),
+            Section("software", "Software", _entries(software)),
+            Section("processor", "Processor", _entries(machine)),
+            structure_section(simulation.model, contents.values()),
+            cell_section(contents),
         )
     )
+
+
+def _environment(simulation: Simulation) -> tuple[Mapping[str, str], Mapping[str, str]]:
+    """The software and the processor of the run: those it was saved with, or those here."""
+    origin = simulation.origin
+    if origin is not None:
+        return origin.software, origin.processor
+    return versions(simulation.settings.engine), processor()
 
 
 def _run(simulation: Simulation, command: str | None) -> Section:
@@ -78,6 +98,7 @@ def _run(simulation: Simulation, command: str | None) -> Section:
         Entry("repeat", "Command that repeats it", repeat_command(simulation)),
         *given,
         Entry("fingerprint", "SHA-256 of the accepted trials", fingerprint(simulation)),
+        Entry("format", "Format of this record", FORMAT),
     )
     return Section("run", "This run", entries)
 

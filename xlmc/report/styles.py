@@ -38,6 +38,7 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "label": _TEXT | {"font_color": _GREY, "text_wrap": True},
     "code": _TEXT | {"font_name": "Consolas", "font_size": 10, "text_wrap": True},
     "key": {"font_name": "Consolas", "font_size": 8, "font_color": _GREY, "valign": "vcenter"},
+    "listed": {"font_name": "Consolas", "font_size": 9, "valign": "vcenter"},
     "number": _NUMBER,
     "answer": _NUMBER | {"bold": True, "bg_color": "#BBDDF7"},
     "typed": _NUMBER | {"font_color": "#0B3D91", "bg_color": "#FFFBE0"},

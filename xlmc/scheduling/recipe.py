@@ -55,7 +55,7 @@ class Recipe:
         plan: Plan | None = None,
     ) -> Recipe:
         """The recipe of a run."""
-        bare = replace(model.workbook, parts={})  # the file as it was: only the result sheets need it
+        bare = replace(model.workbook, parts={}, data=b"")  # the file as it was: only the result sheets need it
         needed = plan if plan is not None and plan.size else None  # independent trials may be any number
         return cls(bare, model.definitions, model.path, engine, seed, block, arithmetic, needed)
 

@@ -89,6 +89,7 @@ class Workbook:
         macintosh: last saved by Excel for the Macintosh, whose CHAR and CODE use its own character set.
         parts: every part of the zip package in its order, name -> bytes, as in the file.
         sha256: of the file.
+        data: the file itself, byte for byte; empty where there is none.
     """
 
     name: str
@@ -100,6 +101,7 @@ class Workbook:
     notices: tuple[Notice, ...] = ()
     parts: Mapping[str, bytes] = field(default_factory=dict, repr=False)
     sha256: str = ""
+    data: bytes = field(default=b"", repr=False)
 
     @cached_property
     def _folded(self) -> dict[str, str]:

@@ -50,6 +50,7 @@ def _read(data: bytes, name: str, place: str) -> Workbook:
             notices=(*workbook_notices(parts, structure, name), *data_table_notices(sheets.data_tables())),
             parts=parts,
             sha256=hashlib.sha256(data).hexdigest(),
+            data=data,
         )
 
 

@@ -11,10 +11,11 @@ import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 from xlmc.errors import WorkbookError
 
-__all__ = ["package_bytes", "refuse_if_open", "write_workbook"]
+__all__ = ["check_folder", "package_bytes", "refuse_if_open", "whole_file", "write_workbook"]
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time a zip can hold
 _FIRST = ("[Content_Types].xml", "_rels/.rels")  # where programs that read a package as it arrives look first
@@ -40,17 +41,52 @@ def write_workbook(path: str | os.PathLike[str], data: bytes) -> None:
     Raises:
         WorkbookError: the folder is missing, the file may not be written or is in use, or the disk is full.
     """
+    with _written_whole(path) as temporary:
+        _write_synced(temporary, data)
+
+
+@contextmanager
+def whole_file(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
+    """A file to write piece by piece, which takes its place when all is written, and not at all after an exception.
+
+    An existing file keeps its permissions; a link keeps pointing at the file it names.
+
+    Raises:
+        WorkbookError: as for `write_workbook`.
+    """
+    with _written_whole(path) as temporary, temporary.open("w+b") as file:
+        yield file
+        file.flush()
+        os.fsync(file.fileno())
+
+
+@contextmanager
+def _written_whole(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """A file beside the target, to be written and synced; then it is renamed."""
     target = Path(os.path.realpath(path))
     try:
         _refuse_protected(target)
         with _new_file_beside(target) as temporary:
-            _write_synced(temporary, data)
+            yield temporary
             if target.exists():
                 shutil.copymode(target, temporary)
             os.replace(temporary, target)
         _sync_folder(target.parent)
     except OSError as error:
         raise _told(error, path) from error
+
+
+def check_folder(path: str | os.PathLike[str]) -> None:
+    """Refuse, before any work, a file that has no folder to go to, or is a folder.
+
+    Raises:
+        WorkbookError: so it is.
+    """
+    target = Path(os.path.realpath(path))
+    if target.is_dir():
+        raise _told(IsADirectoryError(errno.EISDIR, "is a folder"), path)
+    if not target.parent.is_dir():
+        raise _told(FileNotFoundError(errno.ENOENT, "no folder"), path)
 
 
 def refuse_if_open(path: str | os.PathLike[str]) -> None:
@@ -115,7 +151,7 @@ def _told(error: OSError, path: str | os.PathLike[str]) -> WorkbookError:
         folder = str(Path(path).absolute().parent)
         return WorkbookError(f"there is no folder {folder!r}", where=path, hint="Create it or name another")
     if Path(path).is_dir():
-        return WorkbookError("this is a folder, not a workbook", where=path, hint="Name a file")
+        return WorkbookError("this is a folder, not a file", where=path, hint="Name a file")
     if error.errno in _FULL:
         return WorkbookError("the disk is full", where=path, hint="Free some space or name another folder")
     if error.errno in _REFUSED:

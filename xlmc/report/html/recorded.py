@@ -27,8 +27,9 @@ def recorded(record: Record) -> Html:
 
 def _section(section: Section) -> Html:
     found = [element("summary", section.title)]
-    if section.entries:
-        found.append(element("dl", *(each for entry in section.entries for each in _entry(section.key, entry))))
+    entries = [entry for entry in section.entries if not entry.key.startswith("packed_")]  # for programs alone
+    if entries:
+        found.append(element("dl", *(each for entry in entries for each in _entry(section.key, entry))))
     if section.table is not None:
         found.append(_table(section.table) if section.table.rows else element("p", "None"))
     return element("details", *found, open="" if section.key in _OPEN else None, data_section=section.key)

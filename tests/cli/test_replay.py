@@ -1,0 +1,133 @@
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import openpyxl
+import pytest
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+
+
+@pytest.fixture
+def results(xlmc, case_study, tmp_path):
+    """The case study's results, in the folder that commands run in."""
+    book = shutil.copy(case_study, tmp_path / "case.xlsx")
+    assert xlmc("simulate", book, "-n", 20_000, "--seed", 5, "--save-run", "case.xlmcrun").code == 0
+    return tmp_path / "case-results.xlsx"
+
+
+def edit(path, sheet, address, value):
+    book = openpyxl.load_workbook(path)
+    book[sheet][address] = value
+    book.save(path)
+
+
+@pytest.mark.parametrize("name", ["case-results.xlsx", "case.xlmcrun"])
+def test_identical(xlmc, results, name):
+    outcome = xlmc("replay", name)
+    assert outcome.code == 0
+    assert outcome.err == ""
+    first, second = outcome.out.splitlines()
+    assert first == f"{name} records a run of case.xlsx: 20,000 trials, seed 5."
+    assert second.startswith("identical: the same ")
+    assert second.endswith(" accepted trials to the last bit.")
+
+
+def test_a_changed_cell_is_named(xlmc, results):
+    edit(results, "Inputs", "G6", 6600)
+    outcome = xlmc("replay", results)
+    assert outcome.code == 1
+    lines = outcome.out.splitlines()
+    assert lines[1:6] == ["differs.", "Not as the record says:", "  cell Inputs!G6", "    was  6661", "    is   6600"]
+    assert any(line.startswith("  Chevrolet delta-V: mean: recorded 11.") for line in lines)
+    assert lines[-1].startswith("  … and ")
+
+
+def test_as_json(xlmc, results):
+    found = json.loads(xlmc("replay", results, "--json").out)
+    assert found.pop("verdict").startswith("identical: the same ")
+    assert found == {
+        "identical": True,
+        "to_the_last_bit": True,
+        "same_accepted_trials": True,
+        "changes": [],
+        "environment": [],
+        "numbers": [],
+        "fault": None,
+    }
+    edit(results, "Model", "D9", "=nosuchname")
+    outcome = xlmc("replay", results, "--json")
+    assert outcome.code == 1
+    found = json.loads(outcome.out)
+    assert found["changes"] == [{"kind": "cell", "where": "Model!D9", "was": "=SQRT(2*g*f_1*s_1)", "is": "=nosuchname"}]
+    assert "nosuchname" in found["fault"]
+
+
+def test_an_edited_record_is_found_out(xlmc, results):
+    book = openpyxl.load_workbook(results)
+    sheet = book["Record"]
+    row = next(row for row in range(1, sheet.max_row) if sheet.cell(row, 1).value == "forecasts[0]")
+    place = next(column for column in range(1, sheet.max_column) if sheet.cell(row - 2, column).value == "mean")
+    sheet.cell(row, place).value = 10.5
+    book.save(results)
+    outcome = xlmc("replay", results)
+    assert outcome.code == 1
+    assert "differs, although the" in outcome.out
+    assert "Chevrolet delta-V: mean: recorded 10.5, repeated 11." in outcome.out
+    assert "The numbers in the record were edited" in outcome.out
+
+
+def test_another_processor(xlmc, results, monkeypatch):
+    monkeypatch.setattr("xlmc.record.make.processor", lambda: {"machine": "arm64", "system": "Darwin"})
+    outcome = xlmc("replay", results)
+    assert outcome.code == 0
+    assert "identical: the same" in outcome.out
+    assert "Other software or another processor than then:" in outcome.out
+    assert "    is   arm64" in outcome.out
+
+
+@pytest.mark.parametrize("name", ["case.xlsx", "nothing.xlsx", "nothing.xlmcrun"])
+def test_what_holds_no_record_is_bad_input(xlmc, results, name):
+    outcome = xlmc("replay", name)
+    assert outcome.code == 2
+    assert outcome.err.startswith(f"xlmc: {name}: ")
+
+
+def test_a_macro_workbook(xlmc, case_study, tmp_path):
+    book = tmp_path / "case.xlsm"
+    types = b"application/vnd.openxmlformats-officedocument.spreadsheetml.sheet.main+xml"
+    macros = b"application/vnd.ms-excel.sheet.macroEnabled.main+xml"
+    from xlmc.workbook.package import read_parts
+    from xlmc.workbook.writer import package_bytes
+
+    parts = read_parts(case_study.read_bytes())
+    parts["[Content_Types].xml"] = parts["[Content_Types].xml"].replace(types, macros)
+    book.write_bytes(package_bytes(parts))
+    assert xlmc("simulate", book, "-n", 5_000, "--save-run", "case.xlmcrun").code == 0
+    assert xlmc("replay", "case-results.xlsm").code == 0
+    assert xlmc("replay", "case.xlmcrun").code == 0
+    assert xlmc("report", "case.xlmcrun", "-o", "b.xlsm").code == 0
+    assert (tmp_path / "b.xlsm").read_bytes() == (tmp_path / "case-results.xlsm").read_bytes()
+
+
+def test_the_documents_show_what_is_printed(xlmc, case_study, tmp_path):
+    """docs/saved-runs.md shows a replay before and after a cell was changed; docs/json.md a number and a program."""
+    shutil.copy(case_study, tmp_path / "intersection.xlsx")
+    xlmc("simulate", "intersection.xlsx", "--json", "book.json")
+    before, after = re.findall(r"```text\n\$ (.*?)```", (DOCS / "saved-runs.md").read_text(), re.DOTALL)
+    for shown in (before, after):
+        command, *lines = shown.splitlines()
+        printed = xlmc(*command.split()[1:]).out.splitlines()
+        assert [line for line in lines if line != "  …"] == printed[: len(lines) - ("  …" in lines)]
+        edit(tmp_path / "intersection-results.xlsx", "Model", "D9", "=SQRT(2*g*f_1*s_1)*1.001")
+    page = (DOCS / "json.md").read_text()
+    number, program = (re.search(rf"```{kind}\n(.*?)```", page, re.DOTALL)[1] for kind in ("json", "python"))
+    found = json.loads((tmp_path / "book.json").read_text())
+    assert found["forecasts"][0]["statistics"]["mean"] == json.loads(number)
+    printed = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout
+    assert printed.splitlines()[0].startswith("Chevrolet delta-V 11.25")

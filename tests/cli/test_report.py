@@ -1,0 +1,127 @@
+from __future__ import annotations
+
+import json
+import shutil
+
+import pandas
+import pytest
+
+import xlmc as package
+from xlmc.simulation import KEPT_INPUTS
+
+
+@pytest.fixture
+def book(small_book, tmp_path):
+    return shutil.copy(small_book, tmp_path / "book.xlsx")
+
+
+@pytest.fixture
+def case_book(case_study, tmp_path):
+    return shutil.copy(case_study, tmp_path / "case.xlsx")
+
+
+def test_what_is_reported_is_what_simulate_wrote(xlmc, case_book, tmp_path):
+    options = ("--save-run", "case.xlmcrun", "--json", "a.json", "--extract", "a.csv", "--extract", "a.parquet")
+    run = xlmc("simulate", case_book, "-n", 20_000, *options)
+    assert run.code == 0
+    for words in (
+        "The run is saved in case.xlmcrun",
+        "as JSON are in a.json",
+        "trials are in a.csv",
+        "are in a.parquet",
+    ):
+        assert words in run.out
+    again = ("-o", "b.xlsx", "--json", "b.json", "--extract", "b.csv", "--extract", "b.parquet")
+    report = xlmc("report", "case.xlmcrun", *again)
+    assert report.code == 0
+    assert summary(report.out) == summary(run.out)
+    for first, second in (("case-results.xlsx", "b.xlsx"), *((f"a.{e}", f"b.{e}") for e in ("json", "csv", "parquet"))):
+        assert (tmp_path / first).read_bytes() == (tmp_path / second).read_bytes(), second
+
+
+def summary(printed):
+    return printed.partition("\nResults are in")[0]
+
+
+def test_nothing_is_simulated(xlmc, case_book, monkeypatch):
+    xlmc("simulate", case_book, "-n", 5_000, "--save-run", "case.xlmcrun")
+
+    def refuse(*_, **__):
+        raise AssertionError("a run was simulated")
+
+    monkeypatch.setattr("xlmc.model.Model.simulate", refuse)
+    assert xlmc("report", "case.xlmcrun", "-o", "b.xlsx").code == 0
+
+
+def test_by_default_it_writes_the_result_workbook(xlmc, book, tmp_path):
+    xlmc("simulate", book, "--save-run", "first.xlmcrun")
+    outcome = xlmc("report", "first.xlmcrun")
+    assert outcome.code == 1  # errors in cells
+    assert (tmp_path / "first-results.xlsx").read_bytes() == (tmp_path / "book-results.xlsx").read_bytes()
+    assert "were lost to errors in cells" in outcome.err
+
+
+def test_it_writes_no_workbook_where_something_else_is_asked_for(xlmc, book, tmp_path):
+    xlmc("simulate", book, "--save-run", "first.xlmcrun")
+    xlmc("report", "first.xlmcrun", "--json", "first.json")
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "book-results.xlsx",
+        "book.xlsx",
+        "first.json",
+        "first.xlmcrun",
+    ]
+    assert json.loads((tmp_path / "first.json").read_text())["trials"]["run"] == 400
+
+
+def test_a_run_with_an_extract_keeps_every_draw(xlmc, book, monkeypatch):
+    asked = []
+    simulate = package.Model.simulate
+
+    def noting(self, *arguments, **options):
+        asked.append(options["keep_inputs"])
+        return simulate(self, *arguments, **options)
+
+    monkeypatch.setattr(package.Model, "simulate", noting)
+    xlmc("simulate", book)
+    xlmc("simulate", book, "--extract", "t.csv")
+    assert asked == [KEPT_INPUTS, None]
+
+
+def test_draws_that_were_not_saved_are_blank_and_said_to_be(xlmc, small_book, tmp_path):
+    package.load(small_book).simulate(keep_inputs=10).keep(tmp_path / "run.xlmcrun")
+    outcome = xlmc("report", "run.xlmcrun", "--extract", "t.csv")
+    assert "draws of 10 of 284 accepted trials were kept; the others are blank" in outcome.err
+    assert pandas.read_csv(tmp_path / "t.csv")["width"].notna().sum() == 10
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--json", "a.xlsx"), "JSON is written to a .json file. Name it 'a.json'"),
+        (("--json", "no/a.json"), "there is no folder"),
+        (("--extract", "a.xlsx"), "a .csv or a .parquet file"),
+        (("--extract", "no/a.csv"), "there is no folder"),
+        (("--save-run", "book.xlsx"), "a saved run must end in .xlmcrun"),
+    ],
+)
+def test_names_are_refused_before_the_run(xlmc, book, tmp_path, monkeypatch, options, message):
+    monkeypatch.setattr("xlmc.model.load", lambda path: 1 / 0)
+    before = book.read_bytes()
+    outcome = xlmc("simulate", book, *options)
+    assert outcome.code == 2
+    assert message in outcome.err
+    assert book.read_bytes() == before
+    assert [path.name for path in tmp_path.iterdir()] == ["book.xlsx"]
+
+
+def test_what_is_no_saved_run(xlmc, book):
+    outcome = xlmc("report", book)
+    assert outcome.code == 2
+    assert outcome.err.startswith(f"xlmc: {book}: the file is no saved run. Save one with xlmc simulate --save-run")
+
+
+def test_results_of_another_kind_of_workbook_are_refused(xlmc, book, tmp_path):
+    xlmc("simulate", book, "--save-run", "run.xlmcrun")
+    outcome = xlmc("report", "run.xlmcrun", "-o", "b.xlsm")
+    assert outcome.code == 2
+    assert "must end in .xlsx" in outcome.err

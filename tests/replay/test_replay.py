@@ -1,0 +1,383 @@
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import openpyxl
+import pytest
+
+import xlmc
+from xlmc.errors import WorkbookError, XlmcError
+from xlmc.record import Entry, Record, RecordTable, make_record
+from xlmc.record.read import read_record
+from xlmc.replay import Change, replay
+from xlmc.replay import repeat as repeating
+from xlmc.workbook import read_workbook
+
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples/intersection.xlsx"
+
+
+@pytest.fixture(scope="session")
+def model(small_book):
+    return xlmc.load(small_book)
+
+
+@pytest.fixture(scope="module")
+def results(model, tmp_path_factory):
+    path = tmp_path_factory.mktemp("results") / "small-results.xlsx"
+    model.simulate().save(path)
+    return path
+
+
+@pytest.fixture
+def edited(results, tmp_path):
+    """`edited(change)`: the result workbook after a person's change to it, saved by another program."""
+
+    def edit(change, source=results):
+        book = openpyxl.load_workbook(source)
+        change(book)
+        path = tmp_path / "edited.xlsx"
+        book.save(path)
+        return path
+
+    return edit
+
+
+def put(sheet, address, value):
+    def change(book):
+        book[sheet][address] = value
+
+    return change
+
+
+def test_the_case_study_is_identical_and_a_changed_cell_is_named(tmp_path):
+    """The bar of this command."""
+    path = tmp_path / "results.xlsx"
+    xlmc.load(EXAMPLE).simulate(20_000).save(path)
+    found = replay(path)
+    assert found.identical
+    assert found.to_the_last_bit
+    assert (found.changes, found.environment, found.numbers) == ((), (), ())
+    book = openpyxl.load_workbook(path)
+    book["Model"]["D9"] = "=SQRT(2*g*f_1*s_1)*1.001"
+    book.save(path)
+    found = replay(path)
+    assert not found.identical
+    assert found.changes == (Change("cell", "Model!D9", "=SQRT(2*g*f_1*s_1)", "=SQRT(2*g*f_1*s_1)*1.001"),)
+    assert {number.name for number in found.numbers} > {"Chevrolet delta-V: mean", "Nissan delta-V: low"}
+
+
+RUNS = {
+    "by default": {},
+    "other settings than the book's": {"trials": 777, "seed": 10**20},
+    "Latin hypercube": {"sampling": "lhs", "trials": 1000},
+    "Latin hypercube in blocks": {"sampling": "lhs500", "trials": 9_000},
+    "Sobol": {"sampling": "sobol", "trials": 1000},
+    "until accepted": {"until_accepted": 100},
+    "until accepted, and not reached": {"until_accepted": 10_000, "trials": 1000},
+    "precision": {"precision": "20%", "precision_of": "p50", "forecasts": "area"},
+    "time": {"precision": 1e-9, "time_limit": 0.001},
+    "jit": {"engine": "jit", "trials": 35_000},
+    "single precision": {"engine": "jit", "arithmetic": "float32"},
+    "slow reference": {"engine": "formulas", "trials": 40},
+    "some draws kept": {"keep_inputs": 5},
+    "nothing accepted": {"trials": 1, "seed": 7},
+}
+
+
+@pytest.mark.parametrize("asked", RUNS.values(), ids=RUNS)
+def test_every_kind_of_run_is_repeated_to_the_last_bit(model, tmp_path, asked):
+    run = model.simulate(**asked)
+    run.save(tmp_path / "r.xlsx")
+    run.keep(tmp_path / "r.xlmcrun")
+    for path in (tmp_path / "r.xlsx", tmp_path / "r.xlmcrun"):
+        found = replay(path)
+        assert found.to_the_last_bit, (path, found.changes, found.numbers)
+        assert found.record["counts.trials"] == run.trials
+
+
+def test_nothing_was_accepted_in_the_run_that_should_have_accepted_nothing(model):
+    assert model.simulate(**RUNS["nothing accepted"]).accepted == 0
+
+
+def test_an_interrupted_run_is_repeated(model, tmp_path):
+    from xlmc.stopping import Stopped
+
+    run = replace(model.simulate(500), stopped=Stopped("interruption", "it was interrupted"))
+    run.save(tmp_path / "r.xlsx")
+    assert replay(tmp_path / "r.xlsx").to_the_last_bit
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_threads_change_nothing(results, jobs):
+    assert replay(results, jobs=jobs).to_the_last_bit
+
+
+def test_results_in_the_workbook_itself(small_book, tmp_path):
+    path = Path(shutil.copy(small_book, tmp_path / "book.xlsx"))
+    xlmc.load(path).simulate().save(path)
+    assert replay(path).to_the_last_bit
+
+
+def test_a_workbook_that_another_program_saved(edited):
+    assert replay(edited(lambda book: None)).to_the_last_bit
+
+
+def test_result_sheets_may_be_renamed_and_moved(edited):
+    def change(book):
+        for name in ("Record", "Results", "Trials"):
+            book[name].title = f"Old {name}"
+        book.move_sheet("Old Record", -5)
+
+    assert replay(edited(change)).to_the_last_bit
+
+
+CHANGES = {
+    "a parameter": (
+        put("Inputs", "C2", 1.25),
+        [
+            Change("cell", "Inputs!C2", "1", "1.25"),
+            Change("assumption", "width, parameters", "Low 1, High 3", "Low 1.25, High 3"),
+        ],
+    ),
+    "a constant": (put("Inputs", "B5", 2.75), [Change("cell", "Inputs!B5", "2.5", "2.75")]),
+    "a blank of a range": (put("Inputs", "C6", 7), [Change("cell", "Inputs!C6", None, "7")]),
+    "a value that was deleted": (put("Inputs", "D6", None), [Change("cell", "Inputs!D6", "2", None)]),
+    "a formula": (put("Model", "A2", "=A1-B1"), [Change("cell", "Model!A2", "=A1+B1", "=A1-B1")]),
+    "a formula that became a value": (put("Model", "B1", 3), [Change("cell", "Model!B1", "=SUM(Inputs!B6:D6)", "3")]),
+    "the limit of a filter": (
+        put("Wanted", "C6", 1.1),
+        [
+            Change("cell", "Wanted!C6", "1.2", "1.1"),
+            Change("filter", "root, limits", "at most 1.2", "at most 1.1"),
+        ],
+    ),
+    "a threshold": (
+        put("Wanted", "D2", 21),
+        [Change("cell", "Wanted!D2", "20", "21"), Change("forecast", "area, threshold", "20", "21")],
+    ),
+}
+
+
+@pytest.mark.parametrize(("change", "expected"), CHANGES.values(), ids=CHANGES)
+def test_a_changed_cell_is_named_with_old_and_new_content(edited, change, expected):
+    found = replay(edited(change))
+    assert not found.identical
+    assert list(found.changes) == expected
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (put("Inputs", "F2", "laser"), Change("cell", "Inputs!F2", '"tape"', '"laser"')),
+        (put("Wanted", "B10", 8), Change("cell", "Wanted!B10", "7", "8")),
+    ],
+    ids=["a note", "a setting that the repeat does not take"],
+)
+def test_what_does_not_touch_the_trials_is_named_too(edited, change, expected):
+    found = replay(edited(change))
+    assert found.changes == (expected,)
+    assert found.same_bits
+    assert not found.identical
+
+
+def test_what_the_run_did_not_need_may_change(edited):
+    def change(book):
+        book["Inputs"]["H9"] = "=1+1"
+        book.create_sheet("Notes")["A1"] = "Rate"
+
+    assert replay(edited(change)).to_the_last_bit
+
+
+def test_a_name_that_means_another_cell(edited):
+    def change(book):
+        book.defined_names["Rate"].attr_text = "Inputs!$B$6"
+
+    found = replay(edited(change))
+    assert Change("defined name", "Rate", "Inputs!$B$5", "Inputs!$B$6") in found.changes
+
+
+def test_a_table_that_lost_its_last_row(edited):
+    def change(book):
+        book["Inputs"].tables["xlmc_assumptions"].ref = "A1:F2"
+
+    found = replay(edited(change))
+    [table] = [each for each in found.changes if each.kind == "table"]
+    assert (table.where, table.old.split(":")[:2], table.new.split(":")[:2]) == (
+        "xlmc_assumptions",
+        ["Inputs!A1", "F3"],
+        ["Inputs!A1", "F2"],
+    )
+
+
+def test_an_assumption_that_was_taken_out(edited):
+    def change(book):
+        for column in "ABCDEF":
+            book["Inputs"][f"{column}3"] = None
+        book["Model"]["A3"] = 1
+
+    found = replay(edited(change))
+    assert Change("assumption", "=length", "defined", None) in found.changes
+
+
+def test_a_workbook_that_cannot_be_run_any_more_still_names_the_cell(edited):
+    found = replay(edited(put("Model", "A1", "=NOSUCH(1)")))
+    assert found.changes == (Change("cell", "Model!A1", "=Inputs!B2*Inputs!B3*Rate", "=NOSUCH(1)"),)
+    assert "NOSUCH" in str(found.fault)
+    assert found.repeated is None
+    assert not found.identical
+
+
+def test_a_formula_that_was_filled_down_reads_as_it_does_in_its_cell(tmp_path, small_book):
+    """Excel moves the text of a shared formula to another cell when it saves."""
+    path = tmp_path / "r.xlsx"
+    xlmc.load(small_book).simulate(100).save(path)
+    old = read_record(read_workbook(path))
+    workbook = read_workbook(path)
+    cells = dict(workbook.sheets["Model"].cells)
+    cells[2, 1] = replace(cells[2, 1], formula=replace(cells[2, 1].formula, text="B4+C4", row=5, column=2))
+    sheets = {name: workbook.sheets[name] for name in workbook.sheets}
+    sheets["Model"] = replace(sheets["Model"], cells=cells)
+    found = repeating._replayed(replace(workbook, sheets=sheets), old, None, 1, None, path)
+    assert found.to_the_last_bit
+
+
+# A record that says something else than the run.
+
+
+def altered(record, changes):
+    """A record with other values: `section.entry`, or `section/name/column`."""
+    sections = {section.key: section for section in record.sections}
+    for key, value in changes.items():
+        if "/" in key:
+            section, name, column = key.split("/")
+            table = sections[section].table
+            place = [key for key, _ in table.columns].index(column)
+            rows = tuple((*r[:place], value, *r[place + 1 :]) if r[0] == name else r for r in table.rows)
+            sections[section] = replace(sections[section], table=RecordTable(table.columns, rows))
+        else:
+            section, _, entry = key.partition(".")
+            entries = (replace(e, value=value) if e.key == entry else e for e in sections[section].entries)
+            sections[section] = replace(sections[section], entries=tuple(entries))
+    return Record(tuple(sections.values()))
+
+
+@pytest.fixture(scope="session")
+def run(model):
+    return model.simulate()
+
+
+@pytest.fixture
+def against(run):
+    """`against(changes)`: a repeat compared with a record in which some values are others."""
+
+    def compare(changes):
+        return repeating._replayed(run.model.workbook, altered(make_record(run), changes), run.model, 1, None)
+
+    return compare
+
+
+def nearly(value):
+    return value * (1 + 1e-14)
+
+
+def test_another_processor_may_round_otherwise(run, against):
+    mean = run["area"].mean.value
+    changes = {
+        "run.fingerprint": "0" * 64,
+        "forecasts/area/mean": nearly(mean),
+        "processor.vector_instructions": "NEON",
+    }
+    found = against(changes)
+    assert found.identical
+    assert not found.to_the_last_bit
+    [number] = found.numbers
+    assert (number.name, number.close) == ("area: mean", True)
+    assert [change.where for change in found.environment] == ["vector_instructions"]
+
+
+def test_another_version_is_told_and_does_not_matter_where_the_numbers_are_the_same(against):
+    found = against({"software.numpy": "1.0"})
+    assert found.to_the_last_bit
+    assert [(each.kind, each.where, each.old) for each in found.environment] == [("software", "numpy", "1.0")]
+
+
+DIFFERENT = {
+    "other bits on the same machine": {"run.fingerprint": "0" * 64},
+    "a mean further off than rounding": {
+        "run.fingerprint": "0" * 64,
+        "forecasts/area/mean": 17.0,
+        "processor.machine": "other",
+    },
+    "a count off by one, whatever the processor": {
+        "run.fingerprint": "0" * 64,
+        "filters/root/rejected": 115,
+        "processor.machine": "other",
+    },
+    "a number that was edited in the record": {"forecasts/area/mean": 17.0, "processor.machine": "other"},
+    "a definition that is understood otherwise": {"assumptions/width/distribution": "Normal"},
+}
+
+
+@pytest.mark.parametrize("changes", DIFFERENT.values(), ids=DIFFERENT)
+def test_what_is_not_the_same_run(against, changes):
+    assert not against(changes).identical
+
+
+# What cannot be replayed.
+
+
+def without_section(book, *keys):
+    sheet = book["Record"]
+    gone = [row for row in range(1, sheet.max_row + 1) if str(sheet.cell(row, 1).value).startswith(keys)]
+    for row in gone:
+        sheet.cell(row, 1).value = None
+
+
+def edit_record(key, value):
+    def change(book):
+        sheet = book["Record"]
+        row = next(row for row in range(1, sheet.max_row + 1) if sheet.cell(row, 1).value == key)
+        sheet.cell(row, 3).value = value
+
+    return change
+
+
+UNREADABLE = {
+    "no record": (lambda book: book.remove(book["Record"]), "the workbook holds no record of a run"),
+    "two records": (lambda book: book.copy_worksheet(book["Record"]), "each hold a record"),
+    "an older record": (
+        lambda book: without_section(book, "cells", "settings"),
+        "an older xlmc wrote it.*xlmc simulate",
+    ),
+    "an edited cell": (edit_record("cells[0]", '"Nome"'), "are not those that were written"),
+    "an edited number of cells": (edit_record("cells.count", 3), "are not those that were written"),
+    "a seed that is none": (edit_record("settings.seed", "x"), "the settings in the record cannot be read"),
+    "a number of trials that is none": (edit_record("settings.trials", 2.5), "2.5 is no whole number"),
+    "a count that is none": (edit_record("counts.trials", "many"), "the record counts 'many' trials"),
+}
+
+
+@pytest.mark.parametrize(("change", "message"), UNREADABLE.values(), ids=UNREADABLE)
+def test_a_record_that_cannot_be_used(edited, change, message):
+    with pytest.raises(WorkbookError, match=message):
+        replay(edited(change))
+
+
+def test_a_workbook_that_could_never_be_run_is_refused(edited, monkeypatch):
+    def refuse(*_):
+        raise XlmcError("no")
+
+    monkeypatch.setattr(repeating, "understood", refuse)
+    with pytest.raises(XlmcError, match="no"):
+        replay(edited(lambda book: None))
+
+
+def test_entries_are_read_back_as_they_were(results, run):
+    written, read = make_record(run), read_record(read_workbook(results))
+    for section in written.sections:
+        for entry in section.entries:
+            expected = None if entry.value == "" else entry.value
+            assert read[f"{section.key}.{entry.key}"] == expected
+    assert isinstance(read.section("run").entries[0], Entry)

@@ -1,0 +1,126 @@
+"""`xlmc replay`: repeat a recorded run, and say that it is identical, or what differs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from xlmc.replay import Change, NumberChange, Replayed
+
+__all__ = ["replay"]
+
+DIFFERS = 1
+_MOST = 20
+"""Lines of one kind that are printed; JSON has them all."""
+
+
+@click.command()
+@click.argument("recorded", metavar="RESULTS", type=click.Path(path_type=Path))
+@click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes.")
+@click.option("--json", "as_json", is_flag=True, help="Print the comparison as JSON.")
+@click.option("--quiet", is_flag=True, help="Print no progress bar.")
+def replay(recorded: Path, jobs: int, as_json: bool, quiet: bool) -> None:
+    """Repeat the run recorded in RESULTS, a result workbook or a saved run, from the definitions in the same file."""
+    from xlmc import replay as replaying
+    from xlmc.cli.progress import progress_bar
+
+    with progress_bar(quiet) as progress:
+        found = replaying.replay(recorded, jobs=jobs, progress=progress)
+    if as_json:
+        click.echo(json.dumps(_as_json(found), indent=2, ensure_ascii=False, allow_nan=False))
+    else:
+        for line in _lines(found, recorded):
+            click.echo(line)
+    if not found.identical:
+        raise click.exceptions.Exit(DIFFERS)
+
+
+def _lines(found: Replayed, path: Path) -> Iterator[str]:
+    record = found.record
+    yield (
+        f"{path.name} records a run of {record['file.name']}: {record['counts.trials']:,.0f} trials, "
+        f"seed {record['settings.seed']}."
+    )
+    yield f"{_verdict(found)}."
+    yield from _changes(found.changes, "Not as the record says:")
+    if found.fault is not None:
+        yield f"The workbook cannot be run any more: {found.fault}"
+    yield from _numbers(found.numbers)
+    if not found.changes and not found.identical:
+        yield from _unexplained(found)
+    yield from _changes(found.environment, "Other software or another processor than then:")
+
+
+def _verdict(found: Replayed) -> str:
+    accepted = f"{found.record['counts.accepted']:,.0f}"
+    if found.to_the_last_bit:
+        return f"identical: the same {accepted} accepted trials to the last bit"
+    if found.identical:
+        return f"identical to 1e-12: the same {accepted} accepted trials, their numbers equal but for rounding"
+    if found.same_bits:
+        return f"differs, although the {accepted} accepted trials are the same to the last bit"
+    return "differs"
+
+
+def _changes(changes: Sequence[Change], heading: str) -> Iterator[str]:
+    if changes:
+        yield heading
+    for change in changes[:_MOST]:
+        yield f"  {change.kind} {change.where}"
+        yield f"    was  {change.old or ('blank, or not needed' if change.kind == 'cell' else 'nothing')}"
+        yield f"    is   {change.new or ('blank' if change.kind == 'cell' else 'nothing')}"
+    yield from _rest(changes)
+
+
+def _numbers(numbers: Sequence[NumberChange]) -> Iterator[str]:
+    if numbers:
+        yield "Numbers that the repeat gives otherwise:"
+    for number in numbers[:_MOST]:
+        yield f"  {number.name}: recorded {_figure(number.recorded)}, repeated {_figure(number.repeated)}"
+    yield from _rest(numbers)
+
+
+def _figure(number: float | None) -> str:
+    if number is None:
+        return "none"
+    return f"{number:,.0f}" if float(number).is_integer() else repr(float(number))
+
+
+def _rest(listed: Sequence[object]) -> Iterator[str]:
+    if len(listed) > _MOST:
+        yield f"  … and {len(listed) - _MOST:,} more"
+
+
+def _unexplained(found: Replayed) -> Iterator[str]:
+    if found.same_bits:
+        yield "The numbers in the record were edited: nothing that the run depends on has changed."
+    elif not found.environment:
+        yield (
+            "Every recorded cell, definition and setting is as it was, and so are the software and the processor: "
+            "the record was edited, or the run depends on something that xlmc does not record."
+        )
+
+
+def _as_json(found: Replayed) -> dict[str, object]:
+    return {
+        "identical": found.identical,
+        "to_the_last_bit": found.to_the_last_bit,
+        "same_accepted_trials": found.same_bits,
+        "verdict": _verdict(found),
+        "changes": [_change(change) for change in found.changes],
+        "environment": [_change(change) for change in found.environment],
+        "numbers": [
+            {"name": n.name, "recorded": n.recorded, "repeated": n.repeated, "equal_to_1e-12": n.close}
+            for n in found.numbers
+        ],
+        "fault": None if found.fault is None else str(found.fault),
+    }
+
+
+def _change(change: Change) -> dict[str, str | None]:
+    return {"kind": change.kind, "where": change.where, "was": change.old, "is": change.new}

@@ -1,0 +1,181 @@
+"""Repeat the run that a result workbook or a saved run records, with the definitions that stand in the same file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from xlmc.errors import WorkbookError, XlmcError
+from xlmc.model import understood
+from xlmc.record import Record, make_record
+from xlmc.record.cell_table import recorded_cells
+from xlmc.record.contents import needed_contents
+from xlmc.record.read import read_record
+from xlmc.record.settings_table import recorded_settings
+from xlmc.replay.changes import (
+    Change,
+    NumberChange,
+    cell_changes,
+    contents_now,
+    definition_changes,
+    environment_changes,
+    number_changes,
+    structure_changes,
+)
+from xlmc.saved import SUFFIX, is_saved_run, open_run
+from xlmc.simulation import KEPT_INPUTS
+from xlmc.workbook import read_workbook
+
+if TYPE_CHECKING:
+    from xlmc.address import Cell
+    from xlmc.definitions import Settings
+    from xlmc.model import Model
+    from xlmc.simulate import Progress
+    from xlmc.simulation import Simulation
+    from xlmc.workbook import Workbook
+
+__all__ = ["Replayed", "replay"]
+
+
+@dataclass(frozen=True, slots=True)
+class Replayed:
+    """A recorded run and its repeat.
+
+    Attributes:
+        record: of the run.
+        repeated: the run again, from the workbook as it is now; None where it cannot be run any more.
+        fault: why it cannot.
+        changes: what is not as the record says: cells, names, tables, definitions.
+        environment: the versions and the processor that are others.
+        numbers: of the record that the repeat did not give to the last bit.
+        same_bits: the accepted trials are the same to the last bit.
+    """
+
+    record: Record
+    repeated: Simulation | None
+    fault: XlmcError | None
+    changes: tuple[Change, ...]
+    environment: tuple[Change, ...]
+    numbers: tuple[NumberChange, ...]
+    same_bits: bool
+
+    @property
+    def to_the_last_bit(self) -> bool:
+        """Whether nothing differs at all, but perhaps for versions."""
+        return self.same_bits and not (self.changes or self.numbers or self.fault)
+
+    @property
+    def identical(self) -> bool:
+        """Whether the run was repeated: to the last bit, or, with other software or another processor, to 1e-12."""
+        if self.to_the_last_bit:
+            return True
+        close = all(number.close for number in self.numbers)
+        return close and bool(self.environment) and not (self.changes or self.fault or self.same_bits)
+
+
+def replay(path: str | Path, *, jobs: int = 1, progress: Progress | None = None) -> Replayed:
+    """Repeat a recorded run, and compare it with its record.
+
+    Args:
+        path: a result workbook, or a saved run.
+        jobs: threads or processes.
+        progress: as for `Model.simulate`.
+
+    Raises:
+        WorkbookError: the file cannot be read, holds no record, or one by an xlmc that recorded less.
+        XlmcError: the workbook cannot be run, though nothing that was recorded of it has changed.
+    """
+    path = Path(path)
+    if path.suffix.casefold() == SUFFIX or is_saved_run(path):
+        run = open_run(path)
+        return _replayed(run.model.workbook, make_record(run), run.model, jobs, progress)
+    workbook = read_workbook(path)
+    return _replayed(workbook, read_record(workbook), None, jobs, progress, path)
+
+
+def _replayed(
+    workbook: Workbook,
+    record: Record,
+    model: Model | None,
+    jobs: int,
+    progress: Progress | None,
+    path: Path | None = None,
+) -> Replayed:
+    cells, settings = _recorded(record, path)
+    try:
+        model = model or understood(workbook, path or Path(workbook.name))
+        repeated = _repeated(model, record, settings, jobs, progress)
+    except XlmcError as fault:
+        changes = tuple(cell_changes(cells, contents_now(workbook, cells)))
+        if not changes:
+            raise
+        return Replayed(record, None, fault, changes, (), (), same_bits=False)
+    found = make_record(repeated)
+    same_bits = record["run.fingerprint"] == found["run.fingerprint"]
+    numbers = number_changes(record, found)
+    changes = (
+        *cell_changes(cells, contents_now(workbook, cells) | needed_contents(model)),
+        *structure_changes(record, found),
+        *definition_changes(record, found),
+    )
+    return Replayed(
+        record=record,
+        repeated=repeated,
+        fault=None,
+        changes=changes,
+        environment=tuple(environment_changes(record, found)),
+        # Some programs write 15 or 16 digits of a number: where the trials are the same, the record has lost the last.
+        numbers=tuple(number for number in numbers if not (same_bits and number.close)),
+        same_bits=same_bits,
+    )
+
+
+def _recorded(record: Record, path: Path | None) -> tuple[dict[Cell, str], Settings]:
+    """The cells and the settings of the record.
+
+    Raises:
+        WorkbookError: an older xlmc wrote it, which recorded neither.
+    """
+    try:
+        return recorded_cells(record), recorded_settings(record)
+    except KeyError as error:
+        message = f"the record lacks {error.args[0]!r}: an older xlmc wrote it, which did not record the cells"
+        command = _repeat_command(record)
+        hint = f"Repeat it by hand, and compare: {command}" if command else "Run the workbook again"
+        raise WorkbookError(message, where=path, hint=hint) from error
+
+
+def _repeat_command(record: Record) -> str:
+    try:
+        return str(record["run.repeat"])
+    except KeyError:
+        return ""
+
+
+def _repeated(model: Model, record: Record, settings: Settings, jobs: int, progress: Progress | None) -> Simulation:
+    """The run again: up to the trial that ended it, whatever did.
+
+    One that waited for an accepted trial waits again; methods whose trials belong together run all of them.
+    """
+    trials, accepted, kept = (_count(record, key) for key in ("trials", "accepted", "inputs_kept"))
+    waited = record["end.by"] == "accepted"
+    whole = waited or settings.sampling != "mc"
+    return model.simulate(
+        settings.trials if whole else trials,
+        settings.seed,
+        until_accepted=accepted if waited else None,
+        engine=settings.engine,
+        arithmetic=settings.arithmetic,
+        sampling=settings.sampling,
+        jobs=jobs,
+        keep_inputs=kept if kept < accepted else max(kept, KEPT_INPUTS),
+        progress=progress,
+    )
+
+
+def _count(record: Record, key: str) -> int:
+    value = record[f"counts.{key}"]
+    if not isinstance(value, int | float) or value != int(value) or value < 0:
+        raise WorkbookError(f"the record counts {value!r} {key}", hint="The record was edited")
+    return int(value)

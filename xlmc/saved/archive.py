@@ -1,0 +1,134 @@
+"""The package of a saved run: entries stored as they are, so that none unpacks to more than the file holds."""
+
+from __future__ import annotations
+
+import re
+import struct
+import zipfile
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, BinaryIO, Final
+
+from xlmc.errors import WorkbookError
+
+__all__ = ["AGAIN", "RUN", "SUFFIX", "WORKBOOK", "Package", "opened", "write_entries"]
+
+SUFFIX: Final = ".xlmcrun"
+RUN: Final = "run.json"
+WORKBOOK: Final = "workbook"
+AGAIN: Final = "Save the run again, or fetch or copy the file again"
+
+_NAMES: Final = re.compile(r"run\.json|workbook|columns/\d{1,6}\.npy")
+_EPOCH: Final = (1980, 1, 1, 0, 0, 0)  # the earliest time a zip can hold
+_ENCRYPTED: Final = 0x1
+_MOST_ENTRIES: Final = 100_000
+_DAMAGE: Final = (
+    zipfile.BadZipFile,
+    struct.error,
+    EOFError,
+    OverflowError,
+    RuntimeError,
+    ValueError,
+    NotImplementedError,
+)
+
+
+def write_entries(file: BinaryIO, entries: Iterable[tuple[str, int, Iterable[bytes]]]) -> None:
+    """Write entries one after the other; the same entries give the same bytes.
+
+    Args:
+        file: where to, from its start.
+        entries: name, size in bytes, and the bytes, a part at a time.
+    """
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as package:
+        for name, size, parts in entries:
+            entry = zipfile.ZipInfo(name, _EPOCH)
+            entry.create_system = 0  # otherwise the file would say on which system it was written
+            entry.file_size = size  # large ones need a larger header
+            with package.open(entry, "w") as writer:
+                for part in parts:
+                    writer.write(part)
+
+
+class Package:
+    """An open package, of which nothing was unpacked yet."""
+
+    def __init__(self, package: zipfile.ZipFile, path: Path) -> None:
+        self._package, self._path = package, path
+        self._sizes = {entry.filename: entry.file_size for entry in package.infolist()}
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._sizes
+
+    def size(self, name: str) -> int:
+        """Of an entry, in bytes.
+
+        Raises:
+            WorkbookError: there is no such entry.
+        """
+        if name not in self._sizes:
+            raise WorkbookError(f"the saved run lacks {name!r}", where=self._path, hint=AGAIN)
+        return self._sizes[name]
+
+    @contextmanager
+    def reading(self, name: str) -> Iterator[IO[bytes]]:
+        """An entry, to be read front to back; what lies in it is checked at its end.
+
+        Raises:
+            WorkbookError: there is no such entry, or it is damaged.
+        """
+        self.size(name)
+        with _told(self._path), self._package.open(name) as entry:
+            yield entry
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[Package]:
+    """The package of a saved run.
+
+    Raises:
+        WorkbookError: the file cannot be opened, is no saved run, or is damaged.
+    """
+    try:
+        file = path.open("rb")
+    except FileNotFoundError as error:
+        raise WorkbookError("there is no such file", where=path, hint="Check its name and folder") from error
+    except OSError as error:
+        raise WorkbookError(f"the file cannot be read ({error.strerror})", where=path) from error
+    with file:
+        with _told(path):
+            package = zipfile.ZipFile(file)
+        with package:
+            _check(package, path)
+            yield Package(package, path)
+
+
+def _check(package: zipfile.ZipFile, path: Path) -> None:
+    """Refuse what xlmc does not write: entries that are packed, overlap, or have other names."""
+    entries = package.infolist()
+    names = [entry.filename for entry in entries]
+    if RUN not in names:
+        raise WorkbookError("the file is no saved run", where=path, hint="Save one with xlmc simulate --save-run")
+    plain = all(
+        entry.compress_type == zipfile.ZIP_STORED
+        and entry.file_size == entry.compress_size
+        and not entry.flag_bits & _ENCRYPTED
+        and _NAMES.fullmatch(entry.filename)
+        for entry in entries
+    )
+    together = sum(entry.file_size for entry in entries)
+    if not plain or len(set(names)) < len(names) or len(names) > _MOST_ENTRIES or together > path.stat().st_size:
+        raise WorkbookError("the saved run was packed by something else than xlmc", where=path, hint=AGAIN)
+
+
+@contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """Damage in words."""
+    try:
+        yield
+    except zipfile.BadZipFile as error:
+        raise WorkbookError(f"the saved run is damaged ({error})", where=path, hint=AGAIN) from error
+    except _DAMAGE as error:
+        reason = str(error) or "it ends too early"
+        raise WorkbookError(f"the saved run is damaged ({reason})", where=path, hint=AGAIN) from error

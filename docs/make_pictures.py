@@ -79,8 +79,11 @@ CUTS: Mapping[str, Cut] = {
     "results-wanted": Cut(RESULTS, "Forecasts", "The Nissan was moving forward", page="What a run collects"),
     "results": Cut(RESULTS, "Results of the simulation", "Lost to errors"),
     "rejected": Cut(RESULTS, "Filters: a trial is accepted", "82"),
-    "charts": Cut(RESULTS, "Histograms of the accepted trials", "from 22.021"),
-    "statistics": Cut(RESULTS, "Chevrolet delta-V", "Mean standard error", page="Statistics of the accepted trials"),
+    "charts": Cut(RESULTS, "Forecast charts of the accepted trials", "from 22.021"),
+    "curves": Cut(RESULTS, "Overlay of forecasts in mph", "Figure 7", below=10),
+    "statistics": Cut(RESULTS, "Chevrolet delta-V", "51 % range to", page="Statistics of the accepted trials"),
+    "certainty": Cut(RESULTS, "Certainty", "ends belong to the range", below=76),
+    "scatter": Cut(RESULTS, "Chevrolet delta-V and Nissan delta-V", "Scatter chart 2", below=14),
     "assumptions": Cut(RESULTS, "Assumptions", "Table 1. Breadth", page="What this shows"),
     "record": Cut(RESULTS, "Record of the run", "Lost to errors"),
 }

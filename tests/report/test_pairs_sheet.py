@@ -70,7 +70,7 @@ def test_one_forecast_has_no_pairs_and_many_have_the_first_ones(make, opened, on
     cells = {"A1": 0.5} | {f"B{n}": f"=A1*{n}" for n in range(1, 8)}
     book = opened(make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0, base=0.5)], forecasts, trials=50))
     told = [str(cell.value) for cell in book["Pairs"]["A"]]
-    assert "Only the first 15 of 21 pairs are here." in told
+    assert "At most 15 pairs of forecasts are here, the first ones of the workbook." in told
     assert len(book["Pairs"]._charts) == 15
 
 

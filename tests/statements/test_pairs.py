@@ -90,3 +90,8 @@ def test_the_correlation_takes_the_first_trials_and_says_how_many(columns, monke
     assert pair.ranked == known.sum()
     assert pair.correlation == statistics.rank_correlation(a[known], b[known])
     assert pair.trials > pair.ranked
+
+
+def test_a_forecast_that_does_not_vary_is_in_no_pair(columns):
+    still = np.full(4000, 7.0)
+    assert pairs_of(run_of({"a": columns["a"], "still": still})) == []

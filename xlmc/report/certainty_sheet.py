@@ -22,7 +22,8 @@ __all__ = ["LAST", "WIDTHS", "write_certainty", "write_ranges"]
 
 WIDTHS = (34, 26, 12, 12, 11, 11, 11)
 LAST = len(WIDTHS) - 1
-_SCALE = 80
+_ON_A_PAGE, _SCALE = 33, 80
+"""Rows, and the percentage at which so many fit."""
 
 
 def write_certainty(page: Page, simulation: Simulation, trials: TrialsAt) -> None:
@@ -36,8 +37,10 @@ def write_certainty(page: Page, simulation: Simulation, trials: TrialsAt) -> Non
     page.wide(MEANING, "remark", LAST)
     page.heading("Certainty of ranges")
     write_ranges(page, simulation)
+    start = page.row
     write_own_ranges(page, simulation, trials, LAST)
-    page.printed(name, scale=_SCALE)
+    apart = start // _ON_A_PAGE != page.row // _ON_A_PAGE
+    page.printed(name, scale=_SCALE, breaks=[start] if apart else [])
 
 
 def write_ranges(page: Page, simulation: Simulation) -> None:

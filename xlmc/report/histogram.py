@@ -102,7 +102,7 @@ def histogram(values: Values, low: float, high: float) -> Histogram | None:
     first, last = _shown(x)
     width = _width(x, first, last)
     start, stop = math.floor(first / width), math.floor(last / width) + 1
-    step = _step(width, stop - start, _longest_label(width, start, stop))
+    step = _step(width, start, stop)
     start, stop = step * math.floor(start / step), step * math.ceil(stop / step)
     edges = multiples(width, start, stop - start + 1)
     reached = np.searchsorted(x, edges, side="left")
@@ -172,21 +172,21 @@ def _scaled(factor: float, like: float) -> float:
     return float(f"{factor}e{f'{like:.6e}'.partition('e')[2]}")  # 0.1, not 0.1 and a rounding error
 
 
-def _step(width: float, bins: int, longest: int) -> int:
-    """The fewest bins from one label of so many characters to the next that keep labels round and apart."""
-    most = min(_MOST_LABELS, max(_FEWEST_LABELS, _LINE // (longest + 2)))
+def _step(width: float, first: int, last: int) -> int:
+    """The fewest bins from one label to the next that keep labels round and apart; bins are these multiples."""
     for step in _STEPS:
-        if bins <= step * most and _mantissa(width * step) in _ROUND_LABELS:
+        most = min(_MOST_LABELS, max(_FEWEST_LABELS, _LINE // (_longest_label(width, step, first, last) + 2)))
+        if last - first <= step * most and _mantissa(width * step) in _ROUND_LABELS:
             return step
     return _STEPS[-1]
 
 
-def _longest_label(width: float, first: int, last: int) -> int:
-    """Characters of the longest edge in full, or as many as a power of ten takes."""
+def _longest_label(width: float, step: int, first: int, last: int) -> int:
+    """Characters of the longest edge, or as many as a power of ten takes."""
     largest = max(abs(first), abs(last)) * width
     if _decimals(width) > _MOST_DECIMALS or largest >= _LONGEST:
         return _POWER
-    return len(f"{-largest if first < 0 else largest:.{_decimals(width)}f}")
+    return len(f"{-largest if first < 0 else largest:.{_decimals(width * step)}f}")
 
 
 def multiples(width: float, first: int, count: int) -> Floats:

@@ -35,6 +35,8 @@ WIDTHS = (*[8.43] * 14, 11.5, *[8.43] * 3)
 _LAST = 17
 _STARTS = (0, 3, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17)
 _SCALE = 60
+_FORECASTS = 6
+"""More have more pairs than are looked at."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +55,9 @@ def write_pairs(page: Page, book: Workbook, simulation: Simulation, curves: Curv
     pairs = pairs_of(simulation)
     if not pairs:
         page.row += 1
-        page.wide("There are no two forecasts with numbers in the same accepted trials.", "paragraph", _LAST)
+        page.wide(
+            "There are no two forecasts that vary and have numbers in the same accepted trials.", "paragraph", _LAST
+        )
         page.printed(name, scale=_SCALE)
         return
     page.heading("Joint probability and rank correlation")
@@ -106,9 +110,8 @@ def pair_sentences(simulation: Simulation, pairs: Sequence[Pair]) -> list[str]:
         said += f" Rank correlations come from the first {max(ranked):,} of them."
     said += " A > B is given where both have the same units."
     found = [said]
-    count = len(simulation.model.forecasts)
-    if count * (count - 1) // 2 > len(pairs) == PAIRS:
-        found.append(f"Only the first {PAIRS} of {count * (count - 1) // 2:,} pairs are here.")
+    if len(pairs) == PAIRS and len(simulation.model.forecasts) > _FORECASTS:
+        found.append(f"At most {PAIRS} pairs of forecasts are here, the first ones of the workbook.")
     return found
 
 

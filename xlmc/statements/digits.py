@@ -42,12 +42,15 @@ def rounded_range(sample: Sample, ends: tuple[Estimate, Estimate], nominal: floa
     """The central range with ends in the digits that both support, so rounded that it holds its share all the same.
 
     Each end is rounded to the nearest, unless the range would then hold less than `nominal` of the trials: then one of
-    them, or both, are rounded outwards. None where there are no trials.
+    them, or both, are rounded outwards. A single value is rounded in words alone. None where there are no trials.
     """
     low, high = (end.value for end in ends)
     if math.isnan(low) or math.isnan(high):
         return None
     decimals = _common_decimals(*ends)
+    if low == high:
+        text = _text(_rounded(low, decimals, ROUND_HALF_EVEN))
+        return RoundedRange(low, high, text, text, probability_between(sample, low, high))
     best: RoundedRange | None = None
     for down, up in ((False, False), (False, True), (True, False), (True, True)):
         first = _rounded(low, decimals, ROUND_FLOOR if down else ROUND_HALF_EVEN)

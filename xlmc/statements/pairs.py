@@ -66,8 +66,9 @@ class Pair:
 
 
 def pairs_of(simulation: Simulation, most: int = PAIRS) -> list[Pair]:
-    """The first `most` pairs of forecasts that have trials in common, in the order of the workbook."""
-    forecasts = simulation.model.forecasts
+    """The first `most` pairs of forecasts that vary and have trials in common, in the order of the workbook."""
+    results = simulation.results
+    forecasts = [each for each in simulation.model.forecasts if results[each.name].statistics.range_width.value > 0.0]
     found = (_pair(simulation, *two) for two in combinations(forecasts, 2))
     return list(islice((pair for pair in found if pair is not None), most))
 

@@ -14,7 +14,7 @@ from xlmc.workbook.package import read_parts
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/intersection.xlsx"
 SHEETS = [
-    *("Results", "Charts", "Statistics", "Certainty", "Pairs", "Assumptions"),
+    *("Results", "Charts", "Statistics", "Certainty", "Pairs", "Assumptions", "Sensitivity", "Filter limits"),
     *("Trials", "Bins", "Curves", "Record"),
 ]
 MAY_CHANGE = {

@@ -12,10 +12,11 @@ if TYPE_CHECKING:
     from xlsxwriter.chart_bar import ChartBar
     from xlsxwriter.workbook import Workbook
 
-__all__ = ["AXIS", "FONT", "SIZE", "bar_chart", "dressed", "tornado_chart"]
+__all__ = ["AXIS", "FONT", "ROWS", "bar_chart", "dressed", "tornado_chart"]
 
-SIZE = (606, 345)
-"""In pixels: fifteen rows high."""
+ROWS = 13
+SIZE = (620, 23 * ROWS)
+"""In pixels."""
 
 AXIS: dict[str, Any] = {"color": "#8994A1", "width": 0.75}
 FONT: dict[str, Any] = {"size": 9, "color": INK}
@@ -32,7 +33,8 @@ def bar_chart(
         at: the table; its first column names the bars.
         title: above the chart.
         axis: below the bars.
-        value, error: the columns of the numbers and of their errors.
+        value: the column of the numbers.
+        error: that of their errors.
         pale: whether a bar says no more than noise.
         number: how the axis shows numbers.
     """
@@ -71,16 +73,23 @@ def tornado_chart(book: Workbook, at: TableAt, title: str, axis: str, low: int, 
             }
         )
     _axes(chart, axis, "General")
-    chart.set_legend({"position": "bottom", "font": FONT})
+    chart.set_legend({"position": "right", "font": FONT})
     return dressed(chart, title)
 
 
 def _axes(chart: ChartBar, axis: str, number: str) -> None:
-    """Names on the left, from the top; numbers below."""
-    chart.set_x_axis(
-        {"reverse": True, "label_position": "low", "num_font": FONT, "line": AXIS, "major_tick_mark": "none"}
-    )
+    """Names on the left, from the top; numbers below. XlsxWriter calls the horizontal axis x, as it lies here."""
     chart.set_y_axis(
+        {
+            "reverse": True,
+            "label_position": "low",
+            "interval_unit": 1,
+            "num_font": FONT,
+            "line": AXIS,
+            "major_tick_mark": "none",
+        }
+    )
+    chart.set_x_axis(
         {
             "name": axis,
             "name_font": {**FONT, "bold": False},

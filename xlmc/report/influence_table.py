@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BARS", "ROWS", "influence_captions", "influence_charts", "write_influences"]
 
-BARS: Final = 12
+BARS: Final = 10
 """On a chart: as many as have readable names."""
 
 ROWS: Final = 40
@@ -34,7 +34,9 @@ def write_influences(page: Page, found: ForecastSensitivity, sobol: bool) -> Tab
     headers += ["Rank correlation", "±", "Contribution to variance", "±"]
     shown = found.influences[:ROWS]
     header = page.row
-    page.table([*headers, *(["First order", "±", "Total effect", "±"] if sobol else [])], [_row(i, sobol) for i in shown])
+    page.table(
+        [*headers, *(["First order", "±", "Total effect", "±"] if sobol else [])], [_row(i, sobol) for i in shown]
+    )
     return TableAt(page.sheet.get_name(), header, header + 1, header + min(len(shown), BARS))
 
 
@@ -63,7 +65,9 @@ def influence_charts(book: Workbook, at: TableAt, found: ForecastSensitivity, so
     unseen = [each.dependence.value <= each.dependence_floor for each in drawn]
     plain = [False] * len(drawn)
     second = (
-        bar_chart(book, at, "Total effect (Sobol)", "Share of the variance, alone and with others", _TOTAL, _TOTAL + 1, plain)
+        bar_chart(
+            book, at, "Total effect (Sobol)", "Share of the variance, alone and with others", _TOTAL, _TOTAL + 1, plain
+        )
         if sobol
         else bar_chart(book, at, "Dependence", "Cramér–von Mises index", _DEPENDENCE, _DEPENDENCE + 1, unseen)
     )
@@ -86,8 +90,8 @@ def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
     )
     dependence = (
         "Dependence: 0 only if no part of the forecast's distribution depends on the assumption, 100 % if nothing else "
-        "matters. Unlike variance explained it also sees what widens the forecast or acts only together with others; it "
-        "is not a share of the variance."
+        "matters. Unlike variance explained it also sees what widens the forecast or acts only together with others; "
+        "it is not a share of the variance."
     )
     total = (
         f"Total effect (Sobol), from {pairs:,} pairs of trials of their own: the variance that would be left, on "
@@ -95,12 +99,12 @@ def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
         "effects add up to 100 % or more."
     )
     rank = (
-        f"Rank correlation on {found.trials:,} accepted trials: whether the forecast rises or falls with the assumption. It "
-        "is blind to effects that rise and fall, and is not a share of anything."
+        f"Rank correlation on {found.trials:,} accepted trials: whether the forecast rises or falls with the "
+        "assumption. It is blind to effects that rise and fall, and is not a share of anything."
     )
     contribution = (
-        "Contribution to variance as Crystal Ball shows it: squared rank correlations scaled to 100 %. Approximate, and "
-        "wrong where filters or correlations tie assumptions together or an effect rises and falls: trust variance "
+        "Contribution to variance as Crystal Ball shows it: squared rank correlations scaled to 100 %. Approximate, "
+        "and wrong where filters or correlations tie assumptions together or an effect rises and falls: trust variance "
         "explained then."
     )
     return [explained, total if pairs else dependence, rank, contribution]

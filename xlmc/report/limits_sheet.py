@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.record.wording import number_text
 from xlmc.report import cells
+from xlmc.report.bar_charts import ROWS as CHART_ROWS
 from xlmc.report.cells import Shown
 from xlmc.report.line_charts import limit_chart
 from xlmc.report.ranges import TableAt
@@ -19,11 +20,10 @@ if TYPE_CHECKING:
 
 __all__ = ["WIDTHS", "limit_sentences", "moved_caption", "write_acceptance", "write_answers", "write_limits"]
 
-WIDTHS = (38, 10, *[9] * 14)
+WIDTHS = (38, 10, 10, 9, 9, 11, 9, 9, 11, 9, 13, *[9] * 5)
 _LAST: Final = len(WIDTHS) - 1
 _RIGHT: Final = 6
-_CHART_ROWS: Final = 15
-_SCALE: Final = 60
+_SCALE: Final = 49
 _LIMIT, _CHANGE, _OF_RANGE = 1, 4, 10
 """Columns of the long table."""
 
@@ -44,10 +44,10 @@ def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) ->
 def limit_sentences(found: Sensitivities) -> list[str]:
     """What moving a limit means."""
     told = [
-        "One limit is moved, all others stay. Tightened, it keeps some of the accepted trials. Loosened, it lets in trials "
-        "that nothing else rejects, found among the run's first ones, so their errors are larger. The errors of changes "
-        "and slopes are those of differences between runs with common trials. A limit is evidence: what is shown is how "
-        "much its exact value matters, not which value is right."
+        "One limit is moved, all others stay. Tightened, it keeps some of the accepted trials. Loosened, it lets in "
+        "trials that nothing else rejects, found among the run's first ones, so their errors are larger. The errors of "
+        "changes and slopes are those of differences between runs with common trials. A limit is evidence: what is "
+        "shown is how much its exact value matters, not which value is right."
     ]
     if found.varying_limits:
         told.append(f"Not moved, because the limit varies with the assumptions: {', '.join(found.varying_limits)}.")
@@ -63,7 +63,7 @@ def _write_limit(page: Page, book: Workbook, limit: FilterLimit, units: dict[str
         page.wide("The accepted trials do not say by how much it could be moved.", "paragraph", _LAST)
         return
     top = page.row
-    page.row += _CHART_ROWS + 1
+    page.row += CHART_ROWS + 1
     acceptance = write_acceptance(page, limit)
     page.row += 1
     tables = write_answers(page, limit)
@@ -75,12 +75,10 @@ def _write_limit(page: Page, book: Workbook, limit: FilterLimit, units: dict[str
 def write_acceptance(page: Page, limit: FilterLimit) -> TableAt:
     """Write the shares accepted, and the slopes beside them; where the shares stand is returned."""
     header = page.row
-    page.table(
-        ["Limit", "Value", "Accepted trials", "Share", "±"], [_acceptance(point, limit) for point in limit.points]
-    )
+    page.table(["Limit", "Value", "Trials", "Share", "±"], [_acceptance(point, limit) for point in limit.points])
     bottom, page.row = page.row, header
     starts, last = (_RIGHT, 12, 13), 13
-    headers = ("Slope: mean of the forecast per unit of the limit", "Slope", "±")
+    headers = ("Slope: the mean of …, per unit of the limit", "Slope", "±")
     page.spread([cells.text(header, "header left") for header in headers], starts, last)
     for slope in limit.slopes:
         page.spread([cells.text(slope.forecast, "name"), *cells.estimate(slope.mean)], starts, last)
@@ -99,7 +97,7 @@ def _acceptance(point: LimitPoint, limit: FilterLimit) -> list[Shown]:
 
 def _place(value: float, limit: FilterLimit) -> str:
     if value == limit.limit:
-        return "Share of trials accepted: as it is" if False else "as it is"
+        return "as it is"
     looser = (value < limit.limit) == (limit.relation in ("at least", "above"))
     return "looser" if looser else "tighter"
 
@@ -107,7 +105,20 @@ def _place(value: float, limit: FilterLimit) -> str:
 def write_answers(page: Page, limit: FilterLimit) -> list[TableAt]:
     """Write every forecast at every value of the limit; where each forecast's rows stand is returned."""
     header = page.row
-    headers = ["Forecast", "Limit", "Mean", "±", "Change of mean", "±", "Range from", "±", "to", "±", "Change / range"]
+    headers = [
+        "Forecast",
+        "Limit",
+        "Mean",
+        "±",
+        "Change of mean",
+        "±",
+        "Range from",
+        "±",
+        "to",
+        "±",
+        "Change / range",
+        "±",
+    ]
     page.table(headers, [])
     tables = []
     for place, slope in enumerate(limit.slopes):
@@ -122,9 +133,13 @@ def write_answers(page: Page, limit: FilterLimit) -> list[TableAt]:
 def _answer(name: str, limit: float, answer: LimitAnswer, now: LimitAnswer) -> list[Shown]:
     width = now.high.value - now.low.value
     estimates: tuple[Estimate, ...] = (answer.mean, answer.change, answer.low, answer.high)
-    shown = [each for estimate in estimates for each in cells.estimate(estimate, like=now.mean)]
-    part = answer.change.value / width if width > 0.0 else None
-    return [cells.text(name, "name"), cells.exact(limit), *shown, Shown(part, "0.0%")]
+    looks = ("second number", "second error") if answer is now else ("number", "error")
+    shown = [each for estimate in estimates for each in cells.estimate(estimate, *looks, like=now.mean)]
+    part = [
+        Shown(None if each is None or width <= 0.0 else each / width, "0.0%", look)
+        for each, look in zip((answer.change.value, answer.change.error), looks, strict=True)
+    ]
+    return [cells.text(name, "name"), Shown(limit, look=looks[0]), *shown, *part]
 
 
 def _write_charts(
@@ -134,14 +149,14 @@ def _write_charts(
     across = f"Limit: {limit.filter} {limit.relation} …"
     found = {units[slope.forecast] for slope in limit.slopes}
     unit = found.pop() if len(found) == 1 else None
-    axis = "Change of the mean" + (f" ({unit})" if unit else "")
-    value, error = (_CHANGE, _CHANGE + 1) if unit is not None else (_OF_RANGE, _OF_RANGE)
-    moved = limit_chart(book, tables, "Change of each mean", across, axis, (0, _LIMIT, value, error))
-    share = limit_chart(book, [acceptance], "Share of trials accepted", across, "Accepted", (0, 1, 3, 4))
+    axis = "Change of the mean" + (", of the central range" if unit is None else f" ({unit})" if unit else "")
+    value, error, number = (_CHANGE, _CHANGE + 1, "General") if unit is not None else (_OF_RANGE, _OF_RANGE + 1, "0%")
+    moved = limit_chart(book, tables, "Change of each mean", across, axis, (0, _LIMIT, value, error), number)
+    share = limit_chart(book, [acceptance], "Share of trials accepted", across, "Share", (0, 1, 3, 4), "0.0%")
     captions = (moved_caption(limit), _share_caption(limit))
     for chart, column, caption in zip((moved, share), (0, _RIGHT), captions, strict=True):
         page.sheet.insert_chart(page.row, column, chart, {"object_position": 1, "description": caption})
-    page.row += _CHART_ROWS
+    page.row += CHART_ROWS
     gap = cells.text("", "caption")
     texts = [cells.text(caption, "caption") for caption in captions]
     page.spread([texts[0], gap, texts[1], gap], [0, _RIGHT - 1, _RIGHT, _LAST], _LAST)
@@ -150,13 +165,13 @@ def _write_charts(
 def moved_caption(limit: FilterLimit) -> str:
     """What the chart of the changes shows."""
     return (
-        f"How far each forecast's mean moves from that with the limit as it is ({number_text(limit.limit)}); whiskers are "
-        "standard errors of the change. Other filters and limits stay."
+        f"How far each forecast's mean moves from that with the limit as it is ({number_text(limit.limit)}); whiskers "
+        "are standard errors of the change. Other filters and limits stay."
     )
 
 
 def _share_caption(limit: FilterLimit) -> str:
     return (
-        f"The share of all trials that are accepted then, from {limit.trials:,} trials; where the limit is loosened, the "
-        f"further ones from {limit.loosened_trials:,}."
+        f"The share of all trials that are accepted then, from {limit.trials:,} trials; where the limit is loosened, "
+        f"the further ones from {limit.loosened_trials:,}."
     )

@@ -42,7 +42,13 @@ def spider_chart(book: Workbook, at: TableAt, title: str, axis: str, first: int,
 
 
 def limit_chart(
-    book: Workbook, tables: Sequence[TableAt], title: str, across: str, axis: str, columns: tuple[int, int, int, int]
+    book: Workbook,
+    tables: Sequence[TableAt],
+    title: str,
+    across: str,
+    axis: str,
+    columns: tuple[int, int, int, int],
+    number: str,
 ) -> ChartScatter:
     """Lines over the limit, with standard errors, one a table.
 
@@ -50,8 +56,10 @@ def limit_chart(
         book: that the chart belongs to.
         tables: one below the other; a line is named by its first cell.
         title: above the chart.
-        across, axis: what the axes show.
+        across: what the horizontal axis shows.
+        axis: what the other one shows.
         columns: of the name, of the limit, of the number, of its error.
+        number: how the axis shows numbers.
     """
     chart = book.add_chart({"type": "scatter", "subtype": "straight_with_markers"})
     name, limit, value, error = columns
@@ -67,9 +75,9 @@ def limit_chart(
                 "y_error_bars": {**bars, "line": {"color": colour, "width": 0.75}},
             }
         )
-    chart.set_x_axis({"name": across, **_axis(), "line": AXIS, "num_format": "General", "major_gridlines": {"visible": False}})
-    chart.set_y_axis({"name": axis, **_axis(upwards=True), "num_format": "General", **_GRIDLINES})
-    chart.set_legend({"position": "bottom", "font": FONT} if len(tables) > 1 else {"none": True})
+    chart.set_x_axis({"name": across, **_axis(), "line": AXIS, "major_gridlines": {"visible": False}})
+    chart.set_y_axis({"name": axis, **_axis(upwards=True), "num_format": number, **_GRIDLINES})
+    chart.set_legend({"position": "right", "font": FONT} if len(tables) > 1 else {"none": True})
     return dressed(chart, title)
 
 

@@ -25,8 +25,16 @@ _CHANGES: Final = 5
 
 def write_moves(page: Page, found: ForecastSensitivity) -> TableAt:
     """Write the table; where its rows to draw stand is returned."""
-    headers = ["Assumption, moved alone", "Units", "Base value", "At 10 %", "At 90 %"]
-    headers += ["10 %", "25 %", "50 %", "75 %", "90 %", "Only rises or falls", "Cases rejected by filters"]
+    headers = ["Assumption, moved alone", "Units", "Base value", "10 % point", "90 % point"]
+    headers += [
+        "at 10 %",
+        "at 25 %",
+        "at 50 %",
+        "at 75 %",
+        "at 90 %",
+        "Only rises or falls",
+        "Cases rejected by filters",
+    ]
     header, shown = page.row, found.bars[:ROWS]
     page.table(headers, [_row(bar, found.base or 0.0, found.bars[0].span) for bar in shown])
     return TableAt(page.sheet.get_name(), header, header + 1, header + min(len(shown), BARS))
@@ -62,15 +70,16 @@ def move_captions(found: ForecastSensitivity) -> list[str]:
     at = "" if found.base is None else f" of {found.base:.6g} {found.units}".rstrip()
     bent = any(bar.monotonic is False for bar in found.bars[:BARS])
     tornado = (
-        f"Tornado: how far the forecast moves from its base case{at} when one assumption goes to its 10 % or 90 % point and "
-        "all others stay at their base values. No trial is behind it: no probability, no filter, no correlation."
+        f"Tornado: how far the forecast moves from its base case{at} when one assumption goes to its 10 % or 90 % "
+        "point and all others stay at their base values. No trial is behind it: no probability, no filter, no "
+        "correlation."
     )
     if bent:
         tornado += " Where the table says that it does not only rise or fall, the bar hides what lies between."
     lines = min(MOST_LINES, len(found.bars))
     spider = (
-        f"Spider: the same over five points of each assumption's own distribution before filtering, for the {lines} that "
-        "move it most; a bent line is an effect that a correlation describes badly. Steep is not likely: it shows how the "
-        "model answers, not what is probable."
+        f"Spider: the same over five points of each assumption's own distribution before filtering, for the {lines} "
+        "that move it most; a bent line is an effect that a correlation describes badly. Steep is not likely: it shows "
+        "how the model answers, not what is probable."
     )
     return [tornado, spider]

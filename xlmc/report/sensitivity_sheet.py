@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.report import cells
+from xlmc.report.bar_charts import ROWS as CHART_ROWS
 from xlmc.report.influence_table import ROWS, influence_captions, influence_charts, write_influences
 from xlmc.report.moves_table import move_captions, move_charts, write_moves
 
@@ -17,13 +18,12 @@ if TYPE_CHECKING:
 
 __all__ = ["WIDTHS", "sensitivity_sentences", "write_sensitivity"]
 
-WIDTHS = (38, 10, *[9] * 14)
+WIDTHS = (38, 10, 10, 9, 9, 11, 9, 9, 11, 9, 13, *[9] * 5)
 _LAST: Final = len(WIDTHS) - 1
 _RIGHT: Final = 6
 """The column of the right-hand chart."""
 
-_CHART_ROWS: Final = 15
-_SCALE: Final = 62
+_SCALE: Final = 55
 """The percentage at which six charts fit on a page."""
 
 
@@ -43,8 +43,8 @@ def write_sensitivity(page: Page, book: Workbook, found: Sensitivities, name: st
 def sensitivity_sentences(found: Sensitivities) -> list[str]:
     """What the numbers are, and rest on."""
     told = [
-        "Influences are those among the accepted trials: filters change which assumptions matter. ± is the standard error "
-        "from a limited number of trials; no sensitivity says that the model fits the crash."
+        "Influences are those among the accepted trials: filters change which assumptions matter. ± is the standard "
+        "error from a limited number of trials; no sensitivity says that the model fits the crash."
     ]
     if found.sobol_reason:
         told.append(f"{found.sobol_reason}.")
@@ -67,7 +67,7 @@ def _write_forecast(
         return
     top, sobol = page.row, found.sobol_trials > 0
     pairs = (2 if forecast.influences else 0) + (1 if forecast.bars else 0)
-    page.row += pairs * (_CHART_ROWS + 1)
+    page.row += pairs * (CHART_ROWS + 1)
     breaks.append(page.row)
     charts: list[Any] = []
     captions: list[str] = []
@@ -91,8 +91,8 @@ def _write_forecast(
 
 def _nothing(forecast: ForecastSensitivity) -> str:
     return (
-        f"It is a number in {forecast.trials:,} accepted trials: too few to say what influences it, or it is the same in "
-        "all of them, or the draws of the accepted trials were not kept."
+        f"It is a number in {forecast.trials:,} accepted trials: too few to say what influences it, or it is the same "
+        "in all of them, or the draws of the accepted trials were not kept."
     )
 
 
@@ -104,7 +104,7 @@ def _write_rest(page: Page, count: int) -> None:
 def _write_pair(page: Page, charts: Sequence[Any], captions: Sequence[str]) -> None:
     for chart, column, caption in zip(charts, (0, _RIGHT), captions, strict=True):
         page.sheet.insert_chart(page.row, column, chart, {"object_position": 1, "description": caption})
-    page.row += _CHART_ROWS
+    page.row += CHART_ROWS
     texts = [cells.text(caption, "caption") for caption in captions]
     gap = cells.text("", "caption")
     page.spread([texts[0], gap, texts[1], gap], [0, _RIGHT - 1, _RIGHT, _LAST], _LAST)

@@ -31,9 +31,6 @@ __all__ = ["dependence", "dependence_floor"]
 Floats = NDArray[np.float64]
 Places = NDArray[np.intp]
 
-_STEPS = 32
-"""Classes of Y; a value of t between each."""
-
 _WEIGHT = 2.5
 """(Σλ)²/Σλ² of λ = 1/(π²j²)."""
 
@@ -43,15 +40,13 @@ def dependence(x: Ranked, y: Ranked, units: Units) -> Estimate:
     classes, n = x.classes, x.n
     if not y.varies or n <= classes.freedom:
         return Estimate(math.nan, n=n)
-    step = np.empty(n, np.intp)
-    step[y.order] = y.labels(_STEPS)
-    step, steps = step[x.order], int(step.max()) + 1
+    step, steps = y.steps[x.order], int(y.steps.max()) + 1
     means, slopes = _tables(classes, step, steps)
     below = np.cumsum(np.bincount(step, minlength=steps))[:-1] / n
     total = float(np.sum(below * (1.0 - below)))
     residual = _squares(means, slopes, step, classes.label, classes.centred)
     value = 1.0 - float(np.sum(residual)) / (n - classes.freedom) * ((n - 1.0) / n) / total
-    alone = _squares(below[None, :], np.zeros_like(below)[None, :], step, np.zeros(n, np.intp), np.zeros(n))
+    alone = _squares_alone(below)[step]
     pulls = np.empty(n)
     pulls[x.order] = ((1.0 - value) * alone - residual * (n / (n - classes.freedom))) / total
     fitting = math.sqrt(2.0 * (classes.freedom - 1) / _WEIGHT) / n * (1.0 - value)
@@ -77,6 +72,12 @@ def _tables(classes: Classes, step: Places, steps: int) -> tuple[Floats, Floats]
     sums = np.bincount(place, classes.centred, size * steps).reshape(size, steps)
     means = np.cumsum(counts, axis=1)[:, :-1] / classes.sizes[:, None]
     return means, np.cumsum(sums, axis=1)[:, :-1] / classes.squares[:, None]
+
+
+def _squares_alone(below: Floats) -> Floats:
+    """`(steps,)` Σ_t ([step ≤ t] − F(t))² of every step, from `(steps − 1,)` F(t)."""
+    place = np.arange(below.size + 1)
+    return np.asarray(np.sum(((place[:, None] <= place[None, :-1]) - below) ** 2, axis=1))
 
 
 def _squares(means: Floats, slopes: Floats, step: Places, label: Places, centred: Floats) -> Floats:

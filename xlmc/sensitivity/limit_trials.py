@@ -25,7 +25,7 @@ __all__ = ["LimitsFound", "TriedLimit", "limit_trials"]
 MOST_ACCEPTED: Final = 1 << 15
 """Accepted trials that answers are taken from."""
 
-LEAST_AGAIN, MOST_AGAIN = 1 << 13, 1 << 16
+LEAST_AGAIN, MOST_AGAIN = 1 << 13, 1 << 15
 """Trials run again, unless the run has fewer."""
 
 Floats = NDArray[np.float64]

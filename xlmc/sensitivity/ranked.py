@@ -8,13 +8,16 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["LEAST_IN_A_CLASS", "MOST_CLASSES", "Classes", "Ranked"]
+__all__ = ["LEAST_IN_A_CLASS", "MOST_CLASSES", "STEPS", "Classes", "Ranked"]
 
 Floats = NDArray[np.float64]
 Places = NDArray[np.intp]
 
 MOST_CLASSES = 16
 """With a straight line in each they follow two periods of a sine to 0.1 % of its variance."""
+
+STEPS = 32
+"""Classes of a forecast where its distribution function is looked at: at each of the limits between them."""
 
 LEAST_IN_A_CLASS = 50
 """Trials, where there is more than one class: enough to lay a line through."""
@@ -103,14 +106,21 @@ class Ranked:
         first, _ = self.ties
         return bool(first[-1] > 0)
 
-    def labels(self, classes: int) -> Places:
+    @cached_property
+    def steps(self) -> Places:
+        """`(n,)` the class of every value, of `STEPS` at most, numbered upwards from 0."""
+        found = np.empty(self.n, np.intp)
+        found[self.order] = self._labels(STEPS)
+        return found
+
+    def _labels(self, classes: int) -> Places:
         """`(n,)` classes of equal probability, in ascending order of the values; equal values stay together."""
         raw = np.floor((self.grades[self.order] + 0.5) * classes).astype(np.intp)
         return np.cumsum(np.concatenate([[0], raw[1:] != raw[:-1]]))
 
     @cached_property
     def classes(self) -> Classes:
-        label = self.labels(min(MOST_CLASSES, max(1, self.n // LEAST_IN_A_CLASS)))
+        label = self._labels(min(MOST_CLASSES, max(1, self.n // LEAST_IN_A_CLASS)))
         starts = np.flatnonzero(np.concatenate([[True], label[1:] != label[:-1]]))
         sizes = np.diff(np.append(starts, self.n))
         x = self.values[self.order]

@@ -3,8 +3,8 @@
 
 /**
  * From `values` (ascending, all different), `counts` (trials at each; null: 1) and `gaps` (trials between each and the
- * next; null: 0). A count is exact at every value, and everywhere where there are no gaps; `doubt` is by how many trials
- * it may be off at most.
+ * next; null: 0). A count is exact at every value, and everywhere where there are no gaps; `doubt` is by how many
+ * trials it may be off at most.
  */
 class Trials {
   constructor({ trials, values, counts, gaps }) {

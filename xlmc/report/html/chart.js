@@ -12,8 +12,8 @@ function widthOf(place) {
 }
 
 /**
- * Draw a forecast with its bars into `place`; `state` has `view`, `low`, `high` and is read whenever the chart is drawn again. `drawn()`
- * is called then, and `pointed(value)` when the pointer is somewhere else; null when it has left.
+ * Draw a forecast with its bars into `place`; `state` has `view`, `low`, `high` and is read whenever the chart is drawn
+ * again. `drawn()` is called then, and `pointed(value)` when the pointer is somewhere else; null when it has left.
  */
 function drawForecast(place, forecast, trials, bins, state, { drawn, pointed }) {
   const { edges, counts } = bins;
@@ -31,11 +31,13 @@ function drawForecast(place, forecast, trials, bins, state, { drawn, pointed }) 
 }
 
 /**
- * The bars of a forecast, and what part of the chart a range covers. Those of whole numbers stand over their numbers: a range
- * that ends at 6 holds the trials of 6.
+ * The bars of a forecast, and what part of the chart a range covers. Those of whole numbers stand over their numbers: a
+ * range that ends at 6 holds the trials of 6.
  */
 function barsOf({ bins, values }) {
-  if (bins.width !== 1 || !values.every(Number.isInteger)) return { ...bins, whole: false, covered: (low, high) => [low, high] };
+  if (bins.width !== 1 || !values.every(Number.isInteger)) {
+    return { ...bins, whole: false, covered: (low, high) => [low, high] };
+  }
   return {
     ...bins,
     whole: true,
@@ -46,8 +48,9 @@ function barsOf({ bins, values }) {
 
 /** What all charts of the page have in common. */
 function chartOptions(width, ends, top, units, view) {
-  const axis = { stroke: INK, font: FONT, labelFont: FONT, labelSize: 22, ticks: { stroke: "#8994A1", width: 1, size: 5 } };
-  const percent = view !== "frequency";
+  const thin = { stroke: "#8994A1", width: 1 };
+  const axis = { stroke: INK, font: FONT, labelFont: FONT, labelSize: 22, ticks: { ...thin, size: 5 } };
+  const counted = (_, splits) => splits.map((n) => (Number.isInteger(n) ? countText(n) : ""));
   return {
     width,
     height: Math.round(Math.max(220, Math.min(HIGHEST, width * 0.55))),
@@ -56,9 +59,23 @@ function chartOptions(width, ends, top, units, view) {
     cursor: { y: false, points: { show: false }, drag: { x: false, y: false } },
     scales: { x: { time: false, range: ends }, y: { range: [0, top] } },
     axes: [
-      { ...axis, label: units || " ", size: 42, gap: 12, labelSize: 18, grid: { show: false }, border: { show: true, stroke: "#8994A1", width: 1 } },
-      { ...axis, label: percent ? "Accepted trials, %" : "Accepted trials", size: 58, ticks: { show: false },
-        grid: { stroke: GRID, width: 1 }, values: (_, splits) => splits.map((n) => (Number.isInteger(n) ? countText(n) : "")) },
+      {
+        ...axis,
+        label: units || " ",
+        size: 42,
+        gap: 12,
+        labelSize: 18,
+        grid: { show: false },
+        border: { ...thin, show: true },
+      },
+      {
+        ...axis,
+        label: view === "frequency" ? "Accepted trials" : "Accepted trials, %",
+        size: 58,
+        ticks: { show: false },
+        grid: { stroke: GRID, width: 1 },
+        values: counted,
+      },
     ],
     series: [{}, { paths: () => null, points: { show: false } }],
   };

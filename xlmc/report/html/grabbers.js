@@ -4,8 +4,8 @@
 const ARROWS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 };
 
 /**
- * Put a grabber on a chart that reaches from `min` to `max`. `move(value)` is told where it wants to be, `step` is the grid
- * it moves on; at the edge of the chart the end is open: it takes in the trials that are not drawn.
+ * Put a grabber on a chart that reaches from `min` to `max`. `move(value)` is told where it wants to be, `step` is the
+ * grid it moves on; at the edge of the chart the end is open: it takes in the trials that are not drawn.
  *
  * Returns a function that puts it at a value, with a text beside it.
  */

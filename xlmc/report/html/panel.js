@@ -42,10 +42,11 @@ class Panel {
     });
     const { step, state, bins } = this;
     const grid = { step, min: bins.edges[0], max: bins.edges.at(-1) };
-    const grabber = (which, label, now, move) => addGrabber(this.chart, which, label, grid, now, move);
+    const toLow = (value) => this.set(Math.min(value, state.high), state.high);
+    const toHigh = (value) => this.set(state.low, Math.max(value, state.low));
     this.grabbers = {
-      low: grabber("low", "Lower end of the range", () => state.low, (value) => this.set(Math.min(value, state.high), state.high)),
-      high: grabber("high", "Upper end of the range", () => state.high, (value) => this.set(state.low, Math.max(value, state.low))),
+      low: addGrabber(this.chart, "low", "Lower end of the range", grid, () => state.low, toLow),
+      high: addGrabber(this.chart, "high", "Upper end of the range", grid, () => state.high, toHigh),
     };
     this.read(null);
     if (state.low !== undefined) this.show();
@@ -65,14 +66,21 @@ class Panel {
 
   /** What was typed into a box. */
   type(key) {
-    const { low, high } = this.state;
+    const { low, high, lowText, highText } = this.state;
     const value = typed(this.box(key).value, { low: -Infinity, high: Infinity, share: null }[key]);
-    if (value === null) this.refuse(key, "Type a number.");
-    else if (key === "share" && !(value >= 0 && value <= 100)) this.refuse(key, "A certainty lies between 0 and 100 %.");
+    const why = this.whyNot(key, value);
+    if (why) this.refuse(key, why);
     else if (key === "share") this.toCentral(value / 100);
-    else if (key === "low" ? value > high : value < low) this.refuse(key, "The lower end must not lie above the upper end.");
-    else if (key === "low") this.set(value, high, { lowText: String(value), highText: this.state.highText });
-    else this.set(low, value, { lowText: this.state.lowText, highText: String(value) });
+    else if (key === "low") this.set(value, high, { lowText: String(value), highText });
+    else this.set(low, value, { lowText, highText: String(value) });
+  }
+
+  /** Why this cannot stand in a box; nothing where it can. */
+  whyNot(key, value) {
+    if (value === null) return "Type a number.";
+    if (key === "share") return value >= 0 && value <= 100 ? "" : "A certainty lies between 0 and 100 %.";
+    const crossed = key === "low" ? value > this.state.high : value < this.state.low;
+    return crossed ? "The lower end must not lie above the upper end." : "";
   }
 
   refuse(key, why) {
@@ -134,8 +142,8 @@ class Panel {
     const main = document.createElement("strong");
     main.textContent = `${text} %`;
     const detail = document.createElement("span");
-    detail.textContent =
-      `of the accepted trials lie ${range}: ${about} of ${countText(trials)}${off}; 95 % interval ${ends[0]} to ${ends[1]} %.`;
+    const counted = `${about} of ${countText(trials)}${off}`;
+    detail.textContent = `of the accepted trials lie ${range}: ${counted}; 95 % interval ${ends.join(" to ")} %.`;
     place.replaceChildren(main, " ", detail);
     place.dataset.count = String(count);
     place.dataset.low = String(low);
@@ -160,7 +168,8 @@ class Panel {
     const reverse = this.state.view === "reverse";
     const { count } = reverse ? this.trials.between(value, Infinity) : this.trials.between(-Infinity, value);
     const { error } = shareOf(count, trials, this.z);
-    return `${reverse ? "From" : "Up to"} ${valueText(value, this.decimals)}${unit}: ${estimateText((100 * count) / trials, 100 * error)} %`;
+    const share = estimateText((100 * count) / trials, 100 * error);
+    return `${reverse ? "From" : "Up to"} ${valueText(value, this.decimals)}${unit}: ${share} %`;
   }
 
   /** What the lines stand for. */

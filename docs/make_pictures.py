@@ -82,6 +82,8 @@ CUTS: Mapping[str, Cut] = {
     "charts": Cut(RESULTS, "Histograms of the accepted trials", "from 22.021"),
     "statistics": Cut(RESULTS, "Chevrolet delta-V", "Mean standard error", page="Statistics of the accepted trials"),
     "assumptions": Cut(RESULTS, "Assumptions", "Table 1. Breadth", page="What this shows"),
+    "sensitivity": Cut(RESULTS, "Sensitivity: what the answers depend on", "correlation.", below=3),
+    "filter-limits": Cut(RESULTS, "Restitution, tangential: at most", "The share of all trials"),
     "record": Cut(RESULTS, "Record of the run", "Lost to errors"),
 }
 """Picture -> where it is cut from."""

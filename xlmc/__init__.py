@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from xlmc.analysis import compare, screen
     from xlmc.model import Model, load
+    from xlmc.sensitivity import sensitivities
     from xlmc.simulation import ForecastResult, Simulation
 
-__all__ = ["ForecastResult", "Model", "Simulation", "__version__", "compare", "load", "screen"]
+__all__ = ["ForecastResult", "Model", "Simulation", "__version__", "compare", "load", "screen", "sensitivities"]
 
 __version__ = "0.1.0"
 
@@ -27,6 +28,7 @@ _HOMES = {
     "compare": "analysis",
     "load": "model",
     "screen": "analysis",
+    "sensitivities": "sensitivity",
 }
 
 

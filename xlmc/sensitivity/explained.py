@@ -50,7 +50,7 @@ def explained(x: Ranked, y: Floats, units: Units) -> Estimate:
         return Estimate(math.nan, n=n)
     z = z[x.order]
     residual = z - _fitted(classes, z)
-    value = _adjusted(float(np.dot(residual, residual)), n, classes.freedom)
+    value = _adjusted(float(np.sum(residual * residual)), n, classes.freedom)
     pulls = np.empty(n)
     pulls[x.order] = (1.0 - value) * z * z - residual * residual * (n / (n - classes.freedom))
     fitting = math.sqrt(2.0 * (classes.freedom - 1)) / n * (1.0 - value)

@@ -165,7 +165,7 @@ def _mean(y: Floats, weights: Floats, held: Bools, units: Units) -> tuple[float,
     total = float(w.sum())
     if total == 0.0:
         return math.nan, np.zeros(y.size)
-    mean = float(np.dot(w, y)) / total
+    mean = float(np.sum(w * y)) / total
     return mean, w * (y - mean) * (units.n / total)
 
 

@@ -52,7 +52,7 @@ class Units:
         if self.dof < LEAST_DOF:
             return float("nan")
         sums = pulls if self.replicate is None else np.bincount(self.replicate, pulls, self.count)
-        return float(np.sqrt(np.dot(sums, sums) * (self.count / self.dof)) / self.n)
+        return float(np.sqrt(np.sum(sums * sums) * (self.count / self.dof)) / self.n)
 
     def error_of_fit(self, pulls: Floats, fitting: float) -> float:
         """The same for a share that a fit explains, where the fit alone has noise of the size `fitting`.

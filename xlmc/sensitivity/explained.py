@@ -93,9 +93,13 @@ def _fitted(classes: Classes, y: Floats) -> Floats:
 
 def standardised(y: Floats) -> Floats | None:
     """Mean 0 and mean square 1; None where y does not vary."""
-    apart = y - y.mean()
-    scale = float(np.max(np.abs(apart), initial=0.0))
-    if not scale > 1e-12 * float(np.max(np.abs(y), initial=0.0)):
+    largest = float(np.max(np.abs(y), initial=0.0))
+    if not largest > 0.0:
         return None
-    apart = apart / scale  # first, so that squares cannot overflow
+    apart = y / largest  # first, so that sums and squares cannot overflow
+    apart = apart - apart.mean()
+    scale = float(np.max(np.abs(apart)))
+    if not scale > 1e-12:
+        return None
+    apart = apart / scale
     return np.asarray(apart / math.sqrt(float(np.mean(apart**2))))

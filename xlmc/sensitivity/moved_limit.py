@@ -184,8 +184,9 @@ def _mean(y: Floats, weights: Floats, held: Bools, units: Units) -> tuple[float,
     total = float(w.sum())
     if total == 0.0:
         return math.nan, np.zeros(y.size)
-    mean = float(np.sum(w * y)) / total
-    return mean, w * (y - mean) * (units.n / total)
+    w = w / total  # first, so that the sum cannot overflow
+    mean = float(np.sum(w * y))
+    return mean, w * (y - mean) * units.n
 
 
 def _estimate(value: float, pulls: Floats, units: Units, held: Bools) -> Estimate:

@@ -96,7 +96,7 @@ def test_the_guide_leads_from_an_empty_folder_to_the_result(typed, fill, variant
     )
     assert first["SHA-256 of the accepted trials"] == again["SHA-256 of the accepted trials"]
     assert first["Command that repeats it"] in GUIDE
-    assert len(books["my-case-results"].sheetnames) == len(books["my-case"].sheetnames) + 7
+    assert len(books["my-case-results"].sheetnames) == len(books["my-case"].sheetnames) + 9
 
 
 def test_the_guide_tells_the_papers_ranges_and_filters(tables):

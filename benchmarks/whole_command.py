@@ -14,6 +14,7 @@ The ratio is of the same round, the median over rounds.
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import pickle
 import statistics
@@ -92,7 +93,7 @@ def record(path: Path, trials: int = TRIALS) -> int:
     run = xlmc.load(CASE_STUDY).simulate(trials)
     calls: list[Call] = []
     real = xlsxwriter.Workbook
-    xlsxwriter.Workbook = lambda _, options=None: Recorder(real(os.devnull, options), 0, calls)
+    xlsxwriter.Workbook = lambda _, options=None: Recorder(real(io.BytesIO(), options), 0, calls)
     try:
         build_sheets(run, command="")
     finally:

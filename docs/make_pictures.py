@@ -85,6 +85,8 @@ CUTS: Mapping[str, Cut] = {
     "certainty": Cut(RESULTS, "Certainty", "ends belong to the range", below=76),
     "scatter": Cut(RESULTS, "Chevrolet delta-V and Nissan delta-V", "Scatter chart 2", below=14),
     "assumptions": Cut(RESULTS, "Assumptions", "Table 1. Breadth", page="What this shows"),
+    "sensitivity": Cut(RESULTS, "Sensitivity: what the answers depend on", "correlation.", below=3),
+    "filter-limits": Cut(RESULTS, "Restitution, tangential: at most", "The share of all trials"),
     "record": Cut(RESULTS, "Record of the run", "Lost to errors"),
 }
 """Picture -> where it is cut from."""

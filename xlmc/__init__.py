@@ -15,9 +15,20 @@ if TYPE_CHECKING:
     from xlmc.analysis import compare, screen
     from xlmc.model import Model, load
     from xlmc.saved import open_run
+    from xlmc.sensitivity import sensitivities
     from xlmc.simulation import ForecastResult, Simulation
 
-__all__ = ["ForecastResult", "Model", "Simulation", "__version__", "compare", "load", "open_run", "screen"]
+__all__ = [
+    "ForecastResult",
+    "Model",
+    "Simulation",
+    "__version__",
+    "compare",
+    "load",
+    "open_run",
+    "screen",
+    "sensitivities",
+]
 
 __version__ = "0.1.0"
 
@@ -29,6 +40,7 @@ _HOMES = {
     "load": "model",
     "open_run": "saved",
     "screen": "analysis",
+    "sensitivities": "sensitivity",
 }
 
 

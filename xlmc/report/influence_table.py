@@ -30,7 +30,7 @@ _EXPLAINED, _DEPENDENCE, _RANK, _CONTRIBUTION, _FIRST, _TOTAL = 2, 5, 8, 10, 12,
 
 def write_influences(page: Page, found: ForecastSensitivity, sobol: bool) -> TableAt:
     """Write the table; where its rows to draw stand is returned."""
-    headers = ["Assumption", "Units", "Variance explained", "±", "Noise up to", "Depend-ence", "±", "Noise up to"]
+    headers = ["Assumption", "Units", "Variance explained", "±", "Noise up to", "Dependence", "±", "Noise up to"]
     headers += ["Rank correlation", "±", "Contribution to variance", "±"]
     shown = found.influences[:ROWS]
     header = page.row

@@ -3,6 +3,7 @@
 `sensitivities(simulation)` is the way in.
 """
 
+from xlmc.sensitivity.assembled import sensitivities
 from xlmc.sensitivity.results import (
     PERCENTS,
     Bar,
@@ -14,7 +15,6 @@ from xlmc.sensitivity.results import (
     Sensitivities,
     Slope,
 )
-from xlmc.sensitivity.sensitivities import sensitivities
 
 __all__ = [
     "PERCENTS",

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LimitsFound", "TriedLimit", "limit_trials"]
 
-MOST_ACCEPTED: Final = 1 << 15
+MOST_ACCEPTED: Final = 1 << 14
 """Accepted trials that answers are taken from."""
 
 LEAST_AGAIN, MOST_AGAIN = 1 << 13, 1 << 15

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -138,15 +139,33 @@ def moved_answers(
     order = np.argsort(forecast)[: int(np.count_nonzero(~np.isnan(forecast)))]
     y, weights, accepted = forecast[order], found.weights[order], found.accepted[order]
     units = Units.of(y.size, None if found.replicate is None else found.replicate[order])
-    means = [_mean(y, weights, mask[order], units) for mask in inside]
     now = _mean(y, weights, accepted, units)
-    answers = []
-    for mask, (mean, pulls) in zip(inside, means, strict=True):
+    made: dict[bytes, _Moved] = {}  # many limits may keep the same trials
+    moved = []
+    for mask in inside:
         held = mask[order]
-        low, high = central_interval(_sample(y, weights, held, units), central)
-        change = _estimate(mean - now[0], pulls - now[1], units, held)
-        answers.append((_estimate(mean, pulls, units, held), change, low, high))
-    return answers, _slope(found, means, limits, units, accepted)
+        key = held.tobytes()
+        if key not in made:
+            made[key] = _moved(y, weights, held, units, now, central)
+        moved.append(made[key])
+    slope = _slope(found, [(each.value, each.pulls) for each in moved], limits, units, accepted)
+    return [each.estimates for each in moved], slope
+
+
+class _Moved(NamedTuple):
+    """A mean with its `(n,)` pulls; and the mean, its change, and both ends of the central range as estimates."""
+
+    value: float
+    pulls: Floats
+    estimates: tuple[Estimate, Estimate, Estimate, Estimate]
+
+
+def _moved(y: Floats, weights: Floats, held: Bools, units: Units, now: tuple[float, Floats], central: float) -> _Moved:
+    """Of the trials held, in ascending order; `now` is the mean of the accepted ones."""
+    mean, pulls = _mean(y, weights, held, units)
+    change = _estimate(mean - now[0], pulls - now[1], units, held)
+    low, high = central_interval(_sample(y, weights, held, units), central)
+    return _Moved(mean, pulls, (_estimate(mean, pulls, units, held), change, low, high))
 
 
 def _slope(
@@ -165,8 +184,9 @@ def _mean(y: Floats, weights: Floats, held: Bools, units: Units) -> tuple[float,
     total = float(w.sum())
     if total == 0.0:
         return math.nan, np.zeros(y.size)
-    mean = float(np.dot(w, y)) / total
-    return mean, w * (y - mean) * (units.n / total)
+    w = w / total  # first, so that the sum cannot overflow
+    mean = float(np.sum(w * y))
+    return mean, w * (y - mean) * units.n
 
 
 def _estimate(value: float, pulls: Floats, units: Units, held: Bools) -> Estimate:

@@ -127,7 +127,7 @@ class Ranked:
         x = x - x.mean()
         centred = x - np.repeat(np.add.reduceat(x, starts) / sizes, sizes)
         squares = np.add.reduceat(centred**2, starts)
-        flat = squares <= _FLAT * max(float(np.dot(x, x)), np.finfo(float).tiny)
+        flat = squares <= _FLAT * max(float(np.sum(x * x)), np.finfo(float).tiny)
         centred[np.repeat(flat, sizes)] = 0.0
         freedom = int(starts.size + np.count_nonzero(~flat))
         return Classes(starts, sizes, label, centred, np.where(flat, 1.0, squares), freedom)

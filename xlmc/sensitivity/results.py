@@ -150,7 +150,8 @@ class LimitPoint:
 
     Attributes:
         limit: the value.
-        trials: accepted then; where the limit is loosened, an estimate from fewer trials, rounded.
+        trials: accepted then, of the `trials` of the `FilterLimit`; where the limit is loosened, an estimate from
+            fewer, rounded.
         acceptance: the share of all trials that are accepted then.
         answers: one a forecast, in the order of the workbook; of very many, of the first ones.
     """

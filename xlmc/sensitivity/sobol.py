@@ -35,9 +35,11 @@ def sobol_indices(a: Floats, b: Floats, c: Floats) -> tuple[Estimate, Estimate]:
     units = Units(int(a.size))
     if units.n < 2:
         return Estimate(math.nan, n=units.n), Estimate(math.nan, n=units.n)
+    largest = max(float(np.max(np.abs(a))), float(np.max(np.abs(b)))) or 1.0
+    a, b, c = a / largest, b / largest, c / largest  # first, so that sums and squares cannot overflow
     middle = 0.5 * (a.mean() + b.mean())
     scale = max(float(np.max(np.abs(a - middle))), float(np.max(np.abs(b - middle))))
-    if not scale > 1e-12 * abs(middle):
+    if not scale > 1e-12:
         return Estimate(math.nan, n=units.n), Estimate(math.nan, n=units.n)
     a, b, c = (a - middle) / scale, (b - middle) / scale, (c - middle) / scale
     squares = a * a + b * b  # of mean 2v

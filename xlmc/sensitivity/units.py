@@ -52,7 +52,9 @@ class Units:
         if self.dof < LEAST_DOF:
             return float("nan")
         sums = pulls if self.replicate is None else np.bincount(self.replicate, pulls, self.count)
-        return float(np.sqrt(np.dot(sums, sums) * (self.count / self.dof)) / self.n)
+        largest = float(np.max(np.abs(sums), initial=0.0)) or 1.0  # taken out, so that squares cannot overflow
+        scaled = sums / largest
+        return float(largest / self.n * np.sqrt(np.sum(scaled * scaled) * (self.count / self.dof)))
 
     def error_of_fit(self, pulls: Floats, fitting: float) -> float:
         """The same for a share that a fit explains, where the fit alone has noise of the size `fitting`.

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from xlmc.sensitivity.influences import influences, ranked_assumptions
 from xlmc.sensitivity.limit_trials import TriedLimit, limit_trials
 from xlmc.sensitivity.moved_limit import moved_limit
@@ -69,7 +71,8 @@ def _with_sobol(influence: Influence, run: SobolRun, forecast: int) -> Influence
 def _moved(simulation: Simulation, tried: TriedLimit) -> FilterLimit:
     forecasts = simulation.model.forecasts[:MOST_LIMIT_FORECASTS]
     names, shares = [f.name for f in forecasts], [f.central for f in forecasts]
-    points, slopes = moved_limit(tried.trials, tried.grid, names, shares) if tried.grid else ((), ())
+    with np.errstate(over="ignore", invalid="ignore"):  # forecasts near the largest double have no slope
+        points, slopes = moved_limit(tried.trials, tried.grid, names, shares) if tried.grid else ((), ())
     return FilterLimit(
         filter=tried.limit.filter.name,
         cell=str(tried.limit.filter.cell),

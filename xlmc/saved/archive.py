@@ -12,7 +12,7 @@ from typing import IO, BinaryIO, Final
 
 from xlmc.errors import WorkbookError
 
-__all__ = ["AGAIN", "RUN", "SUFFIX", "WORKBOOK", "Package", "opened", "write_entries"]
+__all__ = ["AGAIN", "DAMAGE", "RUN", "SUFFIX", "WORKBOOK", "Package", "opened", "write_entries"]
 
 SUFFIX: Final = ".xlmcrun"
 RUN: Final = "run.json"
@@ -23,10 +23,11 @@ _NAMES: Final = re.compile(r"run\.json|workbook|columns/\d{1,6}\.npy")
 _EPOCH: Final = (1980, 1, 1, 0, 0, 0)  # the earliest time a zip can hold
 _ENCRYPTED: Final = 0x1
 _MOST_ENTRIES: Final = 100_000
-_DAMAGE: Final = (
+DAMAGE: Final = (  # what zipfile raises on a damaged file
     zipfile.BadZipFile,
     struct.error,
     EOFError,
+    OSError,
     OverflowError,
     RuntimeError,
     ValueError,
@@ -129,6 +130,6 @@ def _told(path: Path) -> Iterator[None]:
         yield
     except zipfile.BadZipFile as error:
         raise WorkbookError(f"the saved run is damaged ({error})", where=path, hint=AGAIN) from error
-    except _DAMAGE as error:
+    except DAMAGE as error:
         reason = str(error) or "it ends too early"
         raise WorkbookError(f"the saved run is damaged ({reason})", where=path, hint=AGAIN) from error

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from xlmc.definitions.model import name_key
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.model import Model, understood
-from xlmc.saved.archive import AGAIN, RUN, WORKBOOK, Package, opened
+from xlmc.saved.archive import AGAIN, DAMAGE, RUN, WORKBOOK, Package, opened
 from xlmc.saved.columns import read_column
 from xlmc.saved.document import (
     FORMAT,
@@ -50,7 +50,7 @@ def is_saved_run(path: Path) -> bool:
     try:
         with zipfile.ZipFile(path) as package:
             return RUN in package.namelist()
-    except (zipfile.BadZipFile, OSError, ValueError):
+    except DAMAGE:
         return False
 
 

@@ -23,7 +23,7 @@ HEADER = 4
 TABLE = 6
 """Columns of a table; a narrow one follows."""
 
-_ON_A_PAGE, _SCALE = 2, 80
+_ON_A_PAGE, _SCALE = 2, 64
 """Tables side by side, and the percentage at which so many fit."""
 
 

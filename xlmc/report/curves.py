@@ -21,7 +21,7 @@ HEADER = 5
 _TITLES = HEADER - 3
 SHARE = "0.00%"
 _WIDTH = 11
-_ON_A_PAGE, _SCALE = 14, 75
+_ON_A_PAGE, _SCALE = 14, 66
 """Columns, and the percentage at which so many fit."""
 
 _HEAD_HEIGHT = 48

@@ -129,6 +129,8 @@ def _shown(x: Floats) -> tuple[float, float]:
         return _sane(x[0]), _sane(x[-1])
     first = np.searchsorted(x, lower - reach, side="left")
     last = np.searchsorted(x, upper + reach, side="right") - 1
+    if last < first:  # all of them vast
+        return _sane(x[0]), _sane(x[-1])
     return _sane(x[first]), _sane(x[last])
 
 

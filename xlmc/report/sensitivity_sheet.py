@@ -23,7 +23,7 @@ _LAST: Final = len(WIDTHS) - 1
 _RIGHT: Final = 6
 """The column of the right-hand chart."""
 
-_SCALE: Final = 55
+_SCALE: Final = 51
 """The percentage at which six charts fit on a page."""
 
 

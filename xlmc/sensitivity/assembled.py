@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -26,8 +27,18 @@ MOST_LIMIT_FORECASTS: Final = 12
 _WORDS: Final = {">=": "at least", "<=": "at most", ">": "above", "<": "below"}
 
 
+_FOUND: Final[WeakKeyDictionary[Simulation, Sensitivities]] = WeakKeyDictionary()
+"""Sheets, page and JSON of one run want the same."""
+
+
 def sensitivities(simulation: Simulation) -> Sensitivities:
     """What the answers of a finished run depend on. Nothing random is in it but the run's own draws."""
+    if simulation not in _FOUND:
+        _FOUND[simulation] = _assembled(simulation)
+    return _FOUND[simulation]
+
+
+def _assembled(simulation: Simulation) -> Sensitivities:
     model = simulation.model
     assumptions = ranked_assumptions(simulation)
     found = influences(simulation, assumptions)

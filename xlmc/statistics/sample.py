@@ -99,7 +99,7 @@ class Sample:
         rank = p * (self.n - 1)
         low = np.floor(rank).astype(np.intp)
         left, right = picked(self.x, low), picked(self.x, np.minimum(low + 1, self.n - 1))
-        return np.asarray(left + (right - left) * (rank - low))
+        return _between(left, right, rank - low)
 
     def per_unit(self, amounts: Floats) -> Floats:
         """Sums of (n,) amounts over each independent unit: (replicates,), or (n,) as they are."""
@@ -119,6 +119,15 @@ class Sample:
 
 Values = ArrayLike | Sample
 """(n,) values, or a `Sample` made of them, so that many statistics share one sort."""
+
+
+def _between(left: Floats, right: Floats, share: Floats) -> Floats:
+    """So much of the way from left to right; also where the way is longer than the largest number."""
+    with np.errstate(over="ignore"):
+        way = right - left
+    if np.isfinite(way).all():
+        return np.asarray(left + way * share)
+    return np.asarray(left * (1.0 - share) + right * share)
 
 
 def positions_of(w: Floats) -> Floats:

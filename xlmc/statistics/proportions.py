@@ -1,6 +1,8 @@
 """Shares of trials: acceptance, certainty, the probability above a threshold.
 
-**Interval.** Wilson's, or Clopper and Pearson's, which never covers less than asked and is wider. With weights or
+**Interval.** Wilson's, or Clopper and Pearson's, which never covers less than asked and is wider. Wilson's lower end is
+too high where there are a few hits, for a share of 0.17 in n it holds the truth in 84 % of the runs: it is lowered there
+as by Brown, Cai & DasGupta (2001, 4.1.1), and the upper end raised where there are a few misses. With weights or
 replicates the share counts as that of the number of independent trials that would give the same error, reduced for the
 quantile of Student's t (Korn & Graubard 1998).
 
@@ -26,6 +28,9 @@ __all__ = ["Method", "probability_above", "proportion", "replicated_proportion",
 
 Floats = NDArray[np.float64]
 Method = Literal["wilson", "clopper-pearson"]
+
+FEW = 10.0
+"""Hits up to which Wilson's end may have to be lowered; from 5 on it is low enough at every usual confidence."""
 
 
 def proportion(successes: int, trials: int, *, confidence: float = 0.95, method: Method = "wilson") -> Estimate:
@@ -137,8 +142,18 @@ def _wilson(p: float, trials: float, confidence: float) -> tuple[float, float]:
     pull = z * z / trials
     centre = (p + pull / 2.0) / (1.0 + pull)
     half = (pull * (p * (1.0 - p) + pull / 4.0)) ** 0.5 / (1.0 + pull)
+    hits, misses = p * trials, (1.0 - p) * trials
+    low = min(centre - half, _lowered(hits, misses, confidence))
+    high = max(centre + half, 1.0 - _lowered(misses, hits, confidence))
     # At 0 and 1 one end is the share itself; rounding must not say otherwise.
-    return 0.0 if p == 0.0 else centre - half, 1.0 if p == 1.0 else centre + half
+    return 0.0 if p == 0.0 else low, 1.0 if p == 1.0 else high
+
+
+def _lowered(hits: float, misses: float, confidence: float) -> float:
+    """The share with which so many hits or more have the probability of both tails; 1 where there are many."""
+    from scipy.special import betaincinv
+
+    return float(betaincinv(hits, misses + 1.0, 1.0 - confidence)) if 0.0 < hits < FEW else 1.0
 
 
 def _clopper_pearson(p: float, trials: float, confidence: float) -> tuple[float, float]:

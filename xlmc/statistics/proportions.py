@@ -29,9 +29,6 @@ __all__ = ["Method", "probability_above", "proportion", "replicated_proportion",
 Floats = NDArray[np.float64]
 Method = Literal["wilson", "clopper-pearson"]
 
-FEW = 10.0
-"""Hits up to which Wilson's end may have to be lowered; from 5 on it is low enough at every usual confidence."""
-
 
 def proportion(successes: int, trials: int, *, confidence: float = 0.95, method: Method = "wilson") -> Estimate:
     """Successes of independent trials, as accepted of all.
@@ -150,10 +147,13 @@ def _wilson(p: float, trials: float, confidence: float) -> tuple[float, float]:
 
 
 def _lowered(hits: float, misses: float, confidence: float) -> float:
-    """The share with which so many hits or more have the probability of both tails; 1 where there are many."""
+    """The share with which so many hits or more have the probability of both tails: below Wilson's end if there are few.
+
+    No hits are never fewer than expected, and bound nothing.
+    """
     from scipy.special import betaincinv
 
-    return float(betaincinv(hits, misses + 1.0, 1.0 - confidence)) if 0.0 < hits < FEW else 1.0
+    return float(betaincinv(hits, misses + 1.0, 1.0 - confidence)) if hits > 0.0 else 1.0
 
 
 def _clopper_pearson(p: float, trials: float, confidence: float) -> tuple[float, float]:

@@ -23,6 +23,7 @@ from xlmc.statistics.smooth import (
     standard_deviation,
     variance,
 )
+from xlmc.statistics.tails import farthest_part
 
 __all__ = [
     "Description",
@@ -31,6 +32,7 @@ __all__ = [
     "central_interval",
     "coefficient_of_variation",
     "describe",
+    "farthest_part",
     "format_estimate",
     "inverse_proportion",
     "kurtosis",

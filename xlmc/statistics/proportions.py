@@ -1,10 +1,10 @@
 """Shares of trials: acceptance, certainty, the probability above a threshold.
 
 **Interval.** Wilson's, or Clopper and Pearson's, which never covers less than asked and is wider. Wilson's lower end is
-too high where there are a few hits, for a share of 0.17 in n it holds the truth in 84 % of the runs: it is lowered there
-as by Brown, Cai & DasGupta (2001, 4.1.1), and the upper end raised where there are a few misses. With weights or
-replicates the share counts as that of the number of independent trials that would give the same error, reduced for the
-quantile of Student's t (Korn & Graubard 1998).
+too high where there are a few hits (where 0.17 are expected, it holds the truth in 84 % of the runs): there it is
+lowered as by Brown, Cai & DasGupta (2001, 4.1.1), and the upper end raised where there are a few misses. With weights
+or replicates the share counts as that of the number of independent trials that would give the same error, reduced for
+the quantile of Student's t (Korn & Graubard 1998).
 
 **Error.** √(p(1 − p)/n), or the spread between weighted trials or replicates (ratio estimate: replicates may differ in
 size). It is never less than that of a share of 0 in n trials, Wilson's half width over 1.96: no trial seen is no proof
@@ -147,7 +147,7 @@ def _wilson(p: float, trials: float, confidence: float) -> tuple[float, float]:
 
 
 def _lowered(hits: float, misses: float, confidence: float) -> float:
-    """The share with which so many hits or more have the probability of both tails: below Wilson's end if there are few.
+    """The share with which so many hits or more have the probability of both tails: below Wilson's end for a few.
 
     No hits are never fewer than expected, and bound nothing.
     """

@@ -40,7 +40,7 @@ ROUNDING = 1e-9  # widths that differ by less are equal: 0.3 − 0.2 and 0.2 −
 def mode(
     values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None, *, confidence: float = 0.95
 ) -> Estimate:
-    """Half-sample mode of (n,) values, of counts the most frequent one; without an error below 16 trials or two replicates.
+    """Half-sample mode of (n,) values, of counts the most frequent; without an error below 16 trials or two replicates.
 
     >>> mode([1.0, 4.0, 4.25, 4.5, 9.0]).value
     4.25

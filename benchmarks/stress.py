@@ -1,8 +1,8 @@
 """Where equations, samplers, statistics and stop rules fail, measured on xlmc and drawn.
 
-`python benchmarks/stress.py` measures every part at full size, writes `results/stress-*.json`, and draws the charts of
-docs/stress.md into docs/pictures; `python benchmarks/stress.py forms few` does two parts, `--draw-only` draws again
-what was measured before. No figure depends on the machine, but for the last digits of sines.
+`python benchmarks/stress.py` measures every part at full size, writes `results/stress-*.json`, makes the tables of
+docs/stress.md and draws its charts into docs/pictures; `python benchmarks/stress.py forms few` does two parts,
+`--draw-only` draws again what was measured before. No figure depends on the machine, but for the last digits of sines.
 """
 
 from __future__ import annotations
@@ -20,10 +20,11 @@ sys.path += [
     str(HERE),
 ]  # the templates, whose forms are measured; `stressing`, when not run from here
 
-from stressing import draw_rounding, draw_statistics, full_size  # noqa: E402
+from stressing import draw_rounding, draw_statistics, full_size, page  # noqa: E402
 
-__all__ = ["PARTS", "PICTURES", "Part"]
+__all__ = ["PAGE", "PARTS", "PICTURES", "RESULTS", "Part"]
 
+PAGE: Final = HERE.parent / "docs" / "stress.md"
 PICTURES: Final = HERE.parent / "docs" / "pictures"
 RESULTS: Final = HERE / "results"
 
@@ -62,6 +63,7 @@ def main() -> None:
     parser.add_argument("--fewer", type=int, default=1, metavar="N", help="a N-th of the runs")
     parser.add_argument("--results", type=Path, default=RESULTS)
     parser.add_argument("--pictures", type=Path, default=PICTURES)
+    parser.add_argument("--page", type=Path, default=PAGE, help="whose tables are made anew")
     given = parser.parse_args()
     for name in given.parts or PARTS:
         part, path = PARTS[name], given.results / f"stress-{name}.json"
@@ -69,6 +71,8 @@ def main() -> None:
             path.write_text(json.dumps(part.measure(given.fewer), indent=1) + "\n")
         for picture in part.draw(json.loads(path.read_text()), given.pictures):
             print(f"{name}: {picture}", flush=True)
+    if given.page.exists():
+        given.page.write_text(page.filled(given.page.read_text(), given.results))
 
 
 if __name__ == "__main__":

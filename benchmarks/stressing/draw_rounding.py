@@ -34,7 +34,8 @@ CHARTS: Final[Mapping[str, tuple[str, Sequence[str], Sequence[int]]]] = {
 """Picture -> title, sweeps (columns), equations."""
 
 ROWS: Final = (("float64", "numpy"), ("float32", "jit"))
-FLOOR: Final = 1e-17
+FLOORS: Final = {"float64": 1e-17, "float32": 1e-10}
+"""Arithmetic -> the smallest error drawn."""
 
 
 def draw(found: Mapping[str, Any], folder: Path) -> list[Path]:
@@ -44,32 +45,33 @@ def draw(found: Mapping[str, Any], folder: Path) -> list[Path]:
 
 def _drawn(found: Mapping[str, Any], name: str, path: Path) -> Path:
     title, sweeps, numbers = CHARTS[name]
-    width = 5.2 * len(sweeps) + 0.6 if len(sweeps) > 1 else 10.5
+    width = max(5.2 * len(sweeps) + 0.6, 12.5)
     rows, columns = (2, len(sweeps)) if len(sweeps) > 1 else (1, 2)
-    made, axes = figure(rows, columns, title, figsize=(width, 4.2 * rows + 1.4), sharey=True)
+    made, axes = figure(rows, columns, title, figsize=(width, 4.2 * rows + 1.4), sharey="row" if rows > 1 else False)
     panels = [(row, sweep) for row in ROWS for sweep in sweeps]
     for axis, ((arithmetic, engine), sweep) in zip(axes.flat, panels, strict=True):
-        _panel(axis, found[f"{sweep}, {arithmetic}"], f"{engine}, {arithmetic}", numbers)
+        _panel(axis, found[f"{sweep}, {arithmetic}"], (engine, arithmetic), numbers)
         axis.set_title(f"{SWEEPS[sweep].title}: {engine}, {arithmetic}", fontsize=11)
         axis.set_xlabel(SWEEPS[sweep].axis)
         axis.axhline(UNITS[arithmetic], color="#6B7785", lw=1, ls=":", label="one rounding")
         axis.invert_xaxis()
     for axis in axes[:, 0]:
         axis.set_ylabel("relative error (of directions: over 180°)")
-    save(made, axes, path, columns=4)
+    save(made, axes, path, columns=4 if len(sweeps) > 2 else 3)
     return path
 
 
-def _panel(axis: Any, sweep: Mapping[str, Any], way: str, numbers: Sequence[int]) -> None:
+def _panel(axis: Any, sweep: Mapping[str, Any], way: tuple[str, str], numbers: Sequence[int]) -> None:
+    floor = FLOORS[way[1]]
     x = np.asarray(sweep["x"])
     positive = x[x > 0]
     at = np.where(x > 0, x, positive.min() / 10)  # 0 itself stands a decade beyond the smallest
     for form, colour in zip([f for f in FORMS if f.number in numbers], COLOURS, strict=False):
         for cell, line, kind in ((form.printed, "--", "printed"), (form.rewritten, "-", "rewritten")):
-            error = np.clip(np.asarray(sweep["errors"][way][cell], float), FLOOR, 1e3)
+            error = np.clip(np.asarray(sweep["errors"][", ".join(way)][cell], float), floor, 1e3)
             axis.plot(at, error, line, color=colour, marker="." if kind == "printed" else None, ms=4, lw=1.4,
                       label=f"({form.number}) {form.what}, {kind}")  # fmt: skip
-    axis.set(xscale="log", yscale="log", ylim=(FLOOR, 1e2))
+    axis.set(xscale="log", yscale="log", ylim=(floor, 1e2))
     if (x == 0).any():
         axis.axvline(positive.min() / 10, color="#6B7785", lw=0.8)
         axis.annotate("exactly", (positive.min() / 10, 3e1), (-4, 0), textcoords="offset points", ha="right",

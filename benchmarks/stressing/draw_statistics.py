@@ -64,7 +64,7 @@ def shares(found: Found, folder: Path) -> list[Path]:
     coverage_axis(second, "xlmc, every acceptance", 80)
     for place, fixed in enumerate(found["fixed"]):
         second.plot(fixed["expected"], 100 * np.array(fixed["coverage"]["xlmc"]), color=COLOURS[place + 3],
-                    label=f"{fixed['acceptance']:g}")  # fmt: skip
+                    label=f"acceptance {fixed['acceptance']:g}")  # fmt: skip
     second.set_xlabel("accepted trials expected")
     third.set(title="--until-accepted N", xlabel="N, accepted trials waited for", ylabel="bias of the share, %")
     for place, (key, label) in enumerate({"N/n": "N / trials", "(N-1)/(n-1)": "(N − 1)/(trials − 1), xlmc"}.items()):
@@ -101,7 +101,7 @@ def tails(found: Found, folder: Path) -> list[Path]:
                    color=COLOURS[place + 6], label=f"{name}: part of the farthest trial")  # fmt: skip
     third.axhline(FARTHEST_PART, color=EDGE, ls=":")
     third.axvline(TELLING * 0.8, color=EDGE, ls=":")
-    third.annotate("above: xlmc says so", (1.1e6, FARTHEST_PART), (0, 4), textcoords="offset points", ha="right",
+    third.annotate("above: xlmc says so", (3.2e4, FARTHEST_PART), (0, 4), textcoords="offset points", ha="center",
                    fontsize=9)  # fmt: skip
     third.set(title="What one trial has of the variance", ylabel="part of the sum of squares", yscale="log")
     for axis in axes[0]:
@@ -112,7 +112,9 @@ def tails(found: Found, folder: Path) -> list[Path]:
 
 def correlations(found: Found, folder: Path) -> list[Path]:
     """How far the drawn rank correlations are from those asked for, near ±1."""
-    made, axes = figure(1, 2, f"Rank correlations near ±1: {found['trials']:,} draws, 20 seeds each")
+    made, axes = figure(
+        1, 2, f"Rank correlations near ±1: {found['trials']:,} draws, {len(found['pairs'][0]['found'])} seeds each"
+    )
     for axis, sampling in zip(axes[0], ("mc", "lhs"), strict=True):
         for place, side in enumerate((1.0, -1.0)):
             rows = [row for row in found["pairs"] if row["sampling"] == sampling and row["asked"] * side > 0]

@@ -109,12 +109,13 @@ def few(fewer: int) -> Found:
 
 
 NEEDED = (1_000, 10_000, 50_000)
-SCALES = {"normal": (3.0, 5.0, 9.4), "exponential": (3.0, 5.0, 9.4), "lognormal, σ 1": (1.3, 2.3, 4.4)}
+SCALES = {"normal": (2.0, 3.0, 4.5, 6.0, 9.0), "exponential": (2.0, 3.0, 4.5, 6.0), "lognormal, σ 1": (0.7, 1.1)}
+"""Forecast -> by what it is multiplied: the larger, the more sequences are needed for two digits."""
 
 
 def stops(fewer: int) -> Found:
-    """Runs that end by themselves: `--precision` where so many trials are needed, `--adaptive` from 20 and 2 sequences."""
-    runs = 1200 // fewer
+    """Runs that end by themselves: `--precision` where so many trials are needed, `--adaptive` from 20 and 2 on."""
+    runs = 1000 // fewer
     precise = []
     for name, forecast in rules.FORECASTS.items():
         for needed in NEEDED:

@@ -26,10 +26,11 @@ def test_percentiles_of_counts_are_covered(name, trials):
 
 @pytest.mark.parametrize("name", FAMILIES)
 def test_the_mode_is_the_most_probable_value(name):
-    """Of 4,000 trials the runner-up has fewer by 5 standard errors or more, but of the Poisson by 2.7: 0.4 % of runs."""
+    """Of 4,000 trials the runner-up has fewer by 8 standard errors or more; of the Poisson by 2.7, of the Binomial by
+    3.0, so that it wins in 0.4 and 0.1 % of runs, and 3 times in 40 in less than 1 in 1,000 of such tests."""
     from stressing.discrete import measure
 
-    assert measure(name, 4_000, 40)["modes"] >= (38 if name == "Poisson" else 40)
+    assert measure(name, 4_000, 40)["modes"] >= (38 if name in ("Poisson", "Binomial") else 40)
 
 
 def test_the_most_frequent_value_by_hand():

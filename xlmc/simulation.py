@@ -117,9 +117,9 @@ class ForecastResult:
 
 
 _OF_FEW = (
-    "Intervals of the mean and of percentiles hold with few trials too; those of the standard deviation, the skewness, "
-    "the kurtosis and the coefficient of variation can then be too short: --until-accepted 1000, say, goes on until "
-    "there are more"
+    "Intervals of percentiles and of shares hold with few trials too; those of the mean of a skewed forecast, of the "
+    "standard deviation, the skewness, the kurtosis and the coefficient of variation can then be too short: "
+    "--until-accepted 1000, say, goes on until there are more"
 )
 _OF_TAILS = (
     "Of a ratio whose denominator passes 0 they do not exist, whatever their errors say: use the median and "

@@ -12,6 +12,8 @@ import math
 import numpy as np
 import pytest
 
+from xlmc.errors import RoundingError
+
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("llvmlite") is None, reason="the engine jit needs llvmlite")
 
 WAYS = {"float64": [("numpy", "float64"), ("jit", "float64")], "float32": [("jit", "float32")]}
@@ -116,6 +118,34 @@ def test_crashes_of_all_kinds(forms_book, arithmetic):
             assert found.excess(way, each.rewritten, each.rewritten).max() < BOUND, each.number
             if not each.angle:
                 assert found.errors[way][each.printed][square].max() < 1e4 * UNITS[arithmetic], each.number
+
+
+@pytest.fixture(scope="module")
+def square_crash():
+    """`square_crash("V2_i")`: a book with α2 from 89.99 to 90.01°, all else within 0.1 % of a crash, and one forecast."""
+    from stressing.forms import CONSTANTS, PRINTED, REWRITTEN
+    from stressing.sweeps import SWEEPS
+    from stressing.workbook import book_of
+
+    evidence = SWEEPS["through 90"].crash(0.0)
+    assumptions = {
+        name: (value, "Uniform", *_ends(value, 0.01 if name == "alpha_2" else abs(value) * 1e-3))
+        for name, value in evidence.items()
+    }
+    formulas = {name: f"={text}" for name, text in (REWRITTEN | PRINTED).items()}
+    return lambda forecast: book_of(assumptions, CONSTANTS | formulas, [forecast])
+
+
+def _ends(value, width):
+    return ("Low", value - width), ("High", value + width)
+
+
+def test_a_run_in_float32_that_divides_by_nearly_0_is_refused(square_crash):
+    """What xlmc does about it: the first trials are computed in float64 too, and they differ."""
+    with pytest.raises(RoundingError):
+        square_crash("V2_i_printed").simulate(20_000, 1, engine="jit", arithmetic="float32")
+    run = square_crash("V2_i").simulate(20_000, 1, engine="jit", arithmetic="float32")
+    assert run.rounding.differences["V2_i"] < 1e-5
 
 
 def test_both_engines_agree_to_the_bound(forms_book):

@@ -63,7 +63,7 @@ LEAST = {
     "P(above)": {2: (0.90,) * 3, 3: (0.95,) * 3, 10: (0.92,) * 3},
     "standard deviation": {2: (0.98,) * 3, 3: (0.95, 0.97, 0.88), 10: (0.90, 0.93, 0.72)},
 }
-"""Means hold for normal forecasts exactly; percentiles for all; the standard deviation of a skewed forecast does not."""
+"""Means hold for normal forecasts exactly, percentiles for all; standard deviations of skewed forecasts do not."""
 
 
 @pytest.mark.parametrize("place", [0, 1, 2])

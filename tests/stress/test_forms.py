@@ -122,7 +122,7 @@ def test_crashes_of_all_kinds(forms_book, arithmetic):
 
 @pytest.fixture(scope="module")
 def square_crash():
-    """`square_crash("V2_i")`: a book with α2 from 89.99 to 90.01°, all else within 0.1 % of a crash, and one forecast."""
+    """`square_crash("V2_i")`: a book of one forecast, α2 from 89.99 to 90.01°, all else within 0.1 % of a crash."""
     from stressing.forms import CONSTANTS, PRINTED, REWRITTEN
     from stressing.sweeps import SWEEPS
     from stressing.workbook import book_of

@@ -1,7 +1,7 @@
 """Where equations, samplers, statistics and stop rules fail, measured on xlmc and drawn.
 
 `python benchmarks/stress.py` measures every part at full size, writes `results/stress-*.json`, makes the tables of
-docs/stress.md and draws its charts into docs/pictures; `python benchmarks/stress.py forms few` does two parts,
+docs/stress.md and draws its charts into docs/pictures/stress; `python benchmarks/stress.py forms few` does two parts,
 `--draw-only` draws again what was measured before. No figure depends on the machine, but for the last digits of sines.
 """
 
@@ -25,7 +25,7 @@ from stressing import draw_rounding, draw_statistics, full_size, page  # noqa: E
 __all__ = ["PAGE", "PARTS", "PICTURES", "RESULTS", "Part"]
 
 PAGE: Final = HERE.parent / "docs" / "stress.md"
-PICTURES: Final = HERE.parent / "docs" / "pictures"
+PICTURES: Final = HERE.parent / "docs" / "pictures" / "stress"
 RESULTS: Final = HERE / "results"
 
 
@@ -45,13 +45,13 @@ class Part(NamedTuple):
 
 PARTS: Final[Mapping[str, Part]] = {
     "forms": Part(full_size.forms, draw_rounding.draw, tuple(draw_rounding.CHARTS)),
-    "samplers": Part(full_size.samplers, draw_statistics.samplers, ("stress-filtered",)),
-    "shares": Part(full_size.shares, draw_statistics.shares, ("stress-acceptance",)),
-    "tails": Part(full_size.tails, draw_statistics.tails, ("stress-tails",)),
-    "correlations": Part(full_size.correlations, draw_statistics.correlations, ("stress-correlations",)),
-    "counts": Part(full_size.counts, draw_statistics.counts, ("stress-counts",)),
-    "few": Part(full_size.few, draw_statistics.few, ("stress-few",)),
-    "stops": Part(full_size.stops, draw_statistics.stops, ("stress-stops",)),
+    "samplers": Part(full_size.samplers, draw_statistics.samplers, ("filtered",)),
+    "shares": Part(full_size.shares, draw_statistics.shares, ("acceptance",)),
+    "tails": Part(full_size.tails, draw_statistics.tails, ("tails",)),
+    "correlations": Part(full_size.correlations, draw_statistics.correlations, ("correlations",)),
+    "counts": Part(full_size.counts, draw_statistics.counts, ("counts",)),
+    "few": Part(full_size.few, draw_statistics.few, ("few",)),
+    "stops": Part(full_size.stops, draw_statistics.stops, ("stops",)),
 }
 
 

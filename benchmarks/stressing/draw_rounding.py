@@ -16,20 +16,20 @@ from stressing.sweeps import SWEEPS
 __all__ = ["CHARTS", "draw"]
 
 CHARTS: Final[Mapping[str, tuple[str, Sequence[str], Sequence[int]]]] = {
-    "stress-angles": (
+    "angles": (
         "Nearly parallel approaches: error of the printed and the rewritten forms",
         ("catching up", "sideswipe", "head-on"),
         (15, 16, 17, 19, 23),
     ),
-    "stress-square": (
+    "square": (
         "A vehicle that travels along Y: the printed equation (16) divides by cos α2",
         ("through 90", "through 270"),
         (15, 16, 17, 19, 23),
     ),
-    "stress-light": (
+    "light": (
         "A light touch: delta-V as a small difference of large velocities", ("light",), (15, 16, 17, 19, 23)
     ),
-    "stress-pole": ("Tangential restitution (10) near its pole", ("pole",), (10,)),
+    "pole": ("Tangential restitution (10) near its pole", ("pole",), (10,)),
 }  # fmt: skip
 """Picture -> title, sweeps (columns), equations."""
 

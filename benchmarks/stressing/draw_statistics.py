@@ -44,8 +44,8 @@ def samplers(found: Found, folder: Path) -> list[Path]:
         _plain(axis)
     for axis in axes[-1]:
         axis.set_xlabel("accepted trials over 16, the number of replicates")
-    save(made, axes, folder / "stress-filtered.png")
-    return [folder / "stress-filtered.png"]
+    save(made, axes, folder / "filtered.png")
+    return [folder / "filtered.png"]
 
 
 def _plain(axis: Any) -> None:
@@ -76,8 +76,8 @@ def shares(found: Found, folder: Path) -> list[Path]:
         _plain(axis)
     third.set_yscale("symlog", linthresh=0.01)
     third.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-    save(made, axes, folder / "stress-acceptance.png")
-    return [folder / "stress-acceptance.png"]
+    save(made, axes, folder / "acceptance.png")
+    return [folder / "acceptance.png"]
 
 
 def tails(found: Found, folder: Path) -> list[Path]:
@@ -106,8 +106,8 @@ def tails(found: Found, folder: Path) -> list[Path]:
     third.set(title="What one trial has of the variance", ylabel="part of the sum of squares", yscale="log")
     for axis in axes[0]:
         axis.set(xscale="log", xlabel="trials")
-    save(made, axes, folder / "stress-tails.png", columns=5)
-    return [folder / "stress-tails.png"]
+    save(made, axes, folder / "tails.png", columns=5)
+    return [folder / "tails.png"]
 
 
 def correlations(found: Found, folder: Path) -> list[Path]:
@@ -131,8 +131,8 @@ def correlations(found: Found, folder: Path) -> list[Path]:
         axis.set(xscale="log", yscale="log", title=METHODS[sampling], ylim=(1e-14, 1e-1))
         axis.set_xlabel("1 − |correlation asked for|; leftmost: exactly ±1")
     axes[0, 0].set_ylabel("|drawn − asked for|, rank correlation")
-    save(made, axes, folder / "stress-correlations.png")
-    return [folder / "stress-correlations.png"]
+    save(made, axes, folder / "correlations.png")
+    return [folder / "correlations.png"]
 
 
 def counts(found: Found, folder: Path) -> list[Path]:
@@ -149,8 +149,8 @@ def counts(found: Found, folder: Path) -> list[Path]:
     for axis in axes[0]:
         axis.set(xscale="log", xlabel="accepted trials")
         _plain(axis)
-    save(made, axes, folder / "stress-counts.png")
-    return [folder / "stress-counts.png"]
+    save(made, axes, folder / "counts.png")
+    return [folder / "counts.png"]
 
 
 def few(found: Found, folder: Path) -> list[Path]:
@@ -168,8 +168,8 @@ def few(found: Found, folder: Path) -> list[Path]:
         _plain(axis)
     for axis in axes[0, 1:]:
         axis.set_ylabel("")
-    save(made, axes, folder / "stress-few.png", columns=5)
-    return [folder / "stress-few.png"]
+    save(made, axes, folder / "few.png", columns=5)
+    return [folder / "few.png"]
 
 
 def stops(found: Found, folder: Path) -> list[Path]:
@@ -189,8 +189,8 @@ def stops(found: Found, folder: Path) -> list[Path]:
         axis.set(xscale="log", xlabel="accepted trials that the precision needs")
         _plain(axis)
     _stable(third, found["stable"])
-    save(made, axes, folder / "stress-stops.png", columns=5)
-    return [folder / "stress-stops.png"]
+    save(made, axes, folder / "stops.png", columns=5)
+    return [folder / "stops.png"]
 
 
 def _stable(axis: Any, rows: list[dict[str, Any]]) -> None:

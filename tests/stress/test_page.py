@@ -29,10 +29,12 @@ def results(stress, part):
 
 
 def test_every_chart_stands_on_the_page_with_its_command(stress):
-    shown = re.findall(r"!\[[^\]]+\]\(pictures/(stress-[a-z]+)\.png\)\n\n`python benchmarks/stress\.py ([a-z]+)`", PAGE)
+    shown = re.findall(r"!\[[^\]]+\]\(pictures/stress/([a-z]+)\.png\)\n\n`python benchmarks/stress\.py ([a-z]+)`", PAGE)
     assert sorted(shown) == sorted((name, part) for part, each in stress.PARTS.items() for name in each.pictures)
     for name, _ in shown:
-        assert (stress.PICTURES / f"{name}.png").read_bytes().startswith(PNG)
+        picture = (stress.PICTURES / f"{name}.png").read_bytes()
+        assert picture.startswith(PNG)
+        assert len(picture) < 200_000
 
 
 def test_the_tables_are_those_of_the_results(stress):

@@ -128,7 +128,7 @@ def correlations(found: Found, folder: Path) -> list[Path]:
                 places = np.array([max(1.0 - abs(row["asked"]), 1e-8) for row in rows])[order]
                 axis.plot(places, np.array(expected)[order], "-", color="#1F3044", lw=1.2,
                           label="two standard errors of so many draws, and their bias")  # fmt: skip
-        axis.set(xscale="log", yscale="log", title=METHODS[sampling], ylim=(1e-14, 1e-1))
+        axis.set(xscale="log", yscale="log", title=METHODS[sampling], ylim=(3e-16, 1e-1))
         axis.set_xlabel("1 − |correlation asked for|; leftmost: exactly ±1")
     axes[0, 0].set_ylabel("|drawn − asked for|, rank correlation")
     save(made, axes, folder / "correlations.png")

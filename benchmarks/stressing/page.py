@@ -12,6 +12,7 @@ from tables import placed
 
 from stressing.forms import FORMS
 from stressing.sweeps import SWEEPS
+from xlmc.sampling import METHODS
 
 __all__ = ["TABLES", "filled"]
 
@@ -80,27 +81,35 @@ def _stops(found: Found) -> str:
             row["forecast"],
             f"{row['needed']:,.0f}",
             f"{100 * row['held'] / row['ended']:.1f}",
+            f"{100 * row['fixed']['held'] / row['runs']:.1f}",
             f"{row['bias']:+.2f} ± {row['error of bias']:.2f}",
+            f"{row['fixed']['bias']:+.2f}",
             f"{row['length'] / row['needed']:.2f}",
         ]
         for row in found["precise"]
     ]
-    headings = ["forecast", "accepted trials needed", "intervals that hold, %", "bias, in errors", "run over needed"]
+    headings = ["forecast", "accepted trials needed", "intervals that hold, %", "without a rule", "bias, in errors"]
+    headings += ["without a rule", "run over needed"]
     return _table(headings, rows)
 
 
 def _samplers(found: Found) -> str:
-    """The worst of the statistics but SD, and SD, by accepted trials a replicate."""
-    rows = []
+    """The worst of the statistics but SD, and SD, by accepted trials a replicate and by method."""
+    cells: dict[tuple[float, float], dict[str, Mapping[str, Any]]] = {}
     for cell in found["cells"]:
-        share = 100 * np.array(cell["hits"]) / np.maximum(cell["given"], 1)
-        spread = cell["statistics"].index("SD")
-        others = np.delete(share, spread).min()
-        rows.append(
-            [cell["method"], f"{cell['acceptance']:g}", f"{cell['accepted'] / 16:.1f}", f"{others:.1f}",
-             f"{share[spread]:.1f}", f"{cell['runs']:,}"]
-        )  # fmt: skip
-    return _table(["sampling", "acceptance", "accepted / 16", "worst but SD, %", "SD, %", "runs"], rows)
+        expected = round(cell["acceptance"] * cell["trials"] / 16, 1)
+        near = next((key for key in cells if key[0] == cell["acceptance"] and abs(key[1] / expected - 1) < 0.1), None)
+        cells.setdefault(near or (cell["acceptance"], expected), {})[cell["method"]] = cell
+    rows = []
+    for (acceptance, expected), by_method in cells.items():
+        shares = {name: 100 * np.array(cell["hits"]) / cell["given"] for name, cell in by_method.items()}
+        spread = next(iter(by_method.values()))["statistics"].index("SD")
+        others = [f"{np.delete(share, spread).min():.1f}" for share in shares.values()]
+        runs = f"{next(iter(by_method.values()))['runs']:,}"
+        rows.append([f"{acceptance:g}", f"{expected:g}", *others, *(f"{s[spread]:.1f}" for s in shares.values()), runs])
+    methods = [METHODS[name] for name in next(iter(cells.values()))]
+    headings = [f"{what}, {method}" for what in ("worst but SD", "SD") for method in methods]
+    return _table(["acceptance", "accepted / 16", *headings, "runs"], rows)
 
 
 TABLES: Final[Mapping[str, Callable[[Found], str]]] = {

@@ -21,7 +21,7 @@ from xlmc.stopping import adaptive
 from xlmc.stopping.adaptive import UntilStable
 from xlmc.stopping.precision import UntilPrecise
 
-__all__ = ["FORECASTS", "Forecast", "least_sequences", "precise_runs", "stable_runs"]
+__all__ = ["FORECASTS", "Forecast", "fixed_runs", "least_sequences", "precise_runs", "stable_runs"]
 
 Floats = NDArray[np.float64]
 
@@ -87,10 +87,23 @@ def _run(rule: Any, forecast: Forecast, rng: np.random.Generator, block: int) ->
     return None
 
 
+def fixed_runs(name: str, length: int, runs: int, first: int = 0) -> dict[str, Any]:
+    """Runs of so many accepted trials, which nothing ends: what intervals of the mean hold then, and its bias."""
+    forecast, held, scaled = FORECASTS[name], 0, []
+    for seed in range(first, first + runs):
+        found = xs.mean(forecast.draw(np.random.default_rng((seed, 8)), length))
+        assert found.interval is not None
+        held += found.interval[0] <= forecast.mean <= found.interval[1]
+        if found.error:
+            scaled.append((found.value - forecast.mean) / found.error)
+    return {"held": held, "bias": float(np.mean(scaled))}
+
+
 def precise_runs(name: str, tolerance: float, runs: int, block: int = 500, first: int = 0) -> dict[str, Any]:
     """Runs until the mean is known to a share of itself: how often its interval at the stop holds the truth.
 
-    `bias` is the average of (mean at the stop − truth) over its error, of runs that had one, with its own error.
+    `bias` is the average of (mean at the stop − truth) over its error, of runs that had one, with its own error;
+    `fixed` is the same of runs that are as long on average, without a rule.
     """
     forecast = FORECASTS[name]
     held = ended = unvaried = 0
@@ -109,10 +122,12 @@ def precise_runs(name: str, tolerance: float, runs: int, block: int = 500, first
         if found.error:
             scaled.append((found.value - forecast.mean) / found.error)
     needed = (1.96 * forecast.deviation / forecast.mean / tolerance) ** 2
+    fixed = fixed_runs(name, round(float(np.mean(lengths))), runs, first)
     return {
         "forecast": name, "tolerance": tolerance, "runs": runs, "ended": ended, "held": held, "unvaried": unvaried,
         "length": float(np.mean(lengths)), "needed": needed,
         "bias": float(np.mean(scaled)), "error of bias": float(np.std(scaled, ddof=1) / math.sqrt(len(scaled))),
+        "fixed": fixed,
     }  # fmt: skip
 
 

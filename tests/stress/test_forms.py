@@ -84,6 +84,23 @@ def test_at_90_degrees_the_printed_speed_is_wrong_and_no_error_says_so(sweep, na
         assert found.errors[way][each.rewritten][-1] < 1e-15
 
 
+@pytest.mark.parametrize("name", ["through 90", "through 270"])
+def test_from_the_other_side_of_90_degrees_it_is_the_same(forms_book, name):
+    from stressing.forms import FORMS
+    from stressing.rounding import BOUND, measured
+    from stressing.sweeps import SWEEPS, Point, rounded
+
+    places = [-1.0, -1e-3, -1e-6, -1e-9, -1e-12]
+    points = [Point(x, rounded(SWEEPS[name].crash(x), single=False)) for x in places]
+    found = measured(forms_book, points, WAYS["float64"])
+    for way in WAYS["float64"]:
+        for each in FORMS:
+            assert found.excess(way, each.rewritten, each.rewritten).max() < BOUND, each.number
+        wrong = found.excess(way, form(16).printed, form(16).rewritten)
+        assert wrong[-1] > 1e11
+        assert wrong[-1] > wrong[1] > wrong[0]
+
+
 def test_the_printed_direction_is_half_a_turn_off_where_the_arctangent_loses_the_quadrant(sweep):
     found, each = sweep("catching up", "float64"), form(23)
     for way in WAYS["float64"]:

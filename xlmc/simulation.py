@@ -16,7 +16,7 @@ from xlmc import statistics
 from xlmc.blocks import FilterTally
 from xlmc.definitions import Forecast, Settings
 from xlmc.definitions.model import name_key
-from xlmc.errors import SimulationError
+from xlmc.errors import Notice, SimulationError
 from xlmc.sampling import METHODS, Plan
 from xlmc.scratch import numbers, parts
 from xlmc.statistics import Description, Estimate, Sample
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     import pandas
     from matplotlib.figure import Figure
 
-    from xlmc.errors import Notice
     from xlmc.model import Model
     from xlmc.rounding import Rounding
 
@@ -42,6 +41,15 @@ KEPT_INPUTS: Final = 1 << 20
 
 LEAST_ACCEPTED: Final = 10
 """Accepted trials for each replicate that errors come from, on average, if they are to be trusted: docs/sampling.md."""
+
+FEW: Final = 100
+"""Accepted trials below which the interval of a standard deviation may be too short: docs/stress.md."""
+
+TELLING: Final = 1_000
+"""Accepted trials from which on a single one can make up little of a variance, if there is one."""
+
+FARTHEST_PART: Final = 0.1
+"""Above this part in the sum of squares mean and standard deviation hang on a single trial."""
 
 Floats = NDArray[np.float64]
 Replicates = NDArray[np.int64]
@@ -120,6 +128,27 @@ class Origin:
 
     software: Mapping[str, str]
     processor: Mapping[str, str]
+
+
+_OF_FEW = (
+    "Intervals of percentiles and of shares hold with few trials too; those of the mean of a skewed forecast, of the "
+    "standard deviation, the skewness, the kurtosis and the coefficient of variation can then be too short: "
+    "--until-accepted 1000, say, goes on until there are more"
+)
+_OF_TAILS = (
+    "Of a ratio whose denominator passes 0 they do not exist, whatever their errors say: use the median and "
+    "percentiles, which do"
+)
+
+
+def _trials(count: int) -> str:
+    return "1 trial was" if count == 1 else f"{count:,} trials were"
+
+
+def _farthest(sample: Sample) -> str:
+    """In words; empty where no trial has too large a part."""
+    part = statistics.farthest_part(sample)
+    return f"which makes up {part:.0%} of the variance of {sample.n:,}" if part > FARTHEST_PART else ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,14 +246,29 @@ class Simulation:
     @property
     def notices(self) -> tuple[Notice, ...]:
         """What the person should know of the model and of this run."""
-        return self.model.notices if self.rounding is None else (*self.model.notices, self.rounding.notice)
+        return (*self.model.notices, *self.notices_of_run)
+
+    @cached_property
+    def notices_of_run(self) -> tuple[Notice, ...]:
+        """What the person should know of this run alone."""
+        found = [] if self.rounding is None else [self.rounding.notice]
+        if not self.plan.replicates and 0 < self.accepted < FEW:
+            found.append(Notice(f"only {_trials(self.accepted)} accepted. {_OF_FEW}"))
+        found += [
+            Notice(f"the mean and the standard deviation of {name!r} hang on a single trial, {part}. {_OF_TAILS}")
+            for name, result in self.results.items()
+            if result.sample.n >= TELLING and (part := _farthest(result.sample))
+        ]
+        return tuple(found)
 
     @property
     def warnings(self) -> list[str]:
         """Why the answer must not be used as it stands; empty when it may be."""
         found = []
         if self.accepted == 0:
-            found.append("no trial was accepted: the filters contradict the assumptions")
+            most = self.acceptance.interval
+            fewer = "" if most is None else f", or accept fewer than {most[1]:.2g} of the trials"
+            found.append(f"no trial was accepted: the filters contradict the assumptions{fewer}")
         if not self.stopped.reached and not self.stopped.interrupted:
             found.append(self.stopped.sentence)
         if self.error_trials > ERROR_SHARE * self.trials:

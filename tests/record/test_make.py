@@ -120,7 +120,9 @@ def test_correlations_warnings_and_notices(run, record):
     assert [row["message"] for row in record.rows("notices")] == [
         "book.xlsx: calculation is manual",
         "S!A3: no forecast or filter needs the assumption 'idle'",
+        *(str(notice) for notice in run.notices_of_run),
     ]
+    assert "'inverse' hang on a single trial" in str(run.notices_of_run[0])  # its denominator passes 0
 
 
 def test_errors_are_told_by_definition_cell_and_code(run, record):

@@ -120,6 +120,6 @@ def test_the_base_case_says_which_filter_would_reject_it(none_accepted, opened, 
 
 def test_without_an_accepted_trial_the_warning_stands_first_and_no_number_is_made_up(none_accepted, opened, row_of):
     sheet = opened(none_accepted)["Results"]
-    assert sheet["A3"].value.endswith("no trial was accepted: the filters contradict the assumptions")
+    assert "no trial was accepted: the filters contradict the assumptions" in sheet["A3"].value
     assert row_of(sheet, "x") == ["x", None, 0, *["–"] * 8, 1.0, 1.0, *["–"] * 4]
     assert row_of(sheet, "Accepted")[2:4] == [0, 0]

@@ -9,7 +9,7 @@ from scipy.special import bdtr, erfinv
 
 from xlmc import statistics
 from xlmc.definitions.stopping import stopping
-from xlmc.stopping.precision import LEAST_NUMBERS, UntilPrecise, half_width, wanted_of
+from xlmc.stopping.precision import LEAST_EQUAL, LEAST_NUMBERS, UntilPrecise, half_width, wanted_of
 from xlmc.stopping.schedule import Checkpoints
 
 FORECASTS = [(0, "x", 0.51)]
@@ -90,7 +90,16 @@ def test_a_mean_that_does_not_exist_is_not_waited_for_by_a_percentile(block, run
 
 def test_what_does_not_vary_is_known(block, run_rule):
     for value in (0.0, 3.0):
-        assert run_rule(rule("1%", "mean,sd,range"), (block(np.full(100, value)) for _ in range(99)))[0] is not None
+        found = run_rule(rule("1%", "mean,sd,range"), (block(np.full(100, value)) for _ in range(199)))[0]
+        assert LEAST_EQUAL <= 100 * found < 1.3 * LEAST_EQUAL
+
+
+def test_what_is_rare_is_waited_for(block, run_rule):
+    """1 in 1,000 trials, in blocks of 500: at the first look, with 2,000, 13.5 % of the runs have seen none."""
+    for seed in range(100):
+        rng = np.random.default_rng((seed, 3))
+        blocks = (block((rng.random(500) < 1e-3).astype(float)) for _ in range(40))
+        assert run_rule(rule("50%", "mean"), blocks)[1][0].any()
 
 
 def test_more_confidence_takes_more_trials(block, run_rule):

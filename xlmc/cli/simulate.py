@@ -152,8 +152,8 @@ def show_run(run: Simulation) -> None:
     if run.model.filters:
         table("Trials rejected", ("Filter", "Keeps", "Rejected", "Only by it"), _rejections(run), right=(2, 3))
     click.echo(click.wrap_text(ERROR_SENTENCE, width=100))
-    if run.rounding is not None:
-        click.echo(click.wrap_text(f"{run.rounding.notice}.", width=100))
+    for notice in run.notices_of_run:
+        click.echo(click.wrap_text(f"{notice}.", width=100))
 
 
 def _rejections(run: Simulation) -> list[tuple[str, ...]]:

@@ -43,7 +43,7 @@ _CONVENTIONS = (
     ("percentiles", "Percentiles", "linear between trials, as Excel's PERCENTILE.INC"),
     ("central_range", "Central range", "as many trials lie below it as above it; it is not the shortest such range"),
     ("kurtosis", "Kurtosis", "3 for the normal distribution"),
-    ("mode", "Mode", "half-sample mode"),
+    ("mode", "Mode", "half-sample mode; of counts the most frequent value"),
     ("errors", "Standard errors (±)", "Monte Carlo error alone"),
     ("shares", "Intervals of shares", "Wilson, 95 %"),
     ("trial_numbers", "Trial numbers", "counted from 0"),

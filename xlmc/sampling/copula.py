@@ -55,9 +55,11 @@ class GaussianCopula:
 def _triangular_root(matrix: Floats) -> Floats:
     """The lower triangle (k, k), rows of length 1, that times its transpose is the matrix, which may be singular.
 
-    A square root by eigenvalues, turned until it is triangular: as accurate where correlations are ±1 as elsewhere.
+    A square root by eigenvalues, turned until it is triangular: as accurate where correlations are ±1 as elsewhere. An
+    eigenvalue that is nothing but rounding, 1e-16, would have a root of 1e-8, and ±1 would not be ±1.
     """
     values, vectors = np.linalg.eigh(matrix)
+    values[values < 4.0 * len(matrix) * np.finfo(np.float64).eps] = 0.0
     turned: Floats = np.linalg.qr((vectors * np.sqrt(np.maximum(values, 0.0))).T, mode="r")  # type: ignore[assignment]
     triangle = turned.T * np.where(np.diagonal(turned) < 0.0, -1.0, 1.0)
     return np.asarray(triangle / np.linalg.norm(triangle, axis=1, keepdims=True))

@@ -29,6 +29,7 @@ from xlmc.statistics.smooth import (
     standard_deviation,
     variance,
 )
+from xlmc.statistics.tails import farthest_part
 
 __all__ = [
     "Description",
@@ -37,6 +38,7 @@ __all__ = [
     "central_interval",
     "coefficient_of_variation",
     "describe",
+    "farthest_part",
     "format_estimate",
     "inverse_proportion",
     "kurtosis",

@@ -2,7 +2,8 @@
 
 **Value.** Half-sample mode (Robertson & Cryer 1974, Bickel 2002): keep the half of the trials that lies in the shortest
 interval, then the densest half of those, until two or three are left. There is no bandwidth to choose, and outliers do
-not matter. It is meant for continuous forecasts.
+not matter. It is meant for continuous forecasts: where there are at most half as many different values as trials, as of
+counts, the mode is the most frequent value.
 
 **Error.** In a window of width h about a rounded peak the noise of a count, √(nh), hides the curvature, nh³, until h
 is about n^(−1/5): the mode converges no faster, and the bootstrap fails for such statistics. Subsampling does not
@@ -39,7 +40,7 @@ ROUNDING = 1e-9  # widths that differ by less are equal: 0.3 − 0.2 and 0.2 −
 def mode(
     values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None, *, confidence: float = 0.95
 ) -> Estimate:
-    """Half-sample mode of (n,) values; without an error below 16 trials or two replicates.
+    """Half-sample mode of (n,) values, of counts the most frequent; without an error below 16 trials or two replicates.
 
     >>> mode([1.0, 4.0, 4.25, 4.5, 9.0]).value
     4.25
@@ -59,12 +60,52 @@ def mode(
 def half_sample_mode(sample: Sample) -> float:
     """The mode of at least one ascending value, weighted or not."""
     x, w = sample.x, sample.w
+    if _counts(x):
+        return _most_frequent(x, w)
     while x.size > 3:
         half = _densest_half(x) if w is None else _densest_weighted_half(x, w)
         x, w = x[half], None if w is None else w[half]
         if x[0] == x[-1]:
             return float(x[0])
     return _mode_of_three(x, np.ones(x.size) if w is None else w)
+
+
+def _counts(x: Floats) -> bool:
+    """Whether there are at most half as many different values as trials."""
+    different = 1
+    for start in range(1, x.size, PART):
+        stop = min(start + PART, x.size)
+        different += int(np.count_nonzero(x[start:stop] != x[start - 1 : stop - 1]))
+        release(x)
+        if 2 * different > x.size:
+            return False
+    return 2 * different <= x.size
+
+
+def _most_frequent(x: Floats, w: Floats | None) -> float:
+    """The value that carries most; of several the middle one."""
+    most, found = 0.0, [np.empty(0)]
+    for values, carried in _runs(x, w):
+        largest = float(carried.max(initial=0.0))
+        if largest > most * (1.0 + ROUNDING):
+            most, found = largest, []
+        found.append(values[carried >= most * (1.0 - ROUNDING)])
+    tied = np.concatenate(found)
+    return float(tied[(tied.size - 1) // 2])
+
+
+def _runs(x: Floats, w: Floats | None) -> Iterator[tuple[Floats, Floats]]:
+    """The different values in ascending order and what each carries, a part at a time."""
+    last, carried = np.empty(0), np.empty(0)
+    for start in range(0, x.size, PART):
+        here = np.concatenate([last, x[start : start + PART]])
+        amounts = np.concatenate([carried, np.ones(here.size - last.size) if w is None else w[start : start + PART]])
+        release(x)
+        starts = np.flatnonzero(np.concatenate([[True], here[1:] != here[:-1]]))
+        values, sums = here[starts], np.add.reduceat(amounts, starts)
+        yield values[:-1], sums[:-1]
+        last, carried = values[-1:], sums[-1:]
+    yield last, carried
 
 
 def _densest_half(x: Floats) -> slice:

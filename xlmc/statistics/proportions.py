@@ -1,8 +1,10 @@
 """Shares of trials: acceptance, certainty, the probability above a threshold.
 
-**Interval.** Wilson's, or Clopper and Pearson's, which never covers less than asked and is wider. With weights or
-replicates the share counts as that of the number of independent trials that would give the same error, reduced for the
-quantile of Student's t (Korn & Graubard 1998).
+**Interval.** Wilson's, or Clopper and Pearson's, which never covers less than asked and is wider. Wilson's lower end is
+too high where there are a few hits (where 0.17 are expected, it holds the truth in 84 % of the runs): there it is
+lowered as by Brown, Cai & DasGupta (2001, 4.1.1), and the upper end raised where there are a few misses. With weights
+or replicates the share counts as that of the number of independent trials that would give the same error, reduced for
+the quantile of Student's t (Korn & Graubard 1998).
 
 **Error.** √(p(1 − p)/n), or the spread between weighted trials or replicates (ratio estimate: replicates may differ in
 size). It is never less than that of a share of 0 in n trials, Wilson's half width over 1.96: no trial seen is no proof
@@ -169,8 +171,21 @@ def _wilson(p: float, trials: float, confidence: float) -> tuple[float, float]:
     pull = z * z / trials
     centre = (p + pull / 2.0) / (1.0 + pull)
     half = (pull * (p * (1.0 - p) + pull / 4.0)) ** 0.5 / (1.0 + pull)
+    hits, misses = p * trials, (1.0 - p) * trials
+    low = min(centre - half, _lowered(hits, misses, confidence))
+    high = max(centre + half, 1.0 - _lowered(misses, hits, confidence))
     # At 0 and 1 one end is the share itself; rounding must not say otherwise.
-    return 0.0 if p == 0.0 else centre - half, 1.0 if p == 1.0 else centre + half
+    return 0.0 if p == 0.0 else low, 1.0 if p == 1.0 else high
+
+
+def _lowered(hits: float, misses: float, confidence: float) -> float:
+    """The share with which so many hits or more have the probability of both tails: below Wilson's end for a few.
+
+    No hits are never fewer than expected, and bound nothing.
+    """
+    from scipy.special import betaincinv
+
+    return float(betaincinv(hits, misses + 1.0, 1.0 - confidence)) if hits > 0.0 else 1.0
 
 
 def _clopper_pearson(p: float, trials: float, confidence: float) -> tuple[float, float]:

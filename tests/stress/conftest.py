@@ -1,0 +1,36 @@
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path += [str(ROOT), str(ROOT / "benchmarks")]
+
+
+@pytest.fixture(scope="session")
+def forms_book():
+    """The printed and the rewritten forms as a workbook that was written, read and compiled."""
+    from stressing.workbook import forms_book
+
+    return forms_book()
+
+
+@pytest.fixture(scope="session")
+def sweep(forms_book):
+    """`sweep("light", "float64")`: what was measured there, by numpy and jit; each sweep is run once."""
+    from stressing.rounding import measured
+    from stressing.sweeps import SWEEPS
+    from stressing.workbook import ARITHMETICS
+
+    found = {}
+
+    def measure(name, arithmetic):
+        if (name, arithmetic) not in found:
+            ways = [way for way in ARITHMETICS if way[1] == arithmetic]
+            points = SWEEPS[name].points(single=arithmetic == "float32")
+            found[name, arithmetic] = measured(forms_book, points, ways)
+        return found[name, arithmetic]
+
+    return measure

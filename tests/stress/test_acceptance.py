@@ -1,0 +1,67 @@
+"""Acceptance by rejection from 1e-2 to 1e-6, of trials that were fixed before and of those that were waited for."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+RATES = [1e-2, 1e-4, 1e-6]
+
+
+@pytest.mark.parametrize("rate", RATES)
+def test_the_interval_covers_however_few_are_accepted(rate):
+    """Exact, no simulation: 92.5 % at least and 97 % on average, from 0.05 accepted trials expected to 60."""
+    from stressing.accepted import shares
+
+    found = shares(rate, np.geomspace(0.05, 60.0, 25))["coverage"]
+    assert min(found["xlmc"]) > 0.925
+    assert 0.95 < np.mean(found["xlmc"]) < 0.985
+    assert min(found["Wilson"]) < 0.86  # without what xlmc does about a few hits
+
+
+@pytest.mark.parametrize("rate", RATES)
+@pytest.mark.parametrize("wanted", [2, 10, 100])
+def test_a_share_that_was_waited_for_is_right_on_average(rate, wanted):
+    """Exact but for 2e-9 of the probability, whose shares may be large, and for grouping trials: 0.1 % in all."""
+    from stressing.accepted import waited_for
+
+    found = waited_for(rate, wanted)
+    assert found["coverage"] == pytest.approx(0.95, abs=0.002)
+    assert abs(found["(N-1)/(n-1)"]) < 1e-3
+    assert found["N/n"] == pytest.approx(1 / (wanted - 1), rel=0.1)  # the share as it is usually given
+
+
+@pytest.fixture(scope="module")
+def strict(book):
+    """Accepts 1 trial in 2,000."""
+    given = {name: {"cell": cell, "low": 0.0, "high": 1.0} for name, cell in (("u", "A1"), ("v", "A2"))}
+    filters = {"f": {"cell": "A1", "below": 5e-4}}
+    return book({"A1": 0.5, "A2": 0.5, "B1": "=A1+A2"}, given, {"x": "B1"}, filters)
+
+
+def test_runs_of_a_strict_filter(strict):
+    """300 runs with 2 accepted trials expected: the interval of the acceptance holds 1 in 2,000 in 95 % less 4
+    standard errors of them; the average share is right to 4 standard errors."""
+    runs = [strict.simulate(4_000, seed, keep_inputs=0) for seed in range(300)]
+    held = sum(run.acceptance.interval[0] <= 5e-4 <= run.acceptance.interval[1] for run in runs)
+    assert held / 300 > 0.95 - 4 * math.sqrt(0.95 * 0.05 / 300)
+    assert np.mean([run.accepted for run in runs]) == pytest.approx(2.0, abs=4 * math.sqrt(2.0 / 300))
+    assert {0, 1, 2, 3} < {run.accepted for run in runs}
+
+
+def test_none_accepted_says_how_many_may_be(strict):
+    run = next(run for run in (strict.simulate(1_000, seed) for seed in range(20)) if run.accepted == 0)
+    assert run.acceptance.interval[1] > 5e-4
+    assert run.warnings[0].endswith("or accept fewer than 0.0038 of the trials")
+
+
+def test_waiting_for_accepted_trials(strict):
+    """60 runs until 20 are accepted: the share is right to 4 standard errors, and so is what was accepted."""
+    runs = [strict.simulate(seed=seed, until_accepted=20, keep_inputs=0) for seed in range(60)]
+    assert {run.accepted for run in runs} == {20}
+    shares = np.array([run.acceptance.value for run in runs])
+    assert shares.mean() == pytest.approx(5e-4, abs=4 * shares.std(ddof=1) / math.sqrt(60))
+    pooled = np.concatenate([run["x"].values for run in runs])
+    assert pooled.mean() == pytest.approx(0.50025, abs=4 * math.sqrt(1 / 12 / pooled.size))

@@ -23,7 +23,7 @@ elementwise("RADIANS", lambda y, x: (np.pi / 180,), lambda y, x: (0.0,))
 elementwise("DEGREES", lambda y, x: (180 / np.pi,), lambda y, x: (0.0,))
 
 
-@rule("u+", "shown", "N")
+@rule("u+", "shown")
 def same(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
     """What gives a number as it is."""
     return Outcome(operands[0].jet)

@@ -69,15 +69,11 @@ elementwise(
 elementwise("SINH", lambda y, x: (np.cosh(x),), lambda y, x: (y,))
 elementwise("COSH", lambda y, x: (np.sinh(x),), lambda y, x: (y,))
 elementwise("TANH", lambda y, x: (np.cosh(x) ** -2.0,), lambda y, x: (-2 * y * np.cosh(x) ** -2.0,))
-elementwise(
-    "SECH", lambda y, x: (-y * np.tanh(x),), lambda y, x: (y * (np.tanh(x) ** 2 - np.cosh(x) ** -2.0),)
-)
+elementwise("SECH", lambda y, x: (-y * np.tanh(x),), lambda y, x: (y * (np.tanh(x) ** 2 - np.cosh(x) ** -2.0),))
 elementwise("CSCH", lambda y, x: (-y / np.tanh(x),), lambda y, x: (y * (1 + 2 * y * y),))
 elementwise("COTH", lambda y, x: (-(np.sinh(x) ** -2.0),), lambda y, x: (2 * y * np.sinh(x) ** -2.0,))
 elementwise("ASINH", lambda y, x: ((1 + x * x) ** -0.5,), lambda y, x: (-x * (1 + x * x) ** -1.5,))
-elementwise(
-    "ACOSH", lambda y, x: ((-_rest(x)) ** -0.5,), lambda y, x: (-x * (-_rest(x)) ** -1.5,), why="vertical at 1"
-)
+elementwise("ACOSH", lambda y, x: ((-_rest(x)) ** -0.5,), lambda y, x: (-x * (-_rest(x)) ** -1.5,), why="vertical at 1")
 elementwise("ATANH", lambda y, x: (1 / _rest(x),), lambda y, x: (2 * x / _rest(x) ** 2,))
 elementwise("ACOTH", lambda y, x: (1 / _rest(x),), lambda y, x: (2 * x / _rest(x) ** 2,))
 elementwise("FISHER", lambda y, x: (1 / _rest(x),), lambda y, x: (2 * x / _rest(x) ** 2,))

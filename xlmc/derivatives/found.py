@@ -26,7 +26,7 @@ class Derivative:
         cell: whose.
         value: `(n,)`, NaN where the cell is no number; TRUE and FALSE are 1 and 0.
         gradient: `(n, k)`, in units of the cell per unit of the assumption.
-        gradient_error: `(n, k)`, estimates; 0 where every function on the way has a rule, so that only rounding is left.
+        gradient_error: `(n, k)`, estimates; 0 where every function on the way has a rule: only rounding is left then.
         hessian: `(n, k, k)`, symmetric; None unless second derivatives were asked for.
         hessian_error: `(n, k, k)`, estimates, as `gradient_error`.
     """

@@ -1,4 +1,4 @@
-"""A value with its derivatives, and the chain rule: second derivatives follow from the rules of functions by themselves.
+"""A value with its derivatives, and the chain rule, by which second derivatives follow from the rules of functions.
 
 Letters: `s` is the shape of the value, `(n,)` or `(n, r, c)`; `a` counts the assumptions that reach it. Derivatives
 have these first and then the shape of the value, or one that broadcasts to it.
@@ -169,14 +169,12 @@ def chained(x: Floats, jets: Sequence[Jet], firsts: Sequence[Any], seconds: Seco
     parts = [wide[place].times(firsts[place], x) for place in live]
     order = wide[live[0]].order
     curves = _curves(wide, seconds()) if order > 1 and seconds is not None else []
-    return Jet(
-        x,
-        parts[0].active,
-        _sum([part.first for part in parts]),
-        _sum([part.second for part in parts if part.second is not None] + [c for c, _ in curves]) if order > 1 else None,
-        _sum_of_errors([part.error for part in parts]),
-        _sum_of_errors([part.second_error for part in parts] + [error for _, error in curves]) if order > 1 else None,
-    )
+    first, error = _sum([part.first for part in parts]), _sum_of_errors([part.error for part in parts])
+    if order == 1:
+        return Jet(x, parts[0].active, first, None, error)
+    second = _sum([part.second for part in parts if part.second is not None] + [curve for curve, _ in curves])
+    second_error = _sum_of_errors([part.second_error for part in parts] + [error for _, error in curves])
+    return Jet(x, parts[0].active, first, second, error, second_error)
 
 
 def _curves(wide: Mapping[int, Jet], seconds: Mapping[tuple[int, int], Any]) -> list[tuple[Floats, Floats | None]]:

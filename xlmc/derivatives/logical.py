@@ -100,9 +100,7 @@ def _either(truth: Bools, yes: Jet, no: Jet) -> Jet:
     live = yes if yes.active else no
     yes, no = ((jet if jet.active else _like(live, jet)) for jet in (yes, no))
     a, b = aligned([yes, no])
-    parts = zip(
-        (a.first, a.second, a.error, a.second_error), (b.first, b.second, b.error, b.second_error), strict=True
-    )
+    parts = zip((a.first, a.second, a.error, a.second_error), (b.first, b.second, b.error, b.second_error), strict=True)
     chosen = [None if x is None and y is None else np.where(truth, _or_0(x), _or_0(y)) for x, y in parts]
     return Jet(np.where(truth, a.x, b.x), a.active, *chosen)  # type: ignore[arg-type]  # `first` is never None
 

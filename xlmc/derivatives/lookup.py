@@ -42,9 +42,7 @@ def _steps(call: Callable[[Values], Value], found: Value, values: Values) -> Boo
     return step
 
 
-def _looked_up(
-    call: Callable[[Values], Value], result: Value, operands: Sequence[Operand], drawer: Drawer
-) -> Outcome:
+def _looked_up(call: Callable[[Values], Value], result: Value, operands: Sequence[Operand], drawer: Drawer) -> Outcome:
     """The cell that a call finds among tags, by the first operand as a key."""
     values = [operand.value for operand in operands]
     found = call(values)

@@ -100,7 +100,7 @@ def _by_arguments(moved: Moved, result: Value, jets: Sequence[Jet], live: Sequen
         first = tuple(_scale(jet.x) if place in places else None for place, jet in enumerate(jets))
         return _Way(first, (None,) * len(jets))
 
-    singles = {place: _along(moved, result, way(place), [jets[place].x]) for place in live}
+    singles = {place: _along(moved, result, way(place)) for place in live}
     sizes = {place: _scale(jets[place].x) for place in live}
     firsts = [singles[place].first / sizes[place] if place in singles else 0.0 for place in range(len(jets))]
     errors = {place: singles[place].first_error / sizes[place] for place in live}
@@ -113,11 +113,8 @@ def _by_arguments(moved: Moved, result: Value, jets: Sequence[Jet], live: Sequen
             second_errors[i, i] = singles[i].second_error / sizes[i] ** 2
             for j in live:
                 if j > i:
-                    both = _along(moved, result, way(i, j), [jets[i].x, jets[j].x])
-                    size = 2 * sizes[i] * sizes[j]
-                    seconds[i, j] = (both.second - singles[i].second - singles[j].second) / size
-                    total = both.second_error + singles[i].second_error + singles[j].second_error
-                    second_errors[i, j] = total / size
+                    both = _along(moved, result, way(i, j))
+                    seconds[i, j], second_errors[i, j] = _mixed(both, singles[i], singles[j], sizes[i] * sizes[j])
     jet = chained(result.numbers, jets, firsts, lambda: seconds)
     return _with_errors(jet, [jets[place] for place in live], list(errors.values()), live, second_errors)
 
@@ -171,7 +168,7 @@ def _by_assumptions(moved: Moved, result: Value, operands: Sequence[Operand]) ->
 
     n = result.shape[0]
     weight = [_weight([jets[place].first[i] for place in places], x, n) for i in a]
-    singles = [_along(moved, result, way({i: weight[i]}), x) for i in a]
+    singles = [_along(moved, result, way({i: weight[i]})) for i in a]
     level = [w.reshape(-1, *(1,) * (result.numbers.ndim - 1)) for w in weight]
     first = np.stack([singles[i].first / level[i] for i in a])
     error = np.stack([singles[i].first_error / level[i] for i in a])
@@ -182,11 +179,9 @@ def _by_assumptions(moved: Moved, result: Value, operands: Sequence[Operand]) ->
             second[i, i] = singles[i].second / level[i] ** 2
             second_error[i, i] = singles[i].second_error / level[i] ** 2
             for j in range(i):
-                both = _along(moved, result, way({i: weight[i], j: weight[j]}), x)
-                size = 2 * level[i] * level[j]
-                second[i, j] = second[j, i] = (both.second - singles[i].second - singles[j].second) / size
-                total = both.second_error + singles[i].second_error + singles[j].second_error
-                second_error[i, j] = second_error[j, i] = total / size
+                both = _along(moved, result, way({i: weight[i], j: weight[j]}))
+                second[i, j], second_error[i, j] = _mixed(both, singles[i], singles[j], level[i] * level[j])
+                second[j, i], second_error[j, i] = second[i, j], second_error[i, j]
     error, second_error = _inherited(jets, singles, error, second_error)
     return Jet(result.numbers, active, first, second, error, second_error)
 
@@ -231,18 +226,18 @@ class _Along:
     second_error: Floats
 
 
-def _along(moved: Moved, result: Value, way: _Way, x: Sequence[Floats]) -> _Along:
+def _along(moved: Moved, result: Value, way: _Way) -> _Along:
     """The better of the steps that suit the arguments' size, and those that suit a size of 1."""
     n = result.shape[0]
-    smallest = np.full(n, np.inf)
-    for numbers in x:
-        sizes = _scale(numbers)
-        smallest = np.minimum(smallest, sizes.reshape(sizes.shape[0], -1).min(axis=1))
+    most = np.zeros(n)
+    for step in way.first:
+        if step is not None:
+            most = np.maximum(most, np.abs(step).reshape(step.shape[0], -1).max(axis=1))
     found = _extrapolated(moved, result, way, np.ones(n))
-    small = smallest < 1
+    small = (most < 1) & (most > 0)
     if not small.any():
         return found
-    wider = _extrapolated(moved, result, way, np.where(small, 1 / smallest, 1.0))
+    wider = _extrapolated(moved, result, way, np.where(small, 1 / most, 1.0))
     first = wider.first_error < found.first_error
     second = wider.second_error < found.second_error
     return _Along(
@@ -251,6 +246,15 @@ def _along(moved: Moved, result: Value, way: _Way, x: Sequence[Floats]) -> _Alon
         np.where(second, wider.second, found.second),
         np.where(second, wider.second_error, found.second_error),
     )
+
+
+def _mixed(both: _Along, one: _Along, other: _Along, size: Floats) -> tuple[Floats, Floats]:
+    """The mixed second derivative of two ways, from those along each and along their sum, and its error."""
+    second = both.second - one.second - other.second
+    error = both.second_error + one.second_error + other.second_error
+    tolerance = np.maximum(10 * _TOLERANCE * np.abs(second), 1e-6 * (np.abs(one.second) + np.abs(other.second)))
+    sure = error <= np.maximum(tolerance, 1e-6 * np.abs(both.second))
+    return np.where(sure, second, np.nan) / (2 * size), np.where(sure, error, np.inf) / (2 * size)
 
 
 def _extrapolated(moved: Moved, result: Value, way: _Way, scale: Floats) -> _Along:

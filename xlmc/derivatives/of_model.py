@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 
 from xlmc.address import Cell
 from xlmc.compile.dag import Range
-from xlmc.definitions.model import name_key
 from xlmc.derivatives.found import Derivative, Derivatives
 from xlmc.derivatives.jet import Jet
 from xlmc.derivatives.notes import Notes
@@ -53,7 +52,8 @@ def derivatives(
     lowering = model.lowering
     more = list(dict.fromkeys(cells))
     places = {cell: _place(lowering, cell) for cell in more}
-    places |= {target.cell: lowering.cell(target.cell) for target in (*model.forecasts, *model.filters)}
+    targets = [*(f.cell for f in model.forecasts), *(f.cell for f in model.filters)]
+    places |= {cell: lowering.cell(cell) for cell in targets}
     notes = Notes()
     found = _Found(n, len(draws), order, set(places.values()))
     portion = _portion(lowering, len(draws), order)
@@ -88,8 +88,9 @@ def _place(lowering: Lowering, cell: Cell) -> int:
 
 def _portion(lowering: Lowering, k: int, order: int) -> int:
     """How many trials at once."""
-    widest = max((len(node.rows) * len(node.rows[0]) for node in lowering.dag.nodes if isinstance(node, Range)), default=1)
-    return max(1, _PORTION // (widest * max(k, 1) ** order))
+    sizes = (len(node.rows) * len(node.rows[0]) for node in lowering.dag.nodes if isinstance(node, Range))
+    each: int = max(sizes, default=1) * max(k, 1) ** order
+    return max(1, _PORTION // each)
 
 
 class _Found:
@@ -121,8 +122,8 @@ class _Found:
         for kind, part in enumerate((jet.second, jet.second_error)):
             if part is not None:
                 full = np.broadcast_to(part, (len(columns), len(columns), stop - start))
-                trials = np.arange(start, stop)
-                second[kind][np.ix_(trials, columns, columns)] = full.transpose(2, 0, 1)
+                places = np.ix_(np.arange(start, stop), *[np.array(columns)] * 2)
+                second[kind][places] = full.transpose(2, 0, 1)
         second[1][np.isnan(second[0])] = np.nan
 
     def derivative(self, cell: Cell, place: int) -> Derivative:

@@ -18,10 +18,10 @@ __all__ = ["Drawer", "by_value", "flat", "joined"]
 
 def flat(jet: Jet, value: Value) -> Jet:
     """The cells of a value side by side, `(n, m)`."""
-    n = value.shape[0]
+    n, size = value.shape[0], int(np.prod(value.shape[1:]))
 
     def change(part: NDArray[Any], axes: int) -> NDArray[Any]:
-        return np.broadcast_to(part, (*part.shape[:axes], *value.shape)).reshape(*part.shape[:axes], n, -1)
+        return np.broadcast_to(part, (*part.shape[:axes], *value.shape)).reshape(*part.shape[:axes], n, size)
 
     return jet.each(change)
 

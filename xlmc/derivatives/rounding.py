@@ -47,7 +47,7 @@ def steps(function: Function, result: Value, operands: Sequence[Operand]) -> Out
 
 @rule(
     *("CEILING", "FLOOR", "CEILING.MATH", "FLOOR.MATH", "MROUND"),
-    *("CEILING.PRECISE", "FLOOR.PRECISE", "ISO.CEILING", "ECMA.CEILING"),
+    *("CEILING.PRECISE", "FLOOR.PRECISE"),
     why=_STEP,
     jumps=True,
 )

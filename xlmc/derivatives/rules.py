@@ -107,9 +107,7 @@ def elementwise(
         y: Floats = result.numbers
         x = [jet.x for jet in jets]
         pairs = [(i, j) for i in range(len(jets)) for j in range(i, len(jets))]
-        jet = chained(
-            y, jets, list(firsts(y, *x)), lambda: dict(zip(pairs, seconds(y, *x), strict=True))
-        )
+        jet = chained(y, jets, list(firsts(y, *x)), lambda: dict(zip(pairs, seconds(y, *x), strict=True)))
         return Outcome(jet, None if ways is None else np.asarray(ways(y, *x)))
 
     rule(name, why=why, jumps=jumps)(apply)

@@ -22,7 +22,7 @@ from xlmc.derivatives.picking import Drawer
 from xlmc.derivatives.rules import RULES, Operand, Outcome
 from xlmc.errors import ErrorCode
 from xlmc.functions import Kind
-from xlmc.functions.values import ERROR, TEXT, Floats, ShapeVaries, Value
+from xlmc.functions.values import ERROR, TEXT, Bools, Floats, ShapeVaries, Value
 
 __all__ = ["Unequal", "swept"]
 
@@ -85,7 +85,7 @@ def swept(
 
 def _read_as_values(dag: Dag, places: Sequence[int]) -> set[int]:
     """The nodes that a function reads as values; conditions are mostly read by choices and other conditions."""
-    found = set()
+    found: set[int] = set()
     for place in places:
         node = dag.nodes[place]
         if isinstance(node, Apply) and node.function.returns is not Kind.LOGICAL:
@@ -200,7 +200,7 @@ def _note_losses(
     start: int,
 ) -> None:
     """The trials in which this very function lost derivatives, or made an error."""
-    n = result.shape[0]
+    n = max(result.shape[0], jet.first.shape[1])
     lost = _any_of_trial(np.isnan(jet.first), n, 1)
     if not lost.any():
         return
@@ -222,11 +222,8 @@ def _note_losses(
         notes.lose(place, name, why, own, start)
 
 
-def _any_of_trial(part: np.ndarray[tuple[int, ...], np.dtype[np.bool_]], n: int, axes: int) -> np.ndarray[
-    tuple[int, ...], np.dtype[np.bool_]
-]:
+def _any_of_trial(part: Bools, n: int, axes: int) -> Bools:
     """Whether any assumption, any cell is so, `(n,)`."""
-    for _ in range(axes):
-        part = part.any(axis=0)
-    part = part.reshape(part.shape[0], -1).any(axis=1)
-    return np.broadcast_to(part, (n,)).copy()
+    whole: Bools = np.logical_or.reduce(part, axis=0) if axes else part
+    rows: Bools = np.logical_or.reduce(whole.reshape(whole.shape[0], -1), axis=1)
+    return np.array(np.broadcast_to(rows, (n,)))

@@ -15,24 +15,24 @@ import xlsxwriter
 
 __all__ = ["ASSUMPTIONS", "write"]
 
-ASSUMPTIONS = {  # name of the cell -> (what it is, low, high), as in Table 1
-    "w_1": ("Chevrolet weight, lb", 6661, 6861),
-    "I_1": ("Chevrolet yaw inertia, lb ft s²", 4712, 5208),
-    "alpha_1": ("Chevrolet approach angle, °", 181, 191),
-    "beta_1": ("Chevrolet departure angle, °", 187, 197),
-    "s_1": ("Chevrolet travel, ft", 20, 22),
-    "f_1": ("Chevrolet deceleration, g", 0.60, 0.95),
-    "w_2": ("Nissan weight, lb", 3410, 3510),
-    "I_2": ("Nissan yaw inertia, lb ft s²", 1849, 2043),
-    "alpha_2": ("Nissan approach angle, °", 272, 292),
-    "beta_2": ("Nissan departure angle, °", 192, 202),
-    "s_2": ("Nissan travel, ft", 20, 24),
-    "f_2": ("Nissan deceleration, g", 0.60, 0.95),
-    "x_1": ("Chevrolet impact centre x, in", 97.5, 103.5),
-    "y_1": ("Chevrolet impact centre y, in", -16, -10),
-    "x_2": ("Nissan impact centre x, in", -3.2, 3.2),
-    "y_2": ("Nissan impact centre y, in", -28.6, -22.6),
-    "gamma": ("Orientation of tangent, °", 96, 106),
+ASSUMPTIONS = {  # name of the cell -> (what it is, units, low, high), as in Table 1
+    "w_1": ("Chevrolet weight", "lb", 6661, 6861),
+    "I_1": ("Chevrolet yaw inertia", "lb ft s²", 4712, 5208),
+    "alpha_1": ("Chevrolet approach angle", "°", 181, 191),
+    "beta_1": ("Chevrolet departure angle", "°", 187, 197),
+    "s_1": ("Chevrolet travel", "ft", 20, 22),
+    "f_1": ("Chevrolet deceleration", "g", 0.60, 0.95),
+    "w_2": ("Nissan weight", "lb", 3410, 3510),
+    "I_2": ("Nissan yaw inertia", "lb ft s²", 1849, 2043),
+    "alpha_2": ("Nissan approach angle", "°", 272, 292),
+    "beta_2": ("Nissan departure angle", "°", 192, 202),
+    "s_2": ("Nissan travel", "ft", 20, 24),
+    "f_2": ("Nissan deceleration", "g", 0.60, 0.95),
+    "x_1": ("Chevrolet impact centre x", "in", 97.5, 103.5),
+    "y_1": ("Chevrolet impact centre y", "in", -16, -10),
+    "x_2": ("Nissan impact centre x", "in", -3.2, 3.2),
+    "y_2": ("Nissan impact centre y", "in", -28.6, -22.6),
+    "gamma": ("Orientation of tangent", "°", 96, 106),
 }
 
 _CG = "=-(x_{j}*{x}(RADIANS(alpha_{j})){sign}y_{j}*{y}(RADIANS(alpha_{j})))/12"
@@ -111,12 +111,11 @@ def write(path: Path, ranges: dict[str, tuple[float, float]] | None = None) -> N
         path: where to.
         ranges: name of the cell -> low and high, where they are not those of Table 1.
     """
-    ranges = {name: (low, high) for name, (_, low, high) in ASSUMPTIONS.items()} | (ranges or {})
+    ranges = {name: (low, high) for name, (_, _, low, high) in ASSUMPTIONS.items()} | (ranges or {})
     with xlsxwriter.Workbook(path) as book:
         inputs, model, results = (book.add_worksheet(name) for name in ("Inputs", "Model", "Results wanted"))
         rows = [
-            [what, (sum(ranges[name])) / 2, *ranges[name], "°" if "°" in what else ""]
-            for name, (what, _, _) in ASSUMPTIONS.items()
+            [what, sum(ranges[name]) / 2, *ranges[name], units] for name, (what, units, _, _) in ASSUMPTIONS.items()
         ]
         _table(inputs, "xlmc_assumptions", ["Name", "Value", "Low", "High", "Units"], rows)
         for row, name in enumerate(ASSUMPTIONS, start=2):

@@ -135,7 +135,9 @@ def _applied(body: Callable[..., Item], items: Sequence[Item]) -> Item:
         return found.code
 
 
-class _IsError(Exception):  # noqa: N818 - an error as a value
+class _IsError(Exception):
+    """An error as a value."""
+
     def __init__(self, code: ErrorCode) -> None:
         super().__init__()
         self.code = code
@@ -332,9 +334,9 @@ EXACT: Final[Mapping[str, Callable[..., Item]]] = {
     ">=": _compared(lambda x, y: x >= y),
     "AND": _joined(all),
     "OR": _joined(any),
-    "NOT": lambda item: NotImplemented if isinstance(item, list | str) else (not item) if not isinstance(
-        item, ErrorCode
-    ) else item,
+    "NOT": lambda item: (
+        NotImplemented if isinstance(item, list | str) else (not item) if not isinstance(item, ErrorCode) else item
+    ),
 }
 """Name of the function's row in the registry -> its body."""
 

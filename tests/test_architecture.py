@@ -21,7 +21,7 @@ FLOORS = [
     {"compile", "sampling"},
     {"scene", "drawing", "correlating", "stopping"},
     {"model", "verify"},
-    {"blocks", "derivatives"},
+    {"blocks", "derivatives", "digits"},
     {"simulation", "scheduling"},
     {"rounding", "pilot"},
     {"simulate", "result_cells"},

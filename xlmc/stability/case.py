@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from xlmc.address import Cell
 from xlmc.compile.engine import Target
+from xlmc.compile.replicas import DOUBLE, Jitter, closure, evaluation, numbers
 from xlmc.definitions.model import name_key
 from xlmc.derivatives import Derivatives, derivatives
 from xlmc.functions.values import Value
@@ -22,7 +23,6 @@ from xlmc.scene import condition
 from xlmc.simulation import Simulation
 from xlmc.stability.exact import Exact, exactly
 from xlmc.stability.findings import Where
-from xlmc.stability.replicas import DOUBLE, closure, evaluation, numbers
 from xlmc.stability.trees import Trees
 
 __all__ = ["REPLICAS", "Case"]
@@ -108,8 +108,7 @@ class Case:
         """Node -> the size of its error by rounding, `(n,)`: the root mean square of `REPLICAS` evaluations."""
         squares: dict[int, Floats] = {}
         for replica in range(REPLICAS):
-            rounding = np.random.default_rng((self._seed, replica))
-            found = evaluation(self.dag, self.places, self.draws, rounding)
+            found = evaluation(self.dag, self.places, self.draws, Jitter((self._seed, replica)))
             for place in self.places:
                 off = numbers(found[place], self.n) - self.number(place)
                 squares[place] = squares.get(place, 0.0) + np.where(np.isnan(off), 0.0, off) ** 2

@@ -15,9 +15,9 @@ import numpy as np
 from mpmath import mp, mpf
 
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Range, Rescue, Select
+from xlmc.compile.replicas import formula_of
 from xlmc.errors import ErrorCode
 from xlmc.functions.values import ShapeVaries, Value, constant, from_objects
-from xlmc.stability.replicas import formula_of
 
 __all__ = ["DIGITS", "Exact", "exactly"]
 

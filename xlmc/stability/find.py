@@ -9,9 +9,15 @@ from xlmc.compile.dag import Apply
 from xlmc.derivatives.owners import owners
 from xlmc.simulation import Simulation
 from xlmc.stability.case import Case
+from xlmc.stability.conditioning import amplifying_forecasts
 from xlmc.stability.digits import cell_digits, lost_digits
+from xlmc.stability.edges import domain_edges
+from xlmc.stability.filters import narrow_filters
 from xlmc.stability.findings import Finding, Stability
+from xlmc.stability.jumps import jumps
 from xlmc.stability.quadrant import lost_quadrants
+from xlmc.stability.single import single_precision
+from xlmc.stability.tails import heavy_tails
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
@@ -24,6 +30,12 @@ Told = Callable[[str], None]
 DETECTORS: Final[Mapping[str, Callable[[Case], Iterable[Finding]]]] = {
     "lost quadrants": lost_quadrants,
     "lost digits": lost_digits,
+    "heavy tails": heavy_tails,
+    "narrow filters": narrow_filters,
+    "edges of domains": domain_edges,
+    "jumps": jumps,
+    "amplification": amplifying_forecasts,
+    "float32": single_precision,
 }
 """What is looked for -> what finds it."""
 

@@ -54,7 +54,7 @@ def _finding(case: Case, cell: Cell, part: ir.Call, ratio: ir.Binary) -> Iterato
         case.trees.written(cell),
         f"{case.trees.text(part, cell)} loses the quadrant: as the direction of a vector it is {half} off wherever "
         f"{divisor} is negative",
-        f"{divisor} is negative {how_many}: there the direction is wrong by {half}, and no error is shown",
+        f"{how_many} {divisor} is negative: there the direction is wrong by {half}, and no error is shown",
         () if share == 1.0 else case.where(negative),
         f"={case.trees.text(with_quadrant(tree, part), cell)}",
         (180.0 if half == "180°" else np.pi) * max(share, 1e-9) / case.scale(cell),

@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 
 from xlmc.compile.dag import Input
+from xlmc.compile.replicas import closure, evaluation, formula_of, numbers
 from xlmc.stability.case import Case
-from xlmc.stability.replicas import closure, evaluation, formula_of, numbers
 
 __all__ = ["only_assumption", "zeros"]
 

@@ -15,15 +15,50 @@ import numpy as np
 
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Node, Range, Rescue, Select, evaluated, uses
 from xlmc.functions import Kind
-from xlmc.functions.values import ERROR, LOGICAL, NUMBER, Floats, Value
+from xlmc.functions.values import ERROR, LOGICAL, Floats, Value
 
-__all__ = ["DOUBLE", "SINGLE", "closure", "evaluation", "numbers"]
+__all__ = ["DOUBLE", "SINGLE", "Jitter", "closure", "evaluation", "formula_of", "numbers"]
 
 DOUBLE: Final = 2.0**-53
 SINGLE: Final = 2.0**-24
 """Half a unit of the last place, as a share of the number."""
 
 _EXACT: Final = frozenset({"u-", "u+", "shown", "ABS", "SIGN", "MIN", "MAX", "LARGE", "SMALL", "INT", "TRUNC", "IF"})
+
+
+_POOL: Final = 1 << 16
+
+
+class Jitter:
+    """Moves numbers up or down at random.
+
+    Args:
+        seed: of which way.
+        unit: by how much, as a share of the number.
+    """
+
+    def __init__(self, seed: int | Sequence[int], unit: float = DOUBLE) -> None:
+        ways = np.random.default_rng(seed).integers(0, 2, _POOL, np.int8)
+        self._factors = 1.0 + (ways * (2 * unit) - unit)
+        self._next = 0
+
+    def moved(self, value: Value, n: int) -> Value:
+        """Each number up or down, but for whole ones, which are exact; a constant, too, differs from trial to trial."""
+        if value.kinds.any():
+            return value
+        shape = (max(n, value.shape[0]), *value.shape[1:])
+        size = int(np.prod(shape))
+        if self._next + size > _POOL:
+            self._next = self._next % 1009  # another start than the last time
+        factors = self._factors[self._next : self._next + size] if size <= _POOL // 2 else self._many(size)
+        self._next += size
+        numbers_ = value.numbers
+        moved = numbers_ * factors.reshape(shape)
+        whole = numbers_ == np.rint(numbers_)
+        return Value(np.where(whole, numbers_, moved) if whole.any() else moved, value.kinds)
+
+    def _many(self, size: int) -> Floats:
+        return np.resize(self._factors, size)
 
 
 def closure(dag: Dag, targets: Collection[int]) -> list[int]:
@@ -52,8 +87,7 @@ def evaluation(
     dag: Dag,
     places: Sequence[int],
     draws: Mapping[str, Floats],
-    rounding: np.random.Generator | None = None,
-    unit: float = DOUBLE,
+    jitter: Jitter | None = None,
 ) -> dict[int, Value]:
     """The values of nodes.
 
@@ -61,8 +95,7 @@ def evaluation(
         dag: the nodes.
         places: which of them, each after those that it needs; see `closure`.
         draws: of every input, `(n,)` each.
-        rounding: moves every result by `unit` of it, up or down; None for plain evaluation.
-        unit: see `rounding`.
+        jitter: moves every result; None for plain evaluation.
     """
     values: dict[int, Value] = {}
     n = next((draw.size for draw in draws.values()), 1)
@@ -75,23 +108,13 @@ def evaluation(
         else:
             assert isinstance(node, Apply | Select | Rescue | Range)
             found = evaluated(node, values)
-            moves = rounding is not None and isinstance(node, Apply) and _rounds(node)
-            values[place] = _moved(found, rounding, unit, n) if rounding is not None and moves else found
+            moves = jitter is not None and isinstance(node, Apply) and _rounds(node)
+            values[place] = jitter.moved(found, n) if jitter is not None and moves else found
     return values
 
 
 def _rounds(node: Apply) -> bool:
     return node.function.returns is not Kind.LOGICAL and node.function.name not in _EXACT
-
-
-def _moved(value: Value, rounding: np.random.Generator, unit: float, n: int) -> Value:
-    """Each number up or down, but for whole ones, which are exact; a constant, too, differs from trial to trial."""
-    if not (value.kinds == NUMBER).all():
-        return value
-    shape = (max(n, value.shape[0]), *value.shape[1:])
-    signs = rounding.integers(0, 2, shape, np.int8) * (2 * unit) - unit
-    moved = np.where(value.numbers == np.rint(value.numbers), value.numbers, value.numbers * (1 + signs))
-    return Value(moved, value.kinds, value.texts)
 
 
 def numbers(value: Value, n: int) -> Floats:

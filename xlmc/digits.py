@@ -1,0 +1,69 @@
+"""A cheap look at whether the digits of the answers are there: a few hundred accepted trials, with random rounding.
+
+It runs with every simulation. `xlmc stability` says more: which cell it is, why, and what to write instead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.compile.replicas import Jitter, closure, evaluation, numbers
+from xlmc.definitions.model import name_key
+
+if TYPE_CHECKING:
+    from xlmc.model import Model
+
+__all__ = ["lost_digits"]
+
+Floats = NDArray[np.float64]
+
+_TRIALS: Final = 256
+_REPLICAS: Final = 1
+
+_VISIBLE: Final = 1e-3
+"""Of a forecast's central range, or of its value where that is larger."""
+
+_SHARE: Final = 0.01
+"""Of the trials looked at: a few that are next to a jump say nothing of the digits."""
+
+
+def lost_digits(model: Model, inputs: Mapping[str, Floats]) -> list[str]:
+    """Sentences on the forecasts whose digits rounding has taken.
+
+    Args:
+        model: the workbook.
+        inputs: assumption -> its accepted draws, `(m,)`; the first few hundred are looked at.
+    """
+    draws = {name_key(a.name): inputs[a.name][:_TRIALS] for a in model.live}
+    n = next((column.size for column in draws.values()), 0)
+    if not n:
+        return []
+    nodes = {forecast.name: model.lowering.cell(forecast.cell) for forecast in model.forecasts}
+    places = closure(model.lowering.dag, list(nodes.values()))
+    plain = evaluation(model.lowering.dag, places, draws)
+    lost = {name: np.zeros(n, bool) for name in nodes}
+    for replica in range(_REPLICAS):
+        found = evaluation(model.lowering.dag, places, draws, Jitter(replica))
+        for name, node in nodes.items():
+            lost[name] |= _off(numbers(plain[node], n), numbers(found[node], n))
+    return [
+        f"the digits of {name!r} are not there: rounding alone moves it by more than a thousandth of its central range "
+        f"in {np.count_nonzero(where):,} of {n:,} accepted trials (xlmc stability says where)"
+        for name, where in lost.items()
+        if np.count_nonzero(where) > _SHARE * n
+    ]
+
+
+def _off(plain: Floats, moved: Floats) -> NDArray[np.bool_]:
+    """Where a number is visibly another, or is one in one evaluation only, `(n,)`."""
+    known = np.isfinite(plain)
+    if not known.any():
+        return np.zeros(plain.size, bool)
+    low, high = np.quantile(plain[known], [0.245, 0.755])
+    with np.errstate(invalid="ignore"):
+        far = np.abs(moved - plain) > _VISIBLE * np.fmax(high - low, np.abs(plain))
+    return np.asarray(far | (np.isfinite(moved) != known))

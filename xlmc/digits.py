@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.compile.replicas import Jitter, closure, evaluation, numbers
+from xlmc.compile.replicas import Jitter, closure, evaluation, numbers, term_sizes
 from xlmc.definitions.model import name_key
 
 if TYPE_CHECKING:
     from xlmc.model import Model
 
-__all__ = ["lost_digits"]
+__all__ = ["DUST", "lost_digits"]
 
 Floats = NDArray[np.float64]
 
@@ -26,6 +26,9 @@ _REPLICAS: Final = 1
 
 _VISIBLE: Final = 1e-3
 """Of a forecast's central range, or of its value where that is larger."""
+
+DUST: Final = 1e-9
+"""Of the largest number that was added or subtracted on the way: below it, what should be 0 may be anything."""
 
 _SHARE: Final = 0.01
 """Of the trials looked at: a few that are next to a jump say nothing of the digits."""
@@ -46,10 +49,11 @@ def lost_digits(model: Model, inputs: Mapping[str, Floats]) -> list[str]:
     places = closure(model.lowering.dag, list(nodes.values()))
     plain = evaluation(model.lowering.dag, places, draws)
     lost = {name: np.zeros(n, bool) for name in nodes}
+    terms = term_sizes(model.lowering.dag, places, plain)
     for replica in range(_REPLICAS):
         found = evaluation(model.lowering.dag, places, draws, Jitter(replica))
         for name, node in nodes.items():
-            lost[name] |= _off(numbers(plain[node], n), numbers(found[node], n))
+            lost[name] |= _off(numbers(plain[node], n), numbers(found[node], n), DUST * terms[node])
     return [
         f"the digits of {name!r} are not there: rounding alone moves it by more than a thousandth of its central range "
         f"in {np.count_nonzero(where):,} of {n:,} accepted trials (xlmc stability says where)"
@@ -58,12 +62,12 @@ def lost_digits(model: Model, inputs: Mapping[str, Floats]) -> list[str]:
     ]
 
 
-def _off(plain: Floats, moved: Floats) -> NDArray[np.bool_]:
-    """Where a number is visibly another, or is one in one evaluation only, `(n,)`."""
+def _off(plain: Floats, moved: Floats, dust: float) -> NDArray[np.bool_]:
+    """Where a number is visibly another and above dust, or is one in one evaluation only, `(n,)`."""
     known = np.isfinite(plain)
     if not known.any():
         return np.zeros(plain.size, bool)
     low, high = np.quantile(plain[known], [0.245, 0.755])
     with np.errstate(invalid="ignore"):
-        far = np.abs(moved - plain) > _VISIBLE * np.fmax(high - low, np.abs(plain))
+        far = np.abs(moved - plain) > _VISIBLE * np.fmax(max(high - low, dust), np.abs(plain))
     return np.asarray(far | (np.isfinite(moved) != known))

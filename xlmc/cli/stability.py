@@ -117,7 +117,7 @@ def _sentences(found: Stability) -> Iterator[str]:
         "Amplifies: the relative change of the cell per relative change of the assumptions, all together, in the "
         "median trial and in 1 of 100; through which of them most. No other form of a formula makes it less. Rounding: "
         "the largest error by rounding, as a share of the central range or of the value. Excess: how many times larger "
-        "it is than what rounding the assumptions alone would bring; up to 5 is what sound formulas have."
+        "it is than what rounding the assumptions alone would bring; up to 7 is what sound formulas have."
     )
     yield (
         f"Looked at: {found.points:,} trials of a run of {found.run.trials:,}, seed {found.run.settings.seed}, the "

@@ -1,9 +1,9 @@
 """A model evaluated with its roundings made at random: what then differs are digits that are not there.
 
-Every result of a function is a little off, by up to half a unit of its last place; which way is chance. Here each is
-moved once more, by half a unit up or down at random (Vignes 1978, Parker 1997), and so is each constant that was
-computed while the formulas were compiled. The replicas differ from the plain evaluation about as much as that differs
-from the exact one. Functions that round, compare or choose give what they give.
+Every result of a function is a little off, by up to half a unit of its last place; which way is chance. Here every
+other one, at random, is moved up or down by a unit (Vignes 1978, Parker 1997), and so are constants that were computed
+while the formulas were compiled. The replicas differ from the plain evaluation about as much as that differs from the
+exact one. Functions that round, compare or choose give what they give.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from xlmc.compile.dag import Apply, Constant, Dag, Input, Node, Range, Rescue, S
 from xlmc.functions import Kind
 from xlmc.functions.values import ERROR, LOGICAL, Floats, Value
 
-__all__ = ["DOUBLE", "SINGLE", "Jitter", "closure", "evaluation", "formula_of", "numbers"]
+__all__ = ["DOUBLE", "SINGLE", "Jitter", "closure", "evaluation", "formula_of", "numbers", "term_sizes"]
 
 DOUBLE: Final = 2.0**-53
 SINGLE: Final = 2.0**-24
@@ -26,11 +26,17 @@ SINGLE: Final = 2.0**-24
 _EXACT: Final = frozenset({"u-", "u+", "shown", "ABS", "SIGN", "MIN", "MAX", "LARGE", "SMALL", "INT", "TRUNC", "IF"})
 
 
+_ADDS: Final = frozenset({"+", "-", "SUM"})
+_CALCULATES: Final = _ADDS | {"*", "/", "SQRT", "EXP", "LN", "SIN", "COS", "TAN"}
+
 _POOL: Final = 1 << 16
+
+_SURELY: Final = 1.001
+"""Times half a unit of the last place: added to a number it makes it the next one."""
 
 
 class Jitter:
-    """Moves numbers up or down at random.
+    """Moves every other number up or down at random.
 
     Args:
         seed: of which way.
@@ -38,27 +44,32 @@ class Jitter:
     """
 
     def __init__(self, seed: int | Sequence[int], unit: float = DOUBLE) -> None:
-        ways = np.random.default_rng(seed).integers(0, 2, _POOL, np.int8)
-        self._factors = 1.0 + (ways * (2 * unit) - unit)
+        ways = np.array([-1.0, 0.0, 1.0, 0.0])[np.random.default_rng(seed).integers(0, 4, _POOL, np.int8)]
+        self._steps = ways * (_SURELY * unit)
         self._next = 0
 
-    def moved(self, value: Value, n: int) -> Value:
-        """Each number up or down, but for whole ones, which are exact; a constant, too, differs from trial to trial."""
+    def moved(self, value: Value, n: int, *, whole_too: bool = False) -> Value:
+        """Numbers up or down; a constant, too, differs from trial to trial.
+
+        Args:
+            value: of numbers; another is left as it is.
+            n: how many trials there are.
+            whole_too: whole numbers as well, which otherwise are taken to be exact.
+        """
         if value.kinds.any():
             return value
         shape = (max(n, value.shape[0]), *value.shape[1:])
         size = int(np.prod(shape))
         if self._next + size > _POOL:
             self._next = self._next % 1009  # another start than the last time
-        factors = self._factors[self._next : self._next + size] if size <= _POOL // 2 else self._many(size)
+        steps = self._steps[self._next : self._next + size] if size <= _POOL // 2 else np.resize(self._steps, size)
         self._next += size
         numbers_ = value.numbers
-        moved = numbers_ * factors.reshape(shape)
+        moved = numbers_ + numbers_ * steps.reshape(shape)
+        if whole_too:
+            return Value(moved, value.kinds)
         whole = numbers_ == np.rint(numbers_)
         return Value(np.where(whole, numbers_, moved) if whole.any() else moved, value.kinds)
-
-    def _many(self, size: int) -> Floats:
-        return np.resize(self._factors, size)
 
 
 def closure(dag: Dag, targets: Collection[int]) -> list[int]:
@@ -88,6 +99,7 @@ def evaluation(
     places: Sequence[int],
     draws: Mapping[str, Floats],
     jitter: Jitter | None = None,
+    of_inputs: Jitter | None = None,
 ) -> dict[int, Value]:
     """The values of nodes.
 
@@ -96,21 +108,59 @@ def evaluation(
         places: which of them, each after those that it needs; see `closure`.
         draws: of every input, `(n,)` each.
         jitter: moves every result; None for plain evaluation.
+        of_inputs: moves the draws, and numbers that were typed in where they are calculated with.
     """
     values: dict[int, Value] = {}
     n = next((draw.size for draw in draws.values()), 1)
+    typed: dict[int, Value] = {}
+    if of_inputs is not None:
+        known = {place: node.value for place in _typed(dag, places) if isinstance(node := dag.nodes[place], Constant)}
+        typed = {place: of_inputs.moved(value, n, whole_too=True) for place, value in known.items()}
     for place in places:
         node = formula_of(dag, place)
         if isinstance(node, Input):
-            values[place] = Value.of_numbers(draws[node.name])
+            drawn = Value.of_numbers(draws[node.name])
+            values[place] = drawn if of_inputs is None else of_inputs.moved(drawn, n, whole_too=True)
         elif isinstance(node, Constant):
             values[place] = node.value
         else:
             assert isinstance(node, Apply | Select | Rescue | Range)
-            found = evaluated(node, values)
+            calculates = isinstance(node, Apply) and node.function.name in _CALCULATES
+            found = evaluated(node, values | typed if typed and calculates else values)
             moves = jitter is not None and isinstance(node, Apply) and _rounds(node)
             values[place] = jitter.moved(found, n) if jitter is not None and moves else found
     return values
+
+
+def _typed(dag: Dag, places: Sequence[int]) -> set[int]:
+    """Numbers that were typed in and are calculated with; not π, which nobody measures."""
+    found: set[int] = set()
+    for place in places:
+        node = formula_of(dag, place)
+        if isinstance(node, Apply) and node.function.name in _CALCULATES:
+            found.update(part for part in node.arguments if isinstance(formula_of(dag, part), Constant))
+    return {place for place in found if not _is_pi(dag.nodes[place])}
+
+
+def _is_pi(node: Node) -> bool:
+    return isinstance(node, Constant) and float(node.value.numbers.flat[0]) in (np.pi, np.pi / 180, 180 / np.pi)
+
+
+def term_sizes(dag: Dag, places: Sequence[int], values: Mapping[int, Value]) -> dict[int, float]:
+    """Node -> the largest number that was added or subtracted on the way to it, in any trial.
+
+    What is smaller than that by many digits, and should be 0, is dust.
+    """
+    found: dict[int, float] = {}
+    for place in places:
+        node = formula_of(dag, place)
+        parts = uses(node)
+        size = max((found[part] for part in parts), default=0.0)
+        if isinstance(node, Apply) and node.function.name in _ADDS:
+            sizes = [float(np.abs(values[part].numbers).max(initial=0.0)) for part in parts]
+            size = max([size, *(one for one in sizes if np.isfinite(one))])
+        found[place] = size
+    return found
 
 
 def _rounds(node: Apply) -> bool:

@@ -5,7 +5,7 @@ Letters: n trials, the base case and the ends of the ranges first; k assumptions
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import Any, Final
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from xlmc.address import Cell
 from xlmc.compile.engine import Target
-from xlmc.compile.replicas import DOUBLE, Jitter, closure, evaluation, numbers
+from xlmc.compile.replicas import DOUBLE, Jitter, closure, evaluation, numbers, term_sizes
 from xlmc.definitions.model import name_key
 from xlmc.derivatives import Derivatives, derivatives
 from xlmc.functions.values import Value
@@ -106,9 +106,13 @@ class Case:
     @cached_property
     def errors(self) -> dict[int, Floats]:
         """Node -> the size of its error by rounding, `(n,)`: the root mean square of `REPLICAS` evaluations."""
+        return self._spread(lambda replica: {"jitter": Jitter((self._seed, replica))})
+
+    def _spread(self, how: Callable[[int], dict[str, Jitter]]) -> dict[int, Floats]:
+        """The root mean square of what differs in evaluations that move something."""
         squares: dict[int, Floats] = {}
         for replica in range(REPLICAS):
-            found = evaluation(self.dag, self.places, self.draws, Jitter((self._seed, replica)))
+            found = evaluation(self.dag, self.places, self.draws, **how(replica))
             for place in self.places:
                 off = numbers(found[place], self.n) - self.number(place)
                 squares[place] = squares.get(place, 0.0) + np.where(np.isnan(off), 0.0, off) ** 2
@@ -124,11 +128,23 @@ class Case:
         inputs = {a.name: self.draws[key] for a, key in zip(self.model.live, self.names, strict=True)}
         return derivatives(self.model, inputs, cells=self.cells)
 
+    @cached_property
+    def of_inputs(self) -> dict[int, Floats]:
+        """Node -> by how much it moves when assumptions and typed numbers move by a unit of their last place, `(n,)`."""
+        found = self._spread(lambda replica: {"of_inputs": Jitter((self._seed, REPLICAS, replica), _MOVE)})
+        return {place: spread * (2 * DOUBLE / _MOVE) for place, spread in found.items()}
+
+    @cached_property
+    def term_sizes(self) -> dict[int, float]:
+        """Node -> the largest number added or subtracted on the way to it."""
+        return term_sizes(self.dag, self.places, self.values)
+
     def inherent(self, cell: Cell) -> Floats:
         """The error that rounding the assumptions, and the result, would bring alone, `(n,)`; NaN where unknown."""
         gradient = self.derivatives.cells[cell].gradient
         moved: Floats = np.nansum(np.abs(gradient * self.derivatives.points), axis=1)
-        return DOUBLE * (moved + np.abs(self.number(self.node[cell])))
+        node = self.node[cell]
+        return np.fmax(DOUBLE * (moved + np.abs(self.number(node))), self.of_inputs[node])
 
     def scale(self, cell: Cell) -> float:
         """The width of a cell's central range, or its size where it hardly varies; 1 for 0."""
@@ -180,6 +196,18 @@ class Case:
             for _, _, assumption, here in told
         )
 
+    def upstream(self, cell: Cell) -> set[Cell]:
+        """The cells that a cell needs, itself among them."""
+        needs = self.lowering.graph.needs
+        found: set[Cell] = set()
+        open_ = [cell]
+        while open_:
+            place = open_.pop()
+            if place not in found:
+                found.add(place)
+                open_ += needs.get(place, ())
+        return found
+
     def forecasts_of(self, cells: Iterable[Cell]) -> list[str]:
         """The forecasts and filters that a cell reaches."""
         wanted = set(cells)
@@ -187,10 +215,13 @@ class Case:
         rows = [(row.cell, row.name) for row in self.model.forecasts]
         rows += [(row.cell, row.name) for row in self.model.filters]
         for cell, name in rows:
-            if wanted & _upstream(self, cell) and name not in found:
+            if wanted & self.upstream(cell) and name not in found:
                 found.append(name)
         return found
 
+
+_MOVE: Final = 2.0**-30
+"""By how much inputs are moved, as a share: beside it, roundings on the way do not show."""
 
 _FEWEST: Final = 5
 """Trials that take up little of some range for no reason."""
@@ -202,15 +233,3 @@ _TELLING: Final = 0.5
 def _base(base: object, draws: Floats) -> float:
     known = isinstance(base, int | float) and not isinstance(base, bool)
     return float(base) if known else float(np.nanmedian(draws))  # type: ignore[arg-type]  # a number, then
-
-
-def _upstream(case: Case, cell: Cell) -> set[Cell]:
-    needs = case.lowering.graph.needs
-    found: set[Cell] = set()
-    open_ = [cell]
-    while open_:
-        place = open_.pop()
-        if place not in found:
-            found.add(place)
-            open_ += needs.get(place, ())
-    return found

@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
+from xlmc.digits import DUST
 from xlmc.stability.case import Case, Floats
 from xlmc.stability.culprits import Division, cancellation, divisions
 from xlmc.stability.findings import CellDigits, Finding, Level, Where
@@ -23,7 +24,10 @@ __all__ = ["cell_digits", "lost_digits"]
 
 EXCESS: Final = 10.0
 """Times the error that rounding the assumptions brings: from here on the form of the formula is to blame. Formulas
-that are well written stay below 5 in the worst of some thousand trials."""
+that are well written stay below 7 in the worst of some thousand trials."""
+
+NOTICED: Final = 3e-14
+"""Of a central range: two of sixteen digits. Less than that is not worth another formula."""
 
 VISIBLE: Final = 1e-6
 """Of a central range: an error of this size is told of whatever it comes from."""
@@ -62,13 +66,19 @@ def _losses(case: Case) -> dict[Cell, _Loss]:
         inherent = case.inherent(cell)
         with np.errstate(all="ignore"):
             excess = np.where((inherent > 0) & np.isfinite(inherent), error / inherent, 0.0)
+        if case.scale(cell) < DUST * case.term_sizes[case.node[cell]]:
+            excess = np.zeros(case.n)
         found[cell] = _Loss(cell, error / _size(case, cell), excess)
     return found
 
 
 def _size(case: Case, cell: Cell) -> Floats:
-    """What an error is measured against, `(n,)`: the central range, or the value where that is larger."""
-    return np.fmax(np.abs(case.number(case.node[cell])), case.scale(cell))
+    """What an error is measured against, `(n,)`: the central range, or the value where that is larger.
+
+    What should be 0 and is dust instead, far below the terms it is left of, is measured against these.
+    """
+    node = case.node[cell]
+    return np.fmax(np.abs(case.number(node)), max(case.scale(cell), DUST * case.term_sizes[node]))
 
 
 def lost_digits(case: Case) -> Iterator[Finding]:
@@ -77,7 +87,7 @@ def lost_digits(case: Case) -> Iterator[Finding]:
     for cell, loss in losses.items():
         before = [losses[part] for part in case.lowering.graph.needs.get(cell, ()) if part in losses]
         excess, error = (max((getattr(b, name) for b in before), default=0.0) for name in ("most", "worst"))
-        by_form = loss.most >= EXCESS and loss.most >= _HANDED_ON * excess
+        by_form = loss.most >= EXCESS and loss.worst >= NOTICED and loss.most >= _HANDED_ON * excess
         by_size = loss.worst >= VISIBLE and loss.worst >= 10 * _HANDED_ON * error
         if by_form or by_size:
             finding = _finding(case, loss, by_form)

@@ -13,7 +13,7 @@ from xlmc.stability.conditioning import amplifying_forecasts
 from xlmc.stability.digits import cell_digits, lost_digits
 from xlmc.stability.edges import domain_edges
 from xlmc.stability.filters import narrow_filters
-from xlmc.stability.findings import Finding, Stability
+from xlmc.stability.findings import Finding, Level, Stability
 from xlmc.stability.jumps import jumps
 from xlmc.stability.quadrant import lost_quadrants
 from xlmc.stability.single import single_precision
@@ -70,8 +70,20 @@ def stability(
         found += detector(case)
     tell("what every cell amplifies")
     cells = tuple(cell_digits(case))
-    ranked = sorted(found, key=lambda finding: (finding.level, -finding.size))
+    ranked = sorted(_first_causes(case, found), key=lambda finding: (finding.level, -finding.size))
     return Stability(run, tuple(ranked), cells, _unchecked(case), case.n, case.recomputed)
+
+
+_OF_DIGITS: Final = frozenset({"division", "cancellation", "angles", "rounding"})
+_OF_NUMBERS: Final = frozenset({"tail", "amplification", "float32"})
+
+
+def _first_causes(case: Case, findings: Iterable[Finding]) -> list[Finding]:
+    """Without what is said of numbers whose digits are not there."""
+    found = list(findings)
+    lost = [one.cell for one in found if one.level is Level.WRONG and one.kind in _OF_DIGITS]
+    reached = {cell for cell in (one.cell for one in found) if any(part in case.upstream(cell) for part in lost)}
+    return [one for one in found if one.kind not in _OF_NUMBERS or one.cell not in reached]
 
 
 def _unchecked(case: Case) -> tuple[tuple[Cell, tuple[str, ...]], ...]:

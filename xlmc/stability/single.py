@@ -9,6 +9,7 @@ import numpy as np
 
 from xlmc.address import Cell
 from xlmc.compile.replicas import SINGLE, Jitter, evaluation, numbers
+from xlmc.digits import DUST
 from xlmc.rounding import MOST_DECISIONS, MOST_DIFFERENCE
 from xlmc.stability.case import Case
 from xlmc.stability.findings import Finding, Level, Where
@@ -35,6 +36,8 @@ def single_precision(case: Case) -> Iterator[Finding]:
             continue
         node = case.node[forecast.cell]
         plain, scale = case.number(node), case.scale(forecast.cell)
+        if scale < DUST * case.term_sizes[node]:
+            continue
         off = np.max([np.abs(numbers(one[node], case.n) - plain) for one in found], axis=0)
         share = float(np.nanquantile(off / np.fmax(scale, np.abs(plain)), 0.999))
         if share > MOST_DIFFERENCE:

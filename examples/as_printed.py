@@ -104,12 +104,15 @@ FILTERS = {  # name -> (cell, at least, at most, above, below)
 }
 
 
-def write(path: Path, ranges: dict[str, tuple[float, float]] | None = None) -> None:
+def write(
+    path: Path, ranges: dict[str, tuple[float, float]] | None = None, formulas: dict[str, str] | None = None
+) -> None:
     """Write the workbook.
 
     Args:
         path: where to.
         ranges: name of the cell -> low and high, where they are not those of Table 1.
+        formulas: name of the cell -> its formula, where it is not as printed.
     """
     ranges = {name: (low, high) for name, (_, _, low, high) in ASSUMPTIONS.items()} | (ranges or {})
     with xlsxwriter.Workbook(path) as book:
@@ -122,7 +125,7 @@ def write(path: Path, ranges: dict[str, tuple[float, float]] | None = None) -> N
             book.define_name(name, f"=Inputs!$B${row}")
         for row, (name, (equation, formula)) in enumerate(MODEL.items(), start=1):
             model.write_row(row - 1, 0, [name, equation])
-            model.write(row - 1, 2, formula)
+            model.write(row - 1, 2, (formulas or {}).get(name, formula))
             book.define_name(name, f"=Model!$C${row}")
         places = {name: f"=Model!C{row}" for row, name in enumerate(MODEL, start=1)}
         wanted = [[name, places[cell]] for name, cell in FORECASTS.items()]

@@ -31,6 +31,9 @@ _CALCULATES: Final = _ADDS | {"*", "/", "SQRT", "EXP", "LN", "SIN", "COS", "TAN"
 
 _POOL: Final = 1 << 16
 
+_ALL_WHOLE: Final = 2.0**52
+"""From here on all doubles are whole, and it says nothing of them."""
+
 _SURELY: Final = 1.001
 """Times half a unit of the last place: added to a number it makes it the next one."""
 
@@ -68,7 +71,7 @@ class Jitter:
         moved = numbers_ + numbers_ * steps.reshape(shape)
         if whole_too:
             return Value(moved, value.kinds)
-        whole = numbers_ == np.rint(numbers_)
+        whole = (numbers_ == np.rint(numbers_)) & (np.abs(numbers_) < _ALL_WHOLE)
         return Value(np.where(whole, numbers_, moved) if whole.any() else moved, value.kinds)
 
 

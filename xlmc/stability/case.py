@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from xlmc.address import Cell
 from xlmc.compile.engine import Target
+from xlmc.compile.exact import Exact, exactly
 from xlmc.compile.replicas import DOUBLE, Jitter, closure, evaluation, numbers, term_sizes
 from xlmc.definitions.model import name_key
 from xlmc.derivatives import Derivatives, derivatives
@@ -21,7 +22,6 @@ from xlmc.functions.values import Value
 from xlmc.model import Model
 from xlmc.scene import condition
 from xlmc.simulation import Simulation
-from xlmc.stability.exact import Exact, exactly
 from xlmc.stability.findings import Where
 from xlmc.stability.trees import Trees
 
@@ -51,7 +51,8 @@ class Case:
         self.trees = Trees(model)
         self.lowering, self.dag = model.lowering, model.lowering.dag
         self.cells = [cell for cell in self.lowering.graph.formulas if cell not in self.lowering.inputs]
-        self.node = {cell: self.lowering.cell(cell) for cell in self.cells}
+        targets = [*(f.cell for f in model.forecasts), *(f.cell for f in model.filters)]
+        self.node = {cell: self.lowering.cell(cell) for cell in (*self.cells, *targets)}
         self.names = [name_key(a.name) for a in model.live]
         self.conditions = [self.lowering.target(Target(condition(f), f.cell)) for f in model.filters]
         self.places = closure(self.dag, [*self.node.values(), *self.conditions])
@@ -130,7 +131,7 @@ class Case:
 
     @cached_property
     def of_inputs(self) -> dict[int, Floats]:
-        """Node -> by how much it moves when assumptions and typed numbers move by a unit of their last place, `(n,)`."""
+        """Node -> by how much it moves when assumptions and typed numbers do by a unit of their last place, `(n,)`."""
         found = self._spread(lambda replica: {"of_inputs": Jitter((self._seed, REPLICAS, replica), _MOVE)})
         return {place: spread * (2 * DOUBLE / _MOVE) for place, spread in found.items()}
 

@@ -33,7 +33,7 @@ def amplifying_forecasts(case: Case) -> Iterator[Finding]:
             "amplification",
             forecast.cell,
             forecast.name,
-            case.trees.written(forecast.cell) if forecast.cell in case.node else "",
+            case.trees.written(forecast.cell),
             f"it changes by {factor:.2g} % when its assumptions change by 1 %, mostly through {through!r}",
             "this is in the problem: no other form and no more digits make it less; other evidence does",
             (),

@@ -17,7 +17,7 @@ from xlmc.digits import DUST
 from xlmc.stability.case import Case, Floats
 from xlmc.stability.culprits import Division, cancellation, divisions
 from xlmc.stability.findings import CellDigits, Finding, Level, Where
-from xlmc.stability.rewriting import angles_in_degrees, same, without_cosine
+from xlmc.stability.rewriting import same, without_cosine
 from xlmc.stability.zeros import only_assumption, zeros
 
 __all__ = ["cell_digits", "lost_digits"]
@@ -66,19 +66,13 @@ def _losses(case: Case) -> dict[Cell, _Loss]:
         inherent = case.inherent(cell)
         with np.errstate(all="ignore"):
             excess = np.where((inherent > 0) & np.isfinite(inherent), error / inherent, 0.0)
-        if case.scale(cell) < DUST * case.term_sizes[case.node[cell]]:
-            excess = np.zeros(case.n)
         found[cell] = _Loss(cell, error / _size(case, cell), excess)
     return found
 
 
 def _size(case: Case, cell: Cell) -> Floats:
-    """What an error is measured against, `(n,)`: the central range, or the value where that is larger.
-
-    What should be 0 and is dust instead, far below the terms it is left of, is measured against these.
-    """
-    node = case.node[cell]
-    return np.fmax(np.abs(case.number(node)), max(case.scale(cell), DUST * case.term_sizes[node]))
+    """What an error is measured against, `(n,)`: the central range, or the value where that is larger."""
+    return np.fmax(np.abs(case.number(case.node[cell])), case.scale(cell))
 
 
 def lost_digits(case: Case) -> Iterator[Finding]:
@@ -107,7 +101,7 @@ def _finding(case: Case, loss: _Loss, by_form: bool) -> Finding | None:
         exact = case.exact_number(node, trial)
         if np.isnan(exact) != np.isnan(shown[trial]):
             missing |= not _is_missing_before(case, cell, trial)
-        elif not np.isnan(exact):
+        elif not np.isnan(exact) and not (exact == 0 and abs(shown[trial]) <= DUST * case.term_sizes[node]):
             error = abs(float(shown[trial]) - exact)
             off, share = max(off, error), max(share, error / float(size[trial]))
     inherent = float(np.nanmax(case.inherent(cell)[worst]))
@@ -144,14 +138,8 @@ def _is_missing_before(case: Case, cell: Cell, trial: int) -> bool:
 
 
 def _effect(case: Case, cell: Cell, share: float, loss: _Loss, missing: bool, random: bool, inherent: float) -> str:
-    reached = [name for name in case.forecasts_of([cell]) if name != case.trees.title(cell)]
-    on = (
-        f"; {', '.join(reached)} depend on it"
-        if len(reached) > 1
-        else f"; {reached[0]} depends on it"
-        if reached
-        else ""
-    )
+    reached = [repr(name) for name in case.forecasts_of([cell]) if name != case.trees.title(cell)]
+    on = f"; {', '.join(reached)} depend{'s' * (len(reached) == 1)} on it" if reached else ""
     at = "" if random or not (missing or share >= UNUSABLE) else " (at the base case or an end of a range)"
     if missing:
         return f"it shows a number and no error where the formula, computed exactly, has no value{at}{on}"
@@ -163,7 +151,6 @@ def _effect(case: Case, cell: Cell, share: float, loss: _Loss, missing: bool, ra
 
 def _explained(case: Case, cell: Cell, trial: int) -> tuple[tuple[str, str] | None, str | None, tuple[Where, ...]]:
     """Why, as a kind and a sentence; a better form; and the range of the one assumption to blame."""
-    tree = case.lowering.graph.formulas[cell]
     small = [division for division in divisions(case, cell) if division.least < _SMALL]
     if small:
         sentence, ranges = _division(case, cell, small[0])
@@ -171,10 +158,6 @@ def _explained(case: Case, cell: Cell, trial: int) -> tuple[tuple[str, str] | No
         if better is not None and not same(case, cell, better):
             better = None
         return ("division", sentence), _formula(case, cell, better), ranges
-    degrees = angles_in_degrees(tree)
-    if degrees is not None:
-        sentence = "it subtracts angles after RADIANS, which rounds them; in degrees the difference is exact"
-        return ("angles", sentence), _formula(case, cell, degrees), ()
     lost = cancellation(case, cell, trial)
     if lost is not None and lost.left < _SMALL:
         sentence = (

@@ -27,7 +27,7 @@ def narrow_filters(case: Case) -> Iterator[Finding]:
         "filter",
         filter_.cell,
         worst,
-        case.trees.written(filter_.cell) if filter_.cell in case.node else "",
+        case.trees.written(filter_.cell),
         f"the filters accept {run.accepted:,} of {run.trials:,} trials; {worst!r} rejects most, {rejected[worst]:,}",
         "the answer rests on a rim of the ranges: look whether these, the evidence or the model contradict each other",
         (),

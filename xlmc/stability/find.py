@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.compile.dag import Apply
 from xlmc.derivatives.owners import owners
 from xlmc.simulation import Simulation
+from xlmc.stability.angles import rounded_angles
 from xlmc.stability.case import Case
 from xlmc.stability.conditioning import amplifying_forecasts
 from xlmc.stability.digits import cell_digits, lost_digits
@@ -34,6 +35,7 @@ DETECTORS: Final[Mapping[str, Callable[[Case], Iterable[Finding]]]] = {
     "narrow filters": narrow_filters,
     "edges of domains": domain_edges,
     "jumps": jumps,
+    "angles": rounded_angles,
     "amplification": amplifying_forecasts,
     "float32": single_precision,
 }
@@ -74,7 +76,7 @@ def stability(
     return Stability(run, tuple(ranked), cells, _unchecked(case), case.n, case.recomputed)
 
 
-_OF_DIGITS: Final = frozenset({"division", "cancellation", "angles", "rounding"})
+_OF_DIGITS: Final = frozenset({"division", "cancellation", "rounding"})
 _OF_NUMBERS: Final = frozenset({"tail", "amplification", "float32"})
 
 

@@ -14,13 +14,13 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
+from xlmc.compile.exact import DIGITS, Exact, exactly
 from xlmc.compile.replicas import closure
 from xlmc.definitions import Filter
 from xlmc.formula import ir
 from xlmc.formula.substitute import substituted
 from xlmc.scene import filter_limits
 from xlmc.stability.case import Case
-from xlmc.stability.exact import DIGITS, Exact, exactly
 from xlmc.stability.trees import factors, terms
 
 __all__ = ["angles_in_degrees", "same", "with_quadrant", "without_cosine", "without_quotient"]

@@ -32,8 +32,6 @@ def single_precision(case: Case) -> Iterator[Finding]:
             what = "this filter decides trials by digits that float32 has not"
             yield _finding(case, row.cell, row.name, what, effect, share, where)
     for forecast in case.model.forecasts:
-        if forecast.cell not in case.node:
-            continue
         node = case.node[forecast.cell]
         plain, scale = case.number(node), case.scale(forecast.cell)
         if scale < DUST * case.term_sizes[node]:
@@ -49,5 +47,5 @@ def single_precision(case: Case) -> Iterator[Finding]:
 def _finding(
     case: Case, cell: Cell, name: str, what: str, effect: str, size: float, where: tuple[Where, ...]
 ) -> Finding:
-    formula = case.trees.written(cell) if cell in case.node else ""
+    formula = case.trees.written(cell)
     return Finding(Level.NOTE, "float32", cell, name, formula, what, effect, where, None, size)

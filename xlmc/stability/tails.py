@@ -47,8 +47,6 @@ def heavy_tails(case: Case) -> Iterator[Finding]:
             effect = f"{_statistic(index + 2 * error)}: more trials do not bring it nearer; report percentiles"
             yield _finding(case, Level.DOUBTFUL, forecast.cell, forecast.name, index, effect, None)
     for filter_ in case.model.filters:
-        if filter_.cell not in case.node:
-            continue
         index, error = tail_index(case.number(case.node[filter_.cell])[case.special : case.first_accepted])
         if index + 2 * error < _LIMIT:
             host = _quotient_of(case, filter_.cell)

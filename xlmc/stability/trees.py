@@ -55,8 +55,9 @@ class Trees:
         return next((name for place, name in rows if place == cell), self.names.get(cell, ""))
 
     def written(self, cell: Cell) -> str:
-        """The formula of a cell as in the file, with `=`."""
-        return f"={self._graph.text(cell)}"
+        """The formula of a cell as in the file, with `=`; empty where it has none."""
+        text = self._graph.text(cell)
+        return text and f"={text}"
 
     def place(self, tree: ir.Expression, cell: Cell) -> int | None:
         """The node of a part of a cell's formula; None where it has none of its own."""

@@ -70,8 +70,9 @@ class Exact:
                     result = _applied(body, items)
                     if result is not NotImplemented:
                         return result
-                if function.name not in _STEPS:
-                    self.unchecked.add(place)
+                if function.name in _STEPS:
+                    return _decimal(_as_in_the_run(function, items))
+                self.unchecked.add(place)
                 return _as_in_the_run(function, items)
 
 
@@ -366,6 +367,11 @@ def _known_result(value: Value) -> Item:
     if value.numbers.ndim == 3:
         return [[_double(cell) for cell in row] for row in objects[0]]
     return _double(objects[0])
+
+
+def _decimal(item: Item) -> Item:
+    """What a rounding gives, as the decimal that it means."""
+    return mpf(repr(float(item))) if isinstance(item, mpf) else item
 
 
 def _double(item: object) -> Item:

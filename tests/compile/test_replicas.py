@@ -30,12 +30,12 @@ def test_a_number_moves_by_a_unit_of_its_last_place_or_not_at_all(x, seed):
     moved = Jitter(seed).moved(Value.of_numbers(np.array([x])), 64).numbers
     near = {np.nextafter(x, 0), x, np.nextafter(x, np.inf)}
     assert set(moved.tolist()) <= near
-    assert x == np.rint(x) or len(set(moved.tolist())) == 3
+    assert (x == np.rint(x) and x < 2**52) or len(set(moved.tolist())) == 3
 
 
 def test_whole_numbers_and_texts_stay():
     jitter = Jitter(1)
-    assert set(jitter.moved(Value.of_numbers(np.array([2.0, 1e20])), 2).numbers.tolist()) == {2.0, 1e20}
+    assert set(jitter.moved(Value.of_numbers(np.array([2.0, 1e15])), 2).numbers.tolist()) == {2.0, 1e15}
     text = constant("a")
     assert jitter.moved(text, 5) is text
     moved = jitter.moved(Value.of_numbers(np.full(500, 2.0)), 500, whole_too=True).numbers

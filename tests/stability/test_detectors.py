@@ -53,8 +53,9 @@ def test_digits_that_are_not_there(look):
 
 
 def test_angles_subtracted_in_radians(look):
-    one = only(look({"B1": "=1/SIN(RADIANS(A1)-RADIANS(A2))"}, x=(271.0, 272.0), y=(270.99, 270.999)), "angles")
-    assert one.instead == "=1/SIN(RADIANS(A1-A2))"
+    one = only(look({"B1": "=SIN(RADIANS(A1)-RADIANS(A2))"}, x=(271.0, 272.0), y=(270.9, 271.1)), "angles")
+    assert one.instead == "=SIN(RADIANS(A1-A2))"
+    assert "angles" not in kinds(look({"B1": "=SIN(RADIANS(A1)-RADIANS(A2))"}, x=(271.0, 272.0), y=(90.9, 91.1)))
 
 
 def test_a_quadrant_lost_in_some_trials(look):

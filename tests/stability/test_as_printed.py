@@ -101,3 +101,21 @@ def test_every_needed_cell_is_listed_with_what_it_amplifies(found):
     assert cells["V1f"].amplification == pytest.approx(1.0, rel=1e-9)  # a square root of a product of two
     assert cells["V2i"].excess > 15 > 7 > cells["V1i"].excess
     assert all(cell.checked for cell in found.cells)
+
+
+def test_a_small_change_of_speed_is_computed_without_a_difference_of_speeds(as_printed):
+    """A light second car: (20) is the small difference of two speeds; the form proposed has none."""
+    light = {"w_2": (5, 6), "I_2": (2, 3)}
+    found = stability(as_printed(light), trials=TRIALS, seed=999)
+    lost = only(found, "cancellation")
+    assert lost.name == "dV1x"
+    assert "SIN(RADIANS((alpha_1-alpha_2)/2))" in lost.instead
+    again = stability(as_printed(light, {"dV1x": lost.instead}), trials=TRIALS, seed=999)
+    before, after = ({cell.name: cell for cell in each.cells}["dV1x"] for each in (found, again))
+    assert after.excess < 7 < 10 < before.excess
+    assert after.rounding < before.rounding / 3
+
+
+def only(found, kind):
+    (one,) = [finding for finding in found.findings if finding.kind == kind]
+    return one

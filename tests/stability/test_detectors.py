@@ -151,3 +151,17 @@ def test_functions_that_are_not_recomputed_are_named(look):
 def test_a_book_without_assumptions(book):
     found = stability(book({"A1": 2.0, "B1": "=A1^2"}, {}, {"f": "B1"}), trials=100)
     assert found.findings == ()
+
+
+def test_trials_apart_from_the_rest_are_no_heavy_tail(look):
+    """A jump of half a turn in a few trials: the direction is bounded, and its SD converges."""
+    assert "tail" not in kinds(look({"B1": "=IF(A1>1.99,180,0)+A2/100"}))
+
+
+def test_the_root_of_a_sum_of_squares_has_no_edge(look):
+    assert "edge" not in kinds(look({"B1": "=SQRT((A1-1.5)^2+(A2-1.5)^2)"}))
+
+
+def test_a_quadrant_lost_in_trials_that_no_filter_keeps(look):
+    found = look({"B1": "=ATAN(A2/A1)", "C1": "=A1*1"}, filters={"ahead": {"cell": "C1", "above": 0}}, x=(-1, 3))
+    assert only(found, "quadrant").level is Level.DOUBTFUL

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.derivatives.jet import Jet, aligned, chained
-from xlmc.derivatives.picking import by_value, flat
+from xlmc.derivatives.numerical import by_differences
+from xlmc.derivatives.picking import by_value, flat, joined
 from xlmc.derivatives.rules import Operand, Outcome, rule
 from xlmc.functions import Function
 from xlmc.functions.values import ERROR, NUMBER, Bools, Floats, Value
@@ -121,8 +122,6 @@ def extreme(function: Function, result: Value, operands: Sequence[Operand]) -> O
 def ranked(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
     """The derivatives of the cell that is it, for a single rank that no assumption changes."""
     if operands[1].jet.active or result.numbers.ndim != 1:
-        from xlmc.derivatives.numerical import by_differences
-
         return by_differences(function, result, operands)
     jet, counts = _side_by_side(*_counted(operands[:1]))
     return Outcome(*by_value(jet, counts, np.broadcast_to(result.numbers, jet.x.shape[:1])))
@@ -142,8 +141,6 @@ def median(function: Function, result: Value, operands: Sequence[Operand]) -> Ou
 
 def _side_by_side(jets: Sequence[Jet], counts: Sequence[Bools]) -> tuple[Jet, Bools]:
     """All cells in one row, `(n, m)`."""
-    from xlmc.derivatives.picking import joined
-
     n = max(jet.x.shape[0] for jet in jets)
     tall: list[NDArray[np.bool_]] = [np.broadcast_to(part, (n, part.shape[1])) for part in counts]
     return joined(aligned(jets), n), np.concatenate(tall, axis=1)

@@ -17,7 +17,7 @@ from xlmc.digits import DUST
 from xlmc.stability.case import Case, Floats
 from xlmc.stability.culprits import Division, cancellation, divisions
 from xlmc.stability.findings import CellDigits, Finding, Level, Where
-from xlmc.stability.rewriting import same, without_cosine
+from xlmc.stability.rewriting import of_small_changes, same, without_cosine
 from xlmc.stability.zeros import only_assumption, zeros
 
 __all__ = ["cell_digits", "lost_digits"]
@@ -164,7 +164,7 @@ def _explained(case: Case, cell: Cell, trial: int) -> tuple[tuple[str, str] | No
             f"{case.trees.text(lost.tree, cell)} is a difference of near equals: down to {lost.left:.1g} of its terms "
             "is left, and with it as many of their digits are lost"
         )
-        return ("cancellation", sentence), None, ()
+        return ("cancellation", sentence), _formula(case, cell, of_small_changes(case, cell)), ()
     return None, None, ()
 
 

@@ -11,6 +11,7 @@ from xlmc.address import Cell
 from xlmc.formula import ir
 from xlmc.stability.case import Case, Floats
 from xlmc.stability.findings import Finding, Level
+from xlmc.stability.trees import terms
 
 __all__ = ["domain_edges"]
 
@@ -35,10 +36,19 @@ def domain_edges(case: Case) -> Iterator[Finding]:
     """The functions whose argument leaves their domain in some trials, or comes close to its edge."""
     for cell in case.cells:
         for part in case.trees.parts(cell):
-            if isinstance(part, ir.Call) and part.name in _DOMAINS and part.arguments:
+            if isinstance(part, ir.Call) and part.name in _DOMAINS and not _is_of_squares(part):
                 finding = _finding(case, cell, part, *_DOMAINS[part.name])
                 if finding is not None:
                     yield finding
+
+
+def _is_of_squares(part: ir.Call) -> bool:
+    """Whether it is the root of a sum of squares, which cannot leave the domain."""
+    squares = [
+        sign > 0 and isinstance(term, ir.Binary) and (term.operator == "^" and term.right == ir.Number(2.0))
+        for sign, term in (found for argument in part.arguments[:1] for found in terms(argument))
+    ]
+    return all(squares)
 
 
 def _finding(case: Case, cell: Cell, part: ir.Call, low: float, high: float) -> Finding | None:

@@ -36,18 +36,18 @@ def _finding(case: Case, cell: Cell, part: ir.Call, ratio: ir.Binary) -> Iterato
         return
     x = case.number(place)
     negative: Bools = np.asarray(x < 0)
-    known = int(np.isfinite(x).sum())
     if not negative.any():
         return
     accepted = negative[case.first_accepted :]
-    share = float(accepted.mean()) if accepted.size else float(negative.sum() / known)
+    among = accepted if accepted.any() else negative
+    share = float(among.mean())
     tree = case.lowering.graph.formulas[cell]
     divisor = case.trees.text(ratio.right, cell)
-    trials = "accepted trials" if accepted.size else "trials"
+    trials = "accepted trials" if accepted.any() else "trials drawn, none of them accepted"
     how_many = f"in every one of the {trials}" if share == 1.0 else f"in {share:.1%} of the {trials}"
     half = "180°" if any(isinstance(one, ir.Call) and one.name == "DEGREES" for one in case.trees.parts(cell)) else "π"
     yield Finding(
-        Level.WRONG if share > 0 else Level.DOUBTFUL,
+        Level.WRONG if accepted.any() else Level.DOUBTFUL,
         "quadrant",
         cell,
         case.trees.title(cell),
@@ -57,7 +57,7 @@ def _finding(case: Case, cell: Cell, part: ir.Call, ratio: ir.Binary) -> Iterato
         f"{how_many} {divisor} is negative: there the direction is wrong by {half}, and no error is shown",
         () if share == 1.0 else case.where(negative),
         f"={case.trees.text(with_quadrant(tree, part), cell)}",
-        (180.0 if half == "180°" else np.pi) * max(share, 1e-9) / case.scale(cell),
+        (180.0 if half == "180°" else np.pi) * share / case.scale(cell),
     )
 
 

@@ -21,20 +21,14 @@ from xlmc.formula import ir
 from xlmc.formula.substitute import substituted
 from xlmc.scene import filter_limits
 from xlmc.stability.case import Case
+from xlmc.stability.momentum import angle_of, components, sine, spin, times
 from xlmc.stability.trees import factors, terms
 
-__all__ = ["angles_in_degrees", "same", "with_quadrant", "without_cosine", "without_quotient"]
+__all__ = ["angles_in_degrees", "of_small_changes", "same", "with_quadrant", "without_cosine", "without_quotient"]
 
 _TRIALS: Final = 4
 _AWAY: Final = 1.001
 """Times the draws: where a cell has no value in any trial, as one that divides by COS of 270°."""
-
-
-def _times(*parts: ir.Expression) -> ir.Expression:
-    built = parts[0]
-    for part in parts[1:]:
-        built = ir.Binary("*", built, part)
-    return built
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,17 +41,12 @@ class _Term:
     angle: ir.Expression
 
 
-def _angle(tree: ir.Expression) -> ir.Expression | None:
-    """The angle of `COS(angle)`, RADIANS included."""
-    return tree.arguments[0] if isinstance(tree, ir.Call) and tree.name == "COS" else None
-
-
 def _term(sign: int, tree: ir.Expression) -> _Term | None:
     above, below = factors(tree)
-    angles = [angle for part in above if (angle := _angle(part)) is not None]
+    angles = [angle for part in above if (angle := angle_of(part, "COS")) is not None]
     if len(angles) != 1:
         return None
-    rest = [part for part in above if _angle(part) is None]
+    rest = [part for part in above if angle_of(part, "COS") is None]
     for part in [one for one in rest if one == ir.Number(-1.0)]:
         sign = -sign
         rest.remove(part)
@@ -71,7 +60,7 @@ def without_cosine(case: Case, cell: Cell, cosine: ir.Expression) -> ir.Expressi
     """
     above, below = factors(case.lowering.graph.formulas[cell])
     above = [part for part in above if part != ir.Number(1.0)]
-    own = _angle(cosine)
+    own = angle_of(cosine, "COS")
     if cosine not in below or own is None or len(above) != 1:
         return None
     mass = [part for part in below if part != cosine]
@@ -88,15 +77,10 @@ def without_cosine(case: Case, cell: Cell, cosine: ir.Expression) -> ir.Expressi
     speeds = [[part for part in term.masses if part not in (*shared, mass[0])] for term in (own_departure[0], other[0])]
     if len(shared) != 1 or any(len(speed) != 1 for speed in speeds):
         return None
-    own_part = _times(speeds[0][0], _sine(own_departure[0].angle, approach[0].angle))
-    other_part = _times(ir.Binary("/", shared[0], mass[0]), speeds[1][0], _sine(other[0].angle, approach[0].angle))
+    own_part = times(speeds[0][0], sine(own_departure[0].angle, approach[0].angle))
+    other_part = times(ir.Binary("/", shared[0], mass[0]), speeds[1][0], sine(other[0].angle, approach[0].angle))
     total = ir.Binary("+", own_part, other_part)
-    return ir.Binary("/", ir.Unary("-", total), _sine(approach[0].angle, own))
-
-
-def _sine(left: ir.Expression, right: ir.Expression) -> ir.Expression:
-    """The sine of a difference of angles, subtracted in degrees where they are in degrees."""
-    return ir.Call("SIN", (_difference(left, right) or ir.Binary("-", left, right),))
+    return ir.Binary("/", ir.Unary("-", total), sine(approach[0].angle, own))
 
 
 def _difference(left: ir.Expression, right: ir.Expression) -> ir.Expression | None:
@@ -105,6 +89,14 @@ def _difference(left: ir.Expression, right: ir.Expression) -> ir.Expression | No
             return ir.Call("RADIANS", (ir.Binary("-", a, b),))
         case _:
             return None
+
+
+def of_small_changes(case: Case, cell: Cell) -> ir.Expression | None:
+    """(17′) or (20′) in place of (17) or (20), differences of near equals where a change of speed is small."""
+    tree = case.lowering.graph.formulas[cell]
+    turned = spin(tree)
+    candidates = [*([] if turned is None else [turned]), *components(case, tree)]
+    return next((one for one in candidates if same(case, cell, one)), None)
 
 
 def angles_in_degrees(tree: ir.Expression) -> ir.Expression | None:
@@ -143,7 +135,8 @@ def without_quotient(case: Case, filter_: Filter, tree: ir.Expression) -> ir.Exp
     tests: list[ir.Expression] = [ir.Binary("<>", tree.right, ir.Number(0.0))]
     for relation, bound in limits:
         limit = bound if isinstance(bound, Cell) else ir.Number(float(bound))
-        tests.append(ir.Binary(relation, turned, _times(limit, size) if limit != ir.Number(0.0) else limit))
+        product = limit if limit == ir.Number(0.0) else size if limit == ir.Number(1.0) else times(limit, size)
+        tests.append(ir.Binary(relation, turned, product))
     return ir.Call("AND", tuple(tests))
 
 

@@ -24,8 +24,17 @@ _FEWEST: Final = 40
 """Of the numbers, and how many at least, that count as the tail: α is known to a sixth of itself, or better."""
 
 
-def tail_index(x: Floats) -> tuple[float, float]:
-    """Hill's index of the heavier tail, and its standard error; infinite where there are too few numbers."""
+_FAR: Final = 0.25
+"""Of the tail: there it must be as heavy, or it is but a few trials that lie apart from the rest."""
+
+
+def tail_index(x: Floats, part: float = 1.0) -> tuple[float, float]:
+    """Hill's index of the heavier tail, and its standard error; infinite where there are too few numbers.
+
+    Args:
+        x: the numbers.
+        part: of the tail, from the far end.
+    """
     known = x[np.isfinite(x)]
     k = int(max(_FEWEST, _SHARE * known.size))
     if known.size < 10 * k:
@@ -33,7 +42,7 @@ def tail_index(x: Floats) -> tuple[float, float]:
     middle = np.median(known)
     best = np.inf
     for side in (known - middle, middle - known):
-        largest = np.sort(side)[-k - 1 :]
+        largest = np.sort(side)[-int(part * k) - 1 :]
         if largest[0] > 0:
             best = min(best, 1.0 / max(float(np.mean(np.log(largest[1:] / largest[0]))), 1e-300))
     return best, best / np.sqrt(k)
@@ -42,13 +51,15 @@ def tail_index(x: Floats) -> tuple[float, float]:
 def heavy_tails(case: Case) -> Iterator[Finding]:
     """Forecasts among accepted trials; and cells that filters look at, among all of them."""
     for forecast in case.model.forecasts:
-        index, error = tail_index(np.asarray(case.run[forecast.name].values))
-        if index + 2 * error < _LIMIT:
+        x = np.asarray(case.run[forecast.name].values)
+        index, error = tail_index(x)
+        if index + 2 * error < _LIMIT and tail_index(x, _FAR)[0] < _LIMIT:
             effect = f"{_statistic(index + 2 * error)}: more trials do not bring it nearer; report percentiles"
             yield _finding(case, Level.DOUBTFUL, forecast.cell, forecast.name, index, effect, None)
     for filter_ in case.model.filters:
-        index, error = tail_index(case.number(case.node[filter_.cell])[case.special : case.first_accepted])
-        if index + 2 * error < _LIMIT:
+        x = case.number(case.node[filter_.cell])[case.special : case.first_accepted]
+        index, error = tail_index(x)
+        if index + 2 * error < _LIMIT and tail_index(x, _FAR)[0] < _LIMIT:
             host = _quotient_of(case, filter_.cell)
             better = without_quotient(case, filter_, host) if host is not None else None
             effect = "a filter only compares it, so that the forecasts are not harmed; its mean and SD mean nothing"

@@ -24,6 +24,9 @@ Floats = NDArray[np.float64]
 _TRIALS: Final = 256
 _REPLICAS: Final = 1
 
+_MOST_NODES: Final = 10_000
+"""Operations that the forecasts need: some half a second. Larger books are left to `xlmc stability`."""
+
 _VISIBLE: Final = 1e-3
 """Of a forecast's central range, or of its value where that is larger."""
 
@@ -50,6 +53,8 @@ def lost_digits(model: Model, inputs: Mapping[str, Floats]) -> list[str]:
         return []
     nodes = {forecast.name: model.lowering.cell(forecast.cell) for forecast in model.forecasts}
     places = closure(model.lowering.dag, list(nodes.values()))
+    if len(places) > _MOST_NODES:
+        return []
     plain = evaluation(model.lowering.dag, places, draws)
     lost = {name: np.zeros(n, bool) for name in nodes}
     for replica in range(_REPLICAS):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.stability import Level, stability
+from xlmc.workbook.model import CellContent, Formula
 
 UNIFORM = {"x": {"cell": "A1", "low": 1, "high": 2}, "y": {"cell": "A2", "low": 1, "high": 2}}
 BASE = {"A1": 1.5, "A2": 1.5}
@@ -146,6 +147,14 @@ def test_what_float32_has_no_digits_for(look):
 def test_functions_that_are_not_recomputed_are_named(look):
     found = look({"B1": "=NORM.DIST(A1,A2,1,TRUE)+1E8*A1-1E8*A1"})
     assert [(str(cell), functions) for cell, functions in found.unchecked] == [("S!B1", ("NORM.DIST",))]
+
+
+def test_arrays_whose_size_varies(look):
+    dynamic = CellContent(None, Formula("SUM(FILTER(C1:C3,C1:C3>A1))+1E16-1E16", 1, 2, dynamic=True))
+    found = look({"B1": dynamic, "C1": 1.25, "C2": "=A1*1.1", "C3": "=A1/3+A2"})
+    assert only(found, "cancellation").level is Level.WRONG
+    assert found.run.warnings
+    assert found.unchecked
 
 
 def test_a_book_without_assumptions(book):

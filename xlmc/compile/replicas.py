@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Node, Range, Rescue, Select, evaluated, uses
+from xlmc.compile.ragged import Ragged
 from xlmc.functions import Kind
 from xlmc.functions.values import ERROR, LOGICAL, Floats, Value
 
@@ -128,9 +129,9 @@ def evaluation(
             values[place] = node.value
         else:
             assert isinstance(node, Apply | Select | Rescue | Range)
-            calculates = isinstance(node, Apply) and node.function.name in _CALCULATES
-            found = evaluated(node, values | typed if typed and calculates else values)
-            moves = jitter is not None and isinstance(node, Apply) and _rounds(node)
+            moved = typed and isinstance(node, Apply) and node.function.name in _CALCULATES
+            found = evaluated(node, {part: typed.get(part, values[part]) for part in uses(node)} if moved else values)
+            moves = isinstance(node, Apply) and _rounds(node) and not isinstance(found, Ragged)
             values[place] = jitter.moved(found, n) if jitter is not None and moves else found
     return values
 
@@ -171,7 +172,9 @@ def _rounds(node: Apply) -> bool:
 
 
 def numbers(value: Value, n: int) -> Floats:
-    """A single value's numbers, `(n,)`, logicals as 1 and 0; NaN where there is none."""
+    """A single value's numbers, `(n,)`, logicals as 1 and 0, of many cells the first; NaN where there is none."""
+    if not value.numbers.size:
+        return np.full(n, np.nan)
     found = np.where(value.kinds <= LOGICAL, value.numbers, np.nan)
     found = np.where(value.kinds >= ERROR, np.nan, found)
     return np.broadcast_to(found.reshape(found.shape[0], -1)[:, 0], (n,))

@@ -35,6 +35,11 @@ REPLICAS: Final = 6
 
 _PRIOR: Final = 2048
 _ACCEPTED: Final = 1024
+_FEWEST_OF_EITHER: Final = 64
+"""Trials as drawn, and accepted ones; and how few there may be of each in a large book."""
+
+_BYTES: Final = 1 << 29
+"""For the values of all nodes, and the derivatives of all cells: as many trials as fit."""
 
 
 class Case:
@@ -65,11 +70,17 @@ class Case:
         if not self.names:
             return {}
         special = self._special()
-        prior = np.column_stack([self.run.prior[a.name][:_PRIOR] for a in self.model.live])
-        accepted = np.column_stack([self.run.inputs[a.name][:_ACCEPTED] for a in self.model.live])
+        prior = np.column_stack([self.run.prior[a.name][: self._room(_PRIOR)] for a in self.model.live])
+        accepted = np.column_stack([self.run.inputs[a.name][: self._room(_ACCEPTED)] for a in self.model.live])
         rows = np.concatenate([special, prior, accepted])
         rows = rows[np.isfinite(rows).all(axis=1)]
         return {key: np.ascontiguousarray(column) for key, column in zip(self.names, rows.T, strict=True)}
+
+    def _room(self, trials: int) -> int:
+        """How many trials of so many there is room for."""
+        each = 24 * len(self.places) + 16 * len(self.cells) * len(self.names)
+        share = _BYTES / (each * (_PRIOR + _ACCEPTED))
+        return trials if share >= 1 else max(_FEWEST_OF_EITHER, int(share * trials))
 
     def _special(self) -> Floats:
         """The base case, and each assumption at either end of its range with the others at their base."""
@@ -93,7 +104,8 @@ class Case:
     @cached_property
     def first_accepted(self) -> int:
         """From which trial on they are accepted ones; before it, of all that were drawn."""
-        return self.n - min(self.run.kept_inputs, self.run.accepted, _ACCEPTED) if self.names else self.n
+        kept = min(self.run.kept_inputs, self.run.accepted, self._room(_ACCEPTED))
+        return self.n - kept if self.names else self.n
 
     @property
     def n(self) -> int:
@@ -106,7 +118,7 @@ class Case:
 
     @cached_property
     def errors(self) -> dict[int, Floats]:
-        """Node -> the size of its error by rounding, `(n,)`: the root mean square of `REPLICAS` evaluations."""
+        """Node of a cell -> the size of its error by rounding, `(n,)`, in the root mean square of the replicas."""
         return self._spread(lambda replica: {"jitter": Jitter((self._seed, replica))})
 
     def _spread(self, how: Callable[[int], dict[str, Jitter]]) -> dict[int, Floats]:
@@ -114,7 +126,7 @@ class Case:
         squares: dict[int, Floats] = {}
         for replica in range(REPLICAS):
             found = evaluation(self.dag, self.places, self.draws, **how(replica))
-            for place in self.places:
+            for place in {*self.node.values()}:
                 off = numbers(found[place], self.n) - self.number(place)
                 squares[place] = squares.get(place, 0.0) + np.where(np.isnan(off), 0.0, off) ** 2
         return {place: np.sqrt(square / REPLICAS) for place, square in squares.items()}
@@ -131,7 +143,7 @@ class Case:
 
     @cached_property
     def of_inputs(self) -> dict[int, Floats]:
-        """Node -> by how much it moves when assumptions and typed numbers do by a unit of their last place, `(n,)`."""
+        """Node of a cell -> by how much it moves with the last place of assumptions and typed numbers, `(n,)`."""
         found = self._spread(lambda replica: {"of_inputs": Jitter((self._seed, REPLICAS, replica), _MOVE)})
         return {place: spread * (2 * DOUBLE / _MOVE) for place, spread in found.items()}
 

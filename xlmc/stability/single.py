@@ -16,7 +16,7 @@ from xlmc.stability.findings import Finding, Level, Where
 
 __all__ = ["single_precision"]
 
-_REPLICAS: Final = 4
+_REPLICAS: Final = 2
 
 
 def single_precision(case: Case) -> Iterator[Finding]:

@@ -252,7 +252,7 @@ def _along(moved: Moved, result: Value, way: _Way) -> _Along:
         if step is not None:
             most = np.maximum(most, np.abs(step).reshape(step.shape[0], -1).max(axis=1))
     found = _extrapolated(moved, result, way, np.ones(n))
-    small = (most < 1) & (most > _SMALLEST)
+    small = (most < 1) & (most >= _SMALLEST)
     if small.any():
         found = found.or_better(_extrapolated(moved, result, way, np.where(small, 1 / most, 1.0)))
     if not np.isfinite(found.first_error).all():

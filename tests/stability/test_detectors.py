@@ -174,3 +174,13 @@ def test_the_root_of_a_sum_of_squares_has_no_edge(look):
 def test_a_quadrant_lost_in_trials_that_no_filter_keeps(look):
     found = look({"B1": "=ATAN(A2/A1)", "C1": "=A1*1"}, filters={"ahead": {"cell": "C1", "above": 0}}, x=(-1, 3))
     assert only(found, "quadrant").level is Level.DOUBTFUL
+
+
+def test_a_divisor_that_no_assumption_changes(look):
+    """270° typed into a cell: its cosine is folded to -1.8e-16 before any trial, and yet 0."""
+    found = look({"A3": 270.0, "B1": "=(A1*COS(RADIANS(A3))+A2*SIN(RADIANS(2*A3)))/COS(RADIANS(A3))"})
+    one = only(found, "division")
+    assert one.level is Level.WRONG
+    assert "no error where the formula, computed exactly, has no value" in one.effect
+    assert "it divides by COS(RADIANS(A3))" in one.what
+    assert any("the digits of 'f' are not there" in warning for warning in found.run.warnings)

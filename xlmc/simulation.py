@@ -16,6 +16,7 @@ from xlmc import statistics
 from xlmc.blocks import FilterTally
 from xlmc.definitions import Forecast, Settings
 from xlmc.definitions.model import name_key
+from xlmc.digits import lost_digits
 from xlmc.errors import Notice, SimulationError
 from xlmc.sampling import METHODS, Plan
 from xlmc.scratch import numbers, parts
@@ -274,7 +275,12 @@ class Simulation:
         if self.error_trials > ERROR_SHARE * self.trials:
             share = self.error_trials / self.trials
             found.append(f"{self.error_trials:,} trials ({share:.2%}) were lost to errors in cells")
-        return [*found, *self._sparse()]
+        return [*found, *self._sparse(), *self._lost_digits]
+
+    @cached_property
+    def _lost_digits(self) -> list[str]:
+        """Which forecasts have no digits; looked for when it is first asked."""
+        return lost_digits(self.model, self.inputs)
 
     def _sparse(self) -> list[str]:
         """Whether too few trials were accepted in a replicate for the errors to be told from the replicates."""

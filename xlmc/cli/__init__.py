@@ -1,5 +1,5 @@
 """The command line: `xlmc new`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc simulate`, `xlmc report`,
-`xlmc replay`, `xlmc compare`, `xlmc screen`.
+`xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc stability`.
 
 Exit codes: 0 done; 1 the run finished but its answer must not be used as it stands; 2 bad input, with the cell and what
 to do; 130 interrupted by Ctrl-C. Modules here import what costs time inside their functions.
@@ -20,6 +20,7 @@ from xlmc.cli.replay import replay
 from xlmc.cli.report import report
 from xlmc.cli.screen import screen
 from xlmc.cli.simulate import INTERRUPTED, NOT_TO_BE_USED, simulate
+from xlmc.cli.stability import stability
 from xlmc.cli.verify import verify
 from xlmc.errors import RoundingError, XlmcError
 
@@ -34,7 +35,7 @@ def xlmc() -> None:
     """Monte Carlo simulation of Excel workbooks, without Excel."""
 
 
-for _command in (new, check, fit, verify, simulate, report, replay, compare, screen):
+for _command in (new, check, fit, verify, simulate, report, replay, compare, screen, stability):
     xlmc.add_command(_command)
 
 

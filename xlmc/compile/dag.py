@@ -145,6 +145,7 @@ class Dag:
         nodes: by place.
         types: what each gives where it is no error; ANY where that is not known before the run, or is many cells.
         sizes: of each.
+        origins: of constants that were computed here: the node that each came from.
         made: where it is a list, the nodes asked for are noted in it, whether they were new or not.
     """
 
@@ -152,6 +153,7 @@ class Dag:
         self.nodes: list[Node] = []
         self.types: list[Kind] = []
         self.sizes: list[Size] = []
+        self.origins: dict[int, Apply | Select | Rescue | Range] = {}
         self.made: list[int] | None = None
         self._known: dict[object, int] = {}
 
@@ -205,8 +207,11 @@ class Dag:
         size = self._size(node)
         known = {p: part.value for p in uses(node) if isinstance(part := self.nodes[p], Constant)}
         if len(known) == len(set(uses(node))) and not _volatile(node):
+            new = len(self.nodes)
             place = self.constant(evaluated(node, known))
             self._known[node] = place
+            if place == new:  # else it was typed in, or computed before
+                self.origins[place] = node
             return place
         return self._place(node, node, self._type(node) if size is None else Kind.ANY, size)
 

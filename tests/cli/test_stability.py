@@ -1,0 +1,71 @@
+from __future__ import annotations
+
+import importlib.util
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def as_printed(tmp_path):
+    spec = importlib.util.spec_from_file_location("as_printed", ROOT / "examples" / "as_printed.py")
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    path = tmp_path / "as-printed.xlsx"
+    script.write(path)
+    return path
+
+
+def test_the_equations_as_printed(xlmc, as_printed):
+    outcome = xlmc("stability", as_printed, "-n", "40000")
+    assert outcome.code == 1
+    assert "1 wrong, 1 doubtful" in outcome.out
+    first, second = (
+        outcome.out.index("1. Wrong: Model!C21 Nissan PDOF"),
+        outcome.out.index("2. Doubtful: Model!C11 V2i"),
+    )
+    assert first < second
+    assert "Instead: =180-MOD(180-(180+DEGREES(ATAN2(dV2x,dV2y))-alpha_2),360)" in outcome.out
+    assert "Where: Nissan approach angle from 272 to" in outcome.out
+    assert "a run of 40,000, seed 999" in " ".join(outcome.out.split())
+
+
+def test_the_case_study(xlmc, case_study):
+    outcome = xlmc("stability", case_study, "-n", "40000", "--cells")
+    assert outcome.code == 0
+    assert "Wrong" not in outcome.out
+    assert "Model!D20" in outcome.out  # a cell that is neither forecast nor filter
+
+
+def test_json(xlmc, as_printed):
+    outcome = xlmc("stability", as_printed, "-n", "40000", "--seed", "3", "--json", "--quiet")
+    assert outcome.code == 1
+    found = json.loads(outcome.out)
+    assert (found["trials"], found["seed"], found["unchecked"]) == (40_000, 3, [])
+    assert [one["kind"] for one in found["findings"][:2]] == ["quadrant", "division"]
+    (where,) = found["findings"][1]["where"]
+    assert (where["assumption"], where["low"], where["units"]) == ("Nissan approach angle", 272, "°")
+    assert len(found["cells"]) == 28
+    assert {"amplification", "rounding", "excess", "through"} <= set(found["cells"][0])
+
+
+def test_a_book_that_is_not_there(xlmc):
+    outcome = xlmc("stability", "nothing.xlsx")
+    assert outcome.code == 2
+    assert "there is no such file" in outcome.err
+
+
+def _words(text):
+    """Numbers apart: the last digits that rounding leaves differ between processors."""
+    return re.sub(r"\d[\d.]*(e[-+]?\d+)?", "#", " ".join(text.split()))
+
+
+def test_the_documents_show_the_output(xlmc, as_printed):
+    page = (ROOT / "docs" / "stability.md").read_text()
+    shown = page.partition("<!-- output of `xlmc stability as-printed.xlsx` -->\n```text\n")[2].partition("\n```")[0]
+    assert "What cells amplify and lose" in shown
+    assert _words(xlmc("stability", as_printed).out).startswith(_words(shown))

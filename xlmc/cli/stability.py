@@ -1,0 +1,174 @@
+"""`xlmc stability`: which cells lose digits or blow up, where in the ranges, and by how much."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from xlmc.stability import CellDigits, Finding, Stability
+
+__all__ = ["stability"]
+
+NOT_TO_BE_USED = 1
+
+
+@click.command()
+@click.argument("book", type=click.Path(path_type=Path))
+@click.option("--cells", "all_cells", is_flag=True, help="List every needed cell, not forecasts and filters alone.")
+@click.option("-n", "--trials", type=click.IntRange(1), help="Trials of the run.  [default: the book's, else 200000]")
+@click.option("--seed", type=click.IntRange(0), help="Seed of the run.  [default: the book's, else 999]")
+@click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes.")
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@click.option("--quiet", is_flag=True, help="Print no notes of what is being done.")
+def stability(
+    book: Path, all_cells: bool, trials: int | None, seed: int | None, jobs: int, as_json: bool, quiet: bool
+) -> None:
+    """Find where BOOK loses digits, or its numbers are not what they seem, within the ranges of its assumptions."""
+    from xlmc import stability as room
+    from xlmc.cli.printing import telling
+    from xlmc.model import load
+
+    model = load(book)
+    with telling(quiet) as told:
+        found = room.stability(model, trials=trials, seed=seed, jobs=jobs, told=told)
+    if as_json:
+        click.echo(json.dumps(_as_json(found), indent=2, ensure_ascii=False))
+    else:
+        _show(found, all_cells)
+    for warning in found.run.warnings:
+        click.echo(f"warning: {warning}; the answer must not be used as it stands.", err=True)
+    if found.wrong or found.run.warnings:
+        raise click.exceptions.Exit(NOT_TO_BE_USED)
+
+
+_LEVELS = {"WRONG": "Wrong", "DOUBTFUL": "Doubtful", "NOTE": "Note"}
+
+
+def _show(found: Stability, all_cells: bool) -> None:
+    click.echo(f"{found.run.model.workbook.name}: {_count(found.findings)}\n")
+    for number, finding in enumerate(found.findings, start=1):
+        _show_finding(number, finding)
+    _show_cells(found, all_cells)
+    for sentence in _sentences(found):
+        click.echo(click.wrap_text(sentence, width=100))
+
+
+def _count(findings: Sequence[Finding]) -> str:
+    levels = [finding.level.name for finding in findings]
+    parts = [f"{levels.count(level)} {word.lower()}" for level, word in _LEVELS.items() if level in levels]
+    return f"{len(levels)} finding{'s' * (len(levels) != 1)}: {', '.join(parts)}" if parts else "nothing found"
+
+
+def _show_finding(number: int, finding: Finding) -> None:
+    name = f" {finding.name}" if finding.name else ""
+    click.echo(f"{number}. {_LEVELS[finding.level.name]}: {finding.cell}{name}   {_cut(finding.formula)}")
+    lines = [("", f"{finding.what}."), ("", f"{finding.effect[0].upper()}{finding.effect[1:]}.")]
+    if finding.where:
+        lines.append(("Where: ", "; ".join(map(str, finding.where))))
+    for label, text in lines:
+        click.echo(click.wrap_text(f"{label}{text[0].upper()}{text[1:]}", 100, "   ", "   "))
+    if finding.instead:
+        click.echo(f"   Instead: {finding.instead}")
+    click.echo()
+
+
+def _cut(formula: str, width: int = 90) -> str:
+    return formula if len(formula) <= width else f"{formula[: width - 1]}…"
+
+
+def _show_cells(found: Stability, all_cells: bool) -> None:
+    from xlmc.cli.printing import table
+
+    model = found.run.model
+    targets = {row.cell for row in model.forecasts} | {row.cell for row in model.filters}
+    rows = [
+        [
+            cell.name or str(cell.cell),
+            *([str(cell.cell)] if all_cells else []),
+            f"{cell.amplification:.3g}",
+            f"{cell.most:.3g}",
+            cell.through,
+            f"{cell.rounding:.1g}",
+            f"{cell.excess:.2g}",
+        ]
+        for cell in found.cells
+        if all_cells or cell.cell in targets
+    ]
+    headings = [
+        "Cell",
+        *(["Address"] if all_cells else []),
+        "Amplifies",
+        "In 1 of 100",
+        "Through",
+        "Rounding",
+        "Excess",
+    ]
+    first = 3 if all_cells else 2
+    table("What cells amplify and lose", headings, rows, right=(first - 1, first, first + 2, first + 3))
+
+
+def _sentences(found: Stability) -> Iterator[str]:
+    yield (
+        "Amplifies: the relative change of the cell per relative change of the assumptions, all together, in the "
+        "median trial and in 1 of 100; through which of them most. No other form of a formula makes it less. Rounding: "
+        "the largest error by rounding, as a share of the central range or of the value. Excess: how many times larger "
+        "it is than what rounding the assumptions alone would bring; up to 7 is what sound formulas have."
+    )
+    yield (
+        f"Looked at: {found.points:,} trials of a run of {found.run.trials:,}, seed {found.run.settings.seed}, the "
+        f"base case and the ends of all ranges among them; {found.recomputed:,} computed again with 50 digits."
+    )
+    for cell, functions in found.unchecked:
+        yield f"Not checked with 50 digits: {', '.join(functions)} in {cell}."
+
+
+def _as_json(found: Stability) -> dict[str, object]:
+    return {
+        "book": str(found.run.model.path),
+        "trials": found.run.trials,
+        "seed": found.run.settings.seed,
+        "points": found.points,
+        "recomputed": found.recomputed,
+        "findings": [_finding_json(finding) for finding in found.findings],
+        "cells": [_cell_json(cell) for cell in found.cells],
+        "unchecked": [{"cell": str(cell), "functions": list(names)} for cell, names in found.unchecked],
+    }
+
+
+def _finding_json(finding: Finding) -> dict[str, object]:
+    from xlmc.cli.plain import finite
+
+    return {
+        "level": finding.level.name.lower(),
+        "kind": finding.kind,
+        "cell": str(finding.cell),
+        "name": finding.name,
+        "formula": finding.formula,
+        "what": finding.what,
+        "effect": finding.effect,
+        "where": [
+            {"assumption": one.name, "low": one.low, "high": one.high, "units": one.units} for one in finding.where
+        ],
+        "instead": finding.instead,
+        "size": finite(finding.size),
+    }
+
+
+def _cell_json(cell: CellDigits) -> dict[str, object]:
+    from xlmc.cli.plain import finite
+
+    return {
+        "cell": str(cell.cell),
+        "name": cell.name,
+        "amplification": finite(cell.amplification),
+        "amplification_1_of_100": finite(cell.most),
+        "through": cell.through,
+        "rounding": finite(cell.rounding),
+        "excess": finite(cell.excess),
+        "checked": cell.checked,
+    }

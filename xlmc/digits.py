@@ -1,0 +1,100 @@
+"""A cheap look at whether the digits of the answers are there: a few hundred accepted trials, with random rounding.
+
+It runs with every simulation. `xlmc stability` says more: which cell it is, why, and what to write instead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.compile.replicas import Jitter, closure, evaluation, numbers, term_sizes
+from xlmc.definitions.model import name_key
+
+if TYPE_CHECKING:
+    from xlmc.model import Model
+
+__all__ = ["DUST", "lost_digits"]
+
+Floats = NDArray[np.float64]
+
+_TRIALS: Final = 256
+_REPLICAS: Final = 1
+
+_MOST_NODES: Final = 10_000
+"""Operations that the forecasts need: some half a second. Larger books are left to `xlmc stability`."""
+
+_VISIBLE: Final = 1e-3
+"""Of a forecast's central range, or of its value where that is larger."""
+
+DUST: Final = 1e-12
+"""Of the largest number that was added or subtracted on the way: what should be 0 and is less than that is as good."""
+
+_CONFIRMED: Final = 3
+"""Trials that are computed again with 50 digits before anybody is warned."""
+
+_SHARE: Final = 0.01
+"""Of the trials looked at: a few that are next to a jump say nothing of the digits."""
+
+
+def lost_digits(model: Model, inputs: Mapping[str, Floats]) -> list[str]:
+    """Sentences on the forecasts whose digits rounding has taken.
+
+    Args:
+        model: the workbook.
+        inputs: assumption -> its accepted draws, `(m,)`; the first few hundred are looked at.
+    """
+    draws = {name_key(a.name): inputs[a.name][:_TRIALS] for a in model.live}
+    n = next((column.size for column in draws.values()), 0)
+    if not n:
+        return []
+    nodes = {forecast.name: model.lowering.cell(forecast.cell) for forecast in model.forecasts}
+    places = closure(model.lowering.dag, list(nodes.values()))
+    if len(places) > _MOST_NODES:
+        return []
+    plain = evaluation(model.lowering.dag, places, draws)
+    lost = {name: np.zeros(n, bool) for name in nodes}
+    for replica in range(_REPLICAS):
+        found = evaluation(model.lowering.dag, places, draws, Jitter(replica))
+        for name, node in nodes.items():
+            lost[name] |= _off(numbers(plain[node], n), numbers(found[node], n))
+    lost = {name: where for name, where in lost.items() if np.count_nonzero(where) > _SHARE * n}
+    if not lost:
+        return []
+    dust = term_sizes(model.lowering.dag, places, plain)
+    return [
+        f"the digits of {name!r} are not there: rounding alone moves it by more than a thousandth of its central range "
+        f"in {np.count_nonzero(where):,} of {n:,} accepted trials (xlmc stability says where)"
+        for name, where in lost.items()
+        if _is_confirmed(model, nodes[name], draws, numbers(plain[nodes[name]], n), where, DUST * dust[nodes[name]])
+    ]
+
+
+def _is_confirmed(
+    model: Model, node: int, draws: Mapping[str, Floats], plain: Floats, lost: NDArray[np.bool_], dust: float
+) -> bool:
+    """Whether 50 digits give another number in one of the first lost trials, 0 apart where dust stands for it."""
+    from xlmc.compile.exact import Exact, exactly  # mpmath is slow to import, and hardly ever needed
+
+    exact = Exact(model.lowering.dag, closure(model.lowering.dag, [node]))
+    trials = np.flatnonzero(lost)[:_CONFIRMED]
+    found = [
+        exactly(exact.trial({key: float(column[trial]) for key, column in draws.items()})[node]) for trial in trials
+    ]
+    off = _off(np.concatenate([plain, plain[trials]]), np.concatenate([plain, found]))[plain.size :]
+    is_dust = (np.array(found) == 0) & (np.abs(plain[trials]) <= dust)
+    return bool((off & ~is_dust).any())
+
+
+def _off(plain: Floats, moved: Floats) -> NDArray[np.bool_]:
+    """Where a number is visibly another, or is one in one evaluation only, `(n,)`."""
+    known = np.isfinite(plain)
+    if not known.any():
+        return np.zeros(plain.size, bool)
+    low, high = np.quantile(plain[known], [0.245, 0.755])
+    with np.errstate(invalid="ignore"):
+        far = np.abs(moved - plain) > _VISIBLE * np.fmax(high - low, np.abs(plain))
+    return np.asarray(far | (np.isfinite(moved) != known))

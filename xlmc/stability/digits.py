@@ -1,0 +1,231 @@
+"""Cells whose rounding errors are larger than rounding the assumptions would make them, or that are large at all.
+
+A cell is named where it loses more than what it depends on: what follows from it only hands the loss on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+from typing import Final
+
+import numpy as np
+
+from xlmc.address import Cell
+from xlmc.digits import DUST
+from xlmc.stability.case import Case, Floats
+from xlmc.stability.culprits import Division, cancellation, divisions
+from xlmc.stability.findings import CellDigits, Finding, Level, Where
+from xlmc.stability.rewriting import of_small_changes, same, without_cosine
+from xlmc.stability.zeros import only_assumption, zeros
+
+__all__ = ["cell_digits", "lost_digits"]
+
+EXCESS: Final = 10.0
+"""Times the error that rounding the assumptions brings: from here on the form of the formula is to blame. Formulas
+that are well written stay below 7 in the worst of some thousand trials."""
+
+NOTICED: Final = 3e-14
+"""Of a central range: two of sixteen digits. Less than that is not worth another formula."""
+
+VISIBLE: Final = 1e-6
+"""Of a central range: an error of this size is told of whatever it comes from."""
+
+UNUSABLE: Final = 1e-3
+"""Of a central range: the numbers must not be used."""
+
+_WORST: Final = 12
+"""Trials that are computed again with 50 digits for a cell."""
+
+_HANDED_ON: Final = 3.0
+"""A cell is the source where its loss is so many times the largest among what it depends on."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Loss:
+    """One cell: its errors, `(n,)`, as shares of its size, and of what rounding the assumptions alone would bring."""
+
+    cell: Cell
+    error: Floats
+    excess: Floats
+
+    @property
+    def worst(self) -> float:
+        return float(np.nanmax(self.error, initial=0.0))
+
+    @property
+    def most(self) -> float:
+        return float(np.nanmax(self.excess, initial=0.0))
+
+
+def _losses(case: Case) -> dict[Cell, _Loss]:
+    found = {}
+    for cell in case.cells:
+        error = case.errors[case.node[cell]]
+        inherent = case.inherent(cell)
+        with np.errstate(all="ignore"):
+            excess = np.where((inherent > 0) & np.isfinite(inherent), error / inherent, 0.0)
+        found[cell] = _Loss(cell, error / _size(case, cell), excess)
+    return found
+
+
+def _size(case: Case, cell: Cell) -> Floats:
+    """What an error is measured against, `(n,)`: the central range, or the value where that is larger."""
+    return np.fmax(np.abs(case.number(case.node[cell])), case.scale(cell))
+
+
+def lost_digits(case: Case) -> Iterator[Finding]:
+    """The cells that lose digits themselves."""
+    losses = _losses(case)
+    for cell, loss in losses.items():
+        before = [losses[part] for part in case.lowering.graph.needs.get(cell, ()) if part in losses]
+        excess, error = (max((getattr(b, name) for b in before), default=0.0) for name in ("most", "worst"))
+        by_form = loss.most >= EXCESS and loss.worst >= NOTICED and loss.most >= _HANDED_ON * excess
+        by_size = loss.worst >= VISIBLE and loss.worst >= 10 * _HANDED_ON * error
+        if by_form or by_size:
+            finding = _finding(case, loss, by_form)
+            if finding is not None:
+                yield finding
+
+
+def _finding(case: Case, loss: _Loss, by_form: bool) -> Finding | None:
+    """What 50 digits confirm."""
+    cell, node = loss.cell, case.node[loss.cell]
+    measure = loss.excess if by_form and loss.worst < VISIBLE else loss.error
+    worst = [int(trial) for trial in np.argsort(np.nan_to_num(measure))[::-1][:_WORST]]
+    shown = case.number(node)
+    off, share, missing = 0.0, 0.0, False
+    size = _size(case, cell)
+    for trial in worst:
+        exact = case.exact_number(node, trial)
+        if np.isnan(exact) != np.isnan(shown[trial]):
+            missing |= not _is_missing_before(case, cell, trial)
+        elif not np.isnan(exact) and not (exact == 0 and abs(shown[trial]) <= DUST * case.term_sizes[node]):
+            error = abs(float(shown[trial]) - exact)
+            off, share = max(off, error), max(share, error / float(size[trial]))
+    inherent = float(np.nanmax(case.inherent(cell)[worst]))
+    times = off / inherent if inherent > 0 else float("inf")
+    if not missing and share < VISIBLE and times < EXCESS / 3:
+        return None
+    bad = np.asarray(loss.error >= UNUSABLE)
+    random = bool(bad[case.special :].any())
+    level = Level.WRONG if (share >= UNUSABLE or missing) and random else Level.DOUBTFUL
+    what, instead, ranges = _explained(case, cell, worst[0])
+    low = loss.excess >= max(EXCESS, 0.3 * loss.most) if by_form else loss.error >= max(VISIBLE, 0.1 * loss.worst)
+    return Finding(
+        level,
+        "rounding" if what is None else what[0],
+        cell,
+        case.trees.title(cell),
+        case.trees.written(cell),
+        f"{case.trees.title(cell) or cell} loses digits" if what is None else what[1],
+        _effect(case, cell, share, loss, missing, random, inherent),
+        ranges or case.where(np.asarray(low)),
+        instead,
+        _SIZE_OF_NOTHING if missing else share if level is Level.WRONG else loss.most,
+    )
+
+
+_SIZE_OF_NOTHING: Final = 1e6
+"""A number where there is none goes before all that is off by less than that."""
+
+
+def _is_missing_before(case: Case, cell: Cell, trial: int) -> bool:
+    """Whether a number that the cell needs is there already where it should not be."""
+    needs = [case.node[part] for part in case.lowering.graph.needs.get(cell, ()) if part in case.node]
+    return any(np.isnan(case.exact_number(node, trial)) != np.isnan(case.number(node)[trial]) for node in needs)
+
+
+def _effect(case: Case, cell: Cell, share: float, loss: _Loss, missing: bool, random: bool, inherent: float) -> str:
+    reached = [repr(name) for name in case.forecasts_of([cell]) if name != case.trees.title(cell)]
+    on = f"; {', '.join(reached)} depend{'s' * (len(reached) == 1)} on it" if reached else ""
+    at = "" if random or not (missing or share >= UNUSABLE) else " (at the base case or an end of a range)"
+    if missing:
+        return f"it shows a number and no error where the formula, computed exactly, has no value{at}{on}"
+    digits = f"rounding puts it off by up to {share:.1g} of its central range{at}"
+    if share >= UNUSABLE:
+        return f"{digits}: the digits shown are not there{on}"
+    return f"{digits}, {loss.most:.0f} times what rounding the assumptions alone would{on}"
+
+
+def _explained(case: Case, cell: Cell, trial: int) -> tuple[tuple[str, str] | None, str | None, tuple[Where, ...]]:
+    """Why, as a kind and a sentence; a better form; and the range of the one assumption to blame."""
+    small = [division for division in divisions(case, cell) if division.least < _SMALL]
+    if small:
+        sentence, ranges = _division(case, cell, small[0])
+        better = without_cosine(case, cell, small[0].factor)
+        if better is not None and not same(case, cell, better):
+            better = None
+        return ("division", sentence), _formula(case, cell, better), ranges
+    lost = cancellation(case, cell, trial)
+    if lost is not None and lost.left < _SMALL:
+        sentence = (
+            f"{case.trees.text(lost.tree, cell)} is a difference of near equals: down to {lost.left:.1g} of its terms "
+            "is left, and with it as many of their digits are lost"
+        )
+        return ("cancellation", sentence), _formula(case, cell, of_small_changes(case, cell)), ()
+    return None, None, ()
+
+
+_SMALL: Final = 0.2
+
+
+def _formula(case: Case, cell: Cell, tree: object) -> str | None:
+    return None if tree is None else f"={case.trees.text(tree, cell)}"  # type: ignore[arg-type]  # an expression
+
+
+def _division(case: Case, cell: Cell, division: Division) -> tuple[str, tuple[Where, ...]]:
+    factor = case.trees.text(division.factor, cell)
+    values = np.abs(case.number(division.place))
+    trial = int(np.nanargmin(values))
+    sentence = f"it divides by {factor}, which comes down to {values[trial]:.2g}"
+    key = only_assumption(case, division.place)
+    if key is None:
+        return sentence, case.where(np.asarray(values <= 2 * division.least * np.nanmedian(values)))
+    assumption = next(a for a, name in zip(case.model.live, case.names, strict=True) if name == key)
+    units = assumption.units or ""
+    draws = case.draws[key]
+    sentence += f" at {assumption.name} = {draws[trial]:.6g} {units}".rstrip()
+    known = zeros(case, division.place, key)
+    if known:
+        near = min(known, key=partial(_distance, float(draws.min()), float(draws.max())))
+        sentence += f" and is 0 at {near:.12g} {units}".rstrip()
+    limit = 2 * float(values[trial])
+    here = draws[values <= max(limit, 0.1)]
+    return sentence, (Where(assumption.name, float(here.min()), float(here.max()), units),) if here.size else ()
+
+
+def _distance(low: float, high: float, x: float) -> float:
+    return max(low - x, x - high, 0.0)
+
+
+def cell_digits(case: Case) -> Iterator[CellDigits]:
+    """What every needed cell that holds numbers amplifies and loses."""
+    losses = _losses(case)
+    unchecked = case.unchecked
+    for cell in case.cells:
+        values = case.number(case.node[cell])
+        if not np.isfinite(values).any():
+            continue
+        one = case.derivatives.cells[cell]
+        moved = np.abs(one.gradient * case.derivatives.points)
+        with np.errstate(all="ignore"):
+            amplified = np.nansum(moved, axis=1) / np.maximum(np.abs(values), case.scale(cell) * _LEAST)
+        amplified = amplified[np.isfinite(amplified)]
+        total = np.nansum(moved, axis=0)
+        through = case.derivatives.names[int(total.argmax())] if total.size and total.any() else ""
+        yield CellDigits(
+            cell,
+            case.trees.title(cell),
+            float(np.median(amplified)) if amplified.size else 0.0,
+            float(np.quantile(amplified, 0.99)) if amplified.size else 0.0,
+            through,
+            losses[cell].worst,
+            losses[cell].most,
+            case.node[cell] not in unchecked,
+        )
+
+
+_LEAST: Final = 0.01
+"""Of a central range: a change is measured against no less than that where the value itself goes through 0."""

@@ -1,0 +1,154 @@
+"""Formulas as trees: their parts with the nodes that compute them, and their text with the names that people gave."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from typing import Final
+
+from xlmc.address import Area, Cell, host_of, parse_address
+from xlmc.compile.references import NotYetNeeded
+from xlmc.compile.scope import Scope
+from xlmc.errors import FormulaError
+from xlmc.formula import ir
+from xlmc.formula.text import formula_text
+from xlmc.model import Model
+
+__all__ = ["Trees", "factors", "terms"]
+
+_RANKS: Final[Mapping[str, int]] = {
+    **dict.fromkeys(("=", "<>", "<", "<=", ">", ">="), 1),
+    "&": 2,
+    **dict.fromkeys("+-", 3),
+    **dict.fromkeys("*/", 4),
+    "^": 5,
+}
+_SIGN: Final = 6
+_WHOLE: Final = 9
+
+
+class Trees:
+    """The formulas that a model needs."""
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self.lowering, self._graph = model.lowering, model.lowering.graph
+
+    @cached_property
+    def names(self) -> dict[Cell, str]:
+        """Cell -> the defined name of it."""
+        found: dict[Cell, str] = {}
+        for defined in self._graph.workbook.names:
+            try:
+                place = parse_address(defined.text.replace("$", ""), "")
+            except ValueError:
+                continue
+            if isinstance(place, Cell):
+                found.setdefault(place, defined.name)
+        return found
+
+    def title(self, cell: Cell) -> str:
+        """What people call a cell: a forecast, a filter, an assumption, or its defined name."""
+        rows = [(row.cell, row.name) for row in self._model.forecasts]
+        rows += [(row.cell, row.name) for row in self._model.filters]
+        rows += [(row.cell, row.name) for row in self._model.assumptions]
+        return next((name for place, name in rows if place == cell), self.names.get(cell, ""))
+
+    def written(self, cell: Cell) -> str:
+        """The formula of a cell as in the file, with `=`; empty where it has none."""
+        text = self._graph.text(cell)
+        return text and f"={text}"
+
+    def place(self, tree: ir.Expression, cell: Cell) -> int | None:
+        """The node of a part of a cell's formula; None where it has none of its own."""
+        formula = self._graph.workbook.content(host_of(cell)).formula
+        array = formula is not None and (formula.array is not None or formula.dynamic)
+        try:
+            return self.lowering.single(self.lowering.lower(tree, Scope(cell, array=array)))
+        except (FormulaError, NotYetNeeded):
+            return None
+
+    def parts(self, cell: Cell) -> Iterator[ir.Expression]:
+        """The parts of a cell's formula, outer ones first, but for those inside LET and LAMBDA."""
+        open_: list[ir.Expression] = [self._graph.formulas[cell]]
+        while open_:
+            tree = open_.pop()
+            if isinstance(tree, Cell | Area):
+                continue
+            yield tree
+            match tree:
+                case ir.Unary(_, operand):
+                    open_.append(operand)
+                case ir.Binary(_, left, right):
+                    open_ += [right, left]
+                case ir.Call(_, arguments):
+                    open_ += reversed(arguments)
+                case _:
+                    pass
+
+    def text(self, tree: ir.Expression, host: Cell) -> str:
+        """A formula, without `=`, with defined names, and brackets only where they are needed."""
+        return self._text(tree, host)[0]
+
+    def _reference(self, place: Cell | Area, host: Cell) -> str:
+        if isinstance(place, Cell) and place in self.names:
+            return self.names[place]
+        text = str(place)
+        return text.rpartition("!")[2] if place.sheet == host.sheet else text
+
+    def _text(self, tree: ir.Expression, host: Cell) -> tuple[str, int]:
+        """The text, and how tightly it holds together."""
+        match tree:
+            case ir.Number(value) if value >= 0:
+                return f"{value:.15g}", _WHOLE
+            case ir.Unary("%", operand):
+                return f"{self._within(operand, host, _WHOLE)}%", _WHOLE
+            case ir.Unary(operator, operand):
+                return f"{operator}{self._within(operand, host, _SIGN)}", _SIGN
+            case ir.Binary(operator, left, right) if operator in _RANKS:
+                rank = _RANKS[operator]
+                return f"{self._within(left, host, rank)}{operator}{self._within(right, host, rank + 1)}", rank
+            case ir.Call(name, arguments):
+                return f"{name}({','.join(self._text(part, host)[0] for part in arguments)})", _WHOLE
+            case _:
+                return formula_text(tree, lambda place: self._reference(place, host)), _WHOLE
+
+    def _within(self, tree: ir.Expression, host: Cell, rank: int) -> str:
+        text, own = self._text(tree, host)
+        return text if own >= rank else f"({text})"
+
+
+def factors(tree: ir.Expression, *, below: bool = False) -> tuple[list[ir.Expression], list[ir.Expression]]:
+    """A product of quotients as the factors above and below the line; signs are a factor of -1.
+
+    Args:
+        tree: any.
+        below: whether it stands below the line itself.
+    """
+    match tree:
+        case ir.Binary("*", left, right):
+            parts = factors(left, below=below), factors(right, below=below)
+        case ir.Binary("/", left, right):
+            parts = factors(left, below=below), factors(right, below=not below)
+        case ir.Unary("-", operand):
+            parts = factors(operand, below=below), ([ir.Number(-1.0)], [])
+        case ir.Unary("+", operand):
+            return factors(operand, below=below)
+        case _:
+            return ([], [tree]) if below else ([tree], [])
+    return parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]
+
+
+def terms(tree: ir.Expression) -> list[tuple[int, ir.Expression]]:
+    """A sum as its terms with their signs."""
+    match tree:
+        case ir.Binary("+", left, right):
+            return terms(left) + terms(right)
+        case ir.Binary("-", left, right):
+            return terms(left) + [(-sign, term) for sign, term in terms(right)]
+        case ir.Unary("-", operand):
+            return [(-sign, term) for sign, term in terms(operand)]
+        case ir.Unary("+", operand):
+            return terms(operand)
+        case _:
+            return [(1, tree)]

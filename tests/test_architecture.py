@@ -21,7 +21,7 @@ FLOORS = [
     {"compile", "sampling"},
     {"scene", "drawing", "correlating", "stopping"},
     {"model", "verify"},
-    {"blocks"},
+    {"blocks", "derivatives"},
     {"simulation", "scheduling"},
     {"rounding", "pilot"},
     {"simulate", "result_cells"},

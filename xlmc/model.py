@@ -100,6 +100,11 @@ class Model:
         return self.definitions.filters
 
     @property
+    def lowering(self) -> Lowering:
+        """The nodes of the needed cells."""
+        return self._lowering
+
+    @property
     def fallible(self) -> frozenset[str]:
         """Keys of the assumptions whose draws may be errors: their parameters vary."""
         return frozenset(name_key(a.name) for stage in self.scene.stages[1:] for a in stage)
@@ -187,6 +192,23 @@ class Model:
         Raises:
             SimulationError: an assumption is missing, unknown or frozen, or the values are of different lengths.
         """
+        full, n = self.points(inputs)
+        if n == 0:
+            return {forecast.name: np.empty(0) for forecast in self.forecasts}
+        needed = frozenset(name_key(a.name) for a in self.live)
+        evaluator = ENGINES["numpy"](self._lowering, self._forecast_targets, [], needed).evaluator(n)
+        columns = evaluator.filters(full, n)
+        return {f.name: column.as_floats() for f, column in zip(self.forecasts, columns, strict=True)}
+
+    def points(self, inputs: Mapping[str, ArrayLike]) -> tuple[dict[str, NDArray[np.float64]], int]:
+        """Values of every live assumption as engines take them: key -> `(n,)`, in the order of `live`, and `n`.
+
+        Args:
+            inputs: name of the assumption -> `(n,)` or a number.
+
+        Raises:
+            SimulationError: an assumption is missing, unknown or frozen, or the values are of different lengths.
+        """
         given = {name_key(name): np.asarray(values, np.float64) for name, values in inputs.items()}
         self._check_names(inputs)
         sizes = {values.size for values in given.values() if values.ndim} - {1} or {1}
@@ -194,13 +216,8 @@ class Model:
             hint = "give lists of the same length"
             raise SimulationError("an assumption takes one number or one list of numbers", hint=hint)
         (n,) = sizes
-        if n == 0:
-            return {forecast.name: np.empty(0) for forecast in self.forecasts}
-        full = {key: np.ascontiguousarray(np.broadcast_to(values, (n,))) for key, values in given.items()}
-        needed = frozenset(name_key(a.name) for a in self.live)
-        evaluator = ENGINES["numpy"](self._lowering, self._forecast_targets, [], needed).evaluator(n)
-        columns = evaluator.filters(full, n)
-        return {f.name: column.as_floats() for f, column in zip(self.forecasts, columns, strict=True)}
+        keys = [name_key(a.name) for a in self.live]
+        return {key: np.ascontiguousarray(np.broadcast_to(given[key], (n,))) for key in keys}, n
 
     def _check_names(self, names: Collection[str]) -> None:
         known = {name_key(a.name): a for a in self.assumptions}

@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from xlmc.functions.picking import cell_of
 from xlmc.functions.registry import Anything, Cells, Kind, excel
 from xlmc.functions.values import BLANK, ERROR, LOGICAL, NA, NUMBER, TEXT, Floats, Value
 
@@ -31,6 +32,7 @@ def error_type(value: Value) -> Value:
 @excel("N", Cells, returns=Kind.ANY)
 def number(value: Value) -> Value:
     """A number as it is, TRUE as 1, anything else as 0; errors stay."""
+    value = cell_of(value, 0, 0) if value.shape[1:] == (1, 1) else value
     counts = (value.kinds == NUMBER) | (value.kinds == LOGICAL)
     return Value.of_numbers(np.where(counts, value.numbers, 0.0), value.errors)
 
@@ -38,6 +40,7 @@ def number(value: Value) -> Value:
 @excel("T", Cells, returns=Kind.ANY)
 def text(value: Value) -> Value:
     """A text as it is, an empty one for anything else; errors stay."""
+    value = cell_of(value, 0, 0) if value.shape[1:] == (1, 1) else value
     texts = np.full(value.shape, "", object)
     if value.texts is not None:
         texts = np.where(value.kinds == TEXT, value.texts, "")

@@ -26,7 +26,7 @@ FLOORS = [
     {"rounding", "pilot"},
     {"simulate", "result_cells"},
     {"record"},
-    {"analysis"},
+    {"analysis", "methods"},
     {"report"},
     {"cli"},
     {"__main__"},

@@ -15,7 +15,7 @@ from xlmc.methods.rms import Rms, line, rms_of
 __all__ = ["Curve", "Rung", "rung_of"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Rung:
     """The runs of one length.
 
@@ -43,7 +43,7 @@ class Rung:
     measured: bool = True
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Curve:
     """A method's rungs, the shortest runs first; a single one where it has no budget to spend.
 

@@ -31,7 +31,7 @@ from xlmc.scene import filter_limits
 __all__ = ["PILOT", "STARTS", "Optimised"]
 
 PILOT: Final = 32_768
-STARTS: Final = 4
+STARTS: Final = 2
 """From which each end is looked for: the accepted trials of the pilot that are nearest to it."""
 
 _MOST_STEPS: Final = 60

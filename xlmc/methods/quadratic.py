@@ -13,6 +13,9 @@ __all__ = ["Quadratic", "fitted"]
 _MOST_WITH_PRODUCTS: Final = 60
 """Variables; with more, only their squares are taken, and no products of two."""
 
+_AT_ONCE: Final = 1_024
+"""Points whose terms stay in the cache."""
+
 _RIDGE: Final = 1e-10
 """Of a term's mean square: what settles terms that say the same, as the square of a variable that has two values."""
 
@@ -21,20 +24,16 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Quadratic:
-    """Polynomials in z = (x − centre) / scale: constant + slope·z + z·bend·z.
+    """Polynomials in z = (x − centre) / scale: weights · (1, z, products of two).
 
     Attributes:
         centre, scale: `(k,)`.
-        constant: `(q,)`.
-        slope: `(k, q)`.
-        bend: `(q, k, k)`, upper triangles.
+        weights: `(q, coefficients)`.
     """
 
     centre: Floats
     scale: Floats
-    constant: Floats
-    slope: Floats
-    bend: Floats
+    weights: Floats
 
     @staticmethod
     def coefficients(k: int) -> int:
@@ -43,22 +42,31 @@ class Quadratic:
 
     def __call__(self, points: Floats) -> Floats:
         """The values at `(n, k)` points, `(n, q)`."""
-        z = (points - self.centre) / self.scale
-        bent = [np.einsum("nk,nk->n", z @ bend, z) for bend in self.bend]
-        return np.asarray(self.constant + z @ self.slope + np.column_stack(bent))
+        parts = [points[start : start + _AT_ONCE] for start in range(0, len(points), _AT_ONCE)]
+        # Not a matrix product: these are small, and its threads would wait for each other.
+        found = [np.einsum("qt,tn->qn", self.weights, _terms((part - self.centre) / self.scale)) for part in parts]
+        return np.concatenate(found, axis=1).T
 
 
 def fitted(points: Floats, values: Floats) -> Quadratic:
-    """The polynomials of least squares through `(n, k)` points and their values `(n, q)`, of which there is one or more."""
+    """The polynomials of least squares through `(n, k)` points and their values `(n, q)`."""
     centre, spread = points.mean(axis=0), points.std(axis=0)
     scale = np.where(spread > 0.0, spread, 1.0)
-    z = (points - centre) / scale
-    k = z.shape[1]
-    first, second = np.triu_indices(k, 0) if k <= _MOST_WITH_PRODUCTS else (np.arange(k), np.arange(k))
-    terms = np.concatenate([np.ones((len(z), 1)), z, z[:, first] * z[:, second]], axis=1)
-    normal = terms.T @ terms
-    normal[np.diag_indices(len(normal))] += _RIDGE * len(z)
-    weights = np.linalg.solve(normal, terms.T @ values)
-    bend = np.zeros((values.shape[1], k, k))
-    bend[:, first, second] = weights[1 + k :].T
-    return Quadratic(centre, scale, weights[0], weights[1 : 1 + k], bend)
+    terms = _terms((points - centre) / scale)
+    normal = terms @ terms.T
+    normal[np.diag_indices(len(normal))] += _RIDGE * len(points)
+    return Quadratic(centre, scale, np.linalg.solve(normal, terms @ values).T)
+
+
+def _terms(z: Floats) -> Floats:
+    """(coefficients, n): 1, the variables, their squares and, of few variables, their products."""
+    n, k = z.shape
+    columns = np.ascontiguousarray(z.T)
+    found = np.empty((Quadratic.coefficients(k), n))
+    found[0], found[1 : 1 + k] = 1.0, columns
+    np.multiply(columns, columns, out=found[1 + k : 1 + 2 * k])
+    place = 1 + 2 * k
+    for i in range(k - 1 if k <= _MOST_WITH_PRODUCTS else 0):
+        np.multiply(columns[i], columns[i + 1 :], out=found[place : place + k - 1 - i])
+        place += k - 1 - i
+    return found

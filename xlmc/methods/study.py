@@ -31,7 +31,7 @@ REPLICATES: Final = 24
 """They know a root mean square error to 15 %."""
 
 MOST_TRIALS: Final = 1 << 17
-RUNGS: Final = (64, 16, 4, 1)
+RUNGS: Final = (16, 4, 1)
 """The trials of the longest runs over those of each rung."""
 
 ONCE: Final[tuple[Method, ...]] = (Corners(), Optimised(), WorstCase(), FirstOrder(), SecondOrder())
@@ -41,6 +41,9 @@ _REFERENCE_SECONDS: Final = 6.0
 _LONGEST_RUN: Final = 0.25
 _TIMED: Final = 5
 """Runs of each length that an engine is timed by; what it answers is known already."""
+
+_RUNS_SECONDS, _LEAST_RUNS = 5.0, 6
+"""Of one method and length, where nobody says how many there shall be."""
 
 _FEW: Final = 8
 """Trials that the slow reference engine is timed by, where the shortest runs would take it too long."""
@@ -61,7 +64,7 @@ class Study:
         accuracy: what is asked of the answers, as typed, the number, and whether it is a share of each number.
         reference: what the errors are from.
         ladder: trials of the runs of methods that draw.
-        replicates: runs of each length.
+        replicates: the most runs of each length.
         once: the methods that give one answer, the cheapest idea first.
         curves: the methods that draw.
         engines: the same trials as the first of these, computed by other engines.
@@ -95,7 +98,7 @@ def study(
     accuracy: str = ACCURACY,
     reference_trials: int | None = None,
     trials: int | None = None,
-    replicates: int = REPLICATES,
+    replicates: int | None = None,
     seed: int | None = None,
     told: Told | None = None,
 ) -> Study:
@@ -107,7 +110,7 @@ def study(
             each number, or a number in the forecasts' units.
         reference_trials: by default a power of two of them, up to 33,554,432, that takes about six seconds.
         trials: of the longest runs; by default a power of two, up to 131,072, that takes a quarter of a second.
-        replicates: runs of each length, 2 or more.
+        replicates: runs of each length, 2 or more; by default 24, or as many as take a method five seconds, 6 at least.
         seed: of the reference; by default the workbook's.
         told: called with what is being measured.
 
@@ -130,8 +133,8 @@ def study(
     curves = measuring.drawn(DRAWN)
     engines = measuring.engines(ENGINE_VARIANTS, next(c for c in curves if c.method is MONTE_CARLO))
     return Study(
-        model, own, wanted, reference, ladder, replicates, once, curves, engines, measuring.absent
-    )  # fmt: skip
+        model, own, wanted, reference, ladder, replicates or REPLICATES, once, curves, engines, measuring.absent
+    )
 
 
 def ladder_of(model: Model, most: int | None, seed: int) -> tuple[int, ...]:
@@ -147,12 +150,12 @@ def ladder_of(model: Model, most: int | None, seed: int) -> tuple[int, ...]:
     return tuple(dict.fromkeys(max(most // part, 16) for part in RUNGS))
 
 
-def _check(seed: int, replicates: int, trials: int | None, reference: int | None, model: Model) -> None:
+def _check(seed: int, replicates: int | None, trials: int | None, reference: int | None, model: Model) -> None:
     if not model.forecasts:
         raise SimulationError("the workbook has no forecast", hint="add one to the table xlmc_forecasts")
     if seed < 0:
         raise SimulationError(f"the seed {seed} is negative", hint="give a whole number from 0 up")
-    if replicates < 2:
+    if replicates is not None and replicates < 2:
         raise SimulationError(f"{replicates} replicates were asked for", hint="give 2 or more; 24 are usual")
     for what, given, least in (("trials", trials, 1_024), ("reference trials", reference, 1_024)):
         if given is not None and given < least:
@@ -163,10 +166,11 @@ class _Measuring:
     """The runs of one study."""
 
     def __init__(
-        self, model: Model, reference: Reference, ladder: Sequence[int], replicates: int, seed: int, tell: Told
+        self, model: Model, reference: Reference, ladder: Sequence[int], replicates: int | None, seed: int, tell: Told
     ) -> None:
         self._model, self._reference, self._ladder = model, reference, ladder
-        self._replicates, self._seed, self._tell = replicates, seed, tell
+        self._replicates, self._limited = replicates or REPLICATES, replicates is None
+        self._seed, self._tell = seed, tell
         self.absent: dict[str, str] = {}
         self._first: dict[int, MethodResult] = {}
 
@@ -197,6 +201,8 @@ class _Measuring:
             for replicate in range(self._replicates):
                 self._tell(f"runs of {budget:,} trials, {replicate + 1} of {self._replicates}")
                 for method in able:
+                    if self._limited and _enough(results[method.key]):
+                        continue
                     seed = self._seed + 1 + number * 1_000_000 + replicate
                     results[method.key].append(method.run(self._model, budget, seed))
             for method in able:
@@ -254,6 +260,11 @@ class _Measuring:
             for statistic in ("mean", "sd", "low", "high")
         ]
         return f"answers at the same trials differ from those of numpy by {np.nanmax(apart):.1g} SD at the most"
+
+
+def _enough(results: Sequence[MethodResult]) -> bool:
+    """Whether runs of one length have taken their time."""
+    return len(results) >= _LEAST_RUNS and sum(result.seconds for result in results) > _RUNS_SECONDS
 
 
 def _seconds(result: MethodResult | None) -> float:

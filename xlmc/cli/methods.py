@@ -1,0 +1,179 @@
+"""`xlmc methods`: what each method of uncertainty analysis costs on a workbook, and what it misses."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from xlmc.methods import Curve, Rung, Study
+
+__all__ = ["methods"]
+
+QUICK = {"reference_trials": 1 << 20, "trials": 1 << 14, "replicates": 8}
+
+
+@click.command()
+@click.argument("book", type=click.Path(path_type=Path))
+@click.option(
+    "--accuracy",
+    default="1%",
+    show_default=True,
+    help="What is asked of mean, standard deviation and both ends of the central range, in 95 of 100 runs: 1% of each"
+    " number, or 0.1 in the forecasts' units.",
+)
+@click.option(
+    "--reference-trials",
+    type=click.IntRange(1_024),
+    help="Trials of the reference.  [default: what takes about six seconds, 33554432 at most]",
+)
+@click.option(
+    "-n",
+    "--trials",
+    type=click.IntRange(1_024),
+    help="Trials of the longest runs; others have a fourth and a sixteenth.  [default: what takes about a quarter of a"
+    " second, 131072 at most]",
+)
+@click.option("--replicates", type=click.IntRange(2), help="Runs of each length.  [default: 24]")
+@click.option("--quick", is_flag=True, help="Few and short runs: a first look.")
+@click.option("--seed", type=click.IntRange(0), help="Seed of the reference; runs follow it.  [default: the book's]")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    help="Also write charts and tables: .png, .html or .xlsx; may be given several times.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+def methods(
+    book: Path,
+    accuracy: str,
+    reference_trials: int | None,
+    trials: int | None,
+    replicates: int | None,
+    quick: bool,
+    seed: int | None,
+    output: tuple[Path, ...],
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
+    from xlmc.cli.printing import telling
+    from xlmc.methods import study
+    from xlmc.model import load
+    from xlmc.report.methods import check_targets, save_methods
+
+    model = load(book)
+    check_targets(output, book)
+    asked = {"reference_trials": reference_trials, "trials": trials, "replicates": replicates}
+    if quick:
+        asked = {name: QUICK[name] if value is None else value for name, value in asked.items()}
+    with telling(quiet) as told:
+        found = study(model, accuracy=accuracy, seed=seed, told=told, **asked)
+    for path in output:
+        save_methods(found, path)
+    if as_json:
+        click.echo(json.dumps(_as_json(found), indent=2, ensure_ascii=False))
+        return
+    _show(found)
+    for path in output:
+        click.echo(f"Written: {path}")
+
+
+def _show(found: Study) -> None:
+    from xlmc.cli.printing import table
+    from xlmc.methods import recommendation
+    from xlmc.report.methods import tables
+
+    shown = tables.reference_table(found), tables.error_table(found), tables.bounds_table(found)
+    for each in shown:
+        if each.rows:
+            table(each.title, each.headings, each.rows, right=range(each.right, len(each.headings)))
+    for name, said in tables.cannot_lines(found):
+        click.echo(click.wrap_text(f"{name}: {said}.", width=100, subsequent_indent="    "))
+    click.echo()
+    for paragraph in recommendation(found):
+        click.echo(click.wrap_text(paragraph, width=100))
+        click.echo()
+
+
+def _as_json(found: Study) -> dict[str, Any]:
+    from xlmc.cli.plain import estimate_json
+    from xlmc.methods import STATISTICS, recommendation
+
+    reference = found.reference
+    return {
+        "workbook": found.model.workbook.name,
+        "accuracy": found.accuracy[0],
+        "seed": found.seed,
+        "reference": {
+            "trials": reference.trials,
+            "accepted": reference.accepted,
+            "sampling": reference.sampling,
+            "engine": reference.engine,
+            "seconds": reference.seconds,
+            "acceptance": estimate_json(reference.acceptance),
+            "forecasts": {
+                name: {
+                    each: {"value": getattr(answer, each), "error": getattr(reference.errors[name], each)}
+                    for each in STATISTICS
+                }
+                for name, answer in reference.answers.items()
+            },
+        },
+        "methods": [_curve(found, curve) for curve in found.every],
+        "not_used": dict(found.absent),
+        "recommendation": recommendation(found),
+    }
+
+
+def _curve(found: Study, curve: Curve) -> dict[str, Any]:
+    from xlmc.cli.plain import finite
+    from xlmc.methods import STATISTICS, need
+
+    drawn = curve not in found.once
+    wanted = need(found, curve) if drawn else None
+    return {
+        "method": curve.method.key,
+        "name": curve.method.name,
+        "cannot": curve.method.cannot,
+        "remarks": list(curve.remarks),
+        "setup_seconds": curve.setup,
+        "bounds": {name: {"least": least, "most": most} for name, (least, most) in curve.ranges.items()},
+        "runs": [_rung(found, rung, drawn) for rung in curve.rungs],
+        "slopes": {
+            each: {"trials": finite(curve.slope(each, "budget")), "seconds": finite(curve.slope(each, "seconds"))}
+            for each in STATISTICS
+        },
+        "needs": wanted and {"trials": finite(wanted.trials), "seconds": finite(wanted.seconds)},
+    }
+
+
+def _rung(found: Study, rung: Rung, drawn: bool) -> dict[str, Any]:
+    from xlmc.cli.plain import finite
+    from xlmc.methods import STATISTICS
+
+    return {
+        "trials": rung.budget if drawn else None,
+        "seconds": rung.seconds,
+        "seconds_measured": rung.measured,
+        "evaluations": rung.evaluations,
+        "effective": rung.effective,
+        "failed": rung.failed,
+        "acceptance_error": None if rung.acceptance is None else finite(rung.acceptance.value),
+        "errors": {
+            forecast.name: {
+                each: {
+                    "rms": finite(rung.errors[forecast.name, each].value),
+                    "error": finite(rung.errors[forecast.name, each].error),
+                    "bias": finite(rung.errors[forecast.name, each].bias),
+                }
+                for each in STATISTICS
+            }
+            for forecast in found.model.forecasts
+        },
+    }

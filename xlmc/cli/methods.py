@@ -28,14 +28,14 @@ QUICK = {"reference_trials": 1 << 20, "trials": 1 << 14, "replicates": 8}
 @click.option(
     "--reference-trials",
     type=click.IntRange(1_024),
-    help="Trials of the reference.  [default: what takes about six seconds, 33554432 at most]",
+    help="Trials of the reference.  [default: what takes about eight seconds, 33554432 at most]",
 )
 @click.option(
     "-n",
     "--trials",
     type=click.IntRange(1_024),
     help="Trials of the longest runs; others have a fourth and a sixteenth.  [default: what takes about a quarter of a"
-    " second, 131072 at most]",
+    " second, 262144 at most]",
 )
 @click.option("--replicates", type=click.IntRange(2), help="Runs of each length.  [default: 24]")
 @click.option("--quick", is_flag=True, help="Few and short runs: a first look.")

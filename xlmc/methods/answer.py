@@ -106,6 +106,4 @@ def answer_of(values: Floats, weights: Floats | None, central: float) -> Answer:
     sample = Sample.of(values[known], None if weights is None else weights[known])
     tails = np.array([(1.0 - central) / 2.0, (1.0 + central) / 2.0])
     low, high = sample.quantile(tails)
-    return Answer(
-        statistics.mean(sample).value, statistics.standard_deviation(sample).value, float(low), float(high)
-    )
+    return Answer(statistics.mean(sample).value, statistics.standard_deviation(sample).value, float(low), float(high))

@@ -49,9 +49,7 @@ class Corners:
         lost = int(np.count_nonzero(np.isnan(found).any(axis=1)))
         if lost:
             remarks = (*remarks, f"in {lost:,} corners a forecast is no number; these are left out")
-        return MethodResult(
-            time.perf_counter() - started, evaluate.count, answers, remarks=(*remarks, *box.remarks)
-        )
+        return MethodResult(time.perf_counter() - started, evaluate.count, answers, remarks=(*remarks, *box.remarks))
 
 
 def _corners(k: int, seed: int) -> tuple[NDArray[np.bool_], tuple[str, ...]]:

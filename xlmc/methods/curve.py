@@ -21,7 +21,7 @@ class Rung:
 
     Attributes:
         budget: evaluations that each run might spend.
-        seconds: of a run, the median.
+        seconds: of the fastest run: the others waited for something else that the machine did.
         evaluations: that a run spent, the median.
         errors: (forecast, attribute of `Answer`) -> in the forecast's units.
         shares: attribute of `Answer` -> the same over the forecasts' standard deviations, root mean square over
@@ -86,7 +86,7 @@ def rung_of(budget: int, results: Sequence[MethodResult], reference: Reference) 
     lost = sum(all(np.isnan(answer.mean) for answer in result.answers.values()) for result in results)
     return Rung(
         budget=budget,
-        seconds=median(result.seconds for result in results),
+        seconds=min(result.seconds for result in results),
         evaluations=median(result.evaluations for result in results),
         errors=errors,
         shares=_shares(errors, reference),

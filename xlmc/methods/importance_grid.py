@@ -1,6 +1,6 @@
-"""An importance grid: the assumptions are drawn more often where a pilot run's trials were accepted, and weighted for it.
+"""An importance grid: assumptions are drawn more often where a pilot run's trials were accepted, and weighted for it.
 
-Every assumption has a histogram of the uniforms behind its draws in the accepted pilot trials. It is mixed with the flat
+Every assumption has a histogram of the uniforms behind its draws in the accepted pilot trials. It is mixed with a flat
 one: by a tenth, so that no part of the range is left out and no weight grows without bound (Hesterberg 1995, defensive
 mixture); and further where it differs from flat by no more than chance makes it (James and Stein's shrinkage of the χ²
 distance), or the noise of seventeen histograms would cost more than the grid gains. A trial's weight is the product of
@@ -120,7 +120,9 @@ class _GridPlan(Plan):
 
     def margins(self, seed: int, names: Sequence[str]) -> list[Margin]:
         """See `Plan`."""
-        return [_Bent(Stream(seed, name), self.grids[name], self.weights, place == 0) for place, name in enumerate(names)]
+        return [
+            _Bent(Stream(seed, name), self.grids[name], self.weights, place == 0) for place, name in enumerate(names)
+        ]
 
 
 class _Bent:

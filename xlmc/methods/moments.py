@@ -15,7 +15,7 @@ from xlmc.sampling import Draw, Plan
 
 __all__ = ["Moments", "drawn", "moments_of"]
 
-_DRAWN: Final = 131_072
+_DRAWN: Final = 65_536
 _STEPS: Final = 1 << 16
 """Of the midpoint rule over the quantile function of a distribution with cutoffs."""
 
@@ -45,9 +45,9 @@ def moments_of(model: Model, seed: int) -> Moments:
     """
     found = np.array([_of_draw(model.draws[a.name]) for a in model.live]).reshape(-1, 2)
     varying = [place for place, (mean, _) in enumerate(found) if np.isnan(mean)]
-    for place in np.flatnonzero(~np.isfinite(found).all(axis=1)):
-        if place not in varying:
-            message = f"{model.live[place].name} has no finite mean and standard deviation to start from"
+    for place, assumption in enumerate(model.live):
+        if place not in varying and not np.isfinite(found[place]).all():
+            message = f"{assumption.name} has no finite mean and standard deviation to start from"
             raise SimulationError(message, hint="give it cutoffs, or use a method that draws")
     correlations = np.eye(len(model.live))
     remarks = []
@@ -65,7 +65,7 @@ def moments_of(model: Model, seed: int) -> Moments:
 
 
 def drawn(model: Model, seed: int) -> Floats:
-    """131,072 Sobol draws of the assumptions, before any filter, `(n, k)`."""
+    """65,536 Sobol draws of the assumptions, before any filter, `(n, k)`."""
     plan = Plan.of("sobol", _DRAWN)
     made = model.sampler(seed, plan.size, plan=plan)
     keys = [name_key(a.name) for a in model.live]

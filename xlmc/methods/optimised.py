@@ -20,7 +20,9 @@ from numpy.typing import NDArray
 
 from xlmc.address import Cell
 from xlmc.derivatives import Derivative, derivatives
+from xlmc.drawing import parameter_target
 from xlmc.errors import SimulationError
+from xlmc.functions.values import ERROR, TEXT
 from xlmc.methods.answer import Answer, MethodResult
 from xlmc.methods.box import Box, box_of
 from xlmc.methods.evaluation import Evaluation
@@ -50,7 +52,9 @@ class Optimised:
     key: str = "optimised"
     name: str = "Bounds, optimised"
     sampling: bool = False
-    cannot: str = "gives two ends and no likelihood in between; a search may end at an extreme that is not the outermost"
+    cannot: str = (
+        "gives two ends and no likelihood in between; a search may end at an extreme that is not the outermost"
+    )
 
     def run(self, model: Model, budget: int, seed: int) -> MethodResult:
         """See `Method`; the budget is not looked at.
@@ -218,12 +222,10 @@ def _distance(end: Floats, z: Floats) -> tuple[float, Floats]:
 
 
 def _number(model: Model, limit: float | Cell) -> float | None:
-    """A limit that does not vary; None for one that does."""
+    """A limit that does not vary; None for one that does, or that is no number."""
     if not isinstance(limit, Cell):
         return limit
-    if limit in model.scene.graph.varying or limit not in model.scene.graph.formulas:
-        content = model.workbook.content(limit).value
-        fixed = limit not in model.scene.graph.varying and isinstance(content, (int, float))
-        return float(content) if fixed else None
-    value = model.lowering.value(limit)
-    return None if value is None else float(value.numbers[0])
+    value = model.lowering.known(parameter_target(limit))
+    if value is None or int(value.kinds[0]) >= ERROR or int(value.kinds[0]) == TEXT:
+        return None
+    return float(value.numbers[0])

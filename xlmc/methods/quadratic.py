@@ -55,7 +55,7 @@ def fitted(points: Floats, values: Floats) -> Quadratic:
     terms = _terms((points - centre) / scale)
     normal = terms @ terms.T
     normal[np.diag_indices(len(normal))] += _RIDGE * len(points)
-    return Quadratic(centre, scale, np.linalg.solve(normal, terms @ values).T)
+    return Quadratic(centre, scale, np.asarray(np.linalg.solve(normal, terms @ values).T, np.float64))
 
 
 def _terms(z: Floats) -> Floats:

@@ -25,8 +25,8 @@ _FAR: Final = 64.0
 """So many times beyond the measured runs, errors are only carried on with a word of warning."""
 
 ERROR_WORDS: Final = (
-    "All errors here are those of computing the answer, measured against the reference; none says whether the model fits "
-    "the crash, or whether the ranges of the assumptions are right."
+    "All errors here are those of computing the answer, measured against the reference; none says whether the model "
+    "fits the crash, or whether the ranges of the assumptions are right."
 )
 
 
@@ -76,8 +76,8 @@ def _drawing(study: Study, able: dict[Curve, Need]) -> list[str]:
     ]
     if chosen is plain and fastest is not plain:
         said[0] += (
-            f" {fastest.method.name} would take {seconds_text(able[fastest].seconds)}, which saves too little to give up "
-            "independent trials and errors that are known without replicates."
+            f" {fastest.method.name} would take {seconds_text(able[fastest].seconds)}, which saves too little to give "
+            "up independent trials and errors that are known without replicates."
             if not _same_trials(study, fastest)
             else f" With {fastest.method.name.rpartition(', ')[2]} the same trials take "
             f"{seconds_text(able[fastest].seconds)}."

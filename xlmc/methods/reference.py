@@ -88,7 +88,9 @@ def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: in
     run = model.simulate(trials, seed, sampling=sampling, engine=engine, arithmetic="float64", keep_inputs=0)
     if run.accepted < 100:
         message = f"of {run.trials:,} reference trials the filters accept {run.accepted}, too few to measure methods by"
-        raise SimulationError(message, hint="give more reference trials, or see whether the filters contradict the inputs")
+        raise SimulationError(
+            message, hint="give more reference trials, or see whether the filters contradict the inputs"
+        )
     numbers = {f.name: _numbers(run, f) for f in model.forecasts}
     return Reference(
         trials=run.trials,

@@ -1,4 +1,4 @@
-"""The methods of `xlmc simulate` as they stand: independent trials, Latin hypercube, scrambled Sobol, and the engines."""
+"""The methods of `xlmc simulate` as they stand: independent trials, Latin hypercube, scrambled Sobol, the engines."""
 
 from __future__ import annotations
 

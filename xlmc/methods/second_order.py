@@ -1,7 +1,7 @@
 """Second-order Taylor: the forecast as a quadratic polynomial of the assumptions about their means.
 
 Its mean is f + ½ Σ Σ ∂²f/∂xᵢ∂xⱼ cov(xᵢ, xⱼ), exactly. Standard deviation and range are those of the polynomial at
-131,072 Sobol draws of the assumptions, which costs no evaluation of the workbook and asks for no moment beyond it.
+65,536 Sobol draws of the assumptions, which costs no evaluation of the workbook and asks for no moment beyond it.
 """
 
 from __future__ import annotations

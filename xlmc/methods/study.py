@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from statistics import median
 from typing import Final
 
 import numpy as np
 
 from xlmc.definitions.stopping import as_tolerance
 from xlmc.errors import SimulationError
-from xlmc.methods.answer import Method, MethodResult
+from xlmc.methods.answer import STATISTICS, Method, MethodResult
 from xlmc.methods.corners import Corners
-from xlmc.methods.curve import Curve, Rung, rung_of
+from xlmc.methods.curve import Curve, rung_of
 from xlmc.methods.first_order import FirstOrder
 from xlmc.methods.importance_grid import ImportanceGrid
 from xlmc.methods.optimised import Optimised
@@ -30,23 +29,25 @@ ACCURACY: Final = "1%"
 REPLICATES: Final = 24
 """They know a root mean square error to 15 %."""
 
-MOST_TRIALS: Final = 1 << 17
+MOST_TRIALS: Final = 1 << 18
 RUNGS: Final = (16, 4, 1)
 """The trials of the longest runs over those of each rung."""
 
 ONCE: Final[tuple[Method, ...]] = (Corners(), Optimised(), WorstCase(), FirstOrder(), SecondOrder())
 DRAWN: Final[tuple[Method, ...]] = (*SAMPLERS, ImportanceGrid(), Surrogate())
 
-_REFERENCE_SECONDS: Final = 6.0
+_REFERENCE_SECONDS: Final = 8.0
 _LONGEST_RUN: Final = 0.25
-_TIMED: Final = 5
-"""Runs of each length that an engine is timed by; what it answers is known already."""
+_APART: Final = 1_000_000
+"""Between the seeds of the runs of one length and those of the next: runs of different lengths share no trials."""
+
+SLOW: Final = "formulas"
 
 _RUNS_SECONDS, _LEAST_RUNS = 5.0, 6
 """Of one method and length, where nobody says how many there shall be."""
 
 _FEW: Final = 8
-"""Trials that the slow reference engine is timed by, where the shortest runs would take it too long."""
+"""Trials that the slow reference engine is timed by."""
 
 _PATIENCE: Final = 1.0
 """Seconds of a run that is too long to be repeated."""
@@ -67,7 +68,7 @@ class Study:
         replicates: the most runs of each length.
         once: the methods that give one answer, the cheapest idea first.
         curves: the methods that draw.
-        engines: the same trials as the first of these, computed by other engines.
+        engines: the same trials as Monte Carlo's, computed by other engines.
         absent: method -> why it could not be used.
     """
 
@@ -108,8 +109,8 @@ def study(
         model: the workbook.
         accuracy: of mean, standard deviation and both ends of the central range, that 95 of 100 runs keep: `1%` of
             each number, or a number in the forecasts' units.
-        reference_trials: by default a power of two of them, up to 33,554,432, that takes about six seconds.
-        trials: of the longest runs; by default a power of two, up to 131,072, that takes a quarter of a second.
+        reference_trials: by default a power of two of them, up to 33,554,432, that takes about eight seconds.
+        trials: of the longest runs; by default a power of two, up to 262,144, that takes a quarter of a second.
         replicates: runs of each length, 2 or more; by default 24, or as many as take a method five seconds, 6 at least.
         seed: of the reference; by default the workbook's.
         told: called with what is being measured.
@@ -130,8 +131,12 @@ def study(
     ladder = ladder_of(model, trials, own)
     measuring = _Measuring(model, reference, ladder, replicates, own, tell)
     once = measuring.once(ONCE)
-    curves = measuring.drawn(DRAWN)
-    engines = measuring.engines(ENGINE_VARIANTS, next(c for c in curves if c.method is MONTE_CARLO))
+    found = measuring.drawn(DRAWN, [each for each in ENGINE_VARIANTS if each.engine != SLOW])
+    curves = tuple(curve for curve in found if curve.method in DRAWN)
+    engines = tuple(curve for curve in found if curve.method not in DRAWN)
+    for variant in ENGINE_VARIANTS:
+        if variant.engine == SLOW:
+            engines += measuring.slow(variant, next(curve for curve in curves if curve.method is MONTE_CARLO))
     return Study(
         model, own, wanted, reference, ladder, replicates or REPLICATES, once, curves, engines, measuring.absent
     )
@@ -142,7 +147,7 @@ def ladder_of(model: Model, most: int | None, seed: int) -> tuple[int, ...]:
     if most is None:
         first = MONTE_CARLO.run(model, 1_024, seed)
         rate = 1_024 / first.seconds
-        for trials in (8_192, MOST_TRIALS):
+        for trials in (8_192, 65_536, MOST_TRIALS):
             if trials / rate > 4.0 * _LONGEST_RUN:
                 break
             rate = trials / MONTE_CARLO.run(model, trials, seed).seconds
@@ -172,7 +177,6 @@ class _Measuring:
         self._replicates, self._limited = replicates or REPLICATES, replicates is None
         self._seed, self._tell = seed, tell
         self.absent: dict[str, str] = {}
-        self._first: dict[int, MethodResult] = {}
 
     def once(self, methods: Sequence[Method]) -> tuple[Curve, ...]:
         """The methods that need to be run only once; twice, so that the second time says what it costs."""
@@ -190,59 +194,47 @@ class _Measuring:
             found.append(Curve(method, (rung,), setup, result.remarks, ranges))
         return tuple(found)
 
-    def drawn(self, methods: Sequence[Method]) -> tuple[Curve, ...]:
-        """The methods that draw: in turn, so that what else the machine does is shared among them."""
-        firsts = {method.key: self._tried(method, self._ladder[0]) for method in methods}
-        able = [method for method in methods if firsts[method.key] is not None]
-        rungs: dict[str, list[Rung]] = {method.key: [] for method in able}
-        last: dict[str, MethodResult] = {}
-        for number, budget in enumerate(self._ladder):
-            results: dict[str, list[MethodResult]] = {method.key: [] for method in able}
-            for replicate in range(self._replicates):
-                self._tell(f"runs of {budget:,} trials, {replicate + 1} of {self._replicates}")
-                for method in able:
-                    if self._limited and _enough(results[method.key]):
-                        continue
-                    seed = self._seed + 1 + number * 1_000_000 + replicate
-                    results[method.key].append(method.run(self._model, budget, seed))
-            for method in able:
-                rungs[method.key].append(rung_of(budget, results[method.key], self._reference))
-                last[method.key] = results[method.key][-1]
-            self._first[budget] = results[MONTE_CARLO.key][0]
-        return tuple(
-            Curve(
-                method,
-                tuple(rungs[method.key]),
-                max(0.0, _seconds(firsts[method.key]) - rungs[method.key][0].seconds),
-                last[method.key].remarks,
-                {},
-            )
-            for method in able
-        )
+    def drawn(self, methods: Sequence[Method], engines: Sequence[Sampled]) -> tuple[Curve, ...]:
+        """The methods that draw, and the engines, which compute the trials that the first of these has computed.
 
-    def engines(self, variants: Sequence[Sampled], numpy: Curve) -> tuple[Curve, ...]:
-        """The engines: they compute the trials that `numpy` has computed, so that only their time is measured."""
-        found = []
-        for variant in variants:
-            self._tell(variant.name)
-            first = self._tried(variant, _FEW if variant.engine == "formulas" else self._ladder[0])
-            if first is None:
-                continue
-            rungs, remarks = [], list[str]()
-            for number, rung in enumerate(numpy.rungs):
-                expected = first.seconds * rung.budget / _FEW if variant.engine == "formulas" else 0.0
-                if expected > _PATIENCE:
-                    rungs.append(replace(rung, seconds=expected, measured=False))
-                    continue
-                seed = self._seed + 1 + number * 1_000_000
-                runs = [variant.run(self._model, rung.budget, seed) for _ in range(_TIMED)]
-                rungs.append(replace(rung, seconds=median(run.seconds for run in runs)))
-                remarks = [self._agreement(runs[0], self._first[rung.budget])]
-            if not all(rung.measured for rung in rungs):
-                remarks.append(f"time worked out from {_FEW} trials")
-            setup = 0.0 if variant.engine == "formulas" else max(0.0, first.seconds - rungs[0].seconds)
-            found.append(Curve(variant, tuple(rungs), setup, tuple(remarks), {}))
-        return tuple(found)
+        All in turn, run length after run length, so that whatever else the machine does is shared among them.
+        """
+        firsts = {method.key: self._tried(method, self._ladder[0]) for method in (*methods, *engines)}
+        able = [method for method in (*methods, *engines) if firsts[method.key] is not None]
+        results: dict[tuple[str, int], list[MethodResult]] = {(m.key, b): [] for m in able for b in self._ladder}
+        for replicate in range(self._replicates):
+            self._tell(
+                f"runs of {self._ladder[0]:,} to {self._ladder[-1]:,} trials, {replicate + 1} of {self._replicates}"
+            )
+            for number, budget in enumerate(self._ladder):
+                seed = self._seed + 1 + number * _APART + replicate
+                for method in able:
+                    known = results[method.key, budget]
+                    if not (self._limited and _enough(known)):
+                        known.append(method.run(self._model, budget, seed))
+        return tuple(self._curve(method, firsts[method.key], results) for method in able)
+
+    def _curve(
+        self, method: Method, first: MethodResult | None, results: Mapping[tuple[str, int], list[MethodResult]]
+    ) -> Curve:
+        rungs = tuple(rung_of(budget, results[method.key, budget], self._reference) for budget in self._ladder)
+        remarks = results[method.key, self._ladder[-1]][-1].remarks
+        plain = results.get((MONTE_CARLO.key, self._ladder[0]))
+        if isinstance(method, Sampled) and method.engine != MONTE_CARLO.engine and plain:
+            remarks = (self._agreement(results[method.key, self._ladder[0]], plain),)
+        setup = 0.0 if first is None else max(0.0, first.seconds - rungs[0].seconds)
+        return Curve(method, rungs, setup, remarks, {})
+
+    def slow(self, engine: Sampled, numpy: Curve) -> tuple[Curve, ...]:
+        """An engine that is too slow for runs of any length: its time is worked out from a few trials."""
+        self._tell(engine.name)
+        first = self._tried(engine, _FEW)
+        if first is None:
+            return ()
+        again = engine.run(self._model, _FEW, self._seed).seconds
+        rungs = tuple(replace(r, seconds=again * r.budget / _FEW, measured=False) for r in numpy.rungs)
+        said = f"the same trials as {numpy.method.name}; time worked out from {_FEW} of them"
+        return (Curve(engine, rungs, max(0.0, first.seconds - again), (said,), {}),)
 
     def _tried(self, method: Method, budget: int) -> MethodResult | None:
         """A method's first run; None, and why, where it cannot be used."""
@@ -252,20 +244,18 @@ class _Measuring:
             self.absent[method.name] = str(error)
             return None
 
-    def _agreement(self, found: MethodResult, numpy: MethodResult) -> str:
+    def _agreement(self, found: Sequence[MethodResult], numpy: Sequence[MethodResult]) -> str:
         """How far an engine's answers are from those of `numpy` at the same trials, in standard deviations."""
         apart = [
-            abs(getattr(answer, statistic) - getattr(numpy.answers[name], statistic)) / self._reference.answers[name].sd
-            for name, answer in found.answers.items()
-            for statistic in ("mean", "sd", "low", "high")
+            abs(getattr(answer, statistic) - getattr(other.answers[name], statistic)) / self._reference.answers[name].sd
+            for one, other in zip(found, numpy, strict=False)
+            for name, answer in one.answers.items()
+            for statistic in STATISTICS
         ]
-        return f"answers at the same trials differ from those of numpy by {np.nanmax(apart):.1g} SD at the most"
+        known = [each for each in apart if np.isfinite(each)]
+        return f"answers at the same trials differ from those of numpy by {max(known, default=0.0):.1g} SD at the most"
 
 
 def _enough(results: Sequence[MethodResult]) -> bool:
     """Whether runs of one length have taken their time."""
     return len(results) >= _LEAST_RUNS and sum(result.seconds for result in results) > _RUNS_SECONDS
-
-
-def _seconds(result: MethodResult | None) -> float:
-    return 0.0 if result is None else result.seconds

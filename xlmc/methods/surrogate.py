@@ -1,4 +1,4 @@
-"""A surrogate with the exact filter: quadratic polynomials in place of the smooth cells, and exact formulas from there on.
+"""A surrogate with the exact filter: quadratic polynomials in place of smooth cells, and exact formulas from there on.
 
 A filter on a ratio, such as a coefficient of restitution, is no polynomial; what it is the ratio of is nearly one. So
 the surrogate takes the place of neither forecasts nor filters. From each of them the formulas are followed upwards to
@@ -29,8 +29,8 @@ from xlmc.scene import targets_of
 __all__ = ["TOLERANCE", "Surrogate"]
 
 TOLERANCE: Final = 0.03
-"""Of a cell's standard deviation: the largest error of a polynomial that takes its place. An error of that size that has
-nothing to do with the value widens its spread by one part in 2,000."""
+"""Of a cell's standard deviation: the largest error of a polynomial that takes its place. An error of that size that
+has nothing to do with the value widens its spread by one part in 2,000."""
 
 _MOST_CELLS: Final = 2_000
 _BLOCK: Final = 8_192
@@ -67,7 +67,9 @@ class Surrogate:
         inputs = _cut(model, dict(zip(cells, _errors(points, values).tolist(), strict=True)))
         replaced = [cell for cell in inputs if cell in cells]
         if not replaced:
-            message = f"no cell on the way to the answers is a quadratic polynomial to {100 * TOLERANCE:g} % of its spread"
+            message = (
+                f"no cell on the way to the answers is a quadratic polynomial to {100 * TOLERANCE:g} % of its spread"
+            )
             raise SimulationError(message, hint="use a method that draws")
         polynomials = fitted(points, values[:, [cells.index(cell) for cell in replaced]])
         accepted, columns = _run(model, replaced, polynomials, budget, seed + _APART)
@@ -121,9 +123,7 @@ def _cut(model: Model, errors: dict[Cell, float]) -> list[Cell]:
     return [*found]
 
 
-def _run(
-    model: Model, replaced: list[Cell], polynomials: Quadratic, trials: int, seed: int
-) -> tuple[int, Floats]:
+def _run(model: Model, replaced: list[Cell], polynomials: Quadratic, trials: int, seed: int) -> tuple[int, Floats]:
     """How many trials are accepted, and their forecasts, `(m, f)`."""
     inputs = {cell: f"surrogate of {cell}" for cell in replaced}
     stand_ins = tuple(

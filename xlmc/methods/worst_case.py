@@ -22,7 +22,9 @@ class WorstCase:
     key: str = "worst-case"
     name: str = "Differential, worst case"
     sampling: bool = False
-    cannot: str = "gives two ends and no likelihood in between, does not see filters, and takes every curve for straight"
+    cannot: str = (
+        "gives two ends and no likelihood in between, does not see filters, and takes every curve for straight"
+    )
 
     def run(self, model: Model, budget: int, seed: int) -> MethodResult:
         """See `Method`; it evaluates one point, with its first derivatives."""

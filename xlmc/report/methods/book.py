@@ -33,9 +33,17 @@ _HEADINGS: Final = (
     "Upper end, % of SD", "Accepted, % of it", "Effective trials", "Failed runs", "Measured",
 )  # fmt: skip
 _FIRST_ERROR: Final = 5
-_MARKERS: Final = {"o": "circle", "s": "square", "^": "triangle", "D": "diamond", "P": "plus", "X": "x", "v": "long_dash"}
+_MARKERS: Final = {
+    "o": "circle",
+    "s": "square",
+    "^": "triangle",
+    "D": "diamond",
+    "P": "plus",
+    "X": "x",
+    "v": "long_dash",
+}
 _SIZE: Final = (620, 400)
-_DOWN, _ACROSS: Final = 21, 9
+_DOWN, _ACROSS = 21, 9
 
 
 def book(study: Study) -> bytes:
@@ -75,7 +83,10 @@ def _write_words(page: Page, study: Study) -> None:
 
 def _texts(page: Page, table: tables.Table) -> None:
     rows = [
-        [cells.text(cell, "name" if place == 0 else "text" if place < table.right else "number") for place, cell in enumerate(row)]
+        [
+            cells.text(cell, "name" if place == 0 else "text" if place < table.right else "number")
+            for place, cell in enumerate(row)
+        ]
         for row in table.rows
     ]
     page.table(table.headings, rows)
@@ -83,7 +94,9 @@ def _texts(page: Page, table: tables.Table) -> None:
 
 def _write_runs(page: Page, study: Study) -> list[tuple[Curve, int, int]]:
     """Write the rungs; gives each curve's first and last row."""
-    page.title("Every run length", "Root mean square errors over the runs and the forecasts; the charts are drawn from here")
+    page.title(
+        "Every run length", "Root mean square errors over the runs and the forecasts; the charts are drawn from here"
+    )
     page.row += 1
     page.table(_HEADINGS, ())
     places = []
@@ -160,7 +173,13 @@ def _chart(
         })  # fmt: skip
         drawn += 1
     font = {"size": 9, "color": INK}
-    axis = {"log_base": 10, "name_font": {**font, "bold": False}, "num_font": font, "crossing": "min", "num_format": "General"}
+    axis = {
+        "log_base": 10,
+        "name_font": {**font, "bold": False},
+        "num_font": font,
+        "crossing": "min",
+        "num_format": "General",
+    }
     grid = {"visible": True, "line": {"color": GRID, "width": 0.5}}
     chart.set_title({"name": title, "name_font": {"size": 12, "bold": True, "color": INK}, "overlay": False})
     chart.set_x_axis({**axis, "name": "time of a run, s", "major_gridlines": grid})

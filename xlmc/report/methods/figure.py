@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from xlmc.methods import STATISTICS, Curve, Study
+from xlmc.methods.recommendation import seconds_text
 from xlmc.report.methods.tables import floor_of, slope_text
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def _title(study: Study) -> str:
     return (
         f"{study.model.workbook.name}: error against work, runs of {shortest:,} to {longest:,} trials\n"
         f"root mean square over up to {study.replicates} runs and {len(study.model.forecasts)} forecasts, against "
-        f"{study.reference.trials:,} reference trials"
+        f"{study.reference.trials:,} reference trials; slopes against the trials"
     )
 
 
@@ -83,11 +84,15 @@ def _statistic(axis: Axes, study: Study, statistic: str, name: str, against: str
 
 def _line(axis: Axes, curve: Curve, across: list[float], error: list[float]) -> None:
     colour, marker = STYLES.get(curve.method.key, _OTHER)
-    measured = all(rung.measured for rung in curve.rungs)
-    label = curve.method.name
-    if len(curve.rungs) > 1:
-        label += f" (slope {slope_text(curve.slope('mean', 'budget'))})" if measured else " (time from its rate)"
-    axis.plot(across, error, "-" if measured else "--", color=colour, marker=marker, ms=6.5, lw=1.5, label=label)
+    if not all(rung.measured for rung in curve.rungs):  # its time is of another order, and would squeeze the rest
+        last = curve.rungs[-1]
+        label = f"{curve.method.name}: not drawn, {seconds_text(last.seconds)} for {last.budget:,} trials"
+        axis.plot([], [], ls="none", color=colour, marker=marker, ms=6.5, label=label)
+        return
+    once = len(curve.rungs) == 1
+    label = curve.method.name if once else f"{curve.method.name} (slope {slope_text(curve.slope('mean', 'budget'))})"
+    shape: dict[str, Any] = {"ls": "none", "ms": 11, "mew": 1.6} if once else {"ls": "-", "ms": 6.5, "mew": 1.0}
+    axis.plot(across, error, color=colour, marker=marker, lw=1.5, label=label, **shape)
 
 
 def _acceptance(axis: Axes, study: Study, against: str) -> None:
@@ -110,10 +115,11 @@ def _acceptance(axis: Axes, study: Study, against: str) -> None:
 
 
 def _front(axis: Axes, study: Study, against: str) -> None:
-    points = [(curve, *point) for curve in study.every for point in _worst(study, curve, against)]
+    shown = [curve for curve in study.every if all(rung.measured for rung in curve.rungs)]
+    points = [(curve, *point) for curve in shown for point in _worst(study, curve, against)]
     for curve, across, error in points:
         colour, marker = STYLES.get(curve.method.key, _OTHER)
-        axis.plot(across, error, marker, color=colour, ms=6.5, ls="none")
+        axis.plot(across, error, marker, color=colour, ms=11 if len(curve.rungs) == 1 else 6.5, ls="none")
     front = front_of([(across, error) for _, across, error in points])
     if front:
         axis.step([x for x, _ in front], [y for _, y in front], where="post", color=_GREY, lw=1.4, label="Pareto front")
@@ -160,8 +166,12 @@ def _dressed(axis: Axes) -> None:
         axis.spines[side].set_visible(False)
     axis.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5), numticks=12))
     for ticks in (axis.xaxis, axis.yaxis):
-        ticks.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.12g}" if 1e-4 < value < 1e6 else f"{value:.0e}"))
+        ticks.set_major_formatter(FuncFormatter(_tick))
         ticks.set_minor_formatter(NullFormatter())
+
+
+def _tick(value: float, _: float) -> str:
+    return f"{value:,.12g}" if 1e-4 < value < 1e6 else f"{value:.0e}"
 
 
 def _say(axis: Axes, text: str) -> None:

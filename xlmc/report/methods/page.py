@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 __all__ = ["page"]
 
 _STYLE = """
-body { font: 15px/1.5 "Segoe UI", "Helvetica Neue", Arial, sans-serif; color: #1F3044; margin: 2em auto; max-width: 1180px;
-  padding: 0 1em; }
+body { font: 15px/1.5 "Segoe UI", "Helvetica Neue", Arial, sans-serif; color: #1F3044; margin: 2em auto;
+  max-width: 1180px; padding: 0 1em; }
 h1 { font-size: 1.6em; margin-bottom: 0; }
 h2 { font-size: 1.15em; margin-top: 2em; }
 p.below { color: #52606D; margin-top: .2em; }
@@ -32,7 +32,11 @@ td.long { white-space: normal; text-align: left; }
 figure { margin: 1em 0; }
 svg { width: 100%; height: auto; }
 code { background: #EEF4FA; padding: .1em .3em; }
-@media print { body { margin: 0; max-width: none; font-size: 11px; } table { font-size: 9px; } h2 { break-after: avoid; } }
+@media print {
+  body { margin: 0; max-width: none; font-size: 11px; }
+  table { font-size: 9px; }
+  h2 { break-after: avoid; }
+}
 """
 
 
@@ -92,8 +96,5 @@ def _svg(figure: Figure) -> str:
     drawn = io.StringIO()
     with mpl.rc_context({"svg.fonttype": "path", "svg.hashsalt": "xlmc"}):
         figure.savefig(drawn, format="svg", metadata={"Date": None})
-    return drawn.getvalue().partition("-->")[2] if "-->" in drawn.getvalue()[:600] else _without_prolog(drawn.getvalue())
-
-
-def _without_prolog(drawn: str) -> str:
-    return drawn[drawn.index("<svg") :]
+    text = drawn.getvalue()
+    return text[text.index("<svg") :]

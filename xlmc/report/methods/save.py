@@ -28,10 +28,11 @@ def check_targets(paths: Iterable[Path], source: Path) -> None:
     for path in paths:
         ending = path.suffix.casefold()
         if ending not in ENDINGS:
-            hint = f"Name a file that ends in {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}"
-            raise WorkbookError(f"a study of methods is not written as {ending or 'a file without ending'}", where=path, hint=hint)
+            message = f"a study of methods is not written as {ending or 'a file without ending'}"
+            raise WorkbookError(message, where=path, hint="Name a file that ends in .png, .html or .xlsx")
         if path.is_dir() or not os.access(path.parent, os.W_OK):
-            raise WorkbookError("this cannot be written", where=path, hint="Name a file in a folder that can be written to")
+            hint = "Name a file in a folder that can be written to"
+            raise WorkbookError("this cannot be written", where=path, hint=hint)
         if path.exists() and source.exists() and path.samefile(source):
             raise WorkbookError("this is the workbook itself", where=path, hint="Name another file")
         if ending == ".xlsx":

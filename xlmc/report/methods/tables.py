@@ -102,7 +102,8 @@ def _need_text(study: Study, curve: Curve) -> str:
 
 def rung_table(study: Study) -> Table:
     """Every run length of every method."""
-    headings = ("Method", "Trials", "Runs", "Time", "Evaluations", *STATISTICS.values(), "Accepted", "Effective", "Failed")
+    work = ("Method", "Trials", "Runs", "Time", "Evaluations")
+    headings = (*work, *STATISTICS.values(), "Accepted", "Effective", "Failed")
     rows = []
     for curve in study.every:
         for rung in curve.rungs if curve.answers else ():
@@ -141,21 +142,19 @@ def forecast_table(study: Study) -> Table:
     return Table("Root mean square errors of the longest runs, in the forecasts' units", headings, tuple(rows), 3)
 
 
-
 def bounds_table(study: Study) -> Table:
     """What the bounds methods give, beside the central range of the reference."""
     curves = [curve for curve in study.once if curve.ranges]
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for forecast in study.model.forecasts:
         answer = study.reference.answers[forecast.name]
         found = [curve.ranges.get(forecast.name, (np.nan, np.nan)) for curve in curves]
-        central = f"{_number(answer.low, 4)} to {_number(answer.high, 4)}"
+        central = _ends(answer.low, answer.high)
         rows.append((forecast.name, forecast.units, *(_ends(*each) for each in found), central))
-    works = (
-        f"{curve.method.name} ({curve.rungs[-1].evaluations:,.0f} evaluations, {seconds_text(curve.rungs[-1].seconds)})"
-        for curve in curves
-    )
-    headings = ("Forecast", "Units", *works, "Central range of the reference")
+    last = [curve.rungs[-1] for curve in curves]
+    rows.append(("Evaluations", "", *(f"{rung.evaluations:,.0f}" for rung in last), ""))
+    rows.append(("Time", "", *(seconds_text(rung.seconds) for rung in last), ""))
+    headings = ("Forecast", "Units", *(curve.method.name for curve in curves), "Reference, central range")
     return Table("Bounds: what is possible", headings, tuple(rows), 2)
 
 
@@ -186,7 +185,12 @@ def format_of(value: float, error: float) -> str:
 
 
 def _ends(least: float, most: float) -> str:
-    return f"{least:.2f} to {most:.2f}" if np.isfinite(least) else _NONE
+    """Both to a hundredth, or to five digits of the larger where it is small or large."""
+    if not (np.isfinite(least) and np.isfinite(most)):
+        return _NONE
+    size = max(abs(least), abs(most))
+    plain = 0.1 <= size < 1e5
+    return f"{least:.2f} to {most:.2f}" if plain else f"{least:.5g} to {most:.5g}"
 
 
 def _number(value: float, digits: int = 2) -> str:
@@ -204,7 +208,7 @@ def percent_text(share: float) -> str:
     value = 100.0 * share
     if not np.isfinite(value):
         return _NONE
-    return f"{value:,.0f}" if abs(value) >= 10 else f"{value:.2g}"
+    return f"{value:,.0f}" if abs(value) >= 10 else f"{value:#.2g}"
 
 
 def slope_text(slope: float) -> str:

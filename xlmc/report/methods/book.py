@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from xlmc.methods import STATISTICS, Curve, Rung, Study, recommendation
+from xlmc.methods.need import worst
 from xlmc.report import cells
 from xlmc.report.cells import Shown
 from xlmc.report.methods import tables
@@ -25,13 +26,22 @@ __all__ = ["book"]
 _CREATED: Final = datetime(2000, 1, 1)
 """No clock: XlsxWriter would write today's date."""
 
-_WORDS: Final = (34.0, 14.0, 14.0, 14.0, 14.0, 14.0, 14.0, 14.0, 14.0, 12.0, 12.0, 26.0)
-_DATA: Final = (30.0, 12.0, 8.0, 13.0, 14.0, 11.0, 11.0, 11.0, 11.0, 11.0, 11.0, 9.0, 9.0)
-_LAST: Final = 9
+_WORDS: Final = (34.0, *[19.0] * 10, 30.0)
+_DATA: Final = (34.0, 12.0, 8.0, 13.0, 14.0, *[12.0] * 6, 10.0, 9.0, 11.0)
+_LAST: Final = 8
 _HEADINGS: Final = (
-    "Method", "Trials", "Runs", "Time, s", "Evaluations", "Mean, % of SD", "SD, % of SD", "Lower end, % of SD",
-    "Upper end, % of SD", "Accepted, % of it", "Effective trials", "Failed runs", "Measured",
-)  # fmt: skip
+    "Method",
+    "Trials",
+    "Runs",
+    "Time, s",
+    "Evaluations",
+    *(f"{name}, % of SD" for name in STATISTICS.values()),
+    "Accepted, % of it",
+    "Worst, over the one asked for",
+    "Effective trials",
+    "Failed runs",
+    "Measured",
+)
 _FIRST_ERROR: Final = 5
 _MARKERS: Final = {
     "o": "circle",
@@ -43,7 +53,9 @@ _MARKERS: Final = {
     "v": "long_dash",
 }
 _SIZE: Final = (620, 400)
-_DOWN, _ACROSS = 21, 9
+_DOWN, _ACROSS = 21, 10
+_SCALE: Final = 60
+_OTHERS: Final = ("Accepted share: error, % of it", "Worst number: error over the one asked for")
 
 
 def book(study: Study) -> bytes:
@@ -57,7 +69,7 @@ def book(study: Study) -> bytes:
         words = Page(made.add_worksheet("Methods"), styles, _WORDS)
         charts = Page(made.add_worksheet("Charts"), styles, ())
         runs = Page(made.add_worksheet("Runs"), styles, _DATA)
-        forecasts = Page(made.add_worksheet("Forecasts"), styles, (30.0, 10.0, 36.0, 16.0, 16.0, 16.0, 16.0))
+        forecasts = Page(made.add_worksheet("Forecasts"), styles, (34.0, 10.0, 38.0, 22.0, 22.0, 22.0, 22.0))
         _write_words(words, study)
         places = _write_runs(runs, study)
         _write_charts(charts, made, study, places)
@@ -124,6 +136,7 @@ def _rung_cells(study: Study, curve: Curve, rung: Rung) -> list[Shown]:
         cells.exact(rung.evaluations, "#,##0"),
         *(_number(100.0 * rung.shares[each]) for each in STATISTICS),
         _number(accepted),
+        _number(worst(study, curve, rung)),
         cells.exact(rung.effective, "#,##0"),
         cells.count(rung.failed),
         cells.text("yes" if rung.measured else "by rate"),
@@ -143,13 +156,12 @@ def _number(value: float | None) -> Shown:
 
 def _write_charts(page: Page, made: Workbook, study: Study, places: list[tuple[Curve, int, int]]) -> None:
     page.title("Error against time", f"{study.model.workbook.name}: both axes in logarithms; slopes against the trials")
-    names = (*STATISTICS.values(), "Accepted share")
-    for number, name in enumerate(names):
-        unit = "% of it" if number == len(STATISTICS) else "% of SD"
-        chart = _chart(made, study, f"{name}: error, {unit}", _FIRST_ERROR + number, places)
+    titles = (*(f"{name}: error, % of SD" for name in STATISTICS.values()), *_OTHERS)
+    for number, title in enumerate(titles):
+        chart = _chart(made, study, title, _FIRST_ERROR + number, places)
         if chart is not None:
             page.sheet.insert_chart(3 + number // 2 * _DOWN, number % 2 * _ACROSS, chart, {"object_position": 1})
-    page.printed(study.model.workbook.name)
+    page.printed(study.model.workbook.name, scale=_SCALE, breaks=[3 + 2 * _DOWN])
 
 
 def _chart(
@@ -159,7 +171,7 @@ def _chart(
     chart = made.add_chart({"type": "scatter", "subtype": "straight_with_markers"})
     drawn = 0
     for curve, first, last in places:
-        found = [_value(curve, rung, column) for rung in curve.rungs]
+        found = [_value(study, curve, rung, column) for rung in curve.rungs]
         if not all(rung.measured for rung in curve.rungs) or not any(each > 0.0 for each in found):
             continue
         colour, marker = STYLES.get(curve.method.key, ("#444444", "o"))
@@ -190,9 +202,12 @@ def _chart(
     return chart if drawn else None
 
 
-def _value(curve: Curve, rung: Rung, column: int) -> float:
+def _value(study: Study, curve: Curve, rung: Rung, column: int) -> float:
     if column == _FIRST_ERROR + len(STATISTICS):
         return 0.0 if rung.acceptance is None else rung.acceptance.value
+    if column > _FIRST_ERROR + len(STATISTICS):
+        value = worst(study, curve, rung)
+        return value if np.isfinite(value) else 0.0
     value = rung.shares[[*STATISTICS][column - _FIRST_ERROR]]
     return value if np.isfinite(value) else 0.0
 

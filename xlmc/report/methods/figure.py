@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from xlmc.methods import STATISTICS, Curve, Study
+from xlmc.methods.need import worst
 from xlmc.methods.recommendation import seconds_text
 from xlmc.report.methods.tables import floor_of, slope_text
 
@@ -116,7 +117,12 @@ def _acceptance(axis: Axes, study: Study, against: str) -> None:
 
 def _front(axis: Axes, study: Study, against: str) -> None:
     shown = [curve for curve in study.every if all(rung.measured for rung in curve.rungs)]
-    points = [(curve, *point) for curve in shown for point in _worst(study, curve, against)]
+    points = [
+        (curve, float(getattr(rung, against)), error)
+        for curve in shown
+        for rung in curve.rungs
+        if np.isfinite(error := worst(study, curve, rung))
+    ]
     for curve, across, error in points:
         colour, marker = STYLES.get(curve.method.key, _OTHER)
         axis.plot(across, error, marker, color=colour, ms=11 if len(curve.rungs) == 1 else 6.5, ls="none")
@@ -125,22 +131,6 @@ def _front(axis: Axes, study: Study, against: str) -> None:
         axis.step([x for x, _ in front], [y for _, y in front], where="post", color=_GREY, lw=1.4, label="Pareto front")
     axis.axhline(1.0, color="#B00020", lw=1.2, label=f"the accuracy asked for, {study.accuracy[0]}")
     axis.set_title("Worst number: error over the one asked for", loc="left", fontsize=11)
-
-
-def _worst(study: Study, curve: Curve, against: str) -> list[tuple[float, float]]:
-    """(work, largest error in units of what was asked for) of every rung whose method gives all numbers."""
-    from xlmc.methods.need import NORMAL_95
-
-    found = []
-    for rung in curve.rungs:
-        wide = NORMAL_95 if curve not in study.once else 1.0
-        times = [
-            wide * error.value / tolerance if (tolerance := study.tolerance(*kind)) > 0.0 else np.inf
-            for kind, error in rung.errors.items()
-        ]
-        if times and np.isfinite(times).all():
-            found.append((float(getattr(rung, against)), max(times)))
-    return found
 
 
 def front_of(points: list[tuple[float, float]]) -> list[tuple[float, float]]:

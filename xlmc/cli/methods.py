@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 if TYPE_CHECKING:
-    from xlmc.methods import Curve, Rung, Study
+    from xlmc.methods import Study
 
 __all__ = ["methods"]
 
@@ -62,6 +62,7 @@ def methods(
     quiet: bool,
 ) -> None:
     """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
+    from xlmc.cli.methods_json import study_json
     from xlmc.cli.printing import telling
     from xlmc.methods import study
     from xlmc.model import load
@@ -77,7 +78,7 @@ def methods(
     for path in output:
         save_methods(found, path)
     if as_json:
-        click.echo(json.dumps(_as_json(found), indent=2, ensure_ascii=False))
+        click.echo(json.dumps(study_json(found), indent=2, ensure_ascii=False))
         return
     _show(found)
     for path in output:
@@ -99,81 +100,3 @@ def _show(found: Study) -> None:
     for paragraph in recommendation(found):
         click.echo(click.wrap_text(paragraph, width=100))
         click.echo()
-
-
-def _as_json(found: Study) -> dict[str, Any]:
-    from xlmc.cli.plain import estimate_json
-    from xlmc.methods import STATISTICS, recommendation
-
-    reference = found.reference
-    return {
-        "workbook": found.model.workbook.name,
-        "accuracy": found.accuracy[0],
-        "seed": found.seed,
-        "reference": {
-            "trials": reference.trials,
-            "accepted": reference.accepted,
-            "sampling": reference.sampling,
-            "engine": reference.engine,
-            "seconds": reference.seconds,
-            "acceptance": estimate_json(reference.acceptance),
-            "forecasts": {
-                name: {
-                    each: {"value": getattr(answer, each), "error": getattr(reference.errors[name], each)}
-                    for each in STATISTICS
-                }
-                for name, answer in reference.answers.items()
-            },
-        },
-        "methods": [_curve(found, curve) for curve in found.every],
-        "not_used": dict(found.absent),
-        "recommendation": recommendation(found),
-    }
-
-
-def _curve(found: Study, curve: Curve) -> dict[str, Any]:
-    from xlmc.cli.plain import finite
-    from xlmc.methods import STATISTICS, need
-
-    drawn = curve not in found.once
-    wanted = need(found, curve) if drawn else None
-    return {
-        "method": curve.method.key,
-        "name": curve.method.name,
-        "cannot": curve.method.cannot,
-        "remarks": list(curve.remarks),
-        "setup_seconds": curve.setup,
-        "bounds": {name: {"least": least, "most": most} for name, (least, most) in curve.ranges.items()},
-        "runs": [_rung(found, rung, drawn) for rung in curve.rungs],
-        "slopes": {
-            each: {"trials": finite(curve.slope(each, "budget")), "seconds": finite(curve.slope(each, "seconds"))}
-            for each in STATISTICS
-        },
-        "needs": wanted and {"trials": finite(wanted.trials), "seconds": finite(wanted.seconds)},
-    }
-
-
-def _rung(found: Study, rung: Rung, drawn: bool) -> dict[str, Any]:
-    from xlmc.cli.plain import finite
-    from xlmc.methods import STATISTICS
-
-    return {
-        "trials": rung.budget if drawn else None,
-        "seconds": rung.seconds,
-        "seconds_measured": rung.measured,
-        "evaluations": rung.evaluations,
-        "effective": rung.effective,
-        "failed": rung.failed,
-        "acceptance_error": None if rung.acceptance is None else finite(rung.acceptance.value),
-        "errors": {
-            forecast.name: {
-                each: {
-                    "rms": finite(rung.errors[forecast.name, each].value),
-                    "error": finite(rung.errors[forecast.name, each].error),
-                    "bias": finite(rung.errors[forecast.name, each].bias),
-                }
-                for each in STATISTICS
-            }
-            for forecast in found.model.forecasts
-        },
-    }

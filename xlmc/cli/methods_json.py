@@ -26,7 +26,10 @@ def study_json(found: Study) -> dict[str, Any]:
             "acceptance": estimate_json(reference.acceptance),
             "forecasts": {
                 name: {
-                    each: {"value": getattr(answer, each), "error": getattr(reference.errors[name], each)}
+                    each: {
+                        "value": finite(getattr(answer, each)),
+                        "error": finite(getattr(reference.errors[name], each)),
+                    }
                     for each in STATISTICS
                 }
                 for name, answer in reference.answers.items()
@@ -60,7 +63,7 @@ def _curve(found: Study, curve: Curve) -> dict[str, Any]:
 def _rung(found: Study, rung: Rung, drawn: bool) -> dict[str, Any]:
     return {
         "trials": rung.budget if drawn else None,
-        "seconds": rung.seconds,
+        "seconds": finite(rung.seconds),
         "seconds_measured": rung.measured,
         "evaluations": rung.evaluations,
         "effective": rung.effective,

@@ -86,7 +86,7 @@ def rung_of(budget: int, results: Sequence[MethodResult], reference: Reference) 
     lost = sum(all(np.isnan(answer.mean) for answer in result.answers.values()) for result in results)
     return Rung(
         budget=budget,
-        seconds=min(result.seconds for result in results),
+        seconds=min((r.seconds for r in results if np.isfinite(r.seconds)), default=np.nan),
         evaluations=median(result.evaluations for result in results),
         errors=errors,
         shares=_shares(errors, reference),

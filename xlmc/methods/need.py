@@ -65,7 +65,8 @@ def need(study: Study, curve: Curve) -> Need:
     budgets = [float(rung.budget) for rung in curve.rungs]
     kinds = [(forecast.name, statistic) for forecast in study.model.forecasts for statistic in STATISTICS]
     logs = np.array([[_log(rung.errors[kind].value) for kind in kinds] for rung in curve.rungs])
-    slope, _ = line(budgets, np.exp(np.nanmean(logs, axis=1)).tolist())
+    levels = [float(np.exp(np.mean(row[np.isfinite(row)]))) if np.isfinite(row).any() else np.nan for row in logs]
+    slope, _ = line(budgets, levels)
     worst = Need(0.0, 0.0, *kinds[0], 0.0)
     for place, kind in enumerate(kinds):
         tolerance = study.tolerance(*kind) / NORMAL_95
@@ -111,8 +112,11 @@ def seconds_of(curve: Curve, trials: float) -> float:
     """A run of so many trials: a fixed part and one for each, as the measured runs have them."""
     if not np.isfinite(trials):
         return np.inf
-    budgets = np.array([float(rung.budget) for rung in curve.rungs])
-    seconds = np.array([rung.seconds for rung in curve.rungs])
+    timed = [rung for rung in curve.rungs if np.isfinite(rung.seconds)]
+    budgets = np.array([float(rung.budget) for rung in timed])
+    seconds = np.array([rung.seconds for rung in timed])
+    if not timed:
+        return np.inf
     if budgets.size < 2:
         return float(seconds[0] * trials / budgets[0])
     each = max(float((seconds[-1] - seconds[0]) / (budgets[-1] - budgets[0])), 0.0)

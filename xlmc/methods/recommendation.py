@@ -174,11 +174,13 @@ def trials_text(trials: float) -> str:
 
 
 def seconds_text(seconds: float) -> str:
-    """`0.35 s`, `12 s`, `4 min`, `3 h`.
+    """`0.35 s`, `12 s`, `4 min`, `3 h`; a dash where no run came to an end.
 
     >>> seconds_text(0.0123), seconds_text(250.0), seconds_text(9_000.0)
     ('0.012 s', '4.2 min', '2.5 h')
     """
+    if not np.isfinite(seconds):
+        return "–"
     for length, name, top in ((1.0, "s", 120.0), (60.0, "min", 7_200.0), (3_600.0, "h", 172_800.0)):
         if seconds < top:
             return f"{float(f'{seconds / length:.2g}'):g} {name}"

@@ -10,7 +10,7 @@ import numpy as np
 
 from xlmc.definitions.stopping import as_tolerance
 from xlmc.errors import SimulationError
-from xlmc.methods.answer import STATISTICS, Method, MethodResult
+from xlmc.methods.answer import STATISTICS, Answer, Method, MethodResult
 from xlmc.methods.corners import Corners
 from xlmc.methods.curve import Curve, rung_of
 from xlmc.methods.first_order import FirstOrder
@@ -211,8 +211,16 @@ class _Measuring:
                 for method in able:
                     known = results[method.key, budget]
                     if not (self._limited and _enough(known)):
-                        known.append(method.run(self._model, budget, seed))
+                        known.append(self._run(method, budget, seed))
         return tuple(self._curve(method, firsts[method.key], results) for method in able)
+
+    def _run(self, method: Method, budget: int, seed: int) -> MethodResult:
+        """One run of a method that can be used; one that fails, for want of accepted trials, is counted as such."""
+        try:
+            return method.run(self._model, budget, seed)
+        except SimulationError as error:
+            nothing = {forecast.name: Answer() for forecast in self._model.forecasts}
+            return MethodResult(np.nan, budget, nothing, remarks=(str(error),))
 
     def _curve(
         self, method: Method, first: MethodResult | None, results: Mapping[tuple[str, int], list[MethodResult]]
@@ -222,7 +230,7 @@ class _Measuring:
         plain = results.get((MONTE_CARLO.key, self._ladder[0]))
         if isinstance(method, Sampled) and method.engine != MONTE_CARLO.engine and plain:
             remarks = (self._agreement(results[method.key, self._ladder[0]], plain),)
-        setup = 0.0 if first is None else max(0.0, first.seconds - rungs[0].seconds)
+        setup = 0.0 if first is None else float(np.nan_to_num(max(0.0, first.seconds - rungs[0].seconds)))
         return Curve(method, rungs, setup, remarks, {})
 
     def slow(self, engine: Sampled, numpy: Curve) -> tuple[Curve, ...]:

@@ -132,7 +132,7 @@ def _rung_cells(study: Study, curve: Curve, rung: Rung) -> list[Shown]:
         cells.text(curve.method.name, "name"),
         cells.count(rung.budget) if drawn else cells.BLANK,
         cells.count(max(each.n for each in rung.errors.values())),
-        cells.exact(rung.seconds, "0.0000"),
+        _number(rung.seconds),
         cells.exact(rung.evaluations, "#,##0"),
         *(_number(100.0 * rung.shares[each]) for each in STATISTICS),
         _number(accepted),

@@ -63,11 +63,11 @@ def need(study: Study, curve: Curve) -> Need:
     have slopes of their own.
     """
     budgets = [float(rung.budget) for rung in curve.rungs]
-    kinds = [(forecast.name, statistic) for forecast in study.model.forecasts for statistic in STATISTICS]
+    kinds = [(forecast, statistic) for forecast in study.varying for statistic in STATISTICS]
     logs = np.array([[_log(rung.errors[kind].value) for kind in kinds] for rung in curve.rungs])
     levels = [float(np.exp(np.mean(row[np.isfinite(row)]))) if np.isfinite(row).any() else np.nan for row in logs]
     slope, _ = line(budgets, levels)
-    worst = Need(0.0, 0.0, *kinds[0], 0.0)
+    worst = Need(0.0, 0.0, "", "mean", 0.0)
     for place, kind in enumerate(kinds):
         tolerance = study.tolerance(*kind) / NORMAL_95
         trials = _trials(budgets, logs[:, place], slope, tolerance)
@@ -88,6 +88,8 @@ def shortfall(study: Study, curve: Curve) -> Shortfall:
 
 def _shortfalls(study: Study, curve: Curve) -> Iterator[Shortfall]:
     for (forecast, statistic), error in curve.rungs[-1].errors.items():
+        if forecast not in study.varying:
+            continue
         tolerance = study.tolerance(forecast, statistic)
         known = np.isfinite(error.value)
         times = error.value / tolerance if known and tolerance > 0.0 else np.inf
@@ -102,6 +104,8 @@ def worst(study: Study, curve: Curve, rung: Rung) -> float:
     wide = 1.0 if curve in study.once else NORMAL_95
     found = 0.0
     for kind, error in rung.errors.items():
+        if kind[0] not in study.varying:
+            continue
         tolerance = study.tolerance(*kind)
         known = tolerance > 0.0 and np.isfinite(error.value)
         found = max(found, wide * error.value / tolerance if known else np.inf)

@@ -32,6 +32,8 @@ ERROR_WORDS: Final = (
 
 def recommendation(study: Study) -> list[str]:
     """Paragraphs: what to use, why, what else would do, and what the others cannot."""
+    if not study.varying:
+        return ["No forecast varies: there is nothing to compute with any method."]
     drawing = {curve: need(study, curve) for curve in (*study.curves, *study.engines)}
     able = {curve: found for curve, found in drawing.items() if np.isfinite(found.seconds)}
     said = [_asked(study)]
@@ -72,7 +74,7 @@ def _drawing(study: Study, able: dict[Curve, Need]) -> list[str]:
     found = able[chosen]
     said = [
         f"Recommended: {chosen.method.name}, about {trials_text(found.trials)} trials, "
-        f"{seconds_text(found.seconds)}; the {STATISTICS[found.statistic].lower()} of {found.forecast} needs the most."
+        f"{seconds_text(found.seconds)}; the {_spelt(found.statistic)} of {found.forecast} needs the most."
     ]
     if chosen is plain and fastest is not plain:
         said[0] += (
@@ -111,7 +113,7 @@ def _same_trials(study: Study, curve: Curve) -> bool:
 def _unable(curve: Curve, found: Need) -> str:
     return (
         f"{curve.method.name} does not come to it however many trials it runs: the "
-        f"{STATISTICS[found.statistic].lower()} of {found.forecast} stays off."
+        f"{_spelt(found.statistic)} of {found.forecast} stays off."
     )
 
 
@@ -122,7 +124,7 @@ def _missed(study: Study, curve: Curve, found: Shortfall) -> str:
     units = next((f.units for f in study.model.forecasts if f.name == found.forecast), "")
     share = f", {100.0 * found.error / abs(truth):.2g} % of it" if truth else ""
     text = (
-        f"{curve.method.name} misses the {STATISTICS[found.statistic].lower()} of {found.forecast} by "
+        f"{curve.method.name} misses the {_spelt(found.statistic)} of {found.forecast} by "
         f"{rounded(found.error)}{' ' if units else ''}{units}{share}"
     )
     kept = study.reference.acceptance.value
@@ -139,17 +141,24 @@ def _bounds(study: Study) -> list[str]:
     for curve in curves:
         ratios = [
             (most - least) / (answer.high - answer.low)
-            for (least, most), answer in ((curve.ranges[name], study.reference.answers[name]) for name in curve.ranges)
-            if answer.high > answer.low
+            for name, (least, most) in curve.ranges.items()
+            if name in study.varying and (answer := study.reference.answers[name]).high > answer.low
         ]
         if ratios:
-            widths.append(f"{curve.method.name} {min(ratios):.1f} to {max(ratios):.1f}")
+            low, high = f"{min(ratios):.1f}", f"{max(ratios):.1f}"
+            widths.append(f"{curve.method.name} {low}" + (f" to {high}" if high != low else ""))
     if not widths:
         return []
     return [
         "Bounds answer another question, what is possible and not what is likely. Their widths, in central ranges: "
         f"{'; '.join(widths)}."
     ]
+
+
+def _spelt(statistic: str) -> str:
+    """As it stands in a sentence: `lower end`, `SD`."""
+    name = STATISTICS[statistic]
+    return name if name.isupper() else name.lower()
 
 
 def _percent(share: float) -> str:

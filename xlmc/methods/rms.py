@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 __all__ = ["Rms", "line", "rms_of"]
+
+_ENOUGH: Final = 8
+"""Replicates from which on chance hardly makes them agree."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,9 +33,9 @@ class Rms:
 
     @property
     def biased(self) -> bool:
-        """Whether most of the error is the same in every replicate, and beyond chance."""
+        """Whether most of the error is the same in every replicate, and beyond chance; few replicates cannot tell."""
         spread = max(self.value**2 - self.bias**2, 0.0) ** 0.5
-        return self.n > 1 and self.bias**2 > 0.5 * self.value**2 and abs(self.bias) > 4.0 * spread / self.n**0.5
+        return self.n >= _ENOUGH and self.bias**2 > 0.5 * self.value**2 and abs(self.bias) > 4.0 * spread / self.n**0.5
 
 
 def rms_of(errors: ArrayLike) -> Rms:

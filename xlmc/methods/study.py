@@ -43,6 +43,8 @@ _APART: Final = 1_000_000
 
 SLOW: Final = "formulas"
 
+_ROUNDING: Final = 1e-12
+
 _RUNS_SECONDS, _LEAST_RUNS = 5.0, 6
 """Of one method and length, where nobody says how many there shall be."""
 
@@ -86,6 +88,12 @@ class Study:
     @property
     def every(self) -> tuple[Curve, ...]:
         return (*self.once, *self.curves, *self.engines)
+
+    @property
+    def varying(self) -> tuple[str, ...]:
+        """The forecasts that have any spread; of the others every method knows everything."""
+        found = self.reference.answers
+        return tuple(name for name, answer in found.items() if answer.sd > _ROUNDING * abs(answer.mean))
 
     def tolerance(self, forecast: str, statistic: str) -> float:
         """The error asked for, in the forecast's units."""
@@ -259,6 +267,7 @@ class _Measuring:
             for one, other in zip(found, numpy, strict=False)
             for name, answer in one.answers.items()
             for statistic in STATISTICS
+            if self._reference.answers[name].sd > 0.0
         ]
         known = [each for each in apart if np.isfinite(each)]
         return f"answers at the same trials differ from those of numpy by {max(known, default=0.0):.1g} SD at the most"

@@ -193,8 +193,11 @@ def _ends(least: float, most: float) -> str:
     return f"{least:.2f} to {most:.2f}" if plain else f"{least:.5g} to {most:.5g}"
 
 
-def _number(value: float, digits: int = 2) -> str:
-    return f"{value:.{digits}g}" if np.isfinite(value) else _NONE
+def _number(value: float) -> str:
+    """Two significant digits, whole numbers from 10 on; a dash where there is none."""
+    if not np.isfinite(value):
+        return _NONE
+    return f"{value:,.0f}" if abs(value) >= 10 else f"{value:#.2g}"
 
 
 def _share_text(share: float, floor: float) -> str:

@@ -98,7 +98,7 @@ def main(given: Sequence[str] | None = None) -> None:
     save_methods(found, PICTURE)
     ratios = [float(cell.partition(" ")[0]) for row in theory_rows(found) for cell in row[2:]]
     print(
-        f"Monte Carlo's errors over theory: {min(ratios):.2f} to {max(ratios):.2f}, {np.median(ratios):.2f} in the middle"
+        f"Monte Carlo's errors are {min(ratios):.2f} to {max(ratios):.2f} of theory's, {np.median(ratios):.2f} mostly"
     )
 
 

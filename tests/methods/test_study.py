@@ -11,6 +11,7 @@ from xlmc.methods.need import need, shortfall, worst
 from xlmc.methods.reference import reference_of
 from xlmc.methods.rms import line, rms_of
 from xlmc.methods.sampled import MONTE_CARLO
+from xlmc.report.methods import tables
 
 REPLICATES, TRIALS = 400, 16_384
 
@@ -93,6 +94,20 @@ def test_what_cannot_be_seen_is_said(small):
     assert "Bounds answer another question" in text
     assert "Recommended: " in text
     assert "--precision 1% --precision-of mean,sd,range" in text
+
+
+def test_the_tables(small):
+    bounds = {row[0]: row[2:] for row in tables.bounds_table(small).rows}
+    assert bounds["Chevrolet delta-V"][:2] == ("8.87 to 18.70", "8.85 to 15.88")
+    errors = {row[0]: row[1:] for row in tables.error_table(small).rows}
+    assert [*errors] == [curve.method.name for curve in small.every if curve.answers]
+    assert errors["Monte Carlo"][0] == "8,192"
+    assert errors["Taylor, first order"][-1] == "–"
+    assert errors["Monte Carlo, engine formulas"][1].startswith("≈ ")
+    assert len(tables.forecast_table(small).rows) == 4 * (1 + len(errors))
+    assert {row[0] for row in tables.reference_table(small).rows} == set(small.varying)
+    said = dict(tables.cannot_lines(small))
+    assert "does not see filters" in said["Taylor, second order"]
 
 
 def test_need_follows_the_square_root(small):

@@ -171,9 +171,6 @@ def test_one_argument(book, formula, data):
             _close(result.hessian[i, 0, 0], mpmath.diff(f, x, 2))
 
 
-NO_RULE = {"=MMULT(A1:B1,E1:E2)"}
-
-
 @pytest.mark.parametrize("formula", TWO)
 @settings(max_examples=3)
 @given(data=st.data())
@@ -183,7 +180,7 @@ def test_two_arguments(book, formula, data):
     model = book(CELLS | {"Z1": formula}, WIDE, {"f": "Z1", "y": "B1", "x": "A1"})
     found = derivatives(model, dict(zip("xy", points, strict=True)), order=2)
     result = found.forecasts["f"]
-    assert bool(found.numerical) is (formula in NO_RULE)
+    assert not found.numerical
     with mpmath.workdps(DIGITS):
         for i, point in enumerate(zip(*points, strict=True)):
             _close(result.value[i], f(*map(mpmath.mpf, point)))

@@ -2,7 +2,8 @@
 
 Central differences at steps that are halved from one to the next are extrapolated to a step of 0 (Richardson; the
 choice among all orders is that of Ridders, 1982): the one is taken that differs least from its neighbours, and by how
-much is the estimate. Steps start at a share of the arguments' size, or of 1 where that gives a smaller estimate.
+much is the estimate. Steps start at a share of the arguments' size, or of 1 where that gives a smaller estimate, and at
+a smaller share where the function turns or jumps within these steps: what they give must agree with a step close by.
 """
 
 from __future__ import annotations
@@ -23,6 +24,12 @@ __all__ = ["by_differences"]
 _FIRST_STEP: Final = 1 / 16
 _STEPS: Final = 7
 
+_FINER: Final = 2.0**-12
+_CLOSE: Final = 2.0**-20
+"""Shares: of the steps, where a function turns nearby; and the step close by."""
+
+_SMALLEST: Final = 1e-100
+
 _TOLERANCE: Final = 1e-4
 """Of a derivative: an estimate above it says that there is none, as at a jump."""
 
@@ -34,7 +41,7 @@ def by_differences(function: Function, result: Value, operands: Sequence[Operand
     """The derivatives of any function of numbers; none where it depends on texts that change."""
     jets = [operand.jet for operand in operands]
     live = [place for place, jet in enumerate(jets) if jet.active]
-    if any((operands[place].value.kinds == TEXT).any() for place in live):
+    if any((value.kinds == TEXT).any() for value in (result, *(operands[place].value for place in live))):
         return Outcome(_through_text(result, [jets[place] for place in live]))
 
     def moved(steps: Sequence[Floats | None]) -> Floats:
@@ -203,8 +210,8 @@ def _inherited(
 
 
 def _scale(x: Floats) -> Floats:
-    """The size of an argument; 1 for 0."""
-    return np.where(x == 0, 1.0, np.abs(x))
+    """The size of an argument; 1 for 0, and for what is next to it."""
+    return np.where(np.abs(x) < _SMALLEST, 1.0, np.abs(x))
 
 
 def _weight(firsts: Sequence[Floats], x: Sequence[Floats], n: int) -> Floats:
@@ -218,12 +225,23 @@ def _weight(firsts: Sequence[Floats], x: Sequence[Floats], n: int) -> Floats:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Along:
-    """The derivatives along a way, with estimates of their errors; NaN where there are none."""
+    """The derivatives along a way, and estimates of their errors: NaN and infinite where there are none."""
 
     first: Floats
     first_error: Floats
     second: Floats
     second_error: Floats
+
+    def or_better(self, other: _Along) -> _Along:
+        """Whichever has the smaller estimate."""
+        first = other.first_error < self.first_error
+        second = other.second_error < self.second_error
+        return _Along(
+            np.where(first, other.first, self.first),
+            np.where(first, other.first_error, self.first_error),
+            np.where(second, other.second, self.second),
+            np.where(second, other.second_error, self.second_error),
+        )
 
 
 def _along(moved: Moved, result: Value, way: _Way) -> _Along:
@@ -234,18 +252,12 @@ def _along(moved: Moved, result: Value, way: _Way) -> _Along:
         if step is not None:
             most = np.maximum(most, np.abs(step).reshape(step.shape[0], -1).max(axis=1))
     found = _extrapolated(moved, result, way, np.ones(n))
-    small = (most < 1) & (most > 0)
-    if not small.any():
-        return found
-    wider = _extrapolated(moved, result, way, np.where(small, 1 / most, 1.0))
-    first = wider.first_error < found.first_error
-    second = wider.second_error < found.second_error
-    return _Along(
-        np.where(first, wider.first, found.first),
-        np.where(first, wider.first_error, found.first_error),
-        np.where(second, wider.second, found.second),
-        np.where(second, wider.second_error, found.second_error),
-    )
+    small = (most < 1) & (most > _SMALLEST)
+    if small.any():
+        found = found.or_better(_extrapolated(moved, result, way, np.where(small, 1 / most, 1.0)))
+    if not np.isfinite(found.first_error).all():
+        found = found.or_better(_extrapolated(moved, result, way, np.full(n, _FINER)))
+    return found
 
 
 def _mixed(both: _Along, one: _Along, other: _Along, size: Floats) -> tuple[Floats, Floats]:
@@ -261,28 +273,29 @@ def _extrapolated(moved: Moved, result: Value, way: _Way, scale: Floats) -> _Alo
     middle = np.broadcast_to(np.where(result.kinds >= ERROR, np.nan, result.numbers), result.shape)
     level = scale.reshape(-1, *(1,) * (result.numbers.ndim - 1))
     slopes, bends, steps = [], [], []
-    for halving in range(_STEPS):
-        share = _FIRST_STEP / 2**halving
+    largest = np.abs(middle)
+    for share in [*(_FIRST_STEP / 2**halving for halving in range(_STEPS)), _CLOSE]:
         t = scale * share
         up, down = moved(way.at(t)), moved(way.at(-t))
         size = level * share
         slopes.append((up - down) / (2 * size))
         bends.append(((up - middle) - (middle - down)) / size**2)
         steps.append(size)
-    noise = np.finfo(float).eps * np.abs(middle)
-    first, first_error = _best(slopes, [noise / size for size in steps])
-    second, second_error = _best(bends, [4 * noise / size**2 for size in steps])
-    reach = np.abs(middle) / steps[-1]
-    sure = first_error <= np.maximum(_TOLERANCE * np.abs(first), 1e-9 * reach)
-    sure2 = second_error <= np.maximum(_TOLERANCE * 10 * np.abs(second), 1e-7 * reach / steps[-1])
-    first, first_error = (np.where(sure, part, np.nan) for part in (first, first_error))
-    second, second_error = (np.where(sure & sure2, part, np.nan) for part in (second, second_error))
-    inf = np.inf
+        largest = np.fmax(largest, np.fmax(np.abs(up), np.abs(down)))
+    *slopes, close = slopes
+    noise = np.finfo(float).eps * (largest + np.abs(slopes[-1]) * np.minimum(level, 1.0))
+    first, first_error = _best(slopes, [noise / size for size in steps[:-1]])
+    second, second_error = _best(bends[:-1], [4 * noise / size**2 for size in steps[:-1]])
+    apart = np.abs(close - first) - 1e-3 * np.fmax(np.abs(first), np.abs(close))
+    agrees = apart <= 8 * noise / steps[-1]
+    reach = largest / steps[-2]
+    sure = agrees & (first_error <= np.maximum(_TOLERANCE * np.abs(first), 1e-9 * reach))
+    bent = sure & (second_error <= np.maximum(_TOLERANCE * 10 * np.abs(second), 1e-7 * reach / steps[-2]))
     return _Along(
-        first,
-        np.where(np.isnan(first), inf, first_error),
-        second,
-        np.where(np.isnan(second), inf, second_error),
+        np.where(sure, first, np.nan),
+        np.where(sure, first_error, np.inf),
+        np.where(bent, second, np.nan),
+        np.where(bent, second_error, np.inf),
     )
 
 

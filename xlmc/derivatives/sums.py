@@ -160,6 +160,16 @@ def sum_product(function: Function, result: Value, operands: Sequence[Operand]) 
     return Outcome(product.total())
 
 
+@rule("MMULT")
+def matrix_product(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
+    """Sums of products of rows and columns."""
+    left, right = (jet.as_range().spread() for _, jet in operands)
+    rows = left.each(lambda part, _: part[..., :, :, None])
+    columns = right.each(lambda part, _: part[..., None, :, :])
+    product = (rows * columns).spread()
+    return Outcome(product.each(lambda part, _: part.sum(axis=-2)))
+
+
 @rule("SUMIF", "SUMIFS", "AVERAGEIF", "AVERAGEIFS", why="what decides which cells count has no derivative there")
 def conditional(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
     """Sums are linear in their cells: the function itself, of the derivatives of these."""

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = ["methods"]
 
-QUICK = {"reference_trials": 1 << 20, "trials": 1 << 14, "replicates": 8}
+QUICK = {"reference_trials": 1 << 20, "trials": 1 << 17, "replicates": 8}
 
 
 @click.command()

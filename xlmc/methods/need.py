@@ -19,6 +19,7 @@ __all__ = ["NORMAL_95", "Need", "Shortfall", "need", "shortfall", "worst"]
 NORMAL_95: Final = 1.959964
 """95 of 100 runs lie within so many root mean square errors."""
 
+_LEAST_PART: Final = 0.25
 _LEAST_SLOPE: Final = -0.05
 """Errors that fall more slowly with the trials are not carried on."""
 
@@ -113,7 +114,11 @@ def worst(study: Study, curve: Curve, rung: Rung) -> float:
 
 
 def seconds_of(curve: Curve, trials: float) -> float:
-    """A run of so many trials: a fixed part and one for each, as the measured runs have them."""
+    """A run of so many trials: a fixed part and one for each, as the two longest measured runs have them.
+
+    What a trial costs is not taken for less than a quarter of the longest run's average: runs that are shorter than a
+    block of trials all take the same time, and say nothing of it.
+    """
     if not np.isfinite(trials):
         return np.inf
     timed = [rung for rung in curve.rungs if np.isfinite(rung.seconds)]
@@ -123,9 +128,9 @@ def seconds_of(curve: Curve, trials: float) -> float:
         return np.inf
     if budgets.size < 2:
         return float(seconds[0] * trials / budgets[0])
-    each = max(float((seconds[-1] - seconds[0]) / (budgets[-1] - budgets[0])), 0.0)
-    fixed = max(float(np.median(seconds - each * budgets)), 0.0)
-    return fixed + each * trials
+    least = _LEAST_PART * float(seconds[-1] / budgets[-1])
+    each = max(float((seconds[-1] - seconds[-2]) / (budgets[-1] - budgets[-2])), least)
+    return max(float(seconds[-1]) - each * float(budgets[-1]), 0.0) + each * trials
 
 
 def _trials(budgets: list[float], logs: NDArray[np.float64], slope: float, tolerance: float) -> float:

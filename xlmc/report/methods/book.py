@@ -161,7 +161,7 @@ def _write_charts(page: Page, made: Workbook, study: Study, places: list[tuple[C
         chart = _chart(made, study, title, _FIRST_ERROR + number, places)
         if chart is not None:
             page.sheet.insert_chart(3 + number // 2 * _DOWN, number % 2 * _ACROSS, chart, {"object_position": 1})
-    page.printed(study.model.workbook.name, scale=_SCALE, breaks=[3 + 2 * _DOWN])
+    page.printed(study.model.workbook.name, scale=_SCALE, breaks=[2 + 2 * _DOWN])
 
 
 def _chart(

@@ -27,7 +27,7 @@ FLOORS = [
     {"simulate", "result_cells"},
     {"record", "statements"},
     {"saved"},
-    {"analysis", "replay", "sensitivity", "stability"},
+    {"analysis", "methods", "replay", "sensitivity", "stability"},
     {"report"},
     {"cli"},
     {"__main__"},

@@ -18,7 +18,7 @@ from xlmc.definitions.model import name_key
 from xlmc.definitions.stopping import stopping
 from xlmc.drawing import draw_of, dynamic_parameters
 from xlmc.errors import DefinitionError, Notice, SimulationError
-from xlmc.sampling import CorrelatedGroup, Plan, Sampler, Stage
+from xlmc.sampling import CorrelatedGroup, Draw, Plan, Sampler, Stage
 from xlmc.scene import Scene, condition, survey
 from xlmc.workbook import Workbook, read_workbook
 
@@ -117,6 +117,11 @@ class Model:
     def saved(self) -> frozenset[Cell]:
         """The cells among them that xlmc cannot compute, and that hold what Excel saved."""
         return frozenset(self._lowering.saved)
+
+    @property
+    def draws(self) -> Mapping[str, Draw]:
+        """Name of a live assumption -> how it is drawn."""
+        return self._draws
 
     @property
     def lowering(self) -> Lowering:

@@ -1,5 +1,5 @@
 """The command line: `xlmc new`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc simulate`, `xlmc report`,
-`xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc stability`.
+`xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc methods`, `xlmc stability`.
 
 Exit codes: 0 done; 1 the run finished but its answer must not be used as it stands; 2 bad input, with the cell and what
 to do; 130 interrupted by Ctrl-C. Modules here import what costs time inside their functions.
@@ -15,6 +15,7 @@ from xlmc import __version__
 from xlmc.cli.check import check
 from xlmc.cli.compare import compare
 from xlmc.cli.fit import fit
+from xlmc.cli.methods import methods
 from xlmc.cli.new import new
 from xlmc.cli.replay import replay
 from xlmc.cli.report import report
@@ -35,7 +36,7 @@ def xlmc() -> None:
     """Monte Carlo simulation of Excel workbooks, without Excel."""
 
 
-for _command in (new, check, fit, verify, simulate, report, replay, compare, screen, stability):
+for _command in (new, check, fit, verify, simulate, report, replay, compare, screen, methods, stability):
     xlmc.add_command(_command)
 
 

@@ -1,0 +1,84 @@
+from __future__ import annotations
+
+import json
+import sys
+from zipfile import ZipFile
+
+import pytest
+
+SHORT = ("--reference-trials", "65536", "-n", "4096", "--replicates", "2", "--quiet")
+
+
+def test_words_and_files(xlmc, case_study, tmp_path):
+    files = [tmp_path / name for name in ("m.png", "m.html", "m.xlsx")]
+    outputs = [each for file in files for each in ("-o", file)]
+    outcome = xlmc("methods", case_study.with_name("skid-100-ft.xlsx"), *SHORT, *outputs)
+    assert outcome.code == 0
+    text = " ".join(outcome.out.split())
+    for name in ("Bounds, corners", "Taylor, second order", "Scrambled Sobol", "Importance grid", "engine formulas"):
+        assert name in text
+    assert "Recommended:" in text
+    assert "does not see filters" in text
+    assert files[0].read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    page = files[1].read_text()
+    assert page.count("<svg") == 2
+    assert "<script" not in page
+    assert "https://" not in page.replace("https://matplotlib.org", "")
+    with ZipFile(files[2]) as package:
+        charts = [name for name in package.namelist() if name.startswith("xl/charts/chart")]
+        assert len(charts) == 6
+        assert all(b'<c:logBase val="10"/>' in package.read(name) for name in charts)
+
+
+def test_json(xlmc, case_study):
+    """One of the skid sheet's forecasts does not vary, and its filter rejects nothing."""
+    outcome = xlmc("methods", case_study.with_name("skid-100-ft.xlsx"), *SHORT, "--json", "--accuracy", "1%")
+    assert outcome.code == 0
+    found = json.loads(outcome.out)
+    methods = {each["method"]: each for each in found["methods"]}
+    bounds, truth = methods["corners"]["bounds"], found["reference"]["forecasts"]
+    for name, answer in truth.items():
+        assert bounds[name]["least"] <= answer["low"]["value"] <= answer["high"]["value"] <= bounds[name]["most"]
+    assert any(answer["sd"]["value"] == 0.0 for answer in truth.values())
+    assert methods["mc"]["runs"][-1]["trials"] == 4096
+    assert methods["mc"]["needs"]["trials"] > 0
+    assert found["accuracy"] == "1%"
+    assert any("Recommended: " in said for said in found["recommendation"])
+    assert found["reference"]["sampling"] == "sobol"
+    assert found["not_used"] == {}
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("m.pdf", "is not written as .pdf"),
+        ("m", "is not written as a file without ending"),
+        ("nowhere/m.png", "this cannot be written"),
+    ],
+)
+def test_an_output_that_cannot_be(xlmc, case_study, name, message):
+    outcome = xlmc("methods", case_study, "-o", name)
+    assert outcome.code == 2
+    assert message in outcome.err
+
+
+def test_the_workbook_itself_is_no_output(xlmc, case_study, tmp_path):
+    copy = tmp_path / "case.xlsx"
+    copy.write_bytes(case_study.read_bytes())
+    outcome = xlmc("methods", copy, "-o", copy)
+    assert outcome.code == 2
+    assert "this is the workbook itself" in outcome.err
+    assert copy.read_bytes() == case_study.read_bytes()
+
+
+def test_nothing_to_draw_with(xlmc, case_study, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    outcome = xlmc("methods", case_study, "-o", "m.png")
+    assert outcome.code == 2
+    assert "pip install 'xlmc[plots]'" in outcome.err
+
+
+def test_an_accuracy_that_cannot_be_read(xlmc, case_study):
+    outcome = xlmc("methods", case_study, "--accuracy", "good")
+    assert outcome.code == 2
+    assert "'good' is no precision" in outcome.err

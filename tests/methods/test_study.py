@@ -1,0 +1,220 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from xlmc.errors import SimulationError
+from xlmc.methods import STATISTICS, recommendation, study
+from xlmc.methods.curve import rung_of
+from xlmc.methods.lockstep import in_step
+from xlmc.methods.need import need, shortfall, worst
+from xlmc.methods.reference import reference_of
+from xlmc.methods.rms import line, rms_of
+from xlmc.methods.sampled import MONTE_CARLO
+from xlmc.report.methods import tables
+
+REPLICATES, TRIALS = 400, 16_384
+
+
+@pytest.fixture(scope="module")
+def small(case_study):
+    """Few and short runs of everything."""
+    return study(case_study, reference_trials=1 << 19, trials=1 << 13, replicates=2, seed=5)
+
+
+@pytest.fixture
+def straight(book):
+    """y = 2x + z without filters: Taylor's first order has its mean and SD exactly."""
+    return book(
+        {"A1": 0.5, "B1": 1.0, "C1": "=10+2*A1+B1"},
+        {
+            "x": {"cell": "A1", "distribution": "Normal", "mean": 0, "std_dev": 1},
+            "z": {"cell": "B1", "distribution": "Normal", "mean": 0, "std_dev": 1},
+        },
+        {"y": "C1"},
+    )
+
+
+def test_sampling_errors_are_what_theory_says(case_study):
+    """400 runs know a root mean square to 3.5 %, the reference the density at a quantile to 4; 20 % is far more."""
+    reference = reference_of(case_study, 1 << 23, "mc", "jit", 3)
+    results = [MONTE_CARLO.run(case_study, TRIALS, 1_000 + seed) for seed in range(REPLICATES)]
+    rung = rung_of(TRIALS, results, reference)
+    for forecast in case_study.forecasts:
+        for statistic in STATISTICS:
+            theory = reference.theory(forecast.name, statistic, TRIALS)
+            own = getattr(reference.errors[forecast.name], statistic)
+            assert rung.errors[forecast.name, statistic].value == pytest.approx(np.hypot(theory, own), rel=0.2)
+    share = reference.acceptance.value
+    assert rung.acceptance.value == pytest.approx((share * (1 - share) / TRIALS) ** 0.5, rel=0.2)
+
+
+def test_theory_is_that_of_the_independent_reference(case_study):
+    """DOMAIN.md §2: theory of 131,072 trials for the filtered means, mph; SDs of a million trials are known to 1 %."""
+    reference = reference_of(case_study, 1 << 20, "mc", "numpy", 3)
+    for name, error in zip(reference.answers, (0.0154, 0.0295, 0.0367, 0.0417), strict=True):
+        assert reference.theory(name, "mean", 131_072) == pytest.approx(error, rel=0.03)
+
+
+def test_every_method_is_there(small):
+    keys = [curve.method.key for curve in small.every]
+    assert keys[:5] == ["corners", "optimised", "worst-case", "taylor-1", "taylor-2"]
+    assert keys[5:10] == ["mc", "lhs", "sobol", "grid", "surrogate"]
+    assert keys[10:] == ["mc/jit", "mc/float32", "mc/formulas"]
+    assert small.absent == {}
+    assert small.ladder == (512, 2_048, 8_192)
+
+
+def test_what_every_method_tells(small):
+    for curve in small.every:
+        assert curve.rungs[-1].seconds > 0.0
+        assert curve.rungs[-1].evaluations >= 1
+        if curve.method.sampling:
+            assert all(np.isfinite(curve.rungs[-1].shares[each]) for each in STATISTICS)
+            assert curve.rungs[-1].acceptance is not None
+    grid = next(curve for curve in small.curves if curve.method.key == "grid")
+    assert grid.rungs[-1].effective > 0
+
+
+def test_an_engine_has_the_errors_of_its_trials(small):
+    plain = next(curve for curve in small.curves if curve.method.key == "mc")
+    for engine in small.engines:
+        for statistic in STATISTICS:
+            expected = plain.rungs[-1].shares[statistic]
+            assert engine.rungs[-1].shares[statistic] == pytest.approx(expected, rel=1e-3)
+    slow = small.engines[-1]
+    assert not slow.rungs[-1].measured
+    assert slow.rungs[-1].seconds == pytest.approx(4 * slow.rungs[-2].seconds)
+
+
+def test_what_cannot_be_seen_is_said(small):
+    text = "\n".join(recommendation(small))
+    assert "Taylor, first order misses the mean of Nissan impact speed by 4.1 mph" in text
+    assert "does not see that the filters reject 98.2 % of the trials" in text
+    assert "Bounds answer another question" in text
+    assert "Recommended: " in text
+    assert "--precision 1% --precision-of mean,sd,range" in text
+
+
+def test_the_tables(small):
+    bounds = {row[0]: row[2:] for row in tables.bounds_table(small).rows}
+    assert bounds["Chevrolet delta-V"][:2] == ("8.87 to 18.70", "8.85 to 15.88")
+    errors = {row[0]: row[1:] for row in tables.error_table(small).rows}
+    assert [*errors] == [curve.method.name for curve in small.every if curve.answers]
+    assert errors["Monte Carlo"][0] == "8,192"
+    assert errors["Taylor, first order"][-1] == "–"
+    assert errors["Monte Carlo, engine formulas"][1].startswith("≈ ")
+    assert len(tables.forecast_table(small).rows) == 4 * (1 + len(errors))
+    assert {row[0] for row in tables.reference_table(small).rows} == set(small.varying)
+    said = dict(tables.cannot_lines(small))
+    assert "does not see filters" in said["Taylor, second order"]
+
+
+def test_need_follows_the_square_root(small):
+    """Half the accuracy asked for is a fourth of the trials, where errors fall with their square root."""
+    plain = next(curve for curve in small.curves if curve.method.key == "mc")
+    found = need(small, plain)
+    assert found.statistic in STATISTICS
+    assert found.trials > small.ladder[-1]
+    assert found.seconds > 0.0
+    assert worst(small, plain, plain.rungs[-1]) > 1.0
+
+
+def test_without_filters_the_differential_method_may_do(straight):
+    found = study(straight, accuracy="2%", reference_trials=1 << 14, trials=1 << 12, replicates=3)
+    assert found.reference.sampling == "sobol"
+    text = "\n".join(recommendation(found))
+    assert "Taylor, first order and Taylor, second order are near enough, and need no draws at all" in text
+    first = next(curve for curve in found.once if curve.method.key == "taylor-1")
+    assert shortfall(found, first).times < 1.0
+    sobol, plain = (next(c for c in found.curves if c.method.key == key) for key in ("sobol", "mc"))
+    assert sobol.rungs[-1].shares["mean"] < 0.2 * plain.rungs[-1].shares["mean"]
+
+
+def test_accuracy_in_units(straight):
+    found = study(straight, accuracy="0.5", reference_trials=1 << 14, trials=1 << 10, replicates=2)
+    assert found.tolerance("y", "mean") == found.tolerance("y", "sd") == 0.5
+    assert "to 0.5 in each forecast's units" in recommendation(found)[0]
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({"accuracy": "good"}, "is no precision"),
+        ({"replicates": 1}, "1 replicates were asked for"),
+        ({"trials": 100}, "100 trials were asked for"),
+        ({"reference_trials": 10}, "10 reference trials were asked for"),
+        ({"seed": -1}, "the seed -1 is negative"),
+    ],
+)
+def test_what_cannot_be_meant(straight, asked, message):
+    with pytest.raises(SimulationError, match=message):
+        study(straight, **asked)
+
+
+def test_too_few_accepted(book):
+    model = book(
+        {"A1": 0.5, "B1": "=A1"},
+        {"a": {"cell": "A1", "low": 0, "high": 1}},
+        {"f": "B1"},
+        {"rare": {"cell": "A1", "above": 0.999}},
+    )
+    with pytest.raises(SimulationError, match="too few to measure methods by"):
+        study(model, reference_trials=2_048, trials=1_024, replicates=2)
+
+
+def test_a_method_that_cannot_be_used_is_named(book):
+    model = book(
+        {"A1": 1.0, "B1": "=SIN(50*A1)"},
+        {"a": {"cell": "A1", "low": 0, "high": 1}},
+        {"f": "B1"},
+    )
+    found = study(model, reference_trials=1 << 14, trials=1 << 10, replicates=2)
+    assert "is a quadratic polynomial" in found.absent["Surrogate, exact filter"]
+
+
+def test_no_forecast(book):
+    with pytest.raises(SimulationError, match="has no forecast"):
+        study(book({"A1": 1.0}))
+
+
+def test_root_mean_squares():
+    errors = np.random.default_rng(1).normal(0.5, 2.0, 20_000)
+    found = rms_of([*errors, np.nan])
+    assert found.n == 20_000
+    assert found.value == pytest.approx((4 + 0.25) ** 0.5, rel=0.02)
+    assert found.bias == pytest.approx(0.5, abs=0.06)
+    assert not found.biased
+    assert rms_of(np.random.default_rng(1).normal(3.0, 1.0, 50)).biased
+    assert np.isnan(rms_of([np.nan]).value)
+
+
+def test_slopes():
+    assert line([1, 10, 100], [5, np.nan, 0.5])[0] == pytest.approx(-0.5)
+    assert np.isnan(line([4, 4], [1, 2])[0])
+
+
+def test_searches_in_step_and_a_failure_among_them():
+    asked = []
+
+    def answer(questions):
+        asked.append(len(questions))
+        return [each + 1 for each in questions]
+
+    def climb(times):
+        def search(ask):
+            value = 0
+            for _ in range(times):
+                value = ask(value)
+            return value
+
+        return search
+
+    assert in_step([climb(3), climb(1), climb(0)], answer) == [3, 1, 0]
+    assert sum(asked) == 4
+
+    def broken(ask):
+        raise ValueError("broken")
+
+    with pytest.raises(ValueError, match="broken"):
+        in_step([climb(2), broken], answer)

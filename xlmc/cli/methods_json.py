@@ -1,0 +1,83 @@
+"""A study of methods as JSON holds it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from xlmc.cli.plain import estimate_json, finite
+from xlmc.methods import STATISTICS, Curve, Rung, Study, need, recommendation
+
+__all__ = ["study_json"]
+
+
+def study_json(found: Study) -> dict[str, Any]:
+    """Everything that was measured."""
+    reference = found.reference
+    return {
+        "workbook": found.model.workbook.name,
+        "accuracy": found.accuracy[0],
+        "seed": found.seed,
+        "reference": {
+            "trials": reference.trials,
+            "accepted": reference.accepted,
+            "sampling": reference.sampling,
+            "engine": reference.engine,
+            "seconds": reference.seconds,
+            "acceptance": estimate_json(reference.acceptance),
+            "forecasts": {
+                name: {
+                    each: {
+                        "value": finite(getattr(answer, each)),
+                        "error": finite(getattr(reference.errors[name], each)),
+                    }
+                    for each in STATISTICS
+                }
+                for name, answer in reference.answers.items()
+            },
+        },
+        "methods": [_curve(found, curve) for curve in found.every],
+        "not_used": dict(found.absent),
+        "recommendation": recommendation(found),
+    }
+
+
+def _curve(found: Study, curve: Curve) -> dict[str, Any]:
+    drawn = curve not in found.once
+    wanted = need(found, curve) if drawn else None
+    return {
+        "method": curve.method.key,
+        "name": curve.method.name,
+        "cannot": curve.method.cannot,
+        "remarks": list(curve.remarks),
+        "setup_seconds": curve.setup,
+        "bounds": {name: {"least": least, "most": most} for name, (least, most) in curve.ranges.items()},
+        "runs": [_rung(found, rung, drawn) for rung in curve.rungs],
+        "slopes": {
+            each: {"trials": finite(curve.slope(each, "budget")), "seconds": finite(curve.slope(each, "seconds"))}
+            for each in STATISTICS
+        },
+        "needs": wanted and {"trials": finite(wanted.trials), "seconds": finite(wanted.seconds)},
+    }
+
+
+def _rung(found: Study, rung: Rung, drawn: bool) -> dict[str, Any]:
+    return {
+        "trials": rung.budget if drawn else None,
+        "seconds": finite(rung.seconds),
+        "seconds_measured": rung.measured,
+        "evaluations": rung.evaluations,
+        "effective": rung.effective,
+        "failed": rung.failed,
+        "acceptance_error": None if rung.acceptance is None else finite(rung.acceptance.value),
+        "errors": {
+            forecast.name: {
+                each: {
+                    "rms": finite(rung.errors[forecast.name, each].value),
+                    "error": finite(rung.errors[forecast.name, each].error),
+                    "bias": finite(rung.errors[forecast.name, each].bias),
+                }
+                for each in STATISTICS
+            }
+            for forecast in found.model.forecasts
+        },
+    }

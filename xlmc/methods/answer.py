@@ -1,0 +1,109 @@
+"""What every method is asked for: mean, standard deviation, both ends of the central range, and the share accepted."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Final, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc import statistics
+from xlmc.model import Model
+from xlmc.statistics import Sample
+
+__all__ = ["STATISTICS", "Answer", "Method", "MethodResult", "answer_of"]
+
+STATISTICS: Final[Mapping[str, str]] = {
+    "mean": "Mean",
+    "sd": "SD",
+    "low": "Lower end",
+    "high": "Upper end",
+}
+"""Attribute of an `Answer` -> what people call it."""
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """One forecast, in its units; NaN where a method has nothing to say.
+
+    Attributes:
+        mean, sd: of the accepted trials, or of all where the method does not see filters.
+        low, high: the ends of the forecast's central range.
+        least, most: bounds, for methods that give them in place of a distribution.
+    """
+
+    mean: float = np.nan
+    sd: float = np.nan
+    low: float = np.nan
+    high: float = np.nan
+    least: float = np.nan
+    most: float = np.nan
+
+
+@dataclass(frozen=True, slots=True)
+class MethodResult:
+    """What one run of a method gave.
+
+    Attributes:
+        seconds: of the whole run, with what it learned from.
+        evaluations: of the workbook.
+        answers: forecast -> answer.
+        acceptance: the share of trials that all filters accept; None where the method does not see filters.
+        effective: how many equally weighted accepted trials carry as much; None where all weigh alike.
+        remarks: what this run has to say for itself: its point, its limits, what it left out.
+    """
+
+    seconds: float
+    evaluations: int
+    answers: Mapping[str, Answer]
+    acceptance: float | None = None
+    effective: float | None = None
+    remarks: tuple[str, ...] = field(default=())
+
+
+class Method(Protocol):
+    """A way from ranges of the assumptions to what they make of the forecasts.
+
+    Attributes:
+        key: short, for JSON and colours.
+        name: for people.
+        sampling: whether more trials bring it nearer to the answer, so that it has a curve and not one point.
+        cannot: what it cannot do, in words; empty where there is nothing to say.
+    """
+
+    @property
+    def key(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def sampling(self) -> bool: ...
+    @property
+    def cannot(self) -> str: ...
+
+    def run(self, model: Model, budget: int, seed: int) -> MethodResult:
+        """Run it once.
+
+        Args:
+            model: the workbook.
+            budget: evaluations of the workbook that it may spend, about; methods that know how many they need spend
+                those.
+            seed: of whatever it draws.
+
+        Raises:
+            SimulationError: this method cannot be used on this workbook, and why.
+        """
+
+
+def answer_of(values: Floats, weights: Floats | None, central: float) -> Answer:
+    """The answer that `(m,)` accepted trials give, NaNs left out; all NaN where too few are numbers."""
+    known = ~np.isnan(values)
+    if np.count_nonzero(known) < 2:
+        return Answer()
+    sample = Sample.of(values[known], None if weights is None else weights[known])
+    tails = np.array([(1.0 - central) / 2.0, (1.0 + central) / 2.0])
+    low, high = sample.quantile(tails)
+    return Answer(statistics.mean(sample).value, statistics.standard_deviation(sample).value, float(low), float(high))

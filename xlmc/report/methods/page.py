@@ -1,0 +1,100 @@
+"""A study as one HTML page that needs nothing else: the recommendation, the figures as SVG, the tables."""
+
+from __future__ import annotations
+
+import io
+from html import escape
+from typing import TYPE_CHECKING
+
+from xlmc.methods import Study, recommendation
+from xlmc.report.methods import tables
+from xlmc.report.methods.figure import draw
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["page"]
+
+_STYLE = """
+body { font: 15px/1.5 "Segoe UI", "Helvetica Neue", Arial, sans-serif; color: #1F3044; margin: 2em auto;
+  max-width: 1180px; padding: 0 1em; }
+h1 { font-size: 1.6em; margin-bottom: 0; }
+h2 { font-size: 1.15em; margin-top: 2em; }
+p.below { color: #52606D; margin-top: .2em; }
+p.said { max-width: 62em; }
+div.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-size: 13px; }
+th { background: #1F3044; color: #fff; font-weight: 600; text-align: right; padding: .35em .6em; }
+td { border-bottom: 1px solid #D5DBE3; padding: .3em .6em; text-align: right; font-variant-numeric: tabular-nums;
+  white-space: nowrap; }
+th.left, td.left { text-align: left; }
+td.long { white-space: normal; text-align: left; }
+figure { margin: 1em 0; }
+svg { width: 100%; height: auto; }
+code { background: #EEF4FA; padding: .1em .3em; }
+@media print {
+  body { margin: 0; max-width: none; font-size: 11px; }
+  table { font-size: 9px; }
+  h2 { break-after: avoid; }
+}
+"""
+
+
+def page(study: Study) -> str:
+    """The page."""
+    name = escape(study.model.workbook.name)
+    words = "".join(f'<p class="said">{_text(each)}</p>\n' for each in recommendation(study))
+    shown = (
+        tables.error_table(study), tables.bounds_table(study), tables.reference_table(study),
+        tables.forecast_table(study), tables.rung_table(study),
+    )  # fmt: skip
+    cannot = "".join(
+        f'<tr><td class="left">{escape(method)}</td><td class="long">{escape(said)}</td></tr>\n'
+        for method, said in tables.cannot_lines(study)
+    )
+    figures = "".join(
+        f"<h2>Error against {what}</h2>\n<figure>{_svg(draw(study, against))}</figure>\n"
+        for against, what in (("seconds", "time"), ("evaluations", "evaluations of the workbook"))
+    )
+    first, *rest = (_table(each) for each in shown if each.rows)
+    return (
+        "<!DOCTYPE html>\n"
+        f'<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>Methods: {name}</title>\n'
+        f"<style>{_STYLE}</style>\n</head>\n<body>\n"
+        f'<h1>Methods of uncertainty analysis</h1>\n<p class="below">{name}</p>\n'
+        f"{words}{first}{figures}"
+        f'<h2>What each method says of itself, and cannot do</h2>\n<div class="wide"><table>{cannot}</table></div>\n'
+        f"{''.join(rest)}</body>\n</html>\n"
+    )
+
+
+def _text(said: str) -> str:
+    """Escaped, what stands between backticks as code."""
+    parts = escape(said).split("`")
+    return "".join(f"<code>{part}</code>" if place % 2 else part for place, part in enumerate(parts))
+
+
+def _table(table: tables.Table) -> str:
+    head = "".join(
+        f'<th class="left">{escape(each)}</th>' if place < table.right else f"<th>{escape(each)}</th>"
+        for place, each in enumerate(table.headings)
+    )
+    rows = "".join(f"<tr>{_row(row, table.right)}</tr>\n" for row in table.rows)
+    return f'<h2>{escape(table.title)}</h2>\n<div class="wide"><table><tr>{head}</tr>\n{rows}</table></div>\n'
+
+
+def _row(row: tuple[str, ...], right: int) -> str:
+    return "".join(
+        f'<td class="left">{escape(cell)}</td>' if place < right else f"<td>{escape(cell)}</td>"
+        for place, cell in enumerate(row)
+    )
+
+
+def _svg(figure: Figure) -> str:
+    import matplotlib as mpl
+
+    drawn = io.StringIO()
+    with mpl.rc_context({"svg.fonttype": "path", "svg.hashsalt": "xlmc"}):
+        figure.savefig(drawn, format="svg", metadata={"Date": None})
+    text = drawn.getvalue()
+    return text[text.index("<svg") :]

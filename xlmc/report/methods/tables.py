@@ -1,0 +1,219 @@
+"""The tables of a study, as texts: the same for the terminal, the page and the workbook."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from xlmc.methods import STATISTICS, Curve, Rung, Study, need
+from xlmc.methods.recommendation import seconds_text, trials_text
+from xlmc.report.summary import estimate_text
+from xlmc.statistics import Estimate, format_estimate
+
+__all__ = [
+    "Table",
+    "accepted_text",
+    "bounds_table",
+    "cannot_lines",
+    "error_table",
+    "floor_of",
+    "forecast_table",
+    "reference_table",
+    "rung_table",
+]
+
+_NONE = "–"
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows under headings; the columns from `right` on hold numbers."""
+
+    title: str
+    headings: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    right: int = 1
+
+
+def floor_of(study: Study, statistic: str) -> float:
+    """The reference's own error of a statistic, over the forecasts' standard deviations; below it nothing is known."""
+    reference = study.reference
+    parts = [
+        float(getattr(reference.errors[name], statistic)) / answer.sd
+        for name, answer in reference.answers.items()
+        if answer.sd > 0.0
+    ]
+    known = [part for part in parts if np.isfinite(part)]
+    return float(np.sqrt(np.mean(np.square(known)))) if known else np.nan
+
+
+def reference_table(study: Study) -> Table:
+    """The reference, with its standard errors."""
+    found = study.reference
+    rows = []
+    for forecast in study.model.forecasts:
+        answer, error = found.answers[forecast.name], found.errors[forecast.name]
+        numbers = (format_of(getattr(answer, each), getattr(error, each)) for each in STATISTICS)
+        rows.append((forecast.name, forecast.units, *numbers))
+    how = "Monte Carlo" if found.sampling == "mc" else "scrambled Sobol"
+    title = (
+        f"Reference: {found.trials:,} trials ({how}, engine {found.engine}, seed {found.seed}), accepted "
+        f"{accepted_text(found.acceptance)}, {seconds_text(found.seconds)}"
+    )
+    return Table(title, ("Forecast", "Units", *STATISTICS.values()), tuple(rows), 2)
+
+
+def error_table(study: Study) -> Table:
+    """Every method at its longest run: cost, error, slope, and what the accuracy asked for would take."""
+    headings = (
+        "Method", "Trials", "Time", "Evaluations", *STATISTICS.values(), "Accepted", "Effective", "Slope", "Needs",
+    )  # fmt: skip
+    rows = [(curve.method.name, *_cells(study, curve)) for curve in study.every if curve.answers]
+    text = study.accuracy[0]
+    title = (
+        "Root mean square errors, in % of each forecast's SD (over the forecasts); of the accepted share, in % of it. "
+        f"Needs: for {text}, in 95 of 100 runs"
+    )
+    return Table(title, headings, tuple(rows))
+
+
+def _cells(study: Study, curve: Curve) -> Iterator[str]:
+    rung = curve.rungs[-1]
+    drawn = curve not in study.once
+    yield f"{rung.budget:,}" if drawn else _NONE
+    yield ("" if rung.measured else "≈ ") + seconds_text(rung.seconds)
+    yield f"{rung.evaluations:,.0f}"
+    for statistic in STATISTICS:
+        yield _share_text(rung.shares[statistic], floor_of(study, statistic))
+    yield _NONE if rung.acceptance is None else percent_text(rung.acceptance.value / study.reference.acceptance.value)
+    yield _NONE if rung.effective is None else f"{rung.effective:,.0f}"
+    yield slope_text(curve.slope("mean", "budget"))
+    yield _need_text(study, curve) if drawn else _NONE
+
+
+def _need_text(study: Study, curve: Curve) -> str:
+    found = need(study, curve)
+    if not np.isfinite(found.seconds):
+        return "out of reach"
+    return f"{trials_text(found.trials)} trials, {seconds_text(found.seconds)}"
+
+
+def rung_table(study: Study) -> Table:
+    """Every run length of every method."""
+    work = ("Method", "Trials", "Runs", "Time", "Evaluations")
+    headings = (*work, *STATISTICS.values(), "Accepted", "Effective", "Failed")
+    rows = []
+    for curve in study.every:
+        for rung in curve.rungs if curve.answers else ():
+            known = study.reference.acceptance.value
+            rows.append((
+                curve.method.name,
+                _NONE if curve in study.once else f"{rung.budget:,}",
+                f"{_runs(rung):,}",
+                ("" if rung.measured else "≈ ") + seconds_text(rung.seconds),
+                f"{rung.evaluations:,.0f}",
+                *(_share_text(rung.shares[each], floor_of(study, each)) for each in STATISTICS),
+                _NONE if rung.acceptance is None else percent_text(rung.acceptance.value / known),
+                _NONE if rung.effective is None else f"{rung.effective:,.0f}",
+                f"{rung.failed:,}" if rung.failed else _NONE,
+            ))  # fmt: skip
+    return Table("Errors in % of each forecast's SD, root mean square over runs and forecasts", headings, tuple(rows))
+
+
+def _runs(rung: Rung) -> int:
+    return max(each.n for each in rung.errors.values()) + rung.failed
+
+
+def forecast_table(study: Study) -> Table:
+    """Every method's longest runs, forecast by forecast, in their units, beside what theory says of Monte Carlo."""
+    rows = []
+    for forecast in study.model.forecasts:
+        trials = study.ladder[-1]
+        theory = (_number(study.reference.theory(forecast.name, each, trials)) for each in STATISTICS)
+        rows.append((forecast.name, forecast.units, f"Theory, {trials:,} independent trials", *theory))
+        for curve in study.every:
+            if curve.answers:
+                found = (curve.rungs[-1].errors[forecast.name, each] for each in STATISTICS)
+                cells = (format_of(each.value, each.error) for each in found)
+                rows.append((forecast.name, forecast.units, curve.method.name, *cells))
+    headings = ("Forecast", "Units", "Method", *STATISTICS.values())
+    return Table("Root mean square errors of the longest runs, in the forecasts' units", headings, tuple(rows), 3)
+
+
+def bounds_table(study: Study) -> Table:
+    """What the bounds methods give, beside the central range of the reference."""
+    curves = [curve for curve in study.once if curve.ranges]
+    rows: list[tuple[str, ...]] = []
+    for forecast in study.model.forecasts:
+        answer = study.reference.answers[forecast.name]
+        found = [curve.ranges.get(forecast.name, (np.nan, np.nan)) for curve in curves]
+        central = _ends(answer.low, answer.high)
+        rows.append((forecast.name, forecast.units, *(_ends(*each) for each in found), central))
+    last = [curve.rungs[-1] for curve in curves]
+    rows.append(("Evaluations", "", *(f"{rung.evaluations:,.0f}" for rung in last), ""))
+    rows.append(("Time", "", *(seconds_text(rung.seconds) for rung in last), ""))
+    headings = ("Forecast", "Units", *(curve.method.name for curve in curves), "Reference, central range")
+    return Table("Bounds: what is possible", headings, tuple(rows), 2)
+
+
+def cannot_lines(study: Study) -> list[tuple[str, str]]:
+    """Method -> what it cannot do, and what its run had to say; methods that could not be used, and why."""
+    found = []
+    for curve in study.every:
+        parts = [each for each in (curve.method.cannot, *curve.remarks) if each]
+        if curve.setup > 0.1:
+            parts.append(f"its first run took {seconds_text(curve.setup)} longer, to compile or import")
+        if parts:
+            found.append((curve.method.name, "; ".join(parts)))
+    found += [(name, f"not used: {why}") for name, why in study.absent.items()]
+    return found
+
+
+def accepted_text(acceptance: Estimate) -> str:
+    """`1.7566 ± 0.0023 %`."""
+    error = None if acceptance.error is None else 100.0 * acceptance.error
+    return f"{estimate_text(Estimate(100.0 * acceptance.value, error))} %"
+
+
+def format_of(value: float, error: float) -> str:
+    """A number with its error, and no more digits than that supports; a dash where there is none."""
+    if not np.isfinite(value):
+        return _NONE
+    return format_estimate(float(value), float(error)) if np.isfinite(error) and error > 0.0 else _number(value)
+
+
+def _ends(least: float, most: float) -> str:
+    """Both to a hundredth, or to five digits of the larger where it is small or large."""
+    if not (np.isfinite(least) and np.isfinite(most)):
+        return _NONE
+    size = max(abs(least), abs(most))
+    plain = 0.1 <= size < 1e5
+    return f"{least:.2f} to {most:.2f}" if plain else f"{least:.5g} to {most:.5g}"
+
+
+def _number(value: float) -> str:
+    """Two significant digits, whole numbers from 10 on; a dash where there is none."""
+    if not np.isfinite(value):
+        return _NONE
+    return f"{value:,.0f}" if abs(value) >= 10 else f"{value:#.2g}"
+
+
+def _share_text(share: float, floor: float) -> str:
+    if not np.isfinite(share):
+        return _NONE
+    return f"≤ {_number(100.0 * floor)}" if share < floor else percent_text(share)
+
+
+def percent_text(share: float) -> str:
+    """`2.4`: two significant digits, whole numbers from 10 on."""
+    value = 100.0 * share
+    if not np.isfinite(value):
+        return _NONE
+    return f"{value:,.0f}" if abs(value) >= 10 else f"{value:#.2g}"
+
+
+def slope_text(slope: float) -> str:
+    """`−0.49`."""
+    return _NONE if not np.isfinite(slope) else f"{slope:.2f}".replace("-", "−")

@@ -68,7 +68,7 @@ def main() -> None:
     for name in given.parts or PARTS:
         part, path = PARTS[name], given.results / f"stress-{name}.json"
         if not given.draw_only:
-            path.write_text(json.dumps(part.measure(given.fewer), indent=1) + "\n")
+            path.write_text(json.dumps(part.measure(given.fewer), separators=(",", ":")) + "\n")
         for picture in part.draw(json.loads(path.read_text()), given.pictures):
             print(f"{name}: {picture}", flush=True)
     if given.page.exists():

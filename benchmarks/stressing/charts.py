@@ -59,5 +59,7 @@ def save(made: Any, axes: Any, path: Path, *, columns: int = 4) -> None:
     buffer = BytesIO()
     made.savefig(buffer, dpi=110)
     pyplot.close(made)
-    with Image.open(buffer) as image:  # of 64 colours it is a third of the size
-        image.convert("RGB").quantize(64, dither=Image.Dither.NONE).save(path, optimize=True)
+    with Image.open(buffer) as image:  # of 128 colours it is a third of the size
+        image.convert("RGB").quantize(128, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
+            path, optimize=True
+        )

@@ -62,7 +62,7 @@ def filled(page: str, found: Study) -> str:
         "lengths": tables.rung_table(found),
     }
     for name, table in made.items():
-        page = placed(page, name, f"{table.title}:\n\n{_markdown(table.headings, table.rows, table.right)}")
+        page = placed(page, name, f"*{table.title}*\n\n{_markdown(table.headings, table.rows, table.right)}")
     headings = ("Trials", "Forecast", *STATISTICS.values())
     page = placed(page, "theory", _markdown(headings, theory_rows(found), 2))
     words = "\n\n".join(f"> {said}" if said else "" for said in recommendation(found))

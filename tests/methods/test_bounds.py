@@ -135,3 +135,15 @@ def test_nowhere_to_start_from(book):
     )
     with pytest.raises(SimulationError, match="nowhere to start from"):
         Optimised().run(model, 0, 1)
+
+
+def test_very_many_assumptions(book):
+    """No search, and as many corners as there is room for; the differential method has no trouble."""
+    count = 300
+    cells = {f"A{row}": 0.5 for row in range(1, count + 1)} | {"B1": f"=SUM(A1:A{count})"}
+    given = {f"a{row}": {"cell": f"A{row}", "low": 0, "high": 1} for row in range(1, count + 1)}
+    model = book(cells, given, {"f": "B1"})
+    with pytest.raises(SimulationError, match="no more than 200"):
+        Optimised().run(model, 0, 1)
+    assert Corners().run(model, 0, 1).evaluations == (1 << 22) // count
+    assert ends(WorstCase().run(model, 0, 1), "f") == pytest.approx((0.0, count))

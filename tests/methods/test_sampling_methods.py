@@ -152,6 +152,20 @@ def test_the_surrogate_draws_correlated_assumptions(book):
     assert found.mean == pytest.approx(rho, abs=5 * (1 + rho**2) ** 0.5 / 256)
 
 
+def test_draws_that_are_none_are_left_out_of_the_surrogate(book):
+    """b lies between 0.2 and a: in a fifth of the trials that is no distribution."""
+    model = book(
+        {"A1": 0.5, "B1": 0.3, "C1": "=A1+B1"},
+        {"a": {"cell": "A1", "low": 0, "high": 1}, "b": {"cell": "B1", "low": 0.2, "high": "A1"}},
+        {"f": "C1"},
+    )
+    found = Surrogate().run(model, 40_000, 1)
+    assert found.acceptance == pytest.approx(0.8, abs=5 * (0.16 / 40_000) ** 0.5)
+    plain = MONTE_CARLO.run(model, 40_000, 2)
+    assert plain.acceptance == pytest.approx(0.8, abs=5 * (0.16 / 40_000) ** 0.5)
+    assert found.answers["f"].mean == pytest.approx(plain.answers["f"].mean, abs=0.02)
+
+
 def test_an_engine_that_is_not_there(case_study):
     with pytest.raises(SimulationError, match="there is no engine"):
         Sampled("x", "x", engine="abacus").run(case_study, 1_024, 1)

@@ -173,6 +173,11 @@ def test_a_method_that_cannot_be_used_is_named(book):
     assert "is a quadratic polynomial" in found.absent["Surrogate, exact filter"]
 
 
+def test_nothing_is_drawn(book):
+    with pytest.raises(SimulationError, match="so that every method gives the same"):
+        study(book({"A1": 1.0, "B1": "=A1"}, {}, {"f": "B1"}))
+
+
 def test_no_forecast(book):
     with pytest.raises(SimulationError, match="has no forecast"):
         study(book({"A1": 1.0}))

@@ -18,6 +18,8 @@ from xlmc.model import Model
 __all__ = ["MOST_CORNERS", "Corners"]
 
 MOST_CORNERS: Final = 1 << 16
+_MOST_NUMBERS: Final = 1 << 22
+"""Assumptions times corners: very many assumptions have fewer corners looked at."""
 
 Floats = NDArray[np.float64]
 
@@ -58,8 +60,9 @@ def _corners(k: int, seed: int) -> tuple[NDArray[np.bool_], tuple[str, ...]]:
         numbers = np.arange(1 << k)
         said = f"all 2^{k} = {1 << k:,} corners of the {k} assumptions that the forecasts depend on"
         return (numbers[:, None] >> np.arange(k)) & 1 == 1, (said,)
-    said = f"{MOST_CORNERS:,} random corners of 2^{k}: the true bounds may be wider"
-    return np.random.default_rng(seed).random((MOST_CORNERS, k)) < 0.5, (said,)
+    count = min(MOST_CORNERS, _MOST_NUMBERS // k)
+    said = f"{count:,} random corners of 2^{k}: the true bounds may be wider"
+    return np.random.default_rng(seed).random((count, k)) < 0.5, (said,)
 
 
 def _bounds(column: Floats) -> Answer:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -52,7 +53,7 @@ def moments_of(model: Model, seed: int) -> Moments:
     correlations = np.eye(len(model.live))
     remarks = []
     if varying or model.groups:
-        draws = drawn(model, seed)
+        draws = np.concatenate([*drawn(model, seed)])
         for place in varying:
             found[place] = np.nanmean(draws[:, place]), np.nanvar(draws[:, place])
         correlations = _correlations(model, draws, varying)
@@ -64,16 +65,14 @@ def moments_of(model: Model, seed: int) -> Moments:
     return Moments(found[:, 0], correlations * np.outer(sd, sd), tuple(remarks))
 
 
-def drawn(model: Model, seed: int) -> Floats:
-    """65,536 Sobol draws of the assumptions, before any filter, `(n, k)`."""
+def drawn(model: Model, seed: int) -> Iterator[Floats]:
+    """65,536 Sobol draws of the assumptions, before any filter, `(n, k)` block by block."""
     plan = Plan.of("sobol", _DRAWN)
     made = model.sampler(seed, plan.size, plan=plan)
     keys = [name_key(a.name) for a in model.live]
-    parts = []
     for start in range(0, plan.trials, plan.size):
         block = made.draw(start)
-        parts.append(np.column_stack([block[key] for key in keys]))
-    return np.concatenate(parts)
+        yield np.column_stack([block[key] for key in keys])
 
 
 def _of_draw(draw: Draw) -> tuple[float, float]:

@@ -36,6 +36,9 @@ PILOT: Final = 32_768
 STARTS: Final = 2
 """From which each end is looked for: the accepted trials of the pilot that are nearest to it."""
 
+_MOST: Final = 200
+"""Assumptions; a step's work grows with the third power of their number."""
+
 _MOST_STEPS: Final = 60
 _MARGINS: Final = (1e-9, 1e-7, 1e-5, 1e-3)
 """How far a point is moved away from the constraints, in widths of the box, until the workbook accepts it."""
@@ -60,9 +63,12 @@ class Optimised:
         """See `Method`; the budget is not looked at.
 
         Raises:
-            SimulationError: the pilot run has no accepted trial to start from.
+            SimulationError: the pilot run has no accepted trial to start from, or there are too many assumptions.
         """
         started = time.perf_counter()
+        if len(model.live) > _MOST:
+            message = f"{len(model.live):,} assumptions are drawn, and the search is made for no more than {_MOST}"
+            raise SimulationError(message, hint="bounds by corners look at as many as there are")
         pilot = model.simulate(PILOT, seed, sampling="mc", engine="numpy", keep_inputs=None)
         if not pilot.accepted:
             message = f"the filters accept none of {PILOT:,} trials, and the search has nowhere to start from"

@@ -63,7 +63,8 @@ def _without_drawing(once: Sequence[tuple[Curve, Shortfall]]) -> list[str]:
     if not enough:
         return []
     names = " and ".join(curve.method.name for curve in enough)
-    return [f"{names} {'is' if len(enough) == 1 else 'are'} near enough, and need no draws at all."]
+    verbs = ("is", "needs") if len(enough) == 1 else ("are", "need")
+    return [f"{names} {verbs[0]} near enough, and {verbs[1]} no draws at all."]
 
 
 def _drawing(study: Study, able: dict[Curve, Need]) -> list[str]:

@@ -10,13 +10,17 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from xlmc.derivatives import Derivative
 from xlmc.methods.answer import Answer, MethodResult, answer_of
 from xlmc.methods.expansion import expansion_of
 from xlmc.methods.moments import drawn
 from xlmc.model import Model
 
 __all__ = ["SecondOrder"]
+
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,17 +37,27 @@ class SecondOrder:
         started = time.perf_counter()
         expansion = expansion_of(model, seed, 2)
         moments = expansion.moments
-        away = drawn(model, seed) - moments.mean
-        answers = {}
+        found = {name: each for name, each in expansion.forecasts.items() if not np.isnan(_bend(each)).any()}
+        values: dict[str, list[Floats]] = {name: [] for name in found}
+        for block in drawn(model, seed):
+            for name, each in found.items():
+                values[name].append(_polynomial(each, block - moments.mean))
+        answers = {forecast.name: Answer() for forecast in model.forecasts}
         for forecast in model.forecasts:
-            found = expansion.forecasts[forecast.name]
-            assert found.hessian is not None  # second derivatives were asked for
-            value, slope, bend = float(found.value[0]), found.gradient[0], found.hessian[0]
-            if np.isnan(bend).any() or np.isnan(slope).any():
-                answers[forecast.name] = Answer()
-                continue
-            mean = value + 0.5 * float(np.sum(bend * moments.covariance))
-            polynomial = value + away @ slope + 0.5 * np.einsum("nk,nk->n", away @ bend, away)
-            rest = answer_of(polynomial, None, forecast.central)
-            answers[forecast.name] = Answer(mean, rest.sd, rest.low, rest.high)
+            if forecast.name in found:
+                each = found[forecast.name]
+                mean = float(each.value[0]) + 0.5 * float(np.sum(_bend(each) * moments.covariance))
+                rest = answer_of(np.concatenate(values[forecast.name]), None, forecast.central)
+                answers[forecast.name] = Answer(mean, rest.sd, rest.low, rest.high)
         return MethodResult(time.perf_counter() - started, 1, answers, remarks=expansion.remarks)
+
+
+def _polynomial(found: Derivative, away: Floats) -> Floats:
+    """The quadratic polynomial at points `(n, k)` counted from the means, `(n,)`."""
+    bent = 0.5 * np.einsum("nk,nk->n", away @ _bend(found), away)
+    return np.asarray(float(found.value[0]) + away @ found.gradient[0] + bent)
+
+
+def _bend(found: Derivative) -> Floats:
+    assert found.hessian is not None  # second derivatives were asked for
+    return np.asarray(found.hessian[0])

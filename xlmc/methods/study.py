@@ -166,6 +166,9 @@ def ladder_of(model: Model, most: int | None, seed: int) -> tuple[int, ...]:
 def _check(seed: int, replicates: int | None, trials: int | None, reference: int | None, model: Model) -> None:
     if not model.forecasts:
         raise SimulationError("the workbook has no forecast", hint="add one to the table xlmc_forecasts")
+    if not model.live:
+        message = "no assumption that the forecasts or filters need is drawn, so that every method gives the same"
+        raise SimulationError(message, hint="give the table xlmc_assumptions a range that a forecast depends on")
     if seed < 0:
         raise SimulationError(f"the seed {seed} is negative", hint="give a whole number from 0 up")
     if replicates is not None and replicates < 2:

@@ -85,9 +85,10 @@ def _pilot_size(k: int) -> int:
 
 
 def _draws(model: Model, trials: int, seed: int) -> Floats:
-    """Independent draws, `(trials, k)`."""
+    """Independent draws, `(trials, k)`, without those that are no number because parameters were no distribution."""
     drawn = model.sampler(seed, trials).draw(0)
-    return np.column_stack([drawn[name_key(a.name)] for a in model.live])
+    points = np.column_stack([drawn[name_key(a.name)] for a in model.live])
+    return np.asarray(points[~np.isnan(points).any(axis=1)])
 
 
 def _errors(points: Floats, values: Floats) -> Floats:
@@ -140,6 +141,7 @@ def _run(model: Model, replaced: list[Cell], polynomials: Quadratic, trials: int
         given = {name_key(a.name): column for a, column in zip(model.live, points.T, strict=True)}
         given |= {name_key(inputs[cell]): c for cell, c in zip(replaced, polynomials(points).T, strict=True)}
         found = evaluate(np.column_stack([given[name_key(a.name)] for a in rest.live]))
-        count += int(np.count_nonzero(found.accepted))
-        columns.append(found.forecasts[found.accepted])
+        accepted = found.accepted & ~np.isnan(points).any(axis=1)
+        count += int(np.count_nonzero(accepted))
+        columns.append(found.forecasts[accepted])
     return count, np.concatenate(columns)

@@ -185,12 +185,12 @@ def format_of(value: float, error: float) -> str:
 
 
 def _ends(least: float, most: float) -> str:
-    """Both to a hundredth, or to five digits of the larger where it is small or large."""
+    """Both to a hundredth, whole from 1,000 on, or to four digits where they are small."""
     if not (np.isfinite(least) and np.isfinite(most)):
         return _NONE
     size = max(abs(least), abs(most))
-    plain = 0.1 <= size < 1e5
-    return f"{least:.2f} to {most:.2f}" if plain else f"{least:.5g} to {most:.5g}"
+    form = ",.0f" if size >= 1_000.0 else ".2f" if size >= 0.1 else ".4g"
+    return f"{least:{form}} to {most:{form}}"
 
 
 def _number(value: float) -> str:

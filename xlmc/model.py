@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
 from xlmc.collecting import paused_collection
-from xlmc.compile import ENGINES, FILLERS, Lowering, Program, Target, options_of, widened
+from xlmc.compile import ENGINES, FILLERS, Evaluator, Lowering, Program, Target, options_of, widened
 from xlmc.correlating import correlated_groups, repair_notices
 from xlmc.definitions import Assumption, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key
@@ -19,6 +19,7 @@ from xlmc.definitions.stopping import stopping
 from xlmc.drawing import draw_of, dynamic_parameters
 from xlmc.errors import DefinitionError, Notice, SimulationError
 from xlmc.sampling import CorrelatedGroup, Plan, Sampler, Stage
+from xlmc.sampling.draws import Filler
 from xlmc.scene import Scene, condition, survey
 from xlmc.workbook import Workbook, read_workbook
 
@@ -224,20 +225,35 @@ class Model:
         if engine not in ENGINES:
             raise SimulationError(f"there is no engine {engine!r}", hint=f"choose one of {', '.join(ENGINES)}")
         if (engine, arithmetic) not in self._programs:
-            parts = self._lowering, self._filter_targets, self._forecast_targets, self.fallible
+            parts = self._lowering, self.filter_targets, self._forecast_targets, self.fallible
             with paused_collection():
                 self._programs[engine, arithmetic] = ENGINES[engine](*parts, **options_of(engine, arithmetic))
         return self._programs[engine, arithmetic]
 
-    def sampler(self, seed: int, block: int, engine: str = "numpy", plan: Plan | None = None) -> Sampler:
-        """The draws, block by block; for one thread. They are the same for every engine; by default independent."""
+    def evaluator(self, targets: Sequence[Target], block: int) -> Evaluator:
+        """What computes such targets too, all of them in every trial, for blocks of up to `block` trials."""
+        return ENGINES["numpy"](self._lowering, targets, [], self.fallible).evaluator(block)
+
+    def sampler(
+        self,
+        seed: int,
+        block: int,
+        engine: str = "numpy",
+        plan: Plan | None = None,
+        filler: Filler | None = None,
+    ) -> Sampler:
+        """The draws, block by block; for one thread. They are the same for every engine; by default independent.
+
+        With a filler, its uniforms take the place of the seed's.
+        """
         draws = [tuple(self._draws[a.name] for a in stage) for stage in self.scene.stages]
         stages = [Stage(stage, dynamic=i > 0) for i, stage in enumerate(draws)]
         parameters = [dynamic_parameters(stage, self._lowering, block) for stage in draws[1:]]
-        return Sampler(seed, stages, self.groups, parameters, block, plan, FILLERS.get(engine))
+        return Sampler(seed, stages, self.groups, parameters, block, plan, filler or FILLERS.get(engine))
 
     @property
-    def _filter_targets(self) -> list[Target]:
+    def filter_targets(self) -> list[Target]:
+        """What the filters ask, 1 where it holds."""
         return [Target(condition(filter_), filter_.cell) for filter_ in self.filters]
 
     @property
@@ -246,5 +262,5 @@ class Model:
 
     def _check_targets(self) -> None:
         """Lower every target once, so that a fault is told when the workbook is loaded."""
-        for target in (*self._filter_targets, *self._forecast_targets):
+        for target in (*self.filter_targets, *self._forecast_targets):
             self._lowering.target(target)

@@ -1,0 +1,82 @@
+"""The whole way: learn where trials are accepted, then draw so many of equal weight."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from xlmc.rare.equalising import BATCH, Equalised, equalised
+from xlmc.rare.learning import Learned, Round, Say, again, learn
+from xlmc.rare.splitting import Distance
+
+__all__ = ["Found", "find"]
+
+_AGAIN: Final = 3
+"""Times that a proposal is learnt anew because a trial was much heavier than any known."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """What came of it.
+
+    Attributes:
+        learned: what the search found.
+        used: the round whose proposal the trials come from; None where there is none to draw from.
+        equalised: the trials; None likewise.
+        evaluations: trials that all this took.
+    """
+
+    learned: Learned
+    used: Round | None
+    equalised: Equalised | None
+    evaluations: int
+
+
+def find(
+    distance: Distance,
+    dimensions: int,
+    wanted: int,
+    most: int,
+    learning: np.random.Generator,
+    drawing: np.random.Generator,
+    say: Say = lambda _: None,
+) -> Found:
+    """Draw `wanted` accepted trials of equal weight.
+
+    Args:
+        distance: 0 where a point of `dimensions` standard normals is accepted.
+        dimensions: of the points.
+        wanted: trials.
+        most: evaluations, of which learning takes what it needs.
+        learning, drawing: random numbers; what is drawn with must not have served to learn.
+        say: told of the evaluations so far.
+    """
+    learned, before = learn(distance, dimensions, learning, say), 0
+    for tries_left in range(_AGAIN, -1, -1):
+        used, done = learned.best, learned.evaluations + before
+        if used is None or wanted > used.rate * (most - done):
+            return Found(learned, None, None, done)
+        drawn = equalised(
+            distance,
+            used.proposal,
+            used.highest,
+            wanted,
+            most - done,
+            drawing,
+            lambda proposals, done=done: say(done + proposals),  # type: ignore[misc]
+            surprises=tries_left > 0,
+        )
+        if drawn.surprise is None:
+            break
+        before += drawn.proposals + BATCH
+        learned = again(distance, learned, drawn.surprise, learning, say)
+    return Found(learned, used, drawn, done + drawn.proposals)
+
+
+def agreement(found: Found) -> float:
+    """The logarithm of the populations' probability of acceptance over that of the trials."""
+    assert found.equalised is not None
+    return math.log(found.learned.probability / found.equalised.acceptance.value)

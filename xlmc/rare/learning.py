@@ -1,0 +1,160 @@
+"""Learning where accepted trials are: two populations find the region, then a proposal is fitted to it and improved.
+
+Trials drawn from a proposal say how good it is, and all trials drawn so far, each weighted by how much likelier it is
+as a trial than under all proposals together, make the next one (population Monte Carlo with mixture weights: Owen &
+Zhou 2000; Cappé, Douc, Guillin, Marin & Robert 2008; Cornuet, Marin, Mira & Robert 2012).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.rare.mixture import log_sum
+from xlmc.rare.proposal import Proposal, proposed
+from xlmc.rare.splitting import Descent, Distance, descend
+
+__all__ = ["Learned", "Round", "learn", "refined"]
+
+Floats = NDArray[np.float64]
+
+_DESCENTS: Final = 2
+_TRIALS: Final = 32_768
+_ROUNDS: Final = 5
+_GOOD: Final = 0.1
+"""Equal trials out of a proposal; with more, nothing is worth to be learnt."""
+
+_GAIN: Final = 1.2
+_FITTED: Final = 8_192
+"""Points that a proposal is fitted to: more would take long, and not know it better."""
+
+_TALLEST: Final = 30.0
+"""Times the mean weight, at most, that a point has in a fit: one point must not be a component."""
+
+_FEWEST: Final = 100
+"""Accepted points that a proposal can be fitted to."""
+
+Say = Callable[[int], None]
+"""Told of the evaluations so far."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Round:
+    """Trials drawn from a proposal.
+
+    Attributes:
+        proposal: drawn from.
+        trials: how many.
+        points: (m, d) the accepted ones.
+        logs: (m,) logarithms of their weights.
+    """
+
+    proposal: Proposal
+    trials: int
+    points: Floats
+    logs: Floats
+
+    @property
+    def rate(self) -> float:
+        """Trials of equal weight that can be had out of one proposal."""
+        return float(np.exp(self.logs - self.highest).sum() / self.trials) if self.logs.size else 0.0
+
+    @property
+    def highest(self) -> float:
+        """The largest weight's logarithm."""
+        return float(self.logs.max(initial=-math.inf))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Learned:
+    """What is known of the accepted region.
+
+    Attributes:
+        descents: the populations.
+        rounds: in the order they were made; none where no population reached the region.
+        evaluations: trials that this took.
+    """
+
+    descents: tuple[Descent, ...]
+    rounds: tuple[Round, ...]
+    evaluations: int
+
+    @property
+    def best(self) -> Round | None:
+        """The round that gave most."""
+        usable = [each for each in self.rounds if each.logs.size >= _FEWEST]
+        return max(usable, key=lambda each: each.rate, default=None)
+
+    @property
+    def probability(self) -> float:
+        """Of acceptance, as the populations have it; they know it to some tenths."""
+        reached = [math.exp(each.log_probability) for each in self.descents if each.reached]
+        return sum(reached) / len(self.descents)
+
+
+def learn(distance: Distance, dimensions: int, random: np.random.Generator, say: Say = lambda _: None) -> Learned:
+    """Find the region where the distance is 0, and describe it."""
+    found: list[Descent] = []
+    for _ in range(_DESCENTS):
+        found.append(descend(distance, dimensions, random))
+        say(sum(each.evaluations for each in found))
+    learned = Learned(tuple(found), (), sum(each.evaluations for each in found))
+    reached = [each for each in found if each.reached]
+    if not reached:
+        return learned
+    points = np.concatenate([each.points for each in reached])
+    weights = np.concatenate([np.full(len(each.points), math.exp(each.log_probability)) for each in reached])
+    return refined(distance, learned, _fitted(points, weights, random), random, say)
+
+
+def refined(
+    distance: Distance, learned: Learned, proposal: Proposal, random: np.random.Generator, say: Say = lambda _: None
+) -> Learned:
+    """Draw from the proposal, fit a better one, and so on while that brings much."""
+    rounds, best = list(learned.rounds), 0.0
+    evaluations = learned.evaluations
+    for _ in range(_ROUNDS):
+        rounds.append(_drawn(distance, proposal, random))
+        evaluations += _TRIALS
+        say(evaluations)
+        rate = rounds[-1].rate
+        if rate >= _GOOD or (len(rounds) > 2 and rate < best * _GAIN and best > _GOOD / 10):
+            break
+        best = max(best, rate)
+        points, logs = _pooled(rounds)
+        if len(points) < _FEWEST:
+            break
+        proposal = _fitted(points, np.exp(logs - logs.max()), random)
+    return Learned(learned.descents, tuple(rounds), evaluations)
+
+
+def again(distance: Distance, learned: Learned, more: Round, random: np.random.Generator, say: Say) -> Learned:
+    """Learn from trials that turned out to be heavier than any that were known."""
+    rounds = (*learned.rounds, more)
+    points, logs = _pooled(rounds)
+    proposal = _fitted(points, np.exp(logs - logs.max()), random)
+    return refined(distance, Learned(learned.descents, rounds, learned.evaluations), proposal, random, say)
+
+
+def _drawn(distance: Distance, proposal: Proposal, random: np.random.Generator) -> Round:
+    points = proposal.draw(_TRIALS, random)
+    points = points[distance(points) == 0.0]
+    return Round(proposal, _TRIALS, points, proposal.log_weights(points))
+
+
+def _pooled(rounds: list[Round] | tuple[Round, ...]) -> tuple[Floats, Floats]:
+    """All accepted points, and the logarithms of their weights under all proposals together."""
+    points = np.concatenate([each.points for each in rounds])
+    total = sum(each.trials for each in rounds)
+    heights = [math.log(each.trials / total) - each.proposal.log_weights(points) for each in rounds]
+    return points, -log_sum(np.stack(heights)) if len(points) else np.empty(0)
+
+
+def _fitted(points: Floats, weights: Floats, random: np.random.Generator) -> Proposal:
+    order = random.permutation(len(points))[:_FITTED]
+    return proposed(points[order], np.minimum(weights, _TALLEST * weights.mean())[order], random)

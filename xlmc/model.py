@@ -111,6 +111,7 @@ class Model:
         seed: int | None = None,
         *,
         until_accepted: int | None = None,
+        rare: str | None = None,
         precision: str | float | None = None,
         precision_of: str | Sequence[str] | None = None,
         confidence: str | float | None = None,
@@ -136,6 +137,8 @@ class Model:
             trials: how many, 1 or more; with a goal the most, by default 10⁹.
             seed: 0 or more.
             until_accepted: accepted trials, of which the last ends the run; 2 or more.
+            rare: `auto`, where accepted trials are so rare that plain ones would reach their limit before
+                `until_accepted`, learn where they are and draw there; `never`; or `always`.
             precision: largest half width of intervals, of the number itself (`"1%"`) or in its units (`0.1`).
             precision_of: of which numbers: `mean`, `sd`, `range`, percentiles such as `p75.5`; by default `mean,range`.
             confidence: of these intervals, by default 95 %.
@@ -164,7 +167,9 @@ class Model:
             self,
             trials=trials,
             seed=seed,
-            stopping=stopping(until_accepted, precision, precision_of, confidence, adaptive, forecasts, time_limit),
+            stopping=stopping(
+                until_accepted, precision, precision_of, confidence, adaptive, forecasts, time_limit, rare
+            ),
             engine=engine,
             arithmetic=arithmetic,
             sampling=sampling,

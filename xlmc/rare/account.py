@@ -29,6 +29,7 @@ class RareAccount:
         kept: of those, with equal weight.
         acceptance: the probability that a plain trial is accepted.
         effective: (Σw)²/Σw² of the proposals accepted, which `acceptance` comes from.
+        size: the effective sample size of the kept ones: a few stand more than once.
         searched: the same probability as the populations had it that found the region.
         levels: distances from acceptance that these went through.
         components, directions: of the mixture of normal distributions that was learned.
@@ -44,6 +45,7 @@ class RareAccount:
     kept: int
     acceptance: Estimate
     effective: float
+    size: float
     searched: float
     levels: int
     components: int
@@ -73,7 +75,7 @@ class RareAccount:
             f"{self.proposals:,} further trials were drawn there; {self.proposals_accepted:,} of them pass all "
             f"filters, and of these each was kept with a chance that gives all kept ones equal weight. The "
             f"{self.kept:,} kept ones are independent, and spread as those that plain trials would have left "
-            f"(effective sample size {self.kept:,}). No method can rule out that a separate part of the accepted "
+            f"(effective sample size {self.size:,.0f}: a few stand more than once). No method can rule out that a separate part of the accepted "
             "region was not found."
         )
 

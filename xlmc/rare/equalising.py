@@ -1,33 +1,37 @@
-"""Trials of equal weight out of a proposal: each is kept with the probability that its weight has of the largest.
+"""Trials of equal weight out of a proposal: each is kept with a probability in proportion to its weight.
 
 The kept ones are then independent, and spread as the trials that plain rejection accepts: this is rejection, out of a
-better envelope. How high the envelope must be, the largest weight among all trials says (empirical supremum rejection
-sampling: Caffo, Booth & Davis 2002): where it grows, those kept before are thinned, each by the number in [0, 1) that
-it was kept by.
+better envelope. How high the envelope must be, the largest weights among the trials say (as in empirical supremum
+rejection sampling: Caffo, Booth & Davis 2002): where it grows, those kept before are thinned, each by the number in
+[0, 1) that it was kept by. A few trials above the envelope stand more than once: see `envelope`.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.rare.envelope import copies, height
 from xlmc.rare.learning import Round, Say
 from xlmc.rare.proposal import Proposal
-from xlmc.rare.splitting import Distance
 from xlmc.statistics import Estimate
 from xlmc.statistics.estimate import with_relative_error
 
-__all__ = ["Equalised", "equalised"]
+__all__ = ["BATCH", "Accepts", "Equalised", "equalised"]
 
 Floats = NDArray[np.float64]
 
+Accepts = Callable[[Floats], NDArray[np.bool_]]
+"""Takes (n, d) points, says which are accepted."""
+
 BATCH: Final = 32_768
 
-_SURPRISE: Final = math.log(50.0)
+_SURPRISE: Final = math.log(30.0)
 """By how much the envelope may grow, as a logarithm, before the proposal is to be learnt anew."""
 
 
@@ -36,17 +40,17 @@ class Equalised:
     """Trials of equal weight.
 
     Attributes:
-        points: (m, d).
-        places: (m,) of them among the proposals, counted from 0.
+        points: (m, d); those that stand more than once follow each other.
+        size: (Σc)²/Σc², c the copies of each: their effective sample size.
         proposals: trials drawn.
         accepted: of them, by the filters.
         acceptance: the probability that a trial is accepted.
-        effective: (Σw)²/Σw² of the accepted proposals: how many equal trials know a mean as well.
+        effective: (Σw)²/Σw² of the accepted proposals, from which `acceptance` comes.
         surprise: where a trial was much heavier than any known before, the batch that it was in, to learn from.
     """
 
     points: Floats
-    places: NDArray[np.int64]
+    size: float
     proposals: int
     accepted: int
     acceptance: Estimate
@@ -55,9 +59,9 @@ class Equalised:
 
 
 def equalised(
-    distance: Distance,
+    accepts: Accepts,
     proposal: Proposal,
-    highest: float,
+    lowest: float,
     wanted: int,
     most: int,
     random: np.random.Generator,
@@ -68,49 +72,51 @@ def equalised(
     """Draw from the proposal until `wanted` trials are kept, or `most` are drawn.
 
     Args:
-        distance: 0 where a point is accepted.
+        accepts: which points are accepted.
         proposal: to draw from.
-        highest: logarithm of the largest weight known.
+        lowest: logarithm of the envelope's height, as far as it is known.
         wanted: trials.
         most: proposals, rounded up to whole batches.
         random: where the trials come from; it must not have served to learn the proposal.
         say: told of the proposals so far.
-        surprises: whether to stop at a trial that is much heavier than `highest`.
+        surprises: whether to stop where the envelope must be much higher than `lowest`.
     """
-    sums, bar = _Sums(highest), highest + (_SURPRISE if surprises else math.inf)
-    kept = _Kept(np.empty((0, len(proposal.basis))), np.empty(0), np.empty(0, np.int64))
-    while len(kept.points) < wanted and sums.proposals < most:
+    sums, envelope = _Sums(lowest), lowest
+    bar = lowest + _SURPRISE if surprises else math.inf
+    kept = _Kept(np.empty((0, len(proposal.basis))), np.empty(0), np.empty(0))
+    while kept.copies(envelope).sum() < wanted and sums.proposals < most:
         points, luck = proposal.draw(BATCH, random), random.random(BATCH)
-        places = np.flatnonzero(distance(points) == 0.0)
+        places = np.flatnonzero(accepts(points))
         logs = proposal.log_weights(points[places])
-        highest = max(highest, float(logs.max(initial=-math.inf)))
-        if highest > bar:
-            return sums.equalised(kept, wanted, Round(proposal, BATCH, points[places], logs))
-        scores = logs - np.log1p(-luck[places])  # kept where luck < weight / largest weight
-        kept = kept.joined(points[places], scores, places + sums.proposals).above(highest)
+        kept = kept.joined(points[places], logs, luck[places])
+        envelope = height(kept.logs, wanted, envelope)
+        if envelope > bar:
+            return sums.equalised(kept, envelope, wanted, Round(proposal, BATCH, points[places], logs))
+        kept = kept.under(envelope)
         sums.add(logs)
         say(sums.proposals)
-    return sums.equalised(kept, wanted, None)
+    return sums.equalised(kept, envelope, wanted, None)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Kept:
-    """Points (m, d), the logarithms of the envelopes they are kept under, (m,), and their places among proposals."""
+    """Points (m, d) with the logarithms of their weights, (m,), and the luck, (m,), that they are kept by."""
 
     points: Floats
-    scores: Floats
-    places: NDArray[np.int64]
+    logs: Floats
+    luck: Floats
 
-    def joined(self, points: Floats, scores: Floats, places: NDArray[np.int64]) -> _Kept:
-        return _Kept(
-            np.concatenate([self.points, points]),
-            np.concatenate([self.scores, scores]),
-            np.concatenate([self.places, places]),
-        )
+    def joined(self, points: Floats, logs: Floats, luck: Floats) -> _Kept:
+        parts = ((self.points, points), (self.logs, logs), (self.luck, luck))
+        return _Kept(*(np.concatenate(part) for part in parts))
 
-    def above(self, highest: float) -> _Kept:
-        inside = self.scores >= highest
-        return _Kept(self.points[inside], self.scores[inside], self.places[inside])
+    def copies(self, envelope: float) -> NDArray[np.int64]:
+        return copies(self.logs, self.luck, envelope)
+
+    def under(self, envelope: float) -> _Kept:
+        """Those that are left under an envelope, and under any higher one among them."""
+        inside = self.luck < np.exp(self.logs - envelope)
+        return _Kept(self.points[inside], self.logs[inside], self.luck[inside])
 
 
 class _Sums:
@@ -133,11 +139,13 @@ class _Sums:
         self._first += float(weights.sum())
         self._second += float(np.square(weights).sum())
 
-    def equalised(self, kept: _Kept, wanted: int, surprise: Round | None) -> Equalised:
+    def equalised(self, kept: _Kept, envelope: float, wanted: int, surprise: Round | None) -> Equalised:
         effective = self._first**2 / self._second if self._second else 0.0
+        places = np.repeat(np.arange(len(kept.points)), kept.copies(envelope))[:wanted]
+        counts = np.bincount(places).astype(np.float64)
         return Equalised(
-            kept.points[:wanted],
-            kept.places[:wanted],
+            kept.points[places],
+            float(places.size**2 / np.sum(counts * counts)) if places.size else 0.0,
             self.proposals,
             self.accepted,
             self._acceptance(effective),

@@ -18,7 +18,10 @@ __all__ = ["fitted_mixture"]
 Floats = NDArray[np.float64]
 
 _COMPONENTS: Final = (1, 2, 4, 8, 16)
-_ROUNDS: Final = 20
+_ROUNDS: Final = 15
+_COMPARED: Final = 8_192
+"""Points that numbers of components are compared on."""
+
 _GAIN: Final = 0.01
 """What one more step of components must add to the mean log-likelihood: a hundredth of the trials."""
 
@@ -43,6 +46,7 @@ def fitted_mixture(points: Floats, weights: Floats, random: np.random.Generator)
 
 def _components(points: Floats, weights: Floats, random: np.random.Generator) -> int:
     best, number = -np.inf, 1
+    points, weights = points[:_COMPARED], weights[:_COMPARED]
     for components in _COMPONENTS:
         if components > 1 and components * (points.shape[1] + 2) * 10 > len(points):
             break

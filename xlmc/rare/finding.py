@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from xlmc.rare.equalising import BATCH, Equalised, equalised
+from xlmc.rare.equalising import BATCH, Accepts, Equalised, equalised
 from xlmc.rare.learning import Learned, Round, Say, again, learn
 from xlmc.rare.splitting import Distance
 
@@ -37,6 +36,7 @@ class Found:
 
 def find(
     distance: Distance,
+    accepts: Accepts,
     dimensions: int,
     wanted: int,
     most: int,
@@ -48,6 +48,7 @@ def find(
 
     Args:
         distance: 0 where a point of `dimensions` standard normals is accepted.
+        accepts: where that is so; it may be faster.
         dimensions: of the points.
         wanted: trials.
         most: evaluations, of which learning takes what it needs.
@@ -60,9 +61,9 @@ def find(
         if used is None or wanted > used.rate * (most - done):
             return Found(learned, None, None, done)
         drawn = equalised(
-            distance,
+            accepts,
             used.proposal,
-            used.highest,
+            used.envelope,
             wanted,
             most - done,
             drawing,
@@ -74,9 +75,3 @@ def find(
         before += drawn.proposals + BATCH
         learned = again(distance, learned, drawn.surprise, learning, say)
     return Found(learned, used, drawn, done + drawn.proposals)
-
-
-def agreement(found: Found) -> float:
-    """The logarithm of the populations' probability of acceptance over that of the trials."""
-    assert found.equalised is not None
-    return math.log(found.learned.probability / found.equalised.acceptance.value)

@@ -84,6 +84,7 @@ class Landscape:
         targets += [leaf.gap for leaf in self._gaps if leaf.gap is not None]
         self._block = model.program("numpy").largest_block
         self._evaluator = model.evaluator(targets, self._block)
+        self._deciding = model.program("numpy").evaluator(self._block)
         self._given = Given()
         self._sampler = model.sampler(0, self._block, filler=self._given.filler)
         self._fallible = model.fallible
@@ -98,7 +99,17 @@ class Landscape:
 
     def accepts(self, points: Floats) -> NDArray[np.bool_]:
         """(n,) whether they are accepted."""
-        return self.distance(points) == 0.0
+        parts = [np.empty(0, bool)]
+        for start in range(0, len(points), self._block):
+            draws, n, accepted = self._drawn(points[start : start + self._block])
+            columns = self._deciding.filters(draws, n)
+            self._count(columns, ~accepted)
+            for column in columns:
+                accepted &= column.values != 0
+                if column.codes is not None:
+                    accepted &= column.codes == 0
+            parts.append(accepted)
+        return np.concatenate(parts)
 
     def by_filter(self, points: Floats) -> list[Floats]:
         """For each filter, (n,) how far points are from what it asks."""
@@ -118,15 +129,20 @@ class Landscape:
     def _columns(self, points: Floats) -> Iterator[tuple[list[Column], NDArray[np.bool_]]]:
         """Block by block, every target, and where a draw is an error."""
         for start in range(0, len(points), self._block):
-            self._given.uniforms = uniforms_of(points[start : start + self._block])
-            n = len(self._given.uniforms)
-            draws = {name: values[:n] for name, values in self._sampler.draw(0).items()}
+            draws, n, valid = self._drawn(points[start : start + self._block])
             columns = self._evaluator.filters(draws, n)
-            invalid = np.zeros(n, bool)
-            for name in self._fallible:
-                invalid |= np.isnan(draws[name])
-            self._count(columns[: len(self._filters)], invalid)
-            yield columns, invalid
+            self._count(columns[: len(self._filters)], ~valid)
+            yield columns, ~valid
+
+    def _drawn(self, points: Floats) -> tuple[dict[str, Floats], int, NDArray[np.bool_]]:
+        """The draws of up to a block of points, how many they are, and where none is an error."""
+        self._given.uniforms = uniforms_of(points)
+        n = len(points)
+        draws = {name: values[:n] for name, values in self._sampler.draw(0).items()}
+        valid = np.ones(n, bool)
+        for name in self._fallible:
+            valid &= ~np.isnan(draws[name])
+        return draws, n, valid
 
     def _count(self, filters: Sequence[Column], invalid: NDArray[np.bool_]) -> None:
         lost = invalid.copy()

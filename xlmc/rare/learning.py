@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.rare.envelope import height
 from xlmc.rare.mixture import log_sum
 from xlmc.rare.proposal import Proposal, proposed
 from xlmc.rare.splitting import Descent, Distance, descend
@@ -30,7 +31,7 @@ _GOOD: Final = 0.1
 """Equal trials out of a proposal; with more, nothing is worth to be learnt."""
 
 _GAIN: Final = 1.2
-_FITTED: Final = 8_192
+_FITTED: Final = 16_384
 """Points that a proposal is fitted to: more would take long, and not know it better."""
 
 _TALLEST: Final = 30.0
@@ -62,12 +63,12 @@ class Round:
     @property
     def rate(self) -> float:
         """Trials of equal weight that can be had out of one proposal."""
-        return float(np.exp(self.logs - self.highest).sum() / self.trials) if self.logs.size else 0.0
+        return float(np.exp(self.logs - self.envelope).sum() / self.trials) if self.logs.size else 0.0
 
     @property
-    def highest(self) -> float:
-        """The largest weight's logarithm."""
-        return float(self.logs.max(initial=-math.inf))
+    def envelope(self) -> float:
+        """The logarithm of the height of the envelope that its trials need."""
+        return height(self.logs)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -55,7 +55,9 @@ def search(model: Model, settings: Settings, plain: int, say: Callable[[int], No
     learning, drawing = _random(settings.seed, "learning"), _random(settings.seed, "drawing")
     landscape = Landscape(model, learning)
     wanted, most = settings.stopping.accepted or 0, settings.trials - plain
-    found = find(landscape.distance, landscape.dimensions, wanted, most, learning, drawing, say)
+    found = find(
+        landscape.distance, landscape.accepts, landscape.dimensions, wanted, most, learning, drawing, say
+    )
     drawn = found.equalised
     if drawn is None or found.used is None or len(drawn.points) < wanted:
         failure = _failure(model, landscape, found, wanted, most)
@@ -69,6 +71,7 @@ def search(model: Model, settings: Settings, plain: int, say: Callable[[int], No
         kept=len(drawn.points),
         acceptance=drawn.acceptance,
         effective=drawn.effective,
+        size=drawn.size,
         searched=found.learned.probability,
         levels=max(len(each.levels) for each in found.learned.descents),
         components=proposal.mixture.shares.size,

@@ -31,7 +31,10 @@ farther away, infinite where that cannot be said."""
 
 _KEPT: Final = 0.2
 _SWEEPS: Final = 8
-_LAST_SWEEPS: Final = 16
+_LAST_SWEEPS: Final = 8
+_SNAPSHOTS: Final = 4
+"""Of the population in the region, each so many moves after the last: more points to fit a proposal to."""
+
 _LEAST: Final = 16
 """Points below a level from which a population is made again, where more of them stand level."""
 
@@ -49,7 +52,7 @@ class Descent:
     """How a population came to the accepted region.
 
     Attributes:
-        points: (n, d), spread about as accepted trials are; where the region was not reached, as far as it came.
+        points: (n, d), spread about as accepted trials are; where the region was not reached, as far as they came.
         reached: whether they are accepted.
         log_probability: of the level they stand at, about.
         levels: distances that were gone through.
@@ -83,11 +86,14 @@ def descend(
         if not inside.size:
             break
         chosen = np.resize(inside, population)
-        sweeps = _SWEEPS if levels[-1] else _LAST_SWEEPS
-        points, found, asked = _moved(points[chosen], found[chosen], levels[-1], distance, steps, sweeps, random)
+        points, found, asked = _moved(points[chosen], found[chosen], levels[-1], distance, steps, _SWEEPS, random)
         evaluations += asked
-    reached = levels[-1] == 0.0
-    return Descent(points, reached, logs, tuple(levels[1:]), evaluations, points[int(np.argmin(found))])
+    nearest, reached, taken = points[int(np.argmin(found))], levels[-1] == 0.0, [points]
+    while reached and len(taken) < _SNAPSHOTS:
+        points, found, asked = _moved(points, found, 0.0, distance, steps, _LAST_SWEEPS, random)
+        evaluations += asked
+        taken.append(points)
+    return Descent(np.concatenate(taken), reached, logs, tuple(levels[1:]), evaluations, nearest)
 
 
 def _next_level(found: Floats, wanted: float, before: float) -> float | None:

@@ -180,9 +180,9 @@ def _settings(
     if trials is not None or stopping.has_goal:
         settings = replace(settings, trials=LIMIT if trials is None else trials, stopping=stopping)
     else:
-        given = {"seconds": stopping.seconds, "rare": stopping.rare}
-        asked = replace(settings.stopping, **{key: value for key, value in given.items() if value is not None})
-        settings = replace(settings, stopping=asked)
+        own = settings.stopping
+        seconds = own.seconds if stopping.seconds is None else stopping.seconds
+        settings = replace(settings, stopping=replace(own, seconds=seconds, rare=stopping.rare or own.rare))
     refuse_other_sampling(settings.sampling, settings.stopping)
     if not 1 <= settings.trials <= MOST_TRIALS:
         raise SimulationError(f"{settings.trials} trials were asked for", hint=f"give 1 to {MOST_TRIALS:,}")

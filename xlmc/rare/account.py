@@ -75,8 +75,8 @@ class RareAccount:
             f"{self.proposals:,} further trials were drawn there; {self.proposals_accepted:,} of them pass all "
             f"filters, and of these each was kept with a chance that gives all kept ones equal weight. The "
             f"{self.kept:,} kept ones are independent, and spread as those that plain trials would have left "
-            f"(effective sample size {self.size:,.0f}: a few stand more than once). No method can rule out that a separate part of the accepted "
-            "region was not found."
+            f"(effective sample size {self.size:,.0f}: a few stand more than once). No method can rule out that a "
+            "separate part of the accepted region was not found."
         )
 
     @property

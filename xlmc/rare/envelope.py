@@ -50,8 +50,10 @@ def _fits(logs: Floats, height_: float, kept: float | None) -> bool:
 
 
 def copies(logs: Floats, luck: Floats, height_: float) -> NDArray[np.int64]:
-    """(m,) how often each trial is kept: its weight over the envelope, rounded down, or up where its luck is less than
-    what that leaves."""
+    """(m,) how often each trial is kept.
+
+    That is its weight over the envelope, rounded down, or up where its luck, (m,) in [0, 1), is less than the rest.
+    """
     ratios = np.exp(logs - height_)
     whole = np.floor(ratios)
     return np.asarray(whole + (luck < ratios - whole), dtype=np.int64)

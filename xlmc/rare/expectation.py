@@ -89,7 +89,7 @@ def _chosen(amounts: Floats, random: np.random.Generator) -> int:
 def _nearest(points: Floats, seeds: Floats) -> Floats:
     """(K, n) 1 for the nearest seed of each point, else 0."""
     apart = np.stack([np.square(points - seed).sum(axis=1) for seed in seeds])
-    return (np.arange(len(seeds))[:, None] == apart.argmin(axis=0)).astype(np.float64)
+    return np.asarray(np.arange(len(seeds))[:, None] == apart.argmin(axis=0), dtype=np.float64)
 
 
 def _maximised(points: Floats, parts: Floats, size: float) -> Mixture:

@@ -52,7 +52,8 @@ def find(
         dimensions: of the points.
         wanted: trials.
         most: evaluations, of which learning takes what it needs.
-        learning, drawing: random numbers; what is drawn with must not have served to learn.
+        learning: random numbers to learn with.
+        drawing: others, to draw the trials with: what they come from must not have served to learn.
         say: told of the evaluations so far.
     """
     learned, before = learn(distance, dimensions, learning, say), 0

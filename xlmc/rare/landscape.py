@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.compile import Column
-from xlmc.rare.shortfall import leaves, lengths, measured, shortfall
+from xlmc.rare.shortfall import Leaf, leaves, lengths, measured, shortfall
 from xlmc.scene import condition
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def uniforms_of(points: Floats) -> Floats:
     """The uniforms, in [0, 1), of standard normals."""
     from scipy.special import ndtr
 
-    return np.minimum(ndtr(points), _LARGEST)
+    return np.asarray(np.minimum(ndtr(points), _LARGEST))
 
 
 class Given:
@@ -80,7 +80,8 @@ class Landscape:
         self._filters = [shortfall(condition(f), f.cell, formulas) for f in model.filters]
         self._leaves = [leaf for each in self._filters for leaf in leaves(each)]
         targets = [*model.filter_targets, *(leaf.holds for leaf in self._leaves)]
-        self._gaps = {leaf: len(targets) + i for i, leaf in enumerate(l for l in self._leaves if l.gap is not None)}
+        gauged = [leaf for leaf in self._leaves if leaf.gap is not None]
+        self._gaps = {leaf: len(targets) + i for i, leaf in enumerate(gauged)}
         targets += [leaf.gap for leaf in self._gaps if leaf.gap is not None]
         self._block = model.program("numpy").largest_block
         self._evaluator = model.evaluator(targets, self._block)
@@ -152,7 +153,7 @@ class Landscape:
         self.evaluations += lost.size
         self.lost += int(np.count_nonzero(lost))
 
-    def _lengths(self, columns: Sequence[Column]) -> dict[object, Floats]:
+    def _lengths(self, columns: Sequence[Column]) -> dict[Leaf, Floats]:
         first = len(self._filters)
         return {
             leaf: lengths(columns[first + i], columns[self._gaps[leaf]] if leaf in self._gaps else None)

@@ -59,7 +59,7 @@ class Proposal:
         return standard_log_density(along) - self.defended.log_density(along)
 
     def _along(self, points: Floats) -> Floats:
-        return np.einsum("nd,dr->nr", points, self.basis)
+        return np.asarray(np.einsum("nd,dr->nr", points, self.basis))
 
 
 def proposed(points: Floats, weights: Floats, random: np.random.Generator) -> Proposal:
@@ -84,7 +84,7 @@ def _directions(points: Floats, weights: Floats) -> Floats:
 
 
 def _defended(mixture: Mixture) -> Mixture:
-    count, dimensions = mixture.means.shape
+    dimensions = mixture.means.shape[1]
     shares = [share * mixture.shares for share, _ in _SHARES]
     roots = [factor**0.5 * mixture.roots for _, factor in _SHARES]
     wide = np.array([_widened(root) for root in mixture.roots])

@@ -55,9 +55,7 @@ def search(model: Model, settings: Settings, plain: int, say: Callable[[int], No
     learning, drawing = _random(settings.seed, "learning"), _random(settings.seed, "drawing")
     landscape = Landscape(model, learning)
     wanted, most = settings.stopping.accepted or 0, settings.trials - plain
-    found = find(
-        landscape.distance, landscape.accepts, landscape.dimensions, wanted, most, learning, drawing, say
-    )
+    found = find(landscape.distance, landscape.accepts, landscape.dimensions, wanted, most, learning, drawing, say)
     drawn = found.equalised
     if drawn is None or found.used is None or len(drawn.points) < wanted:
         failure = _failure(model, landscape, found, wanted, most)

@@ -64,9 +64,7 @@ def shortfall(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expres
     return _logical(tree, cell, formulas, wanted=True)
 
 
-def _logical(
-    tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression], *, wanted: bool
-) -> Shortfall:
+def _logical(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression], *, wanted: bool) -> Shortfall:
     """The comparisons that decide whether a tree, in a cell, is TRUE, or FALSE where that is wanted."""
     match tree:
         case Cell() if tree in formulas:

@@ -170,7 +170,8 @@ class _Common:
         return cls(np.round(mean, 9), np.round(root, 9), np.linalg.inv(root))
 
     def offered(self, points: Floats, noise: Floats, step: Floats) -> Floats:
-        return np.asarray(self.mean + np.sqrt(1.0 - step**2) * (points - self.mean) + step * np.einsum("nd,ed->ne", noise, self.root))
+        moved = np.einsum("nd,ed->ne", noise, self.root)
+        return np.asarray(self.mean + np.sqrt(1.0 - step**2) * (points - self.mean) + step * moved)
 
     def log_ratio(self, points: Floats) -> Floats:
         """(n,) the logarithm of the standard normal density over this one's, but for a constant."""

@@ -32,7 +32,7 @@ _DECIMALS: Final = 9
 def fitted_mixture(points: Floats, weights: Floats, random: np.random.Generator) -> Mixture:
     """The mixture that describes (n, r) points with (n,) weights best, of 1 to 16 components.
 
-    The points must be in no order: every second one is left out of the choice of the number of components. They are
+    Every second point is left out of the choice of the number of components, and judges it. They are
     fitted in coordinates in which their mean is 0 and their covariance 1, so that a thin layer is not thin there.
     """
     shares = weights / weights.sum()

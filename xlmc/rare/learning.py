@@ -8,7 +8,7 @@ Zhou 2000; Cappé, Douc, Guillin, Marin & Robert 2008; Cornuet, Marin, Mira & Ro
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from xlmc.rare.envelope import height
 from xlmc.rare.mixture import log_sum
-from xlmc.rare.proposal import Proposal, proposed
+from xlmc.rare.proposal import Proposal, fitted_again, proposed
 from xlmc.rare.splitting import Descent, Distance, descend
 
-__all__ = ["Learned", "Round", "learn", "refined"]
+__all__ = ["Learned", "Round", "Say", "again", "learn"]
 
 Floats = NDArray[np.float64]
 
@@ -105,41 +105,69 @@ def learn(distance: Distance, dimensions: int, random: np.random.Generator, say:
         found.append(descend(distance, dimensions, random))
         say(sum(each.evaluations for each in found))
     learned = Learned(tuple(found), (), sum(each.evaluations for each in found))
-    reached = [each for each in found if each.reached]
-    if not reached:
+    if not any(each.reached for each in found):
         return learned
-    points = np.concatenate([each.points for each in reached])
-    weights = np.concatenate([np.full(len(each.points), math.exp(each.log_probability)) for each in reached])
-    return refined(distance, learned, _fitted(points, weights, random), random, say)
+    points, weights, halves = _of_descents(found)
+    order = _dealt(halves, random)
+    return _refined(distance, learned, proposed(points[order], weights[order], random), random, say)
 
 
-def refined(
-    distance: Distance, learned: Learned, proposal: Proposal, random: np.random.Generator, say: Say = lambda _: None
+def again(
+    distance: Distance, learned: Learned, more: Round, random: np.random.Generator, say: Say = lambda _: None
+) -> Learned:
+    """Learn from trials that turned out to be heavier than any that were known."""
+    known = Learned(learned.descents, (*learned.rounds, more), learned.evaluations)
+    return _refined(distance, known, _improved(known, random), random, say)
+
+
+def _refined(
+    distance: Distance, learned: Learned, proposal: Proposal, random: np.random.Generator, say: Say
 ) -> Learned:
     """Draw from the proposal, fit a better one, and so on while that brings much."""
-    rounds, best = list(learned.rounds), 0.0
-    evaluations = learned.evaluations
-    for _ in range(_ROUNDS):
-        rounds.append(_drawn(distance, proposal, random))
-        evaluations += _TRIALS
-        say(evaluations)
-        rate = rounds[-1].rate
-        if rate >= _GOOD or (len(rounds) > 2 and rate < best * _GAIN and best > _GOOD / 10):
+    best = 0.0
+    for number in range(_ROUNDS):
+        drawn = _drawn(distance, proposal, random)
+        learned = Learned(learned.descents, (*learned.rounds, drawn), learned.evaluations + _TRIALS)
+        say(learned.evaluations)
+        if drawn.rate >= _GOOD or (number > 1 and drawn.rate < best * _GAIN):
             break
-        best = max(best, rate)
-        points, logs = _pooled(rounds)
-        if len(points) < _FEWEST:
-            break
-        proposal = _fitted(points, np.exp(logs - logs.max()), random)
-    return Learned(learned.descents, tuple(rounds), evaluations)
+        best = max(best, drawn.rate)
+        proposal = _improved(learned, random)
+    return learned
 
 
-def again(distance: Distance, learned: Learned, more: Round, random: np.random.Generator, say: Say) -> Learned:
-    """Learn from trials that turned out to be heavier than any that were known."""
-    rounds = (*learned.rounds, more)
-    points, logs = _pooled(rounds)
-    proposal = _fitted(points, np.exp(logs - logs.max()), random)
-    return refined(distance, Learned(learned.descents, rounds, learned.evaluations), proposal, random, say)
+def _improved(learned: Learned, random: np.random.Generator) -> Proposal:
+    """Fitted to the populations' points and to all that were drawn, half by half."""
+    moved, shares, halves = _of_descents(learned.descents)
+    points, logs = _pooled(learned.rounds)
+    if len(points) < _FEWEST:
+        points, weights = moved, shares
+    else:
+        weights = np.exp(logs - logs.max())
+        weights = np.minimum(weights, _TALLEST * weights.mean())
+        halves = np.concatenate([halves, np.arange(len(points)) % 2])
+        points, weights = np.concatenate([moved, points]), np.concatenate([shares, weights / weights.sum()])
+    order = _dealt(halves, random)
+    return fitted_again(learned.rounds[0].proposal, points[order], weights[order], random)
+
+
+def _of_descents(descents: Sequence[Descent]) -> tuple[Floats, Floats, NDArray[np.int64]]:
+    """The points of those populations that reached the region, their weights, which sum to 1, and which population."""
+    reached = [each for each in descents if each.reached]
+    weights = np.concatenate([np.full(len(each.points), math.exp(each.log_probability)) for each in reached])
+    halves = np.concatenate([np.full(len(each.points), place) for place, each in enumerate(reached)])
+    if len(reached) == 1:
+        halves = np.arange(len(halves)) % 2
+    return np.concatenate([each.points for each in reached]), weights / weights.sum(), halves
+
+
+def _dealt(halves: NDArray[np.int64], random: np.random.Generator) -> NDArray[np.intp]:
+    """Some of the points, those of either half by turns: points of one population are alike, and what is fitted to one
+    must prove itself on the other.
+    """
+    first, second = (random.permutation(np.flatnonzero(halves == half)) for half in (0, 1))
+    count = min(first.size, second.size, _FITTED // 2)
+    return np.stack([first[:count], second[:count]], axis=1).ravel()
 
 
 def _drawn(distance: Distance, proposal: Proposal, random: np.random.Generator) -> Round:
@@ -148,14 +176,9 @@ def _drawn(distance: Distance, proposal: Proposal, random: np.random.Generator) 
     return Round(proposal, _TRIALS, points, proposal.log_weights(points))
 
 
-def _pooled(rounds: list[Round] | tuple[Round, ...]) -> tuple[Floats, Floats]:
+def _pooled(rounds: Sequence[Round]) -> tuple[Floats, Floats]:
     """All accepted points, and the logarithms of their weights under all proposals together."""
     points = np.concatenate([each.points for each in rounds])
     total = sum(each.trials for each in rounds)
     heights = [math.log(each.trials / total) - each.proposal.log_weights(points) for each in rounds]
     return points, -log_sum(np.stack(heights)) if len(points) else np.empty(0)
-
-
-def _fitted(points: Floats, weights: Floats, random: np.random.Generator) -> Proposal:
-    order = random.permutation(len(points))[:_FITTED]
-    return proposed(points[order], np.minimum(weights, _TALLEST * weights.mean())[order], random)

@@ -1,11 +1,13 @@
 """Where trials are proposed: a mixture of normals in the directions that matter, the assumptions as they are in others.
 
 Trials that are accepted differ from all trials in some directions only. Those in which neither mean nor spread differ
-are left alone, so that there may be many assumptions (Uribe, Papaioannou, Marzouk & Straub 2021).
+are left alone, so that there may be many assumptions (Uribe, Papaioannou, Marzouk & Straub 2021). In directions in
+which accepted trials lie close together, the mixture describes how far they are from a curved sheet: see `shear`.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -14,8 +16,9 @@ from numpy.typing import NDArray
 
 from xlmc.rare.expectation import fitted_mixture
 from xlmc.rare.mixture import Mixture, standard_log_density
+from xlmc.rare.shear import Shear, fitted_shear
 
-__all__ = ["Proposal", "proposed"]
+__all__ = ["Proposal", "fitted_again", "proposed"]
 
 Floats = NDArray[np.float64]
 
@@ -25,12 +28,18 @@ _FEW: Final = 12
 _DIFFERS: Final = 0.1
 """What a spread must differ by, of itself, to matter: less costs some 0.3 % of the trials a direction."""
 
-_SHARES: Final = ((0.6, 1.0), (0.22, 1.7))
-"""Of the proposals, from each fitted component with its covariance times so much."""
+_THIN: Final = 0.25
+"""A variance below which a direction counts as thin: that of the assumptions is 1."""
 
-_WIDE, _PRIOR = 0.16, 0.02
-"""Of the proposals, from components as wide as the assumptions themselves, and from the assumptions themselves. No
-weight is above 1 over the last, and few above the typical one over the first (Hesterberg 1995; Owen & Zhou 2000)."""
+_SHARES: Final = ((0.61, 1.0), (0.23, 1.7))
+"""Of the mixture, from each fitted component with its covariance times so much."""
+
+_WIDE: Final = 0.16
+"""Of the mixture, from components as wide as the assumptions themselves, so that few weights are far above the usual
+(Hesterberg 1995)."""
+
+_PRIOR: Final = 0.02
+"""Of the proposals, from the assumptions themselves: no weight is above the inverse of it (Owen & Zhou 2000)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,60 +47,99 @@ class Proposal:
     """Where trials are proposed, in d independent standard normals.
 
     Attributes:
-        basis: (d, r) orthonormal directions that matter.
-        mixture: the fitted one along them.
+        basis: (d, d) orthonormal directions: those that are thin, the others that matter, those that do not.
+        shear: of the thin ones by all others.
+        mixture: the fitted one, of what the shear leaves of the thin ones and of the others that matter, r in all.
         defended: the one that is proposed from: the fitted one and what bounds the weights.
     """
 
     basis: Floats
+    shear: Shear
     mixture: Mixture
     defended: Mixture
 
+    @property
+    def directions(self) -> int:
+        """r, how many matter."""
+        return self.mixture.means.shape[1]
+
     def draw(self, count: int, random: np.random.Generator) -> Floats:
         """(count, d) independent proposals."""
-        along = self.defended.draw(count, random)
         free = random.standard_normal((count, len(self.basis)))
-        return np.asarray(free + np.einsum("nr,dr->nd", along - self._along(free), self.basis))
+        fitted = random.random(count) >= _PRIOR
+        drawn = self.defended.draw(count, random)
+        thin = self.shear.thin
+        moved = free.copy()
+        moved[:, thin : self.directions] = drawn[:, thin:]
+        moved[:, :thin] = drawn[:, :thin] + self.shear.shift(moved[:, thin:])
+        return np.asarray(np.einsum("nr,dr->nd", np.where(fitted[:, None], moved, free), self.basis))
 
     def log_weights(self, points: Floats) -> Floats:
         """(n,) the logarithm of how much likelier each of (n, d) points is as a trial than as a proposal."""
-        along = self._along(points)
-        return standard_log_density(along) - self.defended.log_density(along)
-
-    def _along(self, points: Floats) -> Floats:
-        return np.asarray(np.einsum("nd,dr->nr", points, self.basis))
+        along = np.einsum("nd,dr->nr", points, self.basis)
+        thin, matter = self.shear.thin, self.directions
+        prior = standard_log_density(along[:, :matter])
+        along[:, :thin] -= self.shear.shift(along[:, thin:])
+        mixture = self.defended.log_density(along[:, :matter])
+        return np.asarray(-np.logaddexp(math.log1p(-_PRIOR) + mixture - prior, math.log(_PRIOR)))
 
 
 def proposed(points: Floats, weights: Floats, random: np.random.Generator) -> Proposal:
     """Fit to (n, d) accepted points with (n,) weights, in no order."""
-    basis = _directions(points, weights)
-    mixture = fitted_mixture(np.einsum("nd,dr->nr", points, basis), weights, random)
-    return Proposal(basis, mixture, _defended(mixture))
+    basis, thin, matter = _directions(points, weights)
+    along = np.einsum("nd,dr->nr", points, basis)
+    shear = fitted_shear(along[:, :thin], along[:, thin:], weights)
+    along[:, :thin] -= shear.shift(along[:, thin:])
+    mixture = fitted_mixture(along[:, :matter], weights, random)
+    return Proposal(basis, shear, mixture, _defended(mixture))
 
 
-def _directions(points: Floats, weights: Floats) -> Floats:
-    """(d, r): the principal directions in which the spread about 0 is not 1."""
+def fitted_again(proposal: Proposal, points: Floats, weights: Floats, random: np.random.Generator) -> Proposal:
+    """The same coordinates with a mixture fitted to other points."""
+    along = np.einsum("nd,dr->nr", points, proposal.basis)
+    thin, matter = proposal.shear.thin, proposal.directions
+    along[:, :thin] -= proposal.shear.shift(along[:, thin:])
+    mixture = fitted_mixture(along[:, :matter], weights, random)
+    return Proposal(proposal.basis, proposal.shear, mixture, _defended(mixture))
+
+
+def _directions(points: Floats, weights: Floats) -> tuple[Floats, int, int]:
+    """(d, d) directions; how many of the first are thin, and how many matter.
+
+    Those that matter are the principal ones in which the spread about 0 is not 1; among them, the order is that of the
+    spread about the mean.
+    """
+    shares = weights / weights.sum()
+    matter, rest = _told_apart(points, shares)
+    along = np.einsum("nd,dr->nr", points, matter)
+    apart = along - np.einsum("n,nr->r", shares, along)
+    spreads, turned = np.linalg.eigh(np.einsum("nr,nq->rq", apart * shares[:, None], apart))
+    basis = np.concatenate([np.einsum("dr,rq->dq", matter, turned), rest], axis=1)
+    thin = int(np.count_nonzero(spreads < _THIN))
+    return np.linalg.qr(np.round(basis, 9))[0], min(thin, points.shape[1] - 1), matter.shape[1]
+
+
+def _told_apart(points: Floats, shares: Floats) -> tuple[Floats, Floats]:
+    """(d, r) directions that matter, and (d, d − r) that do not."""
     dimensions = points.shape[1]
     if dimensions <= _FEW:
-        return np.eye(dimensions)
-    shares = weights / weights.sum()
+        return np.eye(dimensions), np.empty((dimensions, 0))
     spreads, directions = np.linalg.eigh(np.einsum("nd,ne->de", points * shares[:, None], points))
     ratio = dimensions * float(np.sum(shares * shares)) * 4.0  # moved points count as a quarter of independent ones
     chance = 2.0 * ratio**0.5 + ratio  # the edge of Marchenko and Pastur
-    wanted = np.abs(spreads - 1.0) > max(_DIFFERS, chance)
-    wanted[np.argmax(np.abs(spreads - 1.0))] = True
-    return np.asarray(np.linalg.qr(np.round(directions[:, wanted], 9))[0])
+    matter = np.abs(spreads - 1.0) > max(_DIFFERS, chance)
+    matter[np.argmax(np.abs(spreads - 1.0))] = True
+    return directions[:, matter], directions[:, ~matter]
 
 
 def _defended(mixture: Mixture) -> Mixture:
-    dimensions = mixture.means.shape[1]
     shares = [share * mixture.shares for share, _ in _SHARES]
     roots = [factor**0.5 * mixture.roots for _, factor in _SHARES]
     wide = np.array([_widened(root) for root in mixture.roots])
     return Mixture(
-        np.concatenate([*shares, _WIDE * mixture.shares, [_PRIOR]]),
-        np.concatenate([*[mixture.means] * (len(_SHARES) + 1), np.zeros((1, dimensions))]),
-        np.concatenate([*roots, wide, np.eye(dimensions)[None]]),
+        np.concatenate([*shares, _WIDE * mixture.shares]),
+        np.concatenate([mixture.means] * (len(_SHARES) + 1)),
+        np.concatenate([*roots, wide]),
     )
 
 

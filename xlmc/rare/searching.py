@@ -73,7 +73,7 @@ def search(model: Model, settings: Settings, plain: int, say: Callable[[int], No
         searched=found.learned.probability,
         levels=max(len(each.levels) for each in found.learned.descents),
         components=proposal.mixture.shares.size,
-        directions=proposal.basis.shape[1],
+        directions=proposal.directions,
         dimensions=landscape.dimensions,
         lost=landscape.lost,
     )

@@ -86,19 +86,25 @@ def faults(hits: Mapping[str, Sequence[int]], runs: Mapping[str, int]) -> list[s
     ]
 
 
-def measured(name: str, runs: int) -> dict[str, Any]:
-    """One problem."""
+def measured(name: str, runs: int, keep: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
+    """One problem; what there is so far is kept from time to time."""
     problem = PROBLEMS[name]
-    hits, evaluations = np.zeros(len(STATISTICS), int), []
+    hits, evaluations = np.zeros(len(STATISTICS), int), list[int]()
     for seed in range(runs):
+        if seed and seed % 100 == 0:
+            keep(_counted(name, hits, evaluations))
         found = one_run(problem.distance, problem.dimensions, seed)
         assert found.equalised is not None
         hits += covered(estimates(found, problem.forecast(found.equalised.points)), problem.truth)
         evaluations.append(found.evaluations)
+    return _counted(name, hits, evaluations)
+
+
+def _counted(name: str, hits: NDArray[np.int64], evaluations: Sequence[int]) -> dict[str, Any]:
     return {
-        "words": problem.words,
-        "acceptance": problem.truth[0],
-        "runs": runs,
+        "words": PROBLEMS[name].words,
+        "acceptance": PROBLEMS[name].truth[0],
+        "runs": len(evaluations),
         "wanted": WANTED,
         "hits": hits.tolist(),
         "evaluations": float(np.mean(evaluations)),
@@ -159,6 +165,7 @@ def case_study(runs: int, trials: int) -> dict[str, Any]:
     named = ["Chevrolet delta-V", "Nissan impact speed"]
     truth = [plain.acceptance] + [each for name in named for each in of_forecast(plain[name].sample)]
     hits, evaluations, apart = np.zeros(len(truth), int), [], []
+    print(plain.accepted, "of", trials, "plain trials", flush=True)
     for seed in range(runs):
         run = model.simulate(5 * 10**8, seed, until_accepted=CASE_WANTED, rare="always")
         assert run.rare is not None
@@ -166,6 +173,7 @@ def case_study(runs: int, trials: int) -> dict[str, Any]:
         hits += [within(mine, true) for mine, true in zip(found, truth, strict=True)]
         evaluations.append(run.rare.evaluations)
         apart.append([mine.value for mine in found])
+        print(seed, run.rare.evaluations, hits.tolist(), flush=True)
     means = np.mean(apart, axis=0)
     errors = np.hypot(np.std(apart, axis=0, ddof=1) / math.sqrt(runs), [each.error or math.nan for each in truth])
     return {
@@ -239,10 +247,14 @@ def main() -> None:
         landscape = Landscape(narrowed(xlmc.load(BOOK)), np.random.default_rng(0))
         found["case study"]["methods"] = compared(landscape.distance, landscape.dimensions)
     for name in () if given.case else given.only or PROBLEMS:
-        problem = PROBLEMS[name]
-        found[name] = measured(name, given.runs) | {"methods": compared(problem.distance, problem.dimensions)}
-        print(name, found[name], flush=True)
-        given.results.write_text(json.dumps(found, indent=1) + "\n")
+        methods = {"methods": compared(PROBLEMS[name].distance, PROBLEMS[name].dimensions)}
+
+        def keep(counted: dict[str, Any], name: str = name, methods: dict[str, Any] = methods) -> None:
+            found[name] = counted | methods
+            given.results.write_text(json.dumps(found, indent=1) + "\n")
+            print(name, counted, flush=True)
+
+        keep(measured(name, given.runs, keep))
     given.results.write_text(json.dumps(found, indent=1) + "\n")
     if given.page.exists():
         page = placed(given.page.read_text(), "rare-coverage", coverage_table(found))

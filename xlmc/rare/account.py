@@ -69,7 +69,7 @@ class RareAccount:
         """What was done."""
         directions = f"{self.directions} of {self.dimensions} directions"
         return (
-            f"Accepted trials are rare: plain trials, as they come, would have taken about {_about(self.plain_trials)} "
+            f"Plain trials, as they come, would have taken about {_about(self.plain_trials)} "
             f"for these. Where the accepted ones lie was learned from {self.learning:,} trials (splitting, in "
             f"{self.levels} levels; then a mixture of {self.components} normal distributions in {directions}). "
             f"{self.proposals:,} further trials were drawn there; {self.proposals_accepted:,} of them pass all "

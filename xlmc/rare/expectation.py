@@ -18,8 +18,8 @@ __all__ = ["fitted_mixture"]
 Floats = NDArray[np.float64]
 
 _COMPONENTS: Final = (1, 2, 4, 8, 16)
-_ROUNDS: Final = 15
-_COMPARED: Final = 8_192
+_ROUNDS: Final = 12
+_COMPARED: Final = 4_096
 """Points that numbers of components are compared on."""
 
 _GAIN: Final = 0.01

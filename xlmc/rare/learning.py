@@ -31,7 +31,7 @@ _GOOD: Final = 0.1
 """Equal trials out of a proposal; with more, nothing is worth to be learnt."""
 
 _GAIN: Final = 1.2
-_FITTED: Final = 16_384
+_FITTED: Final = 8_192
 """Points that a proposal is fitted to: more would take long, and not know it better."""
 
 _TALLEST: Final = 30.0

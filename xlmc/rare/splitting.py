@@ -38,6 +38,9 @@ _SNAPSHOTS: Final = 4
 _LEAST: Final = 16
 """Points below a level from which a population is made again, where more of them stand level."""
 
+_LEVEL: Final = 0.9
+"""A share of points that are no farther than a level: with more of them, it tells none apart."""
+
 _TRIES: Final = 4
 """Times that a population is moved on without coming nearer, before it counts as stuck."""
 
@@ -96,13 +99,18 @@ def descend(
     return Descent(np.concatenate(taken), reached, logs, tuple(levels[1:]), evaluations, nearest)
 
 
-def _next_level(found: Floats, wanted: float, before: float) -> float | None:
-    """The next lower level; None where hardly a point lies below the last one."""
-    level = float(np.partition(found, int(wanted) - 1)[int(wanted) - 1])
-    if level < before:
+def _next_level(found: Floats, wanted: int, before: float) -> float | None:
+    """The next lower level; None where hardly a point lies below the last one.
+
+    Where most points stand level, as where a filter says no more than no, the few below them are taken.
+    """
+    level = float(np.partition(found, wanted - 1)[wanted - 1])
+    if level < before and np.mean(found <= level) <= _LEVEL:
         return level
-    below = found[found < before]
-    return float(below.max()) if below.size >= _LEAST else None
+    below = found[found < min(level, before)]
+    if below.size >= _LEAST:
+        return float(below.max())
+    return level if level < before else None
 
 
 @dataclass(slots=True)

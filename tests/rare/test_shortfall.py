@@ -67,10 +67,9 @@ def test_what_is_0_away_is_accepted_and_nothing_else(book, random, formula):
 
 
 def test_a_farther_trial_is_farther(book, random):
-    model = book({"A1": 1.0, "A2": 1.0}, GIVEN, {"x": "A1"}, {"f": {"cell": "A1", "at_least": 0.999}})
+    model = book({"A1": 1.0}, {"a": GIVEN["a"]}, {"x": "A1"}, {"f": {"cell": "A1", "at_least": 0.999}})
     landscape = Landscape(model, random)
-    points = np.zeros((5, 2))
-    points[:, 0] = [-2.0, -1.0, 0.0, 2.0, 4.0]
+    points = np.array([[-2.0], [-1.0], [0.0], [2.0], [4.0]])
     found = landscape.distance(points)
     assert list(found) == sorted(found, reverse=True)
     assert found[-1] == 0.0
@@ -78,10 +77,10 @@ def test_a_farther_trial_is_farther(book, random):
 
 
 def test_an_error_is_infinitely_far(book, random):
-    cells = {"A1": 1.0, "A2": 1.0, "B1": "=SQRT(A1-0.5)"}
-    model = book(cells, GIVEN, {"x": "A1"}, {"f": {"cell": "B1", "at_least": 0.5}})
+    cells = {"A1": 1.0, "B1": "=SQRT(A1-0.5)"}
+    model = book(cells, {"a": GIVEN["a"]}, {"x": "A1"}, {"f": {"cell": "B1", "at_least": 0.5}})
     landscape = Landscape(model, random)
-    found = landscape.distance(np.array([[-1.0, 0.0], [0.5, 0.0], [2.0, 0.0]]))
+    found = landscape.distance(np.array([[-1.0], [0.5], [2.0]]))
     assert found[0] == np.inf
     assert 0.0 < found[1] < np.inf
     assert found[2] == 0.0

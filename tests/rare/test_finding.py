@@ -52,10 +52,10 @@ def shifted(mean):
 
 def test_a_trial_heavier_than_any_known_is_learnt_from(random):
     """The proposal lies at 4, most of the region at 2 to 3: its first trials there weigh far more than was known."""
-    found = equalised(lambda z: z[:, 0] > 2.0, shifted(4.0), -9.0, 10_000, 10**6, random)
+    found = equalised(lambda z: z[:, 0] > 2.0, shifted(4.0), -9.0, -math.inf, 10_000, 10**6, random)
     assert found.surprise is not None
     assert found.surprise.points.min() < 3.0
-    again = equalised(lambda z: z[:, 0] > 2.0, shifted(2.5), -2.0, 500, 10**6, random)
+    again = equalised(lambda z: z[:, 0] > 2.0, shifted(2.5), -2.0, -math.inf, 500, 10**6, random)
     assert again.surprise is None
     assert len(again.points) == 500
     low, high = again.acceptance.interval

@@ -45,7 +45,8 @@ class Equalised:
         proposals: trials drawn.
         accepted: of them, by the filters.
         acceptance: the probability that a trial is accepted.
-        effective: (Σw)²/Σw² of the accepted proposals, from which `acceptance` comes.
+        effective: (Σw)²/Σw² of the accepted proposals, from which `acceptance` comes, or less where the populations
+            know of heavier ones.
         surprise: where a trial was much heavier than any known before, the batch that it was in, to learn from.
     """
 
@@ -62,6 +63,7 @@ def equalised(
     accepts: Accepts,
     proposal: Proposal,
     lowest: float,
+    unevenness: float,
     wanted: int,
     most: int,
     random: np.random.Generator,
@@ -75,13 +77,14 @@ def equalised(
         accepts: which points are accepted.
         proposal: to draw from.
         lowest: logarithm of the envelope's height, as far as it is known.
+        unevenness: logarithm of the mean weight of accepted trials, as the populations know it; -inf if they do not.
         wanted: trials.
         most: proposals, rounded up to whole batches.
         random: where the trials come from; it must not have served to learn the proposal.
         say: told of the proposals so far.
         surprises: whether to stop where the envelope must be much higher than `lowest`.
     """
-    sums, envelope = _Sums(lowest), lowest
+    sums, envelope = _Sums(lowest, unevenness), lowest
     bar = lowest + _SURPRISE if surprises else math.inf
     kept = _Kept(np.empty((0, len(proposal.basis))), np.empty(0), np.empty(0))
     while kept.copies(envelope).sum() < wanted and sums.proposals < most:
@@ -124,10 +127,11 @@ class _Sums:
 
     Args:
         unit: the logarithm of a weight near the largest, which they are counted in.
+        unevenness: see `equalised`.
     """
 
-    def __init__(self, unit: float) -> None:
-        self._unit = unit
+    def __init__(self, unit: float, unevenness: float) -> None:
+        self._unit, self._uneven = unit, math.exp(unevenness - unit)
         self.proposals = self.accepted = 0
         self._first = self._second = 0.0
 
@@ -140,7 +144,9 @@ class _Sums:
         self._second += float(np.square(weights).sum())
 
     def equalised(self, kept: _Kept, envelope: float, wanted: int, surprise: Round | None) -> Equalised:
-        effective = self._first**2 / self._second if self._second else 0.0
+        # The mean square of few weights lacks the largest, which are rarest; the populations have met these too.
+        square = max(self._second, self._first * self._uneven)
+        effective = self._first**2 / square if square else 0.0
         places = np.repeat(np.arange(len(kept.points)), kept.copies(envelope))[:wanted]
         counts = np.bincount(places).astype(np.float64)
         return Equalised(
@@ -148,17 +154,17 @@ class _Sums:
             float(places.size**2 / np.sum(counts * counts)) if places.size else 0.0,
             self.proposals,
             self.accepted,
-            self._acceptance(effective),
+            self._acceptance(square, effective),
             effective,
             surprise,
         )
 
-    def _acceptance(self, effective: float) -> Estimate:
+    def _acceptance(self, square: float, effective: float) -> Estimate:
         """The mean weight of all proposals, those rejected having none; its interval is one of the logarithm."""
         if not self.accepted:
             return Estimate(0.0, n=self.proposals)
         mean = self._first / self.proposals
-        variance = (self._second / self.proposals - mean**2) / (self.proposals - 1)
+        variance = (square / self.proposals - mean**2) / (self.proposals - 1)
         unit = math.exp(self._unit)
         return with_relative_error(
             unit * mean, unit * math.sqrt(max(variance, 0.0)), effective - 1.0, 0.95, self.proposals

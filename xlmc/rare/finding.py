@@ -65,6 +65,7 @@ def find(
             accepts,
             used.proposal,
             used.envelope,
+            learned.unevenness(used),
             wanted,
             most - done,
             drawing,

@@ -87,9 +87,17 @@ class Learned:
 
     @property
     def best(self) -> Round | None:
-        """The round that gave most."""
+        """The round whose proposal suits the populations best.
+
+        Its own trials would not say: those that lack parts of the region look the more even for it.
+        """
         usable = [each for each in self.rounds if each.logs.size >= _FEWEST]
-        return max(usable, key=lambda each: each.rate, default=None)
+        return min(usable, key=self.unevenness, default=None)
+
+    def unevenness(self, drawn: Round) -> float:
+        """Of the weights of a round's proposal, at the points of the populations: see `Proposal.unevenness`."""
+        points, weights, _ = _of_descents(self.descents)
+        return drawn.proposal.unevenness(points, weights)
 
     @property
     def probability(self) -> float:

@@ -8,14 +8,15 @@ which accepted trials lie close together, the mixture describes how far they are
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.rare.expectation import fitted_mixture
-from xlmc.rare.mixture import Mixture, standard_log_density
+from xlmc.rare.mixture import Mixture, log_sum, standard_log_density
 from xlmc.rare.shear import Shear, fitted_shear
 
 __all__ = ["Proposal", "fitted_again", "proposed"]
@@ -31,8 +32,13 @@ _DIFFERS: Final = 0.1
 _THIN: Final = 0.25
 """A variance below which a direction counts as thin: that of the assumptions is 1."""
 
-_SHARES: Final = ((0.61, 1.0), (0.23, 1.7))
-"""Of the mixture, from each fitted component with its covariance times so much."""
+_SHARES: Final = (
+    ((0.61, 1.0), (0.23, 1.7)),
+    ((0.44, 1.0), (0.2, 1.7), (0.2, 3.5)),
+    ((0.3, 1.0), (0.18, 1.7), (0.18, 3.5), (0.18, 8.0)),
+)
+"""Of the mixture, from each fitted component with its covariance times so much: the one of these is taken under which
+the accepted points weigh least, and so the weights of proposals vary least."""
 
 _WIDE: Final = 0.16
 """Of the mixture, from components as wide as the assumptions themselves, so that few weights are far above the usual
@@ -61,7 +67,7 @@ class Proposal:
     @property
     def directions(self) -> int:
         """r, how many matter."""
-        return self.mixture.means.shape[1]
+        return int(self.mixture.means.shape[1])
 
     def draw(self, count: int, random: np.random.Generator) -> Floats:
         """(count, d) independent proposals."""
@@ -83,6 +89,15 @@ class Proposal:
         mixture = self.defended.log_density(along[:, :matter])
         return np.asarray(-np.logaddexp(math.log1p(-_PRIOR) + mixture - prior, math.log(_PRIOR)))
 
+    def unevenness(self, points: Floats, weights: Floats) -> float:
+        """The logarithm of the mean weight that (n, d) accepted points with (n,) weights have as proposals.
+
+        Over accepted trials, this mean is to the probability of acceptance as the mean square of proposals' weights is
+        to the square of their mean: the least is the best, and points that proposals seldom reach count in full.
+        """
+        logs = self.log_weights(points) + np.log(weights / weights.sum())
+        return float(log_sum(logs[:, None])[0])
+
 
 def proposed(points: Floats, weights: Floats, random: np.random.Generator) -> Proposal:
     """Fit to (n, d) accepted points with (n,) weights, in no order."""
@@ -90,8 +105,7 @@ def proposed(points: Floats, weights: Floats, random: np.random.Generator) -> Pr
     along = np.einsum("nd,dr->nr", points, basis)
     shear = fitted_shear(along[:, :thin], along[:, thin:], weights)
     along[:, :thin] -= shear.shift(along[:, thin:])
-    mixture = fitted_mixture(along[:, :matter], weights, random)
-    return Proposal(basis, shear, mixture, _defended(mixture))
+    return _defended(Proposal(basis, shear, *[fitted_mixture(along[:, :matter], weights, random)] * 2), points, weights)
 
 
 def fitted_again(proposal: Proposal, points: Floats, weights: Floats, random: np.random.Generator) -> Proposal:
@@ -100,7 +114,7 @@ def fitted_again(proposal: Proposal, points: Floats, weights: Floats, random: np
     thin, matter = proposal.shear.thin, proposal.directions
     along[:, :thin] -= proposal.shear.shift(along[:, thin:])
     mixture = fitted_mixture(along[:, :matter], weights, random)
-    return Proposal(proposal.basis, proposal.shear, mixture, _defended(mixture))
+    return _defended(Proposal(proposal.basis, proposal.shear, mixture, mixture), points, weights)
 
 
 def _directions(points: Floats, weights: Floats) -> tuple[Floats, int, int]:
@@ -132,13 +146,18 @@ def _told_apart(points: Floats, shares: Floats) -> tuple[Floats, Floats]:
     return directions[:, matter], directions[:, ~matter]
 
 
-def _defended(mixture: Mixture) -> Mixture:
-    shares = [share * mixture.shares for share, _ in _SHARES]
-    roots = [factor**0.5 * mixture.roots for _, factor in _SHARES]
+def _defended(proposal: Proposal, points: Floats, weights: Floats) -> Proposal:
+    made = [replace(proposal, defended=_inflated(proposal.mixture, shares)) for shares in _SHARES]
+    return min(made, key=lambda each: each.unevenness(points, weights))
+
+
+def _inflated(mixture: Mixture, wanted: Sequence[tuple[float, float]]) -> Mixture:
+    shares = [share * mixture.shares for share, _ in wanted]
+    roots = [factor**0.5 * mixture.roots for _, factor in wanted]
     wide = np.array([_widened(root) for root in mixture.roots])
     return Mixture(
         np.concatenate([*shares, _WIDE * mixture.shares]),
-        np.concatenate([mixture.means] * (len(_SHARES) + 1)),
+        np.concatenate([mixture.means] * (len(wanted) + 1)),
         np.concatenate([*roots, wide]),
     )
 

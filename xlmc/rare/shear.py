@@ -41,7 +41,7 @@ class Shear:
 
     def shift(self, others: Floats) -> Floats:
         """(n, t) what (n, d − t) other coordinates say of the thin ones."""
-        found = self.constant + np.einsum("nk,tk->nt", others, self.linear)
+        found: Floats = self.constant + np.einsum("nk,tk->nt", others, self.linear)
         for place, square in enumerate(self.quadratic):
             found[:, place] += np.einsum("nk,nk->n", np.einsum("nj,jk->nk", others, square), others)
         return found

@@ -10,10 +10,10 @@ import pytest
 from click.testing import CliRunner
 
 from xlmc.cli.simulate import simulate as command
+from xlmc.rare import deciding
 from xlmc.record import make_record
 from xlmc.record.fingerprint import fingerprint
 from xlmc.record.sampling_words import sampling_sentence
-from xlmc.rare import deciding
 
 CELLS = {"A1": 1.0, "A2": 1.0, "B1": "=A1*A2", "C1": "=A1+A2", "C2": "=A1-A2"}
 UNIT = {"low": 0, "high": 1}

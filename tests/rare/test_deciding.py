@@ -52,6 +52,7 @@ REFUSED = [
     ({"accepted": 5}, {"engine": "formulas"}, "engine numpy"),
     ({"accepted": 5}, {"arithmetic": "float32"}, "float64"),
     ({"accepted": 5}, {"trials": 100_000}, "the limit is 100,000"),
+    ({"accepted": 10**7}, {}, "room for 1,000,000"),
 ]
 
 
@@ -69,6 +70,13 @@ def test_without_filters_there_is_nothing_to_search_for(book):
     with pytest.raises(SimulationError, match="no filters"):
         looks_of(model, settings)
     settings = replace(settings, stopping=stopping(accepted=5))
+    assert not looks_of(model, settings).hopeless(FIRST_LOOK, 0)
+
+
+def test_too_many_assumptions_are_not_searched(book, monkeypatch):
+    monkeypatch.setattr("xlmc.rare.deciding.MOST_ASSUMPTIONS", 0)
+    model = book({"A1": 1.0}, {"a": {"cell": "A1", **UNIT}}, {"x": "A1"}, {"f": {"cell": "A1", "at_least": 0.5}})
+    settings = replace(model.definitions.settings, trials=LIMIT, stopping=stopping(accepted=5))
     assert not looks_of(model, settings).hopeless(FIRST_LOOK, 0)
 
 

@@ -26,6 +26,13 @@ LEAST_LIMIT: Final = 1 << 22
 """The smallest limit of a run that leaves room for a search."""
 
 
+MOST_WANTED: Final = 1_000_000
+"""Accepted trials of a search: they are in memory, and kept anew with every batch."""
+
+MOST_ASSUMPTIONS: Final = 500
+"""Drawn in a search: its populations take 0.5 MB of memory for each, several times over."""
+
+
 class Looks:
     """Watches the plain trials of a run.
 
@@ -75,6 +82,10 @@ def _fault(model: Model, settings: Settings) -> str | None:
         return "no assumption is drawn"
     if settings.engine == "formulas" or settings.arithmetic != "float64":
         return "the search is computed by the engine numpy, in float64"
+    if len(model.live) > MOST_ASSUMPTIONS:
+        return f"{len(model.live):,} assumptions are drawn, and there is room for {MOST_ASSUMPTIONS:,}"
+    if (settings.stopping.accepted or 0) > MOST_WANTED:
+        return f"{settings.stopping.accepted:,} were asked for, and there is room for {MOST_WANTED:,}"
     if settings.trials < LEAST_LIMIT:
         return f"it takes up to {LEAST_LIMIT:,} trials, and the limit is {settings.trials:,}"
     return None

@@ -23,7 +23,7 @@ FLOORS = [
     {"model", "verify"},
     {"blocks", "derivatives", "digits"},
     {"simulation", "scheduling"},
-    {"rounding", "pilot"},
+    {"rounding", "pilot", "rare"},
     {"simulate", "result_cells"},
     {"record", "statements"},
     {"saved"},

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
 from xlmc.collecting import paused_collection
-from xlmc.compile import ENGINES, FILLERS, Lowering, Program, Target, options_of, widened
+from xlmc.compile import ENGINES, FILLERS, Evaluator, Lowering, Program, Target, options_of, widened
 from xlmc.correlating import correlated_groups, repair_notices
 from xlmc.definitions import Assumption, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key
@@ -19,6 +19,7 @@ from xlmc.definitions.stopping import stopping
 from xlmc.drawing import draw_of, dynamic_parameters
 from xlmc.errors import DefinitionError, Notice, SimulationError
 from xlmc.sampling import CorrelatedGroup, Draw, Plan, Sampler, Stage
+from xlmc.sampling.draws import Filler
 from xlmc.scene import Scene, condition, survey
 from xlmc.workbook import Workbook, read_workbook
 
@@ -139,6 +140,7 @@ class Model:
         seed: int | None = None,
         *,
         until_accepted: int | None = None,
+        rare: str | None = None,
         precision: str | float | None = None,
         precision_of: str | Sequence[str] | None = None,
         confidence: str | float | None = None,
@@ -164,6 +166,8 @@ class Model:
             trials: how many, 1 or more; with a goal the most, by default 10⁹.
             seed: 0 or more.
             until_accepted: accepted trials, of which the last ends the run; 2 or more.
+            rare: `auto`, where accepted trials are so rare that plain ones would reach their limit before
+                `until_accepted`, learn where they are and draw there; `never`; or `always`.
             precision: largest half width of intervals, of the number itself (`"1%"`) or in its units (`0.1`).
             precision_of: of which numbers: `mean`, `sd`, `range`, percentiles such as `p75.5`; by default `mean,range`.
             confidence: of these intervals, by default 95 %.
@@ -192,7 +196,9 @@ class Model:
             self,
             trials=trials,
             seed=seed,
-            stopping=stopping(until_accepted, precision, precision_of, confidence, adaptive, forecasts, time_limit),
+            stopping=stopping(
+                until_accepted, precision, precision_of, confidence, adaptive, forecasts, time_limit, rare
+            ),
             engine=engine,
             arithmetic=arithmetic,
             sampling=sampling,
@@ -265,7 +271,7 @@ class Model:
         if engine not in ENGINES:
             raise SimulationError(f"there is no engine {engine!r}", hint=f"choose one of {', '.join(ENGINES)}")
         if (engine, arithmetic) not in self._programs:
-            parts = self._lowering, self._filter_targets, self._forecast_targets, self.fallible
+            parts = self._lowering, self.filter_targets, self._forecast_targets, self.fallible
             with paused_collection():
                 options = options_of(engine, arithmetic, self._supports)
                 self._programs[engine, arithmetic] = ENGINES[engine](*parts, **options)
@@ -277,12 +283,26 @@ class Model:
         found = {draw.name: draw.support() for draw in self._draws.values()}
         return {name: ends for name, ends in found.items() if ends is not None}
 
-    def sampler(self, seed: int, block: int, engine: str = "numpy", plan: Plan | None = None) -> Sampler:
-        """The draws, block by block; for one thread. They are the same for every engine; by default independent."""
+    def evaluator(self, targets: Sequence[Target], block: int) -> Evaluator:
+        """What computes such targets too, all of them in every trial, for blocks of up to `block` trials."""
+        return ENGINES["numpy"](self._lowering, targets, [], self.fallible).evaluator(block)
+
+    def sampler(
+        self,
+        seed: int,
+        block: int,
+        engine: str = "numpy",
+        plan: Plan | None = None,
+        filler: Filler | None = None,
+    ) -> Sampler:
+        """The draws, block by block; for one thread. They are the same for every engine; by default independent.
+
+        With a filler, its uniforms take the place of the seed's.
+        """
         draws = [tuple(self._draws[a.name] for a in stage) for stage in self.scene.stages]
         stages = [Stage(stage, dynamic=i > 0) for i, stage in enumerate(draws)]
         parameters = [dynamic_parameters(stage, self._lowering, block) for stage in draws[1:]]
-        return Sampler(seed, stages, self.groups, parameters, block, plan, FILLERS.get(engine))
+        return Sampler(seed, stages, self.groups, parameters, block, plan, filler or FILLERS.get(engine))
 
     def quantiles(self, probabilities: ArrayLike) -> dict[str, NDArray[np.float64]]:
         """The quantiles of every live assumption, before filtering and whatever it is correlated with.
@@ -314,7 +334,8 @@ class Model:
         return ENGINES["numpy"](self._lowering, filters, self._forecast_targets, self.fallible)
 
     @property
-    def _filter_targets(self) -> list[Target]:
+    def filter_targets(self) -> list[Target]:
+        """What the filters ask, 1 where it holds."""
         return [Target(condition(filter_), filter_.cell) for filter_ in self.filters]
 
     @property
@@ -323,5 +344,5 @@ class Model:
 
     def _check_targets(self) -> None:
         """Lower every target once, so that a fault is told when the workbook is loaded."""
-        for target in (*self._filter_targets, *self._forecast_targets):
+        for target in (*self.filter_targets, *self._forecast_targets):
             self._lowering.target(target)

@@ -17,6 +17,7 @@ from xlmc.definitions.model import name_key
 from xlmc.definitions.stopping import LIMIT, NO_GOAL, Stopping
 from xlmc.errors import SimulationError
 from xlmc.pilot import planned
+from xlmc.rare.deciding import looks_of
 from xlmc.rounding import Rounding, checked_rounding
 from xlmc.sampling import METHODS
 from xlmc.scheduling import Crew
@@ -37,6 +38,7 @@ from xlmc.stopping import (
 if TYPE_CHECKING:
     from xlmc.definitions import Settings
     from xlmc.model import Model
+    from xlmc.rare.searching import Search
     from xlmc.sampling import Plan
 
 __all__ = ["BLOCK", "PRIOR_TRIALS", "Progress", "simulate"]
@@ -72,7 +74,7 @@ def simulate(
     """Run a model; see `Model.simulate`."""
     settings = _settings(model, trials, seed, engine, arithmetic, sampling, stopping)
     plan = planned(model, settings)
-    rule = chosen_rule(settings.stopping, model.forecasts)
+    rule, looks = chosen_rule(settings.stopping, model.forecasts), looks_of(model, settings)
     watch = Watch(rule, plan.trials, settings.stopping.seconds, time.monotonic)
     teller = None if progress is None else Teller([forecast.name for forecast in model.forecasts])
     crew = Crew(jobs, scheduler, workers)
@@ -83,30 +85,85 @@ def simulate(
     program = model.program(settings.engine, settings.arithmetic)
     block = min(BLOCK, program.largest_block)
     rounding = checked_rounding(model, program, settings, block) if settings.arithmetic == "float32" else None
-    gathered = _Gathered(model, block, plan.trials if keep_inputs is None else keep_inputs)
+    most_inputs = plan.trials if keep_inputs is None else keep_inputs
+    gathered = _Gathered(model, block, most_inputs)
 
     def task(start: int, trials: int) -> Task:
         return Task(start, trials, start < PRIOR_TRIALS, gathered.wants_inputs)
 
     tasks = (task(start, min(block, plan.trials - start)) for start in range(0, plan.trials, block))
-    stopped = None
-    with (
-        Interruption(wanted=keep_interrupted and may_end_early(settings.sampling)) as interruption,
-        closing(crew.blocks(model, program, settings, plan, block, tasks)) as blocks,
-    ):
-        while stopped is None:
-            finished = next(blocks)
-            counting = watch.counting(finished)
-            if counting < finished.trials:
-                finished = worker_of(model, program, settings.engine, settings.seed, block, plan).run(
-                    task(gathered.trials, counting)
-                )
-            gathered.add(finished)
-            interruption.keeping = True
-            stopped = watch.after(finished, gathered.forecast, interrupted=interruption.asked)
-            if progress is not None and teller is not None:
-                progress(teller.after(finished, watch.share))
-    return gathered.simulation(settings, plan, stopped, rounding)
+    stopped: Stopped | None = None
+    with Interruption(wanted=keep_interrupted and may_end_early(settings.sampling)) as interruption:
+        with closing(crew.blocks(model, program, settings, plan, block, tasks)) as blocks:
+            while stopped is None and not looks.hopeless(gathered.trials, gathered.accepted):
+                finished = next(blocks)
+                counting = finished.trials if looks.certain else watch.counting(finished)
+                if counting < finished.trials:
+                    finished = worker_of(model, program, settings.engine, settings.seed, block, plan).run(
+                        task(gathered.trials, counting)
+                    )
+                gathered.add(finished)
+                interruption.keeping = True
+                stopped = watch.after(finished, gathered.forecast, interrupted=interruption.asked)
+                if looks.certain and stopped is not None and stopped.by == "accepted":
+                    stopped = None
+                if progress is not None and teller is not None:
+                    progress(teller.after(finished, watch.share))
+        if stopped is not None:
+            return gathered.simulation(settings, plan, stopped, rounding)
+        found = _searched(model, settings, gathered.trials, watch, interruption, progress)
+    if isinstance(found, Stopped):
+        return gathered.simulation(settings, plan, found, rounding)
+    return _with_search(gathered.simulation(settings, plan, watch.goal_reached, rounding), found, most_inputs)
+
+
+class _EndedError(Exception):
+    """Somebody, or the time, ended a search."""
+
+    def __init__(self, stopped: Stopped) -> None:
+        super().__init__(stopped.because)
+        self.stopped = stopped
+
+
+def _searched(
+    model: Model, settings: Settings, plain: int, watch: Watch, interruption: Interruption, progress: Progress | None
+) -> Search | Stopped:
+    """Accepted trials from a search, or what ended it before it had any."""
+
+    def say(evaluations: int) -> None:
+        if progress is not None:
+            progress(Standing(plain + evaluations, 0, watch.share, {}, searching=True))
+        ended = watch.meanwhile(interrupted=interruption.asked)
+        if ended is not None:
+            raise _EndedError(ended)
+
+    from xlmc.rare.searching import search
+
+    try:
+        found = search(model, settings, plain, say)
+    except _EndedError as ended:
+        return ended.stopped
+    return found if found.account is not None else Stopped("search", found.failure, watch.goal_reached.goal)
+
+
+def _with_search(plain: Simulation, found: Search, most_inputs: int) -> Simulation:
+    """The run with the trials that were found, in the place of those few that plain trials had left."""
+    from xlmc.rare.searching import accepted_blocks
+
+    assert found.account is not None
+    model, block = plain.model, plain.model.program("numpy").largest_block
+    gathered = _Gathered(model, block, most_inputs)
+    for each in accepted_blocks(model, found.points, block, lambda: gathered.wants_inputs):
+        gathered.add(each)
+    drawn = gathered.simulation(plain.settings, plain.plan, plain.stopped, None)
+    return replace(
+        plain,
+        trial_index=drawn.trial_index,
+        inputs=drawn.inputs,
+        forecasts=drawn.forecasts,
+        faults=drawn.faults,
+        rare=replace(found.account, kept=gathered.accepted, faulty=gathered.lost),
+    )
 
 
 def _settings(
@@ -122,8 +179,10 @@ def _settings(
     settings = replace(model.definitions.settings, **{k: v for k, v in given.items() if v is not None})  # type: ignore[arg-type]
     if trials is not None or stopping.has_goal:
         settings = replace(settings, trials=LIMIT if trials is None else trials, stopping=stopping)
-    elif stopping.seconds is not None:
-        settings = replace(settings, stopping=replace(settings.stopping, seconds=stopping.seconds))
+    else:
+        own = settings.stopping
+        seconds = own.seconds if stopping.seconds is None else stopping.seconds
+        settings = replace(settings, stopping=replace(own, seconds=seconds, rare=stopping.rare or own.rare))
     refuse_other_sampling(settings.sampling, settings.stopping)
     if not 1 <= settings.trials <= MOST_TRIALS:
         raise SimulationError(f"{settings.trials} trials were asked for", hint=f"give 1 to {MOST_TRIALS:,}")

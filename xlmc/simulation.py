@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from xlmc.model import Model
+    from xlmc.rare.account import RareAccount
     from xlmc.rounding import Rounding
 
 __all__ = ["ERROR_SHARE", "KEPT_INPUTS", "ForecastResult", "Origin", "Simulation"]
@@ -159,8 +160,8 @@ class Simulation:
     Attributes:
         model, settings, block: what it is a function of.
         plan: the sampling method, and how it divides the trials into replicates.
-        trials: how many were run.
-        trial_index: `(m,)` the accepted ones, counted from 0.
+        trials: how many were run; where accepted ones are rare, drawn plainly, which the counts are of.
+        trial_index: `(m,)` the accepted ones, counted from 0; where they are rare, in the order they were drawn in.
         inputs: assumption -> its accepted draws, `(m,)`, or of the first accepted trials where not all were asked for.
         prior: assumption -> its draws before filtering, of the first trials.
         forecasts: forecast -> `(m,)`, NaN where it has no number.
@@ -172,6 +173,7 @@ class Simulation:
         stopped: what ended it.
         rounding: what float32 changed in the first trials; None with float64.
         origin: where it was made, if it was saved and opened again; None for one that was made here.
+        rare: where the accepted trials come from, where that is a learned proposal; None with plain trials.
     """
 
     model: Model
@@ -190,6 +192,7 @@ class Simulation:
     stopped: Stopped = ALL_TRIALS
     rounding: Rounding | None = None
     origin: Origin | None = None
+    rare: RareAccount | None = None
 
     def __getitem__(self, name: str) -> ForecastResult:
         """The result of a forecast, by name whatever its case.
@@ -203,6 +206,8 @@ class Simulation:
         raise KeyError(f"there is no forecast {name!r}; there are {', '.join(map(repr, self.forecasts))}")
 
     def __repr__(self) -> str:
+        if self.rare is not None:
+            return f"<Simulation: {self.accepted} accepted trials, found in {self.rare.evaluations} evaluations>"
         return f"<Simulation: {self.accepted} of {self.trials} trials accepted>"
 
     @cached_property
@@ -227,6 +232,8 @@ class Simulation:
     @property
     def acceptance(self) -> Estimate:
         """The share of accepted trials; the trials may have gone on until there were enough."""
+        if self.rare is not None:
+            return self.rare.acceptance
         if self.stopped.by == "accepted":
             return statistics.inverse_proportion(self.accepted, self.trials)
         if not self.plan.size:
@@ -266,7 +273,7 @@ class Simulation:
     def warnings(self) -> list[str]:
         """Why the answer must not be used as it stands; empty when it may be."""
         found = []
-        if self.accepted == 0:
+        if self.accepted == 0 and self.stopped.by != "search":
             most = self.acceptance.interval
             fewer = "" if most is None else f", or accept fewer than {most[1]:.2g} of the trials"
             found.append(f"no trial was accepted: the filters contradict the assumptions{fewer}")
@@ -275,7 +282,7 @@ class Simulation:
         if self.error_trials > ERROR_SHARE * self.trials:
             share = self.error_trials / self.trials
             found.append(f"{self.error_trials:,} trials ({share:.2%}) were lost to errors in cells")
-        return [*found, *self._sparse(), *self._lost_digits]
+        return [*found, *self._sparse(), *self._lost_digits, *(() if self.rare is None else self.rare.warnings)]
 
     @cached_property
     def _lost_digits(self) -> list[str]:

@@ -21,6 +21,7 @@ MISTAKES = [
     ("Engine", "numpi", VALUE, "There is no engine 'numpi'", "Did you mean numpy?"),
     ("Until accepted", 1, VALUE, "Until accepted must be a whole number from 2", "Correct the number"),
     ("Until accepted", 2.5, VALUE, "Until accepted must be a whole number", "Correct the number"),
+    ("Rare", "sometimes", VALUE, "'sometimes' is no way to look for rare trials", "Use auto, never, always"),
     ("Precision", 0, VALUE, "Precision must be above 0, not 0", "Correct the number"),
     ("Precision", "1%", VALUE, "Precision holds the text '1%', not a number", "Type a number"),
     ("Precision %", 0.01, VALUE, "Precision % must be 0.1 or more, not 0.01", "Type 1 for 1 %"),
@@ -94,6 +95,7 @@ def test_two_tables(only_problem, blocks):
     [
         ([["Until accepted", 500]], LIMIT, Stopping(accepted=500)),
         ([["Until accepted", 500], ["Trials", 9000]], 9000, Stopping(accepted=500)),
+        ([["Until accepted", 500], ["Rare", "Never"]], LIMIT, Stopping(accepted=500, rare="never")),
         ([["Precision %", 1]], LIMIT, Stopping(precision=Precision(0.01, relative=True))),
         ([["precision", 0.25], ["Confidence %", 90]], LIMIT, Stopping(precision=Precision(0.25, confidence=0.9))),
         (

@@ -16,6 +16,8 @@ __all__ = ["errors_line", "progress_bar", "trials_line"]
 
 def trials_line(standing: Standing) -> str:
     """`65,536 trials, 1,150 accepted (1.75 %)`."""
+    if standing.searching:
+        return f"{standing.trials:,} trials, looking for accepted ones"
     share = 100.0 * standing.accepted / standing.trials
     return f"{standing.trials:,} trials, {standing.accepted:,} accepted ({share:.3g} %)"
 

@@ -19,6 +19,11 @@ _OPTIONS = (
         help="Run until N trials are accepted, -n at most.",
     ),
     click.option(
+        "--rare",
+        type=click.Choice(["auto", "never", "always"]),
+        help="Find rare accepted trials by learning where they are.  [default: auto: where -n would not be enough]",
+    ),
+    click.option(
         "--precision", metavar="WIDTH", help="Run until numbers are known to 1% of themselves, or 0.1 in their units."
     ),
     click.option("--precision-of", metavar="NAMES", help="Which: mean,sd,range,p75.5.  [default: mean,range]"),

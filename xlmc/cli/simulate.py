@@ -139,21 +139,30 @@ def show_run(run: Simulation) -> None:
     from xlmc.cli.printing import table
     from xlmc.record.sampling_words import sampling_sentence
     from xlmc.report.summary import ERROR_SENTENCE, summarise, summary_text
-    from xlmc.statistics import format_estimate
     from xlmc.stopping.stopped import ALL_TRIALS
 
     headings, rows = summary_text(summarise(run))
     table(f"{run.model.workbook.name}: accepted trials", headings, rows, right=range(2, len(headings)))
-    share = run.acceptance
-    percent = format_estimate(100 * share.value, 100 * (share.error or 0))
-    click.echo(f"Accepted {run.accepted:,} of {run.trials:,} trials, {percent} %; seed {run.settings.seed}.")
+    click.echo(f"{_accepted(run)}; seed {run.settings.seed}.")
     ended = "" if run.stopped == ALL_TRIALS else f"Ended when {run.stopped.sentence}.\n"
     click.echo(ended + click.wrap_text(sampling_sentence(run), width=100) + "\n")
     if run.model.filters:
-        table("Trials rejected", ("Filter", "Keeps", "Rejected", "Only by it"), _rejections(run), right=(2, 3))
+        of = "Trials rejected" if run.rare is None else f"Trials rejected of {run.trials:,} drawn plainly"
+        table(of, ("Filter", "Keeps", "Rejected", "Only by it"), _rejections(run), right=(2, 3))
     click.echo(click.wrap_text(ERROR_SENTENCE, width=100))
     for notice in run.notices_of_run:
         click.echo(click.wrap_text(f"{notice}.", width=100))
+
+
+def _accepted(run: Simulation) -> str:
+    from xlmc.statistics import format_estimate
+
+    share = run.acceptance
+    if run.rare is not None:
+        chance = format_estimate(share.value, share.error)
+        return f"{run.accepted:,} accepted trials; one is accepted with probability {chance}"
+    percent = format_estimate(100 * share.value, 100 * (share.error or 0))
+    return f"Accepted {run.accepted:,} of {run.trials:,} trials, {percent} %"
 
 
 def _rejections(run: Simulation) -> list[tuple[str, ...]]:

@@ -15,6 +15,7 @@ __all__ = [
     "MOST_DIGITS",
     "MOST_TRIALS",
     "NO_GOAL",
+    "RARE",
     "Precision",
     "Stopping",
     "as_confidence",
@@ -29,6 +30,9 @@ LIMIT: Final = 10**9
 
 MOST_DIGITS: Final = 6
 MOST_TRIALS: Final = 10**12
+
+RARE: Final = ("auto", "never", "always")
+"""Whether accepted trials are looked for where they are rare: `auto`, where plain trials would reach the limit."""
 
 USUAL_NUMBERS: Final = ("mean", "range")
 """What a run is quoted by."""
@@ -66,6 +70,7 @@ class Stopping:
         digits: significant digits of the standard deviation that are stable (JCGM 101, 7.9).
         forecasts: names of those that `precision` or `digits` look at; empty for all.
         seconds: how long at most.
+        rare: one of `RARE`; None for `auto`.
 
     Raises:
         SimulationError: two goals, or forecasts for none.
@@ -76,6 +81,7 @@ class Stopping:
     digits: int | None = None
     forecasts: tuple[str, ...] = ()
     seconds: float | None = None
+    rare: str | None = None
 
     def __post_init__(self) -> None:
         goals = {"accepted trials": self.accepted, "a precision": self.precision, "stable digits": self.digits}
@@ -105,6 +111,7 @@ def stopping(
     digits: int | None = None,
     forecasts: str | Sequence[str] = (),
     seconds: str | float | None = None,
+    rare: str | None = None,
 ) -> Stopping:
     """What was asked for, as typed or as given in Python.
 
@@ -119,13 +126,16 @@ def stopping(
     if tolerance is None and (numbers is not None or confidence is not None):
         message = "how well numbers must be known is not said"
         raise SimulationError(message, hint="Give a precision too, such as 1% or 0.1")
+    if rare is not None and rare not in RARE:
+        message = f"{rare!r} is no way to look for rare trials"
+        raise SimulationError(message, hint=f"Choose one of {', '.join(RARE)}")
     precision = None
     if tolerance is not None:
         chosen = USUAL_NUMBERS if numbers is None else as_numbers(numbers)
         sure = USUAL_CONFIDENCE if confidence is None else as_confidence(confidence)
         precision = Precision(*as_tolerance(tolerance), chosen, sure)
     named = (forecasts,) if isinstance(forecasts, str) else tuple(forecasts)
-    return Stopping(accepted, precision, digits, named, None if seconds is None else as_seconds(seconds))
+    return Stopping(accepted, precision, digits, named, None if seconds is None else as_seconds(seconds), rare)
 
 
 def as_tolerance(given: str | float) -> tuple[float, bool]:

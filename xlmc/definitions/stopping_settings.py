@@ -12,6 +12,7 @@ from xlmc.definitions.stopping import (
     MOST_DIGITS,
     MOST_TRIALS,
     NO_GOAL,
+    RARE,
     Stopping,
     as_confidence,
     as_numbers,
@@ -97,6 +98,14 @@ def _seconds(row: Row, _findings: Findings) -> float:
     return _as_written(row, as_seconds, given)
 
 
+def _rare(row: Row, _findings: Findings) -> str:
+    typed = required_text(row, "Value")
+    if plain(typed) not in RARE:
+        message = f"{typed!r} is no way to look for rare trials"
+        raise DefinitionError(message, where=row.cell("Value"), hint=f"Use {', '.join(RARE)}")
+    return plain(typed)
+
+
 def _as_written(row: Row, read: Callable[[Any], T], given: object) -> T:
     """What is read from the value; its fault told of the cell."""
     try:
@@ -107,6 +116,7 @@ def _as_written(row: Row, read: Callable[[Any], T], given: object) -> T:
 
 STOPPING_SETTINGS: Final[Mapping[str, Callable[[Row, Findings], Any]]] = {
     "Until accepted": _accepted,
+    "Rare": _rare,
     "Precision": _precision,
     "Precision %": _percent,
     "Precision of": _precision_of,
@@ -119,6 +129,7 @@ STOPPING_SETTINGS: Final[Mapping[str, Callable[[Row, Findings], Any]]] = {
 
 _ENDS = {
     plain("Until accepted"): "accepted",
+    plain("Rare"): "rare",
     plain("Precision"): "tolerance",
     plain("Precision %"): "percent",
     plain("Precision of"): "numbers",

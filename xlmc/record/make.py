@@ -25,6 +25,7 @@ from xlmc.record.structure_table import structure_section
 from xlmc.workbook.inject import original_hash
 
 if TYPE_CHECKING:
+    from xlmc.rare.account import RareAccount
     from xlmc.rounding import Rounding
     from xlmc.simulation import Simulation
 
@@ -38,6 +39,8 @@ _SHARES = {
     "accepted": "(N − 1)/(n − 1) for n trials until the N-th was accepted; its interval is exact, 95 %",
 }
 """How the share of accepted trials is estimated, by what ended the run."""
+
+_RARE_SHARE = "the mean weight of the trials drawn where accepted ones lie; its interval is that of its logarithm, 95 %"
 
 _CONVENTIONS = (
     ("percentiles", "Percentiles", "linear between trials, as Excel's PERCENTILE.INC"),
@@ -68,6 +71,7 @@ def make_record(simulation: Simulation, command: str | None = None) -> Record:
             _end(simulation),
             _sampling(simulation),
             settings_section(simulation),
+            *([] if simulation.rare is None else [_rare(simulation.rare)]),
             forecast_section(simulation),
             filter_section(simulation),
             assumption_section(simulation),
@@ -142,9 +146,15 @@ def _end(simulation: Simulation) -> Section:
         Entry("most_trials", "Trials at most", simulation.settings.trials),
         Entry("time_limit", "Seconds at most", asked.seconds),
         Entry("blocks", "Blocks of trials", -(-simulation.trials // simulation.block)),
-        Entry("share_accepted", "The share accepted is", _SHARES.get(stopped.by, _SHARES["trials"])),
+        Entry("share_accepted", "The share accepted is", _share_words(simulation)),
     )
     return Section("end", "What ended the run", entries)
+
+
+def _share_words(simulation: Simulation) -> str:
+    if simulation.rare is not None:
+        return _RARE_SHARE
+    return _SHARES.get(simulation.stopped.by, _SHARES["trials"])
 
 
 def _sampling(simulation: Simulation) -> Section:
@@ -169,6 +179,32 @@ def _sampling(simulation: Simulation) -> Section:
         *(() if simulation.rounding is None else _rounding(simulation.rounding)),
     )
     return Section("sampling", "Sampling", entries)
+
+
+def _rare(found: RareAccount) -> Section:
+    low, high = found.acceptance.interval or (None, None)
+    entries = (
+        Entry("in_words", "In words", found.sentence),
+        Entry("evaluations", "Trials evaluated in all", found.evaluations),
+        Entry("learning", "Of them, to learn where accepted ones lie", found.learning),
+        Entry("proposals", "Of them, drawn there", found.proposals),
+        Entry("proposals_accepted", "Of those, accepted by the filters", found.proposals_accepted),
+        Entry("kept", "Of those, kept with equal weight", found.kept),
+        Entry("effective", "Effective sample size of the kept ones", plain(found.size)),
+        Entry("acceptance", "Probability that a trial is accepted", plain(found.acceptance.value)),
+        Entry("acceptance_low", "Its 95 % interval, of its logarithm, from", plain(low)),
+        Entry("acceptance_high", "to", plain(high)),
+        Entry("acceptance_effective", "Effective sample size that it comes from", plain(found.effective)),
+        Entry("searched", "The same probability by splitting, for comparison", plain(found.searched)),
+        Entry("levels", "Levels of the splitting", found.levels),
+        Entry("components", "Normal distributions in the mixture", found.components),
+        Entry("directions", "Directions that it was learned in", found.directions),
+        Entry("dimensions", "Of the assumptions that are drawn", found.dimensions),
+        Entry("engine", "Engine of the search and of its trials", "numpy"),
+        Entry("lost", "Trials of the search with errors in cells", found.lost),
+        Entry("faulty", "Accepted trials with an error in a forecast", found.faulty),
+    )
+    return Section("rare", "Search for rare accepted trials", entries)
 
 
 def _rounding(found: Rounding) -> Iterator[Entry]:

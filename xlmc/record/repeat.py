@@ -28,6 +28,8 @@ def repeat_command(simulation: Simulation) -> str:
     options = [*_length(simulation), f"--seed {settings.seed}"]
     if settings.sampling != own.sampling:
         options.append(f"--sampling {settings.sampling}")
+    if settings.stopping.rare is not None and simulation.stopped.by in ("accepted", "search"):
+        options.append(f"--rare {settings.stopping.rare}")
     if settings.engine != own.engine:
         options.append(f"--engine {settings.engine}")
     if settings.arithmetic != own.arithmetic:
@@ -36,6 +38,10 @@ def repeat_command(simulation: Simulation) -> str:
 
 
 def _length(simulation: Simulation) -> list[str]:
+    settings = simulation.settings
+    if simulation.stopped.by == "search" or getattr(simulation, "rare", None) is not None:
+        limit = [] if settings.trials == LIMIT else [f"--trials {settings.trials}"]
+        return [*limit, f"--until-accepted {settings.stopping.accepted}"]
     if simulation.stopped.by != "accepted":
         return [f"--trials {simulation.trials}"]
     limit = [f"--trials {simulation.trials}"] if simulation.trials > LIMIT else []

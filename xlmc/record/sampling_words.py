@@ -22,6 +22,8 @@ REJECTED_SENTENCE: Final = (
 def method_text(simulation: Simulation) -> str:
     """`Latin hypercube: 16 independent replicates of 12,500 trials`."""
     plan = simulation.plan
+    if simulation.rare is not None:
+        return f"{METHODS[plan.method]}: {simulation.rare.method}"
     if not plan.size:
         return f"{METHODS[plan.method]}: independent trials"
     asked = simulation.settings.trials
@@ -41,12 +43,15 @@ def errors_text(simulation: Simulation) -> str:
 
 def sampling_sentence(simulation: Simulation) -> str:
     """Both in one sentence."""
-    return f"{method_text(simulation)}; errors come {errors_text(simulation)}."
+    done = "" if simulation.rare is None else f" {simulation.rare.sentence}"
+    return f"{method_text(simulation)}; errors come {errors_text(simulation)}.{done}"
 
 
 def generator_text(simulation: Simulation) -> str:
     """Where the random numbers come from."""
     streams = f"{GENERATOR}: a stream for each assumption, seeded by (seed, name), positioned by trial number"
+    if simulation.rare is not None:
+        return f"{GENERATOR}, seeded by (seed, purpose): a stream to learn with, and one to draw the trials with"
     if simulation.plan.method == "mc":
         return streams
     if simulation.plan.method == "sobol":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from xlmc.record.errors_met import errors_met
+from xlmc.record.errors_met import ErrorMet, errors_met
 from xlmc.record.sampling_words import REJECTED_SENTENCE
 from xlmc.record.wording import limits_text
 from xlmc.report import cells
@@ -36,6 +36,9 @@ def write_accounting(page: Page, simulation: Simulation, last: int) -> None:
         _write_filters(page, simulation, last)
         page.heading("Trials rejected by the filters")
         _write_rejections(page, simulation)
+        if simulation.rare is not None:
+            said = f"Counted among the first {simulation.trials:,} trials, which were drawn plainly, before the search."
+            page.wide(said, "remark", last)
         if simulation.plan.size:
             page.wide(REJECTED_SENTENCE, "remark", last)
     _write_errors(page, simulation)
@@ -90,8 +93,13 @@ def _write_errors(page: Page, simulation: Simulation) -> None:
                 cells.text(met.kind),
                 cells.text(str(met.cell)),
                 cells.text(met.error),
-                *_counted(met.trials, simulation.trials),
+                *_counted(met.trials, _among(simulation, met)),
             ]
             for met in found
         ],
     )
+
+
+def _among(simulation: Simulation, met: ErrorMet) -> int:
+    """The trials that an error was counted in: those of forecasts, where accepted ones were searched for, in these."""
+    return simulation.accepted if simulation.rare is not None and met.kind == "forecast" else simulation.trials

@@ -55,7 +55,8 @@ _CORRELATIONS = (
 def write_assumptions(page: Page, simulation: Simulation) -> None:
     """Write the sheet."""
     name = simulation.model.workbook.name
-    page.title("Assumptions", f"{name}: {simulation.accepted:,} of {simulation.trials:,} trials accepted")
+    of = f" of {simulation.trials:,}" if simulation.rare is None else ""
+    page.title("Assumptions", f"{name}: {simulation.accepted:,}{of} trials accepted")
     page.row = HEADER
     page.table(_headers(), [line for a in simulation.model.assumptions for line in _lines(simulation, a)])
     page.sheet.freeze_panes(HEADER + 1, 1)

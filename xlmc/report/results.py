@@ -28,7 +28,8 @@ def write_results(page: Page, simulation: Simulation) -> None:
     """Write the sheet."""
     book = simulation.model.workbook.name
     settings = simulation.settings
-    page.title("Results of the simulation", f"{book}, seed {settings.seed}, {simulation.trials:,} trials")
+    evaluated = simulation.trials if simulation.rare is None else simulation.rare.evaluations
+    page.title("Results of the simulation", f"{book}, seed {settings.seed}, {evaluated:,} trials")
     for warning in simulation.warnings:
         page.wide(f"Do not use these results as they stand: {warning}", "warning", LAST)
     if simulation.stopped.interrupted:
@@ -108,13 +109,14 @@ def base_sentences(simulation: Simulation) -> list[str]:
 def write_counts(page: Page, simulation: Simulation) -> None:
     """Write how many trials were run, accepted and lost."""
     page.heading("Trials")
-    total = simulation.trials
+    total, rare = simulation.trials, simulation.rare
     lost = proportion(min(simulation.error_trials, total), total)
     headers = ("", "Trials", "Share", "±", "95 % from", "to")
     starts = (0, 2, 3, 4, 5, 6)
     page.spread([cells.text(header, "header") for header in headers], starts, 6)
     for line in (
-        [cells.text("Run", "name"), cells.count(total), *[cells.BLANK] * 4],
+        *_searched(simulation),
+        [cells.text("Run" if rare is None else "Drawn plainly", "name"), cells.count(total), *[cells.BLANK] * 4],
         [cells.text("Accepted", "name"), cells.count(simulation.accepted), *_share(simulation.acceptance)],
         [cells.text("Lost to errors in cells", "name"), cells.count(simulation.error_trials), *_share(lost)],
     ):
@@ -122,6 +124,13 @@ def write_counts(page: Page, simulation: Simulation) -> None:
     if simulation.stopped != ALL_TRIALS:
         page.row += 1
         page.wide(f"The run ended when {simulation.stopped.sentence}.", "remark", LAST)
+
+
+def _searched(simulation: Simulation) -> list[list[Shown]]:
+    """What was evaluated where accepted trials are rare."""
+    if simulation.rare is None:
+        return []
+    return [[cells.text("Evaluated in all", "name"), cells.count(simulation.rare.evaluations), *[cells.BLANK] * 4]]
 
 
 def _share(found: Estimate) -> list[Shown]:

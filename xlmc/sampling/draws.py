@@ -14,7 +14,7 @@ from xlmc.sampling.copula import GaussianCopula
 from xlmc.sampling.plan import Margin, Plan
 from xlmc.sampling.streams import Stream
 
-__all__ = ["CorrelatedGroup", "Draw", "DynamicParameters", "Linear", "Sampler", "Stage"]
+__all__ = ["CorrelatedGroup", "Draw", "DynamicParameters", "Filler", "Linear", "Sampler", "Stage"]
 
 Floats = NDArray[np.float64]
 

@@ -20,12 +20,14 @@ class Standing:
         trials, accepted: so far.
         share: how much of the run is done, 0 to 1; an estimate where it goes on until something is reached.
         means: forecast -> its mean so far.
+        searching: whether accepted trials are being looked for where they are rare; `accepted` counts none of these.
     """
 
     trials: int
     accepted: int
     share: float
     means: Mapping[str, Estimate]
+    searching: bool = False
 
 
 class Teller:

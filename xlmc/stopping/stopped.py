@@ -13,7 +13,8 @@ class Stopped:
     """What ended a run.
 
     Attributes:
-        by: `trials` (there were no more to run), `accepted`, `precision`, `adaptive`, `time` or `interruption`.
+        by: `trials` (there were no more to run), `accepted`, `precision`, `adaptive`, `time`, `interruption` or
+            `search` (no accepted trials were found where they are rare).
         because: in words, without a full stop.
         goal: in words, what the run was to go on until; None where it was to run its trials.
     """
@@ -25,7 +26,7 @@ class Stopped:
     @property
     def reached(self) -> bool:
         """Whether the run came to what it was to go on until."""
-        return self.goal is None or self.by not in ("trials", "time", "interruption")
+        return self.goal is None or self.by not in ("trials", "time", "interruption", "search")
 
     @property
     def interrupted(self) -> bool:

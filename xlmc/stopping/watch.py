@@ -36,6 +36,12 @@ class Watch:
             shares.append(min(1.0, (self._clock() - self._began) / self._seconds))
         return max(shares)
 
+    @property
+    def goal_reached(self) -> Stopped:
+        """What is said of a run that came to its goal; it has one."""
+        assert self._rule is not None
+        return Stopped(self._rule.key, self._rule.goal, self._rule.goal)
+
     def counting(self, block: Observed) -> int:
         """How many of the block's trials count; if fewer than it has, they are the run's last."""
         return block.trials if self._rule is None else self._rule.counting(block, self._seen)
@@ -49,6 +55,11 @@ class Watch:
         if self._seen >= self._trials:
             limit = "all trials were run" if goal is None else f"the limit of {self._trials:,} trials was reached"
             return Stopped("trials", limit, goal)
+        return self.meanwhile(interrupted=interrupted)
+
+    def meanwhile(self, *, interrupted: bool = False) -> Stopped | None:
+        """What ends the run where no block was run: somebody, or the time; None if nothing does."""
+        goal = None if self._rule is None else self._rule.goal
         if interrupted:
             return Stopped("interruption", "it was interrupted", goal)
         if self._seconds is not None and self._clock() - self._began >= self._seconds:

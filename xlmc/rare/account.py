@@ -1,0 +1,109 @@
+"""What was done where accepted trials are rare, and how well it went: the same words on paper, sheet and screen."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+from xlmc.statistics import Estimate, format_estimate
+
+__all__ = ["RareAccount", "probability_text"]
+
+MOST_LOST: Final = 0.001
+"""Above this share of trials lost to errors the answer must not be used as it stands, as of plain trials."""
+
+MOST_APART: Final = math.log(2.0)
+"""Two estimates of the probability of acceptance, as logarithms: the first is known to some tenths."""
+
+
+@dataclass(frozen=True, slots=True)
+class RareAccount:
+    """Where the accepted trials of a run come from.
+
+    Attributes:
+        evaluations: trials in all, plain ones with them.
+        learning: of them, to find the region and describe it.
+        proposals: of them, independent draws from what was learned.
+        proposals_accepted: of those, by the filters.
+        kept: of those, with equal weight.
+        acceptance: the probability that a plain trial is accepted.
+        effective: (Σw)²/Σw² of the proposals accepted, which `acceptance` comes from.
+        size: the effective sample size of the kept ones: a few stand more than once.
+        searched: the same probability as the populations had it that found the region.
+        levels: distances from acceptance that these went through.
+        components, directions: of the mixture of normal distributions that was learned.
+        dimensions: assumptions that are drawn.
+        lost: of all but the plain trials, those in which a filter or a draw is an error.
+        faulty: of the kept ones, those in which a forecast is an error.
+    """
+
+    evaluations: int
+    learning: int
+    proposals: int
+    proposals_accepted: int
+    kept: int
+    acceptance: Estimate
+    effective: float
+    size: float
+    searched: float
+    levels: int
+    components: int
+    directions: int
+    dimensions: int
+    lost: int
+    faulty: int = 0
+
+    @property
+    def plain_trials(self) -> float:
+        """That plain rejection would have needed, on average."""
+        return self.kept / self.acceptance.value
+
+    @property
+    def method(self) -> str:
+        """In a few words."""
+        return "rejection from a learned proposal: independent trials of equal weight"
+
+    @property
+    def sentence(self) -> str:
+        """What was done."""
+        directions = f"{self.directions} of {self.dimensions} directions"
+        return (
+            f"Plain trials, as they come, would have taken about {_about(self.plain_trials)} "
+            f"for these. Where the accepted ones lie was learned from {self.learning:,} trials (splitting, in "
+            f"{self.levels} levels; then a mixture of {self.components} normal distributions in {directions}). "
+            f"{self.proposals:,} further trials were drawn there; {self.proposals_accepted:,} of them pass all "
+            f"filters, and of these each was kept with a chance that gives all kept ones equal weight. The "
+            f"{self.kept:,} kept ones are independent, and spread as those that plain trials would have left "
+            f"(effective sample size {self.size:,.0f}: a few stand more than once). No method can rule out that a "
+            "separate part of the accepted region was not found."
+        )
+
+    @property
+    def warnings(self) -> list[str]:
+        """Why the answer must not be used as it stands."""
+        found = []
+        if abs(math.log(self.searched / self.acceptance.value)) > MOST_APART:
+            found.append(
+                f"the search for rare trials has a probability of acceptance of {self.searched:.2g}, and the trials "
+                f"that it led to have {self.acceptance.value:.2g}: part of the accepted region may be missing"
+            )
+        rare = self.learning + self.proposals
+        if self.lost > MOST_LOST * rare:
+            found.append(f"{self.lost:,} of the {rare:,} trials of the search were lost to errors in cells")
+        if self.faulty > MOST_LOST * self.kept:
+            found.append(f"a forecast is an error in {self.faulty:,} of the {self.kept:,} accepted trials")
+        return found
+
+
+def probability_text(found: Estimate) -> str:
+    """`(1.002 ± 0.004)e-06`."""
+    return format_estimate(found.value, found.error)
+
+
+def _about(count: float) -> str:
+    """Two digits of it."""
+    if not math.isfinite(count):
+        return "more than can be counted"
+    size = 10 ** max(0, int(math.log10(count)) - 1)
+    return f"{round(count / size) * size:,}"

@@ -1,0 +1,181 @@
+"""A model as a landscape over independent standard normals: how far a point is from being an accepted trial.
+
+Each drawn assumption has a normal, whatever its distribution: its uniform is what the normal distribution leaves below.
+Correlations, cutoffs, whole numbers and parameters that vary follow from the uniforms, as in any run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.compile import Column
+from xlmc.rare.shortfall import Leaf, leaves, lengths, measured, shortfall
+from xlmc.scene import condition
+
+if TYPE_CHECKING:
+    from xlmc.model import Model
+    from xlmc.sampling.streams import Stream
+
+__all__ = ["Given", "Landscape", "uniforms_of"]
+
+Floats = NDArray[np.float64]
+
+SCALING_TRIALS: Final = 16_384
+"""Draws whose distances, the median of each, all distances are measured by."""
+
+_LARGEST: Final = 1.0 - 2.0**-53
+
+
+def uniforms_of(points: Floats) -> Floats:
+    """The uniforms, in [0, 1), of standard normals."""
+    from scipy.special import ndtr
+
+    return np.asarray(np.minimum(ndtr(points), _LARGEST))
+
+
+class Given:
+    """Uniforms that are given, in the place of a seed's streams.
+
+    Attributes:
+        uniforms: (n, d) to draw from next; trial `start` of a block takes row `start`.
+    """
+
+    def __init__(self) -> None:
+        self.uniforms = np.empty((0, 0))
+
+    def filler(
+        self, _streams: Sequence[Stream], maps: Sequence[tuple[float, float]], rows: Floats
+    ) -> Callable[[int], None]:
+        """See `sampling.draws.Filler`."""
+
+        def fill(start: int) -> None:
+            given = self.uniforms[start : start + rows.shape[1]]
+            for row, column, (offset, factor) in zip(rows, given.T, maps, strict=True):
+                row[: len(given)] = offset + factor * column
+                row[len(given) :] = offset + factor * 0.5  # a block is drawn whole, and cut
+
+        return fill
+
+
+class Landscape:
+    """For one thread.
+
+    Args:
+        model: with at least one filter and one drawn assumption.
+        random: for the draws that the distances are scaled by.
+
+    Attributes:
+        dimensions: of its points.
+        evaluations: trials evaluated so far.
+        lost: of them, those in which a filter or a draw is an error.
+    """
+
+    def __init__(self, model: Model, random: np.random.Generator) -> None:
+        formulas = model.scene.graph.formulas
+        self.dimensions = len(model.live)
+        self._filters = [shortfall(condition(f), f.cell, formulas) for f in model.filters]
+        self._leaves = [leaf for each in self._filters for leaf in leaves(each)]
+        targets = [*model.filter_targets, *(leaf.holds for leaf in self._leaves)]
+        gauged = [leaf for leaf in self._leaves if leaf.gap is not None]
+        self._gaps = {leaf: len(targets) + i for i, leaf in enumerate(gauged)}
+        targets += [leaf.gap for leaf in self._gaps if leaf.gap is not None]
+        self._block = model.program("numpy").largest_block
+        self._evaluator = model.evaluator(targets, self._block)
+        self._deciding = model.program("numpy").evaluator(self._block)
+        self._given = Given()
+        self._sampler = model.sampler(0, self._block, filler=self._given.filler)
+        self._fallible = model.fallible
+        self.evaluations = self.lost = 0
+        self._scales = [1.0] * len(self._leaves)
+        self._scales = self._usual(random.standard_normal((SCALING_TRIALS, self.dimensions)))
+
+    def distance(self, points: Floats) -> Floats:
+        """(n,) of (n, d) points: 0 where they are accepted, infinite where a filter cannot decide."""
+        parts = [np.maximum.reduce(list(each)) for each in self._of_filters(points)]
+        return np.concatenate([*parts, np.empty(0)])
+
+    def accepts(self, points: Floats) -> NDArray[np.bool_]:
+        """(n,) whether they are accepted."""
+        parts = [np.empty(0, bool)]
+        for start in range(0, len(points), self._block):
+            draws, n, accepted = self._drawn(points[start : start + self._block])
+            columns = self._deciding.filters(draws, n)
+            self._count(columns, ~accepted)
+            for column in columns:
+                accepted &= column.values != 0
+                if column.codes is not None:
+                    accepted &= column.codes == 0
+            parts.append(accepted)
+        return np.concatenate(parts)
+
+    def by_filter(self, points: Floats) -> list[Floats]:
+        """For each filter, (n,) how far points are from what it asks."""
+        return [np.concatenate(parts) for parts in zip(*self._of_filters(points), strict=True)]
+
+    def _of_filters(self, points: Floats) -> Iterator[list[Floats]]:
+        for columns, invalid in self._columns(points):
+            scaled = {
+                leaf: found / scale
+                for (leaf, found), scale in zip(self._lengths(columns).items(), self._scales, strict=True)
+            }
+            yield [
+                _exact(measured(each, scaled), column, invalid)
+                for each, column in zip(self._filters, columns, strict=False)
+            ]
+
+    def _columns(self, points: Floats) -> Iterator[tuple[list[Column], NDArray[np.bool_]]]:
+        """Block by block, every target, and where a draw is an error."""
+        for start in range(0, len(points), self._block):
+            draws, n, valid = self._drawn(points[start : start + self._block])
+            columns = self._evaluator.filters(draws, n)
+            self._count(columns[: len(self._filters)], ~valid)
+            yield columns, ~valid
+
+    def _drawn(self, points: Floats) -> tuple[dict[str, Floats], int, NDArray[np.bool_]]:
+        """The draws of up to a block of points, how many they are, and where none is an error."""
+        self._given.uniforms = uniforms_of(points)
+        n = len(points)
+        draws = {name: values[:n] for name, values in self._sampler.draw(0).items()}
+        valid = np.ones(n, bool)
+        for name in self._fallible:
+            valid &= ~np.isnan(draws[name])
+        return draws, n, valid
+
+    def _count(self, filters: Sequence[Column], invalid: NDArray[np.bool_]) -> None:
+        lost = invalid.copy()
+        for column in filters:
+            if column.codes is not None:
+                lost |= column.codes > 0
+        self.evaluations += lost.size
+        self.lost += int(np.count_nonzero(lost))
+
+    def _lengths(self, columns: Sequence[Column]) -> dict[Leaf, Floats]:
+        first = len(self._filters)
+        return {
+            leaf: lengths(columns[first + i], columns[self._gaps[leaf]] if leaf in self._gaps else None)
+            for i, leaf in enumerate(self._leaves)
+        }
+
+    def _usual(self, points: Floats) -> list[float]:
+        """The median length of every comparison where it fails."""
+        parts = [list(self._lengths(columns).values()) for columns, _ in self._columns(points)]
+        return [_median(np.concatenate(each)) for each in zip(*parts, strict=True)]
+
+
+def _median(found: Floats) -> float:
+    failing = found[(found > 0.0) & np.isfinite(found)]
+    return float(np.median(failing)) if failing.size else 1.0
+
+
+def _exact(found: Floats, column: Column, invalid: NDArray[np.bool_]) -> Floats:
+    """What the filter itself says has the last word."""
+    holds = column.values != 0
+    found = np.where(holds, 0.0, np.maximum(found, np.finfo(np.float64).tiny))
+    if column.codes is not None:
+        found[column.codes > 0] = np.inf
+    found[invalid] = np.inf
+    return found

@@ -1,0 +1,192 @@
+"""Learning where accepted trials are: two populations find the region, then a proposal is fitted to it and improved.
+
+Trials drawn from a proposal say how good it is, and all trials drawn so far, each weighted by how much likelier it is
+as a trial than under all proposals together, make the next one (population Monte Carlo with mixture weights: Owen &
+Zhou 2000; Cappé, Douc, Guillin, Marin & Robert 2008; Cornuet, Marin, Mira & Robert 2012).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.rare.envelope import height
+from xlmc.rare.mixture import log_sum
+from xlmc.rare.proposal import Proposal, fitted_again, proposed
+from xlmc.rare.splitting import Descent, Distance, descend
+
+__all__ = ["Learned", "Round", "Say", "again", "learn"]
+
+Floats = NDArray[np.float64]
+
+_DESCENTS: Final = 2
+_TRIALS: Final = 32_768
+_ROUNDS: Final = 5
+_GOOD: Final = 0.1
+"""Equal trials out of a proposal; with more, nothing is worth to be learnt."""
+
+_GAIN: Final = 1.2
+_FITTED: Final = 8_192
+"""Points that a proposal is fitted to: more would take long, and not know it better."""
+
+_TALLEST: Final = 30.0
+"""Times the mean weight, at most, that a point has in a fit: one point must not be a component."""
+
+_FEWEST: Final = 100
+"""Accepted points that a proposal can be fitted to."""
+
+Say = Callable[[int], None]
+"""Told of the evaluations so far."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Round:
+    """Trials drawn from a proposal.
+
+    Attributes:
+        proposal: drawn from.
+        trials: how many.
+        points: (m, d) the accepted ones.
+        logs: (m,) logarithms of their weights.
+    """
+
+    proposal: Proposal
+    trials: int
+    points: Floats
+    logs: Floats
+
+    @property
+    def rate(self) -> float:
+        """Trials of equal weight that can be had out of one proposal."""
+        return float(np.exp(self.logs - self.envelope).sum() / self.trials) if self.logs.size else 0.0
+
+    @property
+    def envelope(self) -> float:
+        """The logarithm of the height of the envelope that its trials need."""
+        return height(self.logs)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Learned:
+    """What is known of the accepted region.
+
+    Attributes:
+        descents: the populations.
+        rounds: in the order they were made; none where no population reached the region.
+        evaluations: trials that this took.
+    """
+
+    descents: tuple[Descent, ...]
+    rounds: tuple[Round, ...]
+    evaluations: int
+
+    @property
+    def best(self) -> Round | None:
+        """The round whose proposal suits the populations best.
+
+        Its own trials would not say: those that lack parts of the region look the more even for it.
+        """
+        usable = [each for each in self.rounds if each.logs.size >= _FEWEST]
+        return min(usable, key=self.unevenness, default=None)
+
+    def unevenness(self, drawn: Round) -> float:
+        """Of the weights of a round's proposal, at the points of the populations: see `Proposal.unevenness`."""
+        points, weights, _ = _of_descents(self.descents)
+        return drawn.proposal.unevenness(points, weights)
+
+    @property
+    def probability(self) -> float:
+        """Of acceptance, as the populations have it; they know it to some tenths."""
+        reached = [math.exp(each.log_probability) for each in self.descents if each.reached]
+        return sum(reached) / len(self.descents)
+
+
+def learn(distance: Distance, dimensions: int, random: np.random.Generator, say: Say = lambda _: None) -> Learned:
+    """Find the region where the distance is 0, and describe it."""
+    found: list[Descent] = []
+    for _ in range(_DESCENTS):
+        found.append(descend(distance, dimensions, random))
+        say(sum(each.evaluations for each in found))
+    learned = Learned(tuple(found), (), sum(each.evaluations for each in found))
+    if not any(each.reached for each in found):
+        return learned
+    points, weights, halves = _of_descents(found)
+    order = _dealt(halves, random)
+    return _refined(distance, learned, proposed(points[order], weights[order], random), random, say)
+
+
+def again(
+    distance: Distance, learned: Learned, more: Round, random: np.random.Generator, say: Say = lambda _: None
+) -> Learned:
+    """Learn from trials that turned out to be heavier than any that were known."""
+    known = Learned(learned.descents, (*learned.rounds, more), learned.evaluations)
+    return _refined(distance, known, _improved(known, random), random, say)
+
+
+def _refined(
+    distance: Distance, learned: Learned, proposal: Proposal, random: np.random.Generator, say: Say
+) -> Learned:
+    """Draw from the proposal, fit a better one, and so on while that brings much."""
+    best = 0.0
+    for number in range(_ROUNDS):
+        drawn = _drawn(distance, proposal, random)
+        learned = Learned(learned.descents, (*learned.rounds, drawn), learned.evaluations + _TRIALS)
+        say(learned.evaluations)
+        if drawn.rate >= _GOOD or (number > 1 and drawn.rate < best * _GAIN):
+            break
+        best = max(best, drawn.rate)
+        proposal = _improved(learned, random)
+    return learned
+
+
+def _improved(learned: Learned, random: np.random.Generator) -> Proposal:
+    """Fitted to the populations' points and to all that were drawn, half by half."""
+    moved, shares, halves = _of_descents(learned.descents)
+    points, logs = _pooled(learned.rounds)
+    if len(points) < _FEWEST:
+        points, weights = moved, shares
+    else:
+        weights = np.exp(logs - logs.max())
+        weights = np.minimum(weights, _TALLEST * weights.mean())
+        halves = np.concatenate([halves, np.arange(len(points)) % 2])
+        points, weights = np.concatenate([moved, points]), np.concatenate([shares, weights / weights.sum()])
+    order = _dealt(halves, random)
+    return fitted_again(learned.rounds[0].proposal, points[order], weights[order], random)
+
+
+def _of_descents(descents: Sequence[Descent]) -> tuple[Floats, Floats, NDArray[np.int64]]:
+    """The points of those populations that reached the region, their weights, which sum to 1, and which population."""
+    reached = [each for each in descents if each.reached]
+    weights = np.concatenate([np.full(len(each.points), math.exp(each.log_probability)) for each in reached])
+    halves = np.concatenate([np.full(len(each.points), place) for place, each in enumerate(reached)])
+    if len(reached) == 1:
+        halves = np.arange(len(halves)) % 2
+    return np.concatenate([each.points for each in reached]), weights / weights.sum(), halves
+
+
+def _dealt(halves: NDArray[np.int64], random: np.random.Generator) -> NDArray[np.intp]:
+    """Some of the points, those of either half by turns: points of one population are alike, and what is fitted to one
+    must prove itself on the other.
+    """
+    first, second = (random.permutation(np.flatnonzero(halves == half)) for half in (0, 1))
+    count = min(first.size, second.size, _FITTED // 2)
+    return np.stack([first[:count], second[:count]], axis=1).ravel()
+
+
+def _drawn(distance: Distance, proposal: Proposal, random: np.random.Generator) -> Round:
+    points = proposal.draw(_TRIALS, random)
+    points = points[distance(points) == 0.0]
+    return Round(proposal, _TRIALS, points, proposal.log_weights(points))
+
+
+def _pooled(rounds: Sequence[Round]) -> tuple[Floats, Floats]:
+    """All accepted points, and the logarithms of their weights under all proposals together."""
+    points = np.concatenate([each.points for each in rounds])
+    total = sum(each.trials for each in rounds)
+    heights = [math.log(each.trials / total) - each.proposal.log_weights(points) for each in rounds]
+    return points, -log_sum(np.stack(heights)) if len(points) else np.empty(0)

@@ -1,0 +1,120 @@
+"""From a model to accepted trials where these are rare: the search, its trials as blocks, and the account of it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.blocks import Block, Task, Worker
+from xlmc.rare.account import RareAccount
+from xlmc.rare.finding import Found, find
+from xlmc.rare.landscape import Given, Landscape, uniforms_of
+
+if TYPE_CHECKING:
+    from xlmc.definitions import Settings
+    from xlmc.model import Model
+
+__all__ = ["Search", "accepted_blocks", "search"]
+
+Floats = NDArray[np.float64]
+
+_PURPOSE: Final = "rare acceptance: "
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Search:
+    """What came of a search.
+
+    Attributes:
+        points: (m, d) accepted trials of equal weight, as standard normals; none where it failed.
+        account: None likewise.
+        failure: why there are none, in words without a full stop.
+        evaluations: trials that it took.
+    """
+
+    points: Floats
+    account: RareAccount | None
+    failure: str
+    evaluations: int
+
+
+def search(model: Model, settings: Settings, plain: int, say: Callable[[int], None]) -> Search:
+    """Look for as many accepted trials as the settings ask for; a pure function of the model and these.
+
+    Args:
+        model: with filters and drawn assumptions.
+        settings: of the run.
+        plain: trials that were run before, which count towards the limit.
+        say: told of the evaluations so far.
+    """
+    learning, drawing = _random(settings.seed, "learning"), _random(settings.seed, "drawing")
+    landscape = Landscape(model, learning)
+    wanted, most = settings.stopping.accepted or 0, settings.trials - plain
+    found = find(landscape.distance, landscape.accepts, landscape.dimensions, wanted, most, learning, drawing, say)
+    drawn = found.equalised
+    if drawn is None or found.used is None or len(drawn.points) < wanted:
+        failure = _failure(model, landscape, found, wanted, most)
+        return Search(np.empty((0, landscape.dimensions)), None, failure, landscape.evaluations)
+    proposal = found.used.proposal
+    account = RareAccount(
+        evaluations=plain + landscape.evaluations,
+        learning=landscape.evaluations - drawn.proposals,
+        proposals=drawn.proposals,
+        proposals_accepted=drawn.accepted,
+        kept=len(drawn.points),
+        acceptance=drawn.acceptance,
+        effective=drawn.effective,
+        size=drawn.size,
+        searched=found.learned.probability,
+        levels=max(len(each.levels) for each in found.learned.descents),
+        components=proposal.mixture.shares.size,
+        directions=proposal.directions,
+        dimensions=landscape.dimensions,
+        lost=landscape.lost,
+    )
+    return Search(drawn.points, account, "", landscape.evaluations)
+
+
+def _random(seed: int, purpose: str) -> np.random.Generator:
+    """Random numbers that no other part of a run uses."""
+    words = np.frombuffer(hashlib.sha256(f"{_PURPOSE}{purpose}".encode()).digest(), dtype="<u4").tolist()
+    return np.random.Generator(np.random.PCG64DXSM(np.random.SeedSequence(seed, spawn_key=words)))
+
+
+def _failure(model: Model, landscape: Landscape, found: Found, wanted: int, most: int) -> str:
+    """Why there are no trials, in words."""
+    reached = [each for each in found.learned.descents if each.reached]
+    if not reached:
+        nearest = np.stack([each.nearest for each in found.learned.descents])
+        place = int(np.argmin(landscape.distance(nearest)))
+        lengths = landscape.by_filter(nearest[place : place + 1])
+        names = [repr(f.name) for f, (length,) in zip(model.filters, lengths, strict=True) if length > 0.0]
+        return (
+            f"a search of {found.evaluations:,} trials found none that the filters accept: the nearest one still "
+            f"fails {' and '.join(names)}, so the filters contradict each other or the assumptions, or accept less "
+            "than one trial in 10¹⁵"
+        )
+    share = f"about {found.learned.probability:.1g} of all trials are accepted"
+    if found.used is None and found.learned.best is None:
+        return f"a search of {found.evaluations:,} trials found that {share}, but could not describe where they lie"
+    return (
+        f"a search of {found.evaluations:,} trials found that {share}, and {wanted:,} of them would take more than "
+        f"the {most:,} trials that are left"
+    )
+
+
+def accepted_blocks(model: Model, points: Floats, block: int, wants_inputs: Callable[[], bool]) -> Iterator[Block]:
+    """The trials at accepted points, evaluated and filtered like any others: no filter is taken for granted."""
+    given = Given()
+    given.uniforms = uniforms_of(points)
+    sampler = model.sampler(0, block, filler=given.filler)
+    evaluator = model.program("numpy").evaluator(block)
+    worker = Worker(sampler, evaluator, block, len(model.forecasts), model.fallible)
+    for start in range(0, len(points), block):
+        count = min(block, len(points) - start)
+        yield worker.run(Task(start, count, prior=False, inputs=wants_inputs()))

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import math
 import shlex
+from io import BytesIO
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from xlmc.cli.simulate import _show
 from xlmc.cli.simulate import simulate as command
 from xlmc.rare import deciding
 from xlmc.record import make_record
 from xlmc.record.fingerprint import fingerprint
 from xlmc.record.sampling_words import sampling_sentence
+from xlmc.report.book import build_sheets
 
 CELLS = {"A1": 1.0, "A2": 1.0, "B1": "=A1*A2", "C1": "=A1+A2", "C2": "=A1-A2"}
 UNIT = {"low": 0, "high": 1}
@@ -148,3 +152,19 @@ def test_the_command_line_says_so(tmp_path):
     made = CliRunner().invoke(command, [str(tmp_path / "none.xlsx"), "--rare", "sometimes"])
     assert made.exit_code == 2
     assert "sometimes" in made.output
+
+
+def test_the_sheets_say_so(run):
+    with ZipFile(BytesIO(build_sheets(run))) as package:
+        written = "".join(package.read(name).decode() for name in package.namelist() if name.endswith(".xml"))
+    for said in ("Evaluated in all", "Drawn plainly", "which were drawn plainly", "Search for rare accepted trials"):
+        assert said in written
+    assert f"{run.rare.evaluations:,} trials" in written
+
+
+def test_the_command_line_tells_what_was_done(run, capsys):
+    _show(run)
+    shown = capsys.readouterr().out
+    assert "2,000 accepted trials; one is accepted with probability" in shown
+    assert f"Trials rejected of {run.trials:,} drawn plainly" in shown
+    assert "learned proposal" in shown

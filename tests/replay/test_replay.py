@@ -83,6 +83,7 @@ RUNS = {
     "slow reference": {"engine": "formulas", "trials": 40},
     "some draws kept": {"keep_inputs": 5},
     "nothing accepted": {"trials": 1, "seed": 7},
+    "rare": {"until_accepted": 300, "rare": "always"},
 }
 
 

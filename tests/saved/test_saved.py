@@ -31,6 +31,7 @@ RUNS = {
     "single precision": {"engine": "jit", "arithmetic": "float32"},
     "slow reference": {"engine": "formulas", "trials": 40},
     "one trial": {"trials": 1},
+    "rare": {"until_accepted": 300, "rare": "always"},
 }
 
 
@@ -61,7 +62,18 @@ def same(first, second):
     for field in fields(first.tally):
         one, other = getattr(first.tally, field.name), getattr(second.tally, field.name)
         assert np.array_equal(one, other), field.name
-    for name in ("settings", "plan", "block", "trials", "faults", "invalid", "error_trials", "stopped", "rounding"):
+    for name in (
+        "settings",
+        "plan",
+        "block",
+        "trials",
+        "faults",
+        "invalid",
+        "error_trials",
+        "stopped",
+        "rounding",
+        "rare",
+    ):
         assert getattr(first, name) == getattr(second, name), name
     for name, result in first.results.items():
         assert repr(result.statistics) == repr(second[name].statistics)  # NaN is not equal to itself

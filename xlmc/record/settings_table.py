@@ -37,6 +37,7 @@ def settings_section(simulation: Simulation) -> Section:
             "for", "Of these forecasts", json.dumps(asked.forecasts, ensure_ascii=False) if asked.forecasts else None
         ),
         Entry("time_limit", "Seconds at most", asked.seconds),
+        Entry("rare", "Search for rare trials", asked.rare),
     )
     return Section("settings", "Settings", entries)
 
@@ -78,6 +79,7 @@ def _stopping(section: dict[str, Value]) -> Stopping:
         digits=None if section["adaptive"] is None else _whole(section["adaptive"]),
         forecasts=forecasts,
         seconds=None if seconds is None else float(seconds),
+        rare=None if section["rare"] is None else str(section["rare"]),
     )
 
 

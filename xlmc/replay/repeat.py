@@ -159,12 +159,14 @@ def _repeated(model: Model, record: Record, settings: Settings, jobs: int, progr
     One that waited for an accepted trial waits again; methods whose trials belong together run all of them.
     """
     trials, accepted, kept = (_count(record, key) for key in ("trials", "accepted", "inputs_kept"))
-    waited = record["end.by"] == "accepted"
+    waited = record["end.by"] in ("accepted", "search")
+    goal = settings.stopping.accepted
     whole = waited or settings.sampling != "mc"
     return model.simulate(
         settings.trials if whole else trials,
         settings.seed,
-        until_accepted=accepted if waited else None,
+        until_accepted=goal if waited else None,
+        rare=settings.stopping.rare,
         engine=settings.engine,
         arithmetic=settings.arithmetic,
         sampling=settings.sampling,

@@ -21,5 +21,5 @@ def write_dependence(book: Workbook, page: Callable[[str, tuple[float, ...]], Pa
     """Write both; `page` adds a sheet of a name with columns of these widths."""
     found, name = sensitivities(simulation), simulation.model.workbook.name
     sensitivity_sheet.write_sensitivity(page("Sensitivity", sensitivity_sheet.WIDTHS), book, found, name)
-    if found.filter_limits or found.varying_limits:
+    if found.filter_limits or found.varying_limits or found.omitted_limits:
         limits_sheet.write_limits(page("Filter limits", limits_sheet.WIDTHS), book, found, name)

@@ -52,7 +52,10 @@ def limit_sentences(found: Sensitivities) -> list[str]:
     if found.varying_limits:
         told.append(f"Not moved, because the limit varies with the assumptions: {', '.join(found.varying_limits)}.")
     if found.omitted_limits:
-        told.append(f"{found.omitted_limits:,} further limits were left out.")
+        told.append(
+            f"{found.omitted_limits:,} further limits were left out: of very many the last, and all of them where "
+            "accepted trials are rare, for those near a limit are not among the plain trials."
+        )
     return told
 
 

@@ -12,9 +12,11 @@ import numpy as np
 from xlmc.blocks import FilterTally
 from xlmc.definitions.model import Settings
 from xlmc.definitions.stopping import MOST_TRIALS, Precision, Stopping
+from xlmc.rare.account import RareAccount
 from xlmc.rounding import Rounding
 from xlmc.sampling import METHODS, Plan
 from xlmc.simulation import Origin
+from xlmc.statistics import Estimate
 from xlmc.stopping import Stopped
 
 __all__ = [
@@ -22,6 +24,7 @@ __all__ = [
     "VERSION",
     "origin_of",
     "plan_of",
+    "rare_of",
     "rounding_of",
     "settings_of",
     "stopped_of",
@@ -35,7 +38,7 @@ VERSION: Final = 1
 
 Document = Mapping[str, Any]
 
-_ENDS: Final = frozenset({"trials", "accepted", "precision", "adaptive", "time", "interruption"})
+_ENDS: Final = frozenset({"trials", "accepted", "precision", "adaptive", "time", "interruption", "search"})
 
 
 def settings_of(found: Document) -> Settings:
@@ -98,6 +101,16 @@ def stopped_of(found: Document) -> Stopped:
 def rounding_of(found: Document | None) -> Rounding | None:
     """What float32 changed."""
     return None if found is None else Rounding(**found)
+
+
+def rare_of(found: Document | None) -> RareAccount | None:
+    """Where the accepted trials come from, if they are rare."""
+    if found is None:
+        return None
+    acceptance = dict(found["acceptance"])
+    ends = acceptance["interval"]
+    acceptance["interval"] = None if ends is None else tuple(ends)
+    return RareAccount(**{**found, "acceptance": Estimate(**acceptance)})
 
 
 def told(kept: bool, what: str) -> None:

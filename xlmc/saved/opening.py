@@ -23,6 +23,7 @@ from xlmc.saved.document import (
     VERSION,
     origin_of,
     plan_of,
+    rare_of,
     rounding_of,
     settings_of,
     stopped_of,
@@ -158,7 +159,8 @@ def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
     told(set(plan.order) <= live, "its order of dimensions")
     told(set(found["invalid"]) <= live, "its invalid draws")
     index = columns.of("trial")[""]
-    _check_index(index, trials)
+    rare = rare_of(found["rare"])
+    _check_index(index, trials if rare is None else rare.kept)
     forecasts = columns.of("forecast")
     for name in forecasts:
         told(not any(bool(np.isinf(part).any()) for part in parts(forecasts[name])), f"the forecast {name!r}")
@@ -178,6 +180,7 @@ def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
         error_trials=_whole(found["error_trials"]),
         stopped=stopped_of(found["stopped"]),
         rounding=rounding_of(found["rounding"]),
+        rare=rare,
         origin=origin_of(found["origin"]),
     )
 

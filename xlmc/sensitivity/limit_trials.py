@@ -67,9 +67,12 @@ class _More:
 def limit_trials(simulation: Simulation, most: int, forecasts: int) -> LimitsFound:
     """Gather the trials of the first `most` limits of a run, and its first `forecasts` forecasts in them.
 
-    Nothing is found where the draws of fewer than two accepted trials were kept.
+    Nothing is found where the draws of fewer than two accepted trials were kept, and no limit is tried where accepted
+    trials are rare: those near it are not among the run's plain trials.
     """
     cells = LimitCells(simulation.model)
+    if simulation.rare is not None:
+        return LimitsFound(omitted=len(cells.limits))
     m = min(simulation.kept_inputs, simulation.accepted, MOST_ACCEPTED)
     if not cells.limits or not simulation.model.live or m < 2:
         return LimitsFound()

@@ -87,7 +87,7 @@ def _tables(found: ForecastSensitivity, whole: Sensitivities) -> Iterator[Html]:
 
 def limits(found: Sensitivities) -> Html:
     """The section with how the answers move with each limit; nothing where no filter has one."""
-    if not found.filter_limits and not found.varying_limits:
+    if not (found.filter_limits or found.varying_limits or found.omitted_limits):
         return EMPTY
     units = {each.forecast: each.units for each in found.forecasts}
     return element(

@@ -91,7 +91,7 @@ def measured(name: str, runs: int, keep: Callable[[dict[str, Any]], None]) -> di
     problem = PROBLEMS[name]
     hits, evaluations = np.zeros(len(STATISTICS), int), list[int]()
     for seed in range(runs):
-        if seed and seed % 100 == 0:
+        if seed and seed % 20 == 0:
             keep(_counted(name, hits, evaluations))
         found = one_run(problem.distance, problem.dimensions, seed)
         assert found.equalised is not None
@@ -247,14 +247,14 @@ def main() -> None:
         landscape = Landscape(narrowed(xlmc.load(BOOK)), np.random.default_rng(0))
         found["case study"]["methods"] = compared(landscape.distance, landscape.dimensions)
     for name in () if given.case else given.only or PROBLEMS:
-        methods = {"methods": compared(PROBLEMS[name].distance, PROBLEMS[name].dimensions)}
 
-        def keep(counted: dict[str, Any], name: str = name, methods: dict[str, Any] = methods) -> None:
-            found[name] = counted | methods
+        def keep(counted: dict[str, Any], name: str = name) -> None:
+            found[name] = counted
             given.results.write_text(json.dumps(found, indent=1) + "\n")
             print(name, counted, flush=True)
 
         keep(measured(name, given.runs, keep))
+        found[name]["methods"] = compared(PROBLEMS[name].distance, PROBLEMS[name].dimensions)
     given.results.write_text(json.dumps(found, indent=1) + "\n")
     if given.page.exists():
         page = placed(given.page.read_text(), "rare-coverage", coverage_table(found))

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import posixpath
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
 
 from xlmc.workbook.injection.built_book import BuiltBook
 from xlmc.workbook.injection.part_numbers import TableNumbers
 from xlmc.workbook.injection.result_sheet import Renames, at_home, renamed_in, with_differential
-from xlmc.workbook.injection.splice import SplicedXml, render
+from xlmc.workbook.injection.splice import SplicedXml
 from xlmc.workbook.injection.styles_merge import StyleMap
 from xlmc.workbook.package import relationships, rels_part
 
 __all__ = ["Carrier", "relative_target"]
 
-_BEHIND_AXIS_FORMAT = ("majorTickMark", "minorTickMark", "tickLblPos", "spPr", "txPr", "crossAx")
+_AXIS: Final = re.compile(rb"<c:(catAx|dateAx)>.*?</c:\1>", re.DOTALL)
+_BEHIND_AXIS_FORMAT: Final = re.compile(rb"<c:(majorTickMark|minorTickMark|tickLblPos) ")
+_GENERAL: Final = b'<c:numFmt formatCode="General" sourceLinked="1"/>'
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +50,7 @@ class Carrier:
             case "table+xml":
                 return renamed_in(with_differential(self._table(part), self.styles), self.renames)
             case "chart+xml":
-                return renamed_in(_with_axis_format(xml, part), self.renames)
+                return renamed_in(_with_axis_format(xml), self.renames)
             case "drawing+xml":
                 return renamed_in(xml, self.renames)
             case _:
@@ -78,15 +82,15 @@ def relative_target(source: str, target: str) -> str:
     return posixpath.relpath(f"/{target}", posixpath.dirname(f"/{source}"))
 
 
-def _with_axis_format(xml: bytes, part: str) -> bytes:
-    """The chart with a number format on every category axis: Excel writes one always, and some programs want it."""
-    document = SplicedXml(xml, part)
-    chart = document.root.find("chart")
-    area = chart.find("plotArea") if chart else None
-    assert area is not None  # every chart has one
-    for axis in (*area.find_all("catAx"), *area.find_all("dateAx")):
-        if axis.find("numFmt") is None:
-            behind = next(child for child in axis.children if child.local in _BEHIND_AXIS_FORMAT)
-            tag = document.prefix(axis) + "numFmt"
-            document.before(behind, render(tag, {"formatCode": "General", "sourceLinked": "1"}))
-    return document.result()
+def _with_axis_format(xml: bytes) -> bytes:
+    """The chart with a number format on every category axis: Excel writes one always, and some programs want it.
+
+    Only the axes are looked at: a chart is one of XlsxWriter's, and mostly numbers.
+    """
+    return _AXIS.sub(lambda axis: _formatted(axis[0]), xml)
+
+
+def _formatted(axis: bytes) -> bytes:
+    if b"<c:numFmt " in axis:
+        return axis
+    return _BEHIND_AXIS_FORMAT.sub(lambda behind: _GENERAL + behind[0], axis, count=1)

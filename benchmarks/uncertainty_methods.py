@@ -28,7 +28,7 @@ __all__ = ["PAGE", "filled", "theory_rows"]
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 PAGE = ROOT / "docs" / "uncertainty-methods.md"
-PICTURE = ROOT / "docs" / "pictures" / "uncertainty-methods.png"
+PICTURE = ROOT / "docs" / "pictures" / "methods" / "uncertainty-methods.png"
 RESULTS = HERE / "results" / "uncertainty-methods.json"
 BOOK = ROOT / "examples" / "intersection.xlsx"
 

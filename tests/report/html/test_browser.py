@@ -155,7 +155,7 @@ def test_grabbers_move_with_the_keyboard(shown, run):
     check(chart, values)
 
 
-@pytest.mark.parametrize("percent", ["90", "51", "0", "100", "33.3 %"])
+@pytest.mark.parametrize("percent", ["90", "51", "0", "0.5", "99.7", "100", "33.3 %"])
 def test_a_typed_certainty_sets_a_central_range(shown, run, percent):
     chart, values = Chart(shown(run)), run["area"].values
     chart.type("low", "12")

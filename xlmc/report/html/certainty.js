@@ -70,7 +70,7 @@ function lastUpTo(list, number) {
   return low - 1;
 }
 
-/** A share of independent trials with its standard error and Wilson's interval: `proportion` in xlmc.statistics. */
+/** A share of independent trials with its standard error and 95 % interval: `proportion` in xlmc.statistics. */
 function shareOf(count, trials, z) {
   const p = count / trials;
   const pull = (z * z) / trials;
@@ -80,7 +80,30 @@ function shareOf(count, trials, z) {
   return {
     value: p,
     error: Math.max(Math.sqrt((p * (1 - p)) / trials), least),
-    low: p === 0 ? 0 : centre - half,
-    high: p === 1 ? 1 : centre + half,
+    low: p === 0 ? 0 : Math.min(centre - half, lowered(count, trials)),
+    high: p === 1 ? 1 : Math.max(centre + half, 1 - lowered(trials - count, trials)),
   };
+}
+
+/** More hits than lower Wilson's end: from 11 on it is the lower one, however many trials there are. */
+const FEW = 12;
+
+/** The share of trials with which so many hits or more have a probability of 5 %; 1 where Wilson's end is lower. */
+function lowered(count, trials) {
+  const hits = Math.round(count);
+  if (hits < 1 || hits > FEW) return 1;
+  let low = 0;
+  let high = 1;
+  for (let i = 0; i < 60; i++) {
+    const middle = (low + high) / 2;
+    let term = Math.exp(trials * Math.log1p(-middle));
+    let fewer = 0;
+    for (let k = 0; k < hits; k++) {
+      fewer += term;
+      term *= ((trials - k) / (k + 1)) * (middle / (1 - middle));
+    }
+    if (fewer > 0.95) low = middle;
+    else high = middle;
+  }
+  return (low + high) / 2;
 }

@@ -89,11 +89,11 @@ class Outputs:
             from xlmc.report.extract import check_extract_path
 
             check_extract_path(path)
-        for path in (self.run, self.html, self.json, *self.extract):
-            if path is not None:
+        for other in (self.run, self.html, self.json, *self.extract):
+            if other is not None:
                 from xlmc.workbook.writer import check_folder
 
-                check_folder(path)
+                check_folder(other)
 
     def write(self, run: Simulation) -> bool:
         """Write them all, and say where they are; whether all could be.

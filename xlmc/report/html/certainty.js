@@ -70,7 +70,10 @@ function lastUpTo(list, number) {
   return low - 1;
 }
 
-/** A share of independent trials with its standard error and Wilson's interval: `proportion` in xlmc.statistics. */
+/**
+ * A share of independent trials with its standard error and 95 % interval: `proportion` in xlmc.statistics. Wilson's
+ * ends, no nearer than `lowered` puts them where a share rests on a few trials.
+ */
 function shareOf(count, trials, z) {
   const p = count / trials;
   const pull = (z * z) / trials;
@@ -80,7 +83,35 @@ function shareOf(count, trials, z) {
   return {
     value: p,
     error: Math.max(Math.sqrt((p * (1 - p)) / trials), least),
-    low: p === 0 ? 0 : centre - half,
-    high: p === 1 ? 1 : centre + half,
+    low: p === 0 ? 0 : Math.min(centre - half, lowered(count, trials)),
+    high: p === 1 ? 1 : Math.max(centre + half, 1 - lowered(trials - count, trials)),
   };
+}
+
+const FEW = 10; // with more hits Wilson's end is the farther one for any number of trials
+const TAILS = 0.05;
+
+/** The share with which so many hits or more have the probability of both tails (Brown, Cai & DasGupta 2001). */
+function lowered(count, trials) {
+  const hits = Math.round(count);
+  if (hits < 1 || hits > FEW) return 1;
+  let low = 0;
+  let high = 1;
+  for (let step = 0; step < 100; step++) {
+    const middle = (low + high) / 2;
+    if (orMore(hits, trials, middle) < TAILS) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+
+/** The probability of so many hits or more in so many trials. */
+function orMore(hits, trials, share) {
+  let exactly = Math.exp(trials * Math.log1p(-share)); // no hit
+  let fewer = 0;
+  for (let k = 0; k < hits; k++) {
+    fewer += exactly;
+    exactly *= ((trials - k) / (k + 1)) * (share / (1 - share));
+  }
+  return 1 - fewer;
 }

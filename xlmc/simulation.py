@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
@@ -33,10 +33,22 @@ if TYPE_CHECKING:
     from xlmc.rare.account import RareAccount
     from xlmc.rounding import Rounding
 
-__all__ = ["ERROR_SHARE", "KEPT_INPUTS", "ForecastResult", "Origin", "Simulation"]
+__all__ = [
+    "ERROR_SHARE",
+    "KEPT_INPUTS",
+    "TRIAL",
+    "ForecastResult",
+    "Origin",
+    "Simulation",
+    "assumption_heading",
+    "forecast_heading",
+]
 
 ERROR_SHARE: Final = 0.001
 """Above this share of error trials the answer must not be used as it stands."""
+
+TRIAL: Final = "Trial"
+"""The heading of the trials' numbers in tables of trials."""
 
 KEPT_INPUTS: Final = 1 << 20
 """Accepted trials whose draws are kept, unless asked otherwise: more than a sheet has rows."""
@@ -308,7 +320,8 @@ class Simulation:
     def frame(self, *, inputs: bool = True) -> pandas.DataFrame:
         """Accepted trials, one a row, indexed by trial: assumptions, then forecasts.
 
-        An assumption with the name of a forecast is called `name (assumption)`.
+        An assumption with the name of a forecast is called `name (assumption)`; what is called `Trial`, as the
+        index is, `Trial (assumption)` or `Trial (forecast)`.
 
         Args:
             inputs: with the assumptions.
@@ -321,11 +334,11 @@ class Simulation:
         if inputs and self.kept_inputs < self.accepted:
             message = f"the draws of {self.kept_inputs:,} of {self.accepted:,} accepted trials were kept"
             raise SimulationError(message, hint="use frame(inputs=False), or simulate(…, keep_inputs=None)")
-        columns = dict(self.forecasts)
+        columns = {forecast_heading(name): values for name, values in self.forecasts.items()}
         if inputs:
-            names = {name: f"{name} (assumption)" if name in self.forecasts else name for name in self.inputs}
-            columns = {names[name]: values for name, values in self.inputs.items()} | columns
-        return pandas.DataFrame(columns, index=pandas.Index(self.trial_index, name="Trial"))
+            drawn = {assumption_heading(name, self.forecasts): values for name, values in self.inputs.items()}
+            columns = drawn | columns
+        return pandas.DataFrame(columns, index=pandas.Index(self.trial_index, name=TRIAL))
 
     def save(self, path: str | Path) -> None:
         """Write the workbook with result sheets.
@@ -388,3 +401,18 @@ class Simulation:
         from xlmc.report.plot import plot
 
         return plot(self)
+
+
+def forecast_heading(name: str) -> str:
+    """What a forecast is called in a table of trials, in which no two columns may have one name."""
+    return f"{name} (forecast)" if name == TRIAL else name
+
+
+def assumption_heading(name: str, forecasts: Collection[str]) -> str:
+    """What an assumption is called there.
+
+    Args:
+        name: of the assumption.
+        forecasts: the names of all forecasts.
+    """
+    return f"{name} (assumption)" if name == TRIAL or name in forecasts else name

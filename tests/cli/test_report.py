@@ -7,6 +7,7 @@ import pandas
 import pytest
 
 import xlmc as package
+from xlmc.errors import WorkbookError
 from xlmc.simulation import KEPT_INPUTS
 
 
@@ -102,6 +103,8 @@ def test_draws_that_were_not_saved_are_blank_and_said_to_be(xlmc, small_book, tm
         (("--extract", "a.xlsx"), "a .csv or a .parquet file"),
         (("--extract", "no/a.csv"), "there is no folder"),
         (("--save-run", "book.xlsx"), "a saved run must end in .xlmcrun"),
+        (("-o", "a.xlsm"), "must end in .xlsx. Name it 'a.xlsx'"),
+        (("-o", "no/a.xlsx"), "there is no folder"),
     ],
 )
 def test_names_are_refused_before_the_run(xlmc, book, tmp_path, monkeypatch, options, message):
@@ -112,6 +115,26 @@ def test_names_are_refused_before_the_run(xlmc, book, tmp_path, monkeypatch, opt
     assert message in outcome.err
     assert book.read_bytes() == before
     assert [path.name for path in tmp_path.iterdir()] == ["book.xlsx"]
+
+
+def refuse(*_, **__):
+    raise WorkbookError("the disk is full", where="book-results.xlsx")
+
+
+@pytest.mark.parametrize("command", ["simulate", "report"])
+def test_a_file_that_cannot_be_written_takes_no_other_with_it(xlmc, book, tmp_path, monkeypatch, command):
+    xlmc("simulate", book, "--save-run", "run.xlmcrun")
+    source = book if command == "simulate" else "run.xlmcrun"
+    monkeypatch.setattr("xlmc.simulation.Simulation.save", refuse)
+    monkeypatch.setattr("xlmc.simulation.Simulation.save_page", refuse)
+    outcome = xlmc(command, source, "-o", "b.xlsx", "--html", "b.html", "--json", "b.json", "--extract", "b.csv")
+    assert outcome.code == 2
+    assert outcome.err.count("xlmc: book-results.xlsx: the disk is full") == 2
+    assert "Results are in" not in outcome.out
+    assert "area" in outcome.out  # the numbers are there
+    assert "warning: " in outcome.err
+    assert (tmp_path / "b.json").exists()
+    assert (tmp_path / "b.csv").exists()
 
 
 def test_what_is_no_saved_run(xlmc, book):

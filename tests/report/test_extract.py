@@ -177,3 +177,19 @@ def test_a_failed_write_leaves_the_old_file(model, tmp_path, monkeypatch):
     with pytest.raises(ZeroDivisionError):
         model.simulate().extract(path)
     assert [(each.name, each.read_bytes()) for each in tmp_path.iterdir()] == [("trials.csv", b"old")]
+
+
+@pytest.mark.parametrize("whose", ["assumption", "forecast"])
+def test_nothing_else_is_called_as_the_trials_are(make, tmp_path, whose):
+    names = {"assumption": "width", "forecast": "area", whose: "Trial"}
+    run = make.simulate(
+        {"A1": 2.0, "B1": "=A1*2"},
+        [make.uniform(names["assumption"], "A1", 1.0, 3.0, base=2.0)],
+        [make.forecast(names["forecast"], "B1")],
+        trials=50,
+    )
+    expected = run.frame()
+    assert f"Trial ({whose})" in expected.columns
+    for ending, read in (("csv", read_csv), ("parquet", read_parquet)):
+        run.extract(tmp_path / f"trials.{ending}")
+        pandas.testing.assert_frame_equal(read(tmp_path / f"trials.{ending}"), expected, check_exact=True)

@@ -18,7 +18,10 @@ from xlmc.report import save
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/intersection.xlsx"
 TOOLS = ("soffice", "pdftotext", "pdftoppm")
-OWN = {"Results", "Charts", "Statistics", "Certainty", "Pairs", "Assumptions", "Trials", "Bins", "Curves", "Record"}
+OWN = {
+    *("Results", "Charts", "Statistics", "Certainty", "Pairs", "Assumptions", "Sensitivity", "Filter limits"),
+    *("Trials", "Bins", "Curves", "Record"),
+}
 DPI, POINTS = 60, 72
 
 CHART = (230.0, 150.0)
@@ -133,6 +136,14 @@ def test_the_sentences_are_printed_whole(pages, case):
     printed = " ".join(page.text for page in pages if page.sheet == "Certainty")
     for statement in statements(case):
         assert statement.text in printed
+
+
+@pytest.mark.parametrize(
+    ("sheet", "count"),
+    [("Results", 1), ("Statistics", 4), ("Assumptions", 1), ("Sensitivity", 8), ("Filter limits", 5)],
+)
+def test_no_table_is_broken_across_pages(pages, sheet, count):
+    assert [page.sheet for page in pages].count(sheet) == count
 
 
 def test_no_cell_is_too_narrow_for_its_number(pages):

@@ -11,6 +11,7 @@ import pytest
 from openpyxl.utils import range_boundaries
 
 from xlmc.report.book import build_sheets
+from xlmc.report.limits_sheet import moved_caption
 from xlmc.sensitivity import sensitivities
 
 
@@ -175,3 +176,17 @@ def test_answers_in_different_units_are_drawn_as_shares_of_their_ranges(make):
     assert "of the central range" in xml
     first, second = drawn(openpyxl.load_workbook(io.BytesIO(packed)), xml, "yVal")
     assert first == pytest.approx(second)
+
+
+@pytest.mark.parametrize(("limit", "unmoved"), [(0.5, False), (5.0, True)])
+def test_changes_of_nothing_are_explained(make, limit, unmoved):
+    """No trial is near a limit of 5, and 0 ± 0 is no certainty that none ever is."""
+    run = make.simulate(
+        {"A1": 0.5, "B1": "=A1*2", "C1": "=A1"},
+        [make.uniform("a", "A1", 0.0, 1.0, base=0.5)],
+        [make.forecast("x", "B1")],
+        [make.filter("f", "C1", at_most=limit)],
+        trials=500,
+    )
+    (moved,) = sensitivities(run).filter_limits
+    assert ("nothing moves" in moved_caption(moved)) == unmoved

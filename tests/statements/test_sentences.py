@@ -17,9 +17,9 @@ from xlmc.statements.sentences import statements
 class Run:
     """What sentences need of a run: forecasts with `(m,)` values."""
 
-    def __init__(self, values, **definition):
+    def __init__(self, values, faults=(), **definition):
         forecast = Forecast("speed", Cell("S", 1, 1), Cell("S", 1, 1), **definition)
-        self.results = {"speed": ForecastResult(forecast, lambda: np.asarray(values, float), Counter())}
+        self.results = {"speed": ForecastResult(forecast, lambda: np.asarray(values, float), Counter(faults))}
 
 
 def sentences(values, **definition):
@@ -52,6 +52,15 @@ def test_one_that_may_be_even_odds_is_not():
 )
 def test_the_threshold_has_a_sentence_of_its_own(threshold, text):
     assert sentences(GRID, units="mph", threshold=threshold)[1] == text
+
+
+def test_trials_without_a_number_are_told_of():
+    run = Run([*GRID, math.nan], ["#NUM!"], units="mph", central=0.6, threshold=85.8)
+    among = "; counted in the 100,000 of 100,001 accepted trials in which it is a number"
+    assert [each.text for each in statements(run)] == [
+        f"speed: more probable than not (60.0 % ± 0.2 %) between 20.0 and 80.0 mph{among}",
+        f"P(speed > 85.8 mph) = 14.20 % ± 0.11 %{among}",
+    ]
 
 
 def test_without_units_numbers_or_variation():

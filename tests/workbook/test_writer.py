@@ -11,7 +11,7 @@ import pytest
 from xlmc.errors import WorkbookError
 from xlmc.workbook import writer
 from xlmc.workbook.package import read_parts
-from xlmc.workbook.writer import package_bytes, refuse_if_open, write_workbook
+from xlmc.workbook.writer import check_folder, package_bytes, refuse_if_open, write_workbook
 
 PARTS = {
     "xl/workbook.xml": b"<w/>",
@@ -127,6 +127,15 @@ def test_a_read_only_file_is_respected(tmp_path, monkeypatch):
     with pytest.raises(WorkbookError, match="may not be written"):
         write_workbook(path, b"new")
     assert path.read_bytes() == b"old"
+
+
+@pytest.mark.parametrize("name", ["new.xlsx", "old.xlsx"])
+def test_what_may_not_be_written_is_known_before_any_work(tmp_path, monkeypatch, name):
+    (tmp_path / "old.xlsx").write_bytes(b"old")
+    check_folder(tmp_path / name)
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    with pytest.raises(WorkbookError, match="may not be written"):
+        check_folder(tmp_path / name)
 
 
 @pytest.mark.parametrize(("owner", "program"), [("~$book.xlsx", "Excel"), (".~lock.book.xlsx#", "LibreOffice")])

@@ -1,18 +1,22 @@
-"""The files that a run can be written to beside its result workbook: one list for `simulate` and `report`."""
+"""The files that a run can be written to: one list for `simulate` and `report`."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from xlmc.errors import XlmcError
+
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
 
-__all__ = ["Outputs", "output_options"]
+__all__ = ["NOT_WRITTEN", "Outputs", "output_options"]
+
+NOT_WRITTEN = 2
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -42,27 +46,33 @@ class Outputs:
     """The files asked for.
 
     Attributes:
+        book: the result workbook.
         run: a saved run.
         html: a page for a browser.
         json: all results.
         extract: the accepted trials.
     """
 
+    book: Path | None = None
     run: Path | None = None
     html: Path | None = None
     json: Path | None = None
     extract: tuple[Path, ...] = ()
 
-    def __bool__(self) -> bool:
-        return bool(self._paths)
-
-    def check(self) -> None:
+    def check(self, source: Path) -> None:
         """Refuse before a run what could not be written after it.
 
+        Args:
+            source: the workbook that is run.
+
         Raises:
-            WorkbookError: a name has another ending than it must, or its folder is missing.
+            WorkbookError: a name has another ending than it must, its folder is missing, or it may not be written.
             SimulationError: a library is missing.
         """
+        if self.book is not None:
+            from xlmc.report.save import check_book_path
+
+            check_book_path(self.book, source)
         if self.run is not None:
             from xlmc.saved.keeping import check_run_path
 
@@ -79,29 +89,41 @@ class Outputs:
             from xlmc.report.extract import check_extract_path
 
             check_extract_path(path)
-        for path in self._paths:
-            from xlmc.workbook.writer import check_folder
+        for other in (self.run, self.html, self.json, *self.extract):
+            if other is not None:
+                from xlmc.workbook.writer import check_folder
 
-            check_folder(path)
+                check_folder(other)
 
-    @property
-    def _paths(self) -> tuple[Path, ...]:
-        return tuple(path for path in (self.run, self.html, self.json, *self.extract) if path is not None)
+    def write(self, run: Simulation) -> bool:
+        """Write them all, and say where they are; whether all could be.
 
-    def write(self, run: Simulation) -> None:
-        """Write them all, and say where they are."""
-        if self.run is not None:
-            run.keep(self.run)
-            click.echo(f"The run is saved in {self.run}")
-        if self.html is not None:
-            run.save_page(self.html)
-            click.echo(f"The page is {self.html}")
-        if self.json is not None:
-            run.save_json(self.json)
-            click.echo(f"Results as JSON are in {self.json}")
-        for path in self.extract:
-            run.extract(path)
-            click.echo(f"Accepted trials are in {path}")
-            if run.kept_inputs < run.accepted:
-                kept = f"draws of {run.kept_inputs:,} of {run.accepted:,} accepted trials were kept"
+        One that cannot be written is told of, and the others are written all the same: the run may have taken hours.
+        """
+        written = True
+        for path, said, write in self._files(run):
+            try:
+                write(path)
+            except XlmcError as error:
+                click.echo(f"xlmc: {error}", err=True)
+                written = False
+            else:
+                click.echo(f"{said} {path}")
+        if self.extract and run.kept_inputs < run.accepted:
+            kept = f"draws of {run.kept_inputs:,} of {run.accepted:,} accepted trials were kept"
+            for path in self.extract:
                 click.echo(f"note: {path}: {kept}; the others are blank", err=True)
+        return written
+
+    def _files(self, run: Simulation) -> Iterator[tuple[Path, str, Callable[[Path], object]]]:
+        """Each with what is said of it, and what writes it."""
+        if self.book is not None:
+            yield self.book, "Results are in", run.save
+        if self.run is not None:
+            yield self.run, "The run is saved in", run.keep
+        if self.html is not None:
+            yield self.html, "The page is", run.save_page
+        if self.json is not None:
+            yield self.json, "Results as JSON are in", run.save_json
+        for path in self.extract:
+            yield path, "Accepted trials are in", run.extract

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from xlmc.cli.output_options import Outputs, output_options
+from xlmc.cli.output_options import NOT_WRITTEN, Outputs, output_options
 
 __all__ = ["report"]
 
@@ -34,26 +34,20 @@ def report(
     """Write the results of a saved run again, without simulating: the same as when it was run."""
     from xlmc.cli.printing import notices
     from xlmc.cli.simulate import show_run
-    from xlmc.report import save
     from xlmc.saved import open_run
-    from xlmc.workbook.writer import refuse_if_open
 
-    others = Outputs(html=html, json=json_path, extract=extract)
-    others.check()
     found = open_run(run)
     if not quiet:
         notices(found.model.notices)
-    target = output
-    if target is None and not others:
-        target = run.with_name(f"{run.stem}-results{found.model.path.suffix}")
-    if target is not None:
-        refuse_if_open(target)
-        save(found, target)
+    if output is None and not (html or json_path or extract):
+        output = run.with_name(f"{run.stem}-results{found.model.path.suffix}")
+    outputs = Outputs(output, html=html, json=json_path, extract=extract)
+    outputs.check(found.model.path)
     show_run(found)
-    if target is not None:
-        click.echo(f"Results are in {target}")
-    others.write(found)
+    written = outputs.write(found)
     for warning in found.warnings:
         click.echo(f"warning: {warning}; the answer must not be used as it stands.", err=True)
+    if not written:
+        raise click.exceptions.Exit(NOT_WRITTEN)
     if found.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from xlmc.cli.output_options import Outputs, output_options
+from xlmc.cli.output_options import NOT_WRITTEN, Outputs, output_options
 from xlmc.cli.run_options import stopping_options
 
 if TYPE_CHECKING:
@@ -82,16 +82,14 @@ def simulate(
     from xlmc.cli.printing import notices
     from xlmc.cli.progress import progress_bar
     from xlmc.model import load
-    from xlmc.report import save
     from xlmc.simulation import KEPT_INPUTS
-    from xlmc.workbook.writer import refuse_if_open
 
     if in_place and output is not None:
         raise click.UsageError("--in-place and --output exclude each other.")
     target = book if in_place else output or book.with_name(f"{book.stem}-results{book.suffix}")
-    refuse_if_open(target)
-    others = Outputs(save_run, html, json_path, extract)
-    others.check()
+    outputs = Outputs(target, save_run, html, json_path, extract)
+    if book.exists():  # else `load` says so
+        outputs.check(book)
     model = load(book)
     if not quiet:
         notices([*model.notices, *_hints(model, trials, engine)])
@@ -110,14 +108,16 @@ def simulate(
             keep_interrupted=True,
             progress=progress,
         )
-    save(run, target)
     show_run(run)
-    click.echo(f"Results are in {target}")
-    others.write(run)
+    written = outputs.write(run)
     for warning in run.warnings:
         click.echo(f"warning: {warning}; the answer must not be used as it stands.", err=True)
     if run.stopped.interrupted:
-        click.echo(f"xlmc: interrupted after {run.trials:,} trials; what was accepted of them was written.", err=True)
+        told = "; what was accepted of them was written" if written else ""
+        click.echo(f"xlmc: interrupted after {run.trials:,} trials{told}.", err=True)
+    if not written:
+        raise click.exceptions.Exit(NOT_WRITTEN)
+    if run.stopped.interrupted:
         raise click.exceptions.Exit(INTERRUPTED)
     if run.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)

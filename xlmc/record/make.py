@@ -48,7 +48,7 @@ _CONVENTIONS = (
     ("kurtosis", "Kurtosis", "3 for the normal distribution"),
     ("mode", "Mode", "half-sample mode; of counts the most frequent value"),
     ("errors", "Standard errors (±)", "Monte Carlo error alone"),
-    ("shares", "Intervals of shares", "Wilson, 95 %"),
+    ("shares", "Intervals of shares", "Wilson, 95 %; longer where a share rests on a few trials"),
     ("trial_numbers", "Trial numbers", "counted from 0"),
     ("logicals", "Logicals", "TRUE counts as 1, FALSE as 0"),
 )

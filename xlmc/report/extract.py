@@ -17,14 +17,13 @@ from numpy.typing import NDArray
 from xlmc.errors import SimulationError, WorkbookError
 from xlmc.record import make_record
 from xlmc.scratch import PART, release
+from xlmc.simulation import TRIAL, assumption_heading, forecast_heading
 from xlmc.workbook.writer import whole_file
 
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
 
 __all__ = ["check_extract_path", "extract", "safe_heading"]
-
-TRIAL: Final = "Trial"
 
 _STARTS_A_FORMULA: Final = ("=", "+", "-", "@", "\t", "\r", "\n", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 """With which spreadsheets take the text of a CSV field for a formula; the last four in East Asian editions."""
@@ -97,15 +96,15 @@ def _writer(path: Path) -> Callable[[Simulation, BinaryIO, str | None], None]:
 
 
 def _columns(simulation: Simulation) -> list[Column]:
-    """An assumption with the name of a forecast is called `name (assumption)`."""
+    """Assumptions, then forecasts."""
     forecasts = {forecast.name for forecast in simulation.model.forecasts}
     found = [
-        Column(f"{a.name} (assumption)" if a.name in forecasts else a.name, "assumption", a.units, str(a.cell), values)
+        Column(assumption_heading(a.name, forecasts), "assumption", a.units, str(a.cell), values)
         for a in simulation.model.live
         for values in [simulation.inputs[a.name]]
     ]
     return found + [
-        Column(f.name, "forecast", f.units, str(f.cell), simulation.forecasts[f.name])
+        Column(forecast_heading(f.name), "forecast", f.units, str(f.cell), simulation.forecasts[f.name])
         for f in simulation.model.forecasts
     ]
 

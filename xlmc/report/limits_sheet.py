@@ -169,8 +169,15 @@ def moved_caption(limit: FilterLimit) -> str:
     """What the chart of the changes shows."""
     return (
         f"How far each forecast's mean moves from that with the limit as it is ({number_text(limit.limit)}); whiskers "
-        "are standard errors of the change. Other filters and limits stay."
+        f"are standard errors of the change. Other filters and limits stay.{_unmoved(limit)}"
     )
+
+
+def _unmoved(limit: FilterLimit) -> str:
+    """What changes of 0 ± 0 mean."""
+    if len({point.trials for point in limit.points}) > 1:
+        return ""
+    return " No trial that all else keeps lies between these limits, so nothing moves; of more trials some may."
 
 
 def _share_caption(limit: FilterLimit) -> str:

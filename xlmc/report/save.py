@@ -11,12 +11,12 @@ from xlmc.report.book import build_sheets
 from xlmc.report.trials import TRIAL_ROWS
 from xlmc.result_cells import filled_sheets
 from xlmc.workbook.inject import inject
-from xlmc.workbook.writer import package_bytes, refuse_if_open, write_workbook
+from xlmc.workbook.writer import check_folder, package_bytes, refuse_if_open, write_workbook
 
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
 
-__all__ = ["save"]
+__all__ = ["check_book_path", "save"]
 
 
 def save(simulation: Simulation, path: Path, *, command: str | None = None, rows: int = TRIAL_ROWS) -> Path:
@@ -44,6 +44,22 @@ def save(simulation: Simulation, path: Path, *, command: str | None = None, rows
     parts = {**simulation.model.workbook.parts, **filled_sheets(simulation)}
     write_workbook(path, package_bytes(inject(parts, sheets)))
     return path
+
+
+def check_book_path(path: Path, source: Path) -> None:
+    """Refuse, before a run, what its result workbook could not be written to after it.
+
+    Args:
+        path: where to.
+        source: the workbook.
+
+    Raises:
+        WorkbookError: the file has another ending than the workbook, no folder to go to, may not be written, or is open
+            in a program.
+    """
+    _check_ending(path, source)
+    check_folder(path)
+    refuse_if_open(path)
 
 
 def _check_ending(path: Path, source: Path) -> None:

@@ -19,8 +19,8 @@ _BLOCK = (26, 9, 11, 10, 10, 10)
 WIDTHS = (*_BLOCK, 2, 18, 11, 10, 10, 10)
 _RIGHT = len(_BLOCK) + 1
 _LAST = len(WIDTHS) - 1
-_SCALE = 76
-"""The percentage at which one forecast fits on a page."""
+_SCALE = 68
+"""The percentage at which one forecast fits on a page, of A4 too, and with a font that is wider than Excel's own."""
 
 _ENDS = ["Value", "±", "95 % from", "to"]
 

@@ -48,13 +48,22 @@ def _of(result: ForecastResult) -> list[Statement]:
     found = rounded_range(result.sample, central, definition.central)
     if found is None:
         return [Statement(name, "range", f"{name}: no accepted trial has a number")]
-    told = [Statement(name, "range", f"{name}: {_range_text(found, units)}")]
+    part = _part_text(result)
+    told = [Statement(name, "range", f"{name}: {_range_text(found, units)}{part}")]
     above = result.statistics.probability_above
     if definition.threshold is not None and above is not None:
         joined = ":" if above.value in (0.0, 1.0) else " ="
-        text = f"P({name} > {definition.threshold:g}{units}){joined} {percent_text(above)}"
+        text = f"P({name} > {definition.threshold:g}{units}){joined} {percent_text(above)}{part}"
         told.append(Statement(name, "threshold", text))
     return told
+
+
+def _part_text(result: ForecastResult) -> str:
+    """Which of the accepted trials the shares are of, where a forecast is not a number in all of them."""
+    numbers, others = result.statistics.trials, result.faults.total()
+    if not others:
+        return ""
+    return f"; counted in the {numbers:,} of {numbers + others:,} accepted trials in which it is a number"
 
 
 def _range_text(found: RoundedRange, units: str) -> str:

@@ -77,7 +77,7 @@ def _written_whole(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def check_folder(path: str | os.PathLike[str]) -> None:
-    """Refuse, before any work, a file that has no folder to go to, or is a folder.
+    """Refuse, before any work, a file that has no folder to go to, is a folder, or may not be written.
 
     Raises:
         WorkbookError: so it is.
@@ -87,6 +87,8 @@ def check_folder(path: str | os.PathLike[str]) -> None:
         raise _told(IsADirectoryError(errno.EISDIR, "is a folder"), path)
     if not target.parent.is_dir():
         raise _told(FileNotFoundError(errno.ENOENT, "no folder"), path)
+    if not os.access(target if target.exists() else target.parent, os.W_OK):
+        raise _told(PermissionError(errno.EACCES, "read-only"), path)
 
 
 def refuse_if_open(path: str | os.PathLike[str]) -> None:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import base64
+import math
 import re
 
 import numpy as np
 import pytest
 
 from xlmc.statistics import format_estimate, proportion
+from xlmc.statistics.estimate import t_quantile
 
 EVIL = "</script><img src=x onerror=window.stolen=1>"
 
@@ -314,6 +316,18 @@ def test_names_are_shown_and_not_run(shown, make):
     assert chart.one("h3").text == EVIL
     assert EVIL in browser.find_element("css selector", "#overlay .legend").text
     assert browser.execute_script("return [document.images.length, window.stolen ?? null]") == [0, None]
+
+
+@pytest.mark.parametrize("trials", [1, 7, 40, 2499, 10**7])
+def test_shares_are_those_of_the_statistics(shown, run, trials):
+    """For any count, as for the few of which one may be dragged to: the same value, error and interval."""
+    counts = sorted({count for few in range(14) for count in (few, trials - few, trials * few // 13) if few <= trials})
+    script = "return arguments[0].map(count => shareOf(count, arguments[1], arguments[2]))"
+    told = shown(run).execute_script(script, counts, trials, t_quantile(math.inf, 0.95))
+    for count, share in zip(counts, told, strict=True):
+        expected = proportion(count, trials)
+        known = (share["value"], share["error"], share["low"], share["high"])
+        assert known == pytest.approx((expected.value, expected.error, *expected.interval), rel=1e-9, abs=1e-15)
 
 
 @pytest.mark.parametrize("name", ["none_accepted", "one_accepted"])

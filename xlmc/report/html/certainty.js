@@ -70,7 +70,10 @@ function lastUpTo(list, number) {
   return low - 1;
 }
 
-/** A share of independent trials with its standard error and 95 % interval: `proportion` in xlmc.statistics. */
+/**
+ * A share of independent trials with its standard error and 95 % interval: `proportion` in xlmc.statistics. Wilson's
+ * ends, no nearer than `lowered` puts them where a share rests on a few trials.
+ */
 function shareOf(count, trials, z) {
   const p = count / trials;
   const pull = (z * z) / trials;
@@ -85,25 +88,30 @@ function shareOf(count, trials, z) {
   };
 }
 
-/** More hits than lower Wilson's end: from 11 on it is the lower one, however many trials there are. */
-const FEW = 12;
+const FEW = 10; // with more hits Wilson's end is the farther one for any number of trials
+const TAILS = 0.05;
 
-/** The share of trials with which so many hits or more have a probability of 5 %; 1 where Wilson's end is lower. */
+/** The share with which so many hits or more have the probability of both tails (Brown, Cai & DasGupta 2001). */
 function lowered(count, trials) {
   const hits = Math.round(count);
   if (hits < 1 || hits > FEW) return 1;
   let low = 0;
   let high = 1;
-  for (let i = 0; i < 60; i++) {
+  for (let step = 0; step < 100; step++) {
     const middle = (low + high) / 2;
-    let term = Math.exp(trials * Math.log1p(-middle));
-    let fewer = 0;
-    for (let k = 0; k < hits; k++) {
-      fewer += term;
-      term *= ((trials - k) / (k + 1)) * (middle / (1 - middle));
-    }
-    if (fewer > 0.95) low = middle;
+    if (orMore(hits, trials, middle) < TAILS) low = middle;
     else high = middle;
   }
-  return (low + high) / 2;
+  return low;
+}
+
+/** The probability of so many hits or more in so many trials. */
+function orMore(hits, trials, share) {
+  let exactly = Math.exp(trials * Math.log1p(-share)); // no hit
+  let fewer = 0;
+  for (let k = 0; k < hits; k++) {
+    fewer += exactly;
+    exactly *= ((trials - k) / (k + 1)) * (share / (1 - share));
+  }
+  return 1 - fewer;
 }

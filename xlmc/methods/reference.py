@@ -26,6 +26,9 @@ _MOST_ACCEPTED: Final = 1 << 22
 
 _PROBE: Final = 65_536
 
+_WATCHED: Final = 256
+"""Accepted trials whose draws are kept: the watch for lost digits looks at so many."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reference:
@@ -40,6 +43,7 @@ class Reference:
         single: forecast -> the standard errors that one independent accepted trial would have; over the square root of
             their number, they are what theory says of a run by Monte Carlo.
         acceptance: the share of accepted trials.
+        warnings: why its answers must not be used as they stand.
     """
 
     trials: int
@@ -52,6 +56,7 @@ class Reference:
     errors: Mapping[str, Answer]
     single: Mapping[str, Answer]
     acceptance: Estimate
+    warnings: tuple[str, ...] = ()
 
     def theory(self, forecast: str, statistic: str, trials: int) -> float:
         """The standard error of one number of a forecast in a run of so many independent trials."""
@@ -85,7 +90,7 @@ def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: in
         SimulationError: fewer than 100 trials are accepted.
     """
     started = time.perf_counter()
-    run = model.simulate(trials, seed, sampling=sampling, engine=engine, arithmetic="float64", keep_inputs=0)
+    run = model.simulate(trials, seed, sampling=sampling, engine=engine, arithmetic="float64", keep_inputs=_WATCHED)
     if run.accepted < 100:
         message = f"of {run.trials:,} reference trials the filters accept {run.accepted}, too few to measure methods by"
         raise SimulationError(
@@ -103,6 +108,7 @@ def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: in
         errors={name: found[1] for name, found in numbers.items()},
         single={name: found[2] for name, found in numbers.items()},
         acceptance=run.acceptance,
+        warnings=tuple(run.warnings),
     )
 
 

@@ -191,8 +191,8 @@ def _division(case: Case, cell: Cell, division: Division) -> tuple[str, tuple[Wh
     if known:
         near = min(known, key=partial(_distance, float(draws.min()), float(draws.max())))
         sentence += f" and is 0 at {near:.12g} {units}".rstrip()
-    limit = 2 * float(values[trial])
-    here = draws[values <= max(limit, 0.1)]
+    limit = max(2 * float(values[trial]), min(0.1, 0.5 * float(np.nanmedian(values))))
+    here = draws[values <= limit]
     return sentence, (Where(assumption.name, float(here.min()), float(here.max()), units),) if here.size else ()
 
 
@@ -215,16 +215,25 @@ def cell_digits(case: Case) -> Iterator[CellDigits]:
         amplified = amplified[np.isfinite(amplified)]
         total = np.nansum(moved, axis=0)
         through = case.derivatives.names[int(total.argmax())] if total.size and total.any() else ""
+        is_zero = _is_zero(case, cell, losses[cell])
         yield CellDigits(
             cell,
             case.trees.title(cell),
             float(np.median(amplified)) if amplified.size else 0.0,
             float(np.quantile(amplified, 0.99)) if amplified.size else 0.0,
             through,
-            losses[cell].worst,
-            losses[cell].most,
+            0.0 if is_zero else losses[cell].worst,
+            0.0 if is_zero else losses[cell].most,
             case.node[cell] not in unchecked,
         )
+
+
+def _is_zero(case: Case, cell: Cell, loss: _Loss) -> bool:
+    """Whether a cell holds nothing but the last digits of a 0, which are no share of anything."""
+    node = case.node[cell]
+    if loss.worst < VISIBLE or np.nanmax(np.abs(case.number(node))) > DUST * case.term_sizes[node]:
+        return False
+    return case.exact_number(node, int(np.nanargmax(loss.error))) == 0
 
 
 _LEAST: Final = 0.01

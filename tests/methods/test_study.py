@@ -228,6 +228,24 @@ def test_a_method_that_cannot_be_used_is_named(book):
     assert "is a quadratic polynomial" in found.absent["Surrogate, exact filter"]
 
 
+def test_a_mean_that_does_not_converge_is_asked_of_no_method(book):
+    model = book({"A1": 0.5, "B1": "=1/A1"}, {"a": {"cell": "A1", "low": -1, "high": 1}}, {"f": "B1"})
+    found = study(model, reference_trials=1 << 17, trials=1 << 13, replicates=2)
+    assert found.reference.heavy == {"f": ("mean", "sd")}
+    said = recommendation(found)
+    assert "The mean and SD of f do not converge" in said[1]
+    assert "brings them nearer" in said[1]
+    assert any("--precision-of range`" in each for each in said)
+    plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
+    assert need(found, plain).statistic in ("low", "high")
+
+
+def test_nothing_depends_on_an_assumption(book):
+    model = book({"A1": 0.5, "B1": "=3*4"}, {"a": {"cell": "A1", "low": -1, "high": 1}}, {"f": "B1"})
+    with pytest.raises(SimulationError, match="depends on an assumption"):
+        study(model)
+
+
 def test_no_forecast(book):
     with pytest.raises(SimulationError, match="has no forecast"):
         study(book({"A1": 1.0}))

@@ -68,7 +68,8 @@ def need(study: Study, curve: Curve) -> Need:
     have slopes of their own. Of independent trials theory knows the slope, and a few runs would only guess at it.
     """
     budgets = [float(rung.budget) for rung in curve.rungs]
-    kinds = [(forecast, statistic) for forecast in study.varying for statistic in STATISTICS]
+    varying = [(forecast, statistic) for forecast in study.varying for statistic in STATISTICS]
+    kinds = [kind for kind in varying if study.converges(*kind)]
     logs = np.array([[_log(rung.errors[kind].value) for kind in kinds] for rung in curve.rungs])
     levels = [float(np.exp(np.mean(row[np.isfinite(row)]))) if np.isfinite(row).any() else np.nan for row in logs]
     independent = isinstance(curve.method, Sampled) and curve.method.method == MONTE_CARLO.method
@@ -94,7 +95,7 @@ def shortfall(study: Study, curve: Curve) -> Shortfall:
 
 def _shortfalls(study: Study, curve: Curve) -> Iterator[Shortfall]:
     for (forecast, statistic), error in curve.rungs[-1].errors.items():
-        if forecast not in study.varying:
+        if not study.converges(forecast, statistic):
             continue
         tolerance = study.tolerance(forecast, statistic)
         known = np.isfinite(error.value)
@@ -110,7 +111,7 @@ def worst(study: Study, curve: Curve, rung: Rung) -> float:
     wide = 1.0 if curve in study.once else NORMAL_95
     found = 0.0
     for kind, error in rung.errors.items():
-        if kind[0] not in study.varying:
+        if not study.converges(*kind):
             continue
         tolerance = study.tolerance(*kind)
         known = tolerance > 0.0 and np.isfinite(error.value)

@@ -48,7 +48,7 @@ def _paragraphs(study: Study) -> list[str]:
         ]
     drawing = {curve: need(study, curve) for curve in (*study.curves, *study.engines)}
     able = {curve: found for curve, found in drawing.items() if np.isfinite(found.seconds)}
-    said = [_asked(study)]
+    said = [_asked(study), *_heavy(study)]
     once = [(curve, shortfall(study, curve)) for curve in study.once if curve.answers]
     said += _without_drawing(once)
     if able:
@@ -68,6 +68,17 @@ def _asked(study: Study) -> str:
         f"Asked for: mean, standard deviation and both ends of the central range of every forecast to {what}, in 95 of "
         "100 runs."
     )
+
+
+def _heavy(study: Study) -> list[str]:
+    """What no method comes near to."""
+    return [
+        f"The {' and '.join(map(_spelt, lost))} of {name} {'do' if len(lost) > 1 else 'does'} not converge, for its "
+        f"tail is too heavy, and no method brings {'them' if len(lost) > 1 else 'it'} nearer. Left out in what "
+        "follows; report percentiles."
+        for name, lost in study.reference.heavy.items()
+        if name in study.varying
+    ]
 
 
 def _without_drawing(once: Sequence[tuple[Curve, Shortfall]]) -> list[str]:
@@ -128,7 +139,7 @@ def _command(study: Study, curve: Curve, found: Need) -> str:
         if chosen != usual
     ]
     command = " ".join(["xlmc simulate", study.model.workbook.name, *options, f"--precision {text}"])
-    command += " --precision-of mean,sd,range"
+    command += f" --precision-of {'range' if study.reference.heavy else 'mean,sd,range'}"
     return f"`{command}` goes on until the run's own errors say that it is reached."
 
 

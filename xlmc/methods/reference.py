@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from xlmc import statistics
 from xlmc.definitions import Forecast
@@ -16,6 +17,7 @@ from xlmc.methods.answer import Answer
 from xlmc.model import Model
 from xlmc.simulation import Simulation
 from xlmc.statistics import Estimate, Sample
+from xlmc.statistics.tail_index import heavy_tail
 
 __all__ = ["MOST_REFERENCE", "Reference", "fastest_engine", "reference_of", "reference_size"]
 
@@ -43,6 +45,7 @@ class Reference:
         single: forecast -> the standard errors that one independent accepted trial would have; over the square root of
             their number, they are what theory says of a run by Monte Carlo.
         acceptance: the share of accepted trials.
+        heavy: forecast -> attributes of `Answer` that do not converge, for its tail is too heavy.
         warnings: why its answers must not be used as they stand.
     """
 
@@ -57,6 +60,7 @@ class Reference:
     single: Mapping[str, Answer]
     acceptance: Estimate
     warnings: tuple[str, ...] = ()
+    heavy: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def theory(self, forecast: str, statistic: str, trials: int) -> float:
         """The standard error of one number of a forecast in a run of so many independent trials."""
@@ -109,7 +113,17 @@ def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: in
         single={name: found[2] for name, found in numbers.items()},
         acceptance=run.acceptance,
         warnings=tuple(run.warnings),
+        heavy={f.name: lost for f in model.forecasts if (lost := _lost(run[f.name].sample.x))},
     )
+
+
+def _lost(x: NDArray[np.float64]) -> tuple[str, ...]:
+    """Which numbers of a forecast no run brings nearer."""
+    found = heavy_tail(x)
+    if found is None:
+        return ()
+    index, error = found
+    return ("mean", "sd") if index - 2 * error <= 1.0 else ("sd",)
 
 
 def _numbers(run: Simulation, forecast: Forecast) -> tuple[Answer, Answer, Answer]:

@@ -95,6 +95,10 @@ class Study:
         found = self.reference.answers
         return tuple(name for name, answer in found.items() if answer.sd > _ROUNDING * abs(answer.mean))
 
+    def converges(self, forecast: str, statistic: str) -> bool:
+        """Whether there is something to come near to: the forecast varies, and its tail is not too heavy for this."""
+        return forecast in self.varying and statistic not in self.reference.heavy.get(forecast, ())
+
     def tolerance(self, forecast: str, statistic: str) -> float:
         """The error asked for, in the forecast's units."""
         _, value, relative = self.accuracy
@@ -166,6 +170,9 @@ def ladder_of(model: Model, most: int | None, seed: int) -> tuple[int, ...]:
 def _check(seed: int, replicates: int | None, trials: int | None, reference: int | None, model: Model) -> None:
     if not model.forecasts:
         raise SimulationError("the workbook has no forecast", hint="add one to the table xlmc_forecasts")
+    if not model.live:
+        message = "no forecast or filter depends on an assumption, and so there is nothing to measure"
+        raise SimulationError(message, hint="Refer to the assumptions' cells in the formulas")
     if seed < 0:
         raise SimulationError(f"the seed {seed} is negative", hint="give a whole number from 0 up")
     if replicates is not None and replicates < 2:

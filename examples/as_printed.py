@@ -147,4 +147,6 @@ def _table(
 
 
 if __name__ == "__main__":
-    write(Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "as-printed.xlsx")
+    folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+    folder.mkdir(parents=True, exist_ok=True)
+    write(folder / "as-printed.xlsx")

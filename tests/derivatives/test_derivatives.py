@@ -173,6 +173,13 @@ def test_differences_of_two_arguments_mix(of):
             assert abs(found.hessian[i, 0, 1] - float(exact)) <= 10 * found.hessian_error[i, 0, 1]
 
 
+@pytest.mark.parametrize("formula", ["=COUNT(A1:B1)*A1", "=NPV(0.1,A1,B1)", "=FORECAST(3,A1:B1,{2,5})"])
+def test_what_does_not_bend_mixes_to_0(of, formula):
+    """The mixed derivative is 0, and no more than rounding is known of it: that is not none."""
+    found = of(formula, {"x": [0.7, -1.9], "y": [1.1, 0.4]}, order=2).forecasts["f"]
+    assert (np.abs(found.hessian) <= 10 * found.hessian_error + 1e-11).all()
+
+
 def test_a_jump_has_no_difference(of):
     """MOD has a rule; WEEKNUM jumps between its days, and stands still within them."""
     found = of("=WEEKDAY(A1)", {"x": [44000.5, 44001.0]})

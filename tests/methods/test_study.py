@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -124,11 +126,64 @@ def test_without_filters_the_differential_method_may_do(straight):
     found = study(straight, accuracy="2%", reference_trials=1 << 14, trials=1 << 12, replicates=3)
     assert found.reference.sampling == "sobol"
     text = "\n".join(recommendation(found))
-    assert "Taylor, first order and Taylor, second order are near enough, and need no draws at all" in text
+    assert "Taylor, first order and Taylor, second order are near enough, without any draws" in text
     first = next(curve for curve in found.once if curve.method.key == "taylor-1")
     assert shortfall(found, first).times < 1.0
     sobol, plain = (next(c for c in found.curves if c.method.key == key) for key in ("sobol", "mc"))
     assert sobol.rungs[-1].shares["mean"] < 0.2 * plain.rungs[-1].shares["mean"]
+
+
+def test_nothing_is_said_of_filters_where_there_are_none(straight):
+    found = study(straight, accuracy="2%", reference_trials=1 << 14, trials=1 << 10, replicates=2)
+    assert all("filters" not in said for _, said in tables.cannot_lines(found))
+    assert dict(tables.cannot_lines(found))["Taylor, first order"].startswith("takes every curve for straight")
+    assert not any(said.endswith(".") for _, said in tables.cannot_lines(found))
+
+
+def test_independent_trials_are_carried_on_by_theory(straight):
+    """Eight times more exact is 64 times as many trials, however the slope of two runs of each length came out."""
+    found = study(straight, accuracy="0.8%", reference_trials=1 << 14, trials=1 << 10, replicates=2)
+    plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
+    finer = replace(found, accuracy=("0.1%", 0.001, True))
+    assert need(finer, plain).trials == pytest.approx(64 * need(found, plain).trials)
+
+
+def test_ends_that_are_never_off_need_no_more_trials(book):
+    """24.5 % and 75.5 % of a die are 2 and 5 in all but a few runs in millions: no error is not an unknown one."""
+    die = {"cell": "A1", "distribution": "Discrete Uniform", "low": 1, "high": 6}
+    found = study(
+        book({"A1": 3, "B1": "=A1*2"}, {"die": die}, {"f": "B1"}),
+        reference_trials=1 << 14,
+        trials=1 << 13,
+        replicates=2,
+    )
+    plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
+    assert plain.rungs[-1].errors["f", "low"].value == 0.0
+    assert np.isfinite(need(found, plain).trials)
+    assert not any("however many trials" in said for said in recommendation(found))
+
+
+def test_the_command_runs_what_is_recommended(book):
+    """The lower end of y is near 0, of which 1 % is far for independent trials, and near for Sobol points."""
+    uniform = {"low": -1, "high": 1}
+    model = book(
+        {"A1": 0.0, "A2": 0.0, "B1": "=IF(A1>0,10,0)+A2"},
+        {"x": {"cell": "A1", **uniform}, "z": {"cell": "A2", **uniform}},
+        {"y": "B1"},
+    )
+    found = study(model, reference_trials=1 << 18, trials=1 << 14, replicates=4)
+    (said,) = [paragraph for paragraph in recommendation(found) if paragraph.startswith("Recommended")]
+    assert said.startswith("Recommended: Scrambled Sobol")
+    assert "--sampling sobol --precision 1%" in said
+
+
+def test_errors_in_cells_are_warned_of(book):
+    model = book({"A1": 1.0, "B1": "=LN(A1)"}, {"a": {"cell": "A1", "low": -1, "high": 2}}, {"f": "B1"})
+    assert any("lost to errors in cells" in said for said in reference_of(model, 1 << 14, "mc", "numpy", 3).warnings)
+    assert (
+        "lost to errors in cells"
+        in recommendation(study(model, reference_trials=1 << 14, trials=1 << 10, replicates=2))[0]
+    )
 
 
 def test_accuracy_in_units(straight):
@@ -176,6 +231,18 @@ def test_a_method_that_cannot_be_used_is_named(book):
 def test_nothing_is_drawn(book):
     with pytest.raises(SimulationError, match="so that every method gives the same"):
         study(book({"A1": 1.0, "B1": "=A1"}, {}, {"f": "B1"}))
+
+
+def test_a_mean_that_does_not_converge_is_asked_of_no_method(book):
+    model = book({"A1": 0.5, "B1": "=1/A1"}, {"a": {"cell": "A1", "low": -1, "high": 1}}, {"f": "B1"})
+    found = study(model, reference_trials=1 << 17, trials=1 << 13, replicates=2)
+    assert found.reference.heavy == {"f": ("mean", "sd")}
+    said = recommendation(found)
+    assert "The mean and SD of f do not converge" in said[1]
+    assert "brings them nearer" in said[1]
+    assert any("--precision-of range`" in each for each in said)
+    plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
+    assert need(found, plain).statistic in ("low", "high")
 
 
 def test_no_forecast(book):

@@ -131,6 +131,7 @@ def test_filters_that_accept_almost_nothing(look):
     assert "'big' rejects most" in one.what
     none = look({"B1": "=A1*A2"}, filters={"big": {"cell": "B1", "above": 5}})
     assert only(none, "filter").level is Level.WRONG
+    assert "there is no answer" in only(none, "filter").effect
 
 
 def test_an_answer_that_amplifies(look):
@@ -184,3 +185,24 @@ def test_a_divisor_that_no_assumption_changes(look):
     assert "no error where the formula, computed exactly, has no value" in one.effect
     assert "it divides by COS(RADIANS(A3))" in one.what
     assert any("the digits of 'f' are not there" in warning for warning in found.run.warnings)
+
+
+def test_the_range_of_a_small_divisor_is_told_by_its_own_size(look):
+    """x² is below 1e-6 throughout; what provokes the loss are the small x, not all of them."""
+    one = only(look({"B1": "=(1-COS(A1))/A1^2"}, x=(1e-7, 1e-3)), "division")
+    assert one.where[0].high < 0.5e-3
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("formula", ["=SQRT(-A1)", '=IF(A1>1.5,"fast","slow")'])
+def test_a_forecast_without_a_number_anywhere(look, formula):
+    found = look({"B1": formula})
+    assert "float32" not in kinds(found)
+    assert any("lost to errors" in warning for warning in found.run.warnings)
+
+
+def test_the_last_digits_of_zero_are_no_loss(look):
+    """0.3 - 0.1 - 0.2 is -2.8e-17 in doubles, and 0 exactly."""
+    found = look({"C1": "=0.3*A1-0.1*A1-0.2*A1", "B1": "=C1*3"})
+    assert found.findings == ()
+    assert [(one.rounding, one.excess) for one in found.cells if str(one.cell) == "S!B1"] == [(0.0, 0.0)]

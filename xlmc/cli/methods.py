@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = ["methods"]
 
+NOT_TO_BE_USED = 1
 QUICK = {"reference_trials": 1 << 20, "trials": 1 << 17, "replicates": 8}
 
 
@@ -79,10 +80,12 @@ def methods(
         save_methods(found, path)
     if as_json:
         click.echo(json.dumps(study_json(found), indent=2, ensure_ascii=False))
-        return
-    _show(found)
-    for path in output:
-        click.echo(f"Written: {path}")
+    else:
+        _show(found)
+        for path in output:
+            click.echo(f"Written: {path}")
+    if found.reference.warnings:
+        raise click.exceptions.Exit(NOT_TO_BE_USED)
 
 
 def _show(found: Study) -> None:

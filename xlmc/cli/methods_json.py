@@ -6,6 +6,7 @@ from typing import Any
 
 from xlmc.cli.plain import estimate_json, finite
 from xlmc.methods import STATISTICS, Curve, Rung, Study, need, recommendation
+from xlmc.report.methods.tables import cannot
 
 __all__ = ["study_json"]
 
@@ -47,7 +48,7 @@ def _curve(found: Study, curve: Curve) -> dict[str, Any]:
     return {
         "method": curve.method.key,
         "name": curve.method.name,
-        "cannot": curve.method.cannot,
+        "cannot": cannot(found, curve.method),
         "remarks": list(curve.remarks),
         "setup_seconds": curve.setup,
         "bounds": {name: {"least": least, "most": most} for name, (least, most) in curve.ranges.items()},

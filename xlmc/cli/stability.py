@@ -60,18 +60,18 @@ def _show(found: Stability, all_cells: bool) -> None:
 
 def _count(findings: Sequence[Finding]) -> str:
     levels = [finding.level.name for finding in findings]
-    parts = [f"{levels.count(level)} {word.lower()}" for level, word in _LEVELS.items() if level in levels]
+    counts = {word.lower(): levels.count(level) for level, word in _LEVELS.items() if level in levels}
+    parts = [f"{count} {word}{'s' * (word == 'note' and count > 1)}" for word, count in counts.items()]
     return f"{len(levels)} finding{'s' * (len(levels) != 1)}: {', '.join(parts)}" if parts else "nothing found"
 
 
 def _show_finding(number: int, finding: Finding) -> None:
     name = f" {finding.name}" if finding.name else ""
     click.echo(f"{number}. {_LEVELS[finding.level.name]}: {finding.cell}{name}   {_cut(finding.formula)}")
-    lines = [("", f"{finding.what}."), ("", f"{finding.effect[0].upper()}{finding.effect[1:]}.")]
+    for text in (finding.what, finding.effect):
+        click.echo(click.wrap_text(f"{text[0].upper()}{text[1:]}.", 100, "   ", "   "))
     if finding.where:
-        lines.append(("Where: ", "; ".join(map(str, finding.where))))
-    for label, text in lines:
-        click.echo(click.wrap_text(f"{label}{text[0].upper()}{text[1:]}", 100, "   ", "   "))
+        click.echo(click.wrap_text(f"Where: {'; '.join(map(str, finding.where))}", 100, "   ", "   "))
     if finding.instead:
         click.echo(f"   Instead: {finding.instead}")
     click.echo()
@@ -119,9 +119,10 @@ def _sentences(found: Stability) -> Iterator[str]:
         "the largest error by rounding, as a share of the central range or of the value. Excess: how many times larger "
         "it is than what rounding the assumptions alone would bring; up to 7 is what sound formulas have."
     )
+    trials = f"{found.points:,} trial{'s' * (found.points != 1)}"
     yield (
-        f"Looked at: {found.points:,} trials of a run of {found.run.trials:,}, seed {found.run.settings.seed}, the "
-        f"base case and the ends of all ranges among them; {found.recomputed:,} computed again with 50 digits."
+        f"Looked at: {trials} of a run of {found.run.trials:,}, seed {found.run.settings.seed}, the base case and the "
+        f"ends of all ranges among them; {found.recomputed:,} computed again with 50 digits."
     )
     for cell, functions in found.unchecked:
         yield f"Not checked with 50 digits: {', '.join(functions)} in {cell}."

@@ -225,12 +225,16 @@ def _weight(firsts: Sequence[Floats], x: Sequence[Floats], n: int) -> Floats:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Along:
-    """The derivatives along a way, and estimates of their errors: NaN and infinite where there are none."""
+    """The derivatives along a way, and estimates of their errors: NaN and infinite where there are none.
+
+    What a second derivative may be off by and count as known, even if it is 0, is its `fine`.
+    """
 
     first: Floats
     first_error: Floats
     second: Floats
     second_error: Floats
+    fine: Floats
 
     def or_better(self, other: _Along) -> _Along:
         """Whichever has the smaller estimate."""
@@ -241,6 +245,7 @@ class _Along:
             np.where(first, other.first_error, self.first_error),
             np.where(second, other.second, self.second),
             np.where(second, other.second_error, self.second_error),
+            np.where(second, other.fine, self.fine),
         )
 
 
@@ -265,7 +270,7 @@ def _mixed(both: _Along, one: _Along, other: _Along, size: Floats) -> tuple[Floa
     second = both.second - one.second - other.second
     error = both.second_error + one.second_error + other.second_error
     tolerance = np.maximum(10 * _TOLERANCE * np.abs(second), 1e-6 * (np.abs(one.second) + np.abs(other.second)))
-    sure = error <= np.maximum(tolerance, 1e-6 * np.abs(both.second))
+    sure = error <= np.maximum(tolerance, np.maximum(1e-6 * np.abs(both.second), both.fine))
     return np.where(sure, second, np.nan) / (2 * size), np.where(sure, error, np.inf) / (2 * size)
 
 
@@ -290,12 +295,14 @@ def _extrapolated(moved: Moved, result: Value, way: _Way, scale: Floats) -> _Alo
     agrees = apart <= 8 * noise / steps[-1]
     reach = largest / steps[-2]
     sure = agrees & (first_error <= np.maximum(_TOLERANCE * np.abs(first), 1e-9 * reach))
-    bent = sure & (second_error <= np.maximum(_TOLERANCE * 10 * np.abs(second), 1e-7 * reach / steps[-2]))
+    fine = 1e-7 * reach / steps[-2]
+    bent = sure & (second_error <= np.maximum(_TOLERANCE * 10 * np.abs(second), fine))
     return _Along(
         np.where(sure, first, np.nan),
         np.where(sure, first_error, np.inf),
         np.where(bent, second, np.nan),
         np.where(bent, second_error, np.inf),
+        np.broadcast_to(fine, second.shape),
     )
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from xlmc.methods.answer import STATISTICS
 from xlmc.methods.curve import Curve, Rung
 from xlmc.methods.rms import line
+from xlmc.methods.sampled import MONTE_CARLO, Sampled
 from xlmc.methods.study import Study
 
 __all__ = ["NORMAL_95", "Need", "Shortfall", "need", "shortfall", "worst"]
@@ -22,6 +23,9 @@ NORMAL_95: Final = 1.959964
 _LEAST_PART: Final = 0.25
 _LEAST_SLOPE: Final = -0.05
 """Errors that fall more slowly with the trials are not carried on."""
+
+_SHORTEST: Final = 1 / 16
+"""Of the shortest measured runs: errors are not carried on to runs that are shorter still."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,13 +65,15 @@ def need(study: Study, curve: Curve) -> Need:
     """What a method that draws needs, for 95 of 100 runs to keep the accuracy in every number of every forecast.
 
     All its errors are taken to fall with the trials as their mean does in logarithms: the single ones are too few to
-    have slopes of their own.
+    have slopes of their own. Of independent trials theory knows the slope, and a few runs would only guess at it.
     """
     budgets = [float(rung.budget) for rung in curve.rungs]
-    kinds = [(forecast, statistic) for forecast in study.varying for statistic in STATISTICS]
+    varying = [(forecast, statistic) for forecast in study.varying for statistic in STATISTICS]
+    kinds = [kind for kind in varying if study.converges(*kind)]
     logs = np.array([[_log(rung.errors[kind].value) for kind in kinds] for rung in curve.rungs])
     levels = [float(np.exp(np.mean(row[np.isfinite(row)]))) if np.isfinite(row).any() else np.nan for row in logs]
-    slope, _ = line(budgets, levels)
+    independent = isinstance(curve.method, Sampled) and curve.method.method == MONTE_CARLO.method
+    slope = -0.5 if independent else line(budgets, levels)[0]
     worst = Need(0.0, 0.0, "", "mean", 0.0)
     for place, kind in enumerate(kinds):
         tolerance = study.tolerance(*kind) / NORMAL_95
@@ -89,7 +95,7 @@ def shortfall(study: Study, curve: Curve) -> Shortfall:
 
 def _shortfalls(study: Study, curve: Curve) -> Iterator[Shortfall]:
     for (forecast, statistic), error in curve.rungs[-1].errors.items():
-        if forecast not in study.varying:
+        if not study.converges(forecast, statistic):
             continue
         tolerance = study.tolerance(forecast, statistic)
         known = np.isfinite(error.value)
@@ -105,7 +111,7 @@ def worst(study: Study, curve: Curve, rung: Rung) -> float:
     wide = 1.0 if curve in study.once else NORMAL_95
     found = 0.0
     for kind, error in rung.errors.items():
-        if kind[0] not in study.varying:
+        if not study.converges(*kind):
             continue
         tolerance = study.tolerance(*kind)
         known = tolerance > 0.0 and np.isfinite(error.value)
@@ -134,15 +140,23 @@ def seconds_of(curve: Curve, trials: float) -> float:
 
 
 def _trials(budgets: list[float], logs: NDArray[np.float64], slope: float, tolerance: float) -> float:
-    """Where the line of this slope through these logarithms comes down to the tolerance."""
+    """Where the line of this slope through these logarithms comes down to the tolerance.
+
+    The shortest runs do where none was off at all, as those of whole numbers; and nothing is carried on to runs that
+    are much shorter than they.
+    """
+    least = _SHORTEST * budgets[0]
     known = np.isfinite(logs)
-    if not known.any() or tolerance <= 0.0:
+    if tolerance <= 0.0 or np.isnan(logs[-1]):
         return np.inf
+    if not known.any():
+        return budgets[0]
     if not slope < _LEAST_SLOPE:
         return budgets[-1] if np.exp(logs[known][-1]) <= tolerance else np.inf
     height = float(np.mean(logs[known] - slope * np.log(np.array(budgets)[known])))
-    return float(np.exp((np.log(tolerance) - height) / slope))
+    return max(float(np.exp((np.log(tolerance) - height) / slope)), least)
 
 
 def _log(value: float) -> float:
-    return float(np.log(value)) if value > 0.0 else np.nan
+    """Of an error: of none at all minus infinity, of one that is not known NaN."""
+    return float(np.log(value)) if value > 0.0 else (-np.inf if value == 0.0 else np.nan)

@@ -10,7 +10,7 @@ import numpy as np
 from xlmc.methods.answer import STATISTICS
 from xlmc.methods.curve import Curve
 from xlmc.methods.need import Need, Shortfall, need, shortfall
-from xlmc.methods.sampled import MONTE_CARLO
+from xlmc.methods.sampled import MONTE_CARLO, Sampled
 from xlmc.methods.study import Study
 
 __all__ = ["ERROR_WORDS", "recommendation", "rounded", "seconds_text", "trials_text"]
@@ -32,11 +32,23 @@ ERROR_WORDS: Final = (
 
 def recommendation(study: Study) -> list[str]:
     """Paragraphs: what to use, why, what else would do, and what the others cannot."""
+    warned = [
+        f"Warning: {warning}; the answers must not be used as they stand." for warning in study.reference.warnings
+    ]
+    return [*warned, *_paragraphs(study)]
+
+
+def _paragraphs(study: Study) -> list[str]:
     if not study.varying:
-        return ["No forecast varies: there is nothing to compute with any method."]
+        numbers = any(np.isfinite(answer.mean) for answer in study.reference.answers.values())
+        return [
+            "No forecast varies: there is nothing to compute with any method."
+            if numbers
+            else "No forecast is a number in more than one trial: there is nothing to compute with any method."
+        ]
     drawing = {curve: need(study, curve) for curve in (*study.curves, *study.engines)}
     able = {curve: found for curve, found in drawing.items() if np.isfinite(found.seconds)}
-    said = [_asked(study)]
+    said = [_asked(study), *_heavy(study)]
     once = [(curve, shortfall(study, curve)) for curve in study.once if curve.answers]
     said += _without_drawing(once)
     if able:
@@ -56,6 +68,17 @@ def _asked(study: Study) -> str:
         f"Asked for: mean, standard deviation and both ends of the central range of every forecast to {what}, in 95 of "
         "100 runs."
     )
+
+
+def _heavy(study: Study) -> list[str]:
+    """What no method comes near to."""
+    return [
+        f"The {' and '.join(map(_spelt, lost))} of {name} {'do' if len(lost) > 1 else 'does'} not converge, for its "
+        f"tail is too heavy, and no method brings {'them' if len(lost) > 1 else 'it'} nearer. Left out in what "
+        "follows; report percentiles."
+        for name, lost in study.reference.heavy.items()
+        if name in study.varying
+    ]
 
 
 def _without_drawing(once: Sequence[tuple[Curve, Shortfall]]) -> list[str]:
@@ -91,7 +114,7 @@ def _drawing(study: Study, able: dict[Curve, Need]) -> list[str]:
             "--precision end the run."
         )
     others = sorted((curve for curve in able if curve is not chosen), key=lambda curve: able[curve].seconds)
-    said[0] += f" {_command(study)}"
+    said[0] += f" {_command(study, chosen, found)}"
     if others:
         rest = "; ".join(
             f"{curve.method.name} {trials_text(able[curve].trials)} trials, {seconds_text(able[curve].seconds)}"
@@ -101,9 +124,23 @@ def _drawing(study: Study, able: dict[Curve, Need]) -> list[str]:
     return said
 
 
-def _command(study: Study) -> str:
+def _command(study: Study, curve: Curve, found: Need) -> str:
+    method = curve.method
+    if not isinstance(method, Sampled):
+        call = f"xlmc.methods.{type(method).__name__}().run(model, {found.trials:.0f}, seed=1)"
+        return f"It runs from Python: `{call}`."
     text = study.accuracy[0].replace(" ", "")
-    command = f"xlmc simulate {study.model.workbook.name} --precision {text} --precision-of mean,sd,range"
+    options = [
+        f"--{name} {chosen}"
+        for name, chosen, usual in (
+            ("sampling", method.method, MONTE_CARLO.method),
+            ("engine", method.engine, MONTE_CARLO.engine),
+            ("arithmetic", method.arithmetic, MONTE_CARLO.arithmetic),
+        )
+        if chosen != usual
+    ]
+    command = " ".join(["xlmc simulate", study.model.workbook.name, *options, f"--precision {text}"])
+    command += f" --precision-of {'range' if study.reference.heavy else 'mean,sd,range'}"
     return f"`{command}` goes on until the run's own errors say that it is reached."
 
 
@@ -123,7 +160,7 @@ def _missed(study: Study, curve: Curve, found: Shortfall) -> str:
         return f"{curve.method.name} has no number for {found.forecast}."
     truth = float(getattr(study.reference.answers[found.forecast], found.statistic))
     units = next((f.units for f in study.model.forecasts if f.name == found.forecast), "")
-    share = f", {100.0 * found.error / abs(truth):.2g} % of it" if truth else ""
+    share = f", {rounded(100.0 * found.error / abs(truth))} % of it" if truth else ""
     text = (
         f"{curve.method.name} misses the {_spelt(found.statistic)} of {found.forecast} by "
         f"{rounded(found.error)}{' ' if units else ''}{units}{share}"
@@ -131,7 +168,13 @@ def _missed(study: Study, curve: Curve, found: Shortfall) -> str:
     kept = study.reference.acceptance.value
     if study.model.filters and kept < 1.0:
         return f"{text}: it does not see that the filters reject {_percent(1.0 - kept)} of the trials."
-    return f"{text}: what it leaves out of the formulas' curvature."
+    return f"{text}: {_LEFT_OUT.get(curve.method.key, 'what it leaves out of the formulas')}."
+
+
+_LEFT_OUT: Final = {
+    "taylor-1": "it takes every curve for straight and every answer for normally distributed",
+    "taylor-2": "over these ranges the formulas are more than quadratic polynomials",
+}
 
 
 def _bounds(study: Study) -> list[str]:
@@ -168,7 +211,7 @@ def _percent(share: float) -> str:
 
 def rounded(value: float) -> str:
     """Two significant digits."""
-    return f"{value:.2g}" if 0.001 <= abs(value) < 1e4 or value == 0.0 else f"{value:.1e}"
+    return f"{float(f'{value:.2g}'):g}" if 0.001 <= abs(value) < 1e4 or value == 0.0 else f"{value:.1e}"
 
 
 def trials_text(trials: float) -> str:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from xlmc import statistics
 from xlmc.definitions import Forecast
@@ -16,6 +17,7 @@ from xlmc.methods.answer import Answer
 from xlmc.model import Model
 from xlmc.simulation import Simulation
 from xlmc.statistics import Estimate, Sample
+from xlmc.statistics.tail_index import heavy_tail
 
 __all__ = ["MOST_REFERENCE", "Reference", "fastest_engine", "reference_of", "reference_size"]
 
@@ -25,6 +27,9 @@ _MOST_ACCEPTED: Final = 1 << 22
 """More than these, and sorting them costs more than they add."""
 
 _PROBE: Final = 65_536
+
+_WATCHED: Final = 256
+"""Accepted trials whose draws are kept: the watch for lost digits looks at so many."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,6 +45,8 @@ class Reference:
         single: forecast -> the standard errors that one independent accepted trial would have; over the square root of
             their number, they are what theory says of a run by Monte Carlo.
         acceptance: the share of accepted trials.
+        heavy: forecast -> attributes of `Answer` that do not converge, for its tail is too heavy.
+        warnings: why its answers must not be used as they stand.
     """
 
     trials: int
@@ -52,6 +59,8 @@ class Reference:
     errors: Mapping[str, Answer]
     single: Mapping[str, Answer]
     acceptance: Estimate
+    warnings: tuple[str, ...] = ()
+    heavy: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def theory(self, forecast: str, statistic: str, trials: int) -> float:
         """The standard error of one number of a forecast in a run of so many independent trials."""
@@ -85,7 +94,7 @@ def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: in
         SimulationError: fewer than 100 trials are accepted.
     """
     started = time.perf_counter()
-    run = model.simulate(trials, seed, sampling=sampling, engine=engine, arithmetic="float64", keep_inputs=0)
+    run = model.simulate(trials, seed, sampling=sampling, engine=engine, arithmetic="float64", keep_inputs=_WATCHED)
     if run.accepted < 100:
         message = f"of {run.trials:,} reference trials the filters accept {run.accepted}, too few to measure methods by"
         raise SimulationError(
@@ -103,7 +112,18 @@ def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: in
         errors={name: found[1] for name, found in numbers.items()},
         single={name: found[2] for name, found in numbers.items()},
         acceptance=run.acceptance,
+        warnings=tuple(run.warnings),
+        heavy={f.name: lost for f in model.forecasts if (lost := _lost(run[f.name].sample.x))},
     )
+
+
+def _lost(x: NDArray[np.float64]) -> tuple[str, ...]:
+    """Which numbers of a forecast no run brings nearer."""
+    found = heavy_tail(x)
+    if found is None:
+        return ()
+    index, error = found
+    return ("mean", "sd") if index - 2 * error <= 1.0 else ("sd",)
 
 
 def _numbers(run: Simulation, forecast: Forecast) -> tuple[Answer, Answer, Answer]:

@@ -95,6 +95,10 @@ class Study:
         found = self.reference.answers
         return tuple(name for name, answer in found.items() if answer.sd > _ROUNDING * abs(answer.mean))
 
+    def converges(self, forecast: str, statistic: str) -> bool:
+        """Whether there is something to come near to: the forecast varies, and its tail is not too heavy for this."""
+        return forecast in self.varying and statistic not in self.reference.heavy.get(forecast, ())
+
     def tolerance(self, forecast: str, statistic: str) -> float:
         """The error asked for, in the forecast's units."""
         _, value, relative = self.accuracy

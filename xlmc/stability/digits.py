@@ -96,6 +96,7 @@ def _finding(case: Case, loss: _Loss, by_form: bool) -> Finding | None:
     worst = [int(trial) for trial in np.argsort(np.nan_to_num(measure))[::-1][:_WORST]]
     shown = case.number(node)
     off, share, missing = 0.0, 0.0, False
+    of = "central range"
     size = _size(case, cell)
     for trial in worst:
         exact = case.exact_number(node, trial)
@@ -103,7 +104,10 @@ def _finding(case: Case, loss: _Loss, by_form: bool) -> Finding | None:
             missing |= not _is_missing_before(case, cell, trial)
         elif not np.isnan(exact) and not (exact == 0 and abs(shown[trial]) <= DUST * case.term_sizes[node]):
             error = abs(float(shown[trial]) - exact)
-            off, share = max(off, error), max(share, error / float(size[trial]))
+            off = max(off, error)
+            if error / float(size[trial]) > share:
+                share = error / float(size[trial])
+                of = "value" if size[trial] > case.scale(cell) else "central range"
     inherent = float(np.nanmax(case.inherent(cell)[worst]))
     times = off / inherent if inherent > 0 else float("inf")
     if not missing and share < VISIBLE and times < EXCESS / 3:
@@ -120,7 +124,7 @@ def _finding(case: Case, loss: _Loss, by_form: bool) -> Finding | None:
         case.trees.title(cell),
         case.trees.written(cell),
         f"{case.trees.title(cell) or cell} loses digits" if what is None else what[1],
-        _effect(case, cell, share, loss, missing, random, inherent),
+        _effect(case, cell, share, of, loss, missing, random, inherent),
         ranges or case.where(np.asarray(low)),
         instead,
         _SIZE_OF_NOTHING if missing else share if level is Level.WRONG else loss.most,
@@ -137,13 +141,15 @@ def _is_missing_before(case: Case, cell: Cell, trial: int) -> bool:
     return any(np.isnan(case.exact_number(node, trial)) != np.isnan(case.number(node)[trial]) for node in needs)
 
 
-def _effect(case: Case, cell: Cell, share: float, loss: _Loss, missing: bool, random: bool, inherent: float) -> str:
+def _effect(
+    case: Case, cell: Cell, share: float, of: str, loss: _Loss, missing: bool, random: bool, inherent: float
+) -> str:
     reached = [repr(name) for name in case.forecasts_of([cell]) if name != case.trees.title(cell)]
     on = f"; {', '.join(reached)} depend{'s' * (len(reached) == 1)} on it" if reached else ""
     at = "" if random or not (missing or share >= UNUSABLE) else " (at the base case or an end of a range)"
     if missing:
         return f"it shows a number and no error where the formula, computed exactly, has no value{at}{on}"
-    digits = f"rounding puts it off by up to {share:.1g} of its central range{at}"
+    digits = f"rounding puts it off by up to {share:.1g} of its {of}{at}"
     if share >= UNUSABLE:
         return f"{digits}: the digits shown are not there{on}"
     return f"{digits}, {loss.most:.0f} times what rounding the assumptions alone would{on}"
@@ -191,8 +197,8 @@ def _division(case: Case, cell: Cell, division: Division) -> tuple[str, tuple[Wh
     if known:
         near = min(known, key=partial(_distance, float(draws.min()), float(draws.max())))
         sentence += f" and is 0 at {near:.12g} {units}".rstrip()
-    limit = 2 * float(values[trial])
-    here = draws[values <= max(limit, 0.1)]
+    limit = max(2 * float(values[trial]), min(0.1, 0.5 * float(np.nanmedian(values))))
+    here = draws[values <= limit]
     return sentence, (Where(assumption.name, float(here.min()), float(here.max()), units),) if here.size else ()
 
 
@@ -215,16 +221,25 @@ def cell_digits(case: Case) -> Iterator[CellDigits]:
         amplified = amplified[np.isfinite(amplified)]
         total = np.nansum(moved, axis=0)
         through = case.derivatives.names[int(total.argmax())] if total.size and total.any() else ""
+        is_zero = _is_zero(case, cell, losses[cell])
         yield CellDigits(
             cell,
             case.trees.title(cell),
             float(np.median(amplified)) if amplified.size else 0.0,
             float(np.quantile(amplified, 0.99)) if amplified.size else 0.0,
             through,
-            losses[cell].worst,
-            losses[cell].most,
+            0.0 if is_zero else losses[cell].worst,
+            0.0 if is_zero else losses[cell].most,
             case.node[cell] not in unchecked,
         )
+
+
+def _is_zero(case: Case, cell: Cell, loss: _Loss) -> bool:
+    """Whether a cell holds nothing but the last digits of a 0, which are no share of anything."""
+    node = case.node[cell]
+    if loss.worst < VISIBLE or np.nanmax(np.abs(case.number(node))) > DUST * case.term_sizes[node]:
+        return False
+    return case.exact_number(node, int(np.nanargmax(loss.error))) == 0
 
 
 _LEAST: Final = 0.01

@@ -22,6 +22,7 @@ def narrow_filters(case: Case) -> Iterator[Finding]:
     rejected = {row.name: int(count) for row, count in zip(run.model.filters, run.tally.rejected, strict=True)}
     worst = max(rejected, key=lambda name: rejected[name])
     filter_ = next(row for row in run.model.filters if row.name == worst)
+    effect = "the answer rests on a rim of the ranges" if run.accepted else "there is no answer"
     yield Finding(
         Level.WRONG if not run.accepted else Level.DOUBTFUL,
         "filter",
@@ -29,7 +30,7 @@ def narrow_filters(case: Case) -> Iterator[Finding]:
         worst,
         case.trees.written(filter_.cell),
         f"the filters accept {run.accepted:,} of {run.trials:,} trials; {worst!r} rejects most, {rejected[worst]:,}",
-        "the answer rests on a rim of the ranges: look whether these, the evidence or the model contradict each other",
+        f"{effect}: look whether these, the evidence or the model contradict each other",
         (),
         None,
         1.0 - run.accepted / run.trials,

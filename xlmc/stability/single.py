@@ -34,7 +34,7 @@ def single_precision(case: Case) -> Iterator[Finding]:
     for forecast in case.model.forecasts:
         node = case.node[forecast.cell]
         plain, scale = case.number(node), case.scale(forecast.cell)
-        if scale < DUST * case.term_sizes[node]:
+        if scale < DUST * case.term_sizes[node] or np.isnan(plain).all():
             continue
         off = np.max([np.abs(numbers(one[node], case.n) - plain) for one in found], axis=0)
         share = float(np.nanquantile(off / np.fmax(scale, np.abs(plain)), 0.999))

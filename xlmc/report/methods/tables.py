@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
-from xlmc.methods import STATISTICS, Curve, Rung, Study, need
+from xlmc.methods import STATISTICS, Curve, Method, Rung, Study, need
 from xlmc.methods.recommendation import seconds_text, trials_text
 from xlmc.report.summary import estimate_text
 from xlmc.statistics import Estimate, format_estimate
@@ -16,6 +17,7 @@ __all__ = [
     "Table",
     "accepted_text",
     "bounds_table",
+    "cannot",
     "cannot_lines",
     "error_table",
     "floor_of",
@@ -162,13 +164,27 @@ def cannot_lines(study: Study) -> list[tuple[str, str]]:
     """Method -> what it cannot do, and what its run had to say; methods that could not be used, and why."""
     found = []
     for curve in study.every:
-        parts = [each for each in (curve.method.cannot, *curve.remarks) if each]
+        parts = [each for each in (cannot(study, curve.method), *curve.remarks) if each]
         if curve.setup > 0.1:
             parts.append(f"its first run took {seconds_text(curve.setup)} longer, to compile or import")
         if parts:
             found.append((curve.method.name, "; ".join(parts)))
-    found += [(name, f"not used: {why}") for name, why in study.absent.items()]
+    found += [(name, f"not used: {why.removesuffix('.')}") for name, why in study.absent.items()]
     return found
+
+
+def cannot(study: Study, method: Method) -> str:
+    """What a method cannot do on this workbook: without filters, nothing that only filters would show."""
+    if study.model.filters:
+        return method.cannot
+    return "; ".join(
+        part
+        for said in method.cannot.split("; ")
+        if (part := said.replace(", does not see filters,", "")) and not part.startswith(_OF_FILTERS)
+    )
+
+
+_OF_FILTERS: Final = ("does not see filters", "filters take", "sees one assumption at a time")
 
 
 def accepted_text(acceptance: Estimate) -> str:

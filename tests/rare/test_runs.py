@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from xlmc.cli.simulate import _show
+from xlmc.cli.simulate import show_run
 from xlmc.cli.simulate import simulate as command
 from xlmc.rare import deciding
 from xlmc.record import make_record
@@ -163,7 +163,7 @@ def test_the_sheets_say_so(run):
 
 
 def test_the_command_line_tells_what_was_done(run, capsys):
-    _show(run)
+    show_run(run)
     shown = capsys.readouterr().out
     assert "2,000 accepted trials; one is accepted with probability" in shown
     assert f"Trials rejected of {run.trials:,} drawn plainly" in shown

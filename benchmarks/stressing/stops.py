@@ -135,11 +135,11 @@ def precise_runs(name: str, tolerance: float, runs: int, block: int = 500, first
 def least_sequences(count: int) -> Iterator[None]:
     """With another least number of sequences than xlmc's: 2 is what the standard says."""
     usual = adaptive.LEAST_SEQUENCES
-    adaptive.LEAST_SEQUENCES = count  # type: ignore[misc]
+    adaptive.LEAST_SEQUENCES = count  # type: ignore[misc]  # final but for this measurement
     try:
         yield
     finally:
-        adaptive.LEAST_SEQUENCES = usual  # type: ignore[misc]
+        adaptive.LEAST_SEQUENCES = usual  # type: ignore[misc]  # as above
 
 
 def stable_runs(name: str, digits: int, scale: float, runs: int, first: int = 0) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from xlmc.errors import WorkbookError
 from xlmc.report.html.page import page_text
-from xlmc.workbook.writer import write_workbook
+from xlmc.workbook.writer import check_folder, write_workbook
 
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
@@ -38,7 +38,7 @@ def save_page(simulation: Simulation, path: Path, *, command: str | None = None)
 
 
 def check_page_path(path: Path) -> None:
-    """Refuse, before a long run, what no page can be written to: another kind of file, a missing folder.
+    """Refuse, before a long run, what no page can be written to: another kind of file, and what `check_folder` refuses.
 
     Raises:
         WorkbookError: it is one of these.
@@ -46,6 +46,4 @@ def check_page_path(path: Path) -> None:
     if path.suffix.casefold() not in ENDINGS:
         hint = f"Name it '{path.stem or 'results'}.html'"
         raise WorkbookError("the page must end in .html", where=path, hint=hint)
-    if not path.absolute().parent.is_dir():
-        hint = "Create it or name another"
-        raise WorkbookError(f"there is no folder {str(path.absolute().parent)!r}", where=path, hint=hint)
+    check_folder(path)

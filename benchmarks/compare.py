@@ -158,7 +158,7 @@ _PARTS: dict[str, Callable[[_Measured], dict[str, Any]]] = {
 
 
 def _engines() -> list[str]:
-    from xlmc.compile import ENGINES
+    from xlmc.compile.engines import ENGINES
 
     return list(ENGINES)
 

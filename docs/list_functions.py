@@ -7,7 +7,7 @@ from pathlib import Path
 from xlmc.compile.choices import CHOICES
 from xlmc.compile.lambdas import LAMBDAS
 from xlmc.compile.places import PLACES
-from xlmc.functions import REGISTRY
+from xlmc.functions.families import REGISTRY
 
 PAGE = Path(__file__).with_name("functions.md")
 

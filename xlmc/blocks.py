@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from xlmc.compile.engine import BLANK_RESULT, TEXT_RESULT, Kept, Sweeper, Sweepi
 from xlmc.errors import ErrorCode
 from xlmc.sampling import Sampler
 
-__all__ = ["Block", "FilterTally", "Runner", "Task", "Worker", "fault_text"]
+__all__ = ["Block", "FilterTally", "Portable", "Runner", "Task", "Worker", "fault_text"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -97,8 +97,15 @@ class Runner(Protocol):
         """The trials from the task's first on, a whole block of them, cut to those that count."""
 
 
+class Portable(Protocol):
+    """What can be pickled and makes a runner in another process."""
+
+    def runner(self) -> Runner:
+        """It, made or made again."""
+
+
 class Worker:
-    """Runs blocks, one after another, in one thread.
+    """Runs blocks, one after another, in one thread. It can be pickled where the engine's evaluators can.
 
     Args:
         forecasts: how many the evaluator gives.
@@ -108,11 +115,19 @@ class Worker:
     def __init__(
         self, sampler: Sampler, evaluator: Evaluator, block: int, forecasts: int, fallible: frozenset[str]
     ) -> None:
+        self._made_of = sampler, evaluator, block, forecasts, fallible
         self._sampler, self._evaluator, self._block = sampler, evaluator, block
         self._width, self._fallible = forecasts, fallible
         self._sweep: Sweeper | None = None
         if isinstance(evaluator, Sweeping) and not fallible:
             self._sweep = evaluator.sweeper(sampler.draw, sampler.linear)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Worker, self._made_of
+
+    def runner(self) -> Worker:
+        """See `Portable`."""
+        return self
 
     def run(self, task: Task) -> Block:
         """See `Runner`."""

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.compile import ENGINES, Lowering, Target
+from xlmc.compile import Evaluator, Target
+from xlmc.compile.engines import ENGINES
+from xlmc.compile.lower import Lowering
 from xlmc.definitions import Assumption
 from xlmc.definitions.data import data_family
 from xlmc.definitions.model import Parameter, name_key
@@ -104,15 +107,22 @@ def _check(draw: Draw, assumption: Assumption) -> None:
         raise DefinitionError(f"{assumption.name}: {fault.message}", where=assumption.row, hint=fault.hint)
 
 
+@dataclass(frozen=True, slots=True)
+class _Varying:
+    """Computes parameters from draws; see `DynamicParameters`."""
+
+    evaluator: Evaluator
+    places: tuple[Cell, ...]
+
+    def __call__(self, drawn: Mapping[str, NDArray[np.float64]], n: int) -> dict[Hashable, NDArray[np.float64]]:
+        columns = self.evaluator.filters(drawn, n)
+        return {cell: column.as_floats() for cell, column in zip(self.places, columns, strict=True)}
+
+
 def dynamic_parameters(draws: Sequence[Draw], lowering: Lowering, block: int) -> DynamicParameters:
     """What computes the varying parameters of a stage from the draws of the stages before it; for one thread."""
     cells = [p for draw in draws for p in (*draw.parameters, *(draw.cutoffs or ())) if isinstance(p, Cell)]
-    places = list(dict.fromkeys(cells))
+    places = tuple(dict.fromkeys(cells))
     targets = [parameter_target(cell) for cell in places]
-    evaluator = ENGINES["numpy"](lowering, targets, [], frozenset(lowering.inputs.values())).evaluator(block)
-
-    def parameters(drawn: Mapping[str, NDArray[np.float64]], n: int) -> dict[Hashable, NDArray[np.float64]]:
-        columns = evaluator.filters(drawn, n)
-        return {cell: column.as_floats() for cell, column in zip(places, columns, strict=True)}
-
-    return parameters
+    program = ENGINES["numpy"](lowering, targets, [], frozenset(lowering.inputs.values()))
+    return _Varying(program.evaluator(block), places)

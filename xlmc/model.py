@@ -11,7 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
 from xlmc.collecting import paused_collection
-from xlmc.compile import ENGINES, FILLERS, Evaluator, Lowering, Program, Target, options_of, widened
+from xlmc.compile import Evaluator, Program, Target
+from xlmc.compile.engines import ENGINES, FILLERS, options_of
+from xlmc.compile.lower import Lowering
+from xlmc.compile.widening import widened
 from xlmc.correlating import correlated_groups, repair_notices
 from xlmc.definitions import Assumption, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key

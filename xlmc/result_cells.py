@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.compile import Lowering, widened
+from xlmc.compile.lower import Lowering
+from xlmc.compile.widening import widened
 from xlmc.definitions.in_cell_trees import number_of
 from xlmc.definitions.model import name_key
 from xlmc.definitions.result_functions import CRYSTAL_BALL_STATISTICS, Asked, asked_for, is_result

@@ -20,7 +20,7 @@ from xlmc.pilot import planned
 from xlmc.rare.deciding import looks_of
 from xlmc.rounding import Rounding, checked_rounding
 from xlmc.sampling import METHODS
-from xlmc.scheduling import Crew
+from xlmc.scheduling.crew import Crew
 from xlmc.scheduling.recipe import worker_of
 from xlmc.scratch import Keeper
 from xlmc.simulation import KEPT_INPUTS, Simulation

@@ -8,7 +8,8 @@ from enum import Enum
 from typing import Final
 
 from xlmc.address import Cell
-from xlmc.compile import Lowering, widened
+from xlmc.compile.lower import Lowering
+from xlmc.compile.widening import widened
 from xlmc.definitions import Definitions
 from xlmc.definitions.in_cells import holds_call
 from xlmc.errors import ErrorCode

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from xlmc.address import parse_address
-from xlmc.compile import Lowering, Target
+from xlmc.compile import Target
 from xlmc.compile import numpy_engine as module
 from xlmc.compile.engine import BLANK_RESULT, TEXT_RESULT
+from xlmc.compile.lower import Lowering
 from xlmc.compile.numpy_engine import NumpyProgram
 from xlmc.errors import ErrorCode
 from xlmc.formula import Resolver, build_graph
@@ -76,7 +77,7 @@ def run(lower):
         n = len(next(iter(draws.values())))
         lowering, targets = lower(cells, draws, [*filters, *forecasts], **of_workbook)
         first, late = targets[: len(filters)], targets[len(filters) :]
-        program = NumpyProgram(lowering, first, late, frozenset(draws))
+        program = NumpyProgram.of(lowering, first, late, frozenset(draws))
         evaluator = program.evaluator(n)
         fast = _evaluated(evaluator, draws, n)
         nodes = [lowering.target(target) for target in targets]

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from xlmc.compile.bounds import bounds
 from xlmc.compile.dag import Apply, Dag, Select
-from xlmc.functions import REGISTRY
+from xlmc.functions.families import REGISTRY
 from xlmc.functions.values import constant
 
 OPERATIONS = {"+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide}

@@ -5,7 +5,8 @@ import pytest
 
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Range, Rescue, Select, uses
 from xlmc.errors import ErrorCode
-from xlmc.functions import REGISTRY, Kind
+from xlmc.functions import Kind
+from xlmc.functions.families import REGISTRY
 from xlmc.functions.values import constant
 
 ADD, SQRT, SUM, EQUAL, JOIN = (REGISTRY[name] for name in ("+", "SQRT", "SUM", "=", "&"))

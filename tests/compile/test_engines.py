@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
 
-from xlmc.compile import ENGINES
+from xlmc.compile.engines import ENGINES
 from xlmc.compile.tracking import TrackingEvaluator
 
 RELATIVE = 1e-12

@@ -231,7 +231,7 @@ def test_no_filter_and_no_varying_forecast(run):
 
 def test_an_evaluator_takes_blocks_of_any_size_up_to_its_own(lower):
     lowering, (forecast,) = lower({"C1": "=IF(A1>0,SQRT(A1),-1)+A1"}, ["A1"], ["C1"])
-    evaluator = NumpyProgram(lowering, [], [forecast], frozenset()).evaluator(10)
+    evaluator = NumpyProgram.of(lowering, [], [forecast], frozenset()).evaluator(10)
     for values in ([1.0, 4.0], [9.0], [4.0] * 10, [-1.0, 16.0]):
         evaluator.filters({"A1": np.array(values)}, len(values))
         (found,) = evaluator.forecasts(np.arange(len(values)))
@@ -241,7 +241,7 @@ def test_an_evaluator_takes_blocks_of_any_size_up_to_its_own(lower):
 
 def test_a_careful_block_leaves_no_trace_in_the_next(lower):
     lowering, (filter_, forecast) = lower({"C1": "=1/A1", "D1": "=A1<5"}, ["A1"], ["D1", "C1"])
-    evaluator = NumpyProgram(lowering, [filter_], [forecast], frozenset()).evaluator(2)
+    evaluator = NumpyProgram.of(lowering, [filter_], [forecast], frozenset()).evaluator(2)
     for values, expected in (([1.0, 0.0], [1.0, None]), ([2.0, 4.0], [0.5, 0.25]), ([0.0, 4.0], [None, 0.25])):
         evaluator.filters({"A1": np.array(values)}, 2)
         (found,) = evaluator.forecasts(np.arange(2))

@@ -5,7 +5,8 @@ import pytest
 
 from xlmc.compile.steps import plain_constant, reads
 from xlmc.errors import ErrorCode
-from xlmc.functions import REGISTRY, Kind
+from xlmc.functions import Kind
+from xlmc.functions.families import REGISTRY
 from xlmc.functions.values import constant
 
 ELEMENTS = sorted(

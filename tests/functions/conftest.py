@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from xlmc.functions import function_named
+from xlmc.functions.families import function_named
 from xlmc.functions.values import ERROR, Value, constant, from_objects
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode
-from xlmc.functions import function_named
+from xlmc.functions.families import function_named
 from xlmc.functions.values import Value
 
 NUM, VALUE, DIV0, NA = ErrorCode.NUM, ErrorCode.VALUE, ErrorCode.DIV0, ErrorCode.NA

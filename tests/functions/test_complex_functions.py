@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode
-from xlmc.functions import function_named
 from xlmc.functions.complex_numbers import read, written
+from xlmc.functions.families import function_named
 from xlmc.functions.values import constant, from_objects
 
 DIV0, NUM, VALUE, NA = ErrorCode.DIV0, ErrorCode.NUM, ErrorCode.VALUE, ErrorCode.NA

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from xlmc.errors import ErrorCode
-from xlmc.functions import function_named
 from xlmc.functions.day_count import by_basis, days_between, days_in_year, european_360, us_360
+from xlmc.functions.families import function_named
 from xlmc.functions.values import Value
 
 NUM, VALUE = ErrorCode.NUM, ErrorCode.VALUE

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from xlmc.functions import function_named
+from xlmc.functions.families import function_named
 from xlmc.functions.values import from_objects
 
 early, middle, late = (st.integers(low, low + 999).map(float) for low in (39000, 40000, 41000))

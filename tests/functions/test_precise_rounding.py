@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.errors import ErrorCode
-from xlmc.functions import function_named
+from xlmc.functions.families import function_named
 
 VALUE = ErrorCode.VALUE
 

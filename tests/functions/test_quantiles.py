@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from xlmc.errors import ErrorCode
-from xlmc.functions import function_named
+from xlmc.functions.families import function_named
 from xlmc.functions.values import Value
 
 NUM, VALUE, NA, DIV0 = ErrorCode.NUM, ErrorCode.VALUE, ErrorCode.NA, ErrorCode.DIV0

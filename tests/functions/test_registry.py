@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.functions import REGISTRY, Function, Kind, function_named
+from xlmc.functions import Function, Kind
+from xlmc.functions.families import REGISTRY, function_named
 from xlmc.functions.registry import Logical, Number, Numbers, excel
 from xlmc.functions.values import ShapeVaries, Value, from_objects
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from xlmc.errors import ErrorCode
-from xlmc.functions import function_named
+from xlmc.functions.families import function_named
 from xlmc.functions.values import ShapeVaries, Value, constant
 
 NUM, VALUE, NA, DIV0, REF = ErrorCode.NUM, ErrorCode.VALUE, ErrorCode.NA, ErrorCode.DIV0, ErrorCode.REF

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from xlmc.errors import ErrorCode
-from xlmc.functions import function_named
+from xlmc.functions.families import function_named
 from xlmc.functions.subtotal import Skips, aggregate, aggregate_skips, subtotal, subtotal_skips
 from xlmc.functions.values import ShapeVaries, Value, constant
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.functions import function_named
+from xlmc.functions.families import function_named
 from xlmc.functions.values import Value, constant
 
 VALUE, NA = ErrorCode.VALUE, ErrorCode.NA

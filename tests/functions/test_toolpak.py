@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from xlmc.errors import ErrorCode
-from xlmc.functions import function_named
+from xlmc.functions.families import function_named
 from xlmc.functions.toolpak import flattened, number_of, numbers_only, per_object
 from xlmc.functions.values import Value, constant, from_objects
 

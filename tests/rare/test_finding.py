@@ -34,7 +34,7 @@ def test_intervals_hold_the_truth(bench, name):
     problem = bench.PROBLEMS[name]
     hits, evaluations = 0, []
     for seed in range(RUNS):
-        found = bench.one_run(problem.distance, problem.dimensions, 5000 + seed, wanted=1000)
+        found = bench.one_run(problem.distance, problem.dimensions, 5000 + seed, 1000)
         points = found.equalised.points
         assert np.all(problem.distance(points) == 0.0)
         assert 0.97 * 1000 <= found.equalised.size <= 1000
@@ -65,7 +65,7 @@ def test_a_trial_heavier_than_any_known_is_learnt_from(random):
 
 def test_the_same_streams_give_the_same_trials(bench):
     problem = bench.PROBLEMS["two tails"]
-    first, second = (bench.one_run(problem.distance, 3, 77, wanted=50) for _ in range(2))
+    first, second = (bench.one_run(problem.distance, 3, 77, 50) for _ in range(2))
     assert first.equalised.points.tobytes() == second.equalised.points.tobytes()
     assert first.equalised.acceptance == second.equalised.acceptance
 

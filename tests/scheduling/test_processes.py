@@ -10,10 +10,18 @@ import pytest
 
 from xlmc.blocks import Task
 from xlmc.errors import SimulationError
-from xlmc.scheduling import crew, processes
+from xlmc.scheduling import child, crew, standby
+from xlmc.scheduling.child import Answers, Child
 from xlmc.scheduling.processes import by_processes
-from xlmc.scheduling.recipe import Recipe
-from xlmc.scheduling.threads import in_order
+from xlmc.scheduling.recipe import Recipe, worker_of
+
+
+@pytest.fixture(autouse=True)
+def none_wait():
+    """Each test starts its own processes."""
+    standby.end()
+    yield
+    standby.end()
 
 
 @pytest.fixture
@@ -26,7 +34,7 @@ def children(monkeypatch):
         started.append(popen(*arguments, **named))
         return started[-1]
 
-    monkeypatch.setattr(processes.subprocess, "Popen", start)
+    monkeypatch.setattr(child.subprocess, "Popen", start)
     return started
 
 
@@ -35,7 +43,6 @@ def test_processes_change_no_bit(model, bits, children, jobs):
     run = model.simulate(950, jobs=jobs, scheduler="processes")
     assert bits(run) == bits(model.simulate(950))
     assert len(children) == jobs - 1  # this process is one of them
-    assert all(child.returncode is not None for child in children)
 
 
 @pytest.mark.parametrize(("trials", "started"), [(900, 0), (1000, 1)])
@@ -53,33 +60,99 @@ def test_an_interruption_ends_the_processes(model, children):
     with pytest.raises(KeyboardInterrupt):
         model.simulate(10**6, jobs=2, scheduler="processes", progress=stop)
     assert len(children) == 1
-    assert all(child.returncode is not None for child in children)
+    assert all(one.returncode is not None for one in children)
 
 
-@pytest.mark.parametrize("count", [1, 2])
-def test_blocks_of_other_processes_are_the_same(model, count):
-    """Here no block is run in this process, as some are where processes are slow to start."""
-    recipe = Recipe.of(model, "numpy", 1, 100)
+def answers_of(portable, lots):
+    """What a process answers that is given these lots of tasks."""
+    answers, one = Answers(), Child()
+    one.begin(pickle.dumps(portable), answers)
+    found = []
+    for number in range(len(lots) + 1):
+        of, answer = answers.get()
+        assert of is one
+        found += one.answered(answer)[1]
+        if number < len(lots):
+            one.ask(number, lots[number])
+    one.end()
+    return found
+
+
+@pytest.mark.parametrize("engine", ["numpy", "jit", "formulas"])
+def test_blocks_of_another_process_are_the_same(model, engine):
+    """Whether it is sent a worker or a recipe; of a run its share is left to chance, here it runs all blocks."""
     tasks = [Task(start, 100, start < 300, start < 600) for start in range(0, 1000, 100)]
-    worker = recipe.worker(model, model.program("numpy"))
-    others = [processes.Child(recipe.packed()) for _ in range(count)]
-    for block, task in zip(in_order([], tasks, others), tasks, strict=True):
-        assert pickle.dumps(block) == pickle.dumps(worker.run(task))
-    for child in others:
-        child.end()
+    worker = worker_of(model, model.program(engine), engine, 1, 100)
+    portable = worker if engine == "numpy" else Recipe.of(model, engine, 1, 100)
+    found = answers_of(portable, [tasks[:3], tasks[3:4], tasks[4:]])
+    assert [pickle.dumps(block) for block in found] == [pickle.dumps(worker.run(task)) for task in tasks]
+
+
+def test_processes_wait_for_the_next_run(model, bits, children):
+    """Another model, and other settings, get what they asked for."""
+    expected = [bits(model.simulate(950, seed=seed)) for seed in (1, 2)]
+    for seed in (1, 2, 1):
+        run = model.simulate(950, seed=seed, jobs=2, scheduler="processes")
+        assert bits(run) == expected[seed - 1]
+    assert len(children) <= 3  # one that had no time to start before the run was over is ended
+    assert all(one.returncode is not None for one in children[:-1])
+
+
+def rested(model):
+    """A process that has had part in a run."""
+    standby.end()
+    (one,) = standby.children(1)
+    answers = Answers()
+    one.begin(pickle.dumps(worker_of(model, model.program("numpy"), "numpy", 1, 100)), answers)
+    one.answered(answers.get()[1])
+    standby.give_back([one])
+    return one
+
+
+def test_one_that_waits_is_taken_again(model):
+    one = rested(model)
+    assert standby.children(1) == [one]
+    one.end()
+
+
+def test_one_that_died_while_it_waited_is_not(model, children):
+    one = rested(model)
+    children[-1].kill()
+    children[-1].wait()
+    (other,) = standby.children(1)
+    assert other is not one
+    other.end()
+
+
+def test_nobody_waits_for_ever(model, monkeypatch, children):
+    monkeypatch.setattr(standby, "_PATIENCE", 0.01)
+    rested(model)
+    assert children[-1].wait(timeout=30) is not None
+
+
+def test_one_that_dies_as_its_run_begins_is_told(model, children):
+    one = rested(model)
+    (again,) = standby.children(1)
+    children[-1].kill()
+    children[-1].wait()
+    answers = Answers()
+    again.begin(b"", answers)
+    assert again is one
+    with pytest.raises(SimulationError, match="ended before its time"):
+        again.answered(answers.get(timeout=30)[1])
+    again.end()
 
 
 def test_a_process_that_dies_is_told(model, children):
-    recipe = Recipe.of(model, "numpy", 1, 100)
-    worker = recipe.worker(model, model.program("numpy"))
+    worker = worker_of(model, model.program("numpy"), "numpy", 1, 100)
     tasks = (Task(start, 100, False) for start in range(0, 10**9, 100))
-    blocks = by_processes(recipe, worker, 1, tasks)
+    blocks = by_processes(worker, worker, 1, 10**7, tasks)
     next(blocks)
     os.kill(children[0].pid, signal.SIGTERM)
     with pytest.raises(SimulationError, match="a process ended before its time"):
         for _ in blocks:
             pass
-    assert all(child.returncode is not None for child in children)
+    assert all(one.returncode is not None for one in children)
 
 
 def test_a_process_that_cannot_be_started_is_told(model, monkeypatch):
@@ -90,10 +163,9 @@ def test_a_process_that_cannot_be_started_is_told(model, monkeypatch):
 
 
 def test_an_error_in_a_process_is_raised_here(model):
-    child = processes.Child(Recipe.of(model, "numpy", 1, 100).packed())
+    worker = worker_of(model, model.program("numpy"), "numpy", 1, 100)
     with pytest.raises(TypeError, match="interpreted as an integer"):
-        list(in_order([], [Task(0, "trials", False)], [child]))
-    child.end()
+        answers_of(worker, [[Task(0, "trials", False)]])
 
 
 def test_a_script_needs_no_guard(tmp_path, case_study):

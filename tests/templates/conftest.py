@@ -13,7 +13,10 @@ import openpyxl
 import pytest
 
 from xlmc.address import parse_address
-from xlmc.compile import ENGINES, Lowering, Target, widened
+from xlmc.compile import Target
+from xlmc.compile.engines import ENGINES
+from xlmc.compile.lower import Lowering
+from xlmc.compile.widening import widened
 from xlmc.formula import Resolver, build_graph
 from xlmc.workbook import read_workbook
 

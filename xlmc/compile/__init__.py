@@ -1,46 +1,5 @@
 """Graph of formulas → one callable over blocks of trials, by the engine of one's choice."""
 
-from collections.abc import Callable, Mapping
-from typing import Any
-
-from xlmc.compile.bounds import Bounds
 from xlmc.compile.engine import Column, Evaluator, Program, Target
-from xlmc.compile.formulas_engine import FormulasProgram
-from xlmc.compile.jit import jit_filler, jit_program
-from xlmc.compile.lower import Lowering
-from xlmc.compile.numpy_engine import NumpyProgram
-from xlmc.compile.widening import widened
-from xlmc.errors import SimulationError
 
-__all__ = ["ENGINES", "FILLERS", "Column", "Evaluator", "Lowering", "Program", "Target", "options_of", "widened"]
-
-ENGINES: Mapping[str, Callable[..., Program]] = {
-    "numpy": NumpyProgram,
-    "jit": jit_program,
-    "formulas": FormulasProgram,
-}
-"""Name of an engine -> program of (lowering, filters, forecasts, inputs whose draws may be errors)."""
-
-
-def options_of(engine: str, arithmetic: str, between: Mapping[str, Bounds]) -> dict[str, Any]:
-    """What a program of the engine takes besides.
-
-    Args:
-        engine: its name.
-        arithmetic: `float64` or `float32`.
-        between: name of an input -> its bounds, for engines that make use of them.
-
-    Raises:
-        SimulationError: there is no such arithmetic, or the engine does not know it.
-    """
-    if arithmetic == "float64":
-        return {"between": between} if engine == "numpy" else {}
-    if arithmetic != "float32":
-        raise SimulationError(f"there is no arithmetic {arithmetic!r}", hint="choose float64 or float32")
-    if engine != "jit":
-        raise SimulationError(f"the engine `{engine}` computes in float64 only", hint="use `--engine jit`, or float64")
-    return {"single": True}
-
-
-FILLERS = {"jit": jit_filler}
-"""Name of an engine -> what draws its uniforms, where it brings something of its own; see `sampling.draws.Filler`."""
+__all__ = ["Column", "Evaluator", "Program", "Target"]

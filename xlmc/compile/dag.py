@@ -157,6 +157,10 @@ class Dag:
         self.made: list[int] | None = None
         self._known: dict[object, int] = {}
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """To another process go the nodes alone: it evaluates them and adds none."""
+        return _of_nodes, (self.nodes, self.types, self.sizes)
+
     def constant(self, value: Value) -> int:
         """The node of a known value."""
         return self._place(_constant_key(value), Constant(value), _constant_type(value), value.shape[1:] or None)
@@ -288,6 +292,12 @@ class Dag:
                 read = uses(self.nodes[place]) if reads is None else reads(place)
                 needed.update(p for p in read if not isinstance(self.nodes[p], Constant))
         return sorted(needed)
+
+
+def _of_nodes(nodes: list[Node], types: list[Kind], sizes: list[Size]) -> Dag:
+    dag = Dag()
+    dag.nodes, dag.types, dag.sizes = nodes, types, sizes
+    return dag
 
 
 def uses(node: Node) -> tuple[int, ...]:

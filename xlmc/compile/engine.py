@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.formula import ir
 from xlmc.functions.values import BLANK, ERROR, TEXT, Bools, Codes, Floats, Value
 
 if TYPE_CHECKING:
+    from xlmc.formula import ir
     from xlmc.sampling.draws import Linear
 
 __all__ = [

@@ -24,7 +24,8 @@ from xlmc.compile.scope import Scope
 from xlmc.compile.settings import as_set
 from xlmc.errors import ErrorCode, FormulaError, Notice
 from xlmc.formula import Filled, Graph, Resolver, ir
-from xlmc.functions import REGISTRY, Function, Kind, function_named
+from xlmc.functions import Function, Kind
+from xlmc.functions.families import REGISTRY, function_named
 from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.registry import Anything
 from xlmc.functions.values import BLANK, Value, constant

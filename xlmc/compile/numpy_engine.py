@@ -8,18 +8,21 @@ nothing where there are none.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.compile.bounds import Bounds
+from xlmc.compile.dag import Dag
 from xlmc.compile.engine import Column, Evaluator, Target
-from xlmc.compile.lower import Lowering
 from xlmc.compile.plan import Plan, Space
 from xlmc.compile.steps import Departure
 from xlmc.compile.tracking import TrackingEvaluator
 from xlmc.functions.values import Floats
+
+if TYPE_CHECKING:
+    from xlmc.compile.lower import Lowering
 
 __all__ = ["NumpyProgram"]
 
@@ -31,9 +34,10 @@ _MOST_BYTES: Final = 1 << 25
 
 
 class NumpyProgram:
-    """The graph of nodes, ready to run on NumPy.
+    """The graph of nodes, ready to run on NumPy. It can be pickled, and so can its evaluators, without their memory.
 
     Args:
+        filters, forecasts: the places of nodes.
         may_err: the inputs whose draws may be errors (NaNs), which raise no flag.
         between: name of an input -> the bounds that it will be given within; none are known of the others.
 
@@ -43,16 +47,14 @@ class NumpyProgram:
 
     def __init__(
         self,
-        lowering: Lowering,
-        filters: Sequence[Target],
-        forecasts: Sequence[Target],
+        dag: Dag,
+        filters: Sequence[int],
+        forecasts: Sequence[int],
         may_err: frozenset[str],
         between: Mapping[str, Bounds] | None = None,
     ) -> None:
-        self._dag = lowering.dag
-        self._filters = [lowering.target(target) for target in filters]
-        self._forecasts = [lowering.target(target) for target in forecasts]
-        self._plan = Plan(self._dag, self._filters, self._forecasts, between)
+        self._made_of = dag, filters, forecasts, may_err, between
+        self._plan = Plan(dag, filters, forecasts, between)
         self._may_err = may_err & self._plan.inputs
         self.largest_block = _LARGEST_BLOCK
         while (
@@ -60,18 +62,41 @@ class NumpyProgram:
         ):
             self.largest_block //= 2
 
+    @classmethod
+    def of(
+        cls,
+        lowering: Lowering,
+        filters: Sequence[Target],
+        forecasts: Sequence[Target],
+        may_err: frozenset[str],
+        between: Mapping[str, Bounds] | None = None,
+    ) -> NumpyProgram:
+        """The program of targets."""
+        first, late = ([lowering.target(target) for target in targets] for targets in (filters, forecasts))
+        return cls(lowering.dag, first, late, may_err, between)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return NumpyProgram, self._made_of
+
     def evaluator(self, block: int) -> Evaluator:
         """See `Program`."""
-        tracking = TrackingEvaluator(self._dag, self._filters, self._forecasts)
-        return _NumpyEvaluator(self._plan, Space(self._plan, block), tracking, self._may_err)
+        dag, filters, forecasts, *_ = self._made_of
+        tracking = TrackingEvaluator(dag, filters, forecasts)
+        return _NumpyEvaluator(self, block, self._plan, tracking, self._may_err)
 
 
 class _NumpyEvaluator:
-    def __init__(self, plan: Plan, space: Space, tracking: TrackingEvaluator, may_err: frozenset[str]) -> None:
-        self._plan, self._space, self._tracking, self._may_err = plan, space, tracking, may_err
+    def __init__(
+        self, program: NumpyProgram, block: int, plan: Plan, tracking: TrackingEvaluator, may_err: frozenset[str]
+    ) -> None:
+        self._made_of = program, block
+        self._plan, self._space, self._tracking, self._may_err = plan, Space(plan, block), tracking, may_err
         self._inputs: Mapping[str, Floats] = {}
         self._n = 0
         self._departed = False
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return NumpyProgram.evaluator, self._made_of
 
     def filters(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:
         self._inputs, self._n = inputs, n

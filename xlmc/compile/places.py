@@ -14,7 +14,7 @@ from xlmc.compile.references import REFERENCES, NotYetNeeded, OffTheSheet, areas
 from xlmc.compile.scope import Scope
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
-from xlmc.functions import function_named
+from xlmc.functions.families import function_named
 from xlmc.functions.values import constant
 
 if TYPE_CHECKING:

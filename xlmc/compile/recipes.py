@@ -16,7 +16,7 @@ from xlmc.compile.dag import Apply, Constant, Dag, Node, Range, Repeat, Rescue, 
 from xlmc.compile.lambdas import LAMBDAS
 from xlmc.compile.places import PLACES
 from xlmc.formula import Stencil, ir
-from xlmc.functions import function_named
+from xlmc.functions.families import function_named
 
 __all__ = ["Recipes"]
 

@@ -19,7 +19,7 @@ from xlmc.errors import SimulationError
 from xlmc.functions.values import BLANK, ERROR, TEXT, Floats, Value
 
 if TYPE_CHECKING:
-    from xlmc.compile import Lowering
+    from xlmc.compile.lower import Lowering
     from xlmc.model import Model
 
 __all__ = ["derivatives"]

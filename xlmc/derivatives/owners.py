@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from xlmc.address import Cell
-from xlmc.compile import Lowering
 from xlmc.compile.dag import uses
+from xlmc.compile.lower import Lowering
 
 __all__ = ["owners"]
 

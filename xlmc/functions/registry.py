@@ -11,9 +11,11 @@ body's values. That is what the fast engine runs.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from importlib import import_module
 from typing import Any, Final
 
 import numpy as np
@@ -37,6 +39,7 @@ __all__ = [
     "Text",
     "excel",
     "function_named",
+    "row_of",
 ]
 
 
@@ -55,7 +58,11 @@ Elementwise = np.ufunc | Tangents
 """What is called as a NumPy ufunc is."""
 
 
-_REQUIRED: Final = object()
+class _Required(Enum):
+    REQUIRED = "required"
+
+
+_REQUIRED: Final = _Required.REQUIRED
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +106,7 @@ class Function:
         guard: takes the body's float arrays, says whether all of them lie where `ufunc` and Excel agree.
         volatile: its value changes without its arguments.
         dated: the body takes `date1904`, keyword only: whether serial dates count from 1904.
+        home: the module that registers it.
         takes_values, takes_sets: whether any argument is of `ANY` kind, or all are one set.
         on_numbers: with arguments that are all numbers, the ufunc alone may be run.
         takes_plainly: how many arguments that ufunc takes, one or two; 0 where there is none or it takes more.
@@ -112,6 +120,7 @@ class Function:
     guard: Callable[..., bool] | None = None
     volatile: bool = False
     dated: bool = False
+    home: str = ""
     takes_values: bool = field(init=False)
     takes_sets: bool = field(init=False)
     on_numbers: bool = field(init=False)
@@ -127,6 +136,13 @@ class Function:
         answers = {"takes_values": values, "takes_sets": sets, "on_numbers": numbers, "takes_plainly": plainly}
         for name, found in answers.items():
             object.__setattr__(self, name, found)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A row goes to another process by its name, where it is looked up; one that was made for a workbook whole."""
+        if REGISTRY.get(self.name) is self:
+            return row_of, (self.name, self.home)
+        made = self.name, self.parameters, self.body, self.returns, self.ufunc, self.guard, self.volatile, self.dated
+        return Function, made
 
     def parameter(self, position: int) -> Parameter:
         """The parameter of an argument; the last ones repeat where they may."""
@@ -224,6 +240,9 @@ def _tall(array: NDArray[Any], n: int) -> NDArray[Any]:
 
 REGISTRY: Final[dict[str, Function]] = {}
 
+_FAMILIES: Final = "xlmc.functions.families"
+"""What imports all of them."""
+
 
 def excel(
     name: str,
@@ -236,9 +255,10 @@ def excel(
     dated: bool = False,
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Register a body as the Excel function `name`."""
+    home = str(sys._getframe(1).f_globals["__name__"])  # a body may be NumPy's, which does not say
 
     def register(body: Callable[..., Any]) -> Callable[..., Any]:
-        row = Function(name, parameters, body, returns, ufunc, guard, volatile, dated)
+        row = Function(name, parameters, body, returns, ufunc, guard, volatile, dated, home)
         for key in (name, *aliases):
             if key in REGISTRY:
                 raise ValueError(f"{key} is registered twice")
@@ -251,3 +271,16 @@ def excel(
 def function_named(name: str) -> Function | None:
     """The row of an Excel function, its name in capitals and without `_xlfn.`; None when there is none."""
     return REGISTRY.get(name)
+
+
+def row_of(name: str, module: str = _FAMILIES) -> Function:
+    """The row of a name that has one, imported first if need be.
+
+    Args:
+        name: in capitals.
+        module: where it is likely to be registered.
+    """
+    for place in (module, _FAMILIES):
+        if name not in REGISTRY:
+            import_module(place)
+    return REGISTRY[name]

@@ -16,7 +16,7 @@ from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import leveled, refused, whole_numbers
 from xlmc.functions.logical import choose
 from xlmc.functions.picking import each_part, flattened
-from xlmc.functions.registry import REGISTRY, Cells, Number, excel
+from xlmc.functions.registry import Cells, Number, excel, row_of
 from xlmc.functions.values import BLANK, ERROR, ShapeVaries, Value, constant
 
 __all__ = ["Skips", "aggregate", "aggregate_skips", "subtotal", "subtotal_skips"]
@@ -75,7 +75,7 @@ def aggregate_skips(options: int) -> Skips:
 def subtotal(number: int, values: Sequence[Value]) -> Value:
     """`SUBTOTAL` of ranges that hold only what counts; numbers from 101 on are the same functions."""
     name = _OF_SETS.get(number - 100 if number > 100 else number)
-    return constant(ErrorCode.VALUE) if name is None else REGISTRY[name](_ranges(values))
+    return constant(ErrorCode.VALUE) if name is None else row_of(name)(_ranges(values))
 
 
 def aggregate(number: int, options: int, values: Sequence[Value]) -> Value:
@@ -86,9 +86,9 @@ def aggregate(number: int, options: int, values: Sequence[Value]) -> Value:
     if number in _OF_ARRAYS:
         if len(values) != 2:
             return constant(ErrorCode.VALUE)
-        return REGISTRY[_OF_ARRAYS[number]]([keep(values[0].as_range()), values[1]])
+        return row_of(_OF_ARRAYS[number])([keep(values[0].as_range()), values[1]])
     name = (_OF_SETS | _MORE_OF_SETS).get(number)
-    return constant(ErrorCode.VALUE) if name is None else REGISTRY[name]([keep(v) for v in _ranges(values)])
+    return constant(ErrorCode.VALUE) if name is None else row_of(name)([keep(v) for v in _ranges(values)])
 
 
 def _ranges(values: Sequence[Value]) -> list[Value]:

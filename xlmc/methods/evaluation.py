@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.compile import ENGINES, Target
+from xlmc.compile import Target
+from xlmc.compile.engines import ENGINES
 from xlmc.definitions.model import name_key
 from xlmc.model import Model
 from xlmc.scene import condition

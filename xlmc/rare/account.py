@@ -27,8 +27,9 @@ class RareAccount:
         proposals: of them, independent draws from what was learned.
         proposals_accepted: of those, by the filters.
         kept: of those, with equal weight.
+        fresh: of the proposals, those that say how likely acceptance is.
         acceptance: the probability that a plain trial is accepted.
-        effective: (Σw)²/Σw² of the proposals accepted, which `acceptance` comes from.
+        effective: (Σw)²/Σw² of the accepted ones among those, w being their weights.
         size: the effective sample size of the kept ones: a few stand more than once.
         searched: the same probability as the populations had it that found the region.
         levels: distances from acceptance that these went through.
@@ -42,6 +43,7 @@ class RareAccount:
     learning: int
     proposals: int
     proposals_accepted: int
+    fresh: int
     kept: int
     acceptance: Estimate
     effective: float
@@ -75,8 +77,17 @@ class RareAccount:
             f"{self.proposals:,} further trials were drawn there; {self.proposals_accepted:,} of them pass all "
             f"filters, and of these each was kept with a chance that gives all kept ones equal weight. The "
             f"{self.kept:,} kept ones are independent, and spread as those that plain trials would have left "
-            f"(effective sample size {self.size:,.0f}: a few stand more than once). No method can rule out that a "
-            "separate part of the accepted region was not found."
+            f"(effective sample size {self.size:,.0f}: a few stand more than once). {self._of_acceptance}No method can "
+            "rule out that a separate part of the accepted region was not found."
+        )
+
+    @property
+    def _of_acceptance(self) -> str:
+        if not self.fresh:
+            return ""
+        return (
+            f"How likely acceptance is, the last {self.fresh:,} of those drawn say: that there were enough before is "
+            "no part of the answer. "
         )
 
     @property

@@ -4,6 +4,10 @@ The kept ones are then independent, and spread as the trials that plain rejectio
 better envelope. How high the envelope must be, the largest weights among the trials say (as in empirical supremum
 rejection sampling: Caffo, Booth & Davis 2002): where it grows, those kept before are thinned, each by the number in
 [0, 1) that it was kept by. A few trials above the envelope stand more than once: see `envelope`.
+
+When there are enough depends on the weights met so far: where heavy ones have not come yet, there are enough too soon,
+and the trials lack what weighs much. So more are drawn after that, how many being settled before: the trials are the
+last ones, and the probability of acceptance comes from these draws alone.
 """
 
 from __future__ import annotations
@@ -31,6 +35,9 @@ Accepts = Callable[[Floats], NDArray[np.bool_]]
 
 BATCH: Final = 32_768
 
+_FRESH: Final = 32 * BATCH
+"""Proposals at most that the probability of acceptance comes from."""
+
 _SURPRISE: Final = math.log(30.0)
 """By how much the envelope may grow, as a logarithm, before the proposal is to be learnt anew."""
 
@@ -44,9 +51,9 @@ class Equalised:
         size: (Σc)²/Σc², c the copies of each: their effective sample size.
         proposals: trials drawn.
         accepted: of them, by the filters.
+        fresh: of them, those drawn after there were enough; `acceptance` comes from these, if there are any.
         acceptance: the probability that a trial is accepted.
-        effective: (Σw)²/Σw² of the accepted proposals, from which `acceptance` comes, or less where the populations
-            know of heavier ones.
+        effective: (Σw)²/Σw² of the accepted ones among these, or less where the populations know of heavier ones.
         surprise: where a trial was much heavier than any known before, the batch that it was in, to learn from.
     """
 
@@ -54,6 +61,7 @@ class Equalised:
     size: float
     proposals: int
     accepted: int
+    fresh: int
     acceptance: Estimate
     effective: float
     surprise: Round | None = None
@@ -71,7 +79,7 @@ def equalised(
     *,
     surprises: bool = True,
 ) -> Equalised:
-    """Draw from the proposal until `wanted` trials are kept, or `most` are drawn.
+    """Draw from the proposal until `wanted` trials are kept, and then as many again, or until `most` are drawn.
 
     Args:
         accepts: which points are accepted.
@@ -84,21 +92,86 @@ def equalised(
         say: told of the proposals so far.
         surprises: whether to stop where the envelope must be much higher than `lowest`.
     """
-    sums, envelope = _Sums(lowest, unevenness), lowest
-    bar = lowest + _SURPRISE if surprises else math.inf
-    kept = _Kept(np.empty((0, len(proposal.basis))), np.empty(0), np.empty(0))
-    while kept.copies(envelope).sum() < wanted and sums.proposals < most:
-        points, luck = proposal.draw(BATCH, random), random.random(BATCH)
-        places = np.flatnonzero(accepts(points))
-        logs = proposal.log_weights(points[places])
-        kept = kept.joined(points[places], logs, luck[places])
-        envelope = height(kept.logs, wanted, envelope)
-        if envelope > bar:
-            return sums.equalised(kept, envelope, wanted, Round(proposal, BATCH, points[places], logs))
-        kept = kept.under(envelope)
-        sums.add(logs)
-        say(sums.proposals)
-    return sums.equalised(kept, envelope, wanted, None)
+    drawing = _Drawing(accepts, proposal, random, wanted, lowest, lowest + _SURPRISE if surprises else math.inf)
+    until_enough, fresh = _Sums(lowest, unevenness), _Sums(lowest, unevenness)
+    planned = 0
+
+    def more(sums: _Sums) -> bool:
+        """Whether another batch was drawn and is no surprise."""
+        if drawing.surprise is not None or until_enough.proposals + fresh.proposals >= most:
+            return False
+        sums.add(drawing.batch())
+        say(until_enough.proposals + fresh.proposals)
+        return True
+
+    while not drawing.enough and more(until_enough):
+        planned = min(until_enough.proposals, _FRESH)
+    while fresh.proposals < planned and more(fresh):
+        pass
+    while not drawing.enough and more(until_enough):  # a heavy one among the last has thinned them
+        pass
+    of = fresh if fresh.proposals else until_enough
+    points = drawing.trials()
+    return Equalised(
+        points=points,
+        size=float(len(points) ** 2 / np.sum(np.square(_runs(points)))) if len(points) else 0.0,
+        proposals=until_enough.proposals + fresh.proposals,
+        accepted=until_enough.accepted + fresh.accepted,
+        fresh=fresh.proposals,
+        acceptance=of.acceptance,
+        effective=of.effective,
+        surprise=drawing.surprise,
+    )
+
+
+def _runs(points: Floats) -> NDArray[np.int64]:
+    """How often each of the points stands; they follow each other."""
+    new = np.append(True, np.any(points[1:] != points[:-1], axis=1))
+    return np.diff(np.append(np.flatnonzero(new), len(points)))
+
+
+class _Drawing:
+    """Batches of proposals, and the trials that are kept of them so far.
+
+    Attributes:
+        surprise: the batch that a trial above `bar` was in.
+    """
+
+    def __init__(
+        self,
+        accepts: Accepts,
+        proposal: Proposal,
+        random: np.random.Generator,
+        wanted: int,
+        lowest: float,
+        bar: float,
+    ) -> None:
+        self._accepts, self._proposal, self._random = accepts, proposal, random
+        self._wanted, self._envelope, self._bar = wanted, lowest, bar
+        self._kept = _Kept(np.empty((0, len(proposal.basis))), np.empty(0), np.empty(0))
+        self.surprise: Round | None = None
+
+    @property
+    def enough(self) -> bool:
+        """Whether as many are kept as are wanted."""
+        return bool(self._kept.copies(self._envelope).sum() >= self._wanted)
+
+    def batch(self) -> Floats:
+        """(m,) logarithms of the weights of the accepted ones among another batch."""
+        points, luck = self._proposal.draw(BATCH, self._random), self._random.random(BATCH)
+        places = np.flatnonzero(self._accepts(points))
+        logs = self._proposal.log_weights(points[places])
+        self._kept = self._kept.joined(points[places], logs, luck[places])
+        self._envelope = height(self._kept.logs, self._wanted, self._envelope)
+        if self._envelope > self._bar:
+            self.surprise = Round(self._proposal, BATCH, points[places], logs)
+        self._kept = self._kept.under(self._envelope)
+        return logs
+
+    def trials(self) -> Floats:
+        """The last `wanted` points of equal weight, or what there is of them."""
+        repeated = np.repeat(np.arange(len(self._kept.points)), self._kept.copies(self._envelope))
+        return self._kept.points[repeated[-self._wanted :]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -143,29 +216,23 @@ class _Sums:
         self._first += float(weights.sum())
         self._second += float(np.square(weights).sum())
 
-    def equalised(self, kept: _Kept, envelope: float, wanted: int, surprise: Round | None) -> Equalised:
-        # The mean square of few weights lacks the largest, which are rarest; the populations have met these too.
-        square = max(self._second, self._first * self._uneven)
-        effective = self._first**2 / square if square else 0.0
-        places = np.repeat(np.arange(len(kept.points)), kept.copies(envelope))[:wanted]
-        counts = np.bincount(places).astype(np.float64)
-        return Equalised(
-            kept.points[places],
-            float(places.size**2 / np.sum(counts * counts)) if places.size else 0.0,
-            self.proposals,
-            self.accepted,
-            self._acceptance(square, effective),
-            effective,
-            surprise,
-        )
+    @property
+    def _square(self) -> float:
+        """The sum of squares. That of few weights lacks the largest, rarest ones; the populations have met these."""
+        return max(self._second, self._first * self._uneven)
 
-    def _acceptance(self, square: float, effective: float) -> Estimate:
+    @property
+    def effective(self) -> float:
+        """(Σw)²/Σw²."""
+        return self._first**2 / self._square if self._first else 0.0
+
+    @property
+    def acceptance(self) -> Estimate:
         """The mean weight of all proposals, those rejected having none; its interval is one of the logarithm."""
         if not self.accepted:
             return Estimate(0.0, n=self.proposals)
         mean = self._first / self.proposals
-        variance = (square / self.proposals - mean**2) / (self.proposals - 1)
+        variance = (self._square / self.proposals - mean**2) / (self.proposals - 1)
         unit = math.exp(self._unit)
-        return with_relative_error(
-            unit * mean, unit * math.sqrt(max(variance, 0.0)), effective - 1.0, 0.95, self.proposals
-        )
+        error = unit * math.sqrt(max(variance, 0.0))
+        return with_relative_error(unit * mean, error, self.effective - 1.0, 0.95, self.proposals)

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.rare.equalising import BATCH, Accepts, Equalised, equalised
+from xlmc.rare.equalising import Accepts, Equalised, equalised
 from xlmc.rare.learning import Learned, Round, Say, again, learn
 from xlmc.rare.splitting import Distance
 
@@ -74,6 +74,6 @@ def find(
         )
         if drawn.surprise is None:
             break
-        before += drawn.proposals + BATCH
+        before += drawn.proposals
         learned = again(distance, learned, drawn.surprise, learning, say)
     return Found(learned, used, drawn, done + drawn.proposals)

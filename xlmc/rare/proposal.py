@@ -33,12 +33,15 @@ _THIN: Final = 0.25
 """A variance below which a direction counts as thin: that of the assumptions is 1."""
 
 _SHARES: Final = (
-    ((0.61, 1.0), (0.23, 1.7)),
-    ((0.44, 1.0), (0.2, 1.7), (0.2, 3.5)),
-    ((0.3, 1.0), (0.18, 1.7), (0.18, 3.5), (0.18, 8.0)),
+    ((0.61, 1.0, 1.0), (0.23, 1.7, 1.7)),
+    ((0.44, 1.0, 1.0), (0.2, 1.7, 1.7), (0.2, 3.5, 3.5)),
+    ((0.3, 1.0, 1.0), (0.18, 1.7, 1.7), (0.18, 3.5, 3.5), (0.18, 8.0, 8.0)),
+    ((0.4, 1.0, 1.0), (0.24, 2.5, 1.2), (0.14, 6.0, 1.4), (0.06, 15.0, 1.7)),
+    ((0.3, 1.0, 1.0), (0.22, 2.5, 1.3), (0.2, 6.0, 1.7), (0.12, 15.0, 2.5)),
 )
-"""Of the mixture, from each fitted component with its covariance times so much: the one of these is taken under which
-the accepted points weigh least, and so the weights of proposals vary least."""
+"""Of the mixture, from each fitted component with its covariance times so much, first in thin directions, then in the
+others: the one of these is taken under which the accepted points weigh least, and so the weights of proposals vary
+least. What a layer's bend leaves has longer tails than a normal distribution, and tails in all directions are dear."""
 
 _WIDE: Final = 0.16
 """Of the mixture, from components as wide as the assumptions themselves, so that few weights are far above the usual
@@ -147,18 +150,20 @@ def _told_apart(points: Floats, shares: Floats) -> tuple[Floats, Floats]:
 
 
 def _defended(proposal: Proposal, points: Floats, weights: Floats) -> Proposal:
-    made = [replace(proposal, defended=_inflated(proposal.mixture, shares)) for shares in _SHARES]
+    thin = proposal.shear.thin
+    made = [replace(proposal, defended=_inflated(proposal.mixture, shares, thin)) for shares in _SHARES]
     return min(made, key=lambda each: each.unevenness(points, weights))
 
 
-def _inflated(mixture: Mixture, wanted: Sequence[tuple[float, float]]) -> Mixture:
-    shares = [share * mixture.shares for share, _ in wanted]
-    roots = [factor**0.5 * mixture.roots for _, factor in wanted]
+def _inflated(mixture: Mixture, wanted: Sequence[tuple[float, float, float]], thin: int) -> Mixture:
+    shares = [share * mixture.shares for share, _, _ in wanted]
+    count = mixture.means.shape[1]
+    scales = [np.repeat([of_thin**0.5, of_others**0.5], [thin, count - thin]) for _, of_thin, of_others in wanted]
     wide = np.array([_widened(root) for root in mixture.roots])
     return Mixture(
         np.concatenate([*shares, _WIDE * mixture.shares]),
         np.concatenate([mixture.means] * (len(wanted) + 1)),
-        np.concatenate([*roots, wide]),
+        np.concatenate([*(scale[:, None] * mixture.roots for scale in scales), wide]),
     )
 
 

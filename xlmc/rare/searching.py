@@ -66,6 +66,7 @@ def search(model: Model, settings: Settings, plain: int, say: Callable[[int], No
         learning=landscape.evaluations - drawn.proposals,
         proposals=drawn.proposals,
         proposals_accepted=drawn.accepted,
+        fresh=drawn.fresh,
         kept=len(drawn.points),
         acceptance=drawn.acceptance,
         effective=drawn.effective,

@@ -191,6 +191,7 @@ def _rare(found: RareAccount) -> Section:
         Entry("proposals_accepted", "Of those, accepted by the filters", found.proposals_accepted),
         Entry("kept", "Of those, kept with equal weight", found.kept),
         Entry("effective", "Effective sample size of the kept ones", plain(found.size)),
+        Entry("fresh", "Drawn after there were enough, for the probability", found.fresh),
         Entry("acceptance", "Probability that a trial is accepted", plain(found.acceptance.value)),
         Entry("acceptance_low", "Its 95 % interval, of its logarithm, from", plain(low)),
         Entry("acceptance_high", "to", plain(high)),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,7 +98,7 @@ first trial of a block, and fills each row with offset + factor·uniform."""
 
 
 class Sampler:
-    """Draws blocks of trials. For one thread; its memory is used again with every block.
+    """Draws blocks of trials. For one thread; its memory is used again with every block, and not pickled with it.
 
     Args:
         seed: of the run.
@@ -119,6 +120,7 @@ class Sampler:
         plan: Plan | None = None,
         filler: Filler | None = None,
     ) -> None:
+        self._made_of = seed, stages, groups, parameters, block, plan, filler
         names = [name for group in groups for name in group.names]
         names += [draw.name for stage in stages for draw in stage.draws if draw.name not in names]
         self._rows = np.empty((len(names), block))
@@ -137,6 +139,9 @@ class Sampler:
             self._fill = _by_margins(self._margins, ordered, self._rows)
         else:
             self._fill = filler(self._streams, ordered, self._rows)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Sampler, self._made_of
 
     @property
     def linear(self) -> Linear | None:

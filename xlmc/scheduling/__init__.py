@@ -1,5 +1,1 @@
 """Who runs the blocks: threads, processes, or the workers of a Dask cluster. Blocks come back in order from all."""
-
-from xlmc.scheduling.crew import Crew
-
-__all__ = ["Crew"]

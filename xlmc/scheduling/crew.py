@@ -25,6 +25,9 @@ __all__ = ["PROCESS_BLOCKS", "Crew"]
 PROCESS_BLOCKS: Final[Mapping[str, int]] = {"numpy": 128, "formulas": 4}
 """Engine -> blocks that take longer than a process to start, which is half a second: its threads share a lock."""
 
+_PORTABLE: Final = frozenset({"numpy"})
+"""Engines whose workers can be pickled: to unpickle one takes a fraction of the imports that a recipe needs."""
+
 
 @dataclass(frozen=True, slots=True)
 class Crew:
@@ -75,7 +78,9 @@ class Crew:
             return
         recipe = Recipe.of(model, settings.engine, settings.seed, block, settings.arithmetic, plan)
         if scheduler == "processes":
-            yield from by_processes(recipe, worker(), jobs - 1, tasks)
+            own = worker()
+            portable = own if settings.engine in _PORTABLE else recipe
+            yield from by_processes(portable, own, jobs - 1, blocks, tasks)
         else:
             yield from by_cluster(recipe, scheduler, self.workers, blocks, tasks)
 

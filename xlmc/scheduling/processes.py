@@ -1,157 +1,95 @@
 """Processes of this machine that run blocks: no lock is shared, so they scale where threads wait for each other.
 
-This process runs blocks too, from the start; the others join it when they are ready. Each of them is a fresh
-interpreter that talks through its pipes. It neither forks, which is unsafe beside threads, nor imports the caller's
-main module again, so a script needs no `if __name__ == "__main__"`.
+This process runs blocks too, from the start; the others join it when they are ready. One thread here hands out tasks,
+runs blocks of its own in between, and puts all in order: more threads would wait for each other at every call.
 """
 
 from __future__ import annotations
 
-import os
 import pickle
-import subprocess
-import sys
 from collections.abc import Iterable, Iterator
-from threading import Event, Lock
-from typing import Any, BinaryIO
+from itertools import islice
+from typing import Final
 
-from xlmc.blocks import Block, Runner, Task
-from xlmc.errors import SimulationError
-from xlmc.scheduling.recipe import Recipe, unpacked
-from xlmc.scheduling.threads import in_order
+from xlmc.blocks import Block, Portable, Runner, Task
+from xlmc.scheduling import standby
+from xlmc.scheduling.child import Answers, Child
 
-__all__ = ["Child", "by_processes", "serve"]
+__all__ = ["by_processes"]
 
-_START = (
-    "import pickle, sys; sys.path[:] = pickle.load(sys.stdin.buffer); "
-    "from xlmc.scheduling.processes import serve; serve()"
-)
+_MOST: Final = 8
+"""Blocks in a lot: few messages, and at the end nobody waits long for the last one."""
+
+_AHEAD: Final = 24
+"""Blocks for each process that may be finished or under way before their turn."""
 
 
-def by_processes(recipe: Recipe, own: Runner, others: int, tasks: Iterable[Task]) -> Iterator[Block]:
+def by_processes(portable: Portable, own: Runner, others: int, blocks: int, tasks: Iterable[Task]) -> Iterator[Block]:
     """The blocks in the order of their tasks.
 
     Args:
-        recipe: of the run.
+        portable: what makes the runner of another process.
         own: what runs its blocks in this process.
         others: how many more processes.
-        tasks: what to run.
+        blocks: how many there will be at most.
+        tasks: taken as they are needed.
 
     Raises:
         SimulationError: a process cannot be started, or ended before its time.
     """
-    packed = recipe.packed()
-    children: list[Child] = []
+    packed, answers = pickle.dumps(portable, protocol=5), Answers()
+    children = standby.children(others)
     try:
-        children += (Child(packed) for _ in range(others))
-        yield from in_order([own], tasks, children)
-    finally:
         for child in children:
-            child.end()
+            child.begin(packed, answers)
+        yield from _Shared(own, children, answers, blocks, iter(tasks)).in_order()
+    finally:
+        standby.give_back(children)
 
 
-class Child:
-    """A process, seen from here; a `Late` runner that several threads may ask at once."""
+class _Shared:
+    """The tasks of a run, shared out."""
 
-    at_once = 2
+    def __init__(
+        self, own: Runner, children: list[Child], answers: Answers, blocks: int, tasks: Iterator[Task]
+    ) -> None:
+        self._own, self._children, self._answers = own, children, answers
+        self._left, self._tasks = blocks, tasks
+        self._given = self._turn = 0
+        self._done: dict[int, Block] = {}
 
-    def __init__(self, packed: bytes) -> None:
-        self._packed = packed
-        self._sending, self._answered = Lock(), Event()
-        self._answered.set()
-        # A session of its own, where there are such: Ctrl-C is for us alone, and we end it.
-        try:
-            self._process = subprocess.Popen(
-                [sys.executable, "-c", _START],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                start_new_session=os.name == "posix",
-            )
-        except OSError as error:
-            hint = "Ask for fewer with -j, or use --scheduler threads"
-            raise SimulationError(f"no process can be started: {error.strerror or error}", hint=hint) from error
+    def in_order(self) -> Iterator[Block]:
+        """Run them."""
+        while True:
+            while not self._answers.empty():
+                self._listen()
+            for child in self._children:
+                while child.wants and (lot := self._some(self._left // (4 * self._runners))):
+                    child.ask(self._given - len(lot), lot)
+            while self._turn in self._done:
+                yield self._done.pop(self._turn)
+                self._turn += 1
+            if lot := self._some(1):
+                self._done[self._given - 1] = self._own.run(lot[0])
+            elif self._given > self._turn:
+                self._listen()
+            else:
+                return
 
-    def start(self) -> None:
-        """Give it the recipe, and wait until it has made the model of it."""
-        self._asked(sys.path, self._packed)
+    @property
+    def _runners(self) -> int:
+        return len(self._children) + 1
 
-    def run(self, task: Task) -> Block:
-        """See `Runner`."""
-        return self._asked(task)  # type: ignore[no-any-return]  # a block
+    def _some(self, wanted: int) -> list[Task]:
+        """The next tasks; none where there are none, or where too many are ahead."""
+        room = _AHEAD * self._runners - (self._given - self._turn)
+        found = list(islice(self._tasks, max(0, min(max(1, wanted), _MOST, room))))
+        self._given += len(found)
+        self._left -= len(found)
+        return found
 
-    def _asked(self, *messages: object) -> Any:
-        """What it answers, in the order in which it was asked.
-
-        Raises:
-            SimulationError: it does not.
-        """
-        mine = Event()
-        try:
-            with self._sending:
-                before, self._answered = self._answered, mine
-                for message in messages:
-                    _send(self._process.stdin, message)
-            before.wait()
-            answer = pickle.load(self._process.stdout)  # type: ignore[arg-type]  # there is a pipe
-        except (EOFError, BrokenPipeError, pickle.UnpicklingError) as error:
-            code = self._process.wait()
-            hint = "It may have run out of memory: ask for fewer with -j"
-            raise SimulationError(f"a process ended before its time (exit code {code})", hint=hint) from error
-        finally:
-            mine.set()
-        if isinstance(answer, BaseException):
-            raise answer
-        return answer
-
-    def end(self) -> None:
-        """Stop it, whatever it is doing."""
-        self._process.kill()
-        for pipe in (self._process.stdin, self._process.stdout):
-            if pipe is not None:
-                try:
-                    pipe.close()
-                except BrokenPipeError:  # what it had not read yet
-                    continue
-        self._process.wait()
-
-
-def _send(pipe: Any, message: object) -> None:
-    pickle.dump(message, pipe, protocol=5)
-    pipe.flush()
-
-
-def serve() -> None:
-    """The process, seen from inside: a recipe, then task after task, each answered by a block or an error."""
-    source, answers = sys.stdin.buffer, _answers()
-    try:
-        packed = pickle.load(source)
-        worker = _worker(packed)
-        _send(answers, worker if isinstance(worker, Exception) else None)
-        while not isinstance(worker, Exception):
-            task: Task = pickle.load(source)
-            _send(answers, _answer(worker, task))
-    except EOFError:
-        return
-
-
-def _worker(packed: bytes) -> Runner | Exception:
-    try:
-        recipe = unpacked(packed)
-        model = recipe.model()
-        return recipe.worker(model, model.program(recipe.engine, recipe.arithmetic))
-    except Exception as error:
-        return error
-
-
-def _answer(worker: Runner, task: Task) -> Block | Exception:
-    try:
-        return worker.run(task)
-    except Exception as error:
-        return error
-
-
-def _answers() -> BinaryIO:
-    """The pipe for answers; whatever is printed goes to stderr."""
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)
-    return answers
+    def _listen(self) -> None:
+        """To the next answer."""
+        child, answer = self._answers.get()
+        first, blocks = child.answered(answer)
+        self._done.update(enumerate(blocks, first))

@@ -67,6 +67,11 @@ class Recipe:
         """The model again."""
         return Model(self.workbook, self.definitions, self.path)
 
+    def runner(self) -> Worker:
+        """See `Portable`."""
+        model = self.model()
+        return self.worker(model, model.program(self.engine, self.arithmetic))
+
     def worker(self, model: Model, program: Program) -> Worker:
         """What runs its blocks, given its model again and that model's program."""
         return worker_of(model, program, self.engine, self.seed, self.block, self.plan)

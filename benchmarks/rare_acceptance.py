@@ -138,16 +138,19 @@ def measured(subject: Subject, runs: int, jobs: int, keep: Callable[[Entry], Non
 
 
 def coverage_table(found: Mapping[str, Entry]) -> str:
-    """Coverage in percent, as Markdown."""
+    """Coverage in percent, as Markdown; a line a forecast."""
     lines = ["| problem | accepted | runs | evaluations | plain rejection | " + " | ".join(STATISTICS) + " |"]
     lines.append("|---|---:|---:|---:|---:|" + "---:|" * len(STATISTICS))
+    values = len(STATISTICS) - 1
     for each in found.values():
         plain = each["wanted"] / each["acceptance"]
         share = [f"{100.0 * hits / each['runs']:.1f}" for hits in each["hits"]]
-        front = f"| {each['words']} | {each['acceptance']:.1e} | {each['runs']:,} | {each['evaluations']:,.0f} "
-        front += f"| {plain:,.0f} ({plain / each['evaluations']:,.0f} ×) | {share[0]} | "
-        values = len(STATISTICS) - 1
-        lines += [front + " | ".join(share[at : at + values]) + " |" for at in range(1, len(share), values)]
+        costs = f"{each['acceptance']:.1e} | {each['runs']:,} | {each['evaluations']:,.0f} "
+        costs += f"| {plain:,.0f} ({plain / each['evaluations']:,.0f} ×)"
+        for at in range(1, len(share), values):
+            forecast = each["labels"][at].rpartition(", ")[0]
+            words = f"{each['words']}: {forecast}" if forecast else each["words"]
+            lines.append(f"| {words} | {costs} | {share[0]} | {' | '.join(share[at : at + values])} |")
     return "\n".join(lines)
 
 

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import pickle
 import struct
+import subprocess
+import sys
 from functools import reduce
 
 import numpy as np
@@ -10,6 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from xlmc.compile.settings import as_set
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions import Function, Kind
 from xlmc.functions.families import REGISTRY, function_named
@@ -179,3 +184,27 @@ def test_the_last_parameters_repeat():
     assert kinds == [Kind.NUMBER, Kind.LOGICAL] * 3
     assert not function.takes_sets
     assert Function("TEST", (Numbers,), np.add, Kind.NUMBER).takes_sets
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_a_row_goes_to_another_process_by_its_name(name):
+    assert pickle.loads(pickle.dumps(ROWS[name])) is ROWS[name]
+
+
+@pytest.mark.parametrize("name", ["SIN", "SQRT", "+", "SUBTOTAL", "YEARFRAC", "SUM"])
+def test_where_nothing_is_imported_yet_it_is_found(name):
+    """Those of the Analysis ToolPak are registered by another module than the one that makes their bodies."""
+    read = "import pickle, sys; print(pickle.loads(sys.stdin.buffer.read()).name)"
+    packed = pickle.dumps(ROWS[name])
+    where = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    found = subprocess.run([sys.executable, "-c", read], input=packed, capture_output=True, check=True, env=where)
+    assert found.stdout.decode().strip() == name
+
+
+def test_one_made_for_a_workbook_goes_whole():
+    made = as_set(function_named("YEAR"), date1904=True, macintosh=False)
+    found = pickle.loads(pickle.dumps(made))
+    assert found is not made
+    assert found([from_objects(np.array([0.5], object))]).numbers.tolist() == [1904.0]
+    assert found.parameters == made.parameters
+    assert all(parameter.required for parameter in found.parameters)

@@ -19,6 +19,7 @@ class Xlmc:
 
         self.engine = task.options["engine"]
         self.jobs = task.options.get("jobs", 1)
+        self._anew = task.options.get("anew", False)
         self._model = xlmc.load(task.path)
         self._names = {(a.cell.sheet, a.cell.row, a.cell.column): a.name for a in self._model.assumptions}
         self._task = task
@@ -45,6 +46,10 @@ class Xlmc:
 
     def run(self, trials: int) -> object:
         """See `Contestant`."""
+        if self._anew:
+            from xlmc.scheduling import standby
+
+            standby.end()
         return self._model.simulate(trials, 1, engine=self.engine, jobs=self.jobs)
 
     def sample(self, trials: int, seed: int) -> Any:

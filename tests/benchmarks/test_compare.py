@@ -58,9 +58,10 @@ def test_errors_are_root_mean_squares():
     np.testing.assert_allclose(errors(answers), np.sqrt(12.5))
 
 
-def test_scaling_has_two_thread_counts(results):
+def test_scaling_has_two_numbers_of_jobs(results):
     assert set(found(results, "scaling")) == {"xlmc/numpy"}
-    assert found(results, "scaling")["xlmc/numpy"]["ratio"] > 0
+    assert set(found(results, "scaling")["xlmc/numpy"]["ratios"]) == {"2", "2 anew"}
+    assert all(ratio > 0 for ratio in found(results, "scaling")["xlmc/numpy"]["ratios"].values())
 
 
 def test_figures_are_drawn(results):

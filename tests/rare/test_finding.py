@@ -78,3 +78,27 @@ def test_too_many_for_the_limit_are_not_begun():
     found = find(distance, lambda z: distance(z) == 0.0, 1, 10**9, 10**7, random, random)
     assert found.equalised is None
     assert found.learned.best is not None
+
+
+def wavy(half):
+    """A layer of that half thickness that no quadratic function follows, in 4 dimensions."""
+
+    def distance(z):
+        return np.maximum(0.0, np.abs(z[:, 0] - np.sin(3.0 * z[:, 1])) - half)
+
+    return distance
+
+
+def test_a_layer_of_which_few_proposals_are_part_is_described_all_the_same():
+    """Its probability is 2h·E[φ(sin 3Z)], by 40-point quadrature; 4.5 standard errors are allowed for."""
+    half = 0.0007
+    nodes, weights = np.polynomial.hermite_e.hermegauss(40)
+    truth = 2 * half * weights @ np.exp(-0.5 * np.sin(3.0 * nodes) ** 2) / (2 * np.pi)
+    distance = wavy(half)
+    random = [np.random.default_rng((11, each)) for each in (0, 1)]
+    found = find(distance, lambda z: distance(z) == 0.0, 4, 300, 10**8, *random)
+    assert found.used.trials > 32_768
+    assert np.all(distance(found.equalised.points) == 0.0)
+    acceptance = found.equalised.acceptance
+    assert abs(acceptance.value - truth) < 4.5 * acceptance.error
+    assert found.equalised.fresh <= found.equalised.proposals // 2

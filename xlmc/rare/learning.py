@@ -26,6 +26,10 @@ Floats = NDArray[np.float64]
 
 _DESCENTS: Final = 2
 _TRIALS: Final = 32_768
+_MOST_TRIALS: Final = 64 * _TRIALS
+_ENOUGH: Final = 250
+"""Trials of a round: `_TRIALS`, or more where fewer than `_ENOUGH` are accepted."""
+
 _ROUNDS: Final = 5
 _GOOD: Final = 0.1
 """Equal trials out of a proposal; with more, nothing is worth to be learnt."""
@@ -135,7 +139,7 @@ def _refined(
     best = 0.0
     for number in range(_ROUNDS):
         drawn = _drawn(distance, proposal, random)
-        learned = Learned(learned.descents, (*learned.rounds, drawn), learned.evaluations + _TRIALS)
+        learned = Learned(learned.descents, (*learned.rounds, drawn), learned.evaluations + drawn.trials)
         say(learned.evaluations)
         if drawn.rate >= _GOOD or (number > 1 and drawn.rate < best * _GAIN):
             break
@@ -179,9 +183,14 @@ def _dealt(halves: NDArray[np.int64], random: np.random.Generator) -> NDArray[np
 
 
 def _drawn(distance: Distance, proposal: Proposal, random: np.random.Generator) -> Round:
-    points = proposal.draw(_TRIALS, random)
-    points = points[distance(points) == 0.0]
-    return Round(proposal, _TRIALS, points, proposal.log_weights(points))
+    """A round; where few are accepted, a longer one."""
+    found, trials = list[Floats](), 0
+    while trials < _TRIALS or (sum(map(len, found)) < _ENOUGH and trials < _MOST_TRIALS):
+        points = proposal.draw(_TRIALS, random)
+        found.append(points[distance(points) == 0.0])
+        trials += _TRIALS
+    points = np.concatenate(found)
+    return Round(proposal, trials, points, proposal.log_weights(points))
 
 
 def _pooled(rounds: Sequence[Round]) -> tuple[Floats, Floats]:

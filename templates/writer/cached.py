@@ -9,7 +9,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from xlmc.address import Cell
-from xlmc.compile import Lowering, widened
+from xlmc.compile.lower import Lowering
+from xlmc.compile.widening import widened
 from xlmc.errors import ErrorCode
 from xlmc.formula import Resolver, build_graph
 from xlmc.workbook import read_workbook

@@ -17,10 +17,10 @@ from xlmc.scheduling.child import Answers, Child
 
 __all__ = ["by_processes"]
 
-_MOST: Final = 8
+_MOST: Final = 4
 """Blocks in a lot: few messages, and at the end nobody waits long for the last one."""
 
-_AHEAD: Final = 24
+_AHEAD: Final = 12
 """Blocks for each process that may be finished or under way before their turn."""
 
 

@@ -102,3 +102,25 @@ def test_a_layer_of_which_few_proposals_are_part_is_described_all_the_same():
     acceptance = found.equalised.acceptance
     assert abs(acceptance.value - truth) < 4.5 * acceptance.error
     assert found.equalised.fresh <= found.equalised.proposals // 2
+
+
+def test_learning_keeps_to_the_limit():
+    """Long rounds would take far more: what is left of the limit is one round at most."""
+    distance = wavy(1e-6)
+    random = [np.random.default_rng((12, each)) for each in (0, 1)]
+    told = []
+    found = find(distance, lambda z: distance(z) == 0.0, 4, 100, 1_000_000, *random, told.append)
+    assert found.evaluations <= 1_000_000 + 32_768
+    assert told == sorted(told)
+
+
+def test_acceptance_is_more_than_nothing_where_few_trials_are_wanted():
+    """Some 1.3 of 32,768 are accepted: as many draws again may have none, so there are more, a million at most."""
+    for seed in range(20):
+        random = np.random.default_rng((13, seed))
+        found = equalised(
+            lambda z: (z[:, 0] > 2.5) & (z[:, 0] < 2.5 + 6.4e-5), shifted(2.5), -2.7, -math.inf, 2, 10**8, random
+        )
+        assert len(found.points) == 2
+        assert found.acceptance.value > 0.0
+        assert found.acceptance.interval is not None

@@ -76,3 +76,19 @@ def test_little_is_imported(case_study, tmp_path):
     assert "xlmc.blocks" in modules
     rooms = ("xlmc.formula", "xlmc.definitions", "xlmc.workbook", "xlmc.model", "xlmc.functions.families", "formulas")
     assert [name for name in modules if name.startswith(rooms)] == []
+
+
+@pytest.mark.parametrize(
+    "drawn",
+    [
+        "=_xll.RiskCumul(0,3,{1,2},{0.2,0.7})",
+        "=_xll.RiskGeneral(0,3,{1,2},{1,2})",
+        "=_xll.RiskHistogrm(0,3,{1,2,1})",
+        "=_xll.RiskDiscrete({1,2},{1,2})",
+        "=_xll.RiskNormalAlt(5%,10,95%,20)",
+        "=_xll.RiskNormal(0,1,_xll.RiskTruncate(-1,2))",
+    ],
+)
+def test_distributions_made_of_data_and_of_percentiles(book, drawn):
+    mine, theirs = workers(book({"A1": drawn, "B1": '=_xll.RiskOutput("y")+A1*2'}))
+    assert pickle.dumps(theirs.run(Task(200, 200, True))) == pickle.dumps(mine.run(Task(200, 200, True)))

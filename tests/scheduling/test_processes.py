@@ -5,6 +5,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -162,10 +163,12 @@ def test_a_process_that_cannot_be_started_is_told(model, monkeypatch):
     assert "--scheduler threads" in caught.value.hint
 
 
-def test_an_error_in_a_process_is_raised_here(model):
+def test_an_error_in_a_process_comes_after_the_blocks_before_it(model):
     worker = worker_of(model, model.program("numpy"), "numpy", 1, 100)
-    with pytest.raises(TypeError, match="interpreted as an integer"):
-        answers_of(worker, [[Task(0, "trials", False)]])
+    (block, error) = answers_of(worker, [[Task(0, 100, False), Task(100, "trials", False), Task(200, 100, False)]])
+    assert block.trials == 100
+    assert isinstance(error, TypeError)
+    assert "integers" in str(error)
 
 
 def test_a_script_needs_no_guard(tmp_path, case_study):
@@ -181,3 +184,48 @@ def test_a_script_needs_no_guard(tmp_path, case_study):
     assert found.stdout.startswith("once ")
     assert found.stdout.count("once") == 1
     assert found.stderr == ""
+
+
+class FailingLate:
+    """Blocks as numbers, until one fails; made in another process by its name."""
+
+    def __init__(self, first, kind, *words):
+        self.first, self.kind, self.words = first, kind, words
+
+    def runner(self):
+        return self
+
+    def run(self, task):
+        if task.start >= self.first:
+            raise self.kind(*self.words)
+        return task.start
+
+
+class TwoWordsError(Exception):
+    """Its copy cannot be made from its message."""
+
+    def __init__(self, first, second):
+        super().__init__(f"{first} {second}")
+
+
+@pytest.mark.parametrize(
+    "failing", [FailingLate(300, ValueError, "no such"), FailingLate(300, TwoWordsError, "no", "such")]
+)
+def test_what_goes_wrong_in_a_block_is_told_in_its_turn(failing):
+    """Though the other process has met it long before: a run that ends earlier does not meet it at all."""
+    tasks = (Task(start, 1, False) for start in range(1000))
+    found = []
+    with pytest.raises((ValueError, RuntimeError, TwoWordsError), match="no such"):
+        found.extend(by_processes(failing, Slow(failing), 1, 1000, tasks))
+    assert found == list(range(300))
+
+
+class Slow:
+    """So that the other process has its part."""
+
+    def __init__(self, runner):
+        self.runner = runner
+
+    def run(self, task):
+        time.sleep(0.002)
+        return self.runner.run(task)

@@ -51,6 +51,10 @@ class Between(Family):
             ),
         )
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Its rules are made again from the points."""
+        return type(self), ((self.values, self.heights) if hasattr(self, "values") else ())
+
     def built(self, data: Array, **_: Any) -> Self:
         """The family of these points: `(points, 2)`, values and probabilities or heights."""
         values, heights = data_column(data, 0, "value"), self._heights(data)

@@ -39,6 +39,10 @@ class ByPercentiles(Family):
         self.parameters = (*self._given, *(ParameterSpec(each.lower(), (each,)) for each in headings))
         self._member = lru_cache(maxsize=64)(self._find)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """The members that it has found are looked for again."""
+        return ByPercentiles, (self.family, tuple(spec.key for spec in self._given), self.percents)
+
     def fault(self, *params: float, **named: float) -> Fault | None:
         """The first thing wrong with these numbers, if any."""
         if fault := super().fault(*params, **named):

@@ -86,8 +86,8 @@ class RareAccount:
         if not self.fresh:
             return ""
         return (
-            f"How likely acceptance is, the last {self.fresh:,} of those drawn say: that there were enough before is "
-            "no part of the answer. "
+            f"How likely acceptance is, {self.fresh:,} of those drawn say, after there were enough: how many they are "
+            "was settled before. "
         )
 
     @property

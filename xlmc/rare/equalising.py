@@ -38,6 +38,9 @@ BATCH: Final = 32_768
 _FRESH: Final = 32 * BATCH
 """Proposals at most that the probability of acceptance comes from."""
 
+_FEWEST: Final = 100
+"""Accepted ones among them, at least, as far as that many proposals have so many."""
+
 _SURPRISE: Final = math.log(30.0)
 """By how much the envelope may grow, as a logarithm, before the proposal is to be learnt anew."""
 
@@ -51,7 +54,7 @@ class Equalised:
         size: (Σc)²/Σc², c the copies of each: their effective sample size.
         proposals: trials drawn.
         accepted: of them, by the filters.
-        fresh: of them, those drawn after there were enough; `acceptance` comes from these, if there are any.
+        fresh: of them, those drawn after there were enough; `acceptance` comes from these, if any are accepted.
         acceptance: the probability that a trial is accepted.
         effective: (Σw)²/Σw² of the accepted ones among these, or less where the populations know of heavier ones.
         surprise: where a trial was much heavier than any known before, the batch that it was in, to learn from.
@@ -105,12 +108,15 @@ def equalised(
         return True
 
     while not drawing.enough and more(until_enough):
-        planned = min(until_enough.proposals, _FRESH)
+        pass
+    planned = min(until_enough.for_accepted(_FEWEST), _FRESH)
+    if planned > most - until_enough.proposals:
+        planned = 0
     while fresh.proposals < planned and more(fresh):
         pass
     while not drawing.enough and more(until_enough):  # a heavy one among the last has thinned them
         pass
-    of = fresh if fresh.proposals else until_enough
+    of = fresh if fresh.accepted else until_enough
     points = drawing.trials()
     return Equalised(
         points=points,
@@ -215,6 +221,10 @@ class _Sums:
         self.accepted += weights.size
         self._first += float(weights.sum())
         self._second += float(np.square(weights).sum())
+
+    def for_accepted(self, fewest: int) -> int:
+        """As many proposals again, or so many that `fewest` can be expected to be accepted."""
+        return max(self.proposals, -(-self.proposals * fewest // max(self.accepted, 1)))
 
     @property
     def _square(self) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -56,7 +57,7 @@ def find(
         drawing: others, to draw the trials with: what they come from must not have served to learn.
         say: told of the evaluations so far.
     """
-    learned, before = learn(distance, dimensions, learning, say), 0
+    learned, before = learn(distance, dimensions, learning, say, most), 0
     for tries_left in range(_AGAIN, -1, -1):
         used, done = learned.best, learned.evaluations + before
         if used is None or wanted > used.rate * (most - done):
@@ -69,11 +70,15 @@ def find(
             wanted,
             most - done,
             drawing,
-            lambda proposals, done=done: say(done + proposals),  # type: ignore[misc]
+            partial(_said, say, done),
             surprises=tries_left > 0,
         )
         if drawn.surprise is None:
             break
         before += drawn.proposals
-        learned = again(distance, learned, drawn.surprise, learning, say)
+        learned = again(distance, learned, drawn.surprise, learning, partial(_said, say, before), most - before)
     return Found(learned, used, drawn, done + drawn.proposals)
+
+
+def _said(say: Say, before: int, count: int) -> None:
+    say(before + count)

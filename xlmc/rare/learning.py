@@ -110,8 +110,14 @@ class Learned:
         return sum(reached) / len(self.descents)
 
 
-def learn(distance: Distance, dimensions: int, random: np.random.Generator, say: Say = lambda _: None) -> Learned:
-    """Find the region where the distance is 0, and describe it."""
+def learn(
+    distance: Distance,
+    dimensions: int,
+    random: np.random.Generator,
+    say: Say = lambda _: None,
+    most: float = math.inf,
+) -> Learned:
+    """Find the region where the distance is 0, and describe it; in no more evaluations than `most`, about."""
     found: list[Descent] = []
     for _ in range(_DESCENTS):
         found.append(descend(distance, dimensions, random))
@@ -121,27 +127,27 @@ def learn(distance: Distance, dimensions: int, random: np.random.Generator, say:
         return learned
     points, weights, halves = _of_descents(found)
     order = _dealt(halves, random)
-    return _refined(distance, learned, proposed(points[order], weights[order], random), random, say)
+    return _refined(distance, learned, proposed(points[order], weights[order], random), random, say, most)
 
 
 def again(
-    distance: Distance, learned: Learned, more: Round, random: np.random.Generator, say: Say = lambda _: None
+    distance: Distance, learned: Learned, more: Round, random: np.random.Generator, say: Say, most: float
 ) -> Learned:
     """Learn from trials that turned out to be heavier than any that were known."""
     known = Learned(learned.descents, (*learned.rounds, more), learned.evaluations)
-    return _refined(distance, known, _improved(known, random), random, say)
+    return _refined(distance, known, _improved(known, random), random, say, most)
 
 
 def _refined(
-    distance: Distance, learned: Learned, proposal: Proposal, random: np.random.Generator, say: Say
+    distance: Distance, learned: Learned, proposal: Proposal, random: np.random.Generator, say: Say, most: float
 ) -> Learned:
     """Draw from the proposal, fit a better one, and so on while that brings much."""
     best = 0.0
     for number in range(_ROUNDS):
-        drawn = _drawn(distance, proposal, random)
-        learned = Learned(learned.descents, (*learned.rounds, drawn), learned.evaluations + drawn.trials)
-        say(learned.evaluations)
-        if drawn.rate >= _GOOD or (number > 1 and drawn.rate < best * _GAIN):
+        before = learned.evaluations
+        drawn = _drawn(distance, proposal, random, lambda trials, before=before: say(before + trials), most - before)  # type: ignore[misc]
+        learned = Learned(learned.descents, (*learned.rounds, drawn), before + drawn.trials)
+        if learned.evaluations >= most or drawn.rate >= _GOOD or (number > 1 and drawn.rate < best * _GAIN):
             break
         best = max(best, drawn.rate)
         proposal = _improved(learned, random)
@@ -182,13 +188,14 @@ def _dealt(halves: NDArray[np.int64], random: np.random.Generator) -> NDArray[np
     return np.stack([first[:count], second[:count]], axis=1).ravel()
 
 
-def _drawn(distance: Distance, proposal: Proposal, random: np.random.Generator) -> Round:
+def _drawn(distance: Distance, proposal: Proposal, random: np.random.Generator, say: Say, most: float) -> Round:
     """A round; where few are accepted, a longer one."""
     found, trials = list[Floats](), 0
-    while trials < _TRIALS or (sum(map(len, found)) < _ENOUGH and trials < _MOST_TRIALS):
+    while trials < _TRIALS or (sum(map(len, found)) < _ENOUGH and trials < min(_MOST_TRIALS, most)):
         points = proposal.draw(_TRIALS, random)
         found.append(points[distance(points) == 0.0])
         trials += _TRIALS
+        say(trials)
     points = np.concatenate(found)
     return Round(proposal, trials, points, proposal.log_weights(points))
 

@@ -36,9 +36,10 @@ _PIPE: Final = 1 << 20
 _LOTS: Final = 2
 """That it is given: while one is answered, the next is at hand."""
 
-Answer = list[Block] | BaseException | None
+Answer = list[Block | Exception] | Exception | None
 Answers = SimpleQueue[tuple["Child", Answer]]
-"""A child and what it said: None that its runner is made, the blocks of a lot of tasks, or why there are none."""
+"""A child and what it said: None that its runner is made, the blocks of a lot of tasks with what went wrong in the last
+one, or why it will say no more."""
 
 
 class Child:
@@ -59,6 +60,7 @@ class Child:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 start_new_session=os.name == "posix",
+                creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),
             )
         except OSError as error:
             hint = "Ask for fewer with -j, or use --scheduler threads"
@@ -96,13 +98,13 @@ class Child:
         self._asked.append(first)
         self._send(tasks)
 
-    def answered(self, answer: Answer) -> tuple[int, list[Block]]:
+    def answered(self, answer: Answer) -> tuple[int, list[Block | Exception]]:
         """The number of the first block, and the blocks, of its next answer.
 
         Raises:
-            Exception: the answer is one.
+            Exception: it will give none.
         """
-        if isinstance(answer, BaseException):
+        if isinstance(answer, Exception):
             self._ready = False
             raise answer
         if answer is None:
@@ -121,7 +123,7 @@ class Child:
         """That it has ended is told by whoever listens."""
         try:
             send(self._process.stdin, message)
-        except (BrokenPipeError, ValueError):
+        except (OSError, ValueError):
             return
 
     def _listen(self) -> None:
@@ -131,8 +133,9 @@ class Child:
                 self._answers.put((self, answer))
         except (EOFError, pickle.UnpicklingError):
             self._answers.put((self, self._ended()))
-        except ValueError:  # our end of the pipe was closed: nobody waits for an answer
-            return
+        except Exception as error:
+            if self._process.stdout is not None and not self._process.stdout.closed:  # else nobody waits for an answer
+                self._answers.put((self, error))
 
     def _ended(self) -> SimulationError:
         code = self._process.wait()
@@ -146,7 +149,7 @@ class Child:
             if pipe is not None:
                 try:
                     pipe.close()
-                except BrokenPipeError:  # what it had not read yet
+                except OSError:  # what it had not read yet
                     continue
         self._process.wait()
 
@@ -157,5 +160,5 @@ def _widen(pipe: IO[bytes] | None) -> None:
         return
     import fcntl
 
-    with suppress(PermissionError):  # more than this system's administrator allows
+    with suppress(OSError):  # more than this system allows
         fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, _PIPE)

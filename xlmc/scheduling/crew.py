@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["PROCESS_BLOCKS", "Crew"]
 
 PROCESS_BLOCKS: Final[Mapping[str, int]] = {"numpy": 128, "formulas": 4}
-"""Engine -> blocks that take longer than a process to start, which is half a second: its threads share a lock."""
+"""Engine -> blocks that take longer than a process to start: a quarter of a second, or with a recipe half of one."""
 
 _PORTABLE: Final = frozenset({"numpy"})
 """Engines whose workers can be pickled: to unpickle one takes a fraction of the imports that a recipe needs."""

@@ -56,7 +56,7 @@ class _Shared:
         self._own, self._children, self._answers = own, children, answers
         self._left, self._tasks = blocks, tasks
         self._given = self._turn = 0
-        self._done: dict[int, Block] = {}
+        self._done: dict[int, Block | Exception] = {}
 
     def in_order(self) -> Iterator[Block]:
         """Run them."""
@@ -67,14 +67,20 @@ class _Shared:
                 while child.wants and (lot := self._some(self._left // (4 * self._runners))):
                     child.ask(self._given - len(lot), lot)
             while self._turn in self._done:
-                yield self._done.pop(self._turn)
+                yield _unless_failed(self._done.pop(self._turn))
                 self._turn += 1
             if lot := self._some(1):
-                self._done[self._given - 1] = self._own.run(lot[0])
+                self._done[self._given - 1] = self._run(lot[0])
             elif self._given > self._turn:
                 self._listen()
             else:
                 return
+
+    def _run(self, task: Task) -> Block | Exception:
+        try:
+            return self._own.run(task)
+        except Exception as error:
+            return error
 
     @property
     def _runners(self) -> int:
@@ -93,3 +99,10 @@ class _Shared:
         child, answer = self._answers.get()
         first, blocks = child.answered(answer)
         self._done.update(enumerate(blocks, first))
+
+
+def _unless_failed(block: Block | Exception) -> Block:
+    """A block whose turn has come: what went wrong in a later one is not told before."""
+    if isinstance(block, Exception):
+        raise block
+    return block

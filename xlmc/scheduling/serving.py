@@ -1,7 +1,8 @@
 """A process that runs blocks for another, seen from inside.
 
 It is told what makes its runner, with the path to import from: it answers None. Then it is given tasks, and answers
-each lot by its blocks. What goes wrong is an answer too. Told None, it lets go of the runner and waits for the next.
+each lot by its blocks, the last of which is what went wrong, if something did. Told None, it lets go of the runner and
+waits for the next.
 
 It imports what the runner is made of and no more: a process that is late brings little.
 """
@@ -35,32 +36,43 @@ def serve() -> None:
     try:
         while True:
             message: Order | list[Task] | None = pickle.load(source)
-            if message is None:
-                runner = None
+            if isinstance(message, list):
+                send(answers, _blocks(runner, message))
                 continue
-            try:
-                if isinstance(message, tuple):
-                    runner = None
-                    runner, answer = _runner(message), None
-                else:
-                    answer = _blocks(runner, message)
-            except Exception as error:
-                send(answers, error)
-            else:
-                send(answers, answer)
-    except EOFError:
+            runner = None
+            if message is not None:
+                runner, failure = _runner(message)
+                send(answers, failure)
+    except (EOFError, BrokenPipeError):
         return
 
 
-def _runner(order: Order) -> Runner:
+def _runner(order: Order) -> tuple[Runner | None, Exception | None]:
     sys.path[:], packed = order
-    portable: Portable = pickle.loads(packed)
-    return portable.runner()
+    try:
+        portable: Portable = pickle.loads(packed)
+        return portable.runner(), None
+    except Exception as error:
+        return None, _portable(error)
 
 
-def _blocks(runner: Runner | None, tasks: list[Task]) -> list[Block]:
+def _blocks(runner: Runner | None, tasks: list[Task]) -> list[Block | Exception]:
     assert runner is not None, "tasks before a runner"
-    return [runner.run(task) for task in tasks]
+    done: list[Block | Exception] = []
+    try:
+        done += map(runner.run, tasks)
+    except Exception as error:
+        done.append(_portable(error))
+    return done
+
+
+def _portable(error: Exception) -> Exception:
+    """The error, or its words where it cannot be sent."""
+    try:
+        pickle.loads(pickle.dumps(error))
+    except Exception:
+        return RuntimeError(f"{type(error).__name__}: {error}")
+    return error
 
 
 def _answers() -> BinaryIO:

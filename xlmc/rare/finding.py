@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from typing import Final
 
 import numpy as np
 
 from xlmc.rare.equalising import Accepts, Equalised, equalised
-from xlmc.rare.learning import Learned, Round, Say, again, learn
+from xlmc.rare.learning import Learned, Round, Say, after, again, learn
 from xlmc.rare.splitting import Distance
 
 __all__ = ["Found", "find"]
@@ -70,15 +69,11 @@ def find(
             wanted,
             most - done,
             drawing,
-            partial(_said, say, done),
+            after(done, say),
             surprises=tries_left > 0,
         )
         if drawn.surprise is None:
             break
         before += drawn.proposals
-        learned = again(distance, learned, drawn.surprise, learning, partial(_said, say, before), most - before)
+        learned = again(distance, learned, drawn.surprise, learning, after(before, say), most - before)
     return Found(learned, used, drawn, done + drawn.proposals)
-
-
-def _said(say: Say, before: int, count: int) -> None:
-    say(before + count)

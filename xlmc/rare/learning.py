@@ -20,7 +20,7 @@ from xlmc.rare.mixture import log_sum
 from xlmc.rare.proposal import Proposal, fitted_again, proposed
 from xlmc.rare.splitting import Descent, Distance, descend
 
-__all__ = ["Learned", "Round", "Say", "again", "learn"]
+__all__ = ["Learned", "Round", "Say", "after", "again", "learn"]
 
 Floats = NDArray[np.float64]
 
@@ -46,6 +46,11 @@ _FEWEST: Final = 100
 
 Say = Callable[[int], None]
 """Told of the evaluations so far."""
+
+
+def after(before: int, say: Say) -> Say:
+    """Tells of evaluations that come after so many others."""
+    return lambda count: say(before + count)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -145,7 +150,7 @@ def _refined(
     best = 0.0
     for number in range(_ROUNDS):
         before = learned.evaluations
-        drawn = _drawn(distance, proposal, random, lambda trials, before=before: say(before + trials), most - before)  # type: ignore[misc]
+        drawn = _drawn(distance, proposal, random, after(before, say), most - before)
         learned = Learned(learned.descents, (*learned.rounds, drawn), before + drawn.trials)
         if learned.evaluations >= most or drawn.rate >= _GOOD or (number > 1 and drawn.rate < best * _GAIN):
             break

@@ -35,7 +35,6 @@ import scaling  # noqa: E402
 import tables  # noqa: E402
 import whole_command  # noqa: E402
 from books import BOOKS, CASE_STUDY, make_books  # noqa: E402
-from contest import REPEATS  # noqa: E402
 from line_up import Entry, line_up  # noqa: E402
 
 RESULTS = HERE / "results"
@@ -137,7 +136,7 @@ def _rates(given: _Measured) -> dict[str, Any]:
 
 def _scaling(given: _Measured) -> dict[str, Any]:
     plan = given.plan
-    return scaling.measure(given.entries, CASE_STUDY, plan.rounds, 2 * REPEATS * plan.seconds, plan.limit, _say)
+    return scaling.measure(given.entries, CASE_STUDY, plan.rounds, 2 * plan.seconds, plan.limit, _say)
 
 
 def _accuracy(given: _Measured) -> dict[str, Any]:

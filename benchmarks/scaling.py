@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from contest import REPEATS
 from line_up import Entry
 from processes import ask
 from rates import task_of
@@ -27,7 +28,7 @@ def measure(
     entries: Sequence[Entry], path: Path, rounds: int, seconds: float, limit: float, say: Callable[[str], None]
 ) -> dict[str, Any]:
     """Engine -> way -> rates, and `ratios`: way -> the median of its ratio to one job in the same round."""
-    task = task_of("case-study", path, seconds)
+    task = task_of("case-study", path, REPEATS * seconds)
     found: dict[str, Any] = {}
     for round_ in range(rounds):
         for entry in entries:

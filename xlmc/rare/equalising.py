@@ -97,7 +97,6 @@ def equalised(
     """
     drawing = _Drawing(accepts, proposal, random, wanted, lowest, lowest + _SURPRISE if surprises else math.inf)
     until_enough, fresh = _Sums(lowest, unevenness), _Sums(lowest, unevenness)
-    planned = 0
 
     def more(sums: _Sums) -> bool:
         """Whether another batch was drawn and is no surprise."""

@@ -133,7 +133,7 @@ class Child:
                 self._answers.put((self, answer))
         except (EOFError, pickle.UnpicklingError):
             self._answers.put((self, self._ended()))
-        except Exception as error:
+        except Exception as error:  # whatever it is, else the run would wait for an answer for ever
             if self._process.stdout is not None and not self._process.stdout.closed:  # else nobody waits for an answer
                 self._answers.put((self, error))
 

@@ -54,7 +54,7 @@ class _Shared:
         self, own: Runner, children: list[Child], answers: Answers, blocks: int, tasks: Iterator[Task]
     ) -> None:
         self._own, self._children, self._answers = own, children, answers
-        self._left, self._tasks = blocks, tasks
+        self._blocks, self._tasks = blocks, tasks
         self._given = self._turn = 0
         self._done: dict[int, Block | Exception] = {}
 
@@ -64,7 +64,7 @@ class _Shared:
             while not self._answers.empty():
                 self._listen()
             for child in self._children:
-                while child.wants and (lot := self._some(self._left // (4 * self._runners))):
+                while child.wants and (lot := self._some((self._blocks - self._given) // (4 * self._runners))):
                     child.ask(self._given - len(lot), lot)
             while self._turn in self._done:
                 yield _unless_failed(self._done.pop(self._turn))
@@ -79,7 +79,7 @@ class _Shared:
     def _run(self, task: Task) -> Block | Exception:
         try:
             return self._own.run(task)
-        except Exception as error:
+        except Exception as error:  # whatever it is, it is told in its turn
             return error
 
     @property
@@ -91,7 +91,6 @@ class _Shared:
         room = _AHEAD * self._runners - (self._given - self._turn)
         found = list(islice(self._tasks, max(0, min(max(1, wanted), _MOST, room))))
         self._given += len(found)
-        self._left -= len(found)
         return found
 
     def _listen(self) -> None:

@@ -52,7 +52,7 @@ def _runner(order: Order) -> tuple[Runner | None, Exception | None]:
     try:
         portable: Portable = pickle.loads(packed)
         return portable.runner(), None
-    except Exception as error:
+    except Exception as error:  # whatever it is, it is told on the other side
         return None, _portable(error)
 
 
@@ -61,7 +61,7 @@ def _blocks(runner: Runner | None, tasks: list[Task]) -> list[Block | Exception]
     done: list[Block | Exception] = []
     try:
         done += map(runner.run, tasks)
-    except Exception as error:
+    except Exception as error:  # likewise
         done.append(_portable(error))
     return done
 
@@ -70,7 +70,7 @@ def _portable(error: Exception) -> Exception:
     """The error, or its words where it cannot be sent."""
     try:
         pickle.loads(pickle.dumps(error))
-    except Exception:
+    except Exception:  # an exception may hold anything, and take any arguments to be made again
         return RuntimeError(f"{type(error).__name__}: {error}")
     return error
 

@@ -242,6 +242,11 @@ class Simulation:
         return int(self.trial_index.size)
 
     @property
+    def evaluated(self) -> int:
+        """Trials that were computed in all: the plain ones, and those of a search."""
+        return self.trials if self.rare is None else self.rare.evaluations
+
+    @property
     def acceptance(self) -> Estimate:
         """The share of accepted trials; the trials may have gone on until there were enough."""
         if self.rare is not None:

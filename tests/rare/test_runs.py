@@ -169,3 +169,12 @@ def test_the_command_line_tells_what_was_done(run, capsys):
     assert "2,000 accepted trials; one is accepted with probability" in shown
     assert f"Trials rejected of {run.trials:,} drawn plainly" in shown
     assert "learned proposal" in shown
+
+
+def test_the_page_does_not_take_kept_trials_for_a_share_of_the_plain_ones(run):
+    from xlmc.report.html.answers import answers
+
+    words = str(answers(run))
+    assert f"{run.rare.evaluations:,} combinations of values" in words
+    assert "2,000 that agree with the evidence were kept" in words
+    assert f"{run.trials:,} combinations" not in words

@@ -28,8 +28,7 @@ def write_results(page: Page, simulation: Simulation) -> None:
     """Write the sheet."""
     book = simulation.model.workbook.name
     settings = simulation.settings
-    evaluated = simulation.trials if simulation.rare is None else simulation.rare.evaluations
-    page.title("Results of the simulation", f"{book}, seed {settings.seed}, {evaluated:,} trials")
+    page.title("Results of the simulation", f"{book}, seed {settings.seed}, {simulation.evaluated:,} trials")
     for warning in simulation.warnings:
         page.wide(f"Do not use these results as they stand: {warning}", "warning", LAST)
     if simulation.stopped.interrupted:

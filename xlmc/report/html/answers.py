@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from xlmc.rare.account import probability_text
 from xlmc.record.sampling_words import sampling_sentence
 from xlmc.record.wording import limits_text
 from xlmc.report.html.element import EMPTY, Html, element
@@ -54,12 +55,17 @@ def _question(simulation: Simulation) -> Iterator[Html | str]:
     yield (
         f"The workbook computes {_counted(len(model.forecasts), 'answer (forecast)', 'answers (forecasts)')} from "
         f"{_counted(len(model.live), 'quantity', 'quantities')} known only within ranges (assumptions). "
-        f"{simulation.trials:,} combinations of values from these ranges were tried. "
+        f"{simulation.evaluated:,} combinations of values from these ranges were tried. "
     )
     if not model.filters:
         yield "The workbook has no filters: every trial is accepted."
         return
-    yield f"{simulation.accepted:,} of them ({share_text(simulation.acceptance)}) agree with the evidence, which asks: "
+    if simulation.rare is None:
+        yield f"{simulation.accepted:,} of them ({share_text(simulation.acceptance)}) agree with the evidence, which "
+    else:
+        yield f"{simulation.accepted:,} that agree with the evidence were kept; one as they come agrees with "
+        yield f"probability {probability_text(simulation.acceptance)}. The evidence "
+    yield "asks: "
     for place, filter_ in enumerate(model.filters):
         yield "; " if place else ""
         yield element("bdi", filter_.name)

@@ -125,7 +125,7 @@ def _hashes(texts: list[str]) -> Iterator[str]:
 
 
 def _header(simulation: Simulation, keys: list[str]) -> Html:
-    run = f"{simulation.trials:,} trials, {simulation.accepted:,} accepted; seed {simulation.settings.seed}"
+    run = f"{simulation.evaluated:,} trials, {simulation.accepted:,} accepted; seed {simulation.settings.seed}"
     links = (element("a", label, href=f"#{key}") for key, label in _LINKS.items() if key in keys)
     return element(
         "header",

@@ -12,9 +12,10 @@ import pytest
 from xlmc.blocks import Task
 from xlmc.errors import SimulationError
 from xlmc.scheduling import child, crew, standby
-from xlmc.scheduling.child import Answers, Child
+from xlmc.scheduling.child import Child
 from xlmc.scheduling.processes import by_processes
 from xlmc.scheduling.recipe import Recipe, worker_of
+from xlmc.scheduling.sharing import Answers
 
 
 @pytest.fixture(autouse=True)

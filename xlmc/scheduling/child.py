@@ -10,18 +10,17 @@ import os
 import pickle
 import subprocess
 import sys
-from collections import deque
 from collections.abc import Sequence
 from contextlib import suppress
-from queue import SimpleQueue
 from threading import Thread
 from typing import IO, Any, Final
 
-from xlmc.blocks import Block, Task
+from xlmc.blocks import Task
 from xlmc.errors import SimulationError
 from xlmc.scheduling.serving import send
+from xlmc.scheduling.sharing import Answers, Helper
 
-__all__ = ["Answer", "Answers", "Child"]
+__all__ = ["Child"]
 
 _START = """
 import pickle, sys
@@ -33,16 +32,8 @@ serve()
 _PIPE: Final = 1 << 20
 """Bytes; what Linux allows everybody, unless it is told otherwise."""
 
-_LOTS: Final = 2
-"""That it is given: while one is answered, the next is at hand."""
 
-Answer = list[Block | Exception] | Exception | None
-Answers = SimpleQueue[tuple["Child", Answer]]
-"""A child and what it said: None that its runner is made, the blocks of a lot of tasks with what went wrong in the last
-one, or why it will say no more."""
-
-
-class Child:
+class Child(Helper):
     """The process, for one run after another.
 
     Raises:
@@ -50,9 +41,8 @@ class Child:
     """
 
     def __init__(self) -> None:
+        super().__init__()
         self._answers = Answers()
-        self._ready = False
-        self._asked: deque[int] = deque()
         # A session of its own, where there are such: Ctrl-C is for us alone, and we end it.
         try:
             self._process = subprocess.Popen(
@@ -88,36 +78,15 @@ class Child:
         """Whether there is still a process."""
         return self._process.poll() is None
 
-    @property
-    def wants(self) -> bool:
-        """Whether it would take a lot of tasks."""
-        return self._ready and len(self._asked) < _LOTS
-
-    def ask(self, first: int, tasks: Sequence[Task]) -> None:
-        """Give it tasks, the first of which has that number."""
-        self._asked.append(first)
-        self._send(tasks)
-
-    def answered(self, answer: Answer) -> tuple[int, list[Block | Exception]]:
-        """The number of the first block, and the blocks, of its next answer.
-
-        Raises:
-            Exception: it will give none.
-        """
-        if isinstance(answer, Exception):
-            self._ready = False
-            raise answer
-        if answer is None:
-            self._ready = True
-            return 0, []
-        return self._asked.popleft(), answer
-
     def rest(self) -> bool:
         """Have it let go of its runner; False where it is not at rest, having been asked for more or having failed."""
         rests = self._ready and not self._asked and self.lives
         if rests:
             self._send(None)
         return rests
+
+    def _take(self, tasks: Sequence[Task]) -> None:
+        self._send(tasks)
 
     def _send(self, message: Any) -> None:
         """That it has ended is told by whoever listens."""

@@ -12,7 +12,7 @@ from xlmc.errors import SimulationError
 from xlmc.scheduling.cluster import by_cluster
 from xlmc.scheduling.processes import by_processes
 from xlmc.scheduling.recipe import Recipe, worker_of
-from xlmc.scheduling.threads import in_order
+from xlmc.scheduling.threads import by_threads
 
 if TYPE_CHECKING:
     from xlmc.compile import Program
@@ -74,7 +74,7 @@ class Crew:
             return worker_of(model, program, settings.engine, settings.seed, block, plan)
 
         if scheduler == "threads":
-            yield from in_order([worker() for _ in range(jobs)], tasks)
+            yield from by_threads([worker() for _ in range(jobs)], blocks, tasks)
             return
         recipe = Recipe.of(model, settings.engine, settings.seed, block, settings.arithmetic, plan)
         if scheduler == "processes":

@@ -14,6 +14,8 @@ import pickle
 import sys
 from typing import TYPE_CHECKING, Any, BinaryIO
 
+from xlmc.scheduling.lots import run_lot
+
 if TYPE_CHECKING:
     from xlmc.blocks import Block, Portable, Runner, Task
 
@@ -58,12 +60,7 @@ def _runner(order: Order) -> tuple[Runner | None, Exception | None]:
 
 def _blocks(runner: Runner | None, tasks: list[Task]) -> list[Block | Exception]:
     assert runner is not None, "tasks before a runner"
-    done: list[Block | Exception] = []
-    try:
-        done += map(runner.run, tasks)
-    except Exception as error:  # likewise
-        done.append(_portable(error))
-    return done
+    return [_portable(each) if isinstance(each, Exception) else each for each in run_lot(runner, tasks)]
 
 
 def _portable(error: Exception) -> Exception:

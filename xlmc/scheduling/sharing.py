@@ -1,0 +1,138 @@
+"""Shares the tasks of a run between this thread and helpers, which are other threads or processes.
+
+This thread hands out tasks, runs blocks of its own in between, and puts all in order. A thread that did nothing but
+listen would take Python's lock, and a processor, from the others at every block.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
+from queue import SimpleQueue
+from typing import Final
+
+from xlmc.blocks import Block, Runner, Task
+
+__all__ = ["Answer", "Answers", "Helper", "Sharing"]
+
+_LOTS: Final = 2
+"""That a helper is given: while one is answered, the next is at hand."""
+
+_MOST: Final = 4
+"""Blocks in a lot: few messages, and at the end nobody waits long for the last one."""
+
+_AHEAD: Final = 12
+"""Blocks for each runner that may be finished or under way before their turn."""
+
+Answer = list[Block | Exception] | Exception | None
+Answers = SimpleQueue[tuple["Helper", Answer]]
+"""A helper and what it said: None that its runner is made, the blocks of a lot of tasks, the last of which is what went
+wrong if something did, or why it will say no more."""
+
+
+class Helper(ABC):
+    """Runs lots of tasks, one after another, and puts an `Answer` to each into `Answers`."""
+
+    def __init__(self) -> None:
+        self._ready = False
+        self._asked: deque[int] = deque()
+
+    @property
+    def wants(self) -> bool:
+        """Whether it would take a lot of tasks."""
+        return self._ready and len(self._asked) < _LOTS
+
+    def ask(self, first: int, tasks: Sequence[Task]) -> None:
+        """Give it tasks, the first of which has that number."""
+        self._asked.append(first)
+        self._take(tasks)
+
+    def answered(self, answer: Answer) -> tuple[int, list[Block | Exception]]:
+        """The number of the first block, and the blocks, of its next answer.
+
+        Raises:
+            Exception: it will give none.
+        """
+        if isinstance(answer, Exception):
+            self._ready = False
+            raise answer
+        if answer is None:
+            self._ready = True
+            return 0, []
+        return self._asked.popleft(), answer
+
+    @abstractmethod
+    def _take(self, tasks: Sequence[Task]) -> None:
+        """Run them some time."""
+
+
+class Sharing:
+    """The tasks of a run, shared out.
+
+    Args:
+        own: runs blocks in this thread.
+        blocks: how many there will be at most.
+        tasks: taken as they are needed.
+    """
+
+    def __init__(
+        self, own: Runner, helpers: Sequence[Helper], answers: Answers, blocks: int, tasks: Iterable[Task]
+    ) -> None:
+        self._own, self._helpers, self._answers = own, helpers, answers
+        self._blocks, self._tasks = blocks, iter(tasks)
+        self._given = self._turn = 0
+        self._done: dict[int, Block | Exception] = {}
+
+    def in_order(self) -> Iterator[Block]:
+        """The blocks in the order of their tasks; what goes wrong in one is raised in its turn.
+
+        Raises:
+            Exception: what went wrong, or why a helper will say no more.
+        """
+        while True:
+            while not self._answers.empty():
+                self._listen()
+            for helper in self._helpers:
+                while helper.wants and (lot := self._some((self._blocks - self._given) // (4 * self._runners))):
+                    helper.ask(self._given - len(lot), lot)
+            while self._turn in self._done:
+                yield _unless_failed(self._done.pop(self._turn))
+                self._turn += 1
+            if lot := self._some(1):
+                self._done[self._given - 1] = self._run(lot[0])
+            elif self._given > self._turn:
+                self._listen()
+            else:
+                return
+
+    def _run(self, task: Task) -> Block | Exception:
+        try:
+            return self._own.run(task)
+        except Exception as error:  # whatever it is, it is told in its turn
+            return error
+
+    @property
+    def _runners(self) -> int:
+        return len(self._helpers) + 1
+
+    def _some(self, wanted: int) -> list[Task]:
+        """The next tasks; none where there are none, or where too many are ahead."""
+        room = _AHEAD * self._runners - (self._given - self._turn)
+        found = list(islice(self._tasks, max(0, min(max(1, wanted), _MOST, room))))
+        self._given += len(found)
+        return found
+
+    def _listen(self) -> None:
+        """To the next answer."""
+        helper, answer = self._answers.get()
+        first, blocks = helper.answered(answer)
+        self._done.update(enumerate(blocks, first))
+
+
+def _unless_failed(block: Block | Exception) -> Block:
+    """A block whose turn has come: what went wrong in a later one is not told before."""
+    if isinstance(block, Exception):
+        raise block
+    return block

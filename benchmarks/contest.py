@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from time import perf_counter
 from typing import Any, NamedTuple, Protocol
 
-__all__ = ["Answer", "CellPlace", "Contestant", "Task", "fastest", "measured"]
+__all__ = ["Answer", "CellPlace", "Contestant", "Task", "measured"]
 
 REPEATS = 3
 """Measurements in one process; the fastest counts."""
@@ -39,7 +39,6 @@ class Task:
         check: inputs of the trials whose forecasts are compared, one row a trial.
         rows: inputs of the trials that are timed where the contestant does not draw its own.
         seconds: how long to measure, about; 0 for answers alone.
-        trials: of a timed run; 0 for as many as take that long.
         options: of the contestant.
         ladder: trial counts at which to sample for the measure of accuracy, instead of measuring the rate.
         seeds: how many runs at each of them.
@@ -52,7 +51,6 @@ class Task:
     check: list[list[float]]
     rows: list[list[float]]
     seconds: float
-    trials: int = 0
     options: dict[str, Any] = field(default_factory=dict)
     ladder: list[int] = field(default_factory=list)
     seeds: int = 0
@@ -118,11 +116,6 @@ def measured(run: Callable[[int], object], fewest: int, seconds: float) -> tuple
     if spent < 2 * seconds:
         spent = min(spent, *(_seconds(run, trials) for _ in range(REPEATS - 1)))
     return trials / spent, trials
-
-
-def fastest(run: Callable[[int], object], trials: int) -> float:
-    """Trials per second: the fastest of REPEATS runs."""
-    return trials / min(_seconds(run, trials) for _ in range(REPEATS))
 
 
 def _seconds(run: Callable[[int], object], trials: int) -> float:

@@ -11,7 +11,7 @@ from dataclasses import asdict
 from time import perf_counter
 from typing import Any
 
-from contest import Answer, Contestant, Task, fastest, measured
+from contest import Answer, Contestant, Task, measured
 
 CHECKED_FOR = 3.0
 """Seconds after which no further check trial is begun."""
@@ -29,10 +29,7 @@ def main() -> None:
     answer = Answer(values, ready, versions=contestant.versions)
     if task.seconds:
         contestant.settle()
-        if task.trials:
-            answer.rate, answer.trials = fastest(contestant.run, task.trials), task.trials
-        else:
-            answer.rate, answer.trials = measured(contestant.run, contestant.fewest, task.seconds)
+        answer.rate, answer.trials = measured(contestant.run, contestant.fewest, task.seconds)
     for trials in task.ladder:
         contestant.sample(trials, 0)  # type: ignore[attr-defined]  # only those that draw are asked
         answer.samples[str(trials)] = [_sampled(contestant, trials, seed) for seed in range(1, task.seeds + 1)]

@@ -18,12 +18,10 @@ class Xlmc:
         from xlmc.simulate import BLOCK
 
         self.engine = task.options["engine"]
-        self.jobs = task.options.get("jobs", 1)
-        self._anew = task.options.get("anew", False)
         self._model = xlmc.load(task.path)
         self._names = {(a.cell.sheet, a.cell.row, a.cell.column): a.name for a in self._model.assumptions}
         self._task = task
-        self.note = f"model.simulate, {self.jobs} thread{'s' * (self.jobs > 1)}"
+        self.note = "model.simulate, one thread"
         self._program = self._model.program(self.engine)
         self.fewest = min(BLOCK, self._program.largest_block)
         self.versions = {"xlmc": xlmc.__version__, "numpy": numpy.__version__} | _versions("numba", "formulas")
@@ -46,11 +44,7 @@ class Xlmc:
 
     def run(self, trials: int) -> object:
         """See `Contestant`."""
-        if self._anew:
-            from xlmc.scheduling import standby
-
-            standby.end()
-        return self._model.simulate(trials, 1, engine=self.engine, jobs=self.jobs)
+        return self._model.simulate(trials, 1, engine=self.engine)
 
     def sample(self, trials: int, seed: int) -> Any:
         """Forecasts of the accepted trials, one array (m,) a forecast."""

@@ -5,7 +5,6 @@ import pickle
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -185,48 +184,3 @@ def test_a_script_needs_no_guard(tmp_path, case_study):
     assert found.stdout.startswith("once ")
     assert found.stdout.count("once") == 1
     assert found.stderr == ""
-
-
-class FailingLate:
-    """Blocks as numbers, until one fails; made in another process by its name."""
-
-    def __init__(self, first, kind, *words):
-        self.first, self.kind, self.words = first, kind, words
-
-    def runner(self):
-        return self
-
-    def run(self, task):
-        if task.start >= self.first:
-            raise self.kind(*self.words)
-        return task.start
-
-
-class TwoWordsError(Exception):
-    """Its copy cannot be made from its message."""
-
-    def __init__(self, first, second):
-        super().__init__(f"{first} {second}")
-
-
-@pytest.mark.parametrize(
-    "failing", [FailingLate(300, ValueError, "no such"), FailingLate(300, TwoWordsError, "no", "such")]
-)
-def test_what_goes_wrong_in_a_block_is_told_in_its_turn(failing):
-    """Though the other process has met it long before: a run that ends earlier does not meet it at all."""
-    tasks = (Task(start, 1, False) for start in range(1000))
-    found = []
-    with pytest.raises((ValueError, RuntimeError, TwoWordsError), match="no such"):
-        found.extend(by_processes(failing, Slow(failing), 1, 1000, tasks))
-    assert found == list(range(300))
-
-
-class Slow:
-    """So that the other process has its part."""
-
-    def __init__(self, runner):
-        self.runner = runner
-
-    def run(self, task):
-        time.sleep(0.002)
-        return self.runner.run(task)

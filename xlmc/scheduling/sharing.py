@@ -21,7 +21,8 @@ _LOTS: Final = 2
 """That a helper is given: while one is answered, the next is at hand."""
 
 _MOST: Final = 4
-"""Blocks in a lot: few messages, and at the end nobody waits long for the last one."""
+"""Blocks in a lot: few messages. The first lots are smaller, so that the first blocks come soon, and so are the last
+ones, so that nobody waits long for the end."""
 
 _AHEAD: Final = 12
 """Blocks for each runner that may be finished or under way before their turn."""
@@ -95,7 +96,7 @@ class Sharing:
             while not self._answers.empty():
                 self._listen()
             for helper in self._helpers:
-                while helper.wants and (lot := self._some((self._blocks - self._given) // (4 * self._runners))):
+                while helper.wants and (lot := self._some(self._lot)):
                     helper.ask(self._given - len(lot), lot)
             while self._turn in self._done:
                 yield _unless_failed(self._done.pop(self._turn))
@@ -117,10 +118,16 @@ class Sharing:
     def _runners(self) -> int:
         return len(self._helpers) + 1
 
+    @property
+    def _lot(self) -> int:
+        """Blocks in the next lot."""
+        begun, left = self._turn // self._runners, (self._blocks - self._given) // (4 * self._runners)
+        return min(_MOST, 1 + begun, max(1, left))
+
     def _some(self, wanted: int) -> list[Task]:
         """The next tasks; none where there are none, or where too many are ahead."""
         room = _AHEAD * self._runners - (self._given - self._turn)
-        found = list(islice(self._tasks, max(0, min(max(1, wanted), _MOST, room))))
+        found = list(islice(self._tasks, max(0, min(wanted, room))))
         self._given += len(found)
         return found
 

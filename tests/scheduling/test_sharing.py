@@ -1,0 +1,147 @@
+from __future__ import annotations
+
+import threading
+import time
+
+import pytest
+
+from xlmc.blocks import Task
+from xlmc.scheduling import standby
+from xlmc.scheduling.processes import by_processes
+from xlmc.scheduling.threads import by_threads
+
+
+@pytest.fixture(autouse=True)
+def none_wait():
+    """Processes that other tests have started are not for these."""
+    standby.end()
+    yield
+    standby.end()
+
+
+class Numbers:
+    """Blocks as numbers, in the order that they were run in."""
+
+    def __init__(self):
+        self.run_here = []
+
+    def runner(self):
+        return Numbers()
+
+    def run(self, task):
+        self.run_here.append(task.start)
+        return task.start
+
+
+class FailingLate:
+    """Blocks as numbers, until one fails; made in another process by its name."""
+
+    def __init__(self, first, kind, *words):
+        self.first, self.kind, self.words = first, kind, words
+
+    def runner(self):
+        return self
+
+    def run(self, task):
+        if task.start >= self.first:
+            raise self.kind(*self.words)
+        return task.start
+
+
+class TwoWordsError(Exception):
+    """Its copy cannot be made from its message."""
+
+    def __init__(self, first, second):
+        super().__init__(f"{first} {second}")
+
+
+class Slow:
+    """So that the other has its part."""
+
+    def __init__(self, runner):
+        self.runner = runner
+
+    def run(self, task):
+        time.sleep(0.002)
+        return self.runner.run(task)
+
+
+def with_a_process(runner, tasks):
+    return by_processes(runner, Slow(runner), 1, 1000, tasks)
+
+
+def with_a_thread(runner, tasks):
+    return by_threads([Slow(runner), runner], 1000, tasks)
+
+
+def numbered():
+    return (Task(start, 1, False) for start in range(1000))
+
+
+@pytest.mark.parametrize("shared", [with_a_process, with_a_thread])
+@pytest.mark.parametrize(
+    "failing", [FailingLate(300, ValueError, "no such"), FailingLate(300, TwoWordsError, "no", "such")]
+)
+def test_what_goes_wrong_in_a_block_is_told_in_its_turn(shared, failing):
+    """Though the other has met it long before: a run that ends earlier does not meet it at all."""
+    found = []
+    with pytest.raises((ValueError, RuntimeError, TwoWordsError), match="no such"):
+        found.extend(shared(failing, numbered()))
+    assert found == list(range(300))
+
+
+def test_a_thread_has_its_part():
+    own, other = Numbers(), Numbers()
+    assert list(by_threads([Slow(own), other], 1000, numbered())) == list(range(1000))
+    assert sorted([*own.run_here, *other.run_here]) == list(range(1000))
+    assert own.run_here
+    assert len(other.run_here) > len(own.run_here)  # it is the faster one
+
+
+def test_tasks_are_taken_as_they_are_needed():
+    """Else a run that ends early has computed what nobody wants."""
+    taken = []
+    tasks = (taken.append(task.start) or task for task in numbered())
+    blocks = by_threads([Numbers(), Numbers(), Numbers()], 1000, tasks)
+    for turn in range(500):
+        assert next(blocks) == turn
+        assert len(taken) <= turn + 3 * 12 + 1
+    blocks.close()
+
+
+def test_the_first_block_comes_soon():
+    """However slow blocks are: before it a thread has not run a whole lot of many."""
+    other = Numbers()
+    blocks = by_threads([Slow(Numbers()), Slow(other)], 10**6, numbered())
+    next(blocks)
+    assert len(other.run_here) <= 2
+    blocks.close()
+
+
+class Held(Numbers):
+    """Runs its first block until it is let go."""
+
+    def __init__(self):
+        super().__init__()
+        self.begun, self.go = threading.Event(), threading.Event()
+
+    def run(self, task):
+        self.begun.set()
+        assert self.go.wait(30)
+        return super().run(task)
+
+
+def test_a_run_that_is_left_ends_its_threads():
+    """After the block they are at: a thread runs no more of what it was given."""
+    before, other = threading.active_count(), Held()
+
+    def tasks():
+        yield from (Task(start, 1, False) for start in range(10))
+        assert other.begun.wait(30)
+        threading.Timer(0.3, other.go.set).start()
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        list(by_threads([Numbers(), other], 10**6, tasks()))
+    assert other.run_here == [0]
+    assert threading.active_count() <= before + 1  # the timer may not have ended yet

@@ -5,6 +5,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -129,6 +130,24 @@ def test_nobody_waits_for_ever(model, monkeypatch, children):
     monkeypatch.setattr(standby, "_PATIENCE", 0.01)
     rested(model)
     assert children[-1].wait(timeout=30) is not None
+
+
+def test_one_that_is_not_needed_is_ended_though_others_are(model, monkeypatch, children):
+    """A run with many processes is over; those that follow, every few moments, need one of them."""
+    monkeypatch.setattr(standby, "_PATIENCE", 1.0)
+    started = standby.children(2)
+    answers = Answers()
+    for one in started:
+        one.begin(pickle.dumps(worker_of(model, model.program("numpy"), "numpy", 1, 100)), answers)
+    for _ in started:
+        one, answer = answers.get()
+        one.answered(answer)
+    standby.give_back(started)
+    deadline = time.monotonic() + 30
+    while children[0].poll() is None and time.monotonic() < deadline:
+        standby.give_back(standby.children(1))
+        time.sleep(0.1)
+    assert [one.poll() is None for one in children] == [False, True]
 
 
 def test_one_that_dies_as_its_run_begins_is_told(model, children):

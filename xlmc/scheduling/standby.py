@@ -6,6 +6,7 @@ import atexit
 import os
 from collections.abc import Iterable
 from threading import Lock, Timer
+from time import monotonic
 from typing import Final
 
 from xlmc.scheduling.child import Child
@@ -17,17 +18,17 @@ _PATIENCE: Final = 60.0
 
 
 class _Standby:
-    """Those that wait."""
+    """Those that wait, the one that came last taken first: those that too many runs do without are ended."""
 
     def __init__(self) -> None:
-        self._waiting: list[Child] = []
+        self._waiting: list[tuple[Child, float]] = []  # each with the time at which its patience ends
         self._lock = Lock()
         self._timer: Timer | None = None
 
     def take(self, count: int) -> list[Child]:
         """Up to so many of them."""
         with self._lock:
-            found = [self._waiting.pop() for _ in range(min(count, len(self._waiting)))]
+            found = [self._waiting.pop()[0] for _ in range(min(count, len(self._waiting)))]
         ready = [child for child in found if child.lives]
         for child in found:
             if child not in ready:
@@ -37,23 +38,39 @@ class _Standby:
     def put(self, children: list[Child]) -> None:
         """More of them."""
         with self._lock:
-            self._waiting += children
-            if self._timer is not None:
-                self._timer.cancel()
-            self._timer = Timer(_PATIENCE, self.end)
-            self._timer.daemon = True
-            self._timer.start()
+            self._waiting += [(child, monotonic() + _PATIENCE) for child in children]
+            if self._timer is None:
+                self._wake_after(_PATIENCE)
+
+    def _wake_after(self, seconds: float) -> None:
+        self._timer = Timer(seconds, self._end_overdue)
+        self._timer.daemon = True
+        self._timer.start()
+
+    def _end_overdue(self) -> None:
+        now = monotonic()
+        with self._lock:
+            overdue = [child for child, until in self._waiting if until <= now]
+            self._waiting = [(child, until) for child, until in self._waiting if until > now]
+            self._timer = None
+            if self._waiting:
+                self._wake_after(min(until for _, until in self._waiting) - now)
+        for child in overdue:
+            child.end()
 
     def end(self) -> None:
         """End them."""
         with self._lock:
             ended, self._waiting = self._waiting, []
-        for child in ended:
+            if self._timer is not None:
+                self._timer.cancel()
+                self._timer = None
+        for child, _ in ended:
             child.end()
 
     def forget(self) -> None:
         """In a process that was forked: they work for the other one. The lock may be held by a thread that is there."""
-        self._lock, self._of_parent, self._waiting = Lock(), self._waiting, []
+        self._lock, self._of_parent, self._waiting, self._timer = Lock(), self._waiting, [], None
 
 
 _standby = _Standby()

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
+from html import escape
 from itertools import islice
-from xml.sax.saxutils import escape
 
 from xlmc.workbook.injection.sheet_names import quoted
 from xlmc.workbook.injection.spans import Element
@@ -41,7 +41,7 @@ def list_sheets(xml: bytes, part: str, present: Collection[str], added: Sequence
         return xml
     tag = document.prefix(group.titles[-1]) + "lpstr"
     for name in added:
-        document.after(group.titles[-1], render(tag, {}, escape(name)))
+        document.after(group.titles[-1], render(tag, {}, escape(name, quote=False)))
     document.write_text(group.count, str(len(group.titles) + len(added)))
     _resize(document, 2 * len(groups), sum(len(g.titles) for g in groups) + len(added))
     return document.result()

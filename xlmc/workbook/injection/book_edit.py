@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from html import escape
 from itertools import chain
-from xml.sax.saxutils import escape
 
 from xlmc.errors import WorkbookError
 from xlmc.workbook.injection.built_book import SheetName
@@ -132,7 +132,7 @@ def _add_names(document: SplicedXml, new: Iterable[tuple[int, SheetName]]) -> No
     tag = document.prefix(document.root) + "definedName"
     loose = []
     for attributes, text in names:
-        fragment = render(tag, attributes, escape(text))
+        fragment = render(tag, attributes, escape(text, quote=False))
         behind = next((element for order, element in present if order > _order(attributes)), None)
         if behind is not None:
             document.before(behind, fragment)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from xml.sax.saxutils import escape, unescape
+from html import escape, unescape
 
 from xlmc.workbook.injection.sheet_names import renamed
 from xlmc.workbook.injection.styles_merge import StyleMap
@@ -79,8 +79,8 @@ def renamed_in(xml: bytes, renames: Renames) -> bytes:
         return xml
 
     def new(match: re.Match[bytes]) -> bytes:
-        text = renames.formula(unescape(match[2].decode(), {"&quot;": '"'}))
-        return match[1] + escape(text, {'"': "&quot;"}).encode()
+        text = renames.formula(unescape(match[2].decode()))
+        return match[1] + escape(text, quote=False).replace('"', "&quot;").encode()
 
     return _PLACE.sub(new, _FORMULA.sub(new, xml))
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from xml.sax.saxutils import escape
+from html import escape
 
 from xlmc.workbook.injection.spans import Element, as_utf8, parse_spans
 
@@ -17,7 +17,7 @@ __all__ = ["SplicedXml", "render"]
 _TAG_NAME = re.compile(rb"""<([^\s/>"']+)""")
 _ATTRIBUTE = re.compile(rb"""(?P<name>[^\s=/>"']+)\s*=\s*(?P<quoted>"[^"]*"|'[^']*')""")
 
-_IN_ATTRIBUTES = {'"': "&quot;", "\t": "&#9;", "\n": "&#10;", "\r": "&#13;"}
+_IN_ATTRIBUTES = str.maketrans({'"': "&quot;", "\t": "&#9;", "\n": "&#10;", "\r": "&#13;"})
 
 
 class SplicedXml:
@@ -55,7 +55,7 @@ class SplicedXml:
 
     def write_text(self, element: Element, text: str) -> None:
         """Replace the content of an element that is not self-closed."""
-        self._edits.append((element.inner, element.close, escape(text).encode()))
+        self._edits.append((element.inner, element.close, escape(text, quote=False).encode()))
 
     def set(self, element: Element, attribute: str, value: object) -> None:
         """Give an attribute without a prefix a value, in place or as a new last attribute."""
@@ -113,4 +113,4 @@ def render(tag: str, attributes: Mapping[str, object], content: str | None = Non
 
 
 def _quoted(value: object) -> str:
-    return '"' + escape(str(value), _IN_ATTRIBUTES) + '"'
+    return '"' + escape(str(value), quote=False).translate(_IN_ATTRIBUTES) + '"'

@@ -1,13 +1,18 @@
 from __future__ import annotations
 
+import gc
+import itertools
 import threading
 import time
+import weakref
 
 import pytest
 
 from xlmc.blocks import Task
-from xlmc.scheduling import standby
+from xlmc.errors import SimulationError
+from xlmc.scheduling import sharing, standby
 from xlmc.scheduling.processes import by_processes
+from xlmc.scheduling.sharing import Answers, Helper, Sharing
 from xlmc.scheduling.threads import by_threads
 
 
@@ -114,8 +119,85 @@ def test_the_first_block_comes_soon():
     other = Numbers()
     blocks = by_threads([Slow(Numbers()), Slow(other)], 10**6, numbered())
     next(blocks)
-    assert len(other.run_here) <= 2
+    assert len(other.run_here) <= 3
     blocks.close()
+
+
+class Recording(Helper):
+    """Answers at once, and knows how large its lots were."""
+
+    def __init__(self, answers):
+        super().__init__()
+        self.answers, self.lots = answers, []
+        self._ready = True
+
+    def _take(self, tasks):
+        self.lots.append(len(tasks))
+        self.answers.put((self, [task.start for task in tasks]))
+
+
+@pytest.mark.parametrize(("seconds", "most"), [(0.001, 4), (0.025, 4), (0.03, 3), (0.06, 1), (5.0, 1)])
+def test_lots_are_small_where_blocks_are_slow(monkeypatch, seconds, most):
+    """Else a time limit, and whoever looks at the progress, would wait for a whole lot of them."""
+    answers, clock = Answers(), itertools.count()
+    monkeypatch.setattr(sharing, "perf_counter", lambda: seconds * next(clock))
+    helper = Recording(answers)
+    assert list(Sharing(Numbers(), [helper], answers, 1000, numbered()).in_order()) == list(range(1000))
+    assert helper.lots[0] == helper.lots[-1] == 1
+    assert max(helper.lots) == most
+
+
+class Ends(Numbers):
+    def __init__(self, error):
+        super().__init__()
+        self.error = error
+
+    def run(self, task):
+        raise self.error
+
+
+@pytest.mark.parametrize(
+    ("error", "told"), [(SystemExit(3), SystemExit), (StopIteration(), RuntimeError), (MemoryError(), MemoryError)]
+)
+def test_whatever_ends_a_block_ends_the_run(error, told):
+    """It does not wait for ever, nor pass for the end."""
+    with pytest.raises(told):
+        list(by_threads([Slow(Numbers()), Ends(error)], 1000, numbered()))
+    with pytest.raises(told):
+        list(by_threads([Ends(error)], 1000, numbered()))
+
+
+def test_a_thread_that_cannot_be_started_is_told(monkeypatch):
+    """And those that were are ended."""
+    before, start, started = threading.active_count(), threading.Thread.start, []
+
+    def failing(thread):
+        if started:
+            raise RuntimeError("can't start new thread")
+        started.append(thread)
+        start(thread)
+
+    monkeypatch.setattr(threading.Thread, "start", failing)
+    with pytest.raises(SimulationError, match="no thread can be started") as caught:
+        list(by_threads([Numbers() for _ in range(4)], 1000, numbered()))
+    assert "-j" in caught.value.hint
+    assert threading.active_count() == before
+
+
+def test_a_run_that_is_left_keeps_no_runner():
+    """Its arrays are large: they do not wait for the collector of cycles."""
+    gc.disable()
+    try:
+        other = Numbers()
+        alive = weakref.ref(other)
+        blocks = by_threads([Numbers(), other], 1000, numbered())
+        del other
+        for _ in range(100):
+            next(blocks)
+        blocks.close()
+        assert alive() is None
+    finally:
+        gc.enable()
 
 
 class Held(Numbers):

@@ -16,7 +16,7 @@ def run_lot(runner: Runner, tasks: Iterable[Task]) -> list[Block | Exception]:
     """The blocks, the last of which is what went wrong, if something did."""
     done: list[Block | Exception] = []
     try:
-        done += map(runner.run, tasks)
+        done += (runner.run(task) for task in tasks)  # `map` would take a StopIteration of a block's for the end
     except Exception as error:  # whatever it is, it is told in the turn of its block
         done.append(error)
     return done

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 
 from xlmc.blocks import Block, Portable, Runner, Task
 from xlmc.scheduling import standby
-from xlmc.scheduling.sharing import Answers, Sharing
+from xlmc.scheduling.sharing import Answers, Sharing, forget
 
 __all__ = ["by_processes"]
 
@@ -36,3 +36,4 @@ def by_processes(portable: Portable, own: Runner, others: int, blocks: int, task
         yield from Sharing(own, children, answers, blocks, tasks).in_order()
     finally:
         standby.give_back(children)
+        forget(answers)

@@ -11,11 +11,12 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from queue import SimpleQueue
+from time import perf_counter
 from typing import Final
 
 from xlmc.blocks import Block, Runner, Task
 
-__all__ = ["Answer", "Answers", "Helper", "Sharing"]
+__all__ = ["Answer", "Answers", "Helper", "Sharing", "forget"]
 
 _LOTS: Final = 2
 """That a helper is given: while one is answered, the next is at hand."""
@@ -27,7 +28,10 @@ ones, so that nobody waits long for the end."""
 _AHEAD: Final = 12
 """Blocks for each runner that may be finished or under way before their turn."""
 
-Answer = list[Block | Exception] | Exception | None
+_LONG: Final = 0.1
+"""Seconds that a lot of several blocks may take: they are looked at when all are done."""
+
+Answer = list[Block | Exception] | BaseException | None
 Answers = SimpleQueue[tuple["Helper", Answer]]
 """A helper and what it said: None that its runner is made, the blocks of a lot of tasks, the last of which is what went
 wrong if something did, or why it will say no more."""
@@ -54,9 +58,9 @@ class Helper(ABC):
         """The number of the first block, and the blocks, of its next answer.
 
         Raises:
-            Exception: it will give none.
+            BaseException: it will give none.
         """
-        if isinstance(answer, Exception):
+        if isinstance(answer, BaseException):
             self._ready = False
             raise answer
         if answer is None:
@@ -84,13 +88,14 @@ class Sharing:
         self._own, self._helpers, self._answers = own, helpers, answers
         self._blocks, self._tasks = blocks, iter(tasks)
         self._given = self._turn = 0
+        self._seconds = 0.0  # that this thread's last block took
         self._done: dict[int, Block | Exception] = {}
 
     def in_order(self) -> Iterator[Block]:
         """The blocks in the order of their tasks; what goes wrong in one is raised in its turn.
 
         Raises:
-            Exception: what went wrong, or why a helper will say no more.
+            BaseException: what went wrong, or why a helper will say no more.
         """
         while True:
             while not self._answers.empty():
@@ -109,10 +114,13 @@ class Sharing:
                 return
 
     def _run(self, task: Task) -> Block | Exception:
+        start = perf_counter()
         try:
             return self._own.run(task)
         except Exception as error:  # whatever it is, it is told in its turn
             return error
+        finally:
+            self._seconds = perf_counter() - start
 
     @property
     def _runners(self) -> int:
@@ -122,7 +130,8 @@ class Sharing:
     def _lot(self) -> int:
         """Blocks in the next lot."""
         begun, left = self._turn // self._runners, (self._blocks - self._given) // (4 * self._runners)
-        return min(_MOST, 1 + begun, max(1, left))
+        most = _MOST if _MOST * self._seconds <= _LONG else int(_LONG / self._seconds)
+        return max(1, min(most, 1 + begun, left))
 
     def _some(self, wanted: int) -> list[Task]:
         """The next tasks; none where there are none, or where too many are ahead."""
@@ -136,6 +145,12 @@ class Sharing:
         helper, answer = self._answers.get()
         first, blocks = helper.answered(answer)
         self._done.update(enumerate(blocks, first))
+
+
+def forget(answers: Answers) -> None:
+    """What nobody has taken: a helper knows its answers, and they know it, with all that it holds."""
+    while not answers.empty():
+        answers.get()
 
 
 def _unless_failed(block: Block | Exception) -> Block:

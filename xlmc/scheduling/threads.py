@@ -8,8 +8,9 @@ from queue import SimpleQueue
 from threading import Thread
 
 from xlmc.blocks import Block, Runner, Task
+from xlmc.errors import SimulationError
 from xlmc.scheduling.lots import run_lot
-from xlmc.scheduling.sharing import Answers, Helper, Sharing
+from xlmc.scheduling.sharing import Answers, Helper, Sharing, forget
 
 __all__ = ["by_threads"]
 
@@ -21,20 +22,27 @@ def by_threads(runners: Sequence[Runner], blocks: int, tasks: Iterable[Task]) ->
         runners: one a thread; this thread is the first.
         blocks: how many there will be at most.
         tasks: taken as they are needed.
+
+    Raises:
+        SimulationError: a thread cannot be started.
     """
     own, *others = runners
     if not others:
-        yield from map(own.run, tasks)
+        for task in tasks:
+            yield own.run(task)
         return
     answers = Answers()
     threads = [_Thread(runner, answers) for runner in others]
     try:
+        for thread in threads:
+            thread.start()
         yield from Sharing(own, threads, answers, blocks, tasks).in_order()
     finally:
         for thread in threads:
             thread.end()
         for thread in threads:
             thread.join()
+        forget(answers)
 
 
 class _Thread(Helper):
@@ -42,21 +50,34 @@ class _Thread(Helper):
 
     def __init__(self, runner: Runner, answers: Answers) -> None:
         super().__init__()
-        self._ready = True
         self._runner, self._answers = runner, answers
         self._lots: SimpleQueue[Sequence[Task] | None] = SimpleQueue()
         self._ended = False
         # A program may end without closing a run that it left half-way.
         self._thread = Thread(target=self._serve, daemon=True)
-        self._thread.start()
+
+    def start(self) -> None:
+        """Have it take lots.
+
+        Raises:
+            SimulationError: the system has no thread left.
+        """
+        try:
+            self._thread.start()
+        except RuntimeError as error:
+            raise SimulationError(f"no thread can be started: {error}", hint="Ask for fewer with -j") from error
+        self._ready = True
 
     def _take(self, tasks: Sequence[Task]) -> None:
         self._lots.put(tasks)
 
     def _serve(self) -> None:
-        while (tasks := self._lots.get()) is not None:
-            wanted = takewhile(lambda _: not self._ended, tasks)
-            self._answers.put((self, run_lot(self._runner, wanted)))
+        try:
+            while (tasks := self._lots.get()) is not None:
+                wanted = takewhile(lambda _: not self._ended, tasks)
+                self._answers.put((self, run_lot(self._runner, wanted)))
+        except BaseException as error:  # whatever it is, else the run would wait for an answer for ever
+            self._answers.put((self, error))
 
     def end(self) -> None:
         """Have it end after the block it is at."""
@@ -64,5 +85,6 @@ class _Thread(Helper):
         self._lots.put(None)
 
     def join(self) -> None:
-        """Wait until it has ended."""
-        self._thread.join()
+        """Wait until it has ended, if it was started."""
+        if self._thread.is_alive():
+            self._thread.join()

@@ -7,13 +7,14 @@ What Excel minds and arithmetic does not is a flag.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from llvmlite import ir
 
 from xlmc.compile.dag import Constant, Dag, Select
+from xlmc.compile.jit.arithmetic import Arithmetic
 from xlmc.compile.jit.contexts import ROOT, Context, branch
 from xlmc.compile.jit.recipes import Literal, Operand, Recipe, literal
 from xlmc.compile.jit.sine import sine_and_cosine
@@ -91,6 +92,14 @@ class Body:
         """A call of one of LLVM's own functions of numbers."""
         of = ir.FunctionType(self.real, [self.real] * len(arguments))
         return self.builder.call(self.builder.module.declare_intrinsic(name, [self.real], of), arguments)
+
+    def of_doubles(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """A function that is made of arithmetic on doubles; with float32 its result is rounded."""
+        do = Arithmetic(self.builder, self._fused)
+        if not self._single:
+            return function(do, *arguments)
+        wide = [self.builder.fpext(argument, ir.DoubleType()) for argument in arguments]
+        return self.builder.fptrunc(function(do, *wide), self.real)
 
     @property
     def largest_angle(self) -> float:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.compile.dag import Apply, Dag
+from xlmc.compile.jit.arctangent import arccosine, arcsine, arctangent, arctangent_of_two
 from xlmc.compile.jit.recipes import PLAIN, Emit, Operand, Recipe, literal
 from xlmc.functions import Kind
 
@@ -97,6 +98,19 @@ def _cosecant(body: Body, parts: Sequence[Any]) -> Any:
     return body.builder.fdiv(body.number(1.0), _of_angle(body, parts[0])[0])
 
 
+def _remainder(body: Body, parts: Sequence[Any]) -> Any:
+    """Exact, then with the sign of the divisor; NaN by zero."""
+    builder, zero, divisor = body.builder, body.number(0.0), parts[1]
+    rest = builder.frem(*parts)
+    apart = builder.xor(builder.fcmp_ordered("<", rest, zero), builder.fcmp_ordered("<", divisor, zero))
+    moved = builder.and_(apart, builder.fcmp_ordered("!=", rest, zero))
+    return builder.select(moved, builder.fadd(rest, divisor), rest)
+
+
+def _of_doubles(function: Callable[..., Any], *absorbs: int, makes: bool) -> _Row:
+    return _Row(lambda body, parts: body.of_doubles(function, *parts), absorbs, makes)
+
+
 def _root(body: Body, parts: Sequence[Any]) -> Any:
     return body.intrinsic("llvm.sqrt", parts[0])
 
@@ -139,12 +153,17 @@ _ROWS: Final[Mapping[str, _Row]] = {
     "NOT": _Row(lambda body, parts: body.builder.not_(parts[0])),
     "ABS": _Row(lambda body, parts: body.intrinsic("llvm.fabs", parts[0]), makes=False),
     "SQRT": _Row(_root),
+    "MOD": _Row(_remainder, (1,)),
     "SIGN": _Row(_sign, _ALL, makes=False),
     "SIN": _Row(_sine, makes=False),
     "COS": _Row(_cosine, makes=False),
     "TAN": _Row(_tangent),
     "SEC": _Row(_secant),
     "CSC": _Row(_cosecant),
+    "ATAN": _of_doubles(arctangent, 0, makes=False),
+    "ATAN2": _of_doubles(arctangent_of_two, 0, 1, makes=True),
+    "ASIN": _of_doubles(arcsine, makes=True),
+    "ACOS": _of_doubles(arccosine, makes=True),
     "ISERROR": _known(False),
     "ISERR": _known(False),
     "ISNA": _known(False),

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from llvmlite import ir
 
-from xlmc.compile.jit.sine import Arithmetic
+from xlmc.compile.jit.arithmetic import Arithmetic
 
 __all__ = ["HALF_PI_PARTS", "LARGEST_ANGLE", "single_sine_and_cosine"]
 

@@ -19,6 +19,7 @@ from xlmc.compile.dag import Dag, Input
 from xlmc.compile.engine import Kept
 from xlmc.compile.jit.machine import machine
 from xlmc.compile.jit.phase import Loop, Memory, Phase
+from xlmc.compile.jit.recipes import Literal, Operand, literal
 from xlmc.compile.jit.sweep import WORD, Layout, compiled
 from xlmc.compile.jit.uniforms import filler
 from xlmc.functions import Kind
@@ -41,13 +42,23 @@ _PATIENCE: Final = 4
 
 @dataclass(frozen=True, slots=True)
 class Parts:
-    """A model of loops alone: the loops on all trials and on the survivors, and the nodes that are its results."""
+    """A model of loops alone: the loops on all trials and on the survivors, and the nodes that are its results.
+
+    Attributes:
+        filters: of each filter its node; None of one that keeps every trial.
+        forecasts: of each forecast its node, or the number that it always is.
+    """
 
     dag: Dag
     first: tuple[Loop, ...]
     late: tuple[Loop, ...]
-    filters: tuple[int, ...]
-    forecasts: tuple[int, ...]
+    filters: tuple[int | None, ...]
+    forecasts: tuple[int | Literal, ...]
+
+    @property
+    def rejecting(self) -> dict[int, int]:
+        """Position of a filter that may reject trials -> its node."""
+        return {position: place for position, place in enumerate(self.filters) if place is not None}
 
     @property
     def computed_late(self) -> frozenset[int]:
@@ -64,13 +75,19 @@ def sweepable(
         return None
     if len(filters) > _MOST_FILTERS or block % WORD or sys.byteorder != "little":
         return None
-    stored = {*first.stores, *late.stores}
-    logical = all(place in first.stores and dag.types[place] is Kind.LOGICAL for place in filters)
-    numbers = all(
-        isinstance(dag.nodes[place], Input) or (place in stored and dag.types[place] is Kind.NUMBER)
-        for place in forecasts
-    )
-    return Parts(dag, early_loops, late_loops, tuple(filters), tuple(forecasts)) if logical and numbers else None
+    logical = {place for place in first.stores if dag.types[place] is Kind.LOGICAL}
+    numbers = {place for place in (*first.stores, *late.stores) if dag.types[place] is Kind.NUMBER}
+    numbers |= {place for place in forecasts if isinstance(dag.nodes[place], Input)}
+    asked = [None if _known(dag, place, Kind.LOGICAL) == Literal(True) else place for place in filters]
+    given = [_known(dag, place, Kind.NUMBER) or place for place in forecasts]
+    if not {*asked} <= {None, *logical} or not {each for each in given if isinstance(each, int)} <= numbers:
+        return None
+    return Parts(dag, early_loops, late_loops, tuple(asked), tuple(given))
+
+
+def _known(dag: Dag, place: int, kind: Kind) -> Literal | None:
+    """What a node always is, if it is of that kind."""
+    return literal(dag, Operand(place, kind)) if dag.types[place] is kind else None
 
 
 class WholeBlocks:
@@ -94,11 +111,11 @@ class WholeBlocks:
         self._fill = None if linear is None else filler(linear.streams, linear.maps, rows)
         self._rows = dict(zip(self._names, rows, strict=True))
         self._memory = Memory(parts.dag, {s for loop in (*parts.first, *parts.late) for s in loop.stores}, self._chunk)
-        self._forecasts = {place: np.empty(block) for place in parts.forecasts}
+        self._forecasts = {place: np.empty(block) for place in parts.forecasts if isinstance(place, int)}
         self._kept = np.empty((len(self._names), block))
         self._trials, self._survivors = np.empty(block, np.int64), np.empty(self._chunk, np.int64)
         self._wrong = np.zeros((2, self._chunk), np.uint8)
-        f = len(parts.filters)
+        f = len(parts.rejecting)
         self._counts = np.zeros(f * (f + 1) // 2 + f, np.int64)
         rows_of, columns_of = np.maximum(*np.indices((f, f))), np.minimum(*np.indices((f, f)))
         self._pairs = rows_of * (rows_of + 1) // 2 + columns_of
@@ -127,12 +144,19 @@ class WholeBlocks:
         return self._result(m, inputs)
 
     def _result(self, m: int, inputs: bool) -> Kept:
+        parts, alone = self._parts, self._counts[self._counts.size - len(self._parts.rejecting) :]
+        f, rejecting = len(parts.filters), list(parts.rejecting)
+        together, only = np.zeros((f, f), np.int64), np.zeros(f, np.int64)
+        together[np.ix_(rejecting, rejecting)], only[rejecting] = self._counts[self._pairs], alone
         return Kept(
             self._trials[:m].copy(),
             dict(zip(self._names, self._kept[:, :m].copy(), strict=True)) if inputs else {},
-            [self._forecasts[place][:m].copy() for place in self._parts.forecasts],
-            self._counts[self._pairs],
-            self._counts[self._counts.size - len(self._parts.filters) :].copy(),
+            [
+                np.full(m, float(each.value)) if isinstance(each, Literal) else self._forecasts[each][:m].copy()
+                for each in parts.forecasts
+            ],
+            together,
+            only,
         )
 
     def _write(self) -> None:
@@ -143,7 +167,7 @@ class WholeBlocks:
         jump = -1 if fill is None else pages.add(_start(fill.jump))
         first = [pages.add(loop.call.address, 0) for loop in parts.first]
         late = [pages.add(loop.call.address, 0) for loop in parts.late]
-        filters = [pages.add(_start(self._memory.of(place, self._chunk))) for place in parts.filters]
+        filters = [pages.add(_start(self._memory.of(place, self._chunk))) for place in parts.rejecting.values()]
         survivors, trials, counts = (pages.add(_start(a)) for a in (self._survivors, self._trials, self._counts))
         lists = []
         for at, loop, wrong in zip(

@@ -8,8 +8,6 @@ import pytest
 pytest.importorskip("llvmlite")
 import mpmath
 
-from xlmc.compile.jit import machine as machines
-from xlmc.compile.jit import program as programs
 from xlmc.compile.jit.sine import HALF_PI
 
 LIMIT = 2.0**27
@@ -59,40 +57,11 @@ ANGLES = {
 }
 
 
-def distance(computed, exact):
-    """How many last places of the exact value lie between; of a subnormal the places are those of all subnormals."""
-    worst = 0.0
-    for value, truth in zip(computed, exact, strict=True):
-        place = mpmath.mpf(float(np.spacing(abs(float(truth)))))
-        worst = max(worst, float(abs(mpmath.mpf(float(value)) - truth) / place))
-    return worst
-
-
-@pytest.fixture(scope="module", params=["as it is", "without fused multiplication"])
-def functions(request, lower):
-    """Sine, cosine and tangent by the compiled loop."""
-    with pytest.MonkeyPatch.context() as patch:
-        if request.param != "as it is":
-            plain = machines.this_machine()
-            plain.fused = False
-            patch.setattr(programs, "machine", lambda: plain)
-        cells = {"B1": "=SIN(A1)", "B2": "=COS(A1)", "B3": "=TAN(A1)"}
-        lowering, targets = lower(cells, ["A1"], [*cells])
-        program = programs.JitProgram(lowering, targets, [], frozenset())
-
-    def evaluate(angles):
-        columns = program.evaluator(angles.size).filters({"A1": angles}, angles.size)
-        assert all(column.codes is None for column in columns)
-        return [column.values for column in columns]
-
-    return evaluate
-
-
 @pytest.mark.parametrize("angles", ANGLES)
-def test_within_a_unit_in_the_last_place(functions, angles):
+def test_within_a_unit_in_the_last_place(compiled, distance, angles):
     with mpmath.workprec(300):
         exact = [mpmath.mpf(float(angle)) for angle in ANGLES[angles]]
-        sine, cosine, tangent = functions(ANGLES[angles])
+        sine, cosine, tangent = compiled({"B1": "=SIN(A1)", "B2": "=COS(A1)", "B3": "=TAN(A1)"})(ANGLES[angles])
         assert distance(sine, map(mpmath.sin, exact)) < 1
         assert distance(cosine, map(mpmath.cos, exact)) < 1
         assert distance(tangent, map(mpmath.tan, exact)) < 2

@@ -67,7 +67,7 @@ def compiled(machine: Machine, layout: Layout) -> NativeLoop:
     It gives the number of trials kept, or -1 as soon as a trial must be computed again.
     """
     module = ir.Module()
-    sieve, gather = _sieve(module, len(layout.filters), layout.chunk), _gather(module)
+    sieve, gather = _sieve(module, len(layout.filters), layout.chunk), _gather(module, layout.chunk)
     function = ir.Function(module, _LOOP, _NAME)
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     chunks = function.args[1]
@@ -180,7 +180,7 @@ def _step(builder: ir.IRBuilder, halves: Any, chunk: int) -> None:
         builder.store(builder.add(moved, _STATE(more)), at, align=8)
 
 
-def _gather(module: ir.Module) -> ir.Function:
+def _gather(module: ir.Module, chunk: int) -> ir.Function:
     """The doubles of the survivors, one after another."""
     types = [_DOUBLE.as_pointer(), _DOUBLE.as_pointer(), _LONG.as_pointer(), _LONG]
     function = ir.Function(module, ir.FunctionType(ir.VoidType(), types), "gather")
@@ -190,11 +190,14 @@ def _gather(module: ir.Module) -> ir.Function:
     source, target, survivors, n = function.args
     builder = ir.IRBuilder(function.append_basic_block("entry"))
 
-    def one(i: Any) -> None:
-        value = builder.load(builder.gep(source, [builder.load(builder.gep(survivors, [i]))]))
-        builder.store(value, builder.gep(target, [i]))
+    def copied(i: Any, of: Any) -> None:
+        builder.store(builder.load(builder.gep(source, [of])), builder.gep(target, [i]))
 
-    _counting(builder, n, one)
+    with builder.if_else(builder.icmp_signed("==", n, _LONG(chunk))) as (whole, some):
+        with whole:
+            _counting(builder, _LONG(chunk), lambda i: copied(i, i))
+        with some:
+            _counting(builder, n, lambda i: copied(i, builder.load(builder.gep(survivors, [i]))))
     builder.ret_void()
     return function
 
@@ -239,17 +242,27 @@ def _rejected(builder: ir.IRBuilder, answers: Any, first: Any) -> Any:
 
 def _list_bits(builder: ir.IRBuilder, bits: Any, first: Any, survivors: Any, kept: Any) -> None:
     """Write down the trials of the bits that are set, after those of `kept`."""
+    target = builder.gep(survivors, [builder.load(kept)])
+    with builder.if_else(builder.icmp_signed("==", bits, _LONG(-1))) as (whole, some):
+        with whole:
+            _counting(builder, _LONG(WORD), lambda i: builder.store(builder.add(first, i), builder.gep(target, [i])))
+        with some:
+            _list_some(builder, bits, first, target)
+    builder.store(builder.add(builder.load(kept), builder.ctpop(bits)), kept)
+
+
+def _list_some(builder: ir.IRBuilder, bits: Any, first: Any, target: Any) -> None:
+    """The trials of the bits that are set, one after another."""
     before = builder.block
     body, after = builder.append_basic_block("next"), builder.append_basic_block("none")
     builder.cbranch(builder.icmp_unsigned("!=", bits, _LONG(0)), body, after)
     builder.position_at_end(body)
-    left = builder.phi(_LONG)
-    so_far = builder.load(kept)
+    left, place = builder.phi(_LONG), builder.phi(_LONG)
     trial = builder.add(first, builder.cttz(left, ir.Constant(ir.IntType(1), 1)))
-    builder.store(trial, builder.gep(survivors, [so_far]))
-    builder.store(builder.add(so_far, _LONG(1)), kept)
-    rest = builder.and_(left, builder.sub(left, _LONG(1)))
-    left.add_incoming(bits, before)
-    left.add_incoming(rest, body)
+    builder.store(trial, builder.gep(target, [place]))
+    rest, following = builder.and_(left, builder.sub(left, _LONG(1))), builder.add(place, _LONG(1))
+    for value, start, more in ((left, bits, rest), (place, _LONG(0), following)):
+        value.add_incoming(start, before)
+        value.add_incoming(more, body)
     builder.cbranch(builder.icmp_unsigned("!=", rest, _LONG(0)), body, after)
     builder.position_at_end(after)

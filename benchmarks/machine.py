@@ -8,6 +8,7 @@ import subprocess
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from time import sleep
 from typing import Any
 
 __all__ = ["describe", "sentence"]
@@ -27,7 +28,7 @@ def describe(compiler: str | None = None) -> dict[str, Any]:
         "features": [flag for flag in FEATURES if flag in (info.get("flags") or info.get("Features") or "").split()],
         "memory, GB": _memory(),
         "system": f"{platform.system()} {platform.machine()}",
-        "load before": round(os.getloadavg()[0], 2) if hasattr(os, "getloadavg") else None,
+        "busy before": _busy(),
         "python": platform.python_version(),
         "packages": _versions(),
         "compiler": _first_line([compiler, "--version"]) if compiler else None,
@@ -36,12 +37,13 @@ def describe(compiler: str | None = None) -> dict[str, Any]:
 
 def sentence(machine: dict[str, Any]) -> str:
     """The description in words."""
+    busy = machine["busy before"]
     packages = ", ".join(f"{name} {number}" for name, number in machine["packages"].items())
     return (
         f"{machine['processor']}, {machine['cores']} cores, {machine['memory, GB']} GB, "
         f"{' '.join(machine['features'])}; {machine['system']}; Python {machine['python']}, {packages}; "
-        f"{machine['compiler'] or 'no C compiler'}. Measured on {machine['date'][:10]}; load average before "
-        f"the start: {machine['load before']}."
+        f"{machine['compiler'] or 'no C compiler'}. Measured on {machine['date'][:10]}"
+        f"{'' if busy is None else f'; of the cores {busy:.2f} were at other work before the start'}."
     )
 
 
@@ -58,6 +60,24 @@ def _memory() -> int | None:
         return round(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30)
     except (AttributeError, ValueError):
         return None
+
+
+def _busy() -> float | None:
+    """How many cores are at work while this process waits a second; None where the system does not tell."""
+    path = Path("/proc/stat")
+    if not path.exists():
+        return None
+    before = _ticks(path)
+    sleep(1.0)
+    idle, total = (now - then for now, then in zip(_ticks(path), before, strict=True))
+    return round((1 - idle / total) * (os.cpu_count() or 1), 2)
+
+
+def _ticks(path: Path) -> tuple[int, int]:
+    """Of all cores since the start, idle or waiting for a disk, and in all."""
+    _, *ticks = path.read_text().splitlines()[0].split()
+    counts = [int(count) for count in ticks[:8]]  # the guests' after them are among the first
+    return counts[3] + counts[4], sum(counts)
 
 
 def _versions() -> dict[str, str]:

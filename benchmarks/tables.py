@@ -19,8 +19,8 @@ __all__ = ["PAGE", "TABLES", "filled", "placed", "write"]
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "speed.md"
 
 
-QUIET = 0.5
-"""A load average above this before the start means that other work was running."""
+QUIET = 0.2
+"""More cores at work than this, just before the start, mean that other work was running."""
 
 PROVISIONAL = (
     "**These figures are provisional**: other work was running on the machine, which slows now one contestant, now "
@@ -60,7 +60,7 @@ def placed(text: str, name: str, body: str) -> str:
 
 def _machine(machine: dict[str, Any]) -> str:
     """The machine in words, with a warning where other work was running on it."""
-    busy = machine["load before"] is not None and machine["load before"] > QUIET
+    busy = machine["busy before"] is not None and machine["busy before"] > QUIET
     return f"{PROVISIONAL}\n\n{sentence(machine)}" if busy else sentence(machine)
 
 

@@ -73,7 +73,7 @@ class Kept:
     """A whole block without errors, evaluated and filtered.
 
     Attributes:
-        survivors: `(m,)` the accepted trials, counted from the block's first.
+        survivors: `(m,)` the accepted trials, counted from the block's first; overwritten by the next block.
         draws: assumption -> `(m,)`; empty when not asked for.
         forecasts: one a forecast, `(m,)`.
         together: `(f, f)` trials that both of two filters reject.

@@ -1,4 +1,4 @@
-"""Arctangents and what comes of them as straight-line code, within 2 ulp.
+"""The arctangent of a number, within 1 ulp, and of two, within 2, as straight-line code.
 
 A number is reduced to a short interval around 0 by the arctangent of 1/2, 1, 3/2 or infinity, held as a sum of two
 doubles; the polynomial, of degree 23, is that of fdlibm's `s_atan.c`.
@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from xlmc.compile.jit.arithmetic import Arithmetic
 
-__all__ = ["arccosine", "arcsine", "arctangent", "arctangent_of_two"]
+__all__ = ["HALF_PI", "arctangent", "arctangent_of_two"]
 
 _STEPS: Final = (
     (7 / 16, 4.63647609000806093515e-01, 2.26987774529616870924e-17),
@@ -27,8 +27,10 @@ _ARCTANGENT: Final = (
     *(-3.65315727442169155270e-02, 1.62858201153657823623e-02),
 )
 
-_HALF_PI, _REST_OF_HALF = _STEPS[-1][1:]
-_PI, _REST = 2 * _HALF_PI, 2 * _REST_OF_HALF
+HALF_PI: Final = _STEPS[-1][1:]
+"""π/2 as a sum of two doubles."""
+
+_PI: Final = (2 * HALF_PI[0], 2 * HALF_PI[1])
 
 
 def arctangent(do: Arithmetic, x: Any) -> Any:
@@ -42,25 +44,9 @@ def arctangent_of_two(do: Arithmetic, x: Any, y: Any) -> Any:
     steep = do.above(across, along)
     low, high = do.select(steep, along, across), do.select(steep, across, along)
     angle = _of_size(do, do.div(low, high))
-    angle = do.select(steep, _less(do, _HALF_PI, _REST_OF_HALF, angle), angle)
-    angle = do.select(do.above(do.number(0.0), x), _less(do, _PI, _REST, angle), angle)
+    angle = do.select(steep, _less(do, HALF_PI, angle), angle)
+    angle = do.select(do.above(do.number(0.0), x), _less(do, _PI, angle), angle)
     return do.select(do.above(do.number(0.0), y), do.negative(angle), angle)
-
-
-def arcsine(do: Arithmetic, x: Any) -> Any:
-    """Of a number from -1 to 1; NaN of others."""
-    return arctangent_of_two(do, _other_leg(do, x), x)
-
-
-def arccosine(do: Arithmetic, x: Any) -> Any:
-    """Likewise."""
-    return arctangent_of_two(do, x, _other_leg(do, x))
-
-
-def _other_leg(do: Arithmetic, x: Any) -> Any:
-    """√(1 - x²), to the last places near 1 too."""
-    one = do.number(1.0)
-    return do.root(do.mul(do.sub(one, x), do.add(one, x)))
 
 
 def _of_size(do: Arithmetic, x: Any) -> Any:
@@ -89,6 +75,6 @@ def _reductions(do: Arithmetic, x: Any) -> tuple[tuple[Any, Any], ...]:
     )
 
 
-def _less(do: Arithmetic, whole: float, rest: float, angle: Any) -> Any:
+def _less(do: Arithmetic, whole: tuple[float, float], angle: Any) -> Any:
     """What an angle leaves of a sum."""
-    return do.sub(do.number(whole), do.sub(angle, do.number(rest)))
+    return do.sub(do.number(whole[0]), do.sub(angle, do.number(whole[1])))

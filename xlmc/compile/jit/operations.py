@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.compile.dag import Apply, Dag
-from xlmc.compile.jit.arctangent import arccosine, arcsine, arctangent, arctangent_of_two
+from xlmc.compile.jit.arcsine import arccosine, arcsine
+from xlmc.compile.jit.arctangent import arctangent, arctangent_of_two
 from xlmc.compile.jit.recipes import PLAIN, Emit, Operand, Recipe, literal
 from xlmc.functions import Kind
 
@@ -99,12 +100,13 @@ def _cosecant(body: Body, parts: Sequence[Any]) -> Any:
 
 
 def _remainder(body: Body, parts: Sequence[Any]) -> Any:
-    """Exact, then with the sign of the divisor; NaN by zero."""
+    """Exact, then with the sign of the divisor, a zero too; NaN by zero."""
     builder, zero, divisor = body.builder, body.number(0.0), parts[1]
     rest = builder.frem(*parts)
     apart = builder.xor(builder.fcmp_ordered("<", rest, zero), builder.fcmp_ordered("<", divisor, zero))
-    moved = builder.and_(apart, builder.fcmp_ordered("!=", rest, zero))
-    return builder.select(moved, builder.fadd(rest, divisor), rest)
+    moved = builder.select(apart, builder.fadd(rest, divisor), rest)
+    none = body.intrinsic("llvm.copysign", zero, divisor)
+    return builder.select(builder.fcmp_ordered("==", rest, zero), none, moved)
 
 
 def _of_doubles(function: Callable[..., Any], *absorbs: int, makes: bool) -> _Row:

@@ -149,7 +149,7 @@ class WholeBlocks:
         together, only = np.zeros((f, f), np.int64), np.zeros(f, np.int64)
         together[np.ix_(rejecting, rejecting)], only[rejecting] = self._counts[self._pairs], alone
         return Kept(
-            self._trials[:m].copy(),
+            self._trials[:m],
             dict(zip(self._names, self._kept[:, :m].copy(), strict=True)) if inputs else {},
             [
                 np.full(m, float(each.value)) if isinstance(each, Literal) else self._forecasts[each][:m].copy()

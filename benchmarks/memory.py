@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import statistics
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -19,33 +20,55 @@ from typing import Any
 HERE = Path(__file__).resolve().parent
 CASE_STUDY = HERE.parent / "examples" / "intersection.xlsx"
 TRIALS = (10_000_000, 100_000_000)
+ROUNDS = 3
 
 
-def measure(trials: Sequence[int] = TRIALS, engine: str = "numpy", jobs: int = 1) -> dict[str, Any]:
-    """Every run in a process of its own; the ratio is of the longest's cost per trial to the shortest's."""
-    command = [sys.executable, __file__, "--engine", engine, "--jobs", str(jobs), "--only"]
+def measure(
+    trials: Sequence[int] = TRIALS, engine: str = "numpy", jobs: int = 1, rounds: int = ROUNDS
+) -> dict[str, Any]:
+    """Runs in processes of their own, in turn: the medians over the rounds.
+
+    Shorter runs are repeated until they are as many trials as the longest, so that what else the machine does slows all
+    alike. The ratios are of the longest to the shortest, that of costs the median of those in the same round.
+    """
+    found = [[_measured(count, max(trials) // count, engine, jobs) for count in trials] for _ in range(rounds)]
+    costs = [round_[-1]["seconds"] / round_[0]["seconds"] * trials[0] / trials[-1] for round_ in found]
+    runs = [
+        runs_of[0] | {key: statistics.median(run[key] for run in runs_of) for key in ("seconds", "before", "peak")}
+        for runs_of in zip(*found, strict=True)
+    ]
+    memory = runs[-1]["peak"] / runs[0]["peak"]
+    return {
+        "engine": engine,
+        "jobs": jobs,
+        "rounds": rounds,
+        "runs": runs,
+        "cost": statistics.median(costs),
+        "memory": memory,
+    }
+
+
+def _measured(trials: int, times: int, engine: str, jobs: int) -> dict[str, Any]:
+    """See `one`."""
+    command = [sys.executable, __file__, "--engine", engine, "--jobs", str(jobs), "--times", str(times), "--only"]
     paths = os.pathsep.join(filter(None, (str(HERE.parent), os.environ.get("PYTHONPATH"))))
-    runs = []
-    for count in trials:
-        done = subprocess.run(
-            [*command, str(count)], check=True, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": paths}
-        )
-        runs.append(json.loads(done.stdout))
-    costs = [run["seconds"] / run["trials"] for run in runs]
-    peaks = [run["peak"] for run in runs]
-    return {"engine": engine, "jobs": jobs, "runs": runs, "cost": costs[-1] / costs[0], "memory": peaks[-1] / peaks[0]}
+    environment = {**os.environ, "PYTHONPATH": paths}
+    done = subprocess.run([*command, str(trials)], check=True, capture_output=True, text=True, env=environment)
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
 
 
-def one(trials: int, engine: str, jobs: int) -> dict[str, Any]:
-    """One run in this process: seconds, and the peak resident memory in bytes before and after it."""
+def one(trials: int, times: int, engine: str, jobs: int) -> dict[str, Any]:
+    """Runs in this process: the seconds of each, and the peak resident memory in bytes before and after them."""
     import xlmc
 
     model = xlmc.load(CASE_STUDY)
     model.simulate(200_000, 1, engine=engine, jobs=jobs)
     before, start = _peak(), perf_counter()
-    run = model.simulate(trials, 1, engine=engine, jobs=jobs)
-    seconds = perf_counter() - start
-    return {"trials": trials, "accepted": run.accepted, "seconds": seconds, "before": before, "peak": _peak()}
+    for _ in range(times):
+        accepted = model.simulate(trials, 1, engine=engine, jobs=jobs).accepted
+    seconds = (perf_counter() - start) / times
+    return {"trials": trials, "accepted": accepted, "seconds": seconds, "before": before, "peak": _peak()}
 
 
 def _peak() -> int:
@@ -61,10 +84,11 @@ def main() -> None:
     parser.add_argument("trials", nargs="*", type=int, default=list(TRIALS))
     parser.add_argument("--engine", default="numpy")
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--only", type=int, help="make this one run in this process and print what it took")
+    parser.add_argument("--only", type=int, help="make runs of so many trials in this process and print what they took")
+    parser.add_argument("--times", type=int, default=1, help="how many of them")
     chosen = parser.parse_args()
     if chosen.only:
-        print(json.dumps(one(chosen.only, chosen.engine, chosen.jobs)))
+        print(json.dumps(one(chosen.only, chosen.times, chosen.engine, chosen.jobs)))
         return
     found = measure(chosen.trials, chosen.engine, chosen.jobs)
     print(f"{'trials':>13}{'accepted':>12}{'seconds':>10}{'ns a trial':>12}{'peak memory, MB':>17}{'loaded, MB':>12}")

@@ -256,7 +256,7 @@ LEAVES = ("A1", "A2", "A3", "A1", "A2", "B1", "B2", "B3", "B4", "B5", "B6", "0",
 
 
 def random_formula(random, cells, depth):
-    """Of what every engine computes to the last bit: no sines and their kin, whose last bit may differ, and no powers."""
+    """Of what every engine computes to the last bit: no powers, no sines and their kin, whose last bit may differ."""
     if random.random() < 0.25 or depth == 0:
         return random.choice((*LEAVES, *cells, *cells))
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from xlmc.compile.jit.arctangent import HALF_PI
 from xlmc.compile.jit.arithmetic import Arithmetic
+from xlmc.compile.jit.sine import HALF_PI
 
 __all__ = ["arccosine", "arcsine"]
 
@@ -26,7 +26,7 @@ _BELOW: Final = (
 def arcsine(do: Arithmetic, x: Any) -> Any:
     """Of a number from -1 to 1; NaN of others."""
     near, root, ratio = _reduced(do, x)
-    half, rest = (do.number(part) for part in HALF_PI)
+    half, rest = (do.number(part) for part in HALF_PI[:2])
     double = do.add(root, root)
     whole = do.sub(half, double)
     lost = do.sub(do.sub(half, whole), double)  # exactly what that difference rounds off
@@ -37,7 +37,7 @@ def arcsine(do: Arithmetic, x: Any) -> Any:
 def arccosine(do: Arithmetic, x: Any) -> Any:
     """Likewise."""
     near, root, ratio = _reduced(do, x)
-    half, rest = (do.number(part) for part in HALF_PI)
+    half, rest = (do.number(part) for part in HALF_PI[:2])
     middle = do.sub(half, do.sub(x, do.minus(rest, x, ratio)))
     small = do.plus(root, root, ratio)
     large = do.sub(half, do.add(root, do.sub(do.mul(root, ratio), rest)))

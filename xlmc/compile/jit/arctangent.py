@@ -9,14 +9,18 @@ from __future__ import annotations
 from typing import Any, Final
 
 from xlmc.compile.jit.arithmetic import Arithmetic
+from xlmc.compile.jit.sine import HALF_PI
 
-__all__ = ["HALF_PI", "arctangent", "arctangent_of_two"]
+__all__ = ["arctangent", "arctangent_of_two"]
+
+_HALF_PI: Final = HALF_PI[:2]
+_PI: Final = (2 * HALF_PI[0], 2 * HALF_PI[1])
 
 _STEPS: Final = (
     (7 / 16, 4.63647609000806093515e-01, 2.26987774529616870924e-17),
     (11 / 16, 7.85398163397448278999e-01, 3.06161699786838301793e-17),
     (19 / 16, 9.82793723247329054082e-01, 1.39033110312309984516e-17),
-    (39 / 16, 1.57079632679489655800e00, 6.12323399573676603587e-17),
+    (39 / 16, *_HALF_PI),
 )
 """From there on it is reduced by the arctangent of 1/2, 1, 3/2, infinity: that, as a sum."""
 
@@ -26,11 +30,6 @@ _ARCTANGENT: Final = (
     *(6.66107313738753120669e-02, -5.83357013379057348645e-02, 4.97687799461593236017e-02),
     *(-3.65315727442169155270e-02, 1.62858201153657823623e-02),
 )
-
-HALF_PI: Final = _STEPS[-1][1:]
-"""π/2 as a sum of two doubles."""
-
-_PI: Final = (2 * HALF_PI[0], 2 * HALF_PI[1])
 
 
 def arctangent(do: Arithmetic, x: Any) -> Any:
@@ -44,7 +43,7 @@ def arctangent_of_two(do: Arithmetic, x: Any, y: Any) -> Any:
     steep = do.above(across, along)
     low, high = do.select(steep, along, across), do.select(steep, across, along)
     angle = _of_size(do, do.div(low, high))
-    angle = do.select(steep, _less(do, HALF_PI, angle), angle)
+    angle = do.select(steep, _less(do, _HALF_PI, angle), angle)
     angle = do.select(do.above(do.number(0.0), x), _less(do, _PI, angle), angle)
     return do.select(do.above(do.number(0.0), y), do.negative(angle), angle)
 

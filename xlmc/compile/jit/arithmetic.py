@@ -7,11 +7,17 @@ from typing import Any, Final
 
 from llvmlite import ir
 
-__all__ = ["Arithmetic"]
+__all__ = ["Arithmetic", "intrinsic"]
 
 _SPLIT: Final = 2.0**27 + 1
 
 _DOUBLE, _INTEGER = ir.DoubleType(), ir.IntType(64)
+
+
+def intrinsic(builder: Any, real: ir.Type, name: str, *arguments: Any) -> Any:
+    """A call of one of LLVM's own functions of numbers."""
+    of = ir.FunctionType(real, [real] * len(arguments))
+    return builder.call(builder.module.declare_intrinsic(name, [real], of), arguments)
 
 
 class Arithmetic:
@@ -89,5 +95,4 @@ class Arithmetic:
         return self._builder.bitcast(flipped, self._real)
 
     def _intrinsic(self, name: str, *arguments: Any) -> Any:
-        of = ir.FunctionType(self._real, [self._real] * len(arguments))
-        return self._builder.call(self._builder.module.declare_intrinsic(name, [self._real], of), arguments)
+        return intrinsic(self._builder, self._real, name, *arguments)

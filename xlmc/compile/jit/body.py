@@ -14,7 +14,7 @@ from typing import Any
 from llvmlite import ir
 
 from xlmc.compile.dag import Constant, Dag, Select
-from xlmc.compile.jit.arithmetic import Arithmetic
+from xlmc.compile.jit.arithmetic import Arithmetic, intrinsic
 from xlmc.compile.jit.contexts import ROOT, Context, branch
 from xlmc.compile.jit.recipes import Literal, Operand, Recipe, literal
 from xlmc.compile.jit.sine import sine_and_cosine
@@ -90,8 +90,7 @@ class Body:
 
     def intrinsic(self, name: str, *arguments: Any) -> Any:
         """A call of one of LLVM's own functions of numbers."""
-        of = ir.FunctionType(self.real, [self.real] * len(arguments))
-        return self.builder.call(self.builder.module.declare_intrinsic(name, [self.real], of), arguments)
+        return intrinsic(self.builder, self.real, name, *arguments)
 
     def of_doubles(self, function: Callable[..., Any], *arguments: Any) -> Any:
         """A function that is made of arithmetic on doubles; with float32 its result is rounded."""

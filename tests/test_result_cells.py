@@ -30,7 +30,7 @@ FORMULAS = {
     "B7": ("=CB.GetForeStatFN(A2,14)", 0),
     "B8": ('=ROUND(RiskMax("X")-RiskMin("x")-RiskRange(A2),9)', 1),
     "B9": ("=CB.GetForePercentFN(A2,90)-B5", 1),
-    "B10": ("=CB.GetCertaintyFN(A2,10)-B6", 1),
+    "B10": ("=CB.GetCertaintyFN(A2,10)-100*B6", 1),
     "B11": ("=RiskData(A2,3)", 0),
     "B12": ('=RiskMean("no such")', 7),
     "B13": ("=ISERROR(B12)", False),
@@ -39,6 +39,7 @@ FORMULAS = {
     "B16": ("=RiskTargetD(A2,10)+B6", 0),
     "B17": ("=Unknown(B1)", 3),
     "B18": ("=CB.GetForeStatFN(A2,1)", 0),
+    "B19": ("=_xll.CB.GetCertaintyFN(A2,10)", 0),
 }
 
 
@@ -86,6 +87,7 @@ def test_values(filled):
         "B15": 0,
         "B16": 1,
         "B18": 20_000,
+        "B19": 100 * (1 - x.probability_above(10).value),
     }
     sheet = openpyxl.load_workbook(target, data_only=True)["S"]
     for address, value in expected.items():

@@ -102,6 +102,8 @@ def _statistic(result: ForecastResult, what: str, number: float | None) -> float
             return result.percentile(percent).value if 0 <= percent <= 100 else None
         case "certainty":
             return 1 - result.probability_above(number).value
+        case "certainty in percent":
+            return 100 * (1 - result.probability_above(number).value)
         case "certainty from above":
             return result.probability_above(number).value
         case "trial":

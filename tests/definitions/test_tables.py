@@ -34,12 +34,45 @@ def test_names_that_are_not_read(make_book, blocks, name):
     assert findings.problems == []
 
 
-def test_a_slip_in_a_tables_name_is_pointed_out(make_book, blocks):
-    book = make_book(blocks("S!B2", [HEADINGS, ["a"]]), [("xlmc_filter", "S!B2:E3")])
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("xlmc_filter", "xlmc_filters"),
+        ("xlmc_fliters", "xlmc_filters"),
+        ("xlmc_filter_chevy", "xlmc_filters"),
+        ("xlmcfilters", "xlmc_filters"),
+        ("xmlc_filters", "xlmc_filters"),
+        ("XLMC_Assumption", "xlmc_assumptions"),
+        ("xlmc_assumption3", "xlmc_assumptions"),
+        ("xlmc_forecast", "xlmc_forecasts"),
+        ("xlmc_corelations", "xlmc_correlations"),
+        ("xlmc_setting", "xlmc_settings"),
+    ],
+)
+def test_a_table_whose_name_is_misspelt_is_refused(make_book, blocks, name, meant):
+    """A table of filters that is not read would let every trial pass."""
+    book = make_book(blocks("S!B2", [HEADINGS, ["a"]]), [(name, "S!B2:E3")])
     _, findings = names_of(book, "xlmc_filters")
-    assert [str(notice) for notice in findings.notices] == [
-        "S!B2: The table xlmc_filter is not read: did you mean xlmc_filters?"
-    ]
+    (problem,) = findings.problems
+    assert problem.where == "S!B2"
+    assert problem.message == f"The table {name} is not read: did you mean {meant}?"
+    assert problem.hint.startswith(f"Rename it {meant}")
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("xlmc_notes", "xlmc reads xlmc_assumptions, xlmc_forecasts"),
+        ("xlmc_results", "xlmc reads xlmc_assumptions, xlmc_forecasts"),
+        ("Assumptions", "did you mean xlmc_assumptions?"),
+    ],
+)
+def test_another_name_that_may_be_meant_for_xlmc_gets_a_notice(make_book, blocks, name, told):
+    book = make_book(blocks("S!B2", [HEADINGS, ["a"]]), [(name, "S!B2:E3")])
+    _, findings = names_of(book, "xlmc_filters")
+    assert findings.problems == []
+    (notice,) = findings.notices
+    assert str(notice).startswith(f"S!B2: The table {name} is not read: {told}")
 
 
 def test_totals_and_blank_rows_are_left_out(make_book, blocks):
@@ -108,9 +141,32 @@ def test_a_required_column_is_missing(read, changes, where, message, hint):
     assert hint in problems[0].hint
 
 
-def test_a_slip_in_a_heading_is_pointed_out(read):
-    found = read({"Answers!C10": "At lest"})
-    assert [str(notice) for notice in found.notices] == [
-        "Answers!C10: The column 'At lest' is kept as a note only: did you mean At least?"
-    ]
-    assert found.filters[0].notes == {"At lest": "0"}
+@pytest.mark.parametrize(
+    ("changes", "where", "written", "meant"),
+    [
+        ({"Answers!C10": "At leest"}, "Answers!C10", "At leest", "At least"),
+        ({"Answers!F10": "Belo"}, "Answers!F10", "Belo", "Below"),
+        ({"Answers!E1": "Treshold", "Answers!E2": 40}, "Answers!E1", "Treshold", "Threshold"),
+        ({"Inputs!I1": "Lower cutof"}, "Inputs!I1", "Lower cutof", "Lower cutoff"),
+        ({"Inputs!M1": "Frozn"}, "Inputs!M1", "Frozn", "Frozen"),
+    ],
+)
+def test_a_misspelt_heading_that_numbers_depend_on_is_refused(read, changes, where, written, meant):
+    problems = [problem for problem in read(changes).problems if problem.where == where]
+    assert [problem.message for problem in problems] == [f"The column {written!r} is not read: did you mean {meant}?"]
+    assert problems[0].hint.startswith(f"Rename the column {meant}")
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"Answers!E10": "Abov"}, "Answers!E10: The column 'Abov' is kept as a note only: did you mean Above?"),
+        ({"Answers!G10": "Becuase"}, "Answers!G10: The column 'Becuase' is kept as a note only: did you mean Because?"),
+        ({"Inputs!P1": "Lows"}, "Inputs!P1: The column 'Lows' is kept as a note only: did you mean Low?"),
+    ],
+    ids=["nothing stands in it", "it is only shown", "the table has the column that it is like"],
+)
+def test_a_slip_in_another_heading_is_pointed_out(read, changes, told):
+    found = read(changes)
+    assert found.problems == ()
+    assert [str(notice) for notice in found.notices if "note only" in notice.message] == [told]

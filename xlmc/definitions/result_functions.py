@@ -34,7 +34,7 @@ CRYSTAL_BALL_STATISTICS: Final = (
 RESULTS: Final = {
     "CB.GetForeStatFN": ("statistic", 2),
     "CB.GetForePercentFN": ("percent", 2),
-    "CB.GetCertaintyFN": ("certainty", 2),
+    "CB.GetCertaintyFN": ("certainty in percent", 2),
     "CB.GetForeDataFN": ("trial", 2),
     "RiskMean": ("mean", 1),
     "RiskMedian": ("median", 1),

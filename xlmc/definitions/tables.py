@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from difflib import SequenceMatcher
 
 from xlmc.address import Cell
 from xlmc.definitions.findings import Findings
@@ -16,7 +17,14 @@ __all__ = ["KINDS", "DefinitionTable", "Row", "as_text", "definition_tables", "h
 KINDS = ("xlmc_assumptions", "xlmc_forecasts", "xlmc_filters", "xlmc_correlations", "xlmc_settings")
 """What the names of the tables start with; a copied sheet's `xlmc_assumptions3` counts too."""
 
+_PREFIX = "xlmc"
+
 _NEAR_MISS = 0.8  # likeness above which an unknown name is taken for a slip
+_SLIP = 0.74  # likeness of the first letters above which they are: one of four is another
+_MISSPELT = 0.85  # likeness above which a heading is taken for one that the table lacks
+
+_TOLD = frozenset({"units", "source", "because"})
+"""Columns that are only shown: a slip in their heading changes no number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,10 +120,33 @@ def definition_tables(workbook: Workbook, findings: Findings) -> dict[str, list[
         kind = next((kind for kind in KINDS if table.name.casefold().startswith(kind)), None)
         if kind is not None:
             found[kind].append(_with_headings(kind, table, findings))
-        elif slip := nearest(table.name, KINDS, _NEAR_MISS):
-            where = Cell(table.area.sheet, table.area.top, table.area.left)
-            findings.notice(f"The table {table.name} is not read: did you mean {slip}?", where)
+        else:
+            _point_out_unknown(table, findings)
     return found
+
+
+def _point_out_unknown(table: Table, findings: Findings) -> None:
+    """Refuse a name that is nearly a reserved one: a misspelt table of filters would filter nothing.
+
+    Any other name with xlmc's prefix gets a notice, and so does a reserved name without the prefix.
+    """
+    where = Cell(table.area.sheet, table.area.top, table.area.left)
+    begins = plain(table.name)
+    for kind in KINDS:
+        if _starts_like(begins, _PREFIX, _SLIP) and _starts_like(begins, plain(kind), _NEAR_MISS):
+            hint = f"Rename it {kind} (Table Design); if it is not meant for xlmc, give it a name without xlmc"
+            findings.problem(f"The table {table.name} is not read: did you mean {kind}?", where, hint)
+            return
+    if begins.startswith(_PREFIX):
+        findings.notice(f"The table {table.name} is not read: xlmc reads {', '.join(KINDS)}", where)
+    elif slip := nearest(table.name, KINDS, _NEAR_MISS):
+        findings.notice(f"The table {table.name} is not read: did you mean {slip}?", where)
+
+
+def _starts_like(text: str, known: str, closeness: float) -> bool:
+    """Whether a text begins as a known one does, but for a slip; what follows does not count."""
+    lengths = range(len(known) - 1, len(known) + 2)
+    return any(SequenceMatcher(None, text[:length], known).ratio() > closeness for length in lengths)
 
 
 def rows_of(
@@ -128,11 +159,12 @@ def rows_of(
     """The rows of these tables that hold anything, without header and totals.
 
     A table that lacks a required column is a problem and gives no rows. A heading that nobody reads but that looks
-    like a known one is pointed out, because its column is kept as a note only.
+    like a known one is pointed out, because its column is kept as a note only; where the table lacks the known one,
+    and numbers depend on it, the heading is a problem.
     """
     required, known = tuple(required), tuple(known)
     for table in tables:
-        _point_out_slips(table, known, findings)
+        _point_out_slips(workbook, table, known, required, findings)
         if _complete(table, required, findings):
             yield from _filled_rows(workbook, table)
 
@@ -164,13 +196,23 @@ def _complete(table: DefinitionTable, required: tuple[str, ...], findings: Findi
     return not missing
 
 
-def _point_out_slips(table: DefinitionTable, known: tuple[str, ...], findings: Findings) -> None:
+def _point_out_slips(
+    workbook: Workbook, table: DefinitionTable, known: tuple[str, ...], required: tuple[str, ...], findings: Findings
+) -> None:
     spellings = {plain(heading) for heading in known}
+    missing = [heading for heading in known if plain(heading) not in table.columns and plain(heading) not in _TOLD]
+    missing = [heading for heading in missing if heading not in required]  # `_complete` tells of these
     for spelling, (written, number) in table.columns.items():
         slip = None if spelling in spellings else nearest(written, known, _NEAR_MISS)
-        if slip:
-            message = f"The column {written!r} is kept as a note only: did you mean {slip}?"
-            findings.notice(message, table.heading_cell(number))
+        if slip is None:
+            continue
+        where = table.heading_cell(number)
+        meant = nearest(written, missing, _MISSPELT)
+        if meant is not None and any(row.filled(written) for row in _filled_rows(workbook, table)):
+            hint = f"Rename the column {meant}; if it is a note, give it a heading that is less like {meant}"
+            findings.problem(f"The column {written!r} is not read: did you mean {meant}?", where, hint)
+        else:
+            findings.notice(f"The column {written!r} is kept as a note only: did you mean {slip}?", where)
 
 
 def _filled_rows(workbook: Workbook, table: DefinitionTable) -> Iterator[Row]:

@@ -362,8 +362,10 @@ UNREADABLE = {
 
 @pytest.mark.parametrize(("change", "message"), UNREADABLE.values(), ids=UNREADABLE)
 def test_a_record_that_cannot_be_used(edited, change, message):
-    with pytest.raises(WorkbookError, match=message):
-        replay(edited(change))
+    book = edited(change)
+    with pytest.raises(WorkbookError, match=message) as refused:
+        replay(book)
+    assert str(refused.value).startswith((f"{book}: ", f"{book.name}: ", "Record!"))
 
 
 def test_a_workbook_that_could_never_be_run_is_refused(edited, monkeypatch):

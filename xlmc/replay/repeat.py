@@ -26,6 +26,7 @@ from xlmc.replay.changes import (
 from xlmc.saved import SUFFIX, is_saved_run, open_run
 from xlmc.simulation import KEPT_INPUTS
 from xlmc.workbook import read_workbook
+from xlmc.workbook.blame import told_of
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
@@ -90,8 +91,9 @@ def replay(path: str | Path, *, jobs: int = 1, progress: Progress | None = None)
     if path.suffix.casefold() == SUFFIX or is_saved_run(path):
         run = open_run(path)
         return _replayed(run.model.workbook, make_record(run), run.model, jobs, progress)
-    workbook = read_workbook(path)
-    return _replayed(workbook, read_record(workbook), None, jobs, progress, path)
+    with told_of(str(path)):
+        workbook = read_workbook(path)
+        return _replayed(workbook, read_record(workbook), None, jobs, progress, path)
 
 
 def _replayed(
@@ -135,7 +137,7 @@ def _recorded(record: Record, path: Path | None) -> tuple[dict[Cell, str], Setti
     """The cells and the settings of the record.
 
     Raises:
-        WorkbookError: an older xlmc wrote it, which recorded neither.
+        WorkbookError: an older xlmc wrote it, which recorded neither, or it was edited.
     """
     try:
         return recorded_cells(record), recorded_settings(record)

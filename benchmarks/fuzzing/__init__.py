@@ -1,0 +1,48 @@
+"""Hostile input for xlmc: workbooks, formulas, tables and saved runs that were broken on purpose.
+
+Each kind of input is a module with `make` (a random input, a function of its generator alone) and `run` (give it to
+xlmc). `verdict` says which outcomes are fine, `child` runs inputs under limits of time and memory, `campaign` keeps
+children at work and gathers what they find.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Final
+
+from fuzzing import formulas, runs, tables, zips
+from fuzzing.inputs import Kind
+
+__all__ = ["BLOCK", "KINDS", "warm_up"]
+
+KINDS: Final[Mapping[str, Kind]] = {
+    "zip": Kind(zips.make, zips.run),
+    "formulas": Kind(formulas.make, formulas.run),
+    "tables": Kind(tables.make, tables.run),
+    "runs": Kind(runs.make, runs.run),
+}
+BLOCK: Final = 128
+"""Trials that xlmc evaluates at once here; 32,768 are slow where few are asked for."""
+
+_WANTED: Final = (
+    "formulas",
+    "llvmlite.binding",
+    "openpyxl",
+    "scipy.linalg",
+    "scipy.optimize",
+    "scipy.special",
+    "xlmc.compile.jit",
+    "xlmc.functions.families",
+    "xlmc.report.html",
+    "xlmc.replay",
+    "xlmc.verify",
+    "xlsxwriter",
+)
+
+
+def warm_up() -> None:
+    """Import what xlmc imports when it needs it, so that children begin with it, and make blocks small."""
+    for module in _WANTED:
+        import_module(module)
+    setattr(import_module("xlmc.simulate"), "BLOCK", BLOCK)  # noqa: B010 - it is final to all others

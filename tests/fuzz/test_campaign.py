@@ -1,0 +1,64 @@
+"""Children that die, hang or take all memory are findings, and the campaign goes on."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+import pytest
+
+
+def kind_of(run):
+    from fuzzing.inputs import Input, Kind
+
+    return Kind(lambda rng: Input("x", b"x" * rng.randint(1, 9), "said"), run)
+
+
+def summary(run, monkeypatch, inputs=5, longest=0.6):
+    from fuzzing import campaign as module
+
+    monkeypatch.setattr(module, "LONGEST", longest)
+    return module.campaign("any", kind_of(run), 1, range(inputs))
+
+
+def once(what):
+    """Does it for one of the inputs: those whose files have an odd size."""
+
+    def run(given, folder):
+        from fuzzing.inputs import Reached
+
+        if len(given.data) % 2:
+            what()
+        return Reached.RAN
+
+    return run
+
+
+def hang():
+    while True:
+        pass
+
+
+@pytest.mark.parametrize(
+    ("what", "key"),
+    [
+        (lambda: os.kill(os.getpid(), signal.SIGKILL), "the process died with -9"),
+        (hang, "the process takes too long"),
+        (lambda: bytearray(3 << 30), "MemoryError at outside xlmc"),
+        (lambda: 1 / 0, "ZeroDivisionError at outside xlmc"),
+    ],
+)
+def test_what_breaks_a_child_is_a_finding(what, key, monkeypatch):
+    from fuzzing.inputs import Reached
+
+    found = summary(once(what), monkeypatch)
+    assert found.inputs == 5
+    assert set(found.found) == {key}
+    assert 0 < found.found[key].count < 5
+    assert found.found[key].count + found.reached[Reached.RAN] == 5
+
+
+def test_memory_that_was_given_back_is_counted(monkeypatch):
+    found = summary(once(lambda: len(b"x" * (200 << 20))), monkeypatch)
+    assert not found.found
+    assert found.largest[0] > 150 << 20

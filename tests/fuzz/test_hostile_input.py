@@ -1,0 +1,38 @@
+"""A small campaign: whatever xlmc is given, it runs it, or says in words why not."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+
+SEED = 20261122
+INPUTS = {"zip": 120, "tables": 200}
+RAN = {"zip": 0.2, "formulas": 0.4, "tables": 0.2, "runs": 0.1}
+
+
+@pytest.mark.usefixtures("small_blocks")
+@pytest.mark.parametrize("kind", INPUTS)
+def test_every_input_runs_or_is_refused_in_words(kind, tmp_path, monkeypatch):
+    from fuzzing import KINDS
+    from fuzzing.child import judged
+    from fuzzing.inputs import Reached
+
+    monkeypatch.chdir(tmp_path)
+    outcomes = [judged(kind, KINDS[kind], SEED, number, tmp_path) for number in range(INPUTS[kind])]
+    assert {(o.number, o.finding.key, o.finding.detail) for o in outcomes if o.finding is not None} == set()
+    assert max(outcome.seconds for outcome in outcomes) < 30
+    assert max(outcome.memory for outcome in outcomes) < 1 << 30
+    reached = Counter(outcome.reached for outcome in outcomes)
+    assert reached[Reached.RAN] > RAN[kind] * INPUTS[kind]  # inputs that are all refused at the door would test little
+    assert reached[Reached.REFUSED] > 0
+
+
+@pytest.mark.parametrize("kind", INPUTS)
+def test_an_input_is_a_function_of_its_seed_and_number(kind):
+    from fuzzing import KINDS
+    from fuzzing.inputs import generator
+
+    made = [KINDS[kind].make(generator(kind, seed, 3)) for seed in (1, 1, 2)]
+    assert made[0] == made[1]
+    assert made[0] != made[2]

@@ -110,7 +110,46 @@ PLAIN = [
     ('IF(C3="",1,2)', 1.0),
     ("E1+C1", ErrorCode.DIV0),
     ("@A1:A3", ErrorCode.VALUE),
+    ("SUM(OFFSET(A1,0,0) B5)", ErrorCode.NULL),
+    ("OFFSET(A1,1/0,0)", ErrorCode.DIV0),
+    ("INDIRECT(E1)", ErrorCode.DIV0),
+    ('INDIRECT("A1",E1)', ErrorCode.DIV0),
+    ("INDEX(A1:B3,E1,1)", ErrorCode.DIV0),
+    ("N(A2:B3)", 2.0),
+    ("N(C1:C2)", 0.0),
+    ("SUMPRODUCT(N(A1:A3>1))", 2.0),
+    ("T(C1:D3)", "x"),
+    ("T(A1:C3)", ""),
+    ("VALUETOTEXT(A2)", "2"),
+    ("VALUETOTEXT(A1:B3)", "#VALUE!"),
+    ("ISREF(OFFSET(A1,-1,0))", False),
+    ("COUNT(OFFSET(A1,-1,0))", 0.0),
+    ('COUNTA(INDIRECT("no such"))', 1.0),
+    ("ISERROR(INDEX(A1:B3,9,9))", True),
+    ('IFERROR(SUM(INDIRECT("no such")),-1)', -1.0),
+    ("IFERROR(SUM(A1:OFFSET(A1,-1,0)),-1)", -1.0),
+    ("SUM(CHOOSE(9,A1:A3,B1:B3))", ErrorCode.VALUE),
+    ("LET(r,OFFSET(A1,-1,0),IFERROR(SUM(r),7))", 7.0),
 ]
+
+LOST = ['INDIRECT("no such")', "OFFSET(A1,-1,0)", "INDEX(A1:B3,9,9)", "A1:OFFSET(A1,-1,0)"]
+"""References that lead nowhere."""
+
+OF_RANGES = [
+    "SUM({})", "AVERAGE(A1,{})", "MAX({},1)", "PRODUCT({})", "STDEV({})", "AND({})", "OR({})", "XOR({})",
+    "COUNTIF({},1)", "COUNTBLANK({})", "SUMIF({},1)", "SUMIF(A1:A3,1,{})", "SUMIFS({},A1:A3,1)",
+    "SUMIFS(A1:A3,{},1)", "COUNTIFS({},1)", "AVERAGEIF({},1)", "SUMPRODUCT({},A1:A3)", "SUMPRODUCT(A1:A3,{})",
+    "SUMSQ({})", "SUMX2MY2({},A1:A3)", "VLOOKUP(1,{},1)", "VLOOKUP({},A1:B3,1)", "HLOOKUP(1,{},1)",
+    "LOOKUP(1,{})", "LOOKUP(1,A1:A3,{})", "MATCH(1,{},0)", "MATCH({},A1:A3,0)", "XLOOKUP(1,{},A1:A3)",
+    "XMATCH(1,{})", "INDEX({},1,1)", "ROW({})", "COLUMN({})", "ROWS({})", "COLUMNS({})", "AREAS({})",
+    "SHEET({})", "ISFORMULA({})", "FORMULATEXT({})", 'CELL("row",{})', "RANK(1,{})", "PERCENTILE({},0.5)",
+    "QUARTILE({},1)", "MEDIAN({})", "LARGE({},1)", "SMALL({},1)", "MODE({})", "CORREL({},A1:A3)",
+    "SLOPE(A1:A3,{})", 'TEXTJOIN(",",TRUE,{})', "CONCAT({})", "DSUM({},1,A1:A3)", "DSUM(A1:B3,1,{})",
+    "SUM(MMULT({},A1:B2))", "SUM(TRANSPOSE({}))", "MDETERM({})", "SUBTOTAL(9,{})", "AGGREGATE(9,4,{})",
+    "NPV(0.1,{})", "IRR({})", "OFFSET({},1,1)", "SUM(MAP({},LAMBDA(x,x)))", "REDUCE(0,{},LAMBDA(a,x,a+x))",
+    "N({})", "T({})", "SUM((A1:A3,{}))", "LET(r,{},SUM(r))", "IF(A1=1,SUM({}),2)",
+    "SUM(IF(A1=1,{},A1:A3))", "SUM(CHOOSE(1,{},A1:A3))",
+]  # fmt: skip
 
 ARRAYS = [
     ("A1:A3*B1:B3", [[10.0], [40.0], [90.0]]),
@@ -179,6 +218,25 @@ def test_array_formulas(computed, formula, expected):
     assert all(_same(g, w) for g, w in zip(got, wanted, strict=True)), got
 
 
+@pytest.mark.parametrize("lost", LOST)
+def test_a_reference_that_leads_nowhere_is_a_value_in_every_function_of_ranges(computed, lost):
+    cells = {f"H{9 + 2 * i}": f"={formula.replace('{}', lost)}" for i, formula in enumerate(OF_RANGES)}
+    found = computed(cells)
+    got = {formula: found[cell].got for cell, formula in zip(cells, OF_RANGES, strict=True)}
+    assert [f"{formula}: {value}" for formula, value in got.items() if value is not ErrorCode.REF] == []
+    rescued = computed({cell: f"=IFERROR({formula[1:]},-1)" for cell, formula in cells.items()})
+    assert [cells[cell] for cell in cells if rescued[cell].got != -1.0] == []
+
+
+def test_a_reference_that_leads_nowhere_in_some_trials_is_an_error_in_these(book):
+    cells = {**CELLS, "H9": "=SUM(A1,INDEX(B1:B3,A1))", "H10": "=IFERROR(SUM(CHOOSE(A1,B1:B2,B3)),-1)"}
+    model = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "H9", "rescued": "H10"})
+    found = model.function({"a": [1.0, 3.0, 7.0]})
+    assert found["sum"][:2].tolist() == [11.0, 33.0]
+    assert np.isnan(found["sum"][2])
+    assert found["rescued"].tolist() == [30.0, -1.0, -1.0]
+
+
 def test_array_formulas_of_assumptions_stay_on_the_fast_path(book, monkeypatch):
     area = Area("S", 9, 8, 11, 8)
     cells = {**CELLS, "H9": CellContent(None, Formula("A1:A3*B1:B3", 9, 8, array=area)), "J1": "=SUM(H9:H11)"}
@@ -215,6 +273,12 @@ REFUSED = [
     ("LAMBDA(x,x+1)(1,2)", "1 parameters is given 2 arguments"),
     ("LET(x,1)", "pairs of a name and a value"),
     ("NOSUCH(A1)", "not known"),
+    ('INDIRECT("A1",A1>0)', "depends on a value that varies"),
+    ("SUM(INDIRECT())", "INDIRECT has 0 arguments; it takes 1 to 2"),
+    ("SUM(INDEX(A1:A3))", "INDEX has 1 argument; it takes 2 to 4"),
+    ("ISREF()", "ISREF has 0 arguments; it takes 1"),
+    ("CELL()", "CELL has 0 arguments; it takes 1 to 2"),
+    ("MAP()", "MAP has 0 arguments; it takes 2 or more"),
 ]
 
 

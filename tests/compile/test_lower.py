@@ -93,10 +93,10 @@ REFUSED = [
     ),
     ("SQRT(A1,2)", "SQRT has 2 arguments; it takes 1", None),
     ("SQRT()", "SQRT has 0 arguments; it takes 1", None),
-    ("ROUND(A1)", "ROUND has 1 arguments; it takes 2", None),
+    ("ROUND(A1)", "ROUND has 1 argument; it takes 2", None),
     ("LOG(A1,2,3)", "LOG has 3 arguments; it takes 1 to 2", None),
     ("SUM()", "SUM has 0 arguments; it takes 1 or more", None),
-    ("IF(A1)", "IF has 1 arguments; it takes 2 to 3", None),
+    ("IF(A1)", "IF has 1 argument; it takes 2 to 3", None),
     ("(A1,A2)+1", "several areas joined by commas stand where one value is needed", None),
 ]
 

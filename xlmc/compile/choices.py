@@ -30,8 +30,6 @@ def decided(lowering: Lowering, condition: int) -> bool | None:
 
 
 def _if(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
-    if not 1 < len(arguments) < 4:
-        raise FormulaError(f"IF has {len(arguments)} arguments; it takes 2 to 3")
     no = arguments[2] if len(arguments) == 3 else ir.Logical(False)
     return _chosen(lowering, lowering.lower(arguments[0], scope), (arguments[1], no), scope)
 
@@ -56,7 +54,7 @@ def _select(lowering: Lowering, condition: int, yes: int, no: int) -> int:
 
 
 def _ifs(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
-    if len(arguments) < 2 or len(arguments) % 2:
+    if len(arguments) % 2:
         raise FormulaError("IFS takes pairs of a condition and a value")
     place = lowering.error(ErrorCode.NA)
     pairs = list(zip(arguments[::2], arguments[1::2], strict=True))
@@ -67,8 +65,6 @@ def _ifs(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
 
 
 def _switch(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
-    if len(arguments) < 3:
-        raise FormulaError("SWITCH takes a value and pairs of a match and a result")
     subject, rest = lowering.lower(arguments[0], scope), arguments[1:]
     last = rest[-1] if len(rest) % 2 else ir.ErrorLiteral(ErrorCode.NA)
     place = lowering.zero_if_blank(lowering.lower(last, scope))
@@ -79,8 +75,6 @@ def _switch(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
 
 
 def _choose(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
-    if len(arguments) < 2:
-        raise FormulaError("CHOOSE takes an index and the values to choose from")
     index = lowering.call("TRUNC", (lowering.lower(arguments[0], scope),))
     known = lowering.known_single(index)
     if known is not None and known.plain:
@@ -100,8 +94,6 @@ def _bad_index(lowering: Lowering) -> int:
 
 def _rescue(only_na: bool) -> Callable[[Lowering, Arguments, Scope], int]:
     def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
-        if len(arguments) != 2:
-            raise FormulaError(f"{'IFNA' if only_na else 'IFERROR'} has {len(arguments)} arguments; it takes 2")
         return _rescued(lowering, lowering.lower(arguments[0], scope), arguments[1], scope, only_na)
 
     return lower

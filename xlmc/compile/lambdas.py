@@ -118,8 +118,6 @@ def _accumulated(lowering: Lowering, arguments: Arguments, scope: Scope) -> tupl
     """Every state, in the shape of the array, and the last one."""
     if len(arguments) == 2:  # the starting value may be left out
         arguments = (ir.Missing(), *arguments)
-    if len(arguments) != 3:
-        raise FormulaError("REDUCE and SCAN take a starting value, an array and a LAMBDA")
     closure, array = _closure(lowering, arguments[2], scope), _array(lowering, arguments[1], scope)
     rows, columns = size_of(lowering.dag, array) or (1, 1)
     state = lowering.lower(arguments[0], scope)
@@ -135,8 +133,6 @@ def _accumulated(lowering: Lowering, arguments: Arguments, scope: Scope) -> tupl
 
 def _by(rows: bool) -> Callable[[Lowering, Arguments, Scope], int]:
     def by(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
-        if len(arguments) != 2:
-            raise FormulaError("BYROW and BYCOL take an array and a LAMBDA")
         closure, array = _closure(lowering, arguments[1], scope), _array(lowering, arguments[0], scope)
         height, width = size_of(lowering.dag, array) or (1, 1)
 
@@ -153,8 +149,6 @@ def _by(rows: bool) -> Callable[[Lowering, Arguments, Scope], int]:
 
 
 def _make_array(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
-    if len(arguments) != 3:
-        raise FormulaError("MAKEARRAY takes a number of rows, a number of columns and a LAMBDA")
     rows, columns = (_known_size(lowering, argument, scope) for argument in arguments[:2])
     closure = _closure(lowering, arguments[2], scope)
 

@@ -13,12 +13,13 @@ import numpy as np
 from xlmc.address import Area, Cell, host_of
 from xlmc.compile import choices, lambdas
 from xlmc.compile.arrays import cell_by_cell, element, grid, size_of
+from xlmc.compile.counts import check_count
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Range
 from xlmc.compile.engine import Target
 from xlmc.compile.fallback import fallback
 from xlmc.compile.places import PLACES
 from xlmc.compile.recipes import Recipes
-from xlmc.compile.references import NotYetNeeded, areas_of
+from xlmc.compile.references import NoReference, NotYetNeeded, areas_of
 from xlmc.compile.running import RunningTotals
 from xlmc.compile.scope import Scope
 from xlmc.compile.settings import as_set
@@ -252,7 +253,10 @@ class Lowering:
 
     def _joined(self, tree: ir.Binary, scope: Scope) -> int:
         """References put together, where one value is wanted."""
-        areas = areas_of(self, tree, scope)
+        try:
+            areas = areas_of(self, tree, scope)
+        except NoReference as found:
+            return self.error(found.code)
         if areas is None or len(areas) != 1:
             raise FormulaError("several areas joined by commas stand where one value is needed")
         return self.lower(areas[0], scope)
@@ -268,20 +272,16 @@ class Lowering:
         return self.error(ErrorCode.VALUE)
 
     def _function_call(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int:
-        for special in (choices.CHOICES, PLACES, lambdas.LAMBDAS):
-            if name in special:
-                made = special[name](self, arguments, scope)
-                if made is not None:
-                    return made
+        check_count(name, arguments)
+        made = self._special(name, arguments, scope)
+        if made is not None:
+            return made
         function = function_named(name) or self._fallback(name, scope)
         if function is None:
             raise _unknown_function(name)
         if function.volatile and not self._audit:
             hint = "put it in a cell of its own: the value Excel saved for it is then used, and the run can be repeated"
             raise FormulaError(f"{name} gives another value each time", hint=hint)
-        fewest, most = function.arity()
-        if not fewest <= len(arguments) <= most:
-            raise FormulaError(f"{name} has {len(arguments)} arguments; it takes {_count(fewest, most)}")
         beside = scope.over_arrays() if name in _OVER_ARRAYS else scope
         book = self.graph.workbook
         found: list[int] = []
@@ -290,6 +290,16 @@ class Lowering:
             part = self.whole(argument, beside) if parameter.ranged else [self.lower(argument, scope)]
             found += part if parameter.repeat else [self._stacked(part)]
         return self.made(as_set(function, book.date1904, book.macintosh), tuple(found))
+
+    def _special(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int | None:
+        """The node of a function that is more than a function of values; None where it is no more."""
+        for special in (choices.CHOICES, PLACES, lambdas.LAMBDAS):
+            if name in special:
+                try:
+                    return special[name](self, arguments, scope)
+                except NoReference as found:
+                    return self.error(found.code)
+        return None
 
     def _fallback(self, name: str, scope: Scope) -> Function | None:
         found = fallback(name)
@@ -331,7 +341,10 @@ class Lowering:
 
     def whole(self, tree: ir.Expression, scope: Scope) -> list[int]:
         """An argument that may be a range: ranges whole, joined areas one by one, anything else as it computes."""
-        areas = areas_of(self, tree, scope)
+        try:
+            areas = areas_of(self, tree, scope)
+        except NoReference as found:
+            return [self.error(found.code)]
         if areas is None:
             return [self.lower(tree, scope.over_arrays() if _gives_area(tree) else scope)]
         return [self.range(area) for area in areas]
@@ -364,12 +377,6 @@ def _merged(function: Function, arguments: tuple[int, ...], picked: tuple[int, .
     """The arguments with those that take single values replaced, in order."""
     singles = iter(picked)
     return tuple(p if function.parameter(i).ranged else next(singles) for i, p in enumerate(arguments))
-
-
-def _count(fewest: int, most: int) -> str:
-    if most == 255:
-        return f"{fewest} or more"
-    return str(fewest) if fewest == most else f"{fewest} to {most}"
 
 
 def _unknown_function(name: str) -> FormulaError:

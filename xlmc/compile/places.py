@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from xlmc.address import Area, Cell
 from xlmc.compile.arrays import grid
 from xlmc.compile.dag import Apply, Range
-from xlmc.compile.references import REFERENCES, NotYetNeeded, OffTheSheet, areas_of, needed
+from xlmc.compile.references import REFERENCES, NoReference, NotYetNeeded, areas_of, needed
 from xlmc.compile.scope import Scope
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
@@ -27,10 +27,7 @@ Arguments = tuple[ir.Expression, ...]
 
 def _value_of(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
     def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
-        try:
-            areas = REFERENCES[name](lowering, arguments, scope)
-        except OffTheSheet:
-            return lowering.error(ErrorCode.REF)
+        areas = REFERENCES[name](lowering, arguments, scope)
         if areas is None:
             return None
         if len(areas) != 1:
@@ -77,9 +74,22 @@ def _count(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
 def _is_reference(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
     try:
         found = areas_of(lowering, arguments[0], scope) is not None
-    except OffTheSheet:
+    except NoReference:
         found = False
     return lowering.dag.constant(constant(found))
+
+
+def _of_first_cell(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
+    """N and T of a reference take its first cell; of an array they take all."""
+
+    def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+        areas = areas_of(lowering, arguments[0], scope)
+        if areas is None:
+            return None
+        first = areas[0]
+        return lowering.call(name, (lowering.cell(Cell(first.sheet, first.top, first.left)),))
+
+    return lower
 
 
 def _formula(lowering: Lowering, arguments: Arguments, scope: Scope, of: Callable[[str | None], object]) -> int:
@@ -226,6 +236,8 @@ PLACES: Mapping[str, Callable[[Lowering, Arguments, Scope], int | None]] = {
     **{name: _levelled(name) for name in ("SUMIFS", "COUNTIFS", "AVERAGEIFS", "MAXIFS", "MINIFS")},
     "SUMIF": _summed_beside("SUMIF"),
     "AVERAGEIF": _summed_beside("AVERAGEIF"),
+    "N": _of_first_cell("N"),
+    "T": _of_first_cell("T"),
     "ISREF": _is_reference,
     "ISFORMULA": _is_formula,
     "FORMULATEXT": _formula_text,

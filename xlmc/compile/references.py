@@ -12,14 +12,16 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.compile import choices
+from xlmc.compile.counts import check_count
 from xlmc.compile.scope import Scope, Thunk
-from xlmc.errors import FormulaError
+from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir, parse
+from xlmc.functions.values import Codes
 
 if TYPE_CHECKING:
     from xlmc.compile.lower import Lowering
 
-__all__ = ["REFERENCES", "NotYetNeeded", "OffTheSheet", "areas_of", "needed"]
+__all__ = ["REFERENCES", "NoReference", "NotYetNeeded", "areas_of", "needed"]
 
 Arguments = tuple[ir.Expression, ...]
 
@@ -38,7 +40,7 @@ def areas_of(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area
     """The areas that a tree refers to; None where it is no reference.
 
     Raises:
-        NotYetNeeded: see the class.
+        NotYetNeeded, NoReference: see the classes.
         FormulaError: the reference depends on what varies.
     """
     match tree:
@@ -51,6 +53,7 @@ def areas_of(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area
         case ir.Binary(":" | " " as operator, left, right):
             return _combined(lowering, operator, left, right, scope)
         case ir.Call(name, arguments) if name in REFERENCES:
+            check_count(name, arguments)
             return REFERENCES[name](lowering, arguments, scope)
         case ir.Variable(name):
             bound = scope.variables.get(name)
@@ -74,8 +77,15 @@ def _combined(
     tops, lefts = (a[0].top, b[0].top), (a[0].left, b[0].left)
     bottoms, rights = (a[0].bottom, b[0].bottom), (a[0].right, b[0].right)
     if operator == " ":
-        return [Area(a[0].sheet, max(tops), max(lefts), min(bottoms), min(rights))]
+        return [_shared(Area(a[0].sheet, max(tops), max(lefts), min(bottoms), min(rights)))]
     return [needed(lowering, Area(a[0].sheet, min(tops), min(lefts), max(bottoms), max(rights)))]
+
+
+def _shared(area: Area) -> Area:
+    """The cells that two areas share."""
+    if area.top > area.bottom or area.left > area.right:
+        raise NoReference(ErrorCode.NULL)
+    return area
 
 
 def needed(lowering: Lowering, area: Area) -> Area:
@@ -86,8 +96,22 @@ def needed(lowering: Lowering, area: Area) -> Area:
     return area
 
 
-class OffTheSheet(Exception):  # noqa: N818 - `#REF!`, as a value
-    """A reference that leads off the sheet."""
+class NoReference(Exception):  # noqa: N818 - it is Excel's error, as a value
+    """What should lead to cells is an error: `#REF!` off the sheet, or that of an argument.
+
+    Attributes:
+        code: the error.
+    """
+
+    def __init__(self, code: ErrorCode = ErrorCode.REF) -> None:
+        super().__init__(code)
+        self.code = code
+
+
+def _stop_at_error(errors: Codes) -> None:
+    """Pass on the error of an argument that is one."""
+    if errors.any():
+        raise NoReference(ErrorCode(int(errors.flat[0])))
 
 
 def _whole_number(lowering: Lowering, tree: ir.Expression, scope: Scope, function: str) -> int | None:
@@ -99,14 +123,11 @@ def _whole_number(lowering: Lowering, tree: ir.Expression, scope: Scope, functio
         hint = "INDEX or a lookup function does the same with arguments that vary"
         raise FormulaError(f"{function} depends on a value that varies; where it leads must be fixed", hint=hint)
     numbers, errors = known.to_numbers()
-    if errors.any():
-        raise OffTheSheet
+    _stop_at_error(errors)
     return int(numbers[0])
 
 
 def _offset(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
-    if not 3 <= len(arguments) <= 5:
-        raise FormulaError(f"OFFSET has {len(arguments)} arguments; it takes 3 to 5")
     base = areas_of(lowering, arguments[0], scope)
     if base is None or len(base) != 1:
         raise FormulaError("OFFSET starts from a reference to one area")
@@ -116,7 +137,7 @@ def _offset(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area
     width = numbers[3] if len(numbers) > 3 and numbers[3] is not None else base[0].columns
     top, left = base[0].top + down, base[0].left + right
     if not height or not width:
-        raise OffTheSheet
+        raise NoReference
     rows, columns = _span(top, height), _span(left, width)
     return [needed(lowering, _on_the_sheet(Area(base[0].sheet, rows[0], columns[0], rows[1], columns[1])))]
 
@@ -129,7 +150,7 @@ def _span(start: int, count: int) -> tuple[int, int]:
 
 def _on_the_sheet(area: Area) -> Area:
     if area.top < 1 or area.left < 1 or area.bottom > MAX_ROW or area.right > MAX_COLUMN:
-        raise OffTheSheet
+        raise NoReference
     return area
 
 
@@ -138,14 +159,23 @@ def _indirect(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Ar
     if known is None:
         raise FormulaError("INDIRECT depends on a value that varies; where it leads must be fixed")
     texts, errors = known.to_texts()
-    if errors.any():
-        raise OffTheSheet
-    a1 = len(arguments) < 2 or choices.decided(lowering, lowering.lower(arguments[1], scope))
+    _stop_at_error(errors)
+    a1 = len(arguments) < 2 or _is_true(lowering, arguments[1], scope)
     tree = _read(lowering, str(texts[0])) if a1 else _read_r1c1(str(texts[0]), scope.cell)
     found = None if tree is None else _resolved(lowering, tree, scope)
     if found is None:
-        raise OffTheSheet
+        raise NoReference
     return [needed(lowering, area) for area in found]
+
+
+def _is_true(lowering: Lowering, tree: ir.Expression, scope: Scope) -> bool:
+    """A known logical argument."""
+    known = lowering.known_single(lowering.single(lowering.lower(tree, scope)))
+    if known is None:
+        raise FormulaError("INDIRECT depends on a value that varies; where it leads must be fixed")
+    logicals, errors = known.to_logicals()
+    _stop_at_error(errors)
+    return bool(logicals[0])
 
 
 def _read(lowering: Lowering, text: str) -> ir.Expression | None:
@@ -179,8 +209,6 @@ def _step(text: str | None, base: int) -> int:
 
 def _index(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
     """INDEX of a reference at a known place; None leaves it to the function of values."""
-    if not 2 <= len(arguments) <= 4:
-        raise FormulaError(f"INDEX has {len(arguments)} arguments; it takes 2 to 4")
     areas = areas_of(lowering, arguments[0], scope)
     try:
         numbers = [_whole_number(lowering, argument, scope, "INDEX") or 0 for argument in arguments[1:]]
@@ -190,13 +218,13 @@ def _index(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area]
         return None
     which = numbers[2] if len(numbers) > 2 else 1
     if not 1 <= which <= len(areas):
-        raise OffTheSheet
+        raise NoReference
     area = areas[which - 1]
     row, column = (numbers[0], numbers[1]) if len(numbers) > 1 else (numbers[0], 0 if area.columns > 1 else 1)
     if len(numbers) == 1 and area.rows == 1:
         row, column = 1, numbers[0]
     if row < 0 or column < 0 or row > area.rows or column > area.columns:
-        raise OffTheSheet
+        raise NoReference
     top, bottom = (area.top, area.bottom) if row == 0 else (area.top + row - 1,) * 2
     left, right = (area.left, area.right) if column == 0 else (area.left + column - 1,) * 2
     return [needed(lowering, Area(area.sheet, top, left, bottom, right))]

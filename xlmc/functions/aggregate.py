@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.arguments import direct_errors, earliest, with_errors
 from xlmc.functions.registry import Cells, Number, Numbers, excel
 from xlmc.functions.values import BLANK, DIV0, NUM, NUMBER, TEXT, Bools, Codes, Floats, Value, constant
 
@@ -146,12 +147,12 @@ def count_anything(*values: Value) -> Floats:
 
 
 @excel("COUNTBLANK", Cells)
-def count_blank(cells: Value) -> Floats:
+def count_blank(cells: Value) -> Value:
     """How many are blank or hold an empty text."""
     empty = np.asarray(cells.kinds == BLANK)
     if cells.texts is not None:
         empty = empty | ((cells.kinds == TEXT) & (cells.texts == ""))
-    return _how_many([_rows(empty, cells)])
+    return Value.of_numbers(_how_many([_rows(empty, cells)]), direct_errors(cells))
 
 
 def _first(errors: Iterable[Codes]) -> Codes:
@@ -172,7 +173,7 @@ def sum_product(*values: Value) -> Value:
     ranges = [value.as_range() for value in values]
     shapes = {cells.shape[1:] for cells in ranges}
     if len(shapes) > 1:
-        return constant(ErrorCode.VALUE)
+        return with_errors(constant(ErrorCode.VALUE), earliest(*(direct_errors(value) for value in values)))
     products = np.ones(1)
     errors = []
     for cells in ranges:

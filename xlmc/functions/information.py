@@ -6,7 +6,6 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.functions.picking import cell_of
 from xlmc.functions.registry import Anything, Cells, Kind, excel
 from xlmc.functions.values import BLANK, ERROR, LOGICAL, NA, NUMBER, TEXT, Floats, Value
 
@@ -29,18 +28,16 @@ def error_type(value: Value) -> Value:
     return Value.of_numbers(np.where(value.errors > 0, value.errors.astype(np.float64), NA))
 
 
-@excel("N", Cells, returns=Kind.ANY)
+@excel("N", Anything, returns=Kind.ANY)
 def number(value: Value) -> Value:
     """A number as it is, TRUE as 1, anything else as 0; errors stay."""
-    value = cell_of(value, 0, 0) if value.shape[1:] == (1, 1) else value
     counts = (value.kinds == NUMBER) | (value.kinds == LOGICAL)
     return Value.of_numbers(np.where(counts, value.numbers, 0.0), value.errors)
 
 
-@excel("T", Cells, returns=Kind.ANY)
+@excel("T", Anything, returns=Kind.ANY)
 def text(value: Value) -> Value:
     """A text as it is, an empty one for anything else; errors stay."""
-    value = cell_of(value, 0, 0) if value.shape[1:] == (1, 1) else value
     texts = np.full(value.shape, "", object)
     if value.texts is not None:
         texts = np.where(value.kinds == TEXT, value.texts, "")

@@ -7,7 +7,15 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong, whole_numbers
+from xlmc.functions.arguments import (
+    direct_errors,
+    earliest,
+    first_errors,
+    same_in_all_trials,
+    where_wrong,
+    whole_numbers,
+    with_errors,
+)
 from xlmc.functions.picking import cell_of, flattened, transposed
 from xlmc.functions.registry import Anything, Cells, Kind, excel
 from xlmc.functions.values import ERROR, NUM, NUMBER, Codes, Floats, Value, constant
@@ -34,7 +42,7 @@ def product(left: Value, right: Value) -> Value:
     """
     (a, a_errors), (b, b_errors) = _matrix(left), _matrix(right)
     if a.shape[2] != b.shape[1]:
-        return constant(ErrorCode.VALUE)
+        return with_errors(constant(ErrorCode.VALUE), earliest(direct_errors(left), direct_errors(right)))
     total = a[:, :, :1] * b[:, :1, :]
     for i in range(1, a.shape[2]):
         total = total + a[:, :, i : i + 1] * b[:, i : i + 1, :]

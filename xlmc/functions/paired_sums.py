@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import earliest, first_errors, leveled
+from xlmc.functions.arguments import direct_errors, earliest, first_errors, leveled, with_errors
 from xlmc.functions.picking import flattened
 from xlmc.functions.registry import Anything, Cells, excel
 from xlmc.functions.toolpak import strict_numbers
@@ -25,7 +25,7 @@ def _over_pairs(x: Value, y: Value, term: Callable[[Floats, Floats], Floats]) ->
     """Sum of `term` over the places where both are numbers; `#N/A` for unequal counts, `#DIV/0!` of no pair."""
     (left, left_kinds), (right, right_kinds) = _cells(x), _cells(y)
     if left.shape[1] != right.shape[1]:
-        return constant(ErrorCode.NA)
+        return with_errors(constant(ErrorCode.NA), earliest(direct_errors(x), direct_errors(y)))
     counts = (left_kinds == NUMBER) & (right_kinds == NUMBER)
     total = np.add.accumulate(np.where(counts, term(left, right), 0.0), axis=1)[:, -1]
     kinds = np.concatenate(np.broadcast_arrays(left_kinds, right_kinds), axis=1)

@@ -12,7 +12,7 @@ from functools import wraps
 
 import numpy as np
 
-from xlmc.functions.arguments import earliest, first_errors, leveled
+from xlmc.functions.arguments import direct_errors, earliest, first_errors, leveled
 from xlmc.functions.picking import flattened
 from xlmc.functions.values import NA, NUMBER, Bools, Codes, Floats, Value
 
@@ -118,7 +118,7 @@ def of_pairs(body: Callable[[Floats, Floats, Bools], Floats]) -> Callable[[Value
     def apply(first: Value, second: Value) -> Value:
         pairs = pairs_of(first, second)
         if pairs is None:
-            return Value.of_numbers(np.full(1, NA))
+            return Value.of_numbers(np.full(1, NA), earliest(direct_errors(first), direct_errors(second)))
         x, y, counts, errors = pairs
         return Value.of_numbers(body(x, y, counts), errors)
 

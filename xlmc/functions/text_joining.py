@@ -88,7 +88,7 @@ def _quoted(item: object) -> str:
     return '"{}"'.format(item.replace('"', '""')) if isinstance(item, str) else object_text(item)
 
 
-@excel("VALUETOTEXT", Cells, Anything(default=0.0), returns=Kind.ANY)
+@excel("VALUETOTEXT", Anything, Anything(default=0.0), returns=Kind.ANY)
 def value_to_text(value: Value, style: Value | None = None) -> Value:
     """Any value as a text, errors too; in style 1 as a formula would have it."""
     concise, strict = (np.asarray(np.frompyfunc(write, 1, 1)(value.objects())) for write in (object_text, _quoted))

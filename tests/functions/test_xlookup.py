@@ -83,6 +83,12 @@ def test_keys_in_an_array_give_an_array(evaluate):
     assert evaluate("XMATCH", [["y", NUM]], [["x"], ["y"]]) == [[2, NUM]]
 
 
+def test_keys_in_an_array_with_an_unknown_mode_are_errors_each(evaluate):
+    assert evaluate("XLOOKUP", [[1.0, 2.0, NUM]], [[1.0]], [[3.0, 4.0, 5.0]], 0, 170) == [[VALUE, VALUE, NUM]]
+    assert evaluate("XLOOKUP", [["x", "z"]], [["x"], ["y"]], [["a"], ["b"]], None, 2, -2) == [[VALUE, VALUE]]
+    assert evaluate("XMATCH", [["y"], ["z"]], [["x"], ["y"]], 170) == [[VALUE], [VALUE]]
+
+
 def _many(items):
     box = np.empty(len(items), object)
     box[:] = items

@@ -2,12 +2,14 @@
 
 Excel rounds the number that it shows, which has 15 significant digits, not the double behind it: `ROUND(1.005, 2)` is
 1.01 and `INT(880000000*0.00849/3)` is 2490400, although both doubles lie just below. So a number that stands less than
-half a unit of its 15th digit below a boundary counts as on it.
+half a unit of its 15th digit below a boundary counts as on it. Where doubles cannot tell on which side of that half a
+number stands, as for `TRUNC(0.09999999999999995, 1)`, decimals do.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from decimal import ROUND_HALF_UP, Context, Decimal
 from typing import Final
 
 import numpy as np
@@ -21,7 +23,12 @@ _TENS: Final = np.array([float(f"1e{n}") for n in range(309)])
 _DECADES: Final = np.array([float(f"1e{n}") for n in range(-290, 309)])
 _HALF_OF_15TH_DIGIT: Final = np.array([0.0, *(float(f"5e{n - 15}") for n in range(-290, 309))])
 
+_SHOWN: Final = Context(prec=15, rounding=ROUND_HALF_UP)
+_LAST_PLACE: Final = 2.3e-16
+"""More than a last place of a double is of the double; less than half of what a unit of the 15th digit is of it."""
+
 _FIFTEEN_DIGITS: Final = 1e14
+_HALF: Final = np.asarray(0.5)
 _NO_FRACTION: Final = 2.0**52
 """From here on doubles are whole: more digits than these cannot be rounded away."""
 
@@ -41,9 +48,9 @@ class _Grid:
     def __init__(self, size: Floats, digits: Floats) -> None:
         whole = np.clip(np.trunc(digits), -308, 308).astype(np.intp)
         self._up, self._down = _TENS[np.maximum(whole, 0)], _TENS[np.maximum(-whole, 0)]
-        self._size = size
+        self._size, self._digits = size, whole
         seen = _HALF_OF_15TH_DIGIT[np.searchsorted(_DECADES, size, side="right")]
-        self._tolerance = np.minimum(seen, self.multiple(np.asarray(0.5)))
+        self._tolerance = np.minimum(seen, self.multiple(_HALF))
         place = size * self._up / self._down
         self.coarse, self.fine = place < _FIFTEEN_DIGITS, place >= _NO_FRACTION
         self.n = np.floor(place)
@@ -55,11 +62,25 @@ class _Grid:
 
     def reaches(self, n: Floats) -> Bools:
         """Whether the size is seen at the n-th multiple or above it."""
-        return np.asarray(self.multiple(n) - self._size <= self._tolerance)
+        gap = self.multiple(n) - self._size
+        return self._told(gap <= self._tolerance, gap, n, above=False)
 
     def passes(self) -> Bools:
         """Whether the size is seen above its n-th multiple."""
-        return np.asarray(self._size - self.multiple(self.n) >= self._tolerance) & (self._size > 0)
+        gap = self._size - self.multiple(self.n)
+        return self._told(gap >= self._tolerance, gap, self.n, above=True) & (self._size > 0)
+
+    def _told(self, told: Bools, gap: Floats, n: Floats, *, above: bool) -> Bools:
+        """What the gap to the n-th multiple tells; where it is within a last place of the tolerance, decimals do."""
+        near = np.abs(gap - self._tolerance) < _LAST_PLACE * self._size
+        if not near.any():
+            return np.asarray(told)
+        near = near & (self._tolerance < self.multiple(_HALF))
+        told, n, size, digits = (part.copy() for part in np.broadcast_arrays(told, n, self._size, self._digits))
+        for place in zip(*np.nonzero(near), strict=True):
+            steps = _SHOWN.scaleb(_SHOWN.plus(Decimal(float(size[place]))), int(digits[place]))
+            told[place] = steps > float(n[place]) if above else steps >= float(n[place])
+        return np.asarray(told)
 
 
 def _rounded(x: Floats, digits: Floats, further: Callable[[_Grid], Bools]) -> Floats:

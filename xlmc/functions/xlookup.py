@@ -43,7 +43,7 @@ _DIRECTIONS: Final = (1, _FROM_THE_END, _RISING, _FALLING)
 def _places(key: Value, vector: Value, mode: Value, direction: Value) -> tuple[Places, Codes]:
     """The key's place, counted from 0, or -1; and the errors of the last two arguments."""
     (modes, wrong), (directions, wrong_too) = whole_numbers(if_blank(mode)), whole_numbers(if_blank(direction, 1.0))
-    result = np.full(1, -1)
+    result = np.full(key.shape, -1)
     known = np.zeros(1, bool)
     for wanted, towards in product(_MODES, _DIRECTIONS):
         chosen = (modes == wanted) & (directions == towards)

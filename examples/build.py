@@ -1,4 +1,4 @@
-"""Build the example workbooks: `python examples/build.py`.
+"""Build the example workbooks: `python examples/build.py [folder]`, without a folder where they are committed.
 
 `intersection.xlsx` is the case study of SAE 2001-01-3347: a Nissan sedan turns left in front of a Chevrolet pickup.
 `intersection-momentum.xlsx` is the same crash one rung down. The others are the worked examples of
@@ -116,4 +116,4 @@ def build(folder: Path) -> list[Path]:
 
 
 if __name__ == "__main__":
-    build(HERE)
+    build(Path(sys.argv[1]) if len(sys.argv) > 1 else HERE)

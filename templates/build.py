@@ -1,4 +1,4 @@
-"""Build every template workbook: `python templates/build.py`."""
+"""Build every template workbook: `python templates/build.py [folder]`, without a folder where they are committed."""
 
 from __future__ import annotations
 
@@ -51,4 +51,4 @@ def build(folder: Path) -> list[Path]:
 
 
 if __name__ == "__main__":
-    build(HERE)
+    build(Path(sys.argv[1]) if len(sys.argv) > 1 else HERE)

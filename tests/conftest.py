@@ -6,12 +6,10 @@ cached for it.
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import openpyxl
 import pytest
-from hypothesis import settings
 from openpyxl.workbook.defined_name import DefinedName as WrittenName
 from openpyxl.worksheet.table import Table as WrittenTable
 
@@ -19,11 +17,6 @@ from xlmc.address import Area, parse_address
 from xlmc.definitions import Assumption, Correlation, Definitions, Filter, Forecast
 from xlmc.model import Model
 from xlmc.workbook.model import CellContent, DefinedName, Formula, Sheet, Table, Workbook
-
-# The same examples in every run of CI, so that a landing does not hang on chance; new ones at a desk.
-settings.register_profile("desk", deadline=None)
-settings.register_profile("ci", deadline=None, derandomize=True)
-settings.load_profile("ci" if os.environ.get("CI") else "desk")
 
 
 def _content(value, row, column):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,10 @@ UNITS: Final = {"imperial": "", "si": "-si"}
 
 _DUBLIN_CORE = "{http://purl.org/dc/elements/1.1/}"
 _CATEGORY = "{http://schemas.openxmlformats.org/package/2006/metadata/core-properties}category"
+
+
+_NO_TEMPLATE: Final = re.compile(r"^~\$|-results(-\d+)?$")
+"""What else may lie in the folder of a checkout: Excel's mark of a book that it has open, and results."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +50,7 @@ def templates() -> dict[str, Template]:
     """
     package = Path(__file__).parent
     for folder in (package / "templates", package.parent / "templates"):
-        books = {path.stem: path for path in folder.glob("*.xlsx")}
+        books = {path.stem: path for path in folder.glob("*.xlsx") if not _NO_TEMPLATE.search(path.stem)}
         names = [name for name in books if not any(end and name.endswith(end) for end in UNITS.values())]
         if names:
             found = {name: _template(name, books) for name in names}

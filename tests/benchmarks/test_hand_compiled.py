@@ -18,7 +18,7 @@ ACCEPTANCE = 0.01756579
 @pytest.fixture(scope="module")
 def library(tmp_path_factory):
     if hand_c.compiler() is None:
-        pytest.skip("no C compiler")
+        pytest.skip("no C compiler is installed (apt-get install gcc)")
     return hand_c.build(tmp_path_factory.mktemp("hand"))
 
 

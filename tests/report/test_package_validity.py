@@ -16,19 +16,21 @@ from pathlib import Path
 
 import openpyxl
 import pytest
+from needed_programs import missing
 
 import xlmc
 from xlmc.report import save
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 NAMES = ("intersection", "skid-100-ft")
-VALIDATOR = shutil.which("ooxml-validator")
+MISSING = missing("ooxml-validator")
 
 
 def validated(path):
     """The errors that the Open XML SDK finds."""
     plain = os.environ | {"DOTNET_SYSTEM_GLOBALIZATION_INVARIANT": "1"}  # it needs no ICU then
-    run = subprocess.run([VALIDATOR, str(path)], capture_output=True, text=True, timeout=300, check=False, env=plain)
+    validator = shutil.which("ooxml-validator")
+    run = subprocess.run([validator, str(path)], capture_output=True, text=True, timeout=300, check=False, env=plain)
     return json.loads(run.stdout)["errors"]
 
 
@@ -42,13 +44,13 @@ def saved(tmp_path_factory):
     }
 
 
-@pytest.mark.skipif(VALIDATOR is None, reason="needs ooxml-validator")
+@pytest.mark.skipif(bool(MISSING), reason=MISSING)
 @pytest.mark.parametrize("name", NAMES)
 def test_result_workbooks_hold_to_the_schemas_of_excel(saved, name):
     assert validated(saved[name]) == []
 
 
-@pytest.mark.skipif(VALIDATOR is None, reason="needs ooxml-validator")
+@pytest.mark.skipif(bool(MISSING), reason=MISSING)
 def test_the_validator_sees_what_does_not(saved, tmp_path):
     broken = tmp_path / "broken.xlsx"
     with zipfile.ZipFile(saved[NAMES[0]]) as package, zipfile.ZipFile(broken, "w") as copy:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from dataclasses import dataclass
 from html import unescape
@@ -12,12 +11,12 @@ from pathlib import Path
 import numpy as np
 import openpyxl
 import pytest
+from needed_programs import missing
 
 import xlmc
 from xlmc.report import save
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/intersection.xlsx"
-TOOLS = ("soffice", "pdftotext", "pdftoppm")
 OWN = {
     *("Results", "Charts", "Statistics", "Certainty", "Pairs", "Assumptions", "Sensitivity", "Filter limits"),
     *("Trials", "Bins", "Curves", "Record"),
@@ -27,7 +26,9 @@ DPI, POINTS = 60, 72
 CHART = (230.0, 150.0)
 """A chart's width and height on paper, in points, at the scale of 60 %: what is looked at lies within it."""
 
-pytestmark = pytest.mark.skipif(not all(map(shutil.which, TOOLS)), reason="needs LibreOffice and poppler")
+MISSING = missing("soffice", "pdftotext", "pdftoppm")
+
+pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
 
 
 @dataclass(frozen=True)

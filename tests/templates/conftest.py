@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import importlib.util
 import re
-import shutil
 import subprocess
 import sys
 import zipfile
@@ -11,6 +10,8 @@ from pathlib import Path
 import numpy as np
 import openpyxl
 import pytest
+from committed_books import BOOKS
+from needed_programs import missing
 
 from xlmc.address import parse_address
 from xlmc.compile import Target
@@ -54,10 +55,9 @@ def described(builders):
 
 
 @pytest.fixture(scope="session")
-def book_path(builders, described):
+def book_path():
     """Name -> the committed workbook."""
-    examples = builders["examples"].EXAMPLES
-    return {name: ROOT / ("examples" if name in examples else "templates") / f"{name}.xlsx" for name in described}
+    return BOOKS
 
 
 @pytest.fixture(scope="session")
@@ -110,13 +110,13 @@ def _named_cell(name):
 @pytest.fixture(scope="session")
 def recalculated(book_path, tmp_path_factory):
     """Name -> the workbook as LibreOffice computes it from formulas alone: the cached values are removed first."""
-    soffice = shutil.which("soffice")
-    if soffice is None:
-        pytest.skip("LibreOffice is not installed")
+    if reason := missing("soffice"):
+        pytest.skip(reason)
     folder = tmp_path_factory.mktemp("libreoffice")
     bare = [_without_cached_values(path, folder) for path in book_path.values()]
     profile = f"-env:UserInstallation={(folder / 'profile').as_uri()}"
-    command = [soffice, "--headless", profile, "--convert-to", "xlsx", "--outdir", str(folder / "out"), *map(str, bare)]
+    target = ["--convert-to", "xlsx", "--outdir", str(folder / "out")]
+    command = ["soffice", "--headless", profile, *target, *map(str, bare)]
     subprocess.run(command, check=True, capture_output=True, timeout=600)
     return {name: folder / "out" / path.name for name, path in book_path.items()}
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
+from committed_books import BOOKS
 
 pytest.importorskip("llvmlite")
 
@@ -12,8 +11,6 @@ import xlmc
 from xlmc.blocks import Task
 from xlmc.scheduling.recipe import worker_of
 
-ROOT = Path(__file__).resolve().parents[3]
-BOOKS = sorted([*(ROOT / "examples").glob("*.xlsx"), *(ROOT / "templates").glob("*.xlsx")])
 BLOCK = 4096
 UNIT = {"low": 0, "high": 1}
 GIVEN = {name: {"cell": name, **UNIT} for name in ("A1", "A2", "A3")}
@@ -79,7 +76,7 @@ def test_a_whole_block_is_the_block(book, name, draws_given, inputs):
     assert all(bool(block.draws) is inputs for block in whole)
 
 
-@pytest.mark.parametrize("path", BOOKS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", BOOKS.values(), ids=BOOKS)
 def test_examples_and_templates_in_whole_blocks(path):
     """Some of their filters wait until they are needed: until then they are always true."""
     model = xlmc.load(path)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from html.parser import HTMLParser
 
 import pytest
+from needed_programs import missing
 
 from xlmc.report.html import page_text
 
@@ -100,9 +101,9 @@ def payload_of(page_of):
 def chromium(tmp_path_factory):
     """A browser, or a skipped test where there is none."""
     selenium = pytest.importorskip("selenium.webdriver")
+    if reason := missing("chromium", "chromedriver"):
+        pytest.skip(reason)
     browser, driver = shutil.which("chromium"), shutil.which("chromedriver")
-    if browser is None or driver is None:
-        pytest.skip("Chromium and its driver are not installed")
     options = selenium.ChromeOptions()
     options.binary_location = browser
     for argument in (*_CHROMIUM, f"--user-data-dir={tmp_path_factory.mktemp('profile')}"):

@@ -1,0 +1,37 @@
+"""The workbooks that belong to the project, by name: tests take these, and never what a run left beside them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+__all__ = ["BOOKS", "EXAMPLES", "ROOT", "TEMPLATES"]
+
+ROOT: Final = Path(__file__).resolve().parents[2]
+
+_EXAMPLES: Final = (
+    "barrier-corner",
+    "collinear-equal-cars",
+    "collinear-head-on",
+    "crush-balance",
+    "intersection",
+    "intersection-momentum",
+    "skid-100-ft",
+    "textbook-claim",
+    "yaw-mark",
+)
+_TEMPLATES: Final = (
+    "collinear",
+    "critical-speed-yaw",
+    "crush-energy",
+    "momentum",
+    "pedestrian-throw",
+    "planar-forward",
+    "planar-impact",
+    "skid",
+)
+
+EXAMPLES: Final = {name: ROOT / "examples" / f"{name}.xlsx" for name in _EXAMPLES}
+TEMPLATES: Final = {name + end: ROOT / "templates" / f"{name}{end}.xlsx" for name in _TEMPLATES for end in ("", "-si")}
+BOOKS: Final = EXAMPLES | TEMPLATES
+"""Name without its ending -> file."""

@@ -1,0 +1,44 @@
+"""Which examples hypothesis tries: the same ones everywhere, or new ones with `--hypothesis-profile explore`.
+
+Under the profile `fixed` a test's examples follow from the test's source and hypothesis's version alone: not from
+chance, from failures of earlier runs, or from the constants of whichever modules happen to be imported.
+"""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+from hypothesis import is_hypothesis_test, settings
+from hypothesis.internal.conjecture import providers
+
+FIXED, EXPLORE, FACTOR = "fixed", "explore", 10
+VARIABLE = "HYPOTHESIS_PROFILE"
+_USED = "_hypothesis_internal_use_settings"
+
+settings.register_profile(FIXED, settings.get_profile("default"), deadline=None, derandomize=True, database=None)
+settings.register_profile(EXPLORE, settings.get_profile("default"), deadline=None, print_blob=True)
+
+
+def _without_constants_of_modules() -> None:
+    none = providers.Constants()
+    providers._get_local_constants = lambda: none
+
+
+@pytest.hookimpl(tryfirst=True)  # before hypothesis loads what its own options ask for
+def pytest_configure(config: pytest.Config) -> None:
+    name = config.getoption("--hypothesis-profile") or os.environ.get(VARIABLE) or FIXED
+    if name not in (FIXED, EXPLORE):
+        raise pytest.UsageError(f"there is no hypothesis profile {name!r}: choose {FIXED} or {EXPLORE}")
+    settings.load_profile(name)
+    if name == FIXED:
+        _without_constants_of_modules()
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Under `explore` every test has ten times the examples, also one that sets their number itself."""
+    if settings.get_current_profile_name().startswith(EXPLORE):
+        tests = {id(item.obj): item.obj for item in items if isinstance(item, pytest.Function)}
+        for test in filter(is_hypothesis_test, tests.values()):
+            own = getattr(test, _USED)
+            setattr(test, _USED, settings(own, max_examples=FACTOR * own.max_examples))

@@ -1,0 +1,66 @@
+"""The profile `fixed` draws the same examples whatever ran or was imported before; `explore` draws others, and more."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+TESTS = """
+import json, os
+from hypothesis import given, settings, strategies as st
+
+drawn = []
+
+@given(st.floats() | st.integers() | st.text())
+@settings(max_examples=300)
+def test_own_number(x): drawn.append(repr(x))
+
+@given(st.integers())
+def test_number_of_the_profile(x): drawn.append(repr(x))
+
+def test_written():
+    with open(os.environ["DRAWN"], "w") as file: json.dump(drawn, file)
+"""
+
+
+@pytest.fixture
+def drawn(run_tests, tmp_path):
+    """`drawn(*arguments, before="", **environment)`: the examples of one run; `before` is source in front of it."""
+
+    def run(*arguments, before="", **environment):
+        source = before + TESTS
+        code, shown = run_tests(source, *arguments, plugin="example_profiles", DRAWN=str(tmp_path / "d"), **environment)
+        assert code == 0, shown
+        return json.loads((tmp_path / "d").read_text())
+
+    return run
+
+
+def test_the_default_examples_are_the_same_everywhere(drawn, tmp_path):
+    first = drawn()
+    assert len(first) > 350
+    constants = ", ".join(str(2.5 + n) for n in range(300))
+    (tmp_path / "project" / "local.py").write_text(f"A = [{constants}, 'a text that stands in the source']")
+    assert drawn(before="import local", PYTHONHASHSEED="1", CI="true") == first
+    assert drawn(PYTHONHASHSEED="2") == first
+
+
+@pytest.mark.parametrize(
+    ("arguments", "environment"),
+    [(["--hypothesis-profile", "explore"], {}), ([], {"HYPOTHESIS_PROFILE": "explore", "CI": "true"})],
+)
+def test_explore_draws_ten_times_as_many_and_others_each_time(drawn, arguments, environment):
+    first, second = drawn(*arguments, **environment), drawn(*arguments, **environment)
+    assert len(first) >= 10 * (300 + 100)
+    assert first != second
+
+
+def test_the_option_wins_over_the_variable(drawn):
+    assert len(drawn("--hypothesis-profile", "fixed", HYPOTHESIS_PROFILE="explore")) < 500
+
+
+def test_other_profiles_are_refused(run_tests):
+    code, shown = run_tests(TESTS, plugin="example_profiles", HYPOTHESIS_PROFILE="dsek")
+    assert code == 4
+    assert "there is no hypothesis profile 'dsek': choose fixed or explore" in shown

@@ -1,0 +1,50 @@
+from __future__ import annotations
+
+import os
+
+import pytest
+from tree_guard import changes, snapshot
+
+
+def test_what_appeared_changed_or_went_is_named(tmp_path):
+    for name in ("kept", "longer", "later", "gone"):
+        (tmp_path / name).write_text("old")
+    before = snapshot(tmp_path)
+    (tmp_path / "longer").write_text("older")
+    os.utime(tmp_path / "later", ns=(1, 1))
+    (tmp_path / "gone").unlink()
+    (tmp_path / "examples").mkdir()
+    (tmp_path / "examples" / "a-results.xlsx").write_text("new")
+    assert changes(before, snapshot(tmp_path)) == [
+        f"appeared: {os.path.join('examples', 'a-results.xlsx')}",
+        "is gone: gone",
+        "changed: later",
+        "changed: longer",
+    ]
+
+
+def test_caches_and_environments_are_not_looked_into(tmp_path):
+    for folder in (".git", ".hypothesis", "x/__pycache__", "xlmc.egg-info", ".venv/lib", "other/lib"):
+        (tmp_path / folder).mkdir(parents=True)
+        (tmp_path / folder / "file").write_text("")
+    for environment in (".venv", "other"):
+        (tmp_path / environment / "pyvenv.cfg").write_text("")
+    assert snapshot(tmp_path) == {}
+
+
+WRITES = """
+from pathlib import Path
+def test_a(): Path("left-results.xlsx").write_text("")
+def test_b(): pass
+"""
+
+
+@pytest.mark.parametrize("processes", [[], ["-n", "2"]])
+def test_a_run_that_leaves_a_file_fails_and_names_it(run_tests, processes):
+    code, shown = run_tests(WRITES, *processes, plugin="tree_guard")
+    assert code == 1
+    assert "2 passed" in shown
+    assert shown.count("appeared: left-results.xlsx") == 1
+    code, shown = run_tests(WRITES, "-k", "test_b", *processes, plugin="tree_guard")
+    assert code == 0
+    assert "appeared" not in shown

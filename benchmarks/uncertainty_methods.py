@@ -95,7 +95,7 @@ def main(given: Sequence[str] | None = None) -> None:
     record: dict[str, Any] = {"machine": describe(), "found": study_json(found)}
     RESULTS.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n")
     PAGE.write_text(filled(PAGE.read_text(), found))
-    save_methods(found, PICTURE)
+    save_methods(found, PICTURE, overwrite=True)
     ratios = [float(cell.partition(" ")[0]) for row in theory_rows(found) for cell in row[2:]]
     print(
         f"Monte Carlo's errors are {min(ratios):.2f} to {max(ratios):.2f} of theory's, {np.median(ratios):.2f} mostly"

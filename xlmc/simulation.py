@@ -345,17 +345,24 @@ class Simulation:
             columns = drawn | columns
         return pandas.DataFrame(columns, index=pandas.Index(self.trial_index, name=TRIAL))
 
-    def save(self, path: str | Path) -> None:
-        """Write the workbook with result sheets.
+    def save(self, path: str | Path, *, overwrite: bool = False) -> Path:
+        """Write the workbook with result sheets, and give the path back.
+
+        As `save_page`, `keep` and `save_json` do, it replaces a file only where xlmc wrote it for the same workbook and
+        nobody has changed it since; `extract`, whose tables bear no mark, replaces none.
+
+        Args:
+            path: where to.
+            overwrite: replace any other file too, and write into the workbook itself where the path is its own.
 
         Raises:
-            WorkbookError: the file cannot be written.
+            WorkbookError: the file is not ours to replace, or cannot be written.
         """
         from xlmc.report import save
 
-        save(self, Path(path))
+        return save(self, Path(path), overwrite=overwrite)
 
-    def save_page(self, path: str | Path) -> None:
+    def save_page(self, path: str | Path, *, overwrite: bool = False) -> Path:
         """Write the results as one page for a browser, which needs no network.
 
         Raises:
@@ -363,9 +370,9 @@ class Simulation:
         """
         from xlmc.report.html import save_page
 
-        save_page(self, Path(path))
+        return save_page(self, Path(path), overwrite=overwrite)
 
-    def keep(self, path: str | Path) -> None:
+    def keep(self, path: str | Path, *, overwrite: bool = False) -> Path:
         """Save the run in a file that ends in `.xlmcrun`; `xlmc.open_run` gives it back.
 
         Raises:
@@ -374,9 +381,9 @@ class Simulation:
         """
         from xlmc.saved import keep
 
-        keep(self, Path(path))
+        return keep(self, Path(path), overwrite=overwrite)
 
-    def extract(self, path: str | Path) -> None:
+    def extract(self, path: str | Path, *, overwrite: bool = False) -> Path:
         """Write the accepted trials, with assumptions and forecasts, to a `.csv` or a `.parquet` file.
 
         Raises:
@@ -385,9 +392,9 @@ class Simulation:
         """
         from xlmc.report.extract import extract
 
-        extract(self, Path(path))
+        return extract(self, Path(path), overwrite=overwrite)
 
-    def save_json(self, path: str | Path) -> None:
+    def save_json(self, path: str | Path, *, overwrite: bool = False) -> Path:
         """Write all results as JSON; docs/json.md describes it.
 
         Raises:
@@ -395,7 +402,7 @@ class Simulation:
         """
         from xlmc.report.document import save_json
 
-        save_json(self, Path(path))
+        return save_json(self, Path(path), overwrite=overwrite)
 
     def plot(self) -> Figure:
         """A figure of matplotlib: every forecast's histogram and cumulative share, with the central range shaded.

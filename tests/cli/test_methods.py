@@ -53,7 +53,7 @@ def test_json(xlmc, case_study):
     [
         ("m.pdf", "is not written as .pdf"),
         ("m", "is not written as a file without ending"),
-        ("nowhere/m.png", "this cannot be written"),
+        ("nowhere/m.png", "there is no folder"),
     ],
 )
 def test_an_output_that_cannot_be(xlmc, case_study, name, message):

@@ -142,7 +142,7 @@ def test_it_takes_no_more_memory_for_more_trials(model, tmp_path, ending, monkey
             forecasts=dict.fromkeys(run.forecasts, np.full(n, 0.1)),
         )
         tracemalloc.start()
-        large.extract(tmp_path / f"trials.{ending}")
+        large.extract(tmp_path / f"trials.{ending}", overwrite=True)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     table = 8 * 5 * 24 * part  # bytes of what the second has more
@@ -175,7 +175,7 @@ def test_a_failed_write_leaves_the_old_file(model, tmp_path, monkeypatch):
     path.write_bytes(b"old")
     monkeypatch.setattr("xlmc.report.extract._fields", lambda values: 1 / 0)
     with pytest.raises(ZeroDivisionError):
-        model.simulate().extract(path)
+        model.simulate().extract(path, overwrite=True)
     assert [(each.name, each.read_bytes()) for each in tmp_path.iterdir()] == [("trials.csv", b"old")]
 
 

@@ -72,8 +72,12 @@ def test_a_run_of_a_result_workbook_replaces_its_sheets(case, tmp_path):
     assert names == openpyxl.load_workbook(path).sheetnames
 
 
-def test_writing_into_the_workbook_itself(case, book):
-    save(case, book)
+def test_writing_into_the_workbook_itself_must_be_asked_for(case, book):
+    before = book.read_bytes()
+    with pytest.raises(WorkbookError, match=r"the workbook itself\. .*--in-place"):
+        save(case, book)
+    assert book.read_bytes() == before
+    save(case, book, overwrite=True)
     assert "Results" in openpyxl.load_workbook(book).sheetnames
 
 
@@ -81,13 +85,12 @@ def test_a_workbook_that_has_changed_since_is_not_overwritten(case, book):
     changed = book.read_bytes() + b"\0"
     book.write_bytes(changed)
     with pytest.raises(WorkbookError, match=r"changed since it was read\. Run again"):
-        save(case, book)
+        save(case, book, overwrite=True)
     assert book.read_bytes() == changed
 
 
 def test_a_workbook_that_is_gone_does_not_matter(case, book, tmp_path):
     book.unlink()
-    (tmp_path / "out.xlsx").write_bytes(b"old")
     assert save(case, tmp_path / "out.xlsx").stat().st_size > 1000
 
 

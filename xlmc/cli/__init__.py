@@ -2,7 +2,7 @@
 `xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc methods`, `xlmc stability`.
 
 Exit codes: 0 done; 1 the run finished but its answer must not be used as it stands; 2 bad input, with the cell and what
-to do; 130 interrupted by Ctrl-C. Modules here import what costs time inside their functions.
+to do; 130 interrupted by Ctrl-C; 143 ended by SIGTERM. Modules here import what costs time inside their functions.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import click
 from xlmc import __version__
 from xlmc.cli.check import check
 from xlmc.cli.compare import compare
+from xlmc.cli.ending import end_in_order
 from xlmc.cli.fit import fit
 from xlmc.cli.methods import methods
 from xlmc.cli.new import new
@@ -42,6 +43,7 @@ for _command in (new, check, fit, verify, simulate, report, replay, compare, scr
 
 def main() -> None:
     """Run the command line; a mistake in the input is a message and exit code 2, too coarse an arithmetic 1."""
+    end_in_order()
     try:
         sys.exit(xlmc.main(standalone_mode=False) or 0)  # a command that asks for an exit code returns it
     except click.ClickException as error:

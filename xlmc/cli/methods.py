@@ -48,6 +48,7 @@ QUICK = {"reference_trials": 1 << 20, "trials": 1 << 17, "replicates": 8}
     multiple=True,
     help="Also write charts and tables: .png, .html or .xlsx; may be given several times.",
 )
+@click.option("--overwrite", is_flag=True, help="Replace existing files, whoever wrote them.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
 def methods(
@@ -59,6 +60,7 @@ def methods(
     quick: bool,
     seed: int | None,
     output: tuple[Path, ...],
+    overwrite: bool,
     as_json: bool,
     quiet: bool,
 ) -> None:
@@ -70,14 +72,14 @@ def methods(
     from xlmc.report.methods import check_targets, save_methods
 
     model = load(book)
-    check_targets(output, book)
+    check_targets(output, book, overwrite=overwrite)
     asked = {"reference_trials": reference_trials, "trials": trials, "replicates": replicates}
     if quick:
         asked = {name: QUICK[name] if value is None else value for name, value in asked.items()}
     with telling(quiet) as told:
         found = study(model, accuracy=accuracy, seed=seed, told=told, **asked)
     for path in output:
-        save_methods(found, path)
+        save_methods(found, path, overwrite=overwrite)
     if as_json:
         click.echo(json.dumps(study_json(found), indent=2, ensure_ascii=False))
     else:

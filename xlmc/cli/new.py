@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import shutil
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,7 +22,8 @@ __all__ = ["new"]
 @click.option(
     "--units", type=click.Choice(["imperial", "si"]), default="imperial", show_default=True, help="Units of the copy."
 )
-def new(template: str | None, book: Path | None, units: str) -> None:
+@click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
+def new(template: str | None, book: Path | None, units: str, overwrite: bool) -> None:
     """List the templates, or copy TEMPLATE to BOOK (by default TEMPLATE.xlsx here)."""
     from xlmc.templates_folder import templates
 
@@ -36,7 +36,8 @@ def new(template: str | None, book: Path | None, units: str) -> None:
     if units not in known[template].editions:
         raise WorkbookError(f"the {units} edition of {template} is missing", hint="install xlmc again")
     target = book or Path(f"{template}.xlsx")
-    _copy(known[template].editions[units], target)
+    editions = [edition for entry in known.values() for edition in entry.editions.values()]
+    _copy(known[template].editions[units], target, editions, overwrite=overwrite)
     click.echo(f"{target} is ready: open it, fill in the green cells, then run: xlmc simulate {target}")
 
 
@@ -48,10 +49,11 @@ def _list(known: Mapping[str, Template]) -> None:
     click.echo("xlmc new TEMPLATE my-case.xlsx copies one; --units si for metres, kilograms and km/h.")
 
 
-def _copy(source: Path, target: Path) -> None:
-    if target.exists():
-        raise WorkbookError("the file exists already", where=target, hint="choose another name, or remove it first")
-    try:
-        shutil.copyfile(source, target)
-    except OSError as error:
-        raise WorkbookError(f"the file cannot be written ({error.strerror})", where=target) from None
+def _copy(source: Path, target: Path, templates: Sequence[Path], *, overwrite: bool) -> None:
+    """Copy a template; a file that is there is replaced where it is an untouched copy of one."""
+    from xlmc.workbook.target import Target
+    from xlmc.workbook.writer import write_workbook
+
+    goal = Target(target, "", overwrite, templates)
+    goal.check()
+    write_workbook(target, source.read_bytes(), goal.check)

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import click
 
-from xlmc.errors import XlmcError
+from xlmc.errors import WorkbookError, XlmcError
 
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
 
-__all__ = ["NOT_WRITTEN", "Outputs", "output_options"]
+__all__ = ["NOT_WRITTEN", "Outputs", "output_options", "results_beside"]
 
 NOT_WRITTEN = 2
 
@@ -31,11 +31,16 @@ _OPTIONS = (
         metavar="FILE.csv|FILE.parquet",
         help="Write the accepted trials; may be given again.",
     ),
+    click.option(
+        "--overwrite",
+        is_flag=True,
+        help="Replace existing files, whoever wrote them; else only xlmc's own, of BOOK and untouched.",
+    ),
 )
 
 
 def output_options(command: F) -> F:
-    """Adds the options; the command is given `html`, `json_path` and `extract`."""
+    """Adds the options; the command is given `html`, `json_path`, `extract` and `overwrite`."""
     for option in reversed(_OPTIONS):
         command = option(command)
     return command
@@ -46,33 +51,65 @@ class Outputs:
     """The files asked for.
 
     Attributes:
+        source: the workbook or the saved run that they come from.
+        name: of the workbook.
         book: the result workbook.
         run: a saved run.
         html: a page for a browser.
         json: all results.
         extract: the accepted trials.
+        overwrite: replace files that are not ours too.
+        in_place: the result workbook is the workbook itself.
+        named: the person gave the result workbook its name; another one is numbered on where it is taken.
     """
 
+    source: Path
+    name: str
     book: Path | None = None
     run: Path | None = None
     html: Path | None = None
     json: Path | None = None
     extract: tuple[Path, ...] = ()
+    overwrite: bool = False
+    in_place: bool = False
+    named: bool = True
 
-    def check(self, source: Path) -> None:
-        """Refuse before a run what could not be written after it.
+    def checked(self, like: Path) -> Outputs:
+        """The files as they can be written, before a run: what could not be written after it is refused.
+
+        A result workbook without a name of its own gets a free one where its name is taken, which is said.
 
         Args:
-            source: the workbook that is run.
+            like: a workbook whose ending the result workbook must have.
 
         Raises:
-            WorkbookError: a name has another ending than it must, its folder is missing, or it may not be written.
+            WorkbookError: a name has another ending than it must, its folder is missing, it may not be written, it is
+                not ours to replace, it is the source, or it is given twice.
             SimulationError: a library is missing.
         """
-        if self.book is not None:
-            from xlmc.report.save import check_book_path
+        from xlmc.workbook.target import Target, refuse_same_file
 
-            check_book_path(self.book, source)
+        self._check_endings(like)
+        self._refuse_source()
+        for path in self._others:
+            Target(path, self.name, self.overwrite).check()
+        found = self._with_book()
+        refuse_same_file([path for path in (found.book, *self._others) if path is not None])
+        return found
+
+    @property
+    def _others(self) -> list[Path]:
+        """All but the result workbook."""
+        return [path for path in (self.run, self.html, self.json, *self.extract) if path is not None]
+
+    def _check_endings(self, like: Path) -> None:
+        for path in (self.book, *self._others):
+            if path is not None and path.is_dir() and (self.named or path != self.book):
+                raise WorkbookError("this is a folder, not a file", where=path, hint="Name a file")
+        if self.book is not None:
+            from xlmc.report.save import check_ending
+
+            check_ending(self.book, like)
         if self.run is not None:
             from xlmc.saved.keeping import check_run_path
 
@@ -89,33 +126,68 @@ class Outputs:
             from xlmc.report.extract import check_extract_path
 
             check_extract_path(path)
-        for other in (self.run, self.html, self.json, *self.extract):
-            if other is not None:
-                from xlmc.workbook.writer import check_folder
 
-                check_folder(other)
+    def _refuse_source(self) -> None:
+        """Refuse an output that is the file which is read, by whatever name."""
+        for path in (self.book, *self._others):
+            if path is not None and not (self.in_place and path == self.book) and _is_same(path, self.source):
+                place = "--in-place writes the result sheets into it" if path == self.book else None
+                raise WorkbookError("this is the file that is read", where=path, hint=place or "Name another file")
+
+    def _with_book(self) -> Outputs:
+        from xlmc.workbook.target import Target, free_target
+        from xlmc.workbook.writer import check_folder, refuse_if_open
+
+        if self.book is None:
+            return self
+        if self.in_place:
+            check_folder(self.book)
+            refuse_if_open(self.book)
+            return self
+        if self.named or self.overwrite:
+            Target(self.book, self.name, self.overwrite).check()
+            return self
+        found, reason = free_target(self.book, self.name)
+        if reason is not None:
+            click.echo(f"note: {self.book}: {reason}; it stays as it is, and results go to {found}.", err=True)
+        return replace(self, book=found)
 
     def write(self, run: Simulation) -> bool:
         """Write them all, and say where they are; whether all could be.
 
         One that cannot be written is told of, and the others are written all the same: the run may have taken hours.
+        Where a name was taken since the run began, or a program holds the file, a free name beside it is used.
         """
         written = True
         for path, said, write in self._files(run):
             try:
-                write(path)
+                found = self._write_beside(path, write)
             except XlmcError as error:
                 click.echo(f"xlmc: {error}", err=True)
                 written = False
             else:
-                click.echo(f"{said} {path}")
+                click.echo(f"{said} {found}")
         if self.extract and run.kept_inputs < run.accepted:
             kept = f"draws of {run.kept_inputs:,} of {run.accepted:,} accepted trials were kept"
             for path in self.extract:
                 click.echo(f"note: {path}: {kept}; the others are blank", err=True)
         return written
 
-    def _files(self, run: Simulation) -> Iterator[tuple[Path, str, Callable[[Path], object]]]:
+    def _write_beside(self, path: Path, write: _Write) -> Path:
+        from xlmc.workbook.target import free_target
+        from xlmc.workbook.writer import TakenError
+
+        try:
+            write(path, overwrite=self.overwrite or (self.in_place and path == self.book))
+        except TakenError as taken:
+            beside = results_beside(path) if path == self.book and self.in_place else path
+            found, _ = free_target(beside, self.name, after=path)
+            write(found)
+            click.echo(f"note: {path}: {taken.message}; it stays as it is, and {found} was written instead.", err=True)
+            return found
+        return path
+
+    def _files(self, run: Simulation) -> Iterator[tuple[Path, str, _Write]]:
         """Each with what is said of it, and what writes it."""
         if self.book is not None:
             yield self.book, "Results are in", run.save
@@ -127,3 +199,18 @@ class Outputs:
             yield self.json, "Results as JSON are in", run.save_json
         for path in self.extract:
             yield path, "Accepted trials are in", run.extract
+
+
+class _Write(Protocol):
+    """What writes a run to a file."""
+
+    def __call__(self, path: Path, *, overwrite: bool = False) -> Path: ...
+
+
+def results_beside(source: Path, ending: str | None = None) -> Path:
+    """Where the results of a workbook or a saved run go by default: `case.xlsx -> case-results.xlsx`."""
+    return source.with_name(f"{source.stem}-results{source.suffix if ending is None else ending}")
+
+
+def _is_same(path: Path, source: Path) -> bool:
+    return path.exists() and source.exists() and path.samefile(source)

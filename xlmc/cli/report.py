@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from xlmc.cli.output_options import NOT_WRITTEN, Outputs, output_options
+from xlmc.cli.output_options import NOT_WRITTEN, Outputs, output_options, results_beside
 
 __all__ = ["report"]
 
@@ -29,6 +29,7 @@ def report(
     html: Path | None,
     json_path: Path | None,
     extract: tuple[Path, ...],
+    overwrite: bool,
     quiet: bool,
 ) -> None:
     """Write the results of a saved run again, without simulating: the same as when it was run."""
@@ -39,10 +40,12 @@ def report(
     found = open_run(run)
     if not quiet:
         notices(found.model.notices)
+    target = output
     if output is None and not (html or json_path or extract):
-        output = run.with_name(f"{run.stem}-results{found.model.path.suffix}")
-    outputs = Outputs(output, html=html, json=json_path, extract=extract)
-    outputs.check(found.model.path)
+        target = results_beside(run, found.model.path.suffix)
+    name, named = found.model.workbook.name, output is not None
+    asked = Outputs(run, name, target, None, html, json_path, extract, overwrite, named=named)
+    outputs = asked.checked(found.model.path)
     show_run(found)
     written = outputs.write(found)
     for warning in found.warnings:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from xlmc.cli.output_options import NOT_WRITTEN, Outputs, output_options
+from xlmc.cli.output_options import NOT_WRITTEN, Outputs, output_options, results_beside
 from xlmc.cli.run_options import stopping_options
 
 if TYPE_CHECKING:
@@ -75,6 +75,7 @@ def simulate(
     html: Path | None,
     json_path: Path | None,
     extract: tuple[Path, ...],
+    overwrite: bool,
     quiet: bool,
     **length: Any,
 ) -> None:
@@ -86,10 +87,11 @@ def simulate(
 
     if in_place and output is not None:
         raise click.UsageError("--in-place and --output exclude each other.")
-    target = book if in_place else output or book.with_name(f"{book.stem}-results{book.suffix}")
-    outputs = Outputs(target, save_run, html, json_path, extract)
-    if book.exists():  # else `load` says so
-        outputs.check(book)
+    target = book if in_place else output or results_beside(book)
+    asked = Outputs(
+        book, book.name, target, save_run, html, json_path, extract, overwrite, in_place, output is not None
+    )
+    outputs = asked.checked(book) if book.exists() else asked  # `load` says that there is no book
     model = load(book)
     if not quiet:
         notices([*model.notices, *_hints(model, trials, engine)])

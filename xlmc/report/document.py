@@ -16,7 +16,9 @@ from xlmc.report.conditioning import Marginal, conditioning
 from xlmc.report.dependence_json import certainties_json, pairs_json, sensitivity_json, statements_json
 from xlmc.report.estimate_json import estimate_json, number_json
 from xlmc.statistics import proportion
-from xlmc.workbook.writer import whole_file
+from xlmc.workbook.seal import sealed_text
+from xlmc.workbook.target import Target
+from xlmc.workbook.writer import write_workbook
 
 if TYPE_CHECKING:
     from xlmc.definitions import Assumption, Filter
@@ -80,19 +82,27 @@ def document(simulation: Simulation, *, command: str | None = None) -> Json:
     }
 
 
-def save_json(simulation: Simulation, path: Path, *, command: str | None = None) -> Path:
-    """Write the document.
+def save_json(simulation: Simulation, path: Path, *, command: str | None = None, overwrite: bool = False) -> Path:
+    """Write the document, and behind it the seal by which xlmc knows it again.
+
+    Args:
+        simulation: the finished run.
+        path: where to; untouched results of the same workbook are replaced.
+        command: what the person typed, for the record.
+        overwrite: replace any other file too.
 
     Returns:
         The path.
 
     Raises:
+        TakenError: the file is not ours to replace.
         WorkbookError: the file cannot be written, or does not end in `.json`.
     """
     check_json_path(path)
+    target = Target(path, simulation.model.workbook.name, overwrite)
+    target.check()
     text = json.dumps(document(simulation, command=command), ensure_ascii=False, allow_nan=False, indent=2)
-    with whole_file(path) as file:
-        file.write(text.encode() + b"\n")
+    write_workbook(path, sealed_text(text.removesuffix("\n}").encode(), ".json", target.book), target.check)
     return path
 
 

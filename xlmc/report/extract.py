@@ -18,6 +18,7 @@ from xlmc.errors import SimulationError, WorkbookError
 from xlmc.record import make_record
 from xlmc.scratch import PART, release
 from xlmc.simulation import TRIAL, assumption_heading, forecast_heading
+from xlmc.workbook.target import Target
 from xlmc.workbook.writer import whole_file
 
 if TYPE_CHECKING:
@@ -48,24 +49,28 @@ class Column:
     values: NDArray[np.float64]
 
 
-def extract(simulation: Simulation, path: Path, *, command: str | None = None) -> Path:
+def extract(simulation: Simulation, path: Path, *, command: str | None = None, overwrite: bool = False) -> Path:
     """Write the accepted trials, one a row: the trial's number, the assumptions, the forecasts.
 
     Args:
         simulation: the finished run.
         path: where to; its ending, `.csv` or `.parquet`, says how.
         command: what the person typed, for the record in a Parquet file.
+        overwrite: replace a file that is there: a table bears no mark of who wrote it.
 
     Returns:
         The path.
 
     Raises:
+        TakenError: there is a file already.
         WorkbookError: the ending is another, or the file cannot be written.
         SimulationError: Parquet was asked for, and pyarrow is not installed.
     """
     write = _writer(path)
     check_extract_path(path)
-    with whole_file(path) as file:
+    target = Target(path, simulation.model.workbook.name, overwrite)
+    target.check()
+    with whole_file(path, target.check) as file:
         write(simulation, file, command)
     return path
 

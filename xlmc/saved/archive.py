@@ -35,14 +35,16 @@ DAMAGE: Final = (  # what zipfile raises on a damaged file
 )
 
 
-def write_entries(file: BinaryIO, entries: Iterable[tuple[str, int, Iterable[bytes]]]) -> None:
+def write_entries(file: BinaryIO, entries: Iterable[tuple[str, int, Iterable[bytes]]], comment: bytes = b"") -> None:
     """Write entries one after the other; the same entries give the same bytes.
 
     Args:
         file: where to, from its start.
         entries: name, size in bytes, and the bytes, a part at a time.
+        comment: with which the file ends.
     """
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as package:
+        package.comment = comment
         for name, size, parts in entries:
             entry = zipfile.ZipInfo(name, _EPOCH)
             entry.create_system = 0  # otherwise the file would say on which system it was written

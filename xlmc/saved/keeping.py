@@ -18,6 +18,8 @@ from xlmc.saved.archive import RUN, SUFFIX, WORKBOOK, write_entries
 from xlmc.saved.columns import column_header, column_parts
 from xlmc.saved.document import FORMAT, VERSION, tally_document
 from xlmc.simulation import Origin
+from xlmc.workbook.seal import blank_seal, seal_file
+from xlmc.workbook.target import Target
 from xlmc.workbook.writer import whole_file
 
 if TYPE_CHECKING:
@@ -35,19 +37,21 @@ class _Column(NamedTuple):
     values: NDArray[Any]
 
 
-def keep(simulation: Simulation, path: Path) -> Path:
+def keep(simulation: Simulation, path: Path, *, overwrite: bool = False) -> Path:
     """Save the run: the workbook it was made from, its settings and counts, and its columns.
 
     The same run gives the same bytes. Columns on disk are copied a part at a time.
 
     Args:
         simulation: the finished run.
-        path: where to, ending in `.xlmcrun`; an existing file is replaced.
+        path: where to, ending in `.xlmcrun`; an untouched saved run of the same workbook is replaced.
+        overwrite: replace any other file too.
 
     Returns:
         The path.
 
     Raises:
+        TakenError: the file is not ours to replace.
         WorkbookError: the file cannot be written, or has another ending.
         SimulationError: the workbook was not read from a file.
     """
@@ -55,8 +59,11 @@ def keep(simulation: Simulation, path: Path) -> Path:
     if not simulation.model.workbook.data:
         message = "the run cannot be saved: its workbook was not read from a file"
         raise SimulationError(message, hint="read it with xlmc.load")
-    with whole_file(path) as file:
-        write_entries(file, _entries(simulation))
+    target = Target(path, simulation.model.workbook.name, overwrite)
+    target.check()
+    with whole_file(path, target.check) as file:
+        write_entries(file, _entries(simulation), blank_seal(target.book))
+        seal_file(file, target.book)
     return path
 
 

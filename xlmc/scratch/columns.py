@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.scratch.folder import Folder
+from xlmc.scratch.owners import remove_stray_folders
 
 __all__ = ["IN_MEMORY", "Columns", "Keeper"]
 
@@ -39,7 +40,7 @@ class Columns(Mapping[str, Array]):
 
 
 class Keeper:
-    """Collects columns; the arrays it is given are its own from then on.
+    """Collects columns; the arrays it is given are its own from then on. Folders that killed runs left are removed.
 
     Args:
         types: column -> the type of its numbers.
@@ -51,6 +52,7 @@ class Keeper:
         self._waiting: dict[Hashable, list[Array]] = {key: [] for key in types}
         self._bytes = 0
         self._folder: Folder | None = None
+        remove_stray_folders()
 
     def add(self, key: Hashable, values: Array) -> None:
         """Put `(m,)` values at the end of a column."""

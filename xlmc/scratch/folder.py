@@ -8,7 +8,7 @@ import shutil
 import tempfile
 import weakref
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from xlmc.errors import SimulationError
 from xlmc.scratch.mapped import mapped
+from xlmc.scratch.owners import new_folder_name, owned
 
 __all__ = ["Folder"]
 
@@ -36,8 +37,11 @@ class Folder:
 
     def __init__(self) -> None:
         with _told(None):
-            self.path = Path(tempfile.mkdtemp(prefix="xlmc-"))
-        self._end = weakref.finalize(self, _remove, self.path, os.getpid())
+            self.path = Path(tempfile.gettempdir(), new_folder_name())
+            kept = ExitStack()
+            kept.enter_context(owned(self.path.name))
+            self.path.mkdir(mode=0o700)
+        self._end = weakref.finalize(self, _remove, self.path, os.getpid(), kept)
 
     def append(self, name: str, arrays: Iterable[NDArray[Any]]) -> None:
         """Write `(n,)` arrays at the end of a file.
@@ -67,9 +71,10 @@ class Folder:
                 return
 
 
-def _remove(path: Path, owner: int) -> None:
+def _remove(path: Path, owner: int, kept: ExitStack) -> None:
     if os.getpid() == owner:  # a forked child inherits the object, not the folder
         shutil.rmtree(path, ignore_errors=True)
+        kept.close()
 
 
 @contextmanager

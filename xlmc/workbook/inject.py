@@ -18,7 +18,7 @@ from xlmc.workbook.injection.book_prune import mark
 from xlmc.workbook.injection.built_book import BuiltBook, BuiltSheet, read_built
 from xlmc.workbook.injection.content_types import add_types, types_of
 from xlmc.workbook.injection.namespaces import MAIN, OFFICE_RELATIONSHIPS
-from xlmc.workbook.injection.originals import original_hash, remove_result_sheets
+from xlmc.workbook.injection.originals import original_hash, remove_result_sheets, result_sheets
 from xlmc.workbook.injection.part_numbers import free_part_names, free_tables
 from xlmc.workbook.injection.reach import reached
 from xlmc.workbook.injection.result_parts import Carrier, relative_target
@@ -29,7 +29,7 @@ from xlmc.workbook.injection.spans import as_utf8, parse_spans
 from xlmc.workbook.injection.styles_merge import StyleMap, merge_styles, same_styles
 from xlmc.workbook.package import read_parts
 
-__all__ = ["inject", "original_hash", "remove_result_sheets"]
+__all__ = ["inject", "original_hash", "remove_result_sheets", "result_sheets"]
 
 _STYLES = "xl/styles.xml"
 _STYLES_POINTER = f"{OFFICE_RELATIONSHIPS}/styles"

@@ -6,7 +6,7 @@ import json
 from collections.abc import Collection, Iterable, Mapping
 
 from xlmc.workbook.injection.app_properties import unlist_sheets
-from xlmc.workbook.injection.book_edit import drop_pointers
+from xlmc.workbook.injection.book_edit import drop_pointers, sheet_list
 from xlmc.workbook.injection.book_prune import marked_sheets, without_sheets
 from xlmc.workbook.injection.cached_values import without_formula_values
 from xlmc.workbook.injection.content_types import drop_types
@@ -17,7 +17,7 @@ from xlmc.workbook.injection.splice import SplicedXml
 from xlmc.workbook.package import Relationship, hash_parts, relationships, rels_part
 from xlmc.workbook.safe_xml import tree
 
-__all__ = ["original_hash", "remove_result_sheets"]
+__all__ = ["original_hash", "remove_result_sheets", "result_sheets"]
 
 
 def remove_result_sheets(parts: Mapping[str, bytes]) -> dict[str, bytes]:
@@ -52,6 +52,18 @@ def remove_result_sheets(parts: Mapping[str, bytes]) -> dict[str, bytes]:
         present, removed = _names(sheets.children), _names(marked)
         kept[role.properties] = unlist_sheets(parts[role.properties], role.properties, present, removed)
     return kept
+
+
+def result_sheets(parts: Mapping[str, bytes]) -> list[str]:
+    """The parts of the result sheets, in their order.
+
+    Raises:
+        WorkbookError: the package is damaged.
+    """
+    role = roles(parts)
+    root = parse_spans(as_utf8(parts[role.workbook], role.workbook), role.workbook)
+    sheets, pointers = sheet_list(root, role.workbook).children, relationships(parts, role.workbook)
+    return [pointers[sheets[place].foreign("id") or ""].target for place in marked_sheets(root, role.workbook)]
 
 
 def original_hash(parts: Mapping[str, bytes]) -> str:

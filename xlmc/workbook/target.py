@@ -1,0 +1,130 @@
+"""What may be written where: a file is replaced only where it is xlmc's own of the same workbook, and untouched."""
+
+from __future__ import annotations
+
+import os
+import unicodedata
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from xlmc.errors import WorkbookError
+from xlmc.workbook.seal import ENDINGS, read_seal
+from xlmc.workbook.writer import TakenError, check_folder, refuse_if_open
+
+__all__ = ["Target", "free_target", "refuse_same_file", "same_name"]
+
+_SEALED = (".xlsx", ".xlsm", *ENDINGS)
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A file that is to be written.
+
+    Attributes:
+        path: where to.
+        book: the name of the workbook whose results it is to hold.
+        overwrite: replace whatever file is there.
+        untouched: contents that xlmc hands out, and may replace too, such as templates.
+    """
+
+    path: Path
+    book: str
+    overwrite: bool = False
+    untouched: Iterable[Path] = field(default=())
+
+    def check(self) -> None:
+        """Refuse what must not or cannot be written; nothing is touched. To be asked before a run, and when writing.
+
+        Raises:
+            TakenError: the file is not ours to replace, or a program has it open.
+            WorkbookError: there is no folder, or the folder may not be written to.
+        """
+        check_folder(self.path)
+        if self.path.suffix.casefold() in (".xlsx", ".xlsm"):
+            refuse_if_open(self.path)
+        reason = None if self.overwrite else self.foreign
+        if reason is not None:
+            hint = "Name another file, or replace it with --overwrite (in Python: overwrite=True)"
+            raise TakenError(f"the file exists already, and {reason}", where=self.path, hint=hint)
+
+    @property
+    def foreign(self) -> str | None:
+        """Why the file is not ours to replace; None where it is, or where there is none."""
+        if not self.path.exists():
+            return None
+        ending = self.path.suffix.casefold()
+        try:
+            if any(self.path.read_bytes() == each.read_bytes() for each in self.untouched):
+                return None
+            seal = read_seal(self.path)
+        except OSError as error:
+            return f"cannot be read ({error.strerror or error})"
+        if seal is None and ending not in _SEALED:
+            return f"xlmc cannot tell who wrote a {ending or 'file without ending'}"
+        if seal is None:
+            return "xlmc did not write it, or another program has saved it since"
+        if not same_name(seal.book, self.book):
+            return f"it holds results of {seal.book!r}, not of {self.book!r}"
+        return None if seal.whole else "it was changed since xlmc wrote it"
+
+
+def free_target(path: Path, book: str, *, after: Path | None = None) -> tuple[Path, str | None]:
+    """The path, or the first of `…-2`, `…-3`, … that is free or ours, and why not the path itself.
+
+    Args:
+        path: the name that is wanted.
+        book: the name of the workbook whose results it is to hold.
+        after: a name that is not to be had, though it may look free.
+
+    Raises:
+        WorkbookError: there is no folder, or the folder may not be written to.
+    """
+    reason = None
+    for each in _numbered(path):
+        if each == after:
+            continue
+        try:
+            Target(each, book).check()
+        except TakenError as taken:
+            reason = reason or taken.message
+        else:
+            return each, reason
+    raise AssertionError("numbers do not end")
+
+
+def refuse_same_file(outputs: Iterable[Path]) -> None:
+    """Refuse two outputs that are one file, also by links or, on Windows and macOS, by names in another case.
+
+    Raises:
+        WorkbookError: two are.
+    """
+    seen: dict[str, Path] = {}
+    for path in outputs:
+        for other in seen.values():
+            if path.exists() and other.exists() and path.samefile(other):
+                raise _twice(path, other)
+        key = unicodedata.normalize("NFC", os.path.realpath(path)).casefold()
+        if key in seen:
+            raise _twice(path, seen[key])
+        seen[key] = path
+
+
+def same_name(first: str, second: str) -> bool:
+    """Whether two names of files are one on systems that ignore case: `Book.xlsx` and `book.XLSX`."""
+    folded = [unicodedata.normalize("NFC", name).casefold() for name in (first, second)]
+    return folded[0] == folded[1]
+
+
+def _numbered(path: Path) -> Iterator[Path]:
+    yield path
+    number = 2
+    while True:
+        yield path.with_name(f"{path.stem}-{number}{path.suffix}")
+        number += 1
+
+
+def _twice(path: Path, other: Path) -> WorkbookError:
+    also = "" if str(path) == str(other) else f" (as {str(other)!r})"
+    hint = "Give each output a name of its own; Windows and macOS do not tell capitals from small letters"
+    return WorkbookError(f"two outputs would be written to this file{also}", where=path, hint=hint)

@@ -105,6 +105,26 @@ def test_axes_have_titles_and_charts_a_description(packed, charts):
     assert any(text.startswith("Tornado: how far the forecast moves") for text in described)
 
 
+def test_lines_are_straight_and_shares_end_at_one(packed, charts):
+    with zipfile.ZipFile(io.BytesIO(packed)) as package:
+        xmls = [package.read(name).decode() for name in package.namelist() if name.startswith("xl/charts/chart")]
+    lined = [xml for xml in xmls if "<c:lineChart>" in xml or "<c:scatterChart>" in xml]
+    assert lined
+    for xml in lined:
+        assert xml.count('<c:smooth val="0"/>') == xml.count("<c:ser>")
+    for xml in charts["Share of trials accepted"]:
+        top, step = (float(re.search(rf'<c:{part} val="(.*?)"/>', xml)[1]) for part in ("max", "majorUnit"))
+        assert 0.0 < step < top <= 1.0
+
+
+def test_the_minus_sign_of_an_axis_is_one_that_no_program_parts_from_its_number(packed):
+    with zipfile.ZipFile(io.BytesIO(packed)) as package:
+        xmls = [package.read(name).decode() for name in package.namelist() if name.startswith("xl/charts/chart")]
+    formats = {found for xml in xmls for found in re.findall(r'<c:numFmt formatCode="([^"]*)" sourceLinked="0"', xml)}
+    assert formats
+    assert {found for found in formats if ";&quot;−&quot;" not in found} == set()
+
+
 def test_no_more_than_noise_is_pale(make, opened):
     run = make.simulate(
         {"A1": 0.5, "A2": 0.5, "B1": "=A1+0*A2"},

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from xlmc.report.chart_style import axis_format
 from xlmc.report.ranges import TableAt
 from xlmc.report.styles import DARK, GRID, INK, LIGHT
 
@@ -94,7 +95,7 @@ def _axes(chart: ChartBar, axis: str, number: str) -> None:
             "name": axis,
             "name_font": {**FONT, "bold": False},
             "num_font": FONT,
-            "num_format": number,
+            "num_format": axis_format(number),
             "label_position": "high",
             "line": {"none": True},
             "major_gridlines": {"visible": True, "line": {"color": GRID, "width": 0.5}},

@@ -10,7 +10,19 @@ from xlmc.report.styles import GRID, INK
 if TYPE_CHECKING:
     from xlsxwriter.chart import Chart
 
-__all__ = ["AXIS", "COLOURS", "FONT", "SIZE", "Reference", "across", "bounds", "finish", "upwards"]
+__all__ = [
+    "AXIS",
+    "COLOURS",
+    "FONT",
+    "SIZE",
+    "Reference",
+    "across",
+    "axis_format",
+    "bounds",
+    "finish",
+    "straight",
+    "upwards",
+]
 
 SIZE: Final = (560, 360)
 """In pixels."""
@@ -27,6 +39,30 @@ _GRIDLINES: Final = {"visible": True, "line": {"color": GRID, "width": 0.5}}
 
 Reference = list[str | int]
 """A cell, or the cells of a column: sheet, row, column, or sheet and the first and last of each, from 0."""
+
+
+def axis_format(number_format: str) -> str:
+    """The format of an axis's numbers, with a minus sign (U+2212) that no program parts from its number.
+
+    LibreOffice breaks a label after the hyphen that stands for a minus, and shows 80 for -80 with the hyphen above.
+
+    >>> axis_format("0%")
+    '0%;"−"0%'
+    """
+    return f'{number_format};"−"{number_format}'
+
+
+def straight(chart: Any) -> Any:
+    """The chart, with lines that run straight from point to point, said of every series.
+
+    The standard takes a series that says nothing for a smooth one (ECMA-376, 21.2.2.194), and XlsxWriter says nothing.
+    """
+
+    def write(smooth: object) -> None:
+        chart._xml_empty_tag("c:smooth", [("val", int(bool(smooth)))])
+
+    chart._write_c_smooth = write
+    return chart
 
 
 def finish(chart: Chart, title: Reference, *, legend: bool = True) -> None:
@@ -57,7 +93,7 @@ def upwards(name: str | Reference, number_format: str = "#,##0", **more: Any) ->
         "name": name,
         "name_font": {**FONT, "bold": False, "rotation": -90},
         "num_font": FONT,
-        "num_format": number_format,
+        "num_format": axis_format(number_format),
         "label_position": "low",
         "line": {"none": True},
         "major_gridlines": _GRIDLINES,

@@ -8,6 +8,7 @@ from xlmc.record.wording import number_text
 from xlmc.report import cells
 from xlmc.report.bar_charts import ROWS as CHART_ROWS
 from xlmc.report.cells import Shown
+from xlmc.report.chart_style import bounds
 from xlmc.report.line_charts import limit_chart
 from xlmc.report.ranges import TableAt
 
@@ -155,7 +156,8 @@ def _write_charts(
     axis = "Change of the mean" + (", of the central range" if unit is None else f" ({unit})" if unit else "")
     value, error, number = (_CHANGE, _CHANGE + 1, "General") if unit is not None else (_OF_RANGE, _OF_RANGE + 1, "0%")
     moved = limit_chart(book, tables, "Change of each mean", across, axis, (0, _LIMIT, value, error), number)
-    share = limit_chart(book, [acceptance], "Share of trials accepted", across, "Share", (0, 1, 3, 4), "0.0%")
+    title = "Share of trials accepted"
+    share = limit_chart(book, [acceptance], title, across, "Share", (0, 1, 3, 4), "0.0%", ends=_share_axis(limit))
     captions = (moved_caption(limit), _share_caption(limit))
     for chart, column, caption in zip((moved, share), (0, _RIGHT), captions, strict=True):
         page.sheet.insert_chart(page.row, column, chart, {"object_position": 1, "description": caption})
@@ -163,6 +165,12 @@ def _write_charts(
     gap = cells.text("", "caption")
     texts = [cells.text(caption, "caption") for caption in captions]
     page.spread([texts[0], gap, texts[1], gap], [0, _RIGHT - 1, _RIGHT, _LAST], _LAST)
+
+
+def _share_axis(limit: FilterLimit) -> dict[str, float]:
+    """From 0 to above the whiskers, and never beyond 100 %."""
+    tops = [each.acceptance.value + (each.acceptance.error or 0.0) for each in limit.points]
+    return bounds(0.0, min(1.0, max(tops, default=0.0)))
 
 
 def moved_caption(limit: FilterLimit) -> str:

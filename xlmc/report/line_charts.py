@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.report.bar_charts import AXIS, FONT, dressed
+from xlmc.report.chart_style import axis_format, straight
 from xlmc.report.ranges import TableAt
 from xlmc.report.styles import GRID
 
@@ -25,7 +26,7 @@ MOST_LINES: Final = 6
 
 def spider_chart(book: Workbook, at: TableAt, title: str, axis: str, first: int, last: int) -> ChartLine:
     """The changes over the percentiles, which are the headings of the columns from `first` to `last`."""
-    chart = book.add_chart({"type": "line"})
+    chart = straight(book.add_chart({"type": "line"}))
     for place in range(min(MOST_LINES, at.last - at.first + 1)):
         chart.add_series(
             {
@@ -36,7 +37,7 @@ def spider_chart(book: Workbook, at: TableAt, title: str, axis: str, first: int,
             }
         )
     chart.set_x_axis({"name": "Assumption at this percentile of its own distribution", **_axis(), "line": AXIS})
-    chart.set_y_axis({"name": axis, **_axis(upwards=True), "num_format": "General", **_GRIDLINES})
+    chart.set_y_axis({"name": axis, **_axis(upwards=True), "num_format": axis_format("General"), **_GRIDLINES})
     chart.set_legend({"position": "right", "font": FONT})
     return dressed(chart, title)
 
@@ -49,6 +50,8 @@ def limit_chart(
     axis: str,
     columns: tuple[int, int, int, int],
     number: str,
+    *,
+    ends: Mapping[str, float] | None = None,
 ) -> ChartScatter:
     """Lines over the limit, with standard errors, one a table.
 
@@ -60,8 +63,9 @@ def limit_chart(
         axis: what the other one shows.
         columns: of the name, of the limit, of the number, of its error.
         number: how the axis shows numbers.
+        ends: the limits of that axis, as `chart_style.bounds` gives them.
     """
-    chart = book.add_chart({"type": "scatter", "subtype": "straight_with_markers"})
+    chart = straight(book.add_chart({"type": "scatter", "subtype": "straight_with_markers"}))
     name, limit, value, error = columns
     for place, at in enumerate(tables):
         bars = {"type": "custom", "plus_values": at.formula(error), "minus_values": at.formula(error)}
@@ -75,8 +79,11 @@ def limit_chart(
                 "y_error_bars": {**bars, "line": {"color": colour, "width": 0.75}},
             }
         )
-    chart.set_x_axis({"name": across, **_axis(), "line": AXIS, "major_gridlines": {"visible": False}})
-    chart.set_y_axis({"name": axis, **_axis(upwards=True), "num_format": number, **_GRIDLINES})
+    plain = {"visible": False}
+    form = axis_format("General")
+    chart.set_x_axis({"name": across, **_axis(), "num_format": form, "line": AXIS, "major_gridlines": plain})
+    up = {"num_format": axis_format(number), **(ends or {}), **_GRIDLINES}
+    chart.set_y_axis({"name": axis, **_axis(upwards=True), **up})
     chart.set_legend({"position": "right", "font": FONT} if len(tables) > 1 else {"none": True})
     return dressed(chart, title)
 

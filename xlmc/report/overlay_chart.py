@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.report import cells
 from xlmc.report.cells import Shown
-from xlmc.report.chart_style import COLOURS, across, finish, upwards
+from xlmc.report.chart_style import COLOURS, across, axis_format, finish, straight, upwards
 from xlmc.report.curves import Curves, TableAt
 from xlmc.report.figure import Figure
 from xlmc.report.styles import DARK, INK
@@ -51,7 +51,7 @@ def alike(figures: Sequence[Figure]) -> list[list[Figure]]:
 def overlay_chart(book: Workbook, curves: Curves, group: Sequence[Figure]) -> ChartScatter:
     """The frequency curves of figures with the same units."""
     units = group[0].answer.units
-    chart = book.add_chart({"type": "scatter", "subtype": "straight"})
+    chart = straight(book.add_chart({"type": "scatter", "subtype": "straight"}))
     tables: list[TableAt] = []
     for figure, colour in zip(group, COLOURS, strict=False):
         titles = [] if tables else [f"Overlay of forecasts in {units}"]
@@ -68,7 +68,7 @@ def overlay_chart(book: Workbook, curves: Curves, group: Sequence[Figure]) -> Ch
         )
     first = min(float(figure.bins.edges[0]) for figure in group)
     limits = {"min": 0} if 0.0 <= first < max(figure.bins.width for figure in group) else {}  # no room for none below 0
-    chart.set_x_axis(across(tables[0].axis, num_format="General", **limits))
+    chart.set_x_axis(across(tables[0].axis, num_format=axis_format("General"), **limits))
     chart.set_y_axis(upwards("Probability per unit of the axis", "General", min=0))
     finish(chart, tables[0].title())
     return chart

@@ -10,7 +10,7 @@ import numpy as np
 
 from xlmc.report import cells, number_format
 from xlmc.report.cells import BLANK, Shown
-from xlmc.report.chart_style import Reference, across, bounds, finish, upwards
+from xlmc.report.chart_style import Reference, across, axis_format, bounds, finish, straight, upwards
 from xlmc.report.charts import Drawing, place_drawings
 from xlmc.report.curves import Curves, TableAt
 from xlmc.report.styles import DARK
@@ -160,7 +160,7 @@ def _points(
 
 
 def _scatter(book: Workbook, first: _Points, second: _Points, titles: TableAt, place: int) -> ChartScatter:
-    chart = book.add_chart({"type": "scatter"})
+    chart = straight(book.add_chart({"type": "scatter"}))
     chart.add_series(
         {
             "categories": first.values,
@@ -173,7 +173,7 @@ def _scatter(book: Workbook, first: _Points, second: _Points, titles: TableAt, p
             },
         }
     )
-    chart.set_x_axis(across(first.axis, num_format="General", **first.limits))
+    chart.set_x_axis(across(first.axis, num_format=axis_format("General"), **first.limits))
     chart.set_y_axis(upwards(second.axis, "General", **second.limits))
     finish(chart, titles.cell(place), legend=False)
     return chart

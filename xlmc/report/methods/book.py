@@ -12,6 +12,7 @@ from xlmc.methods import STATISTICS, Curve, Rung, Study, recommendation
 from xlmc.methods.need import worst
 from xlmc.report import cells
 from xlmc.report.cells import Shown
+from xlmc.report.chart_style import straight
 from xlmc.report.methods import tables
 from xlmc.report.methods.figure import STYLES
 from xlmc.report.page import Page
@@ -168,7 +169,7 @@ def _chart(
     made: Workbook, study: Study, title: str, column: int, places: list[tuple[Curve, int, int]]
 ) -> ChartScatter | None:
     """Error against seconds; engines that a day would not be enough for would hide the rest, and are left out."""
-    chart = made.add_chart({"type": "scatter", "subtype": "straight_with_markers"})
+    chart = straight(made.add_chart({"type": "scatter", "subtype": "straight_with_markers"}))
     drawn = 0
     for curve, first, last in places:
         found = [_value(study, curve, rung, column) for rung in curve.rungs]

@@ -243,6 +243,29 @@ def test_what_is_no_saved_run_is_refused_in_words(saved, tmp_path, change, messa
         open_run(repacked(saved, tmp_path / "bad.xlmcrun", change))
 
 
+FIELDS = ["settings", "stopped", "tally", "faults", "invalid", "columns", "order", "origin", "block", "trials"]
+
+
+@pytest.mark.parametrize("value", [None, -1, 1e308, "x", [], [[]], {}, True], ids=repr)
+@pytest.mark.parametrize("field", FIELDS)
+def test_an_edited_field_opens_as_a_run_or_is_refused_naming_the_file(saved, tmp_path, field, value):
+    path = repacked(saved, tmp_path / "edited.xlmcrun", changed(**{field: value}))
+    try:
+        found = open_run(path)
+    except XlmcError as error:
+        said = str(error)
+    else:
+        said = f"{path} {found.stopped.sentence} {found.accepted}"
+    assert str(path) in said
+
+
+@pytest.mark.parametrize("words", [{"because": 1}, {"because": None}, {"because": "a", "goal": [1]}], ids=repr)
+def test_an_end_that_is_no_words_is_refused(saved, tmp_path, words):
+    path = repacked(saved, tmp_path / "edited.xlmcrun", changed(stopped={"by": "trials", **words}))
+    with pytest.raises(XlmcError, match="its end"):
+        open_run(path)
+
+
 def test_packed_entries_are_refused(saved, tmp_path):
     """A zip bomb must be packed: entries that are stored are no longer than the file."""
     bomb = repacked(saved, tmp_path / "bomb.xlmcrun", lambda p, d: None, compression=zipfile.ZIP_DEFLATED)

@@ -94,7 +94,9 @@ def tally_of(found: Document, filters: int) -> FilterTally:
 
 def stopped_of(found: Document) -> Stopped:
     """What ended the run."""
-    told(found["by"] in _ENDS, "its end")
+    told(isinstance(found, dict) and found.get("by") in _ENDS, "its end")
+    words = (found.get("because"), found.get("goal") or "")
+    told(all(isinstance(each, str) for each in words), "its end")
     return Stopped(**found)
 
 

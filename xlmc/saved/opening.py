@@ -72,7 +72,7 @@ def open_run(path: str | Path) -> Simulation:
             columns = _Columns(found["columns"], model, path)
             columns.read(package)
             return _simulation(found, model, columns)
-        except (KeyError, TypeError, ValueError, OverflowError) as error:
+        except (AttributeError, LookupError, TypeError, ValueError, OverflowError, RecursionError) as error:
             raise _damaged(path, error) from error
 
 

@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).resolve().parents[1] / "xlmc"
 
 # From the ground up; what stands in one line does not import each other.
 FLOORS = [
-    {"errors", "collecting"},
+    {"errors", "collecting", "printable"},
     {"address", "scratch"},
     {"distributions", "statistics"},
     {"workbook", "fitting"},

@@ -13,16 +13,19 @@ import click
 
 from xlmc import __version__
 from xlmc.cli.check import check
+from xlmc.cli.commands import Commands
 from xlmc.cli.compare import compare
 from xlmc.cli.ending import end_in_order
 from xlmc.cli.fit import fit
 from xlmc.cli.methods import methods
+from xlmc.cli.mistakes import mistake
 from xlmc.cli.new import new
 from xlmc.cli.replay import replay
 from xlmc.cli.report import report
 from xlmc.cli.screen import screen
 from xlmc.cli.simulate import INTERRUPTED, NOT_TO_BE_USED, simulate
 from xlmc.cli.stability import stability
+from xlmc.cli.terminal import prepare, say
 from xlmc.cli.verify import verify
 from xlmc.errors import RoundingError, XlmcError
 
@@ -31,10 +34,17 @@ __all__ = ["main", "xlmc"]
 BAD_INPUT = 2
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.group(
+    cls=Commands,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
 @click.version_option(__version__, prog_name="xlmc")
-def xlmc() -> None:
+@click.pass_context
+def xlmc(context: click.Context) -> None:
     """Monte Carlo simulation of Excel workbooks, without Excel."""
+    if context.invoked_subcommand is None:
+        say(context.get_help())
 
 
 for _command in (new, check, fit, verify, simulate, report, replay, compare, screen, methods, stability):
@@ -44,20 +54,25 @@ for _command in (new, check, fit, verify, simulate, report, replay, compare, scr
 def main() -> None:
     """Run the command line; a mistake in the input is a message and exit code 2, too coarse an arithmetic 1."""
     end_in_order()
+    prepare()
     try:
-        sys.exit(xlmc.main(standalone_mode=False) or 0)  # a command that asks for an exit code returns it
+        # A command that asks for an exit code returns it.
+        sys.exit(xlmc.main(prog_name="xlmc", standalone_mode=False) or 0)
     except click.ClickException as error:
-        error.show()
+        say(f"xlmc: {mistake(error)}", err=True)
         sys.exit(BAD_INPUT)
     except XlmcError as error:
-        click.echo(f"xlmc: {error}", err=True)
+        say(f"xlmc: {error}", err=True)
         sys.exit(NOT_TO_BE_USED if isinstance(error, RoundingError) else BAD_INPUT)
     except (click.Abort, KeyboardInterrupt):
-        click.echo("xlmc: interrupted; nothing was written.", err=True)
+        say("xlmc: interrupted; nothing was written.", err=True)
         sys.exit(INTERRUPTED)
-    except BrokenPipeError:  # the reader of our output has gone: there is nobody to tell
-        sys.stderr.close()
-        sys.exit(0)
+    except OSError as error:
+        if error.strerror is None:
+            raise
+        where = f"{error.filename}: " if error.filename is not None else ""
+        say(f"xlmc: {where}{error.strerror}.", err=True)
+        sys.exit(BAD_INPUT)
     except MemoryError:
-        click.echo("xlmc: out of memory. Ask for fewer trials.", err=True)
+        say("xlmc: out of memory. Ask for fewer trials.", err=True)
         sys.exit(BAD_INPUT)

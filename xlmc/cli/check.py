@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from xlmc.cli.terminal import paragraph, say
+
 if TYPE_CHECKING:
     from xlmc.definitions import Definitions
     from xlmc.model import Model
@@ -39,11 +41,11 @@ def check(book: Path) -> None:
     else:
         notices((*workbook.notices, *definitions.notices))
     for problem in problems:
-        click.echo(f"problem: {problem}", err=True)
+        say(f"problem: {problem}", err=True)
     if problems:
-        click.echo(f"{len(problems)} problem{'s' * (len(problems) > 1)} found; nothing can be run yet.", err=True)
+        say(f"{len(problems)} problem{'s' * (len(problems) > 1)} found; nothing can be run yet.", err=True)
         raise click.exceptions.Exit(2)
-    click.echo("No problem found.")
+    say("No problem found.")
 
 
 def _show_definitions(definitions: Definitions) -> None:
@@ -72,9 +74,8 @@ def _show_definitions(definitions: Definitions) -> None:
 def _show_need(model: Model, workbook: Workbook) -> None:
     formulas = sum(c.formula is not None for sheet in workbook.sheets.values() for c in sheet.cells.values())
     needed, varying = model.scene.graph.formulas, model.scene.graph.varying
-    click.echo(
-        f"Of {formulas} formula cells the forecasts and filters need {len(needed)}; "
-        f"{sum(cell in varying for cell in needed)} vary with an assumption."
-    )
+    count = sum(cell in varying for cell in needed)
+    said = f"Of {formulas} formula cells the forecasts and filters need {len(needed)}; {count} vary with an assumption."
+    say(paragraph(said))
     if model.scene.idle:
-        click.echo("Not needed by the scene: " + ", ".join(a.name for a in model.scene.idle) + ".")
+        say(paragraph("Not needed by the scene: " + ", ".join(a.name for a in model.scene.idle) + "."))

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+
+from xlmc.cli.parameter_types import OneOf, WholeNumber
+from xlmc.cli.run_options import jobs_option
+from xlmc.cli.terminal import paragraph, say, say_json
 
 if TYPE_CHECKING:
     from xlmc.analysis import Comparison, ForecastComparison
@@ -27,10 +30,10 @@ UNDECIDED = 1
     " times.  [default: 10 %]",
 )
 @click.option("--pair", multiple=True, help="'A=B': forecast A of the first book is forecast B of the second.")
-@click.option("-n", "--trials", type=click.IntRange(1), help="Trials of each run.  [default: the books' larger number]")
-@click.option("--seed", type=click.IntRange(0), help="Seed of each run.  [default: the first book's]")
-@click.option("--engine", type=click.Choice(["numpy", "jit", "formulas"]), help="As for xlmc simulate.")
-@click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes.")
+@click.option("-n", "--trials", type=WholeNumber(1), help="Trials of each run.  [default: the books' larger number]")
+@click.option("--seed", type=WholeNumber(0), help="Seed of each run.  [default: the first book's]")
+@click.option("--engine", type=OneOf("numpy", "jit", "formulas"), help="As for xlmc simulate.")
+@jobs_option
 @click.option("--no-causes", is_flag=True, help="Do not look for what makes the difference.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
@@ -49,7 +52,7 @@ def compare(
 ) -> None:
     """Run FIRST and SECOND over the same trials, and say whether the simpler one is enough."""
     from xlmc import analysis
-    from xlmc.cli.printing import telling
+    from xlmc.cli.printing import telling, warnings
     from xlmc.model import load
 
     books = load(first), load(second)
@@ -66,13 +69,12 @@ def compare(
             told=told,
         )
     if as_json:
-        click.echo(json.dumps(_as_json(found), indent=2, ensure_ascii=False))
+        say_json(_as_json(found))
     else:
         _show(found)
-    warnings = [f"{run.model.path.name}: {warning}" for run in (found.first, found.second) for warning in run.warnings]
-    for warning in warnings:
-        click.echo(f"warning: {warning}; the answer must not be used as it stands.", err=True)
-    if warnings or found.of(analysis.Verdict.UNDECIDED):
+    doubts = [f"{run.model.path.name}: {warning}" for run in (found.first, found.second) for warning in run.warnings]
+    warnings(doubts)
+    if doubts or found.of(analysis.Verdict.UNDECIDED):
         raise click.exceptions.Exit(UNDECIDED)
 
 
@@ -103,18 +105,18 @@ def _show(found: Comparison) -> None:
     headings = ("Forecast", "Units", "", *books, "Difference", "Tolerance")
     table(f"{books[0]} and {books[1]}: accepted trials", headings, rows, right=(3, 4, 5, 6))
     accepted, trials = found.acceptance, found.first.trials
-    click.echo(
+    say(
         f"Of {trials:,} trials both accept {accepted.both:,}; {books[0]} alone {accepted.first_only:,}, "
         f"{books[1]} alone {accepted.second_only:,}; seed {found.first.settings.seed}."
     )
     if accepted.both and not accepted.first_only + accepted.second_only:
-        click.echo(f"The acceptance is the same in both: {estimate_text(accepted.first)}.")
+        say(f"The acceptance is the same in both: {estimate_text(accepted.first)}.")
     for line in inputs_text(found):
-        click.echo(line)
-    click.echo()
+        say(line)
+    say()
     for line in verdict_text(found):
-        click.echo(click.wrap_text(line, width=100))
-    click.echo(click.wrap_text(_MEANING, width=100))
+        say(paragraph(line))
+    say(paragraph(_MEANING))
 
 
 _MEANING = (

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+
+from xlmc.cli.parameter_types import OneOf
+from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
     from xlmc.fitting import Fitted, Fitting
@@ -24,12 +26,10 @@ _BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm))!(?P<range>.
 @click.argument("cells", metavar="[RANGE]", required=False)
 @click.option(
     "--kind",
-    type=click.Choice(["continuous", "counts"]),
+    type=OneOf("continuous", "counts"),
     help="What the values are.  [default: counts where all are whole numbers from 0 up]",
 )
-@click.option(
-    "--by", type=click.Choice(["aic", "bic", "ad", "ks"]), default="aic", show_default=True, help="What ranks them."
-)
+@click.option("--by", type=OneOf("aic", "bic", "ad", "ks"), default="aic", show_default=True, help="What ranks them.")
 @click.option("--name", default="", help="Name of the assumption, for the row to paste.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def fit(source: str, cells: str | None, kind: str | None, by: str, name: str, as_json: bool) -> None:
@@ -46,11 +46,11 @@ def fit(source: str, cells: str | None, kind: str | None, by: str, name: str, as
     described = f"fitted by maximum likelihood to {book.name} {where}, n = {found.n}"
     row = fitting.row_to_paste(found.fits[0], name or "…", described)
     if as_json:
-        click.echo(json.dumps(_as_json(found, f"{book} {where}", blank, row), indent=2, ensure_ascii=False))
+        say_json(_as_json(found, f"{book} {where}", blank, row))
     else:
         _show(found, f"{book.name} {where}", blank, row)
     for caution in found.cautions:
-        click.echo(f"warning: {caution}.", err=True)
+        say(f"warning: {caution}.", err=True)
     if found.n < fitting.FEW:
         raise click.exceptions.Exit(TOO_FEW)
 
@@ -150,13 +150,13 @@ def _show(found: Fitting, source: str, blank: int, row: dict[str, str]) -> None:
     headings = ("Distribution", "Parameters ± standard error", "ΔAIC", "AIC", "BIC", "A²", "D")
     table(title, headings, rows, right=(2, 3, 4, 5, 6))
     for name, reason in found.unfit.items():
-        click.echo(f"Not fitted: {name}: {reason}.")
+        say(f"Not fitted: {name}: {reason}.")
     for source_of_errors, names in _sources(found).items():
-        click.echo(f"Standard errors of {', '.join(names)}: {source_of_errors}.")
-    click.echo(_MEANING)
-    click.echo("\nThe first as a row of xlmc_assumptions, to paste under these headings:\n")
-    click.echo("\t".join(row))
-    click.echo("\t".join(row.values()))
+        say(f"Standard errors of {', '.join(names)}: {source_of_errors}.")
+    say(_MEANING)
+    say("\nThe first as a row of xlmc_assumptions, to paste under these headings:\n")
+    say("\t".join(row))
+    say("\t".join(row.values()))
 
 
 _MEANING = (

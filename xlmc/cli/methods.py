@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+
+from xlmc.cli.parameter_types import WholeNumber
+from xlmc.cli.terminal import paragraph, say, say_json
 
 if TYPE_CHECKING:
     from xlmc.methods import Study
@@ -28,19 +30,19 @@ QUICK = {"reference_trials": 1 << 20, "trials": 1 << 17, "replicates": 8}
 )
 @click.option(
     "--reference-trials",
-    type=click.IntRange(1_024),
+    type=WholeNumber(1_024),
     help="Trials of the reference.  [default: what takes about eight seconds, 33554432 at most]",
 )
 @click.option(
     "-n",
     "--trials",
-    type=click.IntRange(1_024),
+    type=WholeNumber(1_024),
     help="Trials of the longest runs; others have a fourth and a sixteenth.  [default: what takes about a quarter of a"
     " second, 262144 at most]",
 )
-@click.option("--replicates", type=click.IntRange(2), help="Runs of each length.  [default: 24]")
+@click.option("--replicates", type=WholeNumber(2), help="Runs of each length.  [default: 24]")
 @click.option("--quick", is_flag=True, help="Few and short runs: a first look.")
-@click.option("--seed", type=click.IntRange(0), help="Seed of the reference; runs follow it.  [default: the book's]")
+@click.option("--seed", type=WholeNumber(0), help="Seed of the reference; runs follow it.  [default: the book's]")
 @click.option(
     "-o",
     "--output",
@@ -81,11 +83,11 @@ def methods(
     for path in output:
         save_methods(found, path, overwrite=overwrite)
     if as_json:
-        click.echo(json.dumps(study_json(found), indent=2, ensure_ascii=False))
+        say_json(study_json(found))
     else:
         _show(found)
         for path in output:
-            click.echo(f"Written: {path}")
+            say(f"Written: {path}")
     if found.reference.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 
@@ -100,8 +102,8 @@ def _show(found: Study) -> None:
         if each.rows:
             table(each.title, each.headings, each.rows, right=range(each.right, len(each.headings)))
     for name, said in tables.cannot_lines(found):
-        click.echo(click.wrap_text(f"{name}: {said}.", width=100, subsequent_indent="    "))
-    click.echo()
-    for paragraph in recommendation(found):
-        click.echo(click.wrap_text(paragraph, width=100))
-        click.echo()
+        say(paragraph(f"{name}: {said}.", hanging="    "))
+    say()
+    for advice in recommendation(found):
+        say(paragraph(advice))
+        say()

@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from xlmc.cli.near import did_you_mean
+from xlmc.cli.parameter_types import OneOf
+from xlmc.cli.terminal import paragraph, say
 from xlmc.errors import WorkbookError
 
 if TYPE_CHECKING:
@@ -19,9 +22,7 @@ __all__ = ["new"]
 @click.command()
 @click.argument("template", required=False)
 @click.argument("book", required=False, type=click.Path(path_type=Path))
-@click.option(
-    "--units", type=click.Choice(["imperial", "si"]), default="imperial", show_default=True, help="Units of the copy."
-)
+@click.option("--units", type=OneOf("imperial", "si"), default="imperial", show_default=True, help="Units of the copy.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
 def new(template: str | None, book: Path | None, units: str, overwrite: bool) -> None:
     """List the templates, or copy TEMPLATE to BOOK (by default TEMPLATE.xlsx here)."""
@@ -31,14 +32,19 @@ def new(template: str | None, book: Path | None, units: str, overwrite: bool) ->
     if template is None:
         _list(known)
         return
+    template = {name.casefold(): name for name in known}.get(template.casefold(), template)
     if template not in known:
-        raise click.UsageError(f"There is no template {template!r}; there are: {', '.join(known)}.")
+        near = did_you_mean(template, known) or f" There are {', '.join(known)}."
+        raise click.UsageError(f"there is no template {template!r}.{near}")
     if units not in known[template].editions:
         raise WorkbookError(f"the {units} edition of {template} is missing", hint="install xlmc again")
     target = book or Path(f"{template}.xlsx")
+    if target.suffix.casefold() != ".xlsx":
+        hint = f"Name it {target.with_suffix('.xlsx').name if target.name else 'case.xlsx'}"
+        raise WorkbookError("a template is an Excel workbook, whose name ends in .xlsx", where=target, hint=hint)
     editions = [edition for entry in known.values() for edition in entry.editions.values()]
     _copy(known[template].editions[units], target, editions, overwrite=overwrite)
-    click.echo(f"{target} is ready: open it, fill in the green cells, then run: xlmc simulate {target}")
+    say(f"{target} is ready: open it, fill in the green cells, then run: xlmc simulate {target}")
 
 
 def _list(known: Mapping[str, Template]) -> None:
@@ -46,7 +52,7 @@ def _list(known: Mapping[str, Template]) -> None:
 
     rows = [(name, entry.question, entry.needs) for name, entry in known.items()]
     table("Templates, the simplest first", ("Template", "Answers", "Needs"), rows)
-    click.echo("xlmc new TEMPLATE my-case.xlsx copies one; --units si for metres, kilograms and km/h.")
+    say(paragraph("xlmc new TEMPLATE my-case.xlsx copies one; --units si for metres, kilograms and km/h."))
 
 
 def _copy(source: Path, target: Path, templates: Sequence[Path], *, overwrite: bool) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import click
 
+from xlmc.cli.terminal import say
 from xlmc.errors import WorkbookError, XlmcError
 
 if TYPE_CHECKING:
@@ -149,29 +150,29 @@ class Outputs:
             return self
         found, reason = free_target(self.book, self.name)
         if reason is not None:
-            click.echo(f"note: {self.book}: {reason}; it stays as it is, and results go to {found}.", err=True)
+            say(f"note: {self.book}: {reason}; it stays as it is, and results go to {found}.", err=True)
         return replace(self, book=found)
 
-    def write(self, run: Simulation) -> bool:
-        """Write them all, and say where they are; whether all could be.
+    def write(self, run: Simulation) -> tuple[bool, list[str]]:
+        """Write them all: whether all could be, and what to say of where they are when the answer has been printed.
 
         One that cannot be written is told of, and the others are written all the same: the run may have taken hours.
         Where a name was taken since the run began, or a program holds the file, a free name beside it is used.
         """
-        written = True
+        written, told = True, []
         for path, said, write in self._files(run):
             try:
                 found = self._write_beside(path, write)
             except XlmcError as error:
-                click.echo(f"xlmc: {error}", err=True)
+                say(f"xlmc: {error}", err=True)
                 written = False
             else:
-                click.echo(f"{said} {found}")
+                told.append(f"{said} {found}")
         if self.extract and run.kept_inputs < run.accepted:
             kept = f"draws of {run.kept_inputs:,} of {run.accepted:,} accepted trials were kept"
             for path in self.extract:
-                click.echo(f"note: {path}: {kept}; the others are blank", err=True)
-        return written
+                say(f"note: {path}: {kept}; the others are blank", err=True)
+        return written, told
 
     def _write_beside(self, path: Path, write: _Write) -> Path:
         from xlmc.workbook.target import free_target
@@ -183,7 +184,7 @@ class Outputs:
             beside = results_beside(path) if path == self.book and self.in_place else path
             found, _ = free_target(beside, self.name, after=path)
             write(found)
-            click.echo(f"note: {path}: {taken.message}; it stays as it is, and {found} was written instead.", err=True)
+            say(f"note: {path}: {taken.message}; it stays as it is, and {found} was written instead.", err=True)
             return found
         return path
 

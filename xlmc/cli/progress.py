@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
+
+from xlmc.cli.terminal import degraded, on_terminal
+from xlmc.printable import printable
 
 if TYPE_CHECKING:
     from xlmc.simulate import Progress
@@ -31,7 +33,7 @@ def errors_line(standing: Standing) -> str:
 @contextmanager
 def progress_bar(quiet: bool) -> Iterator[Progress | None]:
     """A bar and the standard errors below it, on stderr while the trials run, where there is a terminal to draw on."""
-    if quiet or not sys.stderr.isatty():
+    if quiet or not on_terminal(err=True):
         yield None
         return
     from rich.console import Console, RenderableType
@@ -52,7 +54,7 @@ def progress_bar(quiet: bool) -> Iterator[Progress | None]:
         task = bar.add_task("", total=1.0)
 
         def show(standing: Standing) -> None:
-            bar.below = errors_line(standing)
+            bar.below = degraded(printable(errors_line(standing)), err=True)
             bar.update(task, completed=standing.share, description=trials_line(standing))
 
         yield show

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+
+from xlmc.cli.run_options import jobs_option
+from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
     from xlmc.replay import Change, NumberChange, Replayed
@@ -21,7 +23,7 @@ _MOST = 20
 
 @click.command()
 @click.argument("recorded", metavar="RESULTS", type=click.Path(path_type=Path))
-@click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes.")
+@jobs_option
 @click.option("--json", "as_json", is_flag=True, help="Print the comparison as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no progress bar.")
 def replay(recorded: Path, jobs: int, as_json: bool, quiet: bool) -> None:
@@ -32,10 +34,10 @@ def replay(recorded: Path, jobs: int, as_json: bool, quiet: bool) -> None:
     with progress_bar(quiet) as progress:
         found = replaying.replay(recorded, jobs=jobs, progress=progress)
     if as_json:
-        click.echo(json.dumps(_as_json(found), indent=2, ensure_ascii=False, allow_nan=False))
+        say_json(_as_json(found))
     else:
         for line in _lines(found, recorded):
-            click.echo(line)
+            say(line)
     if not found.identical:
         raise click.exceptions.Exit(DIFFERS)
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from xlmc.cli.output_options import NOT_WRITTEN, Outputs, output_options, results_beside
+from xlmc.cli.terminal import say
 
 __all__ = ["report"]
 
@@ -33,7 +34,7 @@ def report(
     quiet: bool,
 ) -> None:
     """Write the results of a saved run again, without simulating: the same as when it was run."""
-    from xlmc.cli.printing import notices
+    from xlmc.cli.printing import notices, warnings
     from xlmc.cli.simulate import show_run
     from xlmc.saved import open_run
 
@@ -46,10 +47,11 @@ def report(
     name, named = found.model.workbook.name, output is not None
     asked = Outputs(run, name, target, None, html, json_path, extract, overwrite, named=named)
     outputs = asked.checked(found.model.path)
+    written, told = outputs.write(found)  # before the answer is printed, so that no terminal can cost a run
     show_run(found)
-    written = outputs.write(found)
-    for warning in found.warnings:
-        click.echo(f"warning: {warning}; the answer must not be used as it stands.", err=True)
+    for line in told:
+        say(line)
+    warnings(found.warnings)
     if not written:
         raise click.exceptions.Exit(NOT_WRITTEN)
     if found.warnings:

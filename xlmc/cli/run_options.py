@@ -1,4 +1,4 @@
-"""The options that say when a run ends, and what they come to."""
+"""The options that say who computes a run and when it ends."""
 
 from __future__ import annotations
 
@@ -7,20 +7,29 @@ from typing import Any, TypeVar
 
 import click
 
-__all__ = ["stopping_options"]
+from xlmc.cli.parameter_types import OneOf, WholeNumber
+
+__all__ = ["jobs_option", "stopping_options"]
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+_MOST_JOBS = 1024
+
+jobs_option = click.option(
+    "-j", "--jobs", type=WholeNumber(1, _MOST_JOBS), default=1, show_default=True, help="Threads or processes."
+)
+"""Who computes; the result does not depend on it."""
 
 _OPTIONS = (
     click.option(
         "--until-accepted",
-        type=click.IntRange(2),
+        type=WholeNumber(2),
         metavar="N",
         help="Run until N trials are accepted, -n at most.",
     ),
     click.option(
         "--rare",
-        type=click.Choice(["auto", "never", "always"]),
+        type=OneOf("auto", "never", "always"),
         help="Find rare accepted trials by learning where they are.  [default: auto: where -n would not be enough]",
     ),
     click.option(
@@ -30,7 +39,7 @@ _OPTIONS = (
     click.option("--confidence", metavar="PERCENT", help="Confidence of --precision.  [default: 95]"),
     click.option(
         "--adaptive",
-        type=click.IntRange(1, 6),
+        type=WholeNumber(1, 6),
         metavar="DIGITS",
         help="Run until digits are stable (JCGM 101, 7.9).",
     ),

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+
+from xlmc.cli.parameter_types import OneOf, WholeNumber
+from xlmc.cli.run_options import jobs_option
+from xlmc.cli.terminal import paragraph, say, say_json
 
 if TYPE_CHECKING:
     from xlmc.analysis import Cost, Screening
@@ -38,10 +41,10 @@ NOT_TO_BE_USED = 1
     help="Also say what holding these assumptions at once costs: names joined by commas, * for any letters; may be"
     " given several times.",
 )
-@click.option("-n", "--trials", type=click.IntRange(1), help="Trials of each run.  [default: the book's, else 200000]")
-@click.option("--seed", type=click.IntRange(0), help="Seed of each run.  [default: the book's, else 999]")
-@click.option("--engine", type=click.Choice(["numpy", "jit", "formulas"]), help="As for xlmc simulate.")
-@click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes.")
+@click.option("-n", "--trials", type=WholeNumber(1), help="Trials of each run.  [default: the book's, else 200000]")
+@click.option("--seed", type=WholeNumber(0), help="Seed of each run.  [default: the book's, else 999]")
+@click.option("--engine", type=OneOf("numpy", "jit", "formulas"), help="As for xlmc simulate.")
+@jobs_option
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
 def screen(
@@ -58,7 +61,7 @@ def screen(
 ) -> None:
     """Find which assumptions of BOOK may be held, and which filters left out, without moving its answers."""
     from xlmc import analysis
-    from xlmc.cli.printing import telling
+    from xlmc.cli.printing import telling, warnings
     from xlmc.model import load
 
     model = load(book)
@@ -75,11 +78,10 @@ def screen(
             told=told,
         )
     if as_json:
-        click.echo(json.dumps(_as_json(found), indent=2, ensure_ascii=False))
+        say_json(_as_json(found))
     else:
         _show(found)
-    for warning in found.run.warnings:
-        click.echo(f"warning: {warning}; the answer must not be used as it stands.", err=True)
+    warnings(found.run.warnings)
     if found.run.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 
@@ -95,12 +97,11 @@ def _show(found: Screening) -> None:
         held = " with the assumptions below held" if found.joint else ""
         _table(found, f"Each filter left out{held}", found.filters, ("Left out", _names(found.filters)))
     for sentence in _sentences(found):
-        click.echo(click.wrap_text(sentence, width=100))
-    click.echo(
-        click.wrap_text(
+        say(paragraph(sentence))
+    say(
+        paragraph(
             f"{found.runs} runs of {trials:,} trials, seed {found.run.settings.seed}, over the same draws; ± is the "
-            "standard error of a change (Monte Carlo error). A verdict clears the tolerance by three errors.",
-            width=100,
+            "standard error of a change (Monte Carlo error). A verdict clears the tolerance by three errors."
         )
     )
 

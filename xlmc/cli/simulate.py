@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from xlmc.cli.output_options import NOT_WRITTEN, Outputs, output_options, results_beside
-from xlmc.cli.run_options import stopping_options
+from xlmc.cli.parameter_types import OneOf, WholeNumber
+from xlmc.cli.run_options import jobs_option, stopping_options
+from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
     from xlmc.errors import Notice
@@ -23,32 +25,32 @@ INTERRUPTED = 130
 
 @click.command()
 @click.argument("book", type=click.Path(path_type=Path))
-@click.option("-n", "--trials", type=click.IntRange(1), help="Trials to run.  [default: the book's, else 200000]")
+@click.option("-n", "--trials", type=WholeNumber(1), help="Trials to run.  [default: the book's, else 200000]")
 @stopping_options
-@click.option("--seed", type=click.IntRange(0), help="Seed of the random streams.  [default: the book's, else 999]")
+@click.option("--seed", type=WholeNumber(0), help="Seed of the random streams.  [default: the book's, else 999]")
 @click.option(
     "--engine",
-    type=click.Choice(["numpy", "jit", "formulas"]),
+    type=OneOf("numpy", "jit", "formulas"),
     help="numpy; jit: compiled, for long runs; formulas: the slow reference.  [default: the book's, else numpy]",
 )
 @click.option(
     "--arithmetic",
-    type=click.Choice(["float64", "float32"]),
+    type=OneOf("float64", "float32"),
     help="float32: half the digits, with --engine jit only.  [default: the book's, else float64]",
 )
 @click.option(
     "--sampling",
-    type=click.Choice(["mc", "lhs", "lhs500", "sobol"]),
+    type=OneOf("mc", "lhs", "lhs500", "sobol"),
     help="mc: Monte Carlo; lhs: Latin hypercube; lhs500: in blocks of 500; sobol: scrambled Sobol."
     "  [default: the book's, else mc]",
 )
-@click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes.")
+@jobs_option
 @click.option(
     "--scheduler",
     help="threads, processes, local (a Dask cluster here), or a Dask scheduler's address; same result."
     "  [default: processes for long runs with -j, else threads]",
 )
-@click.option("--workers", type=click.IntRange(1), help="Workers of --scheduler local.  [default: one a processor]")
+@click.option("--workers", type=WholeNumber(1), help="Workers of --scheduler local.  [default: one a processor]")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Result workbook.  [default: BOOK-results.xlsx]")
 @click.option("--in-place", is_flag=True, help="Write the result sheets into BOOK itself.")
 @click.option(
@@ -80,13 +82,15 @@ def simulate(
     **length: Any,
 ) -> None:
     """Run BOOK, print the summary, and write result sheets and charts into a copy of it."""
-    from xlmc.cli.printing import notices
+    from xlmc.cli.printing import notices, warnings
     from xlmc.cli.progress import progress_bar
     from xlmc.model import load
     from xlmc.simulation import KEPT_INPUTS
 
     if in_place and output is not None:
         raise click.UsageError("--in-place and --output exclude each other.")
+    if book.is_dir():
+        load(book)  # says so
     target = book if in_place else output or results_beside(book)
     asked = Outputs(
         book, book.name, target, save_run, html, json_path, extract, overwrite, in_place, output is not None
@@ -110,13 +114,14 @@ def simulate(
             keep_interrupted=True,
             progress=progress,
         )
+    written, told = outputs.write(run)  # before the answer is printed, so that no terminal can cost a run
     show_run(run)
-    written = outputs.write(run)
-    for warning in run.warnings:
-        click.echo(f"warning: {warning}; the answer must not be used as it stands.", err=True)
+    for line in told:
+        say(line)
+    warnings(run.warnings)
     if run.stopped.interrupted:
-        told = "; what was accepted of them was written" if written else ""
-        click.echo(f"xlmc: interrupted after {run.trials:,} trials{told}.", err=True)
+        kept = "; what was accepted of them was written" if written else ""
+        say(f"xlmc: interrupted after {run.trials:,} trials{kept}.", err=True)
     if not written:
         raise click.exceptions.Exit(NOT_WRITTEN)
     if run.stopped.interrupted:
@@ -145,15 +150,15 @@ def show_run(run: Simulation) -> None:
 
     headings, rows = summary_text(summarise(run))
     table(f"{run.model.workbook.name}: accepted trials", headings, rows, right=range(2, len(headings)))
-    click.echo(f"{_accepted(run)}; seed {run.settings.seed}.")
+    say(f"{_accepted(run)}; seed {run.settings.seed}.")
     ended = "" if run.stopped == ALL_TRIALS else f"Ended when {run.stopped.sentence}.\n"
-    click.echo(ended + click.wrap_text(sampling_sentence(run), width=100) + "\n")
+    say(ended + paragraph(sampling_sentence(run)) + "\n")
     if run.model.filters:
         of = "Trials rejected" if run.rare is None else f"Trials rejected of {run.trials:,} drawn plainly"
         table(of, ("Filter", "Keeps", "Rejected", "Only by it"), _rejections(run), right=(2, 3))
-    click.echo(click.wrap_text(ERROR_SENTENCE, width=100))
+    say(paragraph(ERROR_SENTENCE))
     for notice in run.notices_of_run:
-        click.echo(click.wrap_text(f"{notice}.", width=100))
+        say(paragraph(f"{notice}."))
 
 
 def _accepted(run: Simulation) -> str:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+
+from xlmc.cli.parameter_types import WholeNumber
+from xlmc.cli.run_options import jobs_option
+from xlmc.cli.terminal import paragraph, say, say_json
 
 if TYPE_CHECKING:
     from xlmc.stability import CellDigits, Finding, Stability
@@ -20,9 +23,9 @@ NOT_TO_BE_USED = 1
 @click.command()
 @click.argument("book", type=click.Path(path_type=Path))
 @click.option("--cells", "all_cells", is_flag=True, help="List every needed cell, not forecasts and filters alone.")
-@click.option("-n", "--trials", type=click.IntRange(1), help="Trials of the run.  [default: the book's, else 200000]")
-@click.option("--seed", type=click.IntRange(0), help="Seed of the run.  [default: the book's, else 999]")
-@click.option("-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Threads or processes.")
+@click.option("-n", "--trials", type=WholeNumber(1), help="Trials of the run.  [default: the book's, else 200000]")
+@click.option("--seed", type=WholeNumber(0), help="Seed of the run.  [default: the book's, else 999]")
+@jobs_option
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is being done.")
 def stability(
@@ -30,18 +33,17 @@ def stability(
 ) -> None:
     """Find where BOOK loses digits, or its numbers are not what they seem, within the ranges of its assumptions."""
     from xlmc import stability as room
-    from xlmc.cli.printing import telling
+    from xlmc.cli.printing import telling, warnings
     from xlmc.model import load
 
     model = load(book)
     with telling(quiet) as told:
         found = room.stability(model, trials=trials, seed=seed, jobs=jobs, told=told)
     if as_json:
-        click.echo(json.dumps(_as_json(found), indent=2, ensure_ascii=False))
+        say_json(_as_json(found))
     else:
         _show(found, all_cells)
-    for warning in found.run.warnings:
-        click.echo(f"warning: {warning}; the answer must not be used as it stands.", err=True)
+    warnings(found.run.warnings)
     if found.wrong or found.run.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 
@@ -50,12 +52,12 @@ _LEVELS = {"WRONG": "Wrong", "DOUBTFUL": "Doubtful", "NOTE": "Note"}
 
 
 def _show(found: Stability, all_cells: bool) -> None:
-    click.echo(f"{found.run.model.workbook.name}: {_count(found.findings)}\n")
+    say(f"{found.run.model.workbook.name}: {_count(found.findings)}\n")
     for number, finding in enumerate(found.findings, start=1):
         _show_finding(number, finding)
     _show_cells(found, all_cells)
     for sentence in _sentences(found):
-        click.echo(click.wrap_text(sentence, width=100))
+        say(paragraph(sentence))
 
 
 def _count(findings: Sequence[Finding]) -> str:
@@ -67,14 +69,14 @@ def _count(findings: Sequence[Finding]) -> str:
 
 def _show_finding(number: int, finding: Finding) -> None:
     name = f" {finding.name}" if finding.name else ""
-    click.echo(f"{number}. {_LEVELS[finding.level.name]}: {finding.cell}{name}   {_cut(finding.formula)}")
+    say(f"{number}. {_LEVELS[finding.level.name]}: {finding.cell}{name}   {_cut(finding.formula)}")
     for text in (finding.what, finding.effect):
-        click.echo(click.wrap_text(f"{text[0].upper()}{text[1:]}.", 100, "   ", "   "))
+        say(paragraph(f"{text[0].upper()}{text[1:]}.", indent="   "))
     if finding.where:
-        click.echo(click.wrap_text(f"Where: {'; '.join(map(str, finding.where))}", 100, "   ", "   "))
+        say(paragraph(f"Where: {'; '.join(map(str, finding.where))}", indent="   "))
     if finding.instead:
-        click.echo(f"   Instead: {finding.instead}")
-    click.echo()
+        say(f"   Instead: {finding.instead}")
+    say()
 
 
 def _cut(formula: str, width: int = 90) -> str:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+
+from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
     from xlmc.verify import CellCheck, Verification
@@ -34,7 +35,7 @@ def verify(book: Path, everything: bool, as_json: bool) -> None:
         raise click.UsageError(f"{book} has no forecasts and no filters; give --all to check every formula cell.")
     found = check(workbook, definitions)
     if as_json:
-        click.echo(json.dumps(_as_json(found), indent=2))
+        say_json(_as_json(found))
     else:
         _show(found)
     if found.count(Status.DIFFERING):
@@ -73,7 +74,7 @@ def _show(found: Verification) -> None:
     from xlmc.verify import Status, groups
 
     counts = [f"{found.count(status):,} {status.value}" for status in Status if found.count(status)]
-    click.echo(f"{len(found.cells):,} formula cells: {', '.join(counts) or 'nothing to check'}.")
+    say(f"{len(found.cells):,} formula cells: {', '.join(counts) or 'nothing to check'}.")
     differing = found.of(Status.DIFFERING)
     if differing:
         rows = [
@@ -87,7 +88,7 @@ def _show(found: Verification) -> None:
         for reason, cells in groups(listed):
             places = ", ".join(str(cell.cell) for cell in cells[:5])
             more = f" and {len(cells) - 5:,} more" if len(cells) > 5 else ""
-            click.echo(f"{status.value}: {reason} ({places}{more})")
+            say(f"{status.value}: {reason} ({places}{more})")
 
 
 def _percent(difference: float | None) -> str:
@@ -96,4 +97,4 @@ def _percent(difference: float | None) -> str:
 
 def _say_how_many_more(count: int) -> None:
     if count > _SHOWN:
-        click.echo(f"… and {count - _SHOWN:,} more; --json lists them all.")
+        say(f"… and {count - _SHOWN:,} more; --json lists them all.")

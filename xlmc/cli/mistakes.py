@@ -1,0 +1,55 @@
+"""What was typed wrongly, in one line that says what to do."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+import click
+
+from xlmc.cli.near import did_you_mean
+
+__all__ = ["mistake"]
+
+_EXTRA: Final = re.compile(r"unexpected extra arguments? \((.*)\)")
+"""How click tells of arguments that a command does not take."""
+
+
+def mistake(error: click.ClickException) -> str:
+    """The line for a mistake that click has found."""
+    context = getattr(error, "ctx", None)
+    command = context.command_path if context is not None else "xlmc"
+    match error:
+        case click.NoSuchOption():
+            known = [name for each in context.command.params for name in each.opts] if context is not None else []
+            near = did_you_mean(error.option_name, known)
+            return f"there is no option {error.option_name}.{near}{_see(command)}"
+        case click.MissingParameter() if context is not None and error.param is not None:
+            return f"{_name(error.param)} is missing. Type: {_usage(context)}"
+        case click.BadParameter() if error.param is not None:
+            return f"{_name(error.param)}: {_sentence(error.message)}"
+        case click.UsageError() if context is not None and (extra := _EXTRA.search(error.message)):
+            return f"{extra[1]!r} is too much. Type: {_usage(context)}"
+        case _:
+            return _sentence(error.format_message()) + (_see(command) if context is not None else "")
+
+
+def _usage(context: click.Context) -> str:
+    """The command with its arguments, `[…]` round those that may be left out."""
+    pieces = context.command.collect_usage_pieces(context)
+    return " ".join([context.command_path, *(piece for piece in pieces if piece != "[OPTIONS]")])
+
+
+def _name(param: click.Parameter) -> str:
+    """An option by its longest name, an argument as the usage line writes it."""
+    if isinstance(param, click.Option):
+        return max(param.opts, key=len)
+    return (param.metavar or (param.name or "").upper()).strip("[]")
+
+
+def _sentence(text: str) -> str:
+    return text if text.endswith((".", "?", "!")) else f"{text}."
+
+
+def _see(command: str) -> str:
+    return f" See {command} --help."

@@ -1,0 +1,141 @@
+"""Tables of texts that fit a width: words wrap, numbers are never cut, and what is too wide becomes a list."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
+from typing import Final
+
+__all__ = ["laid_out"]
+
+_GAP: Final = "   "
+_LEAST: Final = 12
+"""Columns of text are not made narrower than this to make room."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """A column: its heading and cells, each as the pieces between which a line may end."""
+
+    heading: list[str]
+    cells: list[list[str]]
+    right: bool
+
+    @property
+    def natural(self) -> int:
+        """The width at which nothing wraps."""
+        return max(_wide(" ".join(pieces)) for pieces in (self.heading, *self.cells))
+
+    @property
+    def least(self) -> int:
+        """The width below which a number, or a word of text that is not long, would be cut."""
+        pieces = [piece for cell in self.cells for piece in cell]
+        longest = max((_wide(piece) for piece in pieces), default=0)
+        heading = max((_wide(piece) for piece in self.heading), default=0)
+        return max(heading, longest if self.right else min(longest, _LEAST))
+
+
+def laid_out(
+    headings: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[int], width: int, rule: str
+) -> Iterator[str]:
+    """The lines of a table.
+
+    Args:
+        headings: of its columns.
+        rows: their cells.
+        right: the columns that are aligned to the right: their cells are numbers, which wrap only before "to".
+        width: of the longest line.
+        rule: the character of the line below the headings.
+    """
+    columns = [
+        _Column(_words(heading), [_pieces(row[place], place in right) for row in rows], place in right)
+        for place, heading in enumerate(headings)
+    ]
+    widths = _widths(columns, width)
+    if widths is None:
+        yield from _listed(headings, rows, width)
+        return
+    yield from _lines([column.heading for column in columns], columns, widths)
+    yield " " + rule * (sum(widths) + len(_GAP) * (len(widths) - 1))
+    for place in range(len(rows)):
+        yield from _lines([column.cells[place] for column in columns], columns, widths)
+
+
+def _widths(columns: Sequence[_Column], width: int) -> list[int] | None:
+    """Of each column; None where they cannot be made narrow enough."""
+    widths = [column.natural for column in columns]
+    room = width - 2 - len(_GAP) * (len(columns) - 1)
+    least = [column.least for column in columns]
+    if sum(least) > room:
+        return None
+    while sum(widths) > room:  # the widest that can give way does
+        place = max((place for place in range(len(widths)) if widths[place] > least[place]), key=widths.__getitem__)
+        widths[place] -= 1
+    return widths
+
+
+def _lines(cells: Sequence[list[str]], columns: Sequence[_Column], widths: Sequence[int]) -> Iterator[str]:
+    wrapped = [_wrapped(pieces, width) for pieces, width in zip(cells, widths, strict=True)]
+    for parts in zip_longest(*wrapped, fillvalue=""):
+        filled = (_filled(part, width, column) for part, width, column in zip(parts, widths, columns, strict=True))
+        yield f" {_GAP.join(filled)}".rstrip()
+
+
+def _filled(text: str, width: int, column: _Column) -> str:
+    blank = " " * (width - _wide(text))
+    return blank + text if column.right else text + blank
+
+
+def _listed(headings: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> Iterator[str]:
+    """Each row as lines of heading and cell."""
+    longest = max((_wide(heading) for heading in headings[1:]), default=0)
+    for row in rows:
+        for part in _wrapped(_words(row[0]), width - 1):
+            yield f" {part}"
+        for heading, cell in zip(headings[1:], row[1:], strict=True):
+            start = f"   {heading}{' ' * (longest - _wide(heading))}  "
+            for part in _wrapped(_words(cell), max(_LEAST, width - len(start))) if cell else ():
+                yield start + part
+                start = " " * len(start)
+
+
+def _pieces(cell: str, right: bool) -> list[str]:
+    if not right:
+        return _words(cell)
+    first, to, second = cell.partition(" to ")
+    return [first, f"to {second}"] if to else [cell]
+
+
+def _words(text: str) -> list[str]:
+    return text.split() or [""]
+
+
+def _wrapped(pieces: Sequence[str], width: int) -> list[str]:
+    lines: list[str] = []
+    for piece in pieces:
+        if lines and _wide(lines[-1]) + 1 + _wide(piece) <= width:
+            lines[-1] += f" {piece}"
+        else:
+            *full, last = _folded(piece, width)
+            lines += [*full, last]
+    return lines
+
+
+def _folded(word: str, width: int) -> list[str]:
+    """A word that is longer than a line, on several."""
+    parts = [""]
+    for letter in word:
+        if parts[-1] and _wide(parts[-1]) + _wide(letter) > width:
+            parts.append("")
+        parts[-1] += letter
+    return parts
+
+
+def _wide(text: str) -> int:
+    """Columns of the screen that a text takes: two for an East Asian letter, none for a mark on another."""
+    if text.isascii():
+        return len(text)
+    from rich.cells import cell_len
+
+    return cell_len(text)

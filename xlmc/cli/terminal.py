@@ -1,0 +1,179 @@
+"""The one way to stdout and stderr. No character costs a run, none steers the terminal, and a closed pipe is quiet."""
+
+from __future__ import annotations
+
+import codecs
+import errno
+import json
+import math
+import os
+import shutil
+import sys
+import unicodedata
+from collections.abc import Mapping
+from textwrap import fill
+from typing import Final, TextIO
+
+from xlmc.errors import WorkbookError
+from xlmc.printable import printable
+
+__all__ = ["degraded", "on_terminal", "paragraph", "prepare", "put", "say", "say_json", "width"]
+
+PIPE_WIDTH: Final = 100
+"""Of text in a pipe or a file."""
+
+_NARROWEST: Final = 20
+
+_INSTEAD: Final[Mapping[str, str]] = {
+    "±": "+/-",
+    "–": "-",
+    "—": "-",
+    "−": "-",
+    "─": "-",
+    "…": "...",
+    "Δ": "delta-",
+    "∆": "delta-",
+    "×": "x",
+    "·": "*",
+    "≤": "<=",
+    "≥": ">=",
+    "∞": "inf",
+    "²": "^2",
+    "³": "^3",
+    "°": "deg",
+    "µ": "u",
+    "▸": ">",
+    "‘": "'",
+    "’": "'",
+    "“": '"',
+    "”": '"',
+    "\xa0": " ",
+    "\u202f": " ",
+}
+"""What stands for a character that the terminal's encoding lacks."""
+
+_HANDLER: Final = "xlmc"
+_READER_GONE: Final = (errno.EPIPE, errno.EINVAL)
+"""How Linux and macOS, and how Windows says that nobody reads a pipe any more: there is nobody to tell."""
+
+
+def prepare() -> None:
+    """Let stdout and stderr write something readable in place of what their encoding lacks."""
+    for stream in (sys.stdout, sys.stderr):
+        reconfigure = getattr(stream, "reconfigure", None)
+        if reconfigure is not None:
+            reconfigure(errors=_HANDLER)
+
+
+def say(text: object = "", *, err: bool = False) -> None:
+    """Print a text and a line feed; `err` to stderr.
+
+    Raises:
+        WorkbookError: stdout is a file that cannot be written.
+    """
+    put(f"{printable(str(text))}\n", err=err)
+
+
+def say_json(value: object) -> None:
+    """Print JSON; what the terminal cannot show, or would take for a command, is written as an escape of JSON.
+
+    Raises:
+        WorkbookError: as for `say`.
+    """
+    text = json.dumps(_finite(value), indent=2, ensure_ascii=not _is_unicode(sys.stdout), allow_nan=False)
+    if printable(text) != text:
+        text = "".join(one if printable(one) == one else json.dumps(one)[1:-1] for one in text)
+    put(f"{text}\n")
+
+
+def put(text: str, *, err: bool = False) -> None:
+    """Write text that is `printable` but for commands of our own.
+
+    Raises:
+        WorkbookError: as for `say`.
+    """
+    stream = sys.stderr if err else sys.stdout
+    if stream is None:
+        return  # started without one
+    try:
+        stream.write(text)
+        stream.flush()
+    except OSError as error:
+        _silence(stream)
+        if not err and error.errno not in _READER_GONE:
+            raise WorkbookError(f"the output cannot be written ({error.strerror})") from error
+
+
+def paragraph(text: str, *, indent: str = "", hanging: str | None = None) -> str:
+    """The text wrapped to the width; `hanging` indents every line but the first, by default as `indent`."""
+    after = indent if hanging is None else hanging
+    lines = text.split("\n")
+    wide = width()
+    return "\n".join(
+        fill(printable(line), wide, initial_indent=indent, subsequent_indent=after, break_on_hyphens=False)
+        for line in lines
+    )
+
+
+def width() -> int:
+    """Columns of the terminal; `PIPE_WIDTH` where stdout is none."""
+    return max(_NARROWEST, shutil.get_terminal_size((PIPE_WIDTH, 24)).columns) if on_terminal() else PIPE_WIDTH
+
+
+def on_terminal(*, err: bool = False) -> bool:
+    """Whether a person looks at stdout, or `err` at stderr."""
+    stream = sys.stderr if err else sys.stdout
+    return stream is not None and stream.isatty()
+
+
+def degraded(text: str, *, err: bool = False) -> str:
+    """The text as the stream's encoding can show it, so that columns can be measured."""
+    encoding = getattr(sys.stderr if err else sys.stdout, "encoding", None) or "utf-8"
+    return text.encode(encoding, _HANDLER).decode(encoding)
+
+
+def _finite(value: object) -> object:
+    """The value with null for a number that JSON cannot hold."""
+    match value:
+        case float():
+            return value if math.isfinite(value) else None
+        case dict():
+            return {key: _finite(each) for key, each in value.items()}
+        case list() | tuple():
+            return [_finite(each) for each in value]
+        case _:
+            return value
+
+
+def _is_unicode(stream: TextIO | None) -> bool:
+    return (getattr(stream, "encoding", None) or "utf-8").casefold().startswith("utf")
+
+
+def _silence(stream: TextIO) -> None:
+    """Send what is still to come nowhere, also what Python flushes when it ends."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, stream.fileno())
+    finally:
+        os.close(nowhere)
+
+
+def _in_place_of(error: UnicodeError) -> tuple[str, int]:
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    lacking = error.object[error.start : error.end]
+    return "".join(_readable(one) for one in lacking), error.end
+
+
+def _readable(character: str) -> str:
+    r"""Letters of xlmc's own and Greek ones by name, letters with marks without them, others as `\u4e2d`."""
+    if character in _INSTEAD:
+        return _INSTEAD[character]
+    words = unicodedata.name(character, "").split()
+    if words[:1] == ["GREEK"] and "LETTER" in words:
+        return words[words.index("LETTER") + 1].lower()
+    bare = unicodedata.normalize("NFKD", character).encode("ascii", "ignore").decode()
+    return bare or character.encode("ascii", "backslashreplace").decode()
+
+
+codecs.register_error(_HANDLER, _in_place_of)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+import sys
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -139,6 +140,8 @@ def book(sheets: Mapping[str, Sheet], names: Mapping[str, str] | None = None) ->
 
 @cache
 def shipped() -> tuple[tuple[str, bytes], ...]:
-    """The books of the repository, name and bytes; results of runs left out."""
-    files = [*(ROOT / "examples").glob("*.xlsx"), *(ROOT / "templates").glob("*.xlsx")]
-    return tuple((path.name, path.read_bytes()) for path in sorted(files) if "-results" not in path.stem)
+    """The books of the repository by the tests' list, name and bytes."""
+    sys.path.append(str(ROOT / "tests" / "session"))
+    from committed_books import BOOKS
+
+    return tuple((path.name, path.read_bytes()) for path in sorted(BOOKS.values()))

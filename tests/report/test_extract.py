@@ -193,3 +193,18 @@ def test_nothing_else_is_called_as_the_trials_are(make, tmp_path, whose):
     for ending, read in (("csv", read_csv), ("parquet", read_parquet)):
         run.extract(tmp_path / f"trials.{ending}")
         pandas.testing.assert_frame_equal(read(tmp_path / f"trials.{ending}"), expected, check_exact=True)
+
+
+@pytest.mark.parametrize(
+    ("name", "field"),
+    [
+        (";=1+1", ";'=1+1"),
+        ("speed; @SUM(A1)", "speed; '@SUM(A1)"),
+        ('a;"+1', "a;\"'+1"),
+        ("=1;-2", "'=1;'-2"),
+        ("a;b", "a;b"),
+        ("x - y", "x - y"),
+    ],
+)
+def test_a_name_is_no_formula_where_semicolons_separate_fields_either(name, field):
+    assert safe_heading(name) == field

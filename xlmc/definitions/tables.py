@@ -10,6 +10,7 @@ from xlmc.address import Cell
 from xlmc.definitions.findings import Findings
 from xlmc.distributions.naming import nearest, plain
 from xlmc.errors import ErrorCode
+from xlmc.printable import label
 from xlmc.workbook.model import CellContent, CellValue, Table, Workbook
 
 __all__ = ["KINDS", "DefinitionTable", "Row", "as_text", "definition_tables", "holds_rows", "is_blank", "rows_of"]
@@ -108,7 +109,7 @@ def as_text(value: CellValue) -> str:
         case ErrorCode():
             return value.text
         case str():
-            return value.strip()
+            return label(value.strip())
         case _:
             return format(value, ".15g")
 
@@ -177,6 +178,7 @@ def holds_rows(workbook: Workbook, table: DefinitionTable) -> bool:
 def _with_headings(kind: str, table: Table, findings: Findings) -> DefinitionTable:
     columns: dict[str, tuple[str, int]] = {}
     for number, heading in enumerate(table.columns, start=table.area.left):
+        heading = label(heading)
         spelling = plain(heading)
         if spelling in columns:
             message = f"The table {table.name} has two columns {columns[spelling][0]!r} and {heading!r}"

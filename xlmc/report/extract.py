@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -28,6 +29,8 @@ __all__ = ["check_extract_path", "extract", "safe_heading"]
 
 _STARTS_A_FORMULA: Final = ("=", "+", "-", "@", "\t", "\r", "\n", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 """With which spreadsheets take the text of a CSV field for a formula; the last four in East Asian editions."""
+
+_BEHIND_A_SEPARATOR: Final = re.compile('([;|\t\n]["\\s]*)([=+\\-@\uff1d\uff0b\uff0d\uff20])')
 
 _ROW_GROUP: Final = 2 * PART
 
@@ -88,8 +91,15 @@ def check_extract_path(path: Path) -> None:
 
 
 def safe_heading(name: str) -> str:
-    """A name as a field of a CSV file that no spreadsheet takes for a formula: `=A1` becomes `'=A1`."""
-    return f"'{name}" if name.startswith(_STARTS_A_FORMULA) else name
+    """A name as a field of a CSV file that no spreadsheet takes for a formula: `=A1` becomes `'=A1`.
+
+    Where a semicolon separates fields, as in most of Europe, what stands behind one in a name begins a field, too.
+
+    >>> safe_heading("speed;=A1")
+    "speed;'=A1"
+    """
+    apart = _BEHIND_A_SEPARATOR.sub(r"\1'\2", name)
+    return f"'{apart}" if apart.startswith(_STARTS_A_FORMULA) else apart
 
 
 def _writer(path: Path) -> Callable[[Simulation, BinaryIO, str | None], None]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 import posixpath
+import re
 import struct
 import zipfile
 import zlib
@@ -36,6 +37,9 @@ SMALLER = "Remove from it what the model does not need"
 
 _OLE = bytes.fromhex("D0CF11E0A1B11AE1")
 _ZIP = b"PK"
+_MARKUP = re.compile(rb"<(!doctype|html|\?xml|table|head|meta)")
+_OPEN_DOCUMENT = b"application/vnd.oasis.opendocument.spreadsheet"
+_OPEN_DOCUMENT_HINT = "Open it in LibreOffice or Excel and save it as an Excel Workbook (.xlsx)"
 _ENCRYPTED_STREAM = "EncryptedPackage".encode("utf-16-le")
 _ENCRYPTED_FLAG = 0x1
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
@@ -82,6 +86,8 @@ def read_parts(data: bytes, limits: Limits = LIMITS) -> dict[str, bytes]:
         with zipfile.ZipFile(io.BytesIO(data)) as package:
             entries = [entry for entry in package.infolist() if not entry.filename.endswith("/")]
             _check_entries(entries, limits)
+            if entries and entries[0].filename == "mimetype" and _OPEN_DOCUMENT in data[:256]:
+                raise WorkbookError("the file is an OpenDocument spreadsheet (.ods)", hint=_OPEN_DOCUMENT_HINT)
             return {entry.filename: _unpack(package, entry) for entry in entries}
     except _DAMAGE as error:
         reason = str(error) or "it ends too early"
@@ -128,10 +134,14 @@ def _check_container(data: bytes) -> None:
     if data.startswith(_OLE) and _ENCRYPTED_STREAM in data:
         raise WorkbookError("the workbook is encrypted", hint="Remove its password in Excel (File > Info) and save it")
     if data.startswith(_OLE):
-        raise WorkbookError("the file is an old Excel workbook (.xls) or is encrypted", hint=SAVE_AS)
+        raise WorkbookError("the file is an old Excel workbook (.xls)", hint=SAVE_AS)
     if not data:
         raise WorkbookError("the file is empty", hint="Fetch or copy it again")
     if not data.startswith(_ZIP):
+        if _MARKUP.match(data[:1_024].lstrip(b"\xef\xbb\xbf \t\r\n").lower()):
+            raise WorkbookError("the file is a web page or another XML file, not an Excel workbook", hint=SAVE_AS)
+        if b"\0" not in data[:4_096]:
+            raise WorkbookError("the file is plain text (such as .csv), not an Excel workbook", hint=SAVE_AS)
         raise WorkbookError("the file is not an Excel workbook (.xlsx or .xlsm)", hint=SAVE_AS)
 
 

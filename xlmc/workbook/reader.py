@@ -6,6 +6,7 @@ import hashlib
 from pathlib import Path
 
 from xlmc.errors import WorkbookError
+from xlmc.printable import label
 from xlmc.workbook.blame import told_of
 from xlmc.workbook.lazy_sheets import LazySheets
 from xlmc.workbook.model import Workbook
@@ -41,7 +42,7 @@ def _read(data: bytes, name: str, place: str) -> Workbook:
         sheets = LazySheets(place, parts, structure)
         tables = [table for sheet in structure.worksheets for table in tables_of(parts, sheet.part, sheet.name)]
         return Workbook(
-            name=name,
+            name=label(name),
             sheets=sheets,
             names=structure.names,
             tables=tuple(tables),

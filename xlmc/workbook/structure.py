@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from xlmc.errors import Notice, WorkbookError
+from xlmc.printable import printable
 from xlmc.workbook.model import DefinedName
 from xlmc.workbook.package import SAVE_AS, Relationship, relationships
 from xlmc.workbook.safe_xml import REPAIR, attribute, is_true, tree, whole_number
@@ -97,6 +98,11 @@ def _workbook_part(parts: Mapping[str, bytes]) -> str:
 
 def _sheet_entry(element: Element, rels: Mapping[str, Relationship], parts: Mapping[str, bytes]) -> SheetEntry:
     name = decode(element.get("name", ""))
+    if "\n" in name or "\t" in name or printable(name) != name:
+        hint = "Rename it in Excel, with letters and digits alone"
+        raise WorkbookError(
+            f"the name of the sheet {printable(name)!r} holds a character that steers a screen", hint=hint
+        )
     rel = rels.get(attribute(element, "id") or "")
     if rel is None or rel.target not in parts:
         raise WorkbookError(f"the sheet {name!r} is missing from the file", hint=REPAIR)

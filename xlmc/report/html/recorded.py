@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from xlmc.printable import printable
 from xlmc.record import Entry, Record, RecordTable, Section, Value
 from xlmc.record.wording import number_text
 from xlmc.report.cells import NONE
@@ -53,4 +54,4 @@ def _said(value: Value) -> str:
         return NONE
     if isinstance(value, bool):
         return str(value).upper()
-    return value if isinstance(value, str) else number_text(value)
+    return printable(value) if isinstance(value, str) else number_text(value)

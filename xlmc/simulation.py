@@ -18,6 +18,7 @@ from xlmc.definitions import Forecast, Settings
 from xlmc.definitions.model import name_key
 from xlmc.digits import lost_digits
 from xlmc.errors import Notice, SimulationError
+from xlmc.result_cells import ShownResults, shown_results, unavailable_warning
 from xlmc.sampling import METHODS, Plan
 from xlmc.scratch import numbers, parts
 from xlmc.statistics import Description, Estimate, Sample
@@ -299,7 +300,14 @@ class Simulation:
         if self.error_trials > ERROR_SHARE * self.trials:
             share = self.error_trials / self.trials
             found.append(f"{self.error_trials:,} trials ({share:.2%}) were lost to errors in cells")
-        return [*found, *self._sparse(), *self._lost_digits, *(() if self.rare is None else self.rare.warnings)]
+        found += [*self._sparse(), *self._lost_digits, *(() if self.rare is None else self.rare.warnings)]
+        missing = unavailable_warning(self.shown_results)
+        return [*found, missing] if missing else found
+
+    @cached_property
+    def shown_results(self) -> ShownResults:
+        """What the workbook's own cells show of this run, `=RiskMean(B9)` and all that depends on it."""
+        return shown_results(self)
 
     @cached_property
     def _lost_digits(self) -> list[str]:

@@ -1,8 +1,8 @@
 import pytest
 
-from xlmc.address import Area
+from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, WorkbookError
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.model import CellContent, DataTable, Formula
 from xlmc.workbook.sheet import parse_sheet
 from xlmc.workbook.structure import SheetEntry
 from xlmc.workbook.values import CellContext
@@ -122,7 +122,26 @@ def test_data_tables_are_values():
         '<row r="5"><c r="C5"><v>2</v></c></row></sheetData>'
     )
     assert sheet.sheet.cells == {(4, 3): CellContent(1.0), (5, 3): CellContent(2.0)}
-    assert sheet.data_tables == (Area("My sheet", 4, 3, 5, 3),)
+    assert sheet.data_tables == (DataTable(Area("My sheet", 4, 3, 5, 3), (Cell("My sheet", 1, 2),)),)
+    assert [cell.a1 for cell in sheet.data_tables[0].margins()] == ["C3", "B4", "B5"]
+
+
+def test_a_data_table_of_two_inputs():
+    sheet = parsed(
+        '<sheetData><row r="4"><c r="C4"><f t="dataTable" ref="C4:C4" dt2D="1" dtr="1" r1="B1" r2="B2"/><v>1</v></c>'
+        "</row></sheetData>"
+    )
+    (table,) = sheet.data_tables
+    assert [cell.a1 for cell in table.inputs] == ["B1", "B2"]
+    assert [cell.a1 for cell in table.margins()] == ["B3", "C3", "B4"]
+
+
+def test_a_data_table_whose_input_was_deleted():
+    sheet = parsed(
+        '<sheetData><row r="4"><c r="C4"><f t="dataTable" ref="C4:C5" r1="#REF!" del1="1"/><v>1</v></c></row>'
+        "</sheetData>"
+    )
+    assert sheet.data_tables[0].inputs == ()
 
 
 def test_merged_areas():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import TypeVar
 
 from xlmc.address import Cell
 from xlmc.compile.lower import Lowering
@@ -10,7 +11,10 @@ from xlmc.compile.lower import Lowering
 __all__ = ["widened"]
 
 
-def widened(lower: Callable[[Mapping[Cell, set[Cell]]], Lowering]) -> Lowering:
+L = TypeVar("L", bound=Lowering)
+
+
+def widened(lower: Callable[[Mapping[Cell, set[Cell]]], L]) -> L:
     """What `lower` makes once nothing is missing.
 
     Args:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -15,7 +15,7 @@ from xlmc.definitions.in_cell_draws import Drawn, MatrixPlace
 from xlmc.definitions.in_cell_trees import difference, is_left_out, number_of, total
 from xlmc.definitions.model import Assumption, DataRange, Parameter
 from xlmc.definitions.random_functions import random_draw
-from xlmc.definitions.result_functions import Asked, asked_for, is_result
+from xlmc.definitions.result_functions import NOT_COMPUTED, Asked, asked_for, is_result, not_computed
 from xlmc.definitions.risk_functions import risk_draw
 from xlmc.definitions.risk_properties import is_property
 from xlmc.definitions.tables import as_text, is_blank
@@ -52,6 +52,7 @@ class CellReading:
         draws: by their place, in which they come in the formula.
         trees: of the arguments that are expressions, by the cells that stand for them.
         output, asked, idle, has_lognorm: see `in_cells.InCells`.
+        unavailable: why it cannot show the results that it should show; empty where it can, or should show none.
     """
 
     def __init__(
@@ -63,6 +64,7 @@ class CellReading:
         self.trees: dict[Cell, ir.Expression] = {}
         self.output: Output | None = None
         self.asked: list[Asked] = []
+        self.unavailable = ""
         self.idle: tuple[str, ...] = ()
         self.has_lognorm = False
         self._count = self._depth = 0
@@ -77,18 +79,39 @@ class CellReading:
         return substituted(tree, self._changed)
 
     def _find_results(self, tree: ir.Expression) -> None:
+        calls: list[ir.Call] = []
+
         def look(part: ir.Expression) -> None:
-            if isinstance(part, ir.Call) and is_result(part):
-                self.asked.append(asked_for(part))
+            if isinstance(part, ir.Call) and (is_result(part) or not_computed(part)):
+                calls.append(part)
 
         substituted(tree, look)
-        if self.asked and _draws(tree):
-            self.asked.clear()
-            hint = "show the result in a cell of its own"
-            raise FormulaError("the formula both draws and shows results of the run", hint=hint)
-        if self.asked:
-            message = f"{self.asked[0].function} shows results of the run, on which the run itself cannot depend"
-            raise FormulaError(message, hint="let no forecast and no filter depend on this cell")
+        if not calls:
+            return
+        self._take_asked(tree, calls)
+        message = f"{self.asked[0].function} shows results of the run, on which the run itself cannot depend"
+        raise FormulaError(message, hint="let no forecast and no filter depend on this cell")
+
+    def _take_asked(self, tree: ir.Expression, calls: Sequence[ir.Call]) -> None:
+        """Take what the calls ask for.
+
+        Raises:
+            FormulaError: one of them cannot be answered, or the formula draws, too.
+        """
+        try:
+            if _draws(tree):
+                hint = "show the result in a cell of its own"
+                raise FormulaError("the formula both draws and shows results of the run", hint=hint)
+            self.asked = [asked_for(call) for call in calls if is_result(call)]
+            if missing := [each for call in calls if (each := not_computed(call))]:
+                known = missing[0] in NOT_COMPUTED
+                what = (
+                    f"{missing[0]} is not computed by xlmc" if known else f"the function {missing[0]} is not supported"
+                )
+                raise FormulaError(what, hint=_SUPPORTED)
+        except FormulaError as error:
+            self.unavailable = error.message
+            raise
 
     def _changed(self, part: ir.Expression) -> ir.Expression | None:
         if isinstance(part, ir.Lambda):
@@ -280,12 +303,17 @@ def _draws(tree: ir.Expression) -> bool:
     found: list[ir.Expression] = []
 
     def look(part: ir.Expression) -> None:
-        is_program = isinstance(part, ir.Call) and part.name.startswith(("RISK", "CB.")) and not is_result(part)
-        if is_program or random_draw(part) is not None:
+        if _is_draw_of_a_program(part) or random_draw(part) is not None:
             found.append(part)
 
     substituted(tree, look)
     return bool(found)
+
+
+def _is_draw_of_a_program(part: ir.Expression) -> bool:
+    if not isinstance(part, ir.Call) or not part.name.startswith(("RISK", "CB.")):
+        return False
+    return not (is_result(part) or is_property(part) or not_computed(part))
 
 
 def _refuse_calls_within(tree: ir.Lambda) -> None:

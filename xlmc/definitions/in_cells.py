@@ -8,7 +8,7 @@ such a cell, too. So the rest of a run sees nothing but assumptions and formulas
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Final
 
@@ -19,7 +19,7 @@ from xlmc.definitions.identity import Claims
 from xlmc.definitions.in_cell_draws import MatrixPlace
 from xlmc.definitions.in_cell_reading import CellReading, Output
 from xlmc.definitions.model import Assumption, name_key
-from xlmc.definitions.result_functions import Asked
+from xlmc.definitions.result_functions import Asked, mentions_result
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import Resolver, ir
 from xlmc.workbook.lazy_sheets import LazySheets
@@ -35,7 +35,11 @@ _MARKS: Final = (b"rand", b"risk", b"cb.")
 
 def holds_call(text: str) -> bool:
     """Whether a formula holds a call that draws, shows results, or belongs to Crystal Ball or @RISK."""
-    return _CALL.search(_TEXTS.sub('""', text)) is not None
+    return _CALL.search(_without_texts(text)) is not None
+
+
+def _without_texts(text: str) -> str:
+    return _TEXTS.sub('""', text)
 
 
 @dataclass(slots=True)
@@ -48,6 +52,7 @@ class InCells:
         rewritten: the formulas with assumptions in place of calls; or why a cell cannot be computed.
         matrices: name of an assumption -> its row in a matrix of correlations.
         results: the cells that show results -> what they ask for.
+        unavailable: the cells that should show results and cannot -> why.
         idle: property functions without an effect -> the first cell that has one.
         lognorms: the cells with `RiskLognorm`.
     """
@@ -57,6 +62,7 @@ class InCells:
     rewritten: dict[Cell, ir.Expression | FormulaError] = field(default_factory=dict)
     matrices: dict[str, MatrixPlace] = field(default_factory=dict)
     results: dict[Cell, list[Asked]] = field(default_factory=dict)
+    unavailable: dict[Cell, str] = field(default_factory=dict)
     idle: dict[str, Cell] = field(default_factory=dict)
     lognorms: list[Cell] = field(default_factory=list)
 
@@ -67,7 +73,7 @@ class InCells:
     def refused(self) -> Iterator[FormulaError]:
         """Why cells cannot be computed that show no results."""
         for cell, found in self.rewritten.items():
-            if isinstance(found, FormulaError) and cell not in self.results:
+            if isinstance(found, FormulaError) and cell not in self.results and cell not in self.unavailable:
                 yield found
 
 
@@ -93,6 +99,8 @@ def read_in_cells(workbook: Workbook, computed: Computed, lognorm: str, claims: 
             found.rewritten[cell] = refused = _about(error, cell, formula)
             if _OUTPUT.search(formula.text) and not reading.asked:  # others are told of if anything needs the cell
                 findings.problems.append(DefinitionError(refused.message, where=cell, hint=refused.hint))
+            if reading.unavailable or (not reading.asked and mentions_result(_without_texts(formula.text))):
+                found.unavailable[cell] = reading.unavailable or refused.message
         if reading.asked:
             found.results[cell] = reading.asked
     return found
@@ -135,10 +143,40 @@ def _about(error: FormulaError | DefinitionError, cell: Cell, formula: Formula) 
 
 
 def _suspects(workbook: Workbook) -> Iterator[tuple[Cell, Formula]]:
-    """The formula cells that hold calls, sheet by sheet, row by row; sheets that cannot hold one are not parsed."""
-    sheets = workbook.sheets
-    names: Iterable[str] = sheets.mentioning(_MARKS) if isinstance(sheets, LazySheets) else sheets
+    """The formula cells that hold calls, sheet by sheet, row by row; sheets that cannot hold one are not parsed.
+
+    A cell also holds a call by a defined name that stands for one.
+    """
+    sheets, named = workbook.sheets, _names_of_calls(workbook)
+    words = [*_MARKS, *(name.encode() for name in named)]
+    names: Iterable[str] = sheets
+    if isinstance(sheets, LazySheets) and all(word.isascii() for word in words):
+        names = sheets.mentioning(words)
+    any_name = _any_of(named)
     for name in names:
         for (row, column), content in sorted(sheets[name].cells.items(), key=lambda item: item[0]):
-            if content.formula is not None and holds_call(content.formula.text):
-                yield Cell(name, row, column), content.formula
+            formula = content.formula
+            if formula is not None and (holds_call(formula.text) or (any_name and any_name.search(formula.text))):
+                yield Cell(name, row, column), formula
+
+
+def _names_of_calls(workbook: Workbook) -> set[str]:
+    """The defined names, in small letters, that stand for calls, also by other names."""
+    found: set[str] = set()
+    while True:
+        any_name = _any_of(found)
+        more = {
+            name.name.lower()
+            for name in workbook.names
+            if holds_call(name.text) or (any_name and any_name.search(name.text))
+        }
+        if more <= found:
+            return found
+        found |= more
+
+
+def _any_of(names: Collection[str]) -> re.Pattern[str] | None:
+    """Finds any of these names in a formula."""
+    if not names:
+        return None
+    return re.compile(rf"(?<![\w.\\])(?:{'|'.join(map(re.escape, sorted(names)))})(?![\w.])", re.IGNORECASE)

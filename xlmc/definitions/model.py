@@ -158,7 +158,8 @@ class Definitions:
 
     `problems` are the mistakes found, each with its cell; a run is refused while there are any. `rewritten` are the
     formulas in which calls stand for assumptions (`=10+RiskNormal(5,1)`), with these in their place, or why a cell
-    cannot be computed; `results` are the cells that show results of the run.
+    cannot be computed; `results` are the cells that show results of the run, and `unavailable` are those that should,
+    or belong to a what-if table of the run, and cannot be computed, each with the reason.
     """
 
     assumptions: tuple[Assumption, ...] = ()
@@ -170,3 +171,4 @@ class Definitions:
     problems: tuple[DefinitionError, ...] = ()
     rewritten: Mapping[Cell, Expression | FormulaError] = field(default_factory=dict)
     results: tuple[Cell, ...] = ()
+    unavailable: Mapping[Cell, str] = field(default_factory=dict)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from xlmc.definitions.assumptions import read_assumptions
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.correlations import read_correlations
+from xlmc.definitions.data_tables import TABLE_REASON
 from xlmc.definitions.filters import read_filters
 from xlmc.definitions.findings import Findings
 from xlmc.definitions.forecasts import read_forecasts
@@ -15,6 +16,7 @@ from xlmc.definitions.in_cells import InCells, read_in_cells
 from xlmc.definitions.model import Definitions, Settings, name_key
 from xlmc.definitions.settings import read_settings
 from xlmc.definitions.tables import DefinitionTable, definition_tables, holds_rows
+from xlmc.definitions.unavailable import remark_on_tables, remark_on_unavailable, what_if_cells
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import Workbook
 
@@ -37,6 +39,7 @@ def read_definitions(workbook: Workbook) -> Definitions:
     calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings)
     _remark_on_stored_assumptions(workbook, findings)
     if not (calls or any(tables.values())):
+        remark_on_tables(workbook.data_tables, (), findings)
         _say_how_to_begin(workbook, findings)
         return Definitions(notices=tuple(findings.notices), problems=tuple(findings.problems))
 
@@ -47,6 +50,9 @@ def read_definitions(workbook: Workbook) -> Definitions:
     more = in_cell_correlations(workbook, calls.assumptions, calls.matrices, correlations, findings)
     forecasts = *forecasts, *in_cell_forecasts(calls, computed, central, answers, findings)
     _remark_on_calls(calls, settings, findings)
+    what_if = what_if_cells(workbook, assumptions, calls, findings)
+    unavailable = {**calls.unavailable, **dict.fromkeys(what_if, TABLE_REASON)}
+    remark_on_unavailable(calls.unavailable, findings)
     if not calls.assumptions:
         _refuse_no_assumption(workbook, calls, tables["xlmc_assumptions"], findings)
     if calls and not (forecasts or tables["xlmc_forecasts"]):
@@ -61,8 +67,9 @@ def read_definitions(workbook: Workbook) -> Definitions:
         settings=settings,
         notices=tuple(findings.notices),
         problems=tuple(findings.problems),
-        rewritten=calls.rewritten,
+        rewritten={**calls.rewritten, **what_if},
         results=tuple(calls.results),
+        unavailable=unavailable,
     )
 
 

@@ -6,10 +6,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import TypeVar
 
-from xlmc.address import Area
 from xlmc.workbook.blame import told_of
 from xlmc.workbook.metadata import dynamic_array_marks
-from xlmc.workbook.model import Sheet
+from xlmc.workbook.model import DataTable, Sheet
 from xlmc.workbook.sheet import ParsedSheet, parse_sheet
 from xlmc.workbook.strings import shared_strings
 from xlmc.workbook.structure import SheetEntry, Structure
@@ -53,14 +52,14 @@ class LazySheets(Mapping[str, Sheet]):
     def __repr__(self) -> str:
         return f"<sheets {', '.join(self._entries)}>"
 
-    def data_tables(self) -> Iterable[Area]:
-        """The areas of all what-if data tables; parses no sheet that cannot hold one.
+    def data_tables(self) -> Iterable[DataTable]:
+        """All what-if data tables; parses no sheet that cannot hold one.
 
         Raises:
             WorkbookError: a sheet that may hold one is damaged.
         """
         suspects = (entry for entry in self._entries.values() if _may_hold_data_table(self._parts[entry.part]))
-        return [area for entry in suspects for area in self._parse(entry).data_tables]
+        return [table for entry in suspects for table in self._parse(entry).data_tables]
 
     def mentioning(self, words: Iterable[bytes]) -> Iterator[str]:
         """The names of the sheets whose part holds one of these words, in small letters, whatever its case there."""

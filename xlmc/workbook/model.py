@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, Notice
 
-__all__ = ["CellContent", "CellValue", "DefinedName", "Formula", "Sheet", "Table", "Workbook"]
+__all__ = ["CellContent", "CellValue", "DataTable", "DefinedName", "Formula", "Sheet", "Table", "Workbook"]
 
 CellValue = float | bool | str | ErrorCode | None
 """A number, a logical, a text, an error or nothing, as a cell holds it."""
@@ -80,12 +80,38 @@ class Table:
         return Area(a.sheet, a.top + self.header_rows, a.left, a.bottom - self.totals_rows, a.right)
 
 
+@dataclass(frozen=True, slots=True)
+class DataTable:
+    """A what-if data table, `{=TABLE(A1,B1)}`: an area that Excel fills by putting values into its input cells.
+
+    Attributes:
+        area: the cells that it fills; no formula of their own stands in them.
+        inputs: the cells that it puts values into; none of one that was deleted.
+        two_inputs: one value from the row above and one from the column on the left, for the formula in the corner.
+    """
+
+    area: Area
+    inputs: tuple[Cell, ...] = ()
+    two_inputs: bool = False
+
+    def margins(self) -> Iterator[Cell]:
+        """The cells above it and on its left: the formulas it computes, and the values that it puts in."""
+        above, left = self.area.top - 1, self.area.left - 1
+        if self.two_inputs and above and left:
+            yield Cell(self.area.sheet, above, left)
+        for column in range(self.area.left, self.area.right + 1) if above else ():
+            yield Cell(self.area.sheet, above, column)
+        for row in range(self.area.top, self.area.bottom + 1) if left else ():
+            yield Cell(self.area.sheet, row, left)
+
+
 @dataclass(frozen=True)
 class Workbook:
     """A workbook as read: nothing evaluated, nothing changed.
 
     Attributes:
         sheets: worksheets in tab order, by name as written.
+        data_tables: the what-if tables of all sheets.
         macintosh: last saved by Excel for the Macintosh, whose CHAR and CODE use its own character set.
         parts: every part of the zip package in its order, name -> bytes, as in the file.
         sha256: of the file.
@@ -96,6 +122,7 @@ class Workbook:
     sheets: Mapping[str, Sheet]
     names: tuple[DefinedName, ...] = ()
     tables: tuple[Table, ...] = ()
+    data_tables: tuple[DataTable, ...] = ()
     date1904: bool = False
     macintosh: bool = False
     notices: tuple[Notice, ...] = ()

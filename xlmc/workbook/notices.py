@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
-from xlmc.address import Area
 from xlmc.errors import Notice
 from xlmc.workbook.package import relationships
 from xlmc.workbook.safe_xml import is_true
 from xlmc.workbook.structure import Structure
 
-__all__ = ["data_table_notices", "workbook_notices"]
+__all__ = ["workbook_notices"]
 
 
 def workbook_notices(parts: Mapping[str, bytes], structure: Structure, name: str) -> Iterator[Notice]:
@@ -20,12 +19,6 @@ def workbook_notices(parts: Mapping[str, bytes], structure: Structure, name: str
         yield Notice(stray.message, name)
     for message in (*_on_calculation(structure.calculation), *_on_links(parts, structure), *_on_signature(parts)):
         yield Notice(message, name)
-
-
-def data_table_notices(areas: Iterable[Area]) -> Iterator[Notice]:
-    """One notice for each what-if data table."""
-    for area in areas:
-        yield Notice("a what-if data table: its cells are kept at the values Excel last calculated", area)
 
 
 def _on_calculation(settings: Mapping[str, str]) -> Iterator[str]:

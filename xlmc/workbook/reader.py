@@ -10,7 +10,7 @@ from xlmc.printable import label
 from xlmc.workbook.blame import told_of
 from xlmc.workbook.lazy_sheets import LazySheets
 from xlmc.workbook.model import Workbook
-from xlmc.workbook.notices import data_table_notices, workbook_notices
+from xlmc.workbook.notices import workbook_notices
 from xlmc.workbook.package import LIMITS, SMALLER, read_parts
 from xlmc.workbook.structure import read_structure
 from xlmc.workbook.tables import tables_of
@@ -46,9 +46,10 @@ def _read(data: bytes, name: str, place: str) -> Workbook:
             sheets=sheets,
             names=structure.names,
             tables=tuple(tables),
+            data_tables=tuple(sheets.data_tables()),
             date1904=structure.date1904,
             macintosh=b"Macintosh" in parts.get("docProps/app.xml", b""),
-            notices=(*workbook_notices(parts, structure, name), *data_table_notices(sheets.data_tables())),
+            notices=tuple(workbook_notices(parts, structure, name)),
             parts=parts,
             sha256=hashlib.sha256(data).hexdigest(),
             data=data,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_number
 from xlmc.errors import WorkbookError
-from xlmc.workbook.model import CellContent, CellValue, Formula, Sheet
+from xlmc.workbook.model import CellContent, CellValue, DataTable, Formula, Sheet
 from xlmc.workbook.reference import area_of
 from xlmc.workbook.safe_xml import REPAIR, expat_parser, feed, is_true
 from xlmc.workbook.strings import decode, run_text
@@ -30,10 +30,10 @@ _Attributes = Mapping[str, str]
 
 @dataclass(frozen=True, slots=True)
 class ParsedSheet:
-    """A worksheet, and the areas that Excel's what-if data tables fill on it."""
+    """A worksheet, and Excel's what-if data tables on it."""
 
     sheet: Sheet
-    data_tables: tuple[Area, ...]
+    data_tables: tuple[DataTable, ...]
 
 
 def parse_sheet(xml: bytes, entry: SheetEntry, context: CellContext) -> ParsedSheet:
@@ -60,7 +60,7 @@ class _Pass:
     def __init__(self, sheet: str, context: CellContext) -> None:
         self.cells: dict[tuple[int, int], CellContent] = {}
         self.merged: list[Area] = []
-        self.data_tables: list[Area] = []
+        self.data_tables: list[DataTable] = []
         self.hidden_rows: set[int] = set()
         self.text: list[str] = []  # pieces of the text at hand
         self._sheet = sheet
@@ -139,7 +139,7 @@ class _Pass:
         kind = self._attributes.get("t", "normal")
         text = decode("".join(self.text)).removeprefix("=")
         if kind == "dataTable":
-            self.data_tables.append(area_of(self._attributes.get("ref"), self._sheet, "a data table"))
+            self.data_tables.append(self._data_table())
         elif kind == "shared":
             self._formula = self._shared(text)
         elif text:
@@ -169,6 +169,17 @@ class _Pass:
         if index not in self._masters:
             raise self._faulty(f"shares formula {index}, which no earlier cell holds")
         return self._masters[index]
+
+    def _data_table(self) -> DataTable:
+        found = self._attributes
+        kept = (key for key, deleted in (("r1", "del1"), ("r2", "del2")) if not is_true(found.get(deleted, "0")))
+        inputs = (found[key] for key in kept if key in found)
+        cells = [area_of(each, self._sheet, "an input of a data table") for each in inputs]
+        return DataTable(
+            area_of(found.get("ref"), self._sheet, "a data table"),
+            tuple(Cell(area.sheet, area.top, area.left) for area in cells),
+            two_inputs=is_true(found.get("dt2D", "0")),
+        )
 
     def _array(self, text: str) -> Formula:
         area = area_of(self._attributes.get("ref"), self._sheet, "an array formula")

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Final
 
-from xlmc.address import parse_address
+from xlmc.address import Area, Cell, parse_address
 from xlmc.errors import ErrorCode
 from xlmc.workbook.injection.spans import Element
 from xlmc.workbook.injection.splice import SplicedXml, render
@@ -19,6 +19,12 @@ _FORMULA_CELL: Final = re.compile(
     rb"(?P<cell><(?:\w+:)?c\b[^>]*>)"
     rb"(?P<formula><(?:\w+:)?f\b(?:[^>]*/>|[^>]*>[^<]*</(?:\w+:)?f>))"
     rb"(?:<(?:\w+:)?v\b(?:[^>]*/>|[^>]*>[^<]*</(?:\w+:)?v>))?"
+)
+_DATA_TABLE: Final = re.compile(rb"""<(?:\w+:)?f\b[^>]*\bt\s*=\s*["']dataTable["'][^>]*>""")
+_REFERENCE: Final = re.compile(rb"""\bref\s*=\s*(["'])(.*?)\1""")
+_VALUE_CELL: Final = re.compile(
+    rb"""(?P<cell><(?:\w+:)?c\b[^>]*?\br\s*=\s*["'](?P<place>[A-Z]{1,3}[1-9][0-9]*)["'][^>]*>)"""
+    rb"(?:<(?:\w+:)?v\b(?:[^>]*/>|[^>]*>[^<]*</(?:\w+:)?v>))"
 )
 _TYPE: Final = re.compile(rb"""\s+t\s*=\s*(?:"[^"]*"|'[^']*')""")
 
@@ -42,14 +48,44 @@ def with_values(xml: bytes, part: str, values: Mapping[tuple[int, int], CellValu
 
 
 def without_formula_values(parts: Mapping[str, bytes]) -> dict[str, bytes]:
-    """The parts, without the cached values of formulas where any sheet calls a function of @RISK or Crystal Ball.
+    """The parts, without the cached values of formulas where a run may write others.
 
-    A run may fill in results, and all that is computed from them; what Excel itself cached there was one random draw.
+    These are workbooks whose cells or names call a function of @RISK or Crystal Ball, or that hold a what-if data
+    table. A run may fill in results, and all that is computed from them, or #N/A where it cannot; what Excel itself
+    cached there was one random draw, or is what it last calculated.
     """
-    sheets = {name: xml for name, xml in parts.items() if name.casefold().endswith(".xml") and b"sheetData" in xml}
-    if not any(_FUNCTION.search(xml) for xml in sheets.values()):
+    xmls = {name: xml for name, xml in parts.items() if name.casefold().endswith(".xml")}
+    sheets = {name: xml for name, xml in xmls.items() if b"sheetData" in xml}
+    callers = [*sheets.values(), *(xml for xml in xmls.values() if b"definedNames" in xml)]
+    if not any(_FUNCTION.search(xml) or _DATA_TABLE.search(xml) for xml in callers):
         return dict(parts)
-    return {**parts, **{name: _FORMULA_CELL.sub(_bare, xml) for name, xml in sheets.items()}}
+    return {**parts, **{name: _without_tables(_FORMULA_CELL.sub(_bare, xml)) for name, xml in sheets.items()}}
+
+
+def _without_tables(xml: bytes) -> bytes:
+    """A sheet without the values of its data tables, whose cells hold no formulas but for the first."""
+    areas = [
+        area
+        for found in _DATA_TABLE.finditer(xml)
+        if (reference := _REFERENCE.search(found[0])) and (area := _area(reference[2].decode()))
+    ]
+    if not areas:
+        return xml
+
+    def bare(found: re.Match[bytes]) -> bytes:
+        cell = parse_address(found["place"].decode(), "-")
+        inside = isinstance(cell, Cell) and any(cell in area for area in areas)
+        return _TYPE.sub(b"", found["cell"]) if inside else found[0]
+
+    return _VALUE_CELL.sub(bare, xml)
+
+
+def _area(text: str) -> Area | None:
+    try:
+        found = parse_address(text, "-")
+    except ValueError:
+        return None
+    return Area("-", found.row, found.column, found.row, found.column) if isinstance(found, Cell) else found
 
 
 def _bare(found: re.Match[bytes]) -> bytes:

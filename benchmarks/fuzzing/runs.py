@@ -212,7 +212,6 @@ def _edit_column(rng: random.Random, entries: Entries) -> str:
             column["sha256"] = hashlib.sha256(made).hexdigest()
             body = _body(made)
             if body is not None and rng.random() < 0.9:
-                column["sha256"] = hashlib.sha256(body.tobytes()).hexdigest()
                 column["count"] = int(body.size)
     _put(entries, where, document)
     return f"{name}: {said}"

@@ -210,7 +210,7 @@ FAULTS = {
     "no columns": (changed(columns=[]), "its list of trials"),
     "more trials than were planned": (changed(trials=10**9), "its number of trials"),
     "no trials": (changed(trials=0), "its number of trials"),
-    "a number that is a text": (changed(block="x"), "the number 'x'"),
+    "a number that is a text": (changed(block="x"), "the size of its blocks"),
     "no tally": (lambda p, d: d.pop("tally"), "'tally'"),
     "filters of another book": (lambda p, d: d["tally"].update(rejected=[1, 2]), "its filters"),
     "unknown sampling": (lambda p, d: d["settings"].update(sampling="dice"), "its sampling"),

@@ -180,6 +180,7 @@ def test_elements_of_other_namespaces_are_not_cells():
         ('<c r="B7" t="s"><v>2</v></c>', "the cell holds a text that the workbook does not"),
         ('<c r="B7" t="q"><v>2</v></c>', "the cell is of the unknown type 'q'"),
         ('<c r="B7"><f t="shared" si="4"/><v>2</v></c>', "the cell shares formula 4, which no earlier cell holds"),
+        ('<c r="B7"><f t="shared"/><v>2</v></c>', "shares a formula without a number, which no earlier cell holds"),
         ('<c r="B7"><v>1</v></c><c r="B7"><v>2</v></c>', "the cell stands in the file twice"),
     ],
 )

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Final
 
 import numpy as np
 
 from xlmc.blocks import FilterTally
+from xlmc.compile.engines import ENGINES
 from xlmc.definitions.model import Settings
-from xlmc.definitions.stopping import MOST_TRIALS, Precision, Stopping
+from xlmc.definitions.stopping import MOST_DIGITS, MOST_TRIALS, RARE, Stopping, as_numbers
 from xlmc.rare.account import RareAccount
 from xlmc.rounding import Rounding
 from xlmc.sampling import METHODS, Plan
+from xlmc.saved.typed import counts, made, texts, told, whole
 from xlmc.simulation import Origin
-from xlmc.statistics import Estimate
 from xlmc.stopping import Stopped
 
 __all__ = [
@@ -30,38 +30,48 @@ __all__ = [
     "stopped_of",
     "tally_document",
     "tally_of",
-    "told",
 ]
 
 FORMAT: Final = "xlmc saved run"
 VERSION: Final = 1
 
-Document = Mapping[str, Any]
-
 _ENDS: Final = frozenset({"trials", "accepted", "precision", "adaptive", "time", "interruption", "search"})
 
 
-def settings_of(found: Document) -> Settings:
+def settings_of(found: object) -> Settings:
     """The settings again.
 
     Raises:
-        KeyError, TypeError, ValueError, SimulationError: they are none.
+        ValueError, SimulationError: they are none.
     """
-    stopping = dict(found["stopping"])
-    precision = stopping["precision"]
-    if precision is not None:
-        stopping["precision"] = Precision(**{**precision, "numbers": tuple(precision["numbers"])})
-    stopping["forecasts"] = tuple(stopping["forecasts"])
-    settings = Settings(**{**found, "stopping": Stopping(**stopping)})
-    told(type(settings.trials) is int and 1 <= settings.trials <= MOST_TRIALS, "its number of trials")
-    told(type(settings.seed) is int and settings.seed >= 0, "its seed")
+    settings = made(Settings, found, "its settings")
+    told(1 <= settings.trials <= MOST_TRIALS, "its number of trials")
+    told(settings.seed >= 0, "its seed")
     told(settings.sampling in METHODS, "its sampling")
+    told(settings.engine in ENGINES and settings.arithmetic in ("float64", "float32"), "its engine")
+    told(settings.lognorm in ("", "@RISK", "XLRisk"), "its RiskLognorm")
+    _check(settings.stopping)
     return settings
 
 
-def plan_of(settings: Settings, order: list[str]) -> Plan:
-    """The plan again: a function of the settings, but for the order of the dimensions."""
-    return replace(Plan.of(settings.sampling, settings.trials), order=tuple(map(str, order)))
+def _check(stopping: Stopping) -> None:
+    """Refuse what no run may be asked to go on until."""
+    told(stopping.accepted is None or 2 <= stopping.accepted <= MOST_TRIALS, "its number of accepted trials")
+    told(stopping.digits is None or 1 <= stopping.digits <= MOST_DIGITS, "its significant digits")
+    told(stopping.seconds is None or stopping.seconds > 0, "its time limit")
+    told(stopping.rare is None or stopping.rare in RARE, "what is done where accepted trials are rare")
+    if stopping.precision is not None:
+        told(stopping.precision.tolerance > 0 and 0 < stopping.precision.confidence < 1, "its precision")
+        as_numbers(stopping.precision.numbers)
+
+
+def plan_of(settings: Settings, order: object) -> Plan:
+    """The plan again: a function of the settings, but for the order of the dimensions.
+
+    Raises:
+        ValueError: the order is none.
+    """
+    return replace(Plan.of(settings.sampling, settings.trials), order=texts(order, "its order of dimensions"))
 
 
 def tally_document(tally: FilterTally) -> dict[str, Any]:
@@ -75,56 +85,77 @@ def tally_document(tally: FilterTally) -> dict[str, Any]:
     }
 
 
-def tally_of(found: Document, filters: int) -> FilterTally:
-    """The counts of so many filters again.
+def tally_of(found: object, filters: int, trials: int) -> FilterTally:
+    """The counts of so many filters over so many trials again.
 
     Raises:
-        KeyError, TypeError, ValueError: they are none.
+        ValueError: they are none.
     """
-    tally = FilterTally(
-        rejected=np.array(found["rejected"], np.int64),
-        only=np.array(found["only"], np.int64),
-        together=np.array(found["together"], np.int64).reshape(filters, filters),
-        errors=[Counter(errors) for errors in found["errors"]],
-        by_error=int(found["by_error"]),
+    given = made(_Counts, found, "its filters")
+    rows = (given.rejected, given.only, *given.together)
+    told(len(given.together) == len(given.errors) == filters, "its filters")
+    told(all(len(row) == filters and all(0 <= count <= trials for count in row) for row in rows), "its filters")
+    return FilterTally(
+        rejected=np.array(given.rejected, np.int64),
+        only=np.array(given.only, np.int64),
+        together=np.array(given.together, np.int64).reshape(filters, filters),
+        errors=[counts(errors, "the errors of its filters") for errors in given.errors],
+        by_error=whole(given.by_error, "its filters"),
     )
-    told(tally.rejected.shape == tally.only.shape == (filters,) and len(tally.errors) == filters, "its filters")
-    return tally
 
 
-def stopped_of(found: Document) -> Stopped:
-    """What ended the run."""
-    told(isinstance(found, dict) and found.get("by") in _ENDS, "its end")
-    words = (found.get("because"), found.get("goal") or "")
-    told(all(isinstance(each, str) for each in words), "its end")
-    return Stopped(**found)
+@dataclass(frozen=True, slots=True)
+class _Counts:
+    """What `tally_document` gives."""
+
+    rejected: tuple[int, ...]
+    only: tuple[int, ...]
+    together: tuple[tuple[int, ...], ...]
+    errors: tuple[Mapping[str, int], ...]
+    by_error: int
 
 
-def rounding_of(found: Document | None) -> Rounding | None:
-    """What float32 changed."""
-    return None if found is None else Rounding(**found)
+def stopped_of(found: object) -> Stopped:
+    """What ended the run.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    stopped = made(Stopped, found, "its end")
+    told(stopped.by in _ENDS, "its end")
+    return stopped
 
 
-def rare_of(found: Document | None) -> RareAccount | None:
-    """Where the accepted trials come from, if they are rare."""
+def rounding_of(found: object) -> Rounding | None:
+    """What float32 changed.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    return None if found is None else made(Rounding, found, "its rounding")
+
+
+def rare_of(found: object) -> RareAccount | None:
+    """Where the accepted trials come from, if they are rare.
+
+    Raises:
+        ValueError: it is something else.
+    """
     if found is None:
         return None
-    acceptance = dict(found["acceptance"])
-    ends = acceptance["interval"]
-    acceptance["interval"] = None if ends is None else tuple(ends)
-    return RareAccount(**{**found, "acceptance": Estimate(**acceptance)})
+    account = made(RareAccount, found, "its account of rare trials")
+    told(0 < account.acceptance.value <= 1, "its probability of acceptance")
+    told(
+        all(0 <= getattr(account, each.name) < 2**63 for each in fields(account) if each.name != "acceptance"),
+        "its search",
+    )
+    return account
 
 
-def told(kept: bool, what: str) -> None:
-    """Refuse what cannot be.
+def origin_of(found: object) -> Origin:
+    """Where the run was made.
 
     Raises:
-        ValueError: it cannot be.
+        ValueError: it is something else.
     """
-    if not kept:
-        raise ValueError(what)
-
-
-def origin_of(found: Document) -> Origin:
-    """Where the run was made."""
-    return Origin(dict(found["software"]), dict(found["processor"]))
+    return made(Origin, found, "its origin")

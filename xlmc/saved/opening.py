@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import zipfile
-from collections import Counter
 from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.definitions.model import name_key
-from xlmc.errors import WorkbookError, XlmcError
+from xlmc.errors import SimulationError, WorkbookError, XlmcError
 from xlmc.model import Model, understood
 from xlmc.saved.archive import AGAIN, DAMAGE, RUN, WORKBOOK, Package, opened
 from xlmc.saved.columns import read_column
@@ -28,8 +28,8 @@ from xlmc.saved.document import (
     settings_of,
     stopped_of,
     tally_of,
-    told,
 )
+from xlmc.saved.typed import counts, made, mapping, told, whole
 from xlmc.scratch import Keeper, parts
 from xlmc.simulation import Simulation
 from xlmc.workbook import read_workbook
@@ -72,7 +72,7 @@ def open_run(path: str | Path) -> Simulation:
             columns = _Columns(found["columns"], model, path)
             columns.read(package)
             return _simulation(found, model, columns)
-        except (AttributeError, LookupError, TypeError, ValueError, OverflowError, RecursionError) as error:
+        except (KeyError, ValueError, SimulationError) as error:
             raise _damaged(path, error) from error
 
 
@@ -82,8 +82,9 @@ def _document(package: Package, path: Path) -> Document:
     with package.reading(RUN) as entry:
         data = entry.read()
     try:
-        found = json.loads(data)
-        told(isinstance(found, dict) and found.get("format") == FORMAT, "its format")
+        found = mapping(json.loads(data), "its format")
+        told(found.get("format") == FORMAT, "its format")
+        whole(found.get("version"), "its version")
     except (ValueError, RecursionError) as error:
         raise _damaged(path, error) from error
     if found.get("version") != VERSION:
@@ -94,57 +95,80 @@ def _document(package: Package, path: Path) -> Document:
 
 def _model(package: Package, found: Document, path: Path) -> Model:
     try:
-        name, sha256 = str(found["workbook"]["name"]), found["workbook"]["sha256"]
-    except (KeyError, TypeError) as error:
+        about = made(_Book, found["workbook"], "its workbook")
+    except (KeyError, ValueError) as error:
         raise _damaged(path, error) from error
+    name = Path(about.name).name
     if package.size(WORKBOOK) > LIMITS.total:
         raise WorkbookError(f"its workbook is larger than {LIMITS.total >> 20} MB", where=path, hint=AGAIN)
     with package.reading(WORKBOOK) as entry:
         data = entry.read()
-    if hashlib.sha256(data).hexdigest() != sha256:
+    if hashlib.sha256(data).hexdigest() != about.sha256:
         raise WorkbookError("the workbook in the saved run is not the one that was run", where=path, hint=AGAIN)
-    return understood(read_workbook(data, Path(name).name), Path(Path(name).name))
+    return understood(read_workbook(data, name), Path(name))
+
+
+@dataclass(frozen=True, slots=True)
+class _Book:
+    """What the document says of the workbook."""
+
+    name: str
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """What the document says of a column."""
+
+    kind: str
+    name: str
+    type: str
+    count: int
+    entry: str
+    sha256: str
 
 
 class _Columns:
     """The columns of a saved run, as the document lists them.
 
     Raises:
-        KeyError, TypeError, ValueError: they are not those of the model.
+        ValueError: they are not those of the model.
     """
 
-    def __init__(self, listed: list[Document], model: Model, path: Path) -> None:
+    def __init__(self, found: object, model: Model, path: Path) -> None:
+        told(isinstance(found, list), "its columns")
+        assert isinstance(found, list)
+        listed = [made(_Column, each, "a column") for each in found]
         self._listed, self._path = listed, path
-        self._names = {kind: [str(each["name"]) for each in listed if each["kind"] == kind] for kind in _KINDS}
+        self._names = {kind: [each.name for each in listed if each.kind == kind] for kind in _KINDS}
         live = [a.name for a in model.live]
         told(self._names["trial"] == [""], "its list of trials")
         told(self._names["input"] == self._names["prior"] == live, "its assumptions, which this xlmc reads otherwise")
         told(self._names["forecast"] == [f.name for f in model.forecasts], "its forecasts, which are read otherwise")
         told(len(listed) == sum(map(len, self._names.values())), "a column of a kind that there is not")
         types: dict[Hashable, np.dtype[Any]] = {
-            self._key(each): np.dtype(_KINDS[each["kind"]]).newbyteorder("=") for each in listed
+            self._key(each): np.dtype(_KINDS[each.kind]).newbyteorder("=") for each in listed
         }
         self._keeper = Keeper(types)
 
     @staticmethod
-    def _key(about: Document) -> tuple[str, str]:
-        return str(about["kind"]), str(about["name"])
+    def _key(about: _Column) -> tuple[str, str]:
+        return about.kind, about.name
 
     def read(self, package: Package) -> None:
         """Copy every column out of the package, and check it."""
-        counts: dict[str, set[int]] = {kind: set() for kind in _KINDS}
+        lengths: dict[str, set[int]] = {kind: set() for kind in _KINDS}
         for about in self._listed:
-            counts[about["kind"]].add(_whole(about["count"]))
+            lengths[about.kind].add(whole(about.count, "the length of a column"))
             digest = hashlib.sha256()
-            with package.reading(str(about["entry"])) as entry:
-                kind = _KINDS[about["kind"]]
-                for part in read_column(entry, kind, _whole(about["count"]), str(about["entry"]), digest):
+            with package.reading(about.entry) as entry:
+                for part in read_column(entry, _KINDS[about.kind], about.count, about.entry, digest):
                     self._keeper.add(self._key(about), part)
                     self._keeper.settle()
-            told(digest.hexdigest() == about["sha256"], f"the column {about['entry']}: its SHA-256 is another")
-        accepted = counts["trial"]
-        told(all(len(found) <= 1 for found in counts.values()), "columns of different lengths")
-        told(counts["forecast"] <= accepted and max(counts["input"], default=0) <= max(accepted), "too long columns")
+            told(digest.hexdigest() == about.sha256, f"the column {about.entry}: its SHA-256 is another")
+        accepted = lengths["trial"]
+        told(all(len(found) <= 1 for found in lengths.values()), "columns of different lengths")
+        told(lengths["forecast"] <= accepted and max(lengths["input"], default=0) <= max(accepted), "too long columns")
 
     def of(self, kind: str) -> Mapping[str, Column]:
         """The columns of a kind by name, in their order."""
@@ -153,31 +177,32 @@ class _Columns:
 
 def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
     settings = settings_of(found["settings"])
-    plan, trials = plan_of(settings, found["order"]), _whole(found["trials"])
+    plan, trials = plan_of(settings, found["order"]), whole(found["trials"], "its number of trials")
     told(1 <= trials <= plan.trials, "its number of trials")
     live = {name_key(a.name) for a in model.live}
     told(set(plan.order) <= live, "its order of dimensions")
-    told(set(found["invalid"]) <= live, "its invalid draws")
+    invalid = counts(found["invalid"], "its invalid draws")
+    told(set(invalid) <= live, "its invalid draws")
     index = columns.of("trial")[""]
     rare = rare_of(found["rare"])
     _check_index(index, trials if rare is None else rare.kept)
-    forecasts = columns.of("forecast")
+    forecasts, faults = columns.of("forecast"), mapping(found["faults"], "its faults")
     for name in forecasts:
         told(not any(bool(np.isinf(part).any()) for part in parts(forecasts[name])), f"the forecast {name!r}")
     return Simulation(
         model=model,
         settings=settings,
         plan=plan,
-        block=max(1, _whole(found["block"])),
+        block=max(1, whole(found["block"], "the size of its blocks")),
         trials=trials,
         trial_index=index,
         inputs=columns.of("input"),
         prior=columns.of("prior"),
         forecasts=forecasts,
-        faults={name: Counter(found["faults"][name]) for name in forecasts},
-        tally=tally_of(found["tally"], len(model.filters)),
-        invalid=Counter(found["invalid"]),
-        error_trials=_whole(found["error_trials"]),
+        faults={name: counts(faults[name], f"the faults of {name!r}") for name in forecasts},
+        tally=tally_of(found["tally"], len(model.filters), trials),
+        invalid=invalid,
+        error_trials=whole(found["error_trials"], "its number of trials with errors"),
         stopped=stopped_of(found["stopped"]),
         rounding=rounding_of(found["rounding"]),
         rare=rare,
@@ -194,11 +219,6 @@ def _check_index(index: Column, trials: int) -> None:
     told(last < trials, "its trial numbers")
 
 
-def _whole(value: object) -> int:
-    if type(value) is not int or value < 0:
-        raise ValueError(f"the number {value!r}")
-    return value
-
-
 def _damaged(path: Path, error: Exception) -> XlmcError:
-    return WorkbookError(f"the saved run is damaged: {error}", where=path, hint=AGAIN)
+    reason = f"it lacks {error.args[0]!r}" if isinstance(error, KeyError) else str(error)
+    return WorkbookError(f"the saved run is damaged: {reason}", where=path, hint=AGAIN)

@@ -167,7 +167,8 @@ class _Pass:
         if text and ("ref" in self._attributes or index not in self._masters):
             self._masters[index] = Formula(text, self._row, self._column)
         if index not in self._masters:
-            raise self._faulty(f"shares formula {index}, which no earlier cell holds")
+            which = "a formula without a number" if index is None else f"formula {index}"
+            raise self._faulty(f"shares {which}, which no earlier cell holds")
         return self._masters[index]
 
     def _data_table(self) -> DataTable:

@@ -151,3 +151,64 @@ def test_an_open_workbook_is_refused(tmp_path, owner, program):
 def test_another_workbook_may_be_open(tmp_path):
     (tmp_path / "~$other.xlsx").write_bytes(b"")
     refuse_if_open(tmp_path / "book.xlsx")
+
+
+def held(code, times, then):
+    """A call that fails as on Windows, so many times."""
+    left = [times]
+
+    def rename(source, target):
+        if left[0]:
+            left[0] -= 1
+            error = PermissionError(errno.EACCES, "The process cannot access the file")
+            error.winerror = code
+            raise error
+        return then(source, target)
+
+    return rename
+
+
+@pytest.mark.parametrize("code", [5, 32, 33, 1224, 362, 391, 404, 426])
+def test_a_file_that_is_held_for_a_moment_is_replaced(tmp_path, monkeypatch, code):
+    path = tmp_path / "book.xlsx"
+    path.write_bytes(b"old")
+    naps = []
+    monkeypatch.setattr("time.sleep", naps.append)
+    monkeypatch.setattr(os, "replace", held(code, 3, os.replace))
+    write_workbook(path, b"new")
+    assert path.read_bytes() == b"new"
+    assert naps == [0.05, 0.1, 0.2]
+
+
+def test_a_file_that_is_held_for_long_stays_and_is_told_of(tmp_path, monkeypatch):
+    path = tmp_path / "book.xlsx"
+    path.write_bytes(b"old")
+    monkeypatch.setattr("time.sleep", lambda _: None)
+    monkeypatch.setattr(os, "replace", held(32, 100, os.replace))
+    with pytest.raises(writer.TakenError, match=r"another program holds the file\. Close it in Excel") as caught:
+        write_workbook(path, b"new")
+    assert caught.value.where == str(path)
+    assert [(left.name, left.read_bytes()) for left in tmp_path.iterdir()] == [("book.xlsx", b"old")]
+
+
+def test_a_new_name_is_tried_again_too_and_never_replaces(tmp_path, monkeypatch):
+    """What `os.rename` does on Windows."""
+    monkeypatch.setattr("time.sleep", lambda _: None)
+    (tmp_path / "temporary").write_bytes(b"new")
+    writer._patiently(held(33, 2, os.rename), tmp_path / "temporary", tmp_path / "book.xlsx")
+    assert (tmp_path / "book.xlsx").read_bytes() == b"new"
+
+    def taken(*_):
+        raise FileExistsError(errno.EEXIST, "Cannot create a file when that file already exists")
+
+    with pytest.raises(FileExistsError):
+        writer._patiently(taken, tmp_path / "temporary", tmp_path / "book.xlsx")
+
+
+def test_a_disk_without_second_names_is_written_to(tmp_path, monkeypatch):
+    def refuse(*_):
+        raise PermissionError(errno.EPERM, "Operation not permitted")
+
+    monkeypatch.setattr(os, "link", refuse)
+    write_workbook(tmp_path / "book.xlsx", b"new")
+    assert [(left.name, left.read_bytes()) for left in tmp_path.iterdir()] == [("book.xlsx", b"new")]

@@ -1,0 +1,173 @@
+"""Kills, full disks, two writers and SIGTERM: `benchmarks/faults.py` does many more of them."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from faults import (
+    COLUMNS,
+    KINDS,
+    Found,
+    _check_full,
+    _check_strays,
+    _write_limited,
+    _write_once,
+    in_child,
+    kill_at_call,
+)
+from faults import full_disk as fill_up
+
+import xlmc.workbook.writer as writer
+from xlmc.workbook.target import Target
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+ENDING = {"workbook": ".xlsx", "page": ".html", "JSON": ".json", "saved run": ".xlmcrun", "CSV": ".csv"}
+
+
+@pytest.mark.parametrize("call", [1, 2, 3, 4, 5, 6, 8])
+def test_a_writer_killed_at_any_call_leaves_a_whole_file(tmp_path, call):
+    path = tmp_path / "case.html"
+    path.write_bytes(b"old")
+
+    def work():
+        kill_at_call(call, tmp_path)
+        for _ in range(10):
+            writer.write_workbook(path, b"new" * 100_000)
+
+    status = os.waitpid(in_child(work), 0)[1]
+    assert os.WTERMSIG(status) == signal.SIGKILL
+    assert path.read_bytes() in (b"old", b"new" * 100_000)
+    writer.write_workbook(path, b"newer")
+    assert [(left.name, left.read_bytes()) for left in tmp_path.iterdir()] == [("case.html", b"newer")]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_kill_while_a_kind_of_output_is_written_breaks_nothing(writers, kind, tmp_path):
+    path, found = tmp_path / f"out{ENDING.get(kind, '.xlsx')}", Found()
+    if kind in ("Parquet", COLUMNS):
+        path = tmp_path / ("out.parquet" if kind == "Parquet" else "out.")
+    if kind != COLUMNS:
+        writers.write(kind, 0, path)
+        writers.contents(kind)
+
+    def work():
+        kill_at_call(4, tmp_path)
+        for _ in range(4):
+            _write_once(writers, kind, path)
+
+    assert os.WIFSIGNALED(os.waitpid(in_child(work), 0)[1])
+    if kind != COLUMNS:
+        assert path.read_bytes() in writers.contents(kind)
+    _write_once(writers, kind, path)
+    _check_strays(kind, path, found, "after a kill")
+    assert found.broken == []
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_full_disk_breaks_nothing_and_is_told(writers, kind, tmp_path):
+    """By a limit on the size of files, which anybody can set."""
+    path, found = tmp_path / f"out{ENDING.get(kind, '.xlsx')}", Found()
+    if kind in ("Parquet", COLUMNS):
+        path = tmp_path / ("out.parquet" if kind == "Parquet" else "out.")
+    if kind != COLUMNS:
+        writers.write(kind, 0, path)
+    child = in_child(lambda: _write_limited(writers, kind, path, 1_500))
+    _check_full(writers, kind, path, os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), found)
+    assert found.broken == []
+    assert found.ends == {"told that it is full": 1}
+
+
+def test_the_campaign_of_full_disks_runs_where_none_can_be_mounted(writers):
+    found = Found()
+    fill_up(writers, "CSV", random.Random(1), found, None)
+    assert found.broken == []
+
+
+def test_two_writers_of_one_file_do_not_disturb_each_other(tmp_path):
+    path = tmp_path / "case.html"
+    path.write_bytes(b"0" * 200_000)
+
+    def work(byte):
+        for _ in range(60):
+            writer.write_workbook(path, byte * 200_000)
+
+    children = [in_child(lambda byte=byte: work(byte)) for byte in (b"1", b"2")]
+    while children:
+        content = path.read_bytes()
+        assert len(content) == 200_000
+        assert len(set(content)) == 1
+        done, status = os.waitpid(-1, os.WNOHANG)
+        if done:
+            children.remove(done)
+            assert status == 0
+    assert [left.name for left in tmp_path.iterdir()] == ["case.html"]
+
+
+def test_two_writers_that_both_begin_a_new_file(tmp_path):
+    path = tmp_path / "case.html"
+    writer.write_workbook(path, b"theirs")
+    target = Target(path, "case.xlsx")
+    with pytest.raises(writer.TakenError):
+        writer.write_workbook(path, b"ours", target.check)
+    assert path.read_bytes() == b"theirs"
+
+
+SCRIPT = """
+import sys
+from xlmc.scratch import columns
+columns.IN_MEMORY = columns.WRITTEN = 0
+from xlmc.cli import main
+sys.argv = ["xlmc", *sys.argv[1:]]
+main()
+"""
+
+
+def began(folder, process):
+    """Wait until the run keeps columns on disk."""
+    for _ in range(1_200):
+        if process.poll() is not None or any(folder.iterdir()):
+            return any(folder.iterdir())
+        time.sleep(0.05)
+    return False
+
+
+def running(tmp_path, *options):
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    command = [sys.executable, "-c", SCRIPT, "simulate", "examples/intersection.xlsx", "-n", "1000000000", *options]
+    environment = os.environ | {"TMPDIR": str(temporary)}
+    output = ("-o", str(tmp_path / "out.xlsx"), "--quiet")
+    process = subprocess.Popen([*command, *output], stderr=subprocess.PIPE, text=True, env=environment)
+    assert began(temporary, process)
+    return process, temporary
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+@pytest.mark.parametrize("options", [(), ("-j", "2", "--scheduler", "processes")])
+def test_a_run_that_is_asked_to_end_clears_away(tmp_path, monkeypatch, number, code, options):
+    monkeypatch.chdir(os.path.dirname(os.path.dirname(os.path.dirname(__file__))))
+    process, temporary = running(tmp_path, *options)
+    process.send_signal(number)
+    told = process.communicate(timeout=120)[1]
+    assert process.returncode == code
+    assert told == f"xlmc: ended by {signal.Signals(number).name}; no half file is left.\n"
+    assert list(temporary.iterdir()) == []
+    assert [left.name for left in tmp_path.iterdir()] == ["temporary"]
+
+
+def test_the_next_run_removes_the_columns_of_a_killed_one(tmp_path, monkeypatch):
+    monkeypatch.chdir(os.path.dirname(os.path.dirname(os.path.dirname(__file__))))
+    process, temporary = running(tmp_path)
+    process.kill()
+    process.communicate()
+    assert list(temporary.iterdir()) != []
+    command = [sys.executable, "-m", "xlmc", "simulate", "examples/intersection.xlsx", "-n", "1000", "-o"]
+    environment = os.environ | {"TMPDIR": str(temporary)}
+    subprocess.run([*command, str(tmp_path / "o.xlsx")], env=environment, capture_output=True, check=False)
+    assert list(temporary.iterdir()) == []

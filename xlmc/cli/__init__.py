@@ -15,7 +15,7 @@ from xlmc import __version__
 from xlmc.cli.check import check
 from xlmc.cli.commands import Commands
 from xlmc.cli.compare import compare
-from xlmc.cli.ending import end_in_order
+from xlmc.cli.ending import ending_in_order
 from xlmc.cli.fit import fit
 from xlmc.cli.methods import methods
 from xlmc.cli.mistakes import mistake
@@ -53,11 +53,11 @@ for _command in (new, check, fit, verify, simulate, report, replay, compare, scr
 
 def main() -> None:
     """Run the command line; a mistake in the input is a message and exit code 2, too coarse an arithmetic 1."""
-    end_in_order()
     prepare()
     try:
         # A command that asks for an exit code returns it.
-        sys.exit(xlmc.main(prog_name="xlmc", standalone_mode=False) or 0)
+        with ending_in_order():
+            sys.exit(xlmc.main(prog_name="xlmc", standalone_mode=False) or 0)
     except click.ClickException as error:
         say(f"xlmc: {mistake(error)}", err=True)
         sys.exit(BAD_INPUT)

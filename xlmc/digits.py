@@ -5,7 +5,7 @@ It runs with every simulation. `xlmc stability` says more: which cell it is, why
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from xlmc.compile.replicas import Jitter, closure, evaluation, numbers, term_sizes
 from xlmc.definitions.model import name_key
+from xlmc.functions.budget import TooLargeError
 
 if TYPE_CHECKING:
     from xlmc.model import Model
@@ -26,6 +27,9 @@ _REPLICAS: Final = 1
 
 _MOST_NODES: Final = 10_000
 """Operations that the forecasts need: some half a second. Larger books are left to `xlmc stability`."""
+
+_MOST_CELLS: Final = 100_000
+"""Cells of all arrays among them."""
 
 _VISIBLE: Final = 1e-3
 """Of a forecast's central range, or of its value where that is larger."""
@@ -53,8 +57,22 @@ def lost_digits(model: Model, inputs: Mapping[str, Floats]) -> list[str]:
         return []
     nodes = {forecast.name: model.lowering.cell(forecast.cell) for forecast in model.forecasts}
     places = closure(model.lowering.dag, list(nodes.values()))
-    if len(places) > _MOST_NODES:
+    if len(places) > _MOST_NODES or sum(_cells(model.lowering.dag.sizes[place]) for place in places) > _MOST_CELLS:
         return []
+    try:
+        return _lost(model, draws, n, nodes, places)
+    except TooLargeError:
+        return []
+
+
+def _cells(size: tuple[int, ...] | None) -> int:
+    return 1 if size is None else abs(size[0] * size[1])
+
+
+def _lost(
+    model: Model, draws: Mapping[str, Floats], n: int, nodes: Mapping[str, int], places: Sequence[int]
+) -> list[str]:
+    """The sentences of `lost_digits` on forecasts at these nodes, which need those at `places`."""
     plain = evaluation(model.lowering.dag, places, draws)
     lost = {name: np.zeros(n, bool) for name in nodes}
     for replica in range(_REPLICAS):

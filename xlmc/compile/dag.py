@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import hashlib
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple, assert_never
 
 import numpy as np
 
+from xlmc.address import Cell, host_of
 from xlmc.compile.ragged import Ragged, by_trial
-from xlmc.errors import ErrorCode
+from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions import Function, Kind
+from xlmc.functions.budget import MOST_KEPT, TooLargeError, ask_for_cells
 from xlmc.functions.logical import if_, if_error, if_na
 from xlmc.functions.values import BLANK, ERROR, LOGICAL, NUMBER, TEXT, ShapeVaries, Value, constant
 
@@ -147,6 +151,7 @@ class Dag:
         sizes: of each.
         origins: of constants that were computed here: the node that each came from.
         made: where it is a list, the nodes asked for are noted in it, whether they were new or not.
+        hosts, ends: the formula cells in the order in which they were lowered, and how many nodes there were then.
     """
 
     def __init__(self) -> None:
@@ -156,14 +161,42 @@ class Dag:
         self.origins: dict[int, Apply | Select | Rescue | Range] = {}
         self.made: list[int] | None = None
         self._known: dict[object, int] = {}
+        self._kept = 0
+        self.hosts: list[Cell] = []
+        self.ends: list[int] = []
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """To another process go the nodes alone: it evaluates them and adds none."""
-        return _of_nodes, (self.nodes, self.types, self.sizes)
+        """To another process go the nodes and their cells alone: it evaluates them and adds none."""
+        return _of_nodes, (self.nodes, self.types, self.sizes, self.hosts, self.ends)
+
+    def host_ends(self, cell: Cell) -> None:
+        """Note that all nodes made since the last such note were made for the formula of this cell."""
+        self.hosts.append(host_of(cell))
+        self.ends.append(len(self.nodes))
+
+    def told(self, error: TooLargeError) -> FormulaError:
+        """The error, told of the cell whose formula first asked for the node."""
+        at = len(self.ends) if error.node is None else bisect_right(self.ends, error.node)
+        return error if at == len(self.ends) else error.at(self.hosts[at])
 
     def constant(self, value: Value) -> int:
-        """The node of a known value."""
+        """The node of a known value.
+
+        Raises:
+            TooLargeError: the constants of the workbook take too much memory.
+        """
+        if value.numbers.size > 1:
+            self._keep(value)
         return self._place(_constant_key(value), Constant(value), _constant_type(value), value.shape[1:] or None)
+
+    def _keep(self, value: Value) -> None:
+        """Count the memory of an array's numbers, and of its copy in the key."""
+        self._kept += value.nbytes
+        if self._kept > MOST_KEPT:
+            raise TooLargeError(
+                f"the arrays of constants of the workbook take more than {MOST_KEPT >> 20} MB up to here",
+                hint="make the arrays smaller, or fewer",
+            )
 
     def input(self, name: str) -> int:
         """The node of an assumption."""
@@ -294,9 +327,9 @@ class Dag:
         return sorted(needed)
 
 
-def _of_nodes(nodes: list[Node], types: list[Kind], sizes: list[Size]) -> Dag:
+def _of_nodes(nodes: list[Node], types: list[Kind], sizes: list[Size], hosts: list[Cell], ends: list[int]) -> Dag:
     dag = Dag()
-    dag.nodes, dag.types, dag.sizes = nodes, types, sizes
+    dag.nodes, dag.types, dag.sizes, dag.hosts, dag.ends = nodes, types, sizes, hosts, ends
     return dag
 
 
@@ -320,6 +353,8 @@ def uses(node: Node) -> tuple[int, ...]:
 def evaluated(node: Apply | Select | Rescue | Range, values: Mapping[int, Value]) -> Value:
     """The node's value with everything Excel minds: the reference path, and how constants fold."""
     needed = {place: values[place] for place in uses(node)}
+    if isinstance(node, Range):
+        ask_for_cells(max(value.shape[0] for value in needed.values()), len(node.rows), len(node.rows[0]))
     if not any(isinstance(value, Ragged) for value in needed.values()):
         try:
             return _evaluated(node, needed)
@@ -333,13 +368,24 @@ def _evaluated(node: Apply | Select | Rescue | Range, values: Mapping[int, Value
         case Apply(function, arguments):
             return function([values[place] for place in arguments])
         case Select(condition, yes, no):
+            _ask_for_all(values[condition], values[yes], values[no])
             return _selected(values[condition], values[yes], values[no])
         case Rescue(value, instead, only_na):
+            _ask_for_all(values[value], values[instead])
             return _rescued(values[value], values[instead], only_na)
         case Range(rows):
             return _stacked([[values[place] for place in row] for row in rows])
         case _:
             assert_never(node)
+
+
+def _ask_for_all(*values: Value) -> None:
+    """Ask for the array that the values spread to."""
+    shapes = [value.shape for value in values]
+    tables = [shape for shape in shapes if len(shape) == 3]
+    if tables:
+        n = max(shape[0] for shape in shapes)
+        ask_for_cells(n, max(shape[1] for shape in tables), max(shape[2] for shape in tables))
 
 
 def _selected(condition: Value, yes: Value, no: Value) -> Value:
@@ -375,8 +421,16 @@ def _volatile(node: Node) -> bool:
     return isinstance(node, Apply) and node.function.volatile
 
 
+_LARGE: Final = 64
+"""Cells of a constant whose numbers are looked up by a digest."""
+
+
 def _constant_key(value: Value) -> object:
     texts = None if value.texts is None else tuple(str(text) for text in value.texts.ravel())
+    if value.numbers.size > _LARGE:
+        digest = hashlib.sha256(np.ascontiguousarray(value.numbers).data)
+        digest.update(np.ascontiguousarray(value.kinds).data)
+        return value.shape, digest.digest(), texts
     return value.shape, value.numbers.tobytes(), value.kinds.tobytes(), texts
 
 

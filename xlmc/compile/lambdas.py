@@ -10,6 +10,7 @@ from xlmc.compile.arrays import element, grid, size_of
 from xlmc.compile.scope import Closure, Scope, Thunk
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
+from xlmc.functions.budget import ask_for_cells
 from xlmc.functions.values import Value, constant
 
 if TYPE_CHECKING:
@@ -77,6 +78,7 @@ def _called(lowering: Lowering, closure: Closure, arguments: tuple[int | Thunk |
         raise FormulaError(f"a LAMBDA of {len(parameters)} parameters is given {len(arguments)} arguments")
     if scope.depth >= _DEEPEST:
         raise FormulaError(f"LAMBDAs call each other more than {_DEEPEST} deep")
+    lowering.calls.add()
     within = closure.scope.bound(**dict(zip(parameters, arguments, strict=True)))
     return lowering.lower(closure.function.body, replace(within, array=scope.array, depth=scope.depth + 1))
 
@@ -150,6 +152,7 @@ def _by(rows: bool) -> Callable[[Lowering, Arguments, Scope], int]:
 
 def _make_array(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
     rows, columns = (_known_size(lowering, argument, scope) for argument in arguments[:2])
+    ask_for_cells(1, rows, columns)
     closure = _closure(lowering, arguments[2], scope)
 
     def at(r: int, c: int) -> int:

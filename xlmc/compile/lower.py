@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from difflib import get_close_matches
 from functools import cached_property
+from itertools import groupby
 from typing import assert_never
 
 import numpy as np
@@ -26,6 +27,7 @@ from xlmc.compile.settings import as_set
 from xlmc.errors import ErrorCode, FormulaError, Notice
 from xlmc.formula import Filled, Graph, Resolver, ir
 from xlmc.functions import Function, Kind
+from xlmc.functions.budget import CallCount, ask_for_reading
 from xlmc.functions.families import REGISTRY, function_named
 from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.registry import Anything
@@ -63,6 +65,7 @@ class Lowering:
             are any, the graph must be built again with them.
         dag: the nodes.
         notices: what the person should know.
+        calls: of LAMBDAs, which must not be too many.
     """
 
     def __init__(
@@ -77,11 +80,15 @@ class Lowering:
         self._computed: dict[Cell, int] = {}
         self._arrays: dict[Cell, int] = {}
         self._numbers: dict[float, int] = {}
+        self._ranges: dict[Area, int] = {}
+        self.calls = CallCount()
         self._cells: dict[Cell, int] = {cell: self.dag.input(name) for cell, name in inputs.items()}
         self._cells |= {cell: self.dag.constant(constant(value)) for cell, value in held.items()}
         self._recipes, self._totals = Recipes(self.dag), RunningTotals(self.dag)
         for cell, placed in graph.formulas.placed.items():
             self._computed[cell] = place = self._formula_cell(cell, placed)
+            self.dag.host_ends(cell)
+            self.calls.next_formula()
             saved = graph.workbook.content(cell).value if audit else None
             self._cells[cell] = place if saved is None else self._held_cell(cell)
 
@@ -247,8 +254,13 @@ class Lowering:
             return self._joined(tree, scope)
         first, rest = ir.chain(tree)
         place = self.lower(first, scope)
-        for operator, right in rest:
-            place = self.call(operator, (place, self.lower(right, scope)))
+        for operator, run in groupby(rest, lambda step: step[0]):
+            parts = [self.lower(right, scope) for _, right in run]
+            if operator == "&":
+                place = self.call(operator, (place, *parts))
+                continue
+            for part in parts:
+                place = self.call(operator, (place, part))
         return place
 
     def _joined(self, tree: ir.Binary, scope: Scope) -> int:
@@ -282,6 +294,10 @@ class Lowering:
         if function.volatile and not self._audit:
             hint = "put it in a cell of its own: the value Excel saved for it is then used, and the run can be repeated"
             raise FormulaError(f"{name} gives another value each time", hint=hint)
+        if name == "SUM" and len(arguments) == 1 and isinstance(arguments[0], Area):
+            total = self._totals.sum_of(function, arguments[0], self.range)
+            if total is not None:
+                return total
         beside = scope.over_arrays() if name in _OVER_ARRAYS else scope
         book = self.graph.workbook
         found: list[int] = []
@@ -350,7 +366,17 @@ class Lowering:
         return [self.range(area) for area in areas]
 
     def range(self, area: Area) -> int:
-        """The node of all cells of an area."""
+        """The node of all cells of an area, which are looked up once.
+
+        Raises:
+            TooLargeError: they are too many.
+        """
+        if area not in self._ranges:
+            ask_for_reading(area.rows, area.columns)
+            self._ranges[area] = self._range(area)
+        return self._ranges[area]
+
+    def _range(self, area: Area) -> int:
         rows = range(area.top, area.bottom + 1)
         columns = range(area.left, area.right + 1)
         return self.dag.add(Range(tuple(tuple(self.cell(Cell(area.sheet, r, c)) for c in columns) for r in rows)))

@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.compile.block_size import array_bytes, fitting_block
 from xlmc.compile.bounds import Bounds
 from xlmc.compile.dag import Dag
 from xlmc.compile.engine import Column, Evaluator, Target
 from xlmc.compile.plan import Plan, Space
 from xlmc.compile.steps import Departure
 from xlmc.compile.tracking import TrackingEvaluator
+from xlmc.functions.budget import TooLargeError
 from xlmc.functions.values import Floats
 
 if TYPE_CHECKING:
@@ -40,9 +42,11 @@ class NumpyProgram:
         filters, forecasts: the places of nodes.
         may_err: the inputs whose draws may be errors (NaNs), which raise no flag.
         between: name of an input -> the bounds that it will be given within; none are known of the others.
+        array_bytes: what arrays and texts take in a trial.
 
     Attributes:
         largest_block: 32,768, or the largest power of two whose buffers take no more than 32 MB: they stay in caches.
+            It is smaller where arrays or texts would take too much memory.
     """
 
     def __init__(
@@ -52,8 +56,9 @@ class NumpyProgram:
         forecasts: Sequence[int],
         may_err: frozenset[str],
         between: Mapping[str, Bounds] | None = None,
+        array_bytes: int = 0,
     ) -> None:
-        self._made_of = dag, filters, forecasts, may_err, between
+        self._made_of = dag, filters, forecasts, may_err, between, array_bytes
         self._plan = Plan(dag, filters, forecasts, between)
         self._may_err = may_err & self._plan.inputs
         self.largest_block = _LARGEST_BLOCK
@@ -61,6 +66,7 @@ class NumpyProgram:
             self.largest_block > _SMALLEST_BLOCK and self.largest_block * self._plan.buffers.trial_bytes > _MOST_BYTES
         ):
             self.largest_block //= 2
+        self.largest_block = fitting_block(self.largest_block, array_bytes, self._plan.buffers.trial_bytes)
 
     @classmethod
     def of(
@@ -73,7 +79,7 @@ class NumpyProgram:
     ) -> NumpyProgram:
         """The program of targets."""
         first, late = ([lowering.target(target) for target in targets] for targets in (filters, forecasts))
-        return cls(lowering.dag, first, late, may_err, between)
+        return cls(lowering.dag, first, late, may_err, between, array_bytes(lowering, first, late))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return NumpyProgram, self._made_of
@@ -105,7 +111,7 @@ class _NumpyEvaluator:
             try:
                 with np.errstate(divide="raise", over="raise", invalid="raise"):
                     return self._plan.run_filters(self._space, inputs, n)
-            except (FloatingPointError, Departure):
+            except (FloatingPointError, Departure, TooLargeError):
                 self._departed = True
         return self._tracking.filters(inputs, n)
 
@@ -114,6 +120,6 @@ class _NumpyEvaluator:
             try:
                 with np.errstate(divide="raise", over="raise", invalid="raise"):
                     return self._plan.run_forecasts(self._space, self._inputs, survivors)
-            except (FloatingPointError, Departure):
+            except (FloatingPointError, Departure, TooLargeError):
                 self._tracking.filters(self._inputs, self._n)
         return self._tracking.forecasts(survivors)

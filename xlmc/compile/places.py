@@ -14,6 +14,7 @@ from xlmc.compile.references import REFERENCES, NoReference, NotYetNeeded, areas
 from xlmc.compile.scope import Scope
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
+from xlmc.functions.budget import ask_for_reading
 from xlmc.functions.families import function_named
 from xlmc.functions.values import constant
 
@@ -42,6 +43,7 @@ def _row_or_column(name: str) -> Callable[[Lowering, Arguments, Scope], int | No
         place = _referred(lowering, arguments, scope)
         if not scope.array or place.rows == place.columns == 1:
             return lowering.number(float(place.top if name == "ROW" else place.left))
+        ask_for_reading(place.rows if name == "ROW" else 1, place.columns if name == "COLUMN" else 1)
         if name == "ROW":
             return grid(lowering.dag, place.rows, 1, lambda r, _: lowering.number(float(place.top + r)))
         return grid(lowering.dag, 1, place.columns, lambda _, c: lowering.number(float(place.left + c)))
@@ -178,6 +180,7 @@ def _skipped(lowering: Lowering, name: str, options: list[int]) -> tuple[bool, b
 
 def _left_in(lowering: Lowering, area: Area, skipped: tuple[bool, bool]) -> int:
     totals, hidden = skipped
+    ask_for_reading(area.rows, area.columns)
     hidden_rows = lowering.graph.workbook.sheets[area.sheet].hidden_rows if hidden else frozenset()
 
     def node(cell: Cell) -> int:

@@ -7,7 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.functions.values import Value, from_objects
+from xlmc.functions.budget import ask_for_live
+from xlmc.functions.picking import joined
+from xlmc.functions.values import Value
 
 __all__ = ["Ragged", "by_trial"]
 
@@ -31,10 +33,15 @@ class Ragged(Value):
 def by_trial(evaluate: Callable[[Mapping[int, Value]], Value], values: Mapping[int, Value]) -> Value:
     """Evaluate each trial alone; one value where all are of one size, a `Ragged` otherwise."""
     n = max(value.shape[0] for value in values.values())
-    found = [evaluate({place: _trial(value, i) for place, value in values.items()}) for i in range(n)]
+    found: list[Value] = []
+    size = 0
+    for i in range(n):
+        found.append(evaluate({place: _trial(value, i) for place, value in values.items()}))
+        size += found[-1].nbytes
+        ask_for_live(size)
     if len({value.shape for value in found}) > 1:
         return Ragged(found)
-    return from_objects(np.concatenate([value.objects() for value in found]))
+    return joined(found, axis=0)
 
 
 def _trial(value: Value, i: int) -> Value:

@@ -16,6 +16,7 @@ from xlmc.compile.counts import check_count
 from xlmc.compile.scope import Scope, Thunk
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir, parse
+from xlmc.functions.budget import ask_for_reading
 from xlmc.functions.values import Codes
 
 if TYPE_CHECKING:
@@ -90,6 +91,7 @@ def _shared(area: Area) -> Area:
 
 def needed(lowering: Lowering, area: Area) -> Area:
     """The area, once everything in it is lowered."""
+    ask_for_reading(area.rows, area.columns)
     missing = [cell for cell in area.cells() if lowering.awaits(cell)]
     if missing:
         raise NotYetNeeded(missing)
@@ -139,7 +141,8 @@ def _offset(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area
     if not height or not width:
         raise NoReference
     rows, columns = _span(top, height), _span(left, width)
-    return [needed(lowering, _on_the_sheet(Area(base[0].sheet, rows[0], columns[0], rows[1], columns[1])))]
+    reached = _on_the_sheet(Area(base[0].sheet, rows[0], columns[0], rows[1], columns[1]))
+    return [needed(lowering, lowering.resolver.to_the_last_cell(reached))]
 
 
 def _span(start: int, count: int) -> tuple[int, int]:

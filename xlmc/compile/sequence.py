@@ -18,6 +18,7 @@ from xlmc.functions import Kind
 from xlmc.functions.guards import Within
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.sine import sine_and_cosine
+from xlmc.functions.values import Value
 
 __all__ = ["Steps"]
 
@@ -185,7 +186,9 @@ def _pair(
 def _letting_go(places: list[int]) -> Step:
     def step(frame: Frame) -> None:
         for place in places:
-            frame.values[place] = None
+            found, frame.values[place] = frame.values[place], None
+            if isinstance(found, Value):
+                frame.live -= found.nbytes
 
     return step
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from xlmc.compile.dag import Apply, Constant, Dag, Range, Rescue, Select, evaluated, uses
 from xlmc.functions import Function, Kind
+from xlmc.functions.budget import ask_for_live
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value
 
@@ -27,11 +28,12 @@ class Departure(Exception):  # noqa: N818 - it is no error: the block leaves the
 
 @dataclass(slots=True)
 class Frame:
-    """The values of one set of `n` trials, and the buffers that steps may write to."""
+    """The values of one set of `n` trials, and the buffers that steps may write to; `live`: the bytes of `Value`s."""
 
     values: list[Any]
     buffers: Sequence[NDArray[Any]]
     n: int
+    live: int = 0
 
 
 Step = Callable[[Frame], None]
@@ -293,6 +295,8 @@ def _valued(dag: Dag, place: int) -> Step:
             frame.values[place] = np.broadcast_to(_plain(result, kind), (frame.n,))
         else:
             frame.values[place] = result
+            frame.live += result.nbytes
+            ask_for_live(frame.live)
 
     return step
 

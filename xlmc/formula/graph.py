@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from itertools import chain
+from typing import Final, NamedTuple
 
 from xlmc.address import Area, Cell, host_of
 from xlmc.errors import FormulaError
@@ -14,9 +15,14 @@ from xlmc.formula.references import references
 from xlmc.formula.resolve import Resolver
 from xlmc.formula.spills import Spills
 from xlmc.formula.stencil import Stencil
+from xlmc.formula.strips import Needs, Part, Stretch, Strips
 from xlmc.workbook.model import Workbook
 
 __all__ = ["Filled", "Graph", "Trees", "build_graph"]
+
+
+_MANY: Final = 64
+"""Cells of a part that it is worth remembering."""
 
 
 class Filled(NamedTuple):
@@ -110,10 +116,12 @@ class _Walk:
         self._resolver, self._given, self._more, self._strict = resolver, given, more, strict
         self._workbook, self._spills = resolver.workbook, Spills(resolver.workbook)
         self.placed: dict[Cell, ir.Expression | Filled] = {}
-        self.needs: dict[Cell, tuple[Cell, ...]] = {}
+        self.needs = Needs()
+        self._strips = Strips(self._counts, lambda area: _held(self._workbook, area, given), resolver.last_cell)
         self.reached: set[Cell] = set()
         self.faults: dict[Cell, FormulaError] = {}
         self.circular = False
+        self._walked: set[int] = set()  # parts that are kept, by their identity
         self._trail: dict[Cell, Iterator[Cell]] = {}
         self._open: dict[Cell, ir.Expression | Filled] = {}
         self._computed: dict[Cell, bool] = {}
@@ -133,6 +141,11 @@ class _Walk:
             else:
                 placed[cell] = self._open.pop(cell)
                 del trail[cell]
+                for part in self.needs.parts[cell]:
+                    if isinstance(part, Stretch):
+                        part.is_placed()
+                    elif len(part) > _MANY:
+                        self._walked.add(id(part))
 
     def _enter(self, cell: Cell) -> None:
         if cell in self._given:
@@ -141,8 +154,15 @@ class _Walk:
             self._close_circle(cell)
         elif cell not in self.placed and (found := self._rewritten(cell) or self._read(cell)) is not None:
             self._open[cell] = found
-            self.needs[cell] = needs = self._precedents(cell, found)
-            self._trail[cell] = iter(needs)
+            self.needs.parts[cell] = parts = self._precedents(cell, found)
+            self._trail[cell] = self._waiting(parts)
+
+    def _waiting(self, parts: tuple[Part, ...]) -> Iterator[Cell]:
+        """The cells of the parts, but for most of those that are placed."""
+        if len(parts) == 1 and type(parts[0]) is tuple and id(parts[0]) not in self._walked:
+            return iter(parts[0])
+        left = (part.waiting() if isinstance(part, Stretch) else part for part in parts if id(part) not in self._walked)
+        return chain.from_iterable(left)
 
     def _close_circle(self, cell: Cell) -> None:
         if self._strict:
@@ -162,14 +182,19 @@ class _Walk:
             self.faults[cell] = error
             return ir.Missing()
 
-    def _precedents(self, cell: Cell, found: ir.Expression | Filled) -> tuple[Cell, ...]:
+    def _precedents(self, cell: Cell, found: ir.Expression | Filled) -> tuple[Part, ...]:
         """The cells that one needs and that hold a formula or are given."""
+        parts: list[Part]
         if isinstance(found, Filled):
             known = self._computed
-            needs = [need for need in found.cells if (known[need] if need in known else self._counts(need))]
+            parts = [tuple([need for need in found.cells if (known[need] if need in known else self._counts(need))])]
         else:
-            needs = [need for place in dict.fromkeys(references(found)) for need in self._counted(place)]
-        return (*needs, *self._more.get(cell, ()))
+            places = dict.fromkeys(references(found))
+            parts = [self._strips.of(place) for place in places if isinstance(place, Area)]
+            parts.append(tuple([place for place in places if isinstance(place, Cell) and self._counts(place)]))
+        if cell in self._more:
+            parts.append(tuple(self._more[cell]))
+        return tuple(parts)
 
     def _rewritten(self, cell: Cell) -> ir.Expression | None:
         """What stands in place of a cell's own formula, if anything does."""
@@ -180,10 +205,6 @@ class _Walk:
             raise found
         self.faults[cell] = found
         return ir.Missing()
-
-    def _counted(self, place: Cell | Area) -> Iterator[Cell]:
-        cells = (place,) if isinstance(place, Cell) else _held(self._workbook, place, self._given)
-        return filter(self._counts, cells)
 
     def _counts(self, cell: Cell) -> bool:
         known = self._computed.get(cell)
@@ -205,11 +226,18 @@ def _held(workbook: Workbook, area: Area, inputs: frozenset[Cell]) -> Iterator[C
     yield from sorted(cell for cell in held | extra if cell in area)
 
 
-def _varying(
-    formulas: Iterable[Cell], needs: Mapping[Cell, tuple[Cell, ...]], inputs: Iterable[Cell]
-) -> frozenset[Cell]:
+def _varying(formulas: Iterable[Cell], needs: Needs, inputs: Iterable[Cell]) -> frozenset[Cell]:
     varying = set(inputs)
+    constant: set[int] = set()  # large parts, by their identity
     for cell in formulas:  # in dependency order: what a cell needs was settled before it
-        if not varying.isdisjoint(needs[cell]):
-            varying.add(cell)
+        for part in needs.parts[cell]:
+            if isinstance(part, Stretch):
+                varies = part.varies(varying)
+            else:
+                varies = id(part) not in constant and not varying.isdisjoint(part)
+                if not varies and len(part) > _MANY:
+                    constant.add(id(part))
+            if varies:
+                varying.add(cell)
+                break
     return frozenset(varying)

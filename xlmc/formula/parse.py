@@ -44,6 +44,9 @@ _CELL = r"\$?[A-Za-z]{1,3}\$?[1-9][0-9]{0,6}"
 _BODY = rf"(?P<name>{_CELL}(?::{_CELL})?|\$?[A-Za-z]{{1,3}}:\$?[A-Za-z]{{1,3}}|\$?[1-9][0-9]*:\$?[1-9][0-9]*)"
 _NAME = r"(?P<name>[^\W\d][\w.\\?]*|\\[\w.\\?]*)"
 _LINE_BREAK_IN_TEXT = "\0"  # no XML holds it, so no text of a workbook does
+_LONGEST = 4 * 8192
+"""Characters of a formula in a file, where functions have prefixes and tables their long names."""
+
 _BLANKS = str.maketrans("\t\r\n", "   ")
 _CORNER = re.compile(r"(?P<cf>\$?)(?P<c>[A-Za-z]{1,3})?(?P<rf>\$?)(?P<r>[0-9]+)?")
 
@@ -396,6 +399,12 @@ def parse(text: str) -> ir.Expression:
     Raises:
         FormulaError: the text is not a formula; the error carries the place of the faulty part.
     """
+    if len(text) > _LONGEST:
+        raise FormulaError(
+            f"the formula has {len(text):,} characters, more than {_LONGEST:,}; Excel takes 8,192",
+            hint="split it over several cells",
+            text=f"{text[:60]}…",
+        )
     parser = _Parser()
     flat = _without_line_breaks(text).strip()
     try:

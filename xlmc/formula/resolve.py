@@ -192,10 +192,10 @@ class Resolver:
         if not (_inside(first) and _inside(last)):
             return _REF
         rows, columns = _sorted(first[0], last[0]), _sorted(first[1], last[1])
-        used = self._used_range(sheet)
-        top, bottom = rows or (1, used[0])
-        left, right = columns or (1, used[1])
-        return _area(sheet, top, left, bottom, right)
+        top, bottom = rows or (1, MAX_ROW)
+        left, right = columns or (1, MAX_COLUMN)
+        found = _area(sheet, top, left, bottom, right)
+        return self._cut(found) if isinstance(found, Area) else found
 
     def _over_sheets(self, tree: ir.Reference, host: Cell, origin: tuple[int, int]) -> ir.Expression:
         """`Jan:Dec!A1` as the areas of each sheet between the two tabs, joined."""
@@ -217,6 +217,21 @@ class Resolver:
         if found is None:
             raise FormulaError(f"there is no sheet {name!r}", hint=_did_you_mean(name, self.workbook.sheets))
         return found.name
+
+    def to_the_last_cell(self, area: Area) -> Area:
+        """The area, but where it reaches the last row or column of the sheet it ends with the cells that are filled."""
+        used = self._used_range(area.sheet)
+        bottom = max(area.top, used[0]) if area.bottom == MAX_ROW else area.bottom
+        right = max(area.left, used[1]) if area.right == MAX_COLUMN else area.right
+        return Area(area.sheet, area.top, area.left, bottom, right)
+
+    def last_cell(self, sheet: str) -> tuple[int, int]:
+        """The last row and the last column of a sheet that are filled."""
+        return self._used_range(sheet) if sheet in self.workbook.sheets else (1, 1)
+
+    def _cut(self, area: Area) -> Cell | Area:
+        cut = self.to_the_last_cell(area)
+        return _area(cut.sheet, cut.top, cut.left, cut.bottom, cut.right)
 
     def _used_range(self, sheet: str) -> tuple[int, int]:
         """Last row and column that hold anything: a whole column ends there."""

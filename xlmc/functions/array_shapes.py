@@ -8,6 +8,7 @@ from xlmc.address import MAX_COLUMN, MAX_ROW
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, if_blank, where_wrong, whole_numbers
 from xlmc.functions.array_arguments import Refusal, array_function, decided, grid_of, kept, padded, refuse_errors
+from xlmc.functions.budget import ask_for_cells
 from xlmc.functions.picking import Places, each_part, joined, picked, transposed
 from xlmc.functions.registry import Anything, Cells, Logical, Number
 from xlmc.functions.values import BLANK, ERROR, Floats, Value
@@ -25,6 +26,7 @@ def sequence(rows: Value, columns: Value | None = None, start: Value | None = No
     if 0 in (r, c):
         raise Refusal(ErrorCode.CALC)
     first, by = _number(start), _number(step)
+    ask_for_cells(max(first.shape[0], by.shape[0]), r, c)
     return Value.of_numbers(first + by * np.arange(float(r * c)).reshape(1, r, c))
 
 
@@ -73,6 +75,7 @@ def choose_rows(array: Value, *numbers: Value) -> Value:
     """Rows by their numbers, from 1, or from -1 backwards; these may differ between trials."""
     grid = grid_of(array)
     rows = _chosen(numbers, grid.shape[1])
+    ask_for_cells(max(grid.shape[0], rows.shape[0]), rows.shape[1], grid.shape[2])
     return picked(grid, rows[:, :, None], np.arange(grid.shape[2])[None, None, :])
 
 
@@ -81,6 +84,7 @@ def choose_columns(array: Value, *numbers: Value) -> Value:
     """Columns by their numbers, from 1, or from -1 backwards; these may differ between trials."""
     grid = grid_of(array)
     columns = _chosen(numbers, grid.shape[2])
+    ask_for_cells(max(grid.shape[0], columns.shape[0]), grid.shape[1], columns.shape[1])
     return picked(grid, np.arange(grid.shape[1])[None, :, None], columns[:, None, :])
 
 
@@ -106,6 +110,7 @@ def expand(array: Value, rows: Value, columns: Value | None = None, pad: Value |
     assert r is not None and c is not None  # noqa: PT018 - they have defaults
     if r < grid.shape[1] or c < grid.shape[2] or r > MAX_ROW or c > MAX_COLUMN:
         raise Refusal(ErrorCode.VALUE)
+    ask_for_cells(grid.shape[0], r, c)
     return padded(grid, np.arange(r)[None, :, None], np.arange(c)[None, None, :], pad)
 
 
@@ -123,6 +128,7 @@ def hstack(*arrays: Value) -> Value:
 
 def _stacked(grids: list[Value]) -> Value:
     n, c = max(grid.shape[0] for grid in grids), max(grid.shape[2] for grid in grids)
+    ask_for_cells(n, sum(grid.shape[1] for grid in grids), c)
     columns = np.arange(c)[None, None, :]
     wide = [padded(grid, np.arange(grid.shape[1])[None, :, None], columns, None) for grid in grids]
     tall = [each_part(grid, lambda part: np.broadcast_to(part, (n, *part.shape[1:]))) for grid in wide]

@@ -16,6 +16,7 @@ from xlmc.functions.arguments import (
     whole_numbers,
     with_errors,
 )
+from xlmc.functions.budget import ask_for_cells, ask_for_work
 from xlmc.functions.picking import cell_of, flattened, transposed
 from xlmc.functions.registry import Anything, Cells, Kind, excel
 from xlmc.functions.values import ERROR, NUM, NUMBER, Codes, Floats, Value, constant
@@ -43,6 +44,9 @@ def product(left: Value, right: Value) -> Value:
     (a, a_errors), (b, b_errors) = _matrix(left), _matrix(right)
     if a.shape[2] != b.shape[1]:
         return with_errors(constant(ErrorCode.VALUE), earliest(direct_errors(left), direct_errors(right)))
+    n, rows, columns = max(a.shape[0], b.shape[0]), a.shape[1], b.shape[2]
+    ask_for_cells(n, rows, columns)
+    ask_for_work(n * rows * a.shape[2] * columns)
     total = a[:, :, :1] * b[:, :1, :]
     for i in range(1, a.shape[2]):
         total = total + a[:, :, i : i + 1] * b[:, i : i + 1, :]
@@ -78,6 +82,7 @@ def _eliminated(matrix: Floats) -> tuple[Floats, Floats]:
 
     Gauss and Jordan's elimination; the pivot is the largest of its column, as in LAPACK.
     """
+    ask_for_work(matrix.size * matrix.shape[1])
     work, sign = matrix.copy(), np.ones(matrix.shape[0])
     trials = np.arange(matrix.shape[0])
     for i in range(matrix.shape[1]):
@@ -104,6 +109,7 @@ def unit_matrix(dimension: Value) -> Value:
     common = int(same_in_all_trials(np.where(refused > 0, 0.0, size)))
     if not common:
         return Value.of_numbers(np.zeros(refused.shape), refused)
+    ask_for_cells(1, common, common)
     return Value.of_numbers(np.eye(common)[None])
 
 

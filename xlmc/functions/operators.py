@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from xlmc.functions.registry import Anything, Kind, Number, Text, excel
-from xlmc.functions.values import BLANK, DIV0, ERROR, NUM, TEXT, Floats, Objects, Value
+from xlmc.functions.registry import Anything, Kind, Number, excel
+from xlmc.functions.values import BLANK, DIV0, ERROR, NUM, TEXT, Floats, Value
 
 __all__ = ["compare"]
 
@@ -42,12 +42,6 @@ def power(x: Floats, y: Floats) -> Floats:
     result = np.power(x, y)
     result = np.where((x == 0) & (y < 0), DIV0, result)
     return np.where((x == 0) & (y == 0), NUM, result)
-
-
-@excel("&", Text, Text, returns=Kind.TEXT)
-def joined(x: Objects, y: Objects) -> Objects:
-    """The two texts, one after the other."""
-    return np.asarray(x + y, dtype=object)
 
 
 def compare(relation: Callable[[Any, Any], Any], x: Value, y: Value) -> Value:

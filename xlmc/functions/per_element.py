@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from xlmc.functions.budget import ask_for_texts, counted
 from xlmc.functions.values import Value, from_objects
 
 __all__ = ["per_element"]
@@ -23,8 +24,10 @@ def per_element(function: Callable[..., object]) -> Callable[..., Value]:
         shape = np.broadcast_shapes(*(np.shape(array) for array in arrays), (1,))
         spread = [np.broadcast_to(np.asarray(array, None if _is_array(array) else object), shape) for array in arrays]
         out = np.empty(shape, object)
-        for place in np.ndindex(*shape):
-            out[place] = function(*(_plain(array[place]) for array in spread))
+        ask_for_texts(out.size)
+        columns = [array.ravel().tolist() for array in spread]
+        items = zip(*columns, strict=True) if columns else [()] * out.size
+        out.reshape(-1)[:] = list(counted(function(*parts) for parts in items))
         return from_objects(out)
 
     body.__doc__, body.__name__, body.__module__ = function.__doc__, function.__name__, function.__module__
@@ -33,7 +36,3 @@ def per_element(function: Callable[..., object]) -> Callable[..., Value]:
 
 def _is_array(array: object) -> bool:
     return isinstance(array, np.ndarray)
-
-
-def _plain(item: Any) -> Any:
-    return item.item() if isinstance(item, np.generic) else item

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import leveled
+from xlmc.functions.budget import ask_for_texts, counted
 from xlmc.functions.number_text import general_text
 from xlmc.functions.values import Value, from_objects
 
@@ -26,14 +27,18 @@ def per_object(function: Callable[..., object]) -> Callable[..., Value]:
         shape = np.broadcast_shapes(*(column.shape for column in columns))
         spread = [np.broadcast_to(column, shape) for column in columns]
         out = np.empty(shape, object)
-        for place in np.ndindex(*shape):
-            items = [column[place] for column in spread]
-            errors = [item for item in items if isinstance(item, ErrorCode)]
-            out[place] = errors[0] if errors else function(*items, **options)
+        ask_for_texts(out.size)
+        rows = zip(*(column.ravel().tolist() for column in spread), strict=True)
+        out.reshape(-1)[:] = list(counted(_unless_error(function, items, options) for items in rows))
         return from_objects(out)
 
     body.__doc__, body.__name__, body.__module__ = function.__doc__, function.__name__, function.__module__
     return body
+
+
+def _unless_error(function: Callable[..., object], items: tuple[object, ...], options: Mapping[str, object]) -> object:
+    error = next((item for item in items if isinstance(item, ErrorCode)), None)
+    return function(*items, **options) if error is None else error
 
 
 def object_text(item: object) -> str:

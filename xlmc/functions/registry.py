@@ -16,11 +16,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from importlib import import_module
+from math import prod
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.functions.budget import ask_for_cells
 from xlmc.functions.sine import Tangents
 from xlmc.functions.values import ERROR, LOGICAL, NUMBER, Bools, Codes, Value, from_objects
 
@@ -158,6 +160,8 @@ class Function:
 
     def __call__(self, arguments: Sequence[Value]) -> Value:
         """The function of Excel: any values in, values out, errors kept per trial. Absent arguments are filled in."""
+        if any(argument.numbers.ndim == 3 for argument in arguments):
+            self._ask_for(arguments)
         with np.errstate(all="ignore"):
             if self.takes_values:
                 return _as_value(self.body(*arguments), self.returns, None)
@@ -165,13 +169,28 @@ class Function:
                 return self._of_sets(arguments)
             return self._of_elements(arguments)
 
+    def _ask_for(self, arguments: Sequence[Value]) -> None:
+        """Ask for the array that the arguments spread to, and for that of all those that are put side by side."""
+        shapes = [argument.shape for argument in arguments]
+        n = max(shape[0] for shape in shapes)
+        parameters = [self.parameter(position) for position in range(len(arguments))]
+        single = [s for s, p in zip(shapes, parameters, strict=True) if not p.ranged and len(s) == 3]
+        if single:
+            ask_for_cells(n, max(s[1] for s in single), max(s[2] for s in single))
+        joined = [s for s, p in zip(shapes, parameters, strict=True) if p.ranged and p.repeat]
+        ask_for_cells(n, sum(prod(s[1:]) for s in joined))
+
     def _of_elements(self, arguments: Sequence[Value]) -> Value:
         if any(argument.numbers.ndim == 3 for argument in arguments):
             arguments = [argument.as_range() for argument in arguments]
         arrays: list[Any] = []
         errors = np.zeros(1, np.uint8)
+        known: dict[tuple[int, Kind], tuple[NDArray[Any], Codes]] = {}  # `x&x` reads x as a text once
         for position, argument in enumerate(arguments):
-            array, found = _coerced(argument, self.parameter(position).kind)
+            key = id(argument), self.parameter(position).kind
+            if key not in known:
+                known[key] = _coerced(argument, key[1])
+            array, found = known[key]
             arrays.append(array)
             errors = np.where(errors > 0, errors, found).astype(np.uint8)
         arrays += [p.default for p in self.parameters[len(arguments) :] if not p.repeat]

@@ -8,28 +8,34 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, with_errors
+from xlmc.functions.budget import ask_for_texts, counted
+from xlmc.functions.per_element import per_element
 from xlmc.functions.per_object import object_text, per_object
 from xlmc.functions.registry import Anything, Cells, Kind, Logical, Text, excel
-from xlmc.functions.utf16 import LONGEST, units
+from xlmc.functions.utf16 import LONGEST, fits_in_a_cell
 from xlmc.functions.values import Codes, Objects, Value, constant, from_objects
 
 __all__: list[str] = []
 
 
-@excel("CONCATENATE", Text(repeat=True), returns=Kind.TEXT)
-def concatenate(*texts: Objects) -> Value:
-    """The texts, one after the other."""
-    joined = texts[0]
-    for text in texts[1:]:
-        joined = joined + text
-    return _cut_off(np.asarray(joined, dtype=object))
+@excel("CONCATENATE", Text(repeat=True), returns=Kind.TEXT, aliases=("&",))
+@per_element
+def concatenate(*texts: str) -> object:
+    """The texts, one after the other; `a & b & c` is one such joining, for each step would copy all before it."""
+    joined = "".join(texts)
+    return joined if fits_in_a_cell(joined) else ErrorCode.VALUE
 
 
 @excel("CONCAT", Cells(repeat=True), returns=Kind.TEXT)
 def concat(*values: Value) -> Value:
     """The texts of all cells, row by row."""
     texts, errors = _side_by_side(values)
-    return with_errors(_of_trials("".join(row) for row in texts), errors)
+    return with_errors(_of_trials(_written(row) for row in texts.tolist()), errors)
+
+
+def _written(texts: list[str]) -> str:
+    """The texts as one; of those that are too long together only as much as tells that."""
+    return "".join(texts) if sum(map(len, texts)) <= 2 * LONGEST else "x" * (LONGEST + 1)
 
 
 @excel("TEXTJOIN", Cells, Logical, Cells(repeat=True), returns=Kind.TEXT)
@@ -42,16 +48,22 @@ def text_join(delimiters: Value, ignore_empty: Value, *values: Value) -> Value:
     marks, words = _tall(between, n), _tall(texts, n)
     skip = np.broadcast_to(ignore, (n, *ignore.shape[1:]))
     out = np.empty(skip.shape, object)
-    for place in np.ndindex(*skip.shape):
-        out[place] = _joined(list(marks[place[0]]), list(words[place[0]]), bool(skip[place]))
+    trials = np.broadcast_to(np.arange(n).reshape(n, *(1,) * (skip.ndim - 1)), skip.shape).ravel().tolist()
+    rows = zip(trials, skip.ravel().tolist(), strict=True)
+    out.reshape(-1)[:] = list(counted(_joined(marks[i].tolist(), words[i].tolist(), flag) for i, flag in rows))
     inner = (-1, *(1,) * (ignore.ndim - 1))
-    return with_errors(_cut_off(out), earliest(wrong.reshape(inner), unclear, errors.reshape(inner)))
+    return with_errors(from_objects(out), earliest(wrong.reshape(inner), unclear, errors.reshape(inner)))
 
 
-def _joined(delimiters: list[str], texts: list[str], ignore_empty: bool) -> str:
+def _joined(delimiters: list[str], texts: list[str], ignore_empty: bool) -> object:
     kept = [text for text in texts if text] if ignore_empty else texts
-    turns = [delimiters[index % len(delimiters)] for index in range(max(len(kept) - 1, 0))]
-    return "".join(text + delimiter for text, delimiter in zip(kept, [*turns, ""], strict=False))
+    whole, rest = divmod(max(len(kept) - 1, 0), len(delimiters))
+    lengths = [len(delimiter) for delimiter in delimiters]
+    if sum(map(len, kept)) + whole * sum(lengths) + sum(lengths[:rest]) > LONGEST:
+        return ErrorCode.VALUE
+    turns = [*delimiters * whole, *delimiters[:rest], ""]
+    joined = "".join(text + delimiter for text, delimiter in zip(kept, turns, strict=False))
+    return joined if fits_in_a_cell(joined) else ErrorCode.VALUE
 
 
 def _side_by_side(values: Iterable[Value]) -> tuple[Objects, Codes]:
@@ -62,6 +74,7 @@ def _side_by_side(values: Iterable[Value]) -> tuple[Objects, Codes]:
         columns.append(texts.reshape(texts.shape[0], -1))
         codes.append(np.broadcast_to(errors, texts.shape).reshape(texts.shape[0], -1))
     n = max(column.shape[0] for column in columns)
+    ask_for_texts(n * sum(column.shape[1] for column in columns))
     texts, errors = (np.concatenate([_tall(part, n) for part in parts], axis=1) for parts in (columns, codes))
     return texts, first_errors(errors)
 
@@ -79,8 +92,12 @@ def _of_trials(texts: Iterable[str]) -> Value:
 
 def _cut_off(texts: Objects) -> Value:
     """`#VALUE!` for texts longer than a cell holds."""
-    lengths = np.frompyfunc(lambda text: len(units(text)), 1, 1)(texts)
-    return Value.of_texts(texts, np.where(lengths > LONGEST, np.uint8(ErrorCode.VALUE), np.uint8(0)).astype(np.uint8))
+    flat = texts.ravel().tolist()
+    codes = [0 if fits_in_a_cell(text) else ErrorCode.VALUE for text in flat]
+    kept = ["" if code else text for text, code in zip(flat, codes, strict=True)]
+    box: Objects = np.empty(texts.shape, object)
+    box.reshape(-1)[:] = list(counted(kept))
+    return Value.of_texts(box, np.array(codes, np.uint8).reshape(texts.shape))
 
 
 def _quoted(item: object) -> str:

@@ -77,6 +77,8 @@ def substitute(text: str, old: str, new: str, which: float | None) -> object:
     if not old:
         return text
     if which is None:
+        if len(text) + text.count(old) * (len(new) - len(old)) > LONGEST:
+            return ErrorCode.VALUE
         return _unless_too_long(text.replace(old, new))
     parts = text.split(old)
     place = math.trunc(which)

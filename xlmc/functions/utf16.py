@@ -8,10 +8,15 @@ from typing import Final
 
 import numpy as np
 
-__all__ = ["LONGEST", "in_units", "units", "whole"]
+__all__ = ["LONGEST", "fits_in_a_cell", "in_units", "units", "whole"]
 
 LONGEST: Final = 32767
 """Units of a text in a cell; Excel makes none longer."""
+
+
+def fits_in_a_cell(text: str) -> bool:
+    """Whether Excel makes a text so long."""
+    return len(text) <= LONGEST // 2 or (len(text) <= LONGEST and len(units(text)) <= LONGEST)
 
 
 def units(text: str) -> str:

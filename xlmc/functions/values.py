@@ -5,7 +5,7 @@ Trials are axis 0: a scalar cell is `(n,)`, a range `(n, r, c)`; a constant has 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.budget import ask_for_characters, ask_for_texts, bytes_of
 from xlmc.functions.number_text import general_text, parse_number
 
 __all__ = [
@@ -164,10 +165,11 @@ class Value:
         if self.texts is None or not (self.kinds == TEXT).any():
             return self.numbers, self.errors
         numbers, errors = (np.array(np.broadcast_to(a, self.shape)) for a in (self.numbers, self.errors))
-        for place in zip(*np.nonzero(np.broadcast_to(self.kinds == TEXT, self.shape)), strict=True):
-            number = parse_number(np.broadcast_to(self.texts, self.shape)[place])
-            numbers[place] = 0.0 if number is None else number
-            errors[place] = ErrorCode.VALUE if number is None else 0
+        is_text = np.broadcast_to(self.kinds == TEXT, self.shape)
+        ask_for_texts(int(np.count_nonzero(is_text)))
+        read = [parse_number(text) for text in np.broadcast_to(self.texts, self.shape)[is_text].tolist()]
+        numbers[is_text] = [0.0 if number is None else number for number in read]
+        errors[is_text] = [ErrorCode.VALUE if number is None else 0 for number in read]
         return numbers, errors
 
     def to_logicals(self) -> tuple[Bools, Codes]:
@@ -183,22 +185,29 @@ class Value:
 
     def to_texts(self) -> tuple[Objects, Codes]:
         """As `&` sees it: numbers in General format, `TRUE`, `FALSE`, blanks empty."""
-        numbers, kinds = np.broadcast_to(self.numbers, self.shape), np.broadcast_to(self.kinds, self.shape)
-        out = np.empty(self.shape, object)
-        for place in np.ndindex(*self.shape):
-            out[place] = _text(float(numbers[place]), int(kinds[place]), self._text_at(place))
-        return out, np.broadcast_to(self.errors, self.shape)
-
-    def _text_at(self, place: tuple[int, ...]) -> str:
-        return "" if self.texts is None else str(np.broadcast_to(self.texts, self.shape)[place])
+        errors = np.broadcast_to(self.errors, self.shape)
+        if self.texts is not None and (self.kinds == TEXT).all():
+            return np.broadcast_to(self.texts, self.shape), errors
+        return self._each(_text), errors
 
     def objects(self) -> Objects:
         """Every element as a Python object: float, bool, str, `ErrorCode`, or None for a blank."""
-        numbers, kinds = np.broadcast_to(self.numbers, self.shape), np.broadcast_to(self.kinds, self.shape)
-        out = np.empty(self.shape, object)
-        for place in np.ndindex(*self.shape):
-            out[place] = _object(float(numbers[place]), int(kinds[place]), self._text_at(place))
+        return self._each(_object)
+
+    def _each(self, made: Callable[[float, int, str], object]) -> Objects:
+        """What `made` makes of every element's number, kind and text."""
+        shape = self.shape
+        out: Objects = np.empty(shape, object)
+        ask_for_texts(out.size)
+        numbers, kinds = (np.broadcast_to(part, shape).ravel().tolist() for part in (self.numbers, self.kinds))
+        texts = [""] * out.size if self.texts is None else np.broadcast_to(self.texts, shape).ravel().tolist()
+        out.reshape(-1)[:] = [made(*parts) for parts in zip(numbers, kinds, texts, strict=True)]
         return out
+
+    @property
+    def nbytes(self) -> int:
+        """The memory that it takes, about."""
+        return bytes_of(self.arrays())
 
 
 def _text(number: float, kind: int, text: str) -> str:
@@ -217,16 +226,21 @@ def _object(number: float, kind: int, text: str) -> object:
 
 def from_objects(items: Objects) -> Value:
     """The inverse of `Value.objects`."""
-    numbers, kinds = np.zeros(items.shape), np.zeros(items.shape, np.uint8)
-    texts = np.full(items.shape, "", object)
-    for place in np.ndindex(*items.shape):
-        item = items[place]
-        kinds[place] = _kind(item)
-        if isinstance(item, str):
-            texts[place] = item
-        elif item is not None and not isinstance(item, ErrorCode):
-            numbers[place] = float(item)
-    return Value(numbers, kinds, texts if (kinds == TEXT).any() else None)
+    ask_for_texts(items.size)
+    flat = items.ravel().tolist()
+    kinds = np.array([_kind(item) for item in flat], np.uint8).reshape(items.shape)
+    numbers = np.array([_number(item) for item in flat], np.float64).reshape(items.shape)
+    if not (kinds == TEXT).any():
+        return Value(numbers, kinds)
+    written = [item if isinstance(item, str) else "" for item in flat]
+    ask_for_characters(sum(map(len, written)))
+    texts: Objects = np.empty(items.shape, object)
+    texts.reshape(-1)[:] = written
+    return Value(numbers, kinds, texts)
+
+
+def _number(item: Any) -> float:
+    return 0.0 if item is None or isinstance(item, str | ErrorCode) else float(item)
 
 
 def _kind(item: object) -> int:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.compile.block_size import array_bytes, fitting_block
 from xlmc.compile.dag import Dag, Input
 from xlmc.compile.engine import Column, Evaluator, Sweeper, Target
 from xlmc.compile.jit.machine import machine
@@ -17,6 +18,7 @@ from xlmc.compile.jit.trials import Trials
 from xlmc.compile.jit.whole import WholeBlocks, sweepable
 from xlmc.compile.lower import Lowering
 from xlmc.compile.tracking import TrackingEvaluator
+from xlmc.functions.budget import TooLargeError
 from xlmc.functions.values import Floats
 
 if TYPE_CHECKING:
@@ -69,6 +71,8 @@ class JitProgram:
         self.largest_block = _LARGEST_BLOCK
         while self.largest_block > _SMALLEST_BLOCK and self.largest_block * 8 * len(self.stores) > _MOST_MEMORY:
             self.largest_block //= 2
+        in_arrays = array_bytes(lowering, self.filter_places, self.forecast_places)
+        self.largest_block = fitting_block(self.largest_block, in_arrays, 8 * len(self.stores))
 
     def evaluator(self, block: int) -> Evaluator:
         """See `Program`."""
@@ -93,6 +97,7 @@ class _JitEvaluator:
         self._all = np.empty(0, np.intp)
         self._trials = self._of_block({}, 0)
         self._draws: Mapping[str, Floats] = {}
+        self._too_large = False
 
     def _of_block(self, inputs: Mapping[str, Floats], n: int) -> Trials:
         trials = Trials(self._program.dag, n, np.zeros(n, np.uint8), None, self._all)
@@ -113,7 +118,12 @@ class _JitEvaluator:
         """See `Evaluator`."""
         self._draws, self._trials = inputs, self._of_block(inputs, n)
         program = self._program
-        program.first.run(self._trials, self._memory)
+        try:
+            program.first.run(self._trials, self._memory)
+        except TooLargeError:
+            self._too_large = True
+            return self._tracking.filters(inputs, n)
+        self._too_large = False
         columns = self._columns(self._trials, program.filter_places)
         again = np.flatnonzero(self._trials.wrong)
         if again.size:
@@ -124,8 +134,14 @@ class _JitEvaluator:
         """See `Evaluator`."""
         program, m = self._program, survivors.size
         survivors = np.ascontiguousarray(survivors, np.intp)
+        if self._too_large:
+            return self._tracking.forecasts(survivors)
         trials = Trials(program.dag, m, self._trials.wrong[survivors], self._trials, survivors)
-        program.late.run(trials, self._memory)
+        try:
+            program.late.run(trials, self._memory)
+        except TooLargeError:
+            self._tracking.filters(self._draws, self._trials.wrong.size)
+            return self._tracking.forecasts(survivors)
         columns = self._columns(trials, program.forecast_places)
         again = np.flatnonzero(trials.wrong)
         if again.size:

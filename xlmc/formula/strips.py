@@ -1,0 +1,149 @@
+"""What the formulas of a workbook need, cell by cell, without a list of its own for each range.
+
+Many formulas read one column: all of it, or down to their own row. A `Strip` lists what counts in a column or row once,
+and a range of it is a `Stretch`: two places in that list. Ranges of several rows and columns are listed once each.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Iterator, Mapping, Set
+from dataclasses import dataclass, field
+from itertools import chain
+
+from xlmc.address import Area, Cell
+
+__all__ = ["Needs", "Part", "Stretch", "Strips"]
+
+_SHORTEST = 64
+"""Cells of a range that is worth a stretch."""
+
+
+@dataclass(eq=False, slots=True)
+class _Span:
+    """Places that have a property which they do not lose: the longest run of them that is known."""
+
+    start: int = 0
+    stop: int = 0
+
+    def outside(self, start: int, stop: int) -> tuple[range, range]:
+        """The places from `start` to before `stop` that are not known to have it."""
+        if self.stop <= start or stop <= self.start:
+            return range(start, stop), range(0)
+        return range(start, self.start), range(max(start, self.stop), stop)
+
+    def add(self, start: int, stop: int) -> None:
+        """These have it too."""
+        if start <= self.stop and self.start <= stop:
+            self.start, self.stop = min(start, self.start), max(stop, self.stop)
+        elif stop - start > self.stop - self.start:
+            self.start, self.stop = start, stop
+
+
+@dataclass(eq=False, slots=True)
+class _Strip:
+    """The cells of a column, or of a row, that count: in order, with their rows or columns."""
+
+    cells: list[Cell]
+    at: list[int]
+    placed: _Span = field(default_factory=_Span)
+    constant: _Span = field(default_factory=_Span)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Stretch:
+    """The cells that count of a range of one column or row."""
+
+    strip: _Strip
+    start: int
+    stop: int
+
+    def __iter__(self) -> Iterator[Cell]:
+        return map(self.strip.cells.__getitem__, range(self.start, self.stop))
+
+    def waiting(self) -> Iterator[Cell]:
+        """Those that were not placed yet when this was asked, and maybe some that were."""
+        places = chain(*self.strip.placed.outside(self.start, self.stop))
+        return map(self.strip.cells.__getitem__, places)
+
+    def is_placed(self) -> None:
+        """Note that all of them are placed."""
+        self.strip.placed.add(self.start, self.stop)
+
+    def varies(self, varying: Set[Cell]) -> bool:
+        """Whether any is among the cells that vary; that is settled of all of them."""
+        cells = self.strip.cells
+        if any(cells[place] in varying for place in chain(*self.strip.constant.outside(self.start, self.stop))):
+            return True
+        self.strip.constant.add(self.start, self.stop)
+        return False
+
+
+Part = tuple[Cell, ...] | Stretch
+
+
+class Strips:
+    """The cells that count in ranges, each column, row and table looked through once.
+
+    Args:
+        counts: whether a cell counts.
+        held: the cells of a large area that may count.
+        last: the last row and column of a sheet that may hold such a cell.
+    """
+
+    def __init__(
+        self,
+        counts: Callable[[Cell], bool],
+        held: Callable[[Area], Iterator[Cell]],
+        last: Callable[[str], tuple[int, int]],
+    ) -> None:
+        self._counts, self._held, self._last = counts, held, last
+        self._strips: dict[tuple[str, int, int], _Strip] = {}
+        self._tables: dict[Area, tuple[Cell, ...]] = {}
+
+    def of(self, area: Area) -> Part:
+        """The cells of an area that count."""
+        if area.rows * area.columns >= _SHORTEST:
+            if area.columns == 1:
+                return self._stretch(self._column(area.sheet, area.left), area.top, area.bottom)
+            if area.rows == 1:
+                return self._stretch(self._row(area.sheet, area.top), area.left, area.right)
+        if area not in self._tables:
+            self._tables[area] = tuple(filter(self._counts, self._held(area)))
+        return self._tables[area]
+
+    def _column(self, sheet: str, column: int) -> _Strip:
+        key = sheet, 0, column
+        if key not in self._strips:
+            cells = self._counted(Area(sheet, 1, column, self._last(sheet)[0], column))
+            self._strips[key] = _Strip(cells, [cell.row for cell in cells])
+        return self._strips[key]
+
+    def _row(self, sheet: str, row: int) -> _Strip:
+        key = sheet, row, 0
+        if key not in self._strips:
+            cells = self._counted(Area(sheet, row, 1, row, self._last(sheet)[1]))
+            self._strips[key] = _Strip(cells, [cell.column for cell in cells])
+        return self._strips[key]
+
+    def _counted(self, area: Area) -> list[Cell]:
+        return list(filter(self._counts, self._held(area)))
+
+    def _stretch(self, strip: _Strip, first: int, last: int) -> Stretch:
+        return Stretch(strip, bisect_left(strip.at, first), bisect_right(strip.at, last))
+
+
+class Needs(Mapping[Cell, tuple[Cell, ...]]):
+    """Formula cell -> the cells that it needs and that hold a formula or are inputs. They are kept in parts."""
+
+    def __init__(self) -> None:
+        self.parts: dict[Cell, tuple[Part, ...]] = {}
+
+    def __getitem__(self, cell: Cell) -> tuple[Cell, ...]:
+        return tuple(chain(*self.parts[cell]))
+
+    def __iter__(self) -> Iterator[Cell]:
+        return iter(self.parts)
+
+    def __len__(self) -> int:
+        return len(self.parts)

@@ -381,10 +381,20 @@ def with_table(path, cells, source="A1", header=("=A2", 10)):
 
 OF_THE_RUN = {
     "its input is an assumption": {"cells": {"A1": ("=RiskNormal(5,1)", 5)}, "header": ("=7", 7)},
-    "its formula depends on a draw": {"source": "F1"},
     "its formula shows a result": {"source": "F1", "header": ("=RiskMean(A2)", 77)},
     "its formula depends on a result": {"source": "F1", "header": ("=B1", 77), "cells": {"B1": ("=RiskMean(A2)", 77)}},
     "its formula cannot be computed": {"source": "F1", "header": ("=RiskCIMean(A2,0.9)", 77)},
+    "its formula looks for its cells, and there are results": {
+        "source": "F1",
+        "header": ('=INDIRECT("B1")', 10),
+        "cells": {"B1": ("=RiskMean(A2)", 77)},
+    },
+    "a value on its left shows a result": {"source": "F1", "header": ("=7", 7), "cells": {"C3": ("=RiskMax(A2)", 10)}},
+}
+
+VARYING = {
+    "its formula depends on a draw": {"source": "F1"},
+    "its formula draws": {"source": "F1", "header": ("=RiskNormal(1,2)+F1", 1)},
     "its formula looks for its cells": {"source": "F1", "header": ('=INDIRECT("A2")', 10)},
     "a value on its left depends on a draw": {"source": "F1", "header": ("=7", 7), "cells": {"C3": ("=A2", 10)}},
 }
@@ -412,6 +422,23 @@ def test_a_data_table_that_has_nothing_to_do_with_the_run_keeps_its_values(tmp_p
     assert run.warnings == []
     [notice] = [notice for notice in run.model.notices if str(notice.where) == "S!D2:D3"]
     assert "kept at the values Excel last calculated" in notice.message
+
+
+@pytest.mark.parametrize("made", VARYING.values(), ids=VARYING)
+def test_a_data_table_over_what_varies_keeps_its_base_case_like_every_other_cell(tmp_path, made):
+    run = xlmc.load(with_table(tmp_path / "book.xlsx", **{"cells": {}, **made})).simulate(trials=200)
+    found = shown(run, tmp_path / "out.xlsx")
+    assert [found[address] for address in ("D2", "D3", "E1")] == [77, 77, 154]
+    assert run.warnings == []
+    [notice] = [notice for notice in run.model.notices if str(notice.where) == "S!D2:D3"]
+    assert "kept at the values Excel last calculated for the base case, and no forecast" in notice.message
+
+
+@pytest.mark.parametrize("made", (OF_THE_RUN | VARYING).values(), ids=OF_THE_RUN | VARYING)
+def test_a_forecast_cannot_depend_on_any_data_table_that_varies(tmp_path, made):
+    cells = {**made.get("cells", {}), "A5": ("=E1+A1+RiskOutput()", 1)}
+    with pytest.raises(FormulaError, match="what-if data tables that depend on the run are not computed"):
+        xlmc.load(with_table(tmp_path / "book.xlsx", **{**made, "cells": cells}))
 
 
 @pytest.mark.parametrize("answer", ["=E1+A1+RiskOutput()", "=D3+A1+RiskOutput()"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from xlmc.definitions.assumptions import read_assumptions
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.correlations import read_correlations
-from xlmc.definitions.data_tables import TABLE_REASON
+from xlmc.definitions.data_tables import TABLE_REASON, TablesOfRun
 from xlmc.definitions.filters import read_filters
 from xlmc.definitions.findings import Findings
 from xlmc.definitions.forecasts import read_forecasts
@@ -16,7 +16,7 @@ from xlmc.definitions.in_cells import InCells, read_in_cells
 from xlmc.definitions.model import Definitions, Settings, name_key
 from xlmc.definitions.settings import read_settings
 from xlmc.definitions.tables import DefinitionTable, definition_tables, holds_rows
-from xlmc.definitions.unavailable import remark_on_tables, remark_on_unavailable, what_if_cells
+from xlmc.definitions.unavailable import faults_of, remark_on_tables, remark_on_unavailable, tables_met
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import Workbook
 
@@ -39,7 +39,7 @@ def read_definitions(workbook: Workbook) -> Definitions:
     calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings)
     _remark_on_stored_assumptions(workbook, findings)
     if not (calls or any(tables.values())):
-        remark_on_tables(workbook.data_tables, (), findings)
+        remark_on_tables(workbook.data_tables, TablesOfRun(), findings)
         _say_how_to_begin(workbook, findings)
         return Definitions(notices=tuple(findings.notices), problems=tuple(findings.problems))
 
@@ -50,8 +50,8 @@ def read_definitions(workbook: Workbook) -> Definitions:
     more = in_cell_correlations(workbook, calls.assumptions, calls.matrices, correlations, findings)
     forecasts = *forecasts, *in_cell_forecasts(calls, computed, central, answers, findings)
     _remark_on_calls(calls, settings, findings)
-    what_if = what_if_cells(workbook, assumptions, calls, findings)
-    unavailable = {**calls.unavailable, **dict.fromkeys(what_if, TABLE_REASON)}
+    what_if = tables_met(workbook, assumptions, calls, findings)
+    unavailable = {**calls.unavailable, **dict.fromkeys(faults_of(workbook, what_if.stale), TABLE_REASON)}
     remark_on_unavailable(calls.unavailable, findings)
     if not calls.assumptions:
         _refuse_no_assumption(workbook, calls, tables["xlmc_assumptions"], findings)
@@ -67,7 +67,7 @@ def read_definitions(workbook: Workbook) -> Definitions:
         settings=settings,
         notices=tuple(findings.notices),
         problems=tuple(findings.problems),
-        rewritten={**calls.rewritten, **what_if},
+        rewritten={**calls.rewritten, **faults_of(workbook, what_if.varying)},
         results=tuple(calls.results),
         unavailable=unavailable,
     )

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import Final
 
 from xlmc.address import Area, Cell
-from xlmc.definitions.data_tables import TABLE_REASON, cells_of, tables_of_the_run
+from xlmc.definitions.data_tables import TABLE_REASON, TablesOfRun, cells_of, tables_of_run
 from xlmc.definitions.findings import Findings
 from xlmc.definitions.in_cells import InCells
 from xlmc.definitions.model import Assumption
 from xlmc.errors import FormulaError
 from xlmc.workbook.model import DataTable, Workbook
 
-__all__ = ["areas_text", "remark_on_tables", "remark_on_unavailable", "what_if_cells"]
+__all__ = ["areas_text", "faults_of", "remark_on_tables", "remark_on_unavailable", "tables_met"]
 
 MOST: Final = 20
 """Areas that are named one by one."""
@@ -22,25 +22,32 @@ MOST: Final = 20
 _SHOWN: Final = "in the result workbook"
 
 
-def what_if_cells(
+def tables_met(
     workbook: Workbook, assumptions: Iterable[Assumption], calls: InCells, findings: Findings
-) -> dict[Cell, FormulaError]:
-    """The cells of the data tables that depend on the run, each with why nothing can be computed from it."""
-    sources = {a.cell for a in assumptions if not a.frozen} | calls.results.keys() | calls.unavailable.keys()
-    tables = tables_of_the_run(workbook, sources, calls.rewritten)
+) -> TablesOfRun:
+    """The data tables that depend on the run; a notice for each data table."""
+    drawn = {a.cell for a in assumptions if not a.frozen}
+    tables = tables_of_run(workbook, drawn, calls.results.keys() | calls.unavailable.keys(), calls.rewritten)
     remark_on_tables(workbook.data_tables, tables, findings)
+    return tables
+
+
+def faults_of(workbook: Workbook, tables: Iterable[DataTable]) -> dict[Cell, FormulaError]:
+    """The cells of these data tables, each with why nothing can be computed from it."""
     hint = "Let no forecast and no filter depend on it"
     cells = (cell for table in tables for cell in cells_of(workbook, table))
     return {cell: FormulaError(TABLE_REASON, where=cell, hint=hint) for cell in cells}
 
 
-def remark_on_tables(tables: Iterable[DataTable], of_the_run: Collection[DataTable], findings: Findings) -> None:
+def remark_on_tables(tables: Iterable[DataTable], of_run: TablesOfRun, findings: Findings) -> None:
     """One notice for each what-if data table."""
     for table in tables:
-        if table in of_the_run:
+        if table in of_run.stale:
             message = f"{TABLE_REASON}: its cells, and all that depends on them, show #N/A {_SHOWN}"
         else:
             message = "a what-if data table: its cells are kept at the values Excel last calculated"
+        if table in of_run.varying and table not in of_run.stale:
+            message += " for the base case, and no forecast and no filter may depend on them"
         findings.notice(message, table.area)
 
 

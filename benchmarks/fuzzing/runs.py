@@ -127,7 +127,7 @@ def _document(entries: Entries) -> tuple[int, Any]:
     at = next((n for n, (name, _) in enumerate(entries) if name == "run.json"), -1)
     try:
         return at, json.loads(entries[at][1]) if at >= 0 else {}
-    except ValueError:
+    except (ValueError, RecursionError):
         return -1, {}
 
 

@@ -11,6 +11,7 @@ from typing import Any, Final, NamedTuple, assert_never
 import numpy as np
 
 from xlmc.address import Cell, host_of
+from xlmc.compile.alignment import aligned, arguments_of, single
 from xlmc.compile.ragged import Ragged, by_trial
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions import Function, Kind
@@ -366,7 +367,7 @@ def evaluated(node: Apply | Select | Rescue | Range, values: Mapping[int, Value]
 def _evaluated(node: Apply | Select | Rescue | Range, values: Mapping[int, Value]) -> Value:
     match node:
         case Apply(function, arguments):
-            return function([values[place] for place in arguments])
+            return function(arguments_of(function, [values[place] for place in arguments]))
         case Select(condition, yes, no):
             _ask_for_all(values[condition], values[yes], values[no])
             return _selected(values[condition], values[yes], values[no])
@@ -389,17 +390,18 @@ def _ask_for_all(*values: Value) -> None:
 
 
 def _selected(condition: Value, yes: Value, no: Value) -> Value:
-    selected: Value = if_(condition, yes, no)
+    selected: Value = if_(*aligned((condition, yes, no)))
     return selected
 
 
 def _rescued(value: Value, instead: Value, only_na: bool) -> Value:
+    value, instead = aligned((value, instead))
     rescued: Value = if_na(value, instead) if only_na else if_error(value, instead)
     return rescued
 
 
 def _stacked(rows: list[list[Value]]) -> Value:
-    cells = [value for row in rows for value in row]
+    cells = [single(value) for row in rows for value in row]
     (n,) = np.broadcast_shapes(*(value.shape for value in cells))
     size = (n, len(rows), len(rows[0]))
     texts = None

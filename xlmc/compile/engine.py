@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
+from xlmc.compile.alignment import corner
 from xlmc.functions.values import BLANK, ERROR, TEXT, Bools, Codes, Floats, Value
 
 if TYPE_CHECKING:
@@ -118,7 +119,8 @@ class Program(Protocol):
 
 
 def column_of(value: Value, n: int) -> Column:
-    """A value as the numbers of `n` trials."""
+    """A value as the numbers of `n` trials; of an array its upper left one."""
+    value = corner(value)
     codes = np.where(value.kinds >= ERROR, value.kinds - np.uint8(ERROR), np.uint8(0)).astype(np.uint8)
     codes = np.where(value.kinds == TEXT, np.uint8(TEXT_RESULT), codes)
     codes = np.where(value.kinds == BLANK, np.uint8(BLANK_RESULT), codes)

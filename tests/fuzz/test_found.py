@@ -1,0 +1,37 @@
+"""Formulas that campaigns found: tracebacks, and answers that differed between two ways to compute them."""
+
+from __future__ import annotations
+
+import pytest
+
+FORMULAS = [
+    "AREAS(A3,ANCHORARRAY(E1),{1,2,3})",
+    "CELL()",
+    "CORREL(CUMIPMT(H9,A1,(ODDLPRICE(-2147483649,0.5,B2,7,0.05,B2,TRANSPOSE(B1:D2))"
+    '<>{"x",1;TRUE,2}),32767,DDB(A1:A9,MOD(OFFSET(A1,-1,0),A8),A8,),A1),B1:D1)',
+    "IF(INDEX(B1:D6,0,1),INDEX(B1:D6,Data[[x]:[y]]))",
+    'INDEX(B1:D6,0,1)&A1:A4 A2:B3/"1"',
+    "ISOMITTED()",
+    'SHEETS(INDIRECT("1",FALSE))',
+    "TAKE(SEQUENCE(3)-INDEX(B1:D6,0,1),(A9))",
+    'TOCOL(INDIRECT("no such"))',
+    'VALUETOTEXT({"x",1;TRUE,2},_xlfn.T.DIST.2T($A$1,{TRUE,#N/A}))',
+    "XLOOKUP((AREAS(A1,$A$1,-1,1)*DAVERAGE(MUNIT(3),39448,A3)),-1,A6,A4)",
+    "XLOOKUP(A1,A8,OFFSET(A1,-1,0))",
+    'XMATCH(ODDLPRICE(KURT(SEQUENCE(0),10)-UNIQUE(B1:B6),HEX2OCT(255,A7)>(H9^ROW(1:5)),A3,"1/0"&(45000.75*{1;2;3}),'
+    'WRAPCOLS(100,-1.5),D6,BITAND(ERF(0.5,A2),QUARTILE(HSTACK(A1,B1:B2),"x"))),_xlfn.CHIINV(PEARSON(H1:I3,'
+    "HSTACK(A1,B1:B2)),A8),A2,B1:B6*2)",
+]
+
+
+@pytest.mark.usefixtures("small_blocks")
+@pytest.mark.parametrize("text", FORMULAS)
+@pytest.mark.parametrize("form", ["plain", "array", "dynamic"])
+def test_a_formula_that_was_found(text, form, tmp_path):
+    from fuzzing import formulas
+    from fuzzing.child import judged
+    from fuzzing.inputs import Input, Kind
+
+    given = Input("formula.txt", text.encode(), f"={text}", (form, "jit"))
+    found = judged("found", Kind(lambda _: given, formulas.run), 1, 1, tmp_path).finding
+    assert found is None, (found.key, found.detail)

@@ -20,6 +20,7 @@ FLOORS = [
     {"functions"},
     {"compile", "sampling"},
     {"scene", "drawing", "correlating", "stopping"},
+    {"base_parameters"},
     {"model", "verify"},
     {"blocks", "derivatives", "digits", "result_cells"},
     {"simulation", "scheduling"},

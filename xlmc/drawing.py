@@ -21,7 +21,7 @@ from xlmc.formula import ir
 from xlmc.functions.values import ERROR, TEXT
 from xlmc.sampling import Draw, DynamicParameters
 
-__all__ = ["draw_of", "dynamic_parameters", "parameter_target"]
+__all__ = ["draw_of", "dynamic_parameters", "parameter_target", "settled"]
 
 
 def parameter_target(cell: Cell) -> Target:
@@ -36,12 +36,12 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
         DefinitionError: the numbers are no distribution.
     """
     family = _family(assumption, lowering)
-    parameters = tuple(_settled(each, lowering) for each in family.bind((), assumption.parameters))
+    parameters = tuple(settled(each, lowering) for each in family.bind((), assumption.parameters))
     cutoffs = None
     if assumption.lower_cutoff is not None or assumption.upper_cutoff is not None:
         lower = -np.inf if assumption.lower_cutoff is None else assumption.lower_cutoff
         upper = np.inf if assumption.upper_cutoff is None else assumption.upper_cutoff
-        cutoffs = _settled(lower, lowering), _settled(upper, lowering)
+        cutoffs = settled(lower, lowering), settled(upper, lowering)
     if isinstance(family, ByPercentiles):
         _refuse_varying(assumption.name, (*parameters, *(cutoffs or ())))
     draw = Draw(name_key(assumption.name), family, parameters, cutoffs)
@@ -66,7 +66,7 @@ def _family(assumption: Assumption, lowering: Lowering) -> Family:
         raise _varying_data(assumption, drawn)
 
     def number(cell: Cell) -> float:
-        value = _settled(cell, lowering)
+        value = settled(cell, lowering)
         if isinstance(value, Cell):
             raise _varying_data(assumption, cell)
         return value
@@ -82,7 +82,12 @@ def _varying_data(assumption: Assumption, cell: Cell) -> DefinitionError:
     )
 
 
-def _settled(parameter: Parameter, lowering: Lowering) -> Parameter:
+def settled(parameter: Parameter, lowering: Lowering) -> Parameter:
+    """The parameter's number; its cell where an assumption reaches it.
+
+    Raises:
+        DefinitionError: the cell is an error or a text.
+    """
     if not isinstance(parameter, Cell):
         return float(parameter)
     value = lowering.known(parameter_target(parameter))

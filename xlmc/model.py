@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
+from xlmc.base_parameters import with_base_parameters
 from xlmc.collecting import paused_collection
 from xlmc.compile import Evaluator, Program, Target
 from xlmc.compile.engines import ENGINES, FILLERS, options_of
@@ -23,7 +24,7 @@ from xlmc.drawing import draw_of, dynamic_parameters
 from xlmc.errors import DefinitionError, Notice, SimulationError
 from xlmc.sampling import CorrelatedGroup, Draw, Plan, Sampler, Stage
 from xlmc.sampling.draws import Filler
-from xlmc.scene import Scene, condition, survey
+from xlmc.scene import Scene, condition, in_order, survey
 from xlmc.workbook import Workbook, read_workbook
 
 if TYPE_CHECKING:
@@ -73,7 +74,7 @@ def _understood(workbook: Workbook, definitions: Definitions) -> tuple[Scene, Lo
         return Lowering(scenes[-1].graph, inputs, held)
 
     lowering = widened(lower)
-    return scenes[-1], lowering
+    return in_order(scenes[-1], lowering.led_to), lowering
 
 
 class Model:
@@ -88,6 +89,7 @@ class Model:
     """
 
     def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
+        definitions = with_base_parameters(workbook, definitions)
         self.workbook, self.definitions, self.path = workbook, definitions, path
         self.scene, self._lowering = _understood(workbook, definitions)
         self.live: tuple[Assumption, ...] = self.scene.live

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from xlmc.address import Cell, InFormula
@@ -12,7 +12,7 @@ from xlmc.errors import DefinitionError, Notice
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.workbook import Workbook
 
-__all__ = ["Scene", "condition", "filter_limits", "parameter_cells", "survey", "targets_of"]
+__all__ = ["Scene", "condition", "filter_limits", "in_order", "parameter_cells", "survey", "targets_of", "upstream"]
 
 
 MOST_CALLS: Final = 10_000
@@ -75,7 +75,20 @@ def survey(workbook: Workbook, definitions: Definitions, more: Mapping[Cell, Ite
     reached = tuple(a for a in live.values() if a.cell in graph.reached)
     _refuse_too_many(reached)
     idle = tuple(a for a in definitions.assumptions if a.cell not in graph.reached)
-    return Scene(graph, _stages(graph, reached), idle)
+    return Scene(graph, _stages(graph, reached, {}), idle)
+
+
+def in_order(scene: Scene, led_to: Mapping[Cell, Iterable[Cell]]) -> Scene:
+    """The same with its stages as they must be where OFFSET and INDIRECT lead to more cells than formulas name.
+
+    Args:
+        scene: with stages by the cells that formulas name.
+        led_to: formula cell -> the cells that such functions in it lead to.
+
+    Raises:
+        DefinitionError: assumptions need each other in a circle.
+    """
+    return replace(scene, stages=_stages(scene.graph, scene.live, led_to)) if led_to else scene
 
 
 def _refuse_too_many(reached: Sequence[Assumption]) -> None:
@@ -124,8 +137,10 @@ def _bound(bound: float | Cell) -> ir.Expression:
     return ir.Binary("+", bound, ir.Number(0.0)) if isinstance(bound, Cell) else ir.Number(bound)
 
 
-def _stages(graph: Graph, reached: tuple[Assumption, ...]) -> tuple[tuple[Assumption, ...], ...]:
-    waiting = {a.cell: _upstream(graph, a) for a in reached}
+def _stages(
+    graph: Graph, reached: tuple[Assumption, ...], led_to: Mapping[Cell, Iterable[Cell]]
+) -> tuple[tuple[Assumption, ...], ...]:
+    waiting = {a.cell: upstream(graph, parameter_cells(a), led_to) for a in reached}
     stages: list[tuple[Assumption, ...]] = []
     while waiting:
         ready = tuple(a for a in reached if a.cell in waiting and not waiting[a.cell] & waiting.keys())
@@ -137,15 +152,16 @@ def _stages(graph: Graph, reached: tuple[Assumption, ...]) -> tuple[tuple[Assump
     return tuple(stages)
 
 
-def _upstream(graph: Graph, assumption: Assumption) -> set[Cell]:
-    """The cells that an assumption's parameters depend on."""
+def upstream(graph: Graph, cells: Iterable[Cell], led_to: Mapping[Cell, Iterable[Cell]]) -> set[Cell]:
+    """The cells and all that they depend on; assumptions among them, but not what these depend on."""
     found: set[Cell] = set()
-    open_ = list(parameter_cells(assumption))
+    open_ = list(cells)
     while open_:
         cell = open_.pop()
         if cell not in found:
             found.add(cell)
             open_ += graph.needs.get(cell, ())
+            open_ += led_to.get(cell, ())
     return found
 
 
@@ -159,8 +175,9 @@ def _circle(among: list[Assumption], waiting: dict[Cell, set[Cell]]) -> Definiti
             break
         trail.append(following)
     names = " → ".join(repr(a.name) for a in circle)
+    hint = "give one of them parameters that are numbers"
+    if circle[0] is circle[-1] and len(circle) == 2:
+        hint = f"refer to {circle[0].cell} in its parameters without OFFSET and INDIRECT, or type them as numbers"
     return DefinitionError(
-        f"parameters of assumptions need each other in a circle: {names}",
-        where=circle[0].row,
-        hint="give one of them parameters that are numbers",
+        f"parameters of assumptions need each other in a circle: {names}", where=circle[0].row, hint=hint
     )

@@ -79,3 +79,18 @@ def test_a_workbook_without_tables_is_told_how_to_begin(xlmc, tmp_path):
     outcome = xlmc("check", tmp_path / "plain.xlsx")
     assert outcome.code == 2
     assert "xlmc_assumptions" in outcome.err
+
+
+def test_limits_that_are_computed_from_the_own_cell_are_shown_as_numbers(xlmc, case_study, tmp_path):
+    book = openpyxl.load_workbook(case_study)
+    sheet = book["Inputs"]
+    headings = {cell.value: cell.column_letter for row in sheet.iter_rows(max_row=8) for cell in row if cell.value}
+    value = f"{headings['Value']}7"
+    sheet[value] = 200
+    sheet[f"{headings['Low']}7"], sheet[f"{headings['High']}7"] = f"={value}*0.97", f"={value}*1.03"
+    book.save(tmp_path / "own.xlsx")
+    outcome = xlmc("check", tmp_path / "own.xlsx")
+    assert outcome.code == 0, outcome.err
+    assert "Uniform: Low 194, High 206" in outcome.out
+    said = " ".join(outcome.err.split())
+    assert "computed from the base value of the assumption's own cell (200): Low 194, High 206" in said

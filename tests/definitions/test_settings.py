@@ -16,7 +16,11 @@ MISTAKES = [
     ("Trials", 0, VALUE, "Trials must be a whole number from 1 to 1,000,000,000,000, not 0", "Correct"),
     ("Trials", 0.5, VALUE, "Trials must be a whole number", "Correct the number"),
     ("Trials", 1e13, VALUE, "Trials must be a whole number", "Correct the number"),
-    ("Trials", "200,000", VALUE, "Trials holds the text '200,000', not a number", "Type it again as a number"),
+    ("Trials", "200.000", VALUE, "Trials is '200.000', which is no whole number", "like 200000, 200,000, 2e5 or 200k"),
+    ("Trials", "many\x1b[2J", VALUE, "Trials is 'many\\\\x1b[2J', which is no whole number", "Type it like 200000"),
+    ("Trials", "2e13", VALUE, "Trials must be a whole number from 1 to 1,000,000,000,000, not 2e+13", "Correct"),
+    ("Trials", "9" * 100, VALUE, "Trials must be a whole number from 1", "Correct"),
+    ("Until accepted", "1", VALUE, "Until accepted must be a whole number from 2", "Correct the number"),
     ("Sampling", "dice", VALUE, "There is no sampling method 'dice'", "Use mc, lhs, lhs500 or sobol"),
     ("Engine", "numpi", VALUE, "There is no engine 'numpi'", "Did you mean numpy?"),
     ("Until accepted", 1, VALUE, "Until accepted must be a whole number from 2", "Correct the number"),
@@ -43,7 +47,7 @@ def test_mistakes(only_problem, setting, value, where, message, hint):
     only_problem(where, message, hint, {NAME: setting, VALUE: value})
 
 
-@pytest.mark.parametrize("seed", [-1, 1.5, 1e16])
+@pytest.mark.parametrize("seed", [-1, 1.5, 1e16, "-1", "1e16"])
 def test_bad_seeds(only_problem, seed):
     only_problem("Answers!B32", "Seed must be a whole number from 0", "Correct", {"Answers!B32": seed})
 
@@ -72,6 +76,17 @@ def test_settings(read, setting, value, expected):
     assert found.problems == found.notices == ()
     assert found.settings == expected
     assert type(found.settings.trials) is type(found.settings.seed) is int
+
+
+@pytest.mark.parametrize("written", ["200000", "200,000", "200 000", "2e5", "200k", "0.2M", " 200000 "])
+def test_whole_numbers_written_as_text_are_read_as_on_the_command_line(read, written):
+    for setting in ("Trials", "Until accepted"):
+        found = read({NAME: setting, VALUE: written})
+        assert found.problems == found.notices == ()
+        read_as = found.settings.trials if setting == "Trials" else found.settings.stopping.accepted
+        assert read_as == 200_000
+        assert type(read_as) is int
+    assert read({"Answers!B32": written}).settings.seed == 200_000
 
 
 def test_a_seed_of_zero(read):

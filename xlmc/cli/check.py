@@ -29,16 +29,18 @@ def check(book: Path) -> None:
 
     workbook = read_workbook(book)
     definitions = read_definitions(workbook)
-    _show_definitions(definitions)
     problems: list[XlmcError] = list(definitions.problems)
+    model = None
     if not problems:
         try:
             model = Model(workbook, definitions, book)
-            _show_need(model, workbook)
-            notices(model.notices)
         except XlmcError as error:
             problems.append(error)
-    else:
+    _show_definitions(definitions if model is None else model.definitions)
+    if model is not None:
+        _show_need(model, workbook)
+        notices(model.notices)
+    elif definitions.problems:
         notices((*workbook.notices, *definitions.notices))
     for problem in problems:
         say(f"problem: {problem}", err=True)

@@ -63,6 +63,7 @@ class Lowering:
         faults: why it cannot.
         more: formula cell -> cells that OFFSET and its like turned out to need and the graph does not hold. Where there
             are any, the graph must be built again with them.
+        led_to: formula cell -> inputs and formula cells that OFFSET and its like lead to.
         dag: the nodes.
         notices: what the person should know.
         calls: of LAMBDAs, which must not be too many.
@@ -76,6 +77,8 @@ class Lowering:
         self.saved: dict[Cell, object] = {}
         self.faults: dict[Cell, FormulaError] = {}
         self.more: dict[Cell, set[Cell]] = {}
+        self.led_to: dict[Cell, set[Cell]] = {}
+        self._led: set[Cell] = set()
         self.inputs, self.held, self.graph, self._audit = inputs, held, graph, audit
         self._computed: dict[Cell, int] = {}
         self._arrays: dict[Cell, int] = {}
@@ -122,6 +125,8 @@ class Lowering:
 
     def awaits(self, cell: Cell) -> bool:
         """Whether a cell must be lowered before it can be referred to, and was not."""
+        if cell in self.inputs or cell in self._computed:
+            self._led.add(cell)
         if cell in self.inputs:
             return cell not in self.graph.reached
         return cell not in self._cells and self.graph.workbook.content(cell).formula is not None
@@ -153,6 +158,7 @@ class Lowering:
 
     def _resolved_cell(self, cell: Cell, tree: ir.Expression) -> int:
         formula = self.graph.workbook.content(host_of(cell)).formula
+        self._led = set()
         try:
             if cell in self.graph.faults:
                 raise self.graph.faults[cell]
@@ -166,6 +172,8 @@ class Lowering:
             return self._held_cell(cell)  # only until the graph is built again
         except FormulaError as error:
             return self._uncomputed(cell, error)
+        if self._led:
+            self.led_to[cell] = self._led
         return self._shown(place)
 
     def _shown(self, place: int) -> int:

@@ -26,9 +26,8 @@ def whole_number(row: Row, name: str, least: int, most: int) -> int:
     Raises:
         DefinitionError: there is something else in it, or a number outside `least` … `most`.
     """
-    value = _whole_number_as_text(row, name)
-    if value is None:
-        value = number_of(row, name)
+    written = _whole_number_as_text(row, name)
+    value = number_of(row, name) if written is None else written
     if not least <= value <= most or value != int(value):
         message = f"{name} must be a whole number from {least:,} to {most:,}, not {show(value)}"
         raise DefinitionError(message, where=row.cell("Value"), hint="Correct the number")

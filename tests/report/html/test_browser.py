@@ -377,3 +377,17 @@ def test_a_narrow_screen_needs_no_scrolling_aside(shown, run):
         check(chart, run["area"].values)
     finally:
         browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+@pytest.mark.parametrize("ended", ["browser", "driver"])
+def test_a_browser_that_ended_costs_no_other_test(browser, ended):
+    """A machine without memory ends one or the other; what comes after gets a new one."""
+    first = browser()
+    if ended == "driver":
+        first.service.process.kill()
+        first.service.process.wait()
+    else:
+        first.execute_cdp_cmd("Browser.close", {})
+    second = browser()
+    assert second is not first
+    assert second.execute_script("return 1 + 1") == 2

@@ -17,6 +17,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.distributions.data_spec import DataError, DataSpec
+
 __all__ = [
     "HIGH",
     "LARGEST",
@@ -28,6 +30,7 @@ __all__ = [
     "SHAPE",
     "SMALLEST_U",
     "STD_DEV",
+    "TRIED_U",
     "Array",
     "DataError",
     "DataSpec",
@@ -57,6 +60,10 @@ SMALLEST_U = 2.0**-54
 
 LARGEST = 1e150
 """No parameter may be larger, so that squares and products of parameters stay finite."""
+
+
+TRIED_U = (2.0**-80, SMALLEST_U, 1e-12, 1e-3, 0.1, 0.3, 0.5, 0.7, 0.9, 0.999, 1 - 1e-12, 1 - 2.0**-53)
+"""Where quantiles are tried out before a run. No sampling method asks for one beyond the first and the last."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,44 +143,6 @@ class Fault:
     hint: str
 
 
-@dataclass(frozen=True, slots=True)
-class DataSpec:
-    """What the range under Data must hold for a family that is built from data.
-
-    Attributes:
-        columns: the numbers of columns it may have; empty for any.
-        content: what the columns are, for people: `values, cumulative probabilities`.
-        options: headings of the assumptions table that say how to read it; `built` takes them in small letters.
-        truncates: whether what is built may have cutoffs.
-    """
-
-    columns: tuple[int, ...]
-    content: str
-    options: tuple[str, ...] = ()
-    truncates: bool = True
-
-
-class DataError(ValueError):
-    """Numbers that no distribution can be built from.
-
-    Attributes:
-        message, hint: what is wrong, and what to do; `{also}` in the message stands for the second place.
-        row, column: where to look first, counted from 0; None for the data as a whole.
-        also: the row and column that it disagrees with.
-    """
-
-    def __init__(
-        self,
-        message: str,
-        hint: str,
-        row: int | None = None,
-        column: int | None = None,
-        also: tuple[int, int] | None = None,
-    ) -> None:
-        super().__init__(message)
-        self.message, self.hint, self.row, self.column, self.also = message, hint, row, column, also
-
-
 class Family(ABC):
     """A family of distributions. The parameters of every method follow the order of `parameters`, or go by key.
 
@@ -183,6 +152,7 @@ class Family(ABC):
         parameters: in the usual order.
         rules: what the parameters must keep.
         open_below: the quantile of 0 is minus infinity, so u = 0 is read as `SMALLEST_U`.
+        always_finite: every draw is a finite number if the parameters keep every rule; otherwise draws are tried out.
         roles: of each parameter, so that percentiles may stand in its place; empty where they may not (`matching.py`).
         data: what a family that is built from data needs; None for one that has parameters alone.
         formula: its density, distribution or quantile function in the headings of its parameters, for people.
@@ -195,6 +165,7 @@ class Family(ABC):
     parameters: tuple[ParameterSpec, ...]
     rules: tuple[Rule, ...] = ()
     open_below: bool = False
+    always_finite: bool = False
     roles: tuple[Role, ...] = ()
     data: DataSpec | None = None
     formula: str = ""
@@ -218,6 +189,23 @@ class Family(ABC):
         raise TypeError(f"{self.name} is not built from data")
 
     def fault(self, *params: float, **named: float) -> Fault | None:
+        """The first rule that these numbers break, if any, or that draws would be too large for a number."""
+        return self.broken_rule(*params, **named) or self._overflow(self.bind(params, named))
+
+    def _overflow(self, values: tuple[Any, ...]) -> Fault | None:
+        if self.always_finite or not self.parameters or np.isfinite(self.ppf(np.array(TRIED_U), *values)).all():
+            return None
+        return self.overflow_fault(values, "Correct the number, or cut the distribution off at both ends")
+
+    def overflow_fault(self, values: tuple[Any, ...], hint: str) -> Fault:
+        """What to say where draws would not be finite; it blames the parameter that bends the distribution most."""
+        blame = {"shape": 0, "rate": 1, "log scale": 2, "scale": 3, "ordered": 4, "location": 5}
+        roles = self.roles or ("location",) * len(values)
+        spec, value, _ = min(zip(self.parameters, values, roles, strict=True), key=lambda each: blame[each[2]])
+        message = f"{spec.heading} ({show(value)}) is too extreme: not all draws are numbers up to 1.8E308, the largest"
+        return Fault(spec.key, message, hint)
+
+    def broken_rule(self, *params: float, **named: float) -> Fault | None:
         """The first rule that these numbers break, if any."""
         values = self.bind(params, named)
         for spec, value in zip(self.parameters, values, strict=True):
@@ -248,6 +236,8 @@ class Family(ABC):
     def ppf(self, u: Values, *params: Values, out: Array | None = None, **named: Values) -> Array:
         """Quantiles of probabilities in [0, 1); NaN in trials with invalid parameters.
 
+        Where parameters vary by trial, NaN too in the trials whose draw is too large for a number.
+
         Args:
             u: probabilities, a number or `(n,)`, drawn from the grid k·2^-53.
             *params: the parameters in order, or by key in `named`; each a number or `(n,)`.
@@ -260,7 +250,10 @@ class Family(ABC):
             out[...] = u
         if self.open_below:
             np.copyto(own, SMALLEST_U, where=own == 0.0)
-        x = _masked(self._ppf(own, *values), invalid)
+        with np.errstate(all="ignore"):
+            x = _masked(self._ppf(own, *values), invalid)
+        if any(np.ndim(value) for value in values):
+            x = np.where(np.isfinite(x), x, np.nan)
         if out is None:
             return x
         if x is not out:
@@ -270,7 +263,8 @@ class Family(ABC):
     def isf(self, q: Values, *params: Values, **named: Values) -> Array:
         """The values exceeded with probability q: `ppf(1 - q)` without the loss of digits for small q."""
         values, invalid = self._sound(self.bind(params, named))
-        return _masked(self._isf(_own_copy(q, values), *values), invalid)
+        with np.errstate(all="ignore"):
+            return _masked(self._isf(_own_copy(q, values), *values), invalid)
 
     def cdf(self, x: Values, *params: Values, **named: Values) -> Array:
         """P(X <= x), shapes as in `ppf`."""
@@ -291,7 +285,8 @@ class Family(ABC):
     def support(self, *params: Values, **named: Values) -> tuple[Array, Array]:
         """The lowest and the highest possible value, each `()` or `(n,)`; may be infinite."""
         values, invalid = self._sound(self.bind(params, named))
-        low, high = self._support(*values)
+        with np.errstate(all="ignore"):
+            low, high = self._support(*values)
         return _masked(low, invalid), _masked(high, invalid)
 
     def cutoffs(self, lower: Values, upper: Values) -> tuple[tuple[Values, Values], tuple[Values, Values]]:
@@ -354,7 +349,8 @@ class Family(ABC):
         self, hook: Callable[..., Any], params: Sequence[Any], named: Mapping[str, Any], *points: Values
     ) -> Array:
         values, invalid = self._sound(self.bind(params, named))
-        return _masked(hook(*points, *values), invalid)
+        with np.errstate(all="ignore"):
+            return _masked(hook(*points, *values), invalid)
 
 
 def _own_copy(u: Values, values: tuple[Any, ...]) -> Array:

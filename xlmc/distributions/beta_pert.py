@@ -30,6 +30,7 @@ class BetaPERT(Family):
     aliases = ("PERT",)
     parameters = (LOW, LIKELIEST, HIGH)
     roles = ("ordered", "ordered", "ordered")
+    always_finite = True
     rules = Triangular.rules
     formula = "Beta with Alpha = 1 + 4·(Likeliest − Low)/(High − Low) and Beta = 1 + 4·(High − Likeliest)/(High − Low)"
     source = "Malcolm, Roseboom, Clark and Fazar, Operations Research 7 (1959), 646–669, with λ = 4"

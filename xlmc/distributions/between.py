@@ -8,7 +8,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from xlmc.distributions.base import HIGH, LOW, Array, DataError, Family, Rule, Values, share, show
+from xlmc.distributions.base import HIGH, LARGEST, LOW, Array, DataError, Family, Rule, Values, share, show
 from xlmc.distributions.piecewise import Piecewise
 
 __all__ = ["BELOW", "Between", "data_column"]
@@ -55,13 +55,15 @@ class Between(Family):
         """Its rules are made again from the points."""
         return type(self), ((self.values, self.heights) if hasattr(self, "values") else ())
 
-    def built(self, data: Array, **_: Any) -> Self:
+    def built(self, data: Array, **_options: Any) -> Self:
         """The family of these points: `(points, 2)`, values and probabilities or heights."""
         values, heights = data_column(data, 0, "value"), self._heights(data)
         for row in np.flatnonzero(np.diff(values) <= 0):
             message = f"The value {show(values[row + 1])} is not above the one before it, {show(values[row])}"
             raise DataError(message, "Sort the rows so that the values rise", int(row) + 1, 0)
-        return type(self)(values, heights)
+        found = type(self)(values, heights)
+        _ = found._middle  # refuses values that are too near to each other
+        return found
 
     def bind(self, params: Any, named: Any) -> tuple[Any, ...]:
         if not hasattr(self, "values"):
@@ -147,11 +149,14 @@ def data_column(data: Array, column: int, what: str) -> Array:
     """A column of the data without blanks.
 
     Raises:
-        DataError: a cell is blank or no finite number, or there is no row.
+        DataError: a cell is blank or no number up to 1E150, or there is no row.
     """
     if not len(data):
         raise DataError("The data hold no numbers", "Fill in the range")
     values = data[:, column]
     for row in np.flatnonzero(~np.isfinite(values)):
         raise DataError(f"Row {row + 1} of the data has no {what}", "Type a number", int(row), column)
+    for row in np.flatnonzero(np.abs(values) > LARGEST):
+        message = f"The number ({show(values[row])}) must be between -1E150 and 1E150"
+        raise DataError(message, "Correct the number", int(row), column)
     return values

@@ -43,9 +43,9 @@ class ByPercentiles(Family):
         """The members that it has found are looked for again."""
         return ByPercentiles, (self.family, tuple(spec.key for spec in self._given), self.percents)
 
-    def fault(self, *params: float, **named: float) -> Fault | None:
+    def broken_rule(self, *params: float, **named: float) -> Fault | None:
         """The first thing wrong with these numbers, if any."""
-        if fault := super().fault(*params, **named):
+        if fault := super().broken_rule(*params, **named):
             return fault
         values = self.bind(params, named)
         places = list(zip(self.parameters, values, strict=True))[len(self._given) :]
@@ -62,7 +62,7 @@ class ByPercentiles(Family):
         return None
 
     def valid(self, *params: Values, **named: Values) -> bool | NDArray[np.bool_]:
-        return self.fault(*self._numbers(self.bind(params, named))) is None
+        return self.broken_rule(*self._numbers(self.bind(params, named))) is None
 
     def member(self, *params: float, **named: float) -> tuple[float, ...]:
         """The family's own parameters, in its order.

@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from xlmc.distributions.base import Array, DataError, DataSpec, Family, Values
+from xlmc.distributions.base import LARGEST, Array, DataError, DataSpec, Family, Values, show
 from xlmc.distributions.custom_data import rows_of, value_pieces
 
 __all__ = ["REACH", "EmpiricalSmoothed", "silverman"]
@@ -29,6 +29,12 @@ _DEGREE: Final = 12
 _CHUNK: Final = 64
 
 _MOST_CELLS: Final = 200_000
+
+_LEAST_CELL: Final = 4.0
+"""A cell is at least so many steps wide between the numbers that a computer can tell apart."""
+
+_LEAST_BANDWIDTH: Final = 1e-300
+"""Smaller ones have too few digits left."""
 
 
 def silverman(values: ArrayLike) -> float:
@@ -79,6 +85,11 @@ class EmpiricalSmoothed(Family):
         if not bandwidth > 0:
             message = "The values are all equal, so nothing says how far to smooth them"
             raise DataError(message, "Give a Bandwidth, or more measurements", 0, 0)
+        if bandwidth > LARGEST:
+            raise DataError(f"Bandwidth ({show(bandwidth)}) must be at most 1E150", "Correct the number", 0, 0)
+        if bandwidth / _CELLS < _LEAST_CELL * float(np.spacing(np.abs(values).max())) or bandwidth < _LEAST_BANDWIDTH:
+            message = f"Bandwidth ({show(bandwidth)}) is below the last digits of the values and smooths nothing"
+            raise DataError(message, "Give a larger Bandwidth, or use Empirical without smoothing", 0, 0)
         if self.cells_needed(values, bandwidth) > _MOST_CELLS:
             message = "The bandwidth is very small beside the spread of so many values"
             raise DataError(message, "Give a larger Bandwidth, or use Empirical without smoothing", 0, 0)

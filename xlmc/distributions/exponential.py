@@ -49,7 +49,7 @@ class Exponential(Family):
         return 1 / rate
 
     def _variance(self, rate: Values) -> Values:
-        return (1 / rate) ** 2
+        return np.square(1 / rate)
 
     def _support(self, rate: Values) -> tuple[Values, Values]:
         return ends(0.0, np.inf, rate)

@@ -49,7 +49,7 @@ class Gamma(Family):
     def _cdf(self, x: Values, location: Values, scale: Values, shape: Values) -> Values:
         from scipy.special import gammainc
 
-        return gammainc(shape, _distance(x, location, scale))  # type: ignore[no-any-return]
+        return np.minimum(gammainc(shape, _distance(x, location, scale)), 1.0)  # type: ignore[no-any-return]
 
     def _sf(self, x: Values, location: Values, scale: Values, shape: Values) -> Values:
         from scipy.special import gammaincc

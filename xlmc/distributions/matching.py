@@ -46,7 +46,7 @@ def match_percentiles(family: Family, given: Mapping[str, float], points: Points
     candidates = _ordered(family, given, points) if "ordered" in family.roles else _moved(family, given, points)
     with np.errstate(all="ignore"):
         for found in candidates:
-            if family.check(*found) is None:
+            if family.broken_rule(*found) is None:
                 away = np.abs(family.ppf(p, *found) - x)
                 if np.all(away <= _MET * _spread(given, points)):
                     return found

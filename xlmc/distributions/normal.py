@@ -36,6 +36,7 @@ class Normal(Family):
         ),
     )
     open_below = True
+    always_finite = True
 
     def _ppf(self, u: Array, mean: Values, std_dev: Values) -> Array:
         from scipy.special import ndtri

@@ -37,8 +37,9 @@ class Piecewise(Family):
     def __init__(self, edges: ArrayLike, left: ArrayLike, right: ArrayLike) -> None:
         self.edges, self.left, self.right = (np.asarray(each, dtype=float) for each in (edges, left, right))
         self.widths = np.diff(self.edges)
-        areas = self.widths * (self.left + self.right) / 2
-        area = areas.sum()
+        with np.errstate(all="ignore"):  # what is too large is refused
+            areas = self.widths * (self.left + self.right) / 2
+            area = areas.sum()
         sound = np.all(self.widths > 0) and np.isfinite(area) and min(self.left.min(), self.right.min()) >= 0
         if not (sound and area > 0):
             raise DataError("The points are no density", "Values must rise, heights must be 0 or more, one above 0")
@@ -54,7 +55,8 @@ class Piecewise(Family):
     @classmethod
     def of_distribution(cls, values: ArrayLike, probabilities: ArrayLike) -> Piecewise:
         """The distribution function through these points; the first probability is taken for 0, the last for 1."""
-        heights = np.diff(np.asarray(probabilities, dtype=float)) / np.diff(np.asarray(values, dtype=float))
+        with np.errstate(all="ignore"):  # what is too large is refused
+            heights = np.diff(np.asarray(probabilities, dtype=float)) / np.diff(np.asarray(values, dtype=float))
         return cls(values, heights, heights)
 
     @classmethod

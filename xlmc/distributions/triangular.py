@@ -28,6 +28,7 @@ class Triangular(Family):
     source = "Kotz and van Dorp, Beyond Beta (2004), ch. 1"
     elsewhere = ("Crystal Ball Triangular (minimum, likeliest, maximum)", "@RISK Triang(min, likeliest, max)")
     roles = ("ordered", "ordered", "ordered")
+    always_finite = True
     rules = (
         Rule(
             "low",

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from xlmc.distributions.base import SMALLEST_U, Array, Family, Fault, Values, show
+from xlmc.distributions.base import SMALLEST_U, TRIED_U, Array, Family, Fault, Values, show
 
 __all__ = ["Truncated"]
 
@@ -34,7 +34,7 @@ class Truncated:
 
     def fault(self, lower: float, upper: float, *params: float, **named: float) -> Fault | None:
         """The first rule that these numbers break, if any; the keys add `lower_cutoff` and `upper_cutoff`."""
-        if fault := self.family.fault(*params, **named):
+        if fault := self.family.broken_rule(*params, **named):
             return fault
         for key, label, cutoff in (("lower_cutoff", "Lower", lower), ("upper_cutoff", "Upper", upper)):
             if np.isnan(cutoff):
@@ -42,9 +42,14 @@ class Truncated:
         if not lower < upper:
             message = f"Lower cutoff ({show(lower)}) is not below Upper cutoff ({show(upper)})"
             return Fault("lower_cutoff", message, "Exchange the two, or correct the wrong one")
-        if not _Slice(self.family, lower, upper, self.family.bind(params, named)).mass >= _LEAST_MASS:
+        values = self.family.bind(params, named)
+        if not _Slice(self.family, lower, upper, values).mass >= _LEAST_MASS:
             return self._empty(lower, upper, *params, **named)
-        return None
+        if self.family.always_finite or not values:
+            return None
+        if np.isfinite(self.ppf(np.array(TRIED_U), lower, upper, *values)).all():
+            return None
+        return self.family.overflow_fault(values, "Correct the number, or give cutoffs at both ends")
 
     def check(self, lower: float, upper: float, *params: float, **named: float) -> str | None:
         """What is wrong with these numbers, in words; None when nothing is."""
@@ -54,11 +59,11 @@ class Truncated:
     def ppf(
         self, u: Values, lower: Values, upper: Values, *params: Values, out: Array | None = None, **named: Values
     ) -> Array:
-        """Quantiles of probabilities in [0, 1), shapes as in `Family.ppf`."""
+        """Quantiles of probabilities in [0, 1), shapes as in `Family.ppf`; NaN where the draw would not be finite."""
         values = self.family.bind(params, named)
         part = _Slice(self.family, lower, upper, values)
         x = np.clip(part.quantile(np.where(np.equal(u, 0.0), SMALLEST_U, u)), part.lowest, part.highest)
-        x = np.where(_sound(part, lower, upper), x, np.nan)
+        x = np.where(_sound(part, lower, upper) & np.isfinite(x), x, np.nan)
         if out is None:
             return np.asarray(x, dtype=float)
         out[...] = x

@@ -26,6 +26,7 @@ class Uniform(Family):
     """
 
     name = "Uniform"
+    always_finite = True
     parameters = (LOW, HIGH)
     formula = "density 1/(High − Low) from Low to High"
     source = "Johnson, Kotz and Balakrishnan, Continuous Univariate Distributions, vol. 2, ch. 26"

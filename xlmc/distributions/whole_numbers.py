@@ -56,6 +56,7 @@ class WholeNumbers(Family):
     """
 
     open_below = True  # F(k) >= 0 holds everywhere, so u = 0 says nothing; it stands for its half step
+    always_finite = True  # none passes 2^52
 
     @abstractmethod
     def _at_most(self, k: Array, *args: Any) -> Values:

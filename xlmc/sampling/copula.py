@@ -13,6 +13,9 @@ Floats = NDArray[np.float64]
 
 _HALF_STEP = 2.0**-54
 
+_LEAST = 2.0**-80
+"""The least probability that a draw is made from: less has a chance of 1e-24."""
+
 _ROUNDING = 1e-9
 """An eigenvalue so little below 0 is one of 0: no correlation need change by more than this."""
 
@@ -49,7 +52,7 @@ class GaussianCopula:
             joined = self._mix[i, 0] * z[0]
             for j in range(1, i + 1):
                 joined += self._mix[i, j] * z[j]
-            u[i] = np.minimum(ndtr(joined), 1 - 2.0**-53)
+            u[i] = np.clip(ndtr(joined), _LEAST, 1 - 2.0**-53)
 
 
 def _triangular_root(matrix: Floats) -> Floats:

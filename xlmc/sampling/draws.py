@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from xlmc.distributions import Family, Truncated
 from xlmc.distributions.uniform import Uniform
+from xlmc.errors import SimulationError
 from xlmc.sampling.copula import GaussianCopula
 from xlmc.sampling.plan import Margin, Plan
 from xlmc.sampling.streams import Stream
@@ -46,9 +47,28 @@ class Draw:
             lower, upper = (_known(c, dynamic) for c in self.cutoffs)
             Truncated(self.family).ppf(u, lower, upper, *parameters, out=u)
 
+    @property
+    def fixed(self) -> bool:
+        """Whether no parameter and no cutoff varies by trial."""
+        return all(isinstance(p, float) for p in (*self.parameters, *(self.cutoffs or ())))
+
+    def refuse_no_numbers(self, draws: Floats) -> None:
+        """Check what was filled in, `(n,)`; where parameters vary, NaN is an error trial, and counted as one.
+
+        Raises:
+            SimulationError: parameters that are numbers gave a draw that is none.
+        """
+        if self.family.always_finite or not self.fixed:
+            return
+        with np.errstate(over="ignore", invalid="ignore"):
+            likely = np.isfinite(draws.sum())  # quick; a sum of large numbers may overflow, though
+        if not likely and not np.isfinite(draws).all():
+            message = f"{self.family.name} of the assumption {self.name!r} gives draws that are no numbers"
+            raise SimulationError(message, hint="its parameters are too extreme: correct them in the workbook")
+
     def support(self) -> tuple[float, float] | None:
         """The least and the largest draw; None where either is infinite, or where the parameters vary."""
-        if not all(isinstance(p, float) for p in (*self.parameters, *(self.cutoffs or ()))):
+        if not self.fixed:
             return None
         ends = np.array([0.0, 1.0])
         with np.errstate(all="ignore"):
@@ -167,6 +187,7 @@ class Sampler:
                 drawn[draw.name] = self._rows[self._places[draw.name]]
                 if draw.name not in self._filled:
                     draw.fill(drawn[draw.name], known)
+                    draw.refuse_no_numbers(drawn[draw.name])
         return drawn
 
 

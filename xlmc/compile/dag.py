@@ -177,8 +177,12 @@ class Dag:
 
     def told(self, error: TooLargeError) -> FormulaError:
         """The error, told of the cell whose formula first asked for the node."""
-        at = len(self.ends) if error.node is None else bisect_right(self.ends, error.node)
-        return error if at == len(self.ends) else error.at(self.hosts[at])
+        return error if error.node is None else self.told_of(error, error.node)
+
+    def told_of(self, error: FormulaError, node: int) -> FormulaError:
+        """An error without a place, told of the cell whose formula first asked for the node."""
+        at = bisect_right(self.ends, node)
+        return error if at == len(self.ends) or error.where is not None else error.at(self.hosts[at])
 
     def constant(self, value: Value) -> int:
         """The node of a known value.

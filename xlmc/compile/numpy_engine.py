@@ -20,7 +20,7 @@ from xlmc.compile.engine import Column, Evaluator, Target
 from xlmc.compile.plan import Plan, Space
 from xlmc.compile.steps import Departure
 from xlmc.compile.tracking import TrackingEvaluator
-from xlmc.functions.budget import TooLargeError
+from xlmc.errors import FormulaError
 from xlmc.functions.values import Floats
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ class _NumpyEvaluator:
             try:
                 with np.errstate(divide="raise", over="raise", invalid="raise"):
                     return self._plan.run_filters(self._space, inputs, n)
-            except (FloatingPointError, Departure, TooLargeError):
+            except (FloatingPointError, Departure, FormulaError):
                 self._departed = True
         return self._tracking.filters(inputs, n)
 
@@ -120,6 +120,6 @@ class _NumpyEvaluator:
             try:
                 with np.errstate(divide="raise", over="raise", invalid="raise"):
                     return self._plan.run_forecasts(self._space, self._inputs, survivors)
-            except (FloatingPointError, Departure, TooLargeError):
+            except (FloatingPointError, Departure, FormulaError):
                 self._tracking.filters(self._inputs, self._n)
         return self._tracking.forecasts(survivors)

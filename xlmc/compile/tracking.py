@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from xlmc.compile.dag import Constant, Dag, Input, constants, evaluated, uses
 from xlmc.compile.engine import Column, column_of
+from xlmc.errors import FormulaError
 from xlmc.functions.budget import TooLargeError, ask_for_live
 from xlmc.functions.values import Floats, Value
 
@@ -139,6 +140,7 @@ class _Part:
 
         Raises:
             TooLargeError: they take too much memory; told of the node.
+            FormulaError: a value is of a kind that xlmc does not compute with; told of the cell.
         """
         nodes, sizes = self._dag.nodes, dict[int, int]()
         live = self.peak = 0
@@ -154,6 +156,8 @@ class _Part:
             except TooLargeError as error:
                 error.node = place
                 raise
+            except FormulaError as error:
+                raise self._dag.told_of(error, place) from None
             self.peak = max(self.peak, live)
             for gone in self._done.get(place, ()):
                 del values[gone]

@@ -17,7 +17,9 @@ formula, also one that depends on other assumptions. `Lower cutoff` and `Upper c
 
 Quantiles are computed in double precision with SciPy's special functions, upper tails from the probability above, so
 that a distribution cut off far out keeps its digits. A trial in which the parameters are no distribution is an error
-trial; numbers that are none are refused with the cell.
+trial; numbers that are none are refused with the cell. The same holds for parameters so extreme that a draw would pass
+the largest number of a workbook, 1.8E308: Student's t with 0.01 degrees of freedom, Pareto with shape 0.01. Cutoffs at
+both ends make a distribution of them.
 """
 
 PERCENTILES = """\

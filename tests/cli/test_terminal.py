@@ -221,3 +221,54 @@ def test_nothing_is_wider_than_the_terminal(case_study, tmp_path, on_a_terminal,
         assert len(numbers) > 15
         joined = " ".join(shown.split())
         assert all(number in joined for number in numbers)
+
+
+NOTE = "The workbook holds names as long as this one, " * 6 + "see /a/path/that/" + "stays/in/one/piece/" * 4
+
+
+@pytest.mark.parametrize("columns", [30, 60, 200])
+def test_notes_wrap_to_the_width_of_the_terminal_behind_stderr(monkeypatch, capsys, columns):
+    monkeypatch.setenv("COLUMNS", str(columns))
+    monkeypatch.setattr("xlmc.cli.terminal.on_terminal", lambda *, err=False: err)
+    terminal.say(f"note: {NOTE}", err=True)
+    lines = capsys.readouterr().err.splitlines()
+    assert " ".join(line.strip() for line in lines) == f"note: {NOTE}"
+    assert all(len(line) <= columns or " " not in line.strip() for line in lines)
+    assert all(line.startswith("  ") for line in lines[1:])
+    assert len(lines) > 1
+
+
+def test_notes_in_a_file_stay_on_their_line(capsys):
+    terminal.say(f"note: {NOTE}", err=True)
+    assert capsys.readouterr().err == f"note: {NOTE}\n"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudo terminals of this kind")
+@pytest.mark.parametrize("encoding", ["cp1252", "ascii", "utf-8"])
+def test_the_progress_bar_is_drawn_in_every_encoding(greek, tmp_path, encoding):
+    """A terminal at stderr, a file at stdout: the bar has characters that few code pages hold."""
+    import pty
+
+    shutil.copy(greek, tmp_path / "case.xlsx")
+    master, slave = pty.openpty()
+    where = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": encoding, "TERM": "xterm", "COLUMNS": "100"}
+    command = [sys.executable, "-m", "xlmc", "simulate", "case.xlsx", "-n", "400000", "-j", "1"]
+    running = subprocess.Popen(command, cwd=tmp_path, env=where, stdout=subprocess.PIPE, stderr=slave)
+    os.close(slave)
+    drawn = b""
+    while True:
+        try:
+            piece = os.read(master, 65536)
+        except OSError:  # how Linux says that the other end is closed
+            break
+        if not piece:
+            break
+        drawn += piece
+    os.close(master)
+    out, _ = running.communicate()
+    assert running.returncode == 0, drawn
+    shown = drawn.decode(encoding)
+    assert "trials," in shown
+    assert "Traceback" not in shown
+    assert "Chevrolet" in out.decode(encoding)
+    assert (tmp_path / "case-results.xlsx").exists()

@@ -7,7 +7,6 @@ import errno
 import json
 import math
 import os
-import shutil
 import sys
 import unicodedata
 from collections.abc import Mapping
@@ -66,12 +65,22 @@ def prepare() -> None:
 
 
 def say(text: object = "", *, err: bool = False) -> None:
-    """Print a text and a line feed; `err` to stderr.
+    """Print a text and a line feed; `err` to stderr, wrapped where that is a terminal.
 
     Raises:
         WorkbookError: stdout is a file that cannot be written.
     """
-    put(f"{printable(str(text))}\n", err=err)
+    shown = printable(str(text))
+    if err and on_terminal(err=True):
+        shown = "\n".join(_wrapped_note(line) for line in shown.split("\n"))
+    put(f"{shown}\n", err=err)
+
+
+def _wrapped_note(line: str) -> str:
+    """A line as wide as the terminal, words whole: a path or an address can be copied."""
+    line = degraded(line, err=True)
+    wide = _columns(sys.stderr)
+    return fill(line, wide, subsequent_indent="  ", break_on_hyphens=False, break_long_words=False)
 
 
 def say_json(value: object) -> None:
@@ -117,7 +126,17 @@ def paragraph(text: str, *, indent: str = "", hanging: str | None = None) -> str
 
 def width() -> int:
     """Columns of the terminal; `PIPE_WIDTH` where stdout is none."""
-    return max(_NARROWEST, shutil.get_terminal_size((PIPE_WIDTH, 24)).columns) if on_terminal() else PIPE_WIDTH
+    return _columns(sys.stdout) if on_terminal() else PIPE_WIDTH
+
+
+def _columns(stream: TextIO) -> int:
+    """Of the terminal behind a stream; `COLUMNS` where that is set."""
+    try:
+        own = os.get_terminal_size(stream.fileno()).columns or PIPE_WIDTH
+    except (OSError, ValueError):
+        own = PIPE_WIDTH
+    wanted = os.environ.get("COLUMNS", "")
+    return max(_NARROWEST, int(wanted) if wanted.isdecimal() and int(wanted) > 0 else own)
 
 
 def on_terminal(*, err: bool = False) -> bool:

@@ -266,6 +266,38 @@ def test_an_end_that_is_no_words_is_refused(saved, tmp_path, words):
         open_run(path)
 
 
+@pytest.mark.parametrize("value", [None, -1, 1e308, "x", [], {}, True, float("nan"), 10**30], ids=repr)
+@pytest.mark.parametrize("part", ["settings", "settings.stopping", "stopped"])
+def test_an_edited_field_inside_a_part_opens_as_a_run_or_is_refused(saved, tmp_path, part, value):
+    def inside(document):
+        for key in part.split("."):
+            document = document[key]
+        return document
+
+    with zipfile.ZipFile(saved) as package:
+        names = list(inside(json.loads(package.read(RUN))))
+    for name in names:
+        path = repacked(saved, tmp_path / "edited.xlmcrun", lambda p, d, name=name: inside(d).update({name: value}))
+        try:
+            said = f"{path} {make_record(open_run(path), 'typed').as_dict()}"
+        except XlmcError as error:
+            said = str(error)
+        assert str(path) in said
+
+
+def test_an_edited_saved_run_is_answered_in_words_with_exit_code_2(saved, tmp_path, monkeypatch, capsys):
+    from xlmc.cli import main
+
+    path = repacked(saved, tmp_path / "edited.xlmcrun", changed(settings=[[]], stopped=None))
+    monkeypatch.setattr("sys.argv", ["xlmc", "report", str(path), "-o", str(tmp_path / "out.xlsx")])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    said = capsys.readouterr()
+    assert ended.value.code == 2, said
+    assert "edited.xlmcrun" in "".join(said.err.split())
+    assert "Traceback" not in said.err
+
+
 def test_packed_entries_are_refused(saved, tmp_path):
     """A zip bomb must be packed: entries that are stored are no longer than the file."""
     bomb = repacked(saved, tmp_path / "bomb.xlmcrun", lambda p, d: None, compression=zipfile.ZIP_DEFLATED)

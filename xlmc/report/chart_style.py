@@ -108,7 +108,7 @@ def bounds(lowest: float, highest: float) -> dict[str, float]:
     {'min': 18.0, 'max': 27.0, 'major_unit': 1.0}
     """
     span = highest - lowest
-    if not 1e-9 * max(abs(lowest), abs(highest)) < span < 1e300:
+    if not 1e-9 * max(abs(lowest), abs(highest)) < span < 1e300 or span < 1e-300:
         return {}
     step = 10.0 ** math.floor(math.log10(span))
     step *= next(part for part in (0.1, 0.2, 0.5, 1.0) if span / (part * step) <= _MOST_STEPS)

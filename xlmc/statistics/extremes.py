@@ -5,6 +5,8 @@ What lies beyond the largest of n trials no sample can bound without assuming a 
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -27,6 +29,7 @@ def maximum(values: Values, weights: ArrayLike | None = None, replicate: ArrayLi
 
 
 def range_width(values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None) -> Estimate:
-    """Largest less smallest."""
+    """Largest less smallest; nan where that is too large for a number."""
     sample = Sample.of(values, weights, replicate)
-    return Estimate(maximum(sample).value - minimum(sample).value, n=sample.n)
+    width = maximum(sample).value - minimum(sample).value
+    return Estimate(np.nan if math.isinf(width) else width, n=sample.n)

@@ -34,6 +34,7 @@ LEAST_IN_A_GROUP = 8
 MOST_IN_A_GROUP = 10_000  # more would cost time and not improve the spread of 32 numbers
 SHUFFLE_SEED = 1974
 CONVERGENCE = 0.2
+_SQUARABLE = 1e140  # squares and sums of larger numbers may overflow
 ROUNDING = 1e-9  # widths that differ by less are equal: 0.3 − 0.2 and 0.2 − 0.1
 
 
@@ -53,7 +54,9 @@ def mode(
     if len(sizes_and_modes) < 2:
         return Estimate(value, n=sample.n)
     sizes, modes = np.array(sizes_and_modes).T
-    error = float(np.std(modes, ddof=1) * (np.mean(sizes) / sample.n) ** CONVERGENCE)
+    largest = float(np.abs(modes).max())
+    unit = largest if largest > _SQUARABLE else 1.0
+    error = float(unit * np.std(modes / unit, ddof=1) * (np.mean(sizes) / sample.n) ** CONVERGENCE)
     return with_error(value, error, modes.size - 1.0, confidence, sample.n)
 
 

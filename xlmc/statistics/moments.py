@@ -7,8 +7,9 @@ differ only in what an independent unit is, and so only in `_influences`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,13 @@ Floats = NDArray[np.float64]
 
 Slices = Callable[[slice], Floats]
 """Gives the values of some of the trials, centred or standardised."""
+
+
+_SUMMABLE = 1e290
+"""Sums of larger values may pass the largest number."""
+
+_SHRUNK = 100
+"""So many times halved, no sum of values can."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,12 +52,15 @@ class Moments:
 
 
 def moments_of(x: Floats, w: Floats | None, group: NDArray[np.intp] | None, groups: int, units: float) -> Moments:
-    """Moments of (n,) values with weights that sum to 1, counting errors in `units` independent units.
+    """Moments of (n,) ascending values with weights that sum to 1, counting errors in `units` independent units.
 
     Two passes, the first from a pivot inside the data, so that 1e9 ± 1 keeps its digits.
     """
     if x.size == 0:
         return Moments(np.nan, np.nan, np.nan, np.nan, np.zeros((4, 4)), np.nan)
+    if max(abs(float(x[0])), abs(float(x[-1]))) > _SUMMABLE:
+        found = moments_of(np.ldexp(x, -_SHRUNK), w, group, groups, units)  # an exact scale: sums would overflow
+        return replace(found, mean=math.ldexp(found.mean, _SHRUNK), scale=math.ldexp(found.scale, _SHRUNK))
     pivot = float(x[x.size // 2])
     shift = _average(lambda here: x[here] - pivot, x.size, w)
 

@@ -52,7 +52,7 @@ def by_replicate(sample: Sample, p: Floats, confidence: float) -> list[Estimate]
 def _estimates(sample: Sample, p: Floats, n: Floats, n_of_interval: Floats, confidence: float) -> list[Estimate]:
     """Errors and intervals of binomial counts of so many equal trials, (len(p),) each."""
     intervals = _rank_intervals(sample, p, n_of_interval, confidence)
-    halves = np.diff(_rank_intervals(sample, p, n, 0.95)).ravel() / 2.0 / t_quantile(np.inf, 0.95)
+    halves = np.diff(_rank_intervals(sample, p, n, 0.95) / 2.0).ravel() / t_quantile(np.inf, 0.95)
     return [
         Estimate(
             float(point),

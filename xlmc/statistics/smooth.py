@@ -49,7 +49,8 @@ def mean(
 def variance(
     values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None, *, confidence: float = 0.95
 ) -> Estimate:
-    """Sample variance, divided by n − 1 as Excel's VAR.S; with weights by the effective size less one; of replicates
+    """Sample variance, nan where it is too large for a number; divided by n − 1 as Excel's VAR.S;
+    with weights by the effective size less one; of replicates
     the mean square about the mean, and the squared error of the mean.
 
     Error from the fourth moment, for independent trials Var(s²) ≈ (m₄ − s⁴(n − 3)/(n − 1))/n. One trial has none: nan.
@@ -59,6 +60,8 @@ def variance(
     """
     sample = Sample.of(values, weights, replicate)
     value = _deviation(sample) * _deviation(sample)
+    if math.isinf(value):  # too large for a number
+        return Estimate(np.nan, n=sample.n)
     error = value * _relative_error_of_variance(sample)
     return with_relative_error(value, error, sample.dof, confidence, sample.n)
 

@@ -28,8 +28,9 @@ FLOORS = [
     {"simulate"},
     {"record", "statements"},
     {"saved"},
-    {"analysis", "methods", "replay", "sensitivity", "stability"},
+    {"analysis", "methods", "sensitivity", "stability"},
     {"report"},
+    {"replay"},
     {"cli"},
     {"__main__"},
 ]

@@ -6,6 +6,7 @@ import math
 import re
 import zipfile
 
+import numpy as np
 import openpyxl
 import pytest
 import xlsxwriter
@@ -154,6 +155,48 @@ def test_results_of_a_run_without_accepted_trials_are_not_available(tmp_path):
     values = {cell.a1: value for cell, value in result_values(run).items()}
     assert values["A4"] is ErrorCode.NA
     assert values["A2"] == run["S!A1"].mean.value
+
+
+INPUTS = {"A1": ("=RiskNormal(5,1)", 5), "A2": ("=A1*2+RiskUniform(0,1)+RiskOutput()", 10)}
+
+
+def test_results_of_an_assumption_are_those_of_its_accepted_draws(tmp_path):
+    cells = {"B1": ("=RiskMean(A1)", 5), "B2": ("=RiskPercentile(A1,0.9)", 5), "B3": ("=CB.GetForeStatFN(A1,1)", 5)}
+    run = xlmc.load(build(tmp_path / "book.xlsx", {**INPUTS, **cells})).simulate(trials=500)
+    draws = run.inputs["S!A1#1"]
+    assert draws.size == 500
+    values = {cell.a1: value for cell, value in result_values(run).items()}
+    assert values["B1"] == pytest.approx(draws.mean(), rel=1e-14)
+    assert values["B2"] == pytest.approx(np.percentile(draws, 90), rel=1e-14)
+    assert values["B3"] == 500
+
+
+def test_a_name_that_only_an_assumption_has_shows_nothing_and_is_named(tmp_path):
+    cells = {"A1": ('=RiskNormal(5,1,RiskName("Speed"))', 5), "B1": ('=RiskMean("Speed")', STALE)}
+    run = xlmc.load(build(tmp_path / "book.xlsx", {**INPUTS, **cells})).simulate(trials=500)
+    assert shown(run, tmp_path / "out.xlsx")["B1"] == "#N/A"
+    assert "no forecast is called so: nothing is shown" in " ".join(str(notice) for notice in run.notices)
+
+
+RELATIVE = {
+    "a mean": 'RiskNormal(INDIRECT("C1"),1)+RiskOutput()',
+    "a place that moves": 'RiskNormal(INDIRECT("R1C3",FALSE),1)+RiskOutput()',
+    "its own row": 'RiskNormal(INDIRECT("C"&ROW()),1)+RiskOutput()',
+    "its own sheet": "RiskNormal(IF(SHEET()=2,50,0),1)+RiskOutput()",
+    "within": 'RiskUniform(0,SUM(OFFSET(B1,0,1),INDIRECT("C1")))+RiskOutput()',
+}
+
+
+@pytest.mark.parametrize("formula", RELATIVE.values(), ids=RELATIVE)
+def test_an_argument_of_a_draw_may_look_for_its_cell_on_its_own_sheet(tmp_path, formula):
+    path = tmp_path / "book.xlsx"
+    with xlsxwriter.Workbook(path) as book:
+        book.add_worksheet("First").write("C1", -1000)
+        sheet = book.add_worksheet("S")
+        sheet.write_formula("A1", f"={formula}", None, 5)
+        sheet.write("C1", 50)
+    run = xlmc.load(path).simulate(trials=500)
+    assert 40 < run["S!A1"].mean.value < 60
 
 
 def test_an_array_formula_of_results_fills_its_area(tmp_path):

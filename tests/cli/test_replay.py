@@ -45,12 +45,16 @@ def test_a_changed_cell_is_named(xlmc, results):
     lines = outcome.out.splitlines()
     assert lines[1:6] == ["differs.", "Not as the record says:", "  cell Inputs!G6", "    was  6661", "    is   6600"]
     assert any(line.startswith("  Chevrolet delta-V: mean: recorded 11.") for line in lines)
-    assert lines[-1].startswith("  … and ")
+    assert lines[-2].startswith("  … and ")
+    assert lines[-1].startswith("Not compared: the result sheets: the model is no longer")
 
 
 def test_as_json(xlmc, results):
     found = json.loads(xlmc("replay", results, "--json").out)
     assert found.pop("verdict").startswith("identical: the same ")
+    shown = found.pop("result_sheets")
+    assert {"Results", "Statistics", "Certainty", "Trials", "Record"} <= set(shown.pop("compared"))
+    assert shown == {"differences": [], "missing": [], "not_compared": []}
     assert found == {
         "identical": True,
         "to_the_last_bit": True,
@@ -80,6 +84,26 @@ def test_an_edited_record_is_found_out(xlmc, results):
     assert "differs, although the" in outcome.out
     assert "Chevrolet delta-V: mean: recorded 10.5, repeated 11." in outcome.out
     assert "The numbers in the record were edited" in outcome.out
+
+
+def test_edited_results_are_named_and_counted(xlmc, results):
+    book = openpyxl.load_workbook(results)
+    value = book["Results"]["D6"].value
+    book["Results"]["D6"] = 12.9
+    for row in range(5, 30):
+        book["Trials"][f"C{row}"] = 0
+    book.save(results)
+    outcome = xlmc("replay", results)
+    assert outcome.code == 1
+    lines = outcome.out.splitlines()
+    assert lines[1].startswith("differs, although the ")
+    assert lines[2] == "26 cells that do not show what the run gives:"
+    assert lines[3] == f"  Results!D6 says 12.9, the run gives {value!r}"
+    assert lines[4].startswith("  Trials!C5 says 0, the run gives ")
+    assert lines[23:] == ["  … and 6 more"]
+    found = json.loads(xlmc("replay", results, "--json").out)["result_sheets"]["differences"]
+    assert len(found) == 26
+    assert found[0] == {"where": "Results!D6", "says": 12.9, "gives": value}
 
 
 def test_another_processor(xlmc, results, monkeypatch):

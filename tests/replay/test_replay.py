@@ -117,7 +117,7 @@ def test_threads_change_nothing(results, jobs):
 
 def test_results_in_the_workbook_itself(small_book, tmp_path):
     path = Path(shutil.copy(small_book, tmp_path / "book.xlsx"))
-    xlmc.load(path).simulate().save(path)
+    xlmc.load(path).simulate().save(path, overwrite=True)
     assert replay(path).to_the_last_bit
 
 

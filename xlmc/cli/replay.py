@@ -12,13 +12,16 @@ from xlmc.cli.run_options import jobs_option
 from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
-    from xlmc.replay import Change, NumberChange, Replayed
+    from xlmc.replay import CellDifference, Change, NumberChange, Replayed
+    from xlmc.workbook.model import CellValue
 
 __all__ = ["replay"]
 
 DIFFERS = 1
 _MOST = 20
 """Lines of one kind that are printed; JSON has them all."""
+_LONGEST = 60
+"""Characters of a text that are quoted."""
 
 
 @click.command()
@@ -53,6 +56,7 @@ def _lines(found: Replayed, path: Path) -> Iterator[str]:
     if found.fault is not None:
         yield f"The workbook cannot be run any more: {found.fault}"
     yield from _numbers(found.numbers)
+    yield from _shown(found)
     if not found.changes and not found.identical:
         yield from _unexplained(found)
     yield from _changes(found.environment, "Other software or another processor than then:")
@@ -87,6 +91,40 @@ def _numbers(numbers: Sequence[NumberChange]) -> Iterator[str]:
     yield from _rest(numbers)
 
 
+def _shown(found: Replayed) -> Iterator[str]:
+    """What the result sheets show otherwise than the repeated run."""
+    differences = found.shown.differences
+    if differences:
+        count = len(differences)
+        yield f"{count:,} cell{'s' * (count != 1)} that {'do' if count != 1 else 'does'} not show what the run gives:"
+    for difference in differences[:_MOST]:
+        yield f"  {difference.where} says {_value(difference.says)}, the run gives {_value(difference.gives)}"
+    yield from _rest(differences)
+    for name in found.shown.missing:
+        yield f"The result sheet {name} is missing."
+    for said in found.shown.left_out:
+        yield f"Not compared: {said}."
+
+
+def _value(value: CellValue) -> str:
+    """A value as a sentence quotes it, whole where it is a number."""
+    if value is None:
+        return "nothing"
+    if isinstance(value, str):
+        return f'"{value if len(value) <= _LONGEST else value[: _LONGEST - 1] + "…"}"'
+    if isinstance(value, bool):
+        return "TRUE" if value else "FALSE"
+    return repr(float(value)).removesuffix(".0") if isinstance(value, int | float) else value.text
+
+
+def _as_shown(difference: CellDifference) -> dict[str, object]:
+    says, gives = (
+        value if value is None or isinstance(value, str | bool | int | float) else value.text
+        for value in (difference.says, difference.gives)
+    )
+    return {"where": str(difference.where), "says": says, "gives": gives}
+
+
 def _figure(number: float | None) -> str:
     if number is None:
         return "none"
@@ -99,6 +137,8 @@ def _rest(listed: Sequence[object]) -> Iterator[str]:
 
 
 def _unexplained(found: Replayed) -> Iterator[str]:
+    if found.same_bits and not found.numbers:
+        return
     if found.same_bits:
         yield "The numbers in the record were edited: nothing that the run depends on has changed."
     elif not found.environment:
@@ -120,6 +160,12 @@ def _as_json(found: Replayed) -> dict[str, object]:
             {"name": n.name, "recorded": n.recorded, "repeated": n.repeated, "equal_to_1e-12": n.close}
             for n in found.numbers
         ],
+        "result_sheets": {
+            "compared": list(found.shown.sheets),
+            "differences": [_as_shown(each) for each in found.shown.differences],
+            "missing": list(found.shown.missing),
+            "not_compared": list(found.shown.left_out),
+        },
         "fault": None if found.fault is None else str(found.fault),
     }
 

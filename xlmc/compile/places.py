@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from xlmc.address import Area, Cell
+from xlmc.address import Area, Cell, host_of
 from xlmc.compile.arrays import grid
 from xlmc.compile.dag import Apply, Range
 from xlmc.compile.references import REFERENCES, NoReference, NotYetNeeded, areas_of, needed
@@ -54,7 +54,7 @@ def _row_or_column(name: str) -> Callable[[Lowering, Arguments, Scope], int | No
 def _referred(lowering: Lowering, arguments: Arguments, scope: Scope) -> Area:
     """The first argument's area; the formula's own cell where there is none."""
     if not arguments or isinstance(arguments[0], ir.Missing):
-        cell = scope.cell
+        cell = host_of(scope.cell)
         return Area(cell.sheet, cell.row, cell.column, cell.row, cell.column)
     areas = areas_of(lowering, arguments[0], scope)
     if areas is None:

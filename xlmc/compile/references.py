@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
-from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
+from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of
 from xlmc.compile import choices
 from xlmc.compile.counts import check_count
 from xlmc.compile.scope import Scope, Thunk
@@ -191,7 +191,7 @@ def _read(lowering: Lowering, text: str) -> ir.Expression | None:
 def _resolved(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
     """What a text refers to; None where it is no reference."""
     try:
-        return areas_of(lowering, lowering.resolver.tree(tree, scope.cell), scope)
+        return areas_of(lowering, lowering.resolver.tree(tree, host_of(scope.cell)), scope)
     except FormulaError:
         return None
 

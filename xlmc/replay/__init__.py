@@ -4,5 +4,6 @@ from __future__ import annotations
 
 from xlmc.replay.changes import Change, NumberChange
 from xlmc.replay.repeat import Replayed, replay
+from xlmc.replay.sheets import CellDifference, SheetComparison
 
-__all__ = ["Change", "NumberChange", "Replayed", "replay"]
+__all__ = ["CellDifference", "Change", "NumberChange", "Replayed", "SheetComparison", "replay"]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 from xlmc.record import Record, Value
 from xlmc.record.contents import SAVED, content_text, definition_cells
+from xlmc.replay.closeness import Closeness
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
@@ -20,6 +21,7 @@ __all__ = [
     "contents_now",
     "definition_changes",
     "environment_changes",
+    "is_rewritten_number",
     "number_changes",
     "structure_changes",
 ]
@@ -84,6 +86,15 @@ def contents_now(workbook: Workbook, recorded: Mapping[Cell, str]) -> dict[Cell,
 def cell_changes(recorded: Mapping[Cell, str], found: Mapping[Cell, str]) -> list[Change]:
     """The cells that hold something else than they did."""
     return list(_differing("cell", recorded, found))
+
+
+def is_rewritten_number(change: Change) -> bool:
+    """Whether a cell holds the number that it did, as a program writes it that keeps 15 digits."""
+    try:
+        old, new = float(change.old or ""), float(change.new or "")
+    except ValueError:
+        return False
+    return change.kind == "cell" and Closeness(rewritten=True).equal(new, old)
 
 
 def structure_changes(recorded: Record, found: Record) -> list[Change]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,13 +20,19 @@ from xlmc.replay.changes import (
     contents_now,
     definition_changes,
     environment_changes,
+    is_rewritten_number,
     number_changes,
     structure_changes,
 )
+from xlmc.replay.closeness import Closeness
+from xlmc.replay.restored import restored
+from xlmc.replay.sheets import SheetComparison
+from xlmc.replay.shown import compare_shown
 from xlmc.saved import SUFFIX, is_saved_run, open_run
 from xlmc.simulation import KEPT_INPUTS
 from xlmc.workbook import read_workbook
 from xlmc.workbook.blame import told_of
+from xlmc.workbook.seal import read_seal
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
@@ -51,6 +57,7 @@ class Replayed:
         environment: the versions and the processor that are others.
         numbers: of the record that the repeat did not give to the last bit.
         same_bits: the accepted trials are the same to the last bit.
+        shown: the result sheets, and the workbook's own cells that show results, beside those of the repeat.
     """
 
     record: Record
@@ -60,18 +67,19 @@ class Replayed:
     environment: tuple[Change, ...]
     numbers: tuple[NumberChange, ...]
     same_bits: bool
+    shown: SheetComparison = field(default_factory=SheetComparison)
 
     @property
     def to_the_last_bit(self) -> bool:
         """Whether nothing differs at all, but perhaps for versions."""
-        return self.same_bits and not (self.changes or self.numbers or self.fault)
+        return self.same_bits and self.shown.same and not (self.changes or self.numbers or self.fault)
 
     @property
     def identical(self) -> bool:
         """Whether the run was repeated: to the last bit, or, with other software or another processor, to 1e-12."""
         if self.to_the_last_bit:
             return True
-        close = all(number.close for number in self.numbers)
+        close = self.shown.same and all(number.close for number in self.numbers)
         return close and bool(self.environment) and not (self.changes or self.fault or self.same_bits)
 
 
@@ -121,16 +129,32 @@ def _replayed(
         *structure_changes(record, found),
         *definition_changes(record, found),
     )
+    environment = tuple(environment_changes(record, found))
+    shown = SheetComparison()
+    if path is not None:
+        rewritten = not _is_untouched(path)
+        told = tuple(change for change in changes if not (same_bits and rewritten and is_rewritten_number(change)))
+        # Numbers with fewer digits beside the model move the last digits of what is computed from the base case.
+        closeness = Closeness(rewritten=rewritten, elsewhere=bool(environment) or len(told) < len(changes))
+        changes, same_run = told, same_bits or not told
+        shown = compare_shown(workbook, restored(repeated, record, settings), record, closeness, same_run=same_run)
     return Replayed(
         record=record,
         repeated=repeated,
         fault=None,
         changes=changes,
-        environment=tuple(environment_changes(record, found)),
+        environment=environment,
         # Some programs write 15 or 16 digits of a number: where the trials are the same, the record has lost the last.
         numbers=tuple(number for number in numbers if not (same_bits and number.close)),
         same_bits=same_bits,
+        shown=shown,
     )
+
+
+def _is_untouched(path: Path) -> bool:
+    """Whether a result workbook is as xlmc wrote it; False where that cannot be told."""
+    seal = read_seal(path)
+    return seal is not None and seal.whole
 
 
 def _recorded(record: Record, path: Path | None) -> tuple[dict[Cell, str], Settings]:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from xlmc.errors import WorkbookError
 from xlmc.workbook.injection.app_properties import list_sheets
 from xlmc.workbook.injection.book_edit import NewSheet, add_pointers, add_sheets, sheet_list
-from xlmc.workbook.injection.book_prune import mark
+from xlmc.workbook.injection.book_prune import mark, marked_names
 from xlmc.workbook.injection.built_book import BuiltBook, BuiltSheet, read_built
 from xlmc.workbook.injection.content_types import add_types, types_of
 from xlmc.workbook.injection.namespaces import MAIN, OFFICE_RELATIONSHIPS
@@ -29,7 +29,7 @@ from xlmc.workbook.injection.spans import as_utf8, parse_spans
 from xlmc.workbook.injection.styles_merge import StyleMap, merge_styles, same_styles
 from xlmc.workbook.package import read_parts
 
-__all__ = ["inject", "original_hash", "remove_result_sheets", "result_sheets"]
+__all__ = ["inject", "marked_names", "original_hash", "remove_result_sheets", "result_sheets"]
 
 _STYLES = "xl/styles.xml"
 _STYLES_POINTER = f"{OFFICE_RELATIONSHIPS}/styles"

@@ -7,14 +7,15 @@ keep such names. A sheet that a person copied or renamed no longer has the name 
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from xlmc.workbook.injection.book_edit import sheet_list
 from xlmc.workbook.injection.built_book import SheetName
 from xlmc.workbook.injection.spans import Element
 from xlmc.workbook.injection.splice import SplicedXml
+from xlmc.workbook.model import DefinedName
 
-__all__ = ["mark", "marked_sheets", "without_sheets"]
+__all__ = ["mark", "marked_names", "marked_sheets", "without_sheets"]
 
 _MARK = "_xlmc_result"
 
@@ -37,6 +38,12 @@ def marked_sheets(root: Element, part: str) -> list[int]:
     }
     sheets = enumerate(sheet_list(root, part).children)
     return [place for place, sheet in sheets if (str(place), _text(sheet.attributes.get("name", ""))) in marks]
+
+
+def marked_names(names: Iterable[DefinedName]) -> list[str]:
+    """The names of the result sheets, by the defined names of a workbook."""
+    marks = (name for name in names if name.name == _MARK)
+    return [mark.sheet for mark in marks if mark.sheet is not None and mark.text == _text(mark.sheet)]
 
 
 def without_sheets(document: SplicedXml, gone: Sequence[int]) -> bytes:

@@ -1,0 +1,55 @@
+"""When a value in a file is the one that the repeated run gives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, TypeGuard
+
+from xlmc.workbook.model import CellValue
+
+__all__ = ["Closeness", "is_number"]
+
+_FIFTEEN_DIGITS: Final = 1e-14
+"""How far a number is off, relative to itself, that was written with 15 digits, rounded or cut off."""
+
+_ROUNDING: Final = 1e-12
+_OTHER_PROGRAM: Final = 1e-9
+"""How far another program's value of a formula may be off."""
+
+
+@dataclass(frozen=True, slots=True)
+class Closeness:
+    """How far numbers may be apart.
+
+    Attributes:
+        rewritten: another program has saved the file; some write 15 digits, and have line ends of their own.
+        elsewhere: the run was made with other software or on another processor, which may round otherwise.
+    """
+
+    rewritten: bool = False
+    elsewhere: bool = False
+
+    def equal(self, says: CellValue, gives: CellValue, scale: float = 0.0, *, computed: bool = False) -> bool:
+        """Whether a value is the one the run gives.
+
+        Args:
+            says: what the file holds.
+            gives: what the run gives.
+            scale: the largest number beside it, from which it may have been computed.
+            computed: the file holds a formula, whose value another program may have computed anew.
+        """
+        if is_number(says) and is_number(gives):
+            return abs(says - gives) <= self._apart(max(abs(says), abs(gives)), scale, computed)
+        if self.rewritten and isinstance(says, str) and isinstance(gives, str):
+            return says.splitlines() == gives.splitlines()
+        return type(says) is type(gives) and says == gives
+
+    def _apart(self, size: float, scale: float, computed: bool) -> float:
+        """How far two numbers of this size may be apart."""
+        rewritten = (_OTHER_PROGRAM if computed else _FIFTEEN_DIGITS) * size if self.rewritten else 0.0
+        return max(rewritten, _ROUNDING * max(size, scale) if self.elsewhere else 0.0)
+
+
+def is_number(value: CellValue) -> TypeGuard[int | float]:
+    """Whether a value is a number, and no logical."""
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -131,6 +131,6 @@ def test_complaints_name_the_file(tmp_path):
     with pytest.raises(WorkbookError) as caught:
         read_workbook(path)
     assert str(caught.value) == (
-        f"{path}: the file is not an Excel workbook (.xlsx or .xlsm). "
+        f"{path}: the file is plain text (such as .csv), not an Excel workbook. "
         "Open it in Excel and save it as an Excel Workbook (.xlsx)."
     )

@@ -21,7 +21,7 @@ __all__ = ["new"]
 
 @click.command()
 @click.argument("template", required=False)
-@click.argument("book", required=False, type=click.Path(path_type=Path))
+@click.argument("book", required=False, type=click.Path(readable=False, path_type=Path))
 @click.option("--units", type=OneOf("imperial", "si"), default="imperial", show_default=True, help="Units of the copy.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
 def new(template: str | None, book: Path | None, units: str, overwrite: bool) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,7 +22,7 @@ NOT_WRITTEN = 2
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-_PATH = click.Path(path_type=Path)
+_PATH = click.Path(readable=False, path_type=Path)  # whether it may be read is said with the cure
 _OPTIONS = (
     click.option("--html", type=_PATH, metavar="PAGE.html", help="Write the results as one web page."),
     click.option("--json", "json_path", type=_PATH, metavar="FILE.json", help="Write all results as JSON."),
@@ -105,7 +106,7 @@ class Outputs:
 
     def _check_endings(self, like: Path) -> None:
         for path in (self.book, *self._others):
-            if path is not None and path.is_dir() and (self.named or path != self.book):
+            if path is not None and os.path.isdir(path) and (self.named or path != self.book):
                 raise WorkbookError("this is a folder, not a file", where=path, hint="Name a file")
         if self.book is not None:
             from xlmc.report.save import check_ending
@@ -130,8 +131,10 @@ class Outputs:
 
     def _refuse_source(self) -> None:
         """Refuse an output that is the file which is read, by whatever name."""
+        from xlmc.workbook.target import is_same_file
+
         for path in (self.book, *self._others):
-            if path is not None and not (self.in_place and path == self.book) and _is_same(path, self.source):
+            if path is not None and not (self.in_place and path == self.book) and is_same_file(path, self.source):
                 place = "--in-place writes the result sheets into it" if path == self.book else None
                 raise WorkbookError("this is the file that is read", where=path, hint=place or "Name another file")
 
@@ -211,7 +214,3 @@ class _Write(Protocol):
 def results_beside(source: Path, ending: str | None = None) -> Path:
     """Where the results of a workbook or a saved run go by default: `case.xlsx -> case-results.xlsx`."""
     return source.with_name(f"{source.stem}-results{source.suffix if ending is None else ending}")
-
-
-def _is_same(path: Path, source: Path) -> bool:
-    return path.exists() and source.exists() and path.samefile(source)

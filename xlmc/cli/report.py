@@ -15,11 +15,11 @@ NOT_TO_BE_USED = 1
 
 
 @click.command()
-@click.argument("run", metavar="RUN.xlmcrun", type=click.Path(path_type=Path))
+@click.argument("run", metavar="RUN.xlmcrun", type=click.Path(readable=False, path_type=Path))
 @click.option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path),
+    type=click.Path(readable=False, path_type=Path),
     help="Result workbook.  [default: RUN-results.xlsx, unless another file is asked for]",
 )
 @output_options

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +25,7 @@ INTERRUPTED = 130
 
 
 @click.command()
-@click.argument("book", type=click.Path(path_type=Path))
+@click.argument("book", type=click.Path(readable=False, path_type=Path))
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials to run.  [default: the book's, else 200000]")
 @stopping_options
 @click.option("--seed", type=WholeNumber(0), help="Seed of the random streams.  [default: the book's, else 999]")
@@ -51,11 +52,16 @@ INTERRUPTED = 130
     "  [default: processes for long runs with -j, else threads]",
 )
 @click.option("--workers", type=WholeNumber(1), help="Workers of --scheduler local.  [default: one a processor]")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Result workbook.  [default: BOOK-results.xlsx]")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(readable=False, path_type=Path),
+    help="Result workbook.  [default: BOOK-results.xlsx]",
+)
 @click.option("--in-place", is_flag=True, help="Write the result sheets into BOOK itself.")
 @click.option(
     "--save-run",
-    type=click.Path(path_type=Path),
+    type=click.Path(readable=False, path_type=Path),
     metavar="FILE.xlmcrun",
     help="Save the run, for xlmc report and xlmc replay.",
 )
@@ -89,13 +95,13 @@ def simulate(
 
     if in_place and output is not None:
         raise click.UsageError("--in-place and --output exclude each other.")
-    if book.is_dir():
+    if os.path.isdir(book):
         load(book)  # says so
     target = book if in_place else output or results_beside(book)
     asked = Outputs(
         book, book.name, target, save_run, html, json_path, extract, overwrite, in_place, output is not None
     )
-    outputs = asked.checked(book) if book.exists() else asked  # `load` says that there is no book
+    outputs = asked.checked(book) if os.path.exists(book) else asked  # `load` says that there is no book
     model = load(book)
     if not quiet:
         notices([*model.notices, *_hints(model, trials, engine)])

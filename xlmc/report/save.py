@@ -13,7 +13,7 @@ from xlmc.report.trials import TRIAL_ROWS
 from xlmc.result_cells import filled_sheets
 from xlmc.workbook.inject import inject, result_sheets
 from xlmc.workbook.seal import sealed_parts
-from xlmc.workbook.target import Target
+from xlmc.workbook.target import Target, is_same_file
 from xlmc.workbook.writer import TakenError, package_bytes, refuse_if_open, write_workbook
 
 if TYPE_CHECKING:
@@ -61,11 +61,14 @@ def save(
 
 
 def check_ending(path: Path, source: Path) -> None:
-    """Refuse another ending than the workbook's.
+    """Refuse another ending than the workbook's, and results of a workbook without one.
 
     Raises:
         WorkbookError: so it is.
     """
+    if not source.suffix:
+        hint = f"Rename it, such as {source.name.strip('.') + '.xlsx'!r}: Excel opens no result without an ending"
+        raise WorkbookError("the name of the workbook has no ending", where=source, hint=hint)
     # Excel opens no file whose ending says that it has macros when it has none, or the other way round.
     if path.suffix.casefold() != source.suffix.casefold():
         hint = f"Name it {path.with_suffix(source.suffix).name!r}"
@@ -87,5 +90,4 @@ def _check(simulation: Simulation, path: Path, *, overwrite: bool) -> None:
 
 
 def _is_source(simulation: Simulation, path: Path) -> bool:
-    source = simulation.model.path
-    return path.exists() and source.exists() and path.samefile(source)
+    return is_same_file(path, simulation.model.path)

@@ -98,7 +98,8 @@ def opened(path: Path) -> Iterator[Package]:
     except FileNotFoundError as error:
         raise WorkbookError("there is no such file", where=path, hint="Check its name and folder") from error
     except OSError as error:
-        raise WorkbookError(f"the file cannot be read ({error.strerror})", where=path) from error
+        hint = "Name a saved run, which ends in .xlmcrun, that you may read"
+        raise WorkbookError(f"the file cannot be read ({error.strerror})", where=path, hint=hint) from error
     with file:
         with _told(path):
             package = zipfile.ZipFile(file)

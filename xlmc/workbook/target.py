@@ -9,10 +9,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from xlmc.errors import WorkbookError
+from xlmc.printable import label
 from xlmc.workbook.seal import ENDINGS, read_seal
 from xlmc.workbook.writer import TakenError, check_folder, refuse_if_open
 
-__all__ = ["Target", "free_target", "refuse_same_file", "same_name"]
+__all__ = ["Target", "free_target", "is_same_file", "refuse_same_file", "same_name"]
 
 _SEALED = (".xlsx", ".xlsm", *ENDINGS)
 
@@ -23,7 +24,7 @@ class Target:
 
     Attributes:
         path: where to.
-        book: the name of the workbook whose results it is to hold.
+        book: the name of the workbook whose results it is to hold; empty where it holds none.
         overwrite: replace whatever file is there.
         untouched: contents that xlmc hands out, and may replace too, such as templates.
     """
@@ -65,7 +66,7 @@ class Target:
         if seal is None:
             return "xlmc did not write it, or another program has saved it since"
         if not same_name(seal.book, self.book):
-            return f"it holds results of {seal.book!r}, not of {self.book!r}"
+            return f"it holds results of {seal.book!r}" + (f", not of {self.book!r}" if self.book else "")
         return None if seal.whole else "it was changed since xlmc wrote it"
 
 
@@ -102,7 +103,7 @@ def refuse_same_file(outputs: Iterable[Path]) -> None:
     seen: dict[str, Path] = {}
     for path in outputs:
         for other in seen.values():
-            if path.exists() and other.exists() and path.samefile(other):
+            if is_same_file(path, other):
                 raise _twice(path, other)
         key = unicodedata.normalize("NFC", os.path.realpath(path)).casefold()
         if key in seen:
@@ -110,9 +111,20 @@ def refuse_same_file(outputs: Iterable[Path]) -> None:
         seen[key] = path
 
 
+def is_same_file(path: Path, other: Path) -> bool:
+    """Whether two paths lead to one file, also by links; not where either is missing or may not be looked at."""
+    try:
+        return path.samefile(other)
+    except (OSError, ValueError):  # what must be written or read says why it cannot be
+        return False
+
+
 def same_name(first: str, second: str) -> bool:
-    """Whether two names of files are one on systems that ignore case: `Book.xlsx` and `book.XLSX`."""
-    folded = [unicodedata.normalize("NFC", name).casefold() for name in (first, second)]
+    """Whether two names of files are one on systems that ignore case: `Book.xlsx` and `book.XLSX`.
+
+    Either may be given as the workbook knows it, which writes characters that steer a screen as Python does.
+    """
+    folded = [unicodedata.normalize("NFC", label(name)).casefold() for name in (first, second)]
     return folded[0] == folded[1]
 
 

@@ -108,7 +108,8 @@ def check_folder(path: str | os.PathLike[str]) -> None:
         if not target.parent.is_dir():
             raise FileNotFoundError(errno.ENOENT, "no folder")
         if not os.access(target.parent, os.W_OK):
-            raise PermissionError(errno.EACCES, "read-only")
+            hint = "Name a file in another folder, or allow writing to this one"
+            raise WorkbookError(f"the folder {str(target.parent)!r} may not be written to", where=path, hint=hint)
 
 
 def refuse_if_open(path: str | os.PathLike[str]) -> None:
@@ -119,7 +120,7 @@ def refuse_if_open(path: str | os.PathLike[str]) -> None:
     """
     target = _meant(path)
     for program, owner in (("Excel", f"~${target.name}"), ("LibreOffice", f".~lock.{target.name}#")):
-        if target.with_name(owner).exists():
+        if os.path.exists(target.with_name(owner)):
             raise TakenError(
                 f"{program} holds the workbook open",
                 where=path,
@@ -288,4 +289,4 @@ def _told(error: OSError, path: str | os.PathLike[str]) -> WorkbookError:
     if error.errno in _REFUSED:
         hint = "Close it if a program has it open, see to its permissions, or name another file"
         return WorkbookError("the file is in use or may not be written", where=path, hint=hint)
-    return WorkbookError(f"the file cannot be written ({error.strerror})", where=path)
+    return WorkbookError(f"the file cannot be written ({error.strerror})", where=path, hint="Name another file")

@@ -12,7 +12,7 @@ from xlmc.errors import WorkbookError
 from xlmc.methods import Study
 from xlmc.workbook.package import read_parts
 from xlmc.workbook.seal import sealed_parts, sealed_text
-from xlmc.workbook.target import Target, refuse_same_file
+from xlmc.workbook.target import Target, is_same_file, refuse_same_file
 from xlmc.workbook.writer import package_bytes, write_workbook
 
 __all__ = ["ENDINGS", "check_targets", "save_methods"]
@@ -34,7 +34,7 @@ def check_targets(paths: Sequence[Path], source: Path, *, overwrite: bool = Fals
         if ending not in ENDINGS:
             message = f"a study of methods is not written as {ending or 'a file without ending'}"
             raise WorkbookError(message, where=path, hint="Name a file that ends in .png, .html or .xlsx")
-        if path.exists() and source.exists() and path.samefile(source):
+        if is_same_file(path, source):
             raise WorkbookError("this is the workbook itself", where=path, hint="Name another file")
         Target(path, source.name, overwrite).check()
         if ending != ".xlsx" and find_spec("matplotlib") is None:

@@ -112,7 +112,8 @@ def _off(plain: Floats, moved: Floats) -> NDArray[np.bool_]:
     known = np.isfinite(plain)
     if not known.any():
         return np.zeros(plain.size, bool)
-    low, high = np.quantile(plain[known], [0.245, 0.755])
+    half, moved_half = plain / 2, moved / 2  # differences of halves are numbers, up to the largest
+    low, high = np.quantile(half[known], [0.245, 0.755])
     with np.errstate(invalid="ignore"):
-        far = np.abs(moved - plain) > _VISIBLE * np.fmax(high - low, np.abs(plain))
+        far = np.abs(moved_half - half) > _VISIBLE * np.fmax(high - low, np.abs(half))
     return np.asarray(far | (np.isfinite(moved) != known))

@@ -152,7 +152,7 @@ def _points(
     if known[-1] < min(known.size, trials.shown):
         place = simulation.model.forecasts.index(forecast)
         return _Points(trials.heading(place), trials.column(place, known.size), limits)
-    digits = number_format.exact(float(np.ptp(values)))
+    digits = number_format.exact(float(values.max()) - float(values.min()))
     axis = f"{forecast.name} ({forecast.units})" if forecast.units else forecast.name
     rows = [[Shown(value, digits)] for value in values.tolist()]
     table = curves.write(["Points of a scatter chart"], axis, [forecast.name], rows)

@@ -106,4 +106,4 @@ def _write_values(page: Page, index: NDArray[np.int64], columns: list[NDArray[np
 
 def _spread(values: NDArray[np.float64]) -> float:
     known = values[~np.isnan(values)]
-    return float(np.ptp(known)) if known.size > 1 else 0.0
+    return float(known.max()) - float(known.min()) if known.size > 1 else 0.0

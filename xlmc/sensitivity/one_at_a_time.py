@@ -87,7 +87,7 @@ def _evaluated(model: Model, base: dict[str, float], moved: dict[str, Floats]) -
 
 def _bar(assumption: Assumption, base: float, inputs: Floats, answers: Floats, rejected: Floats) -> Bar:
     known = bool(np.isfinite(answers).all())
-    steps = np.diff(answers) if known else np.empty(0)
+    before, after = answers[:-1], answers[1:]
     return Bar(
         assumption=assumption.name,
         units=assumption.units,
@@ -95,7 +95,7 @@ def _bar(assumption: Assumption, base: float, inputs: Floats, answers: Floats, r
         inputs=tuple(inputs.tolist()),
         answers=tuple(_number(answer) for answer in answers),
         rejected=tuple(bool(each) for each in rejected),
-        monotonic=bool((steps >= 0).all() or (steps <= 0).all()) if known else None,
+        monotonic=bool((after >= before).all() or (after <= before).all()) if known else None,
     )
 
 

@@ -15,7 +15,9 @@ LIMITS = """## Limits
 
 A workbook may ask for more than a machine has. xlmc asks before it takes memory, and refuses with the cell, the size
 and what to do (exit code 2); where no assumption reaches the cell and Excel saved its value, that value is used, with a
-notice. Whole columns and rows, and ranges down to the last row, end with the last filled cell.
+notice. Whole columns and rows, and ranges that go on far beyond the last filled cell, are read up to that cell and keep
+their size: the empty cells beyond are counted, not read. A function that would take them one by one, such as `SORT` or
+`TRANSPOSE`, is refused.
 
 | what | limit |
 |---|---|

@@ -78,13 +78,20 @@ def host_of(cell: Cell) -> Cell:
 
 @dataclass(frozen=True, slots=True, order=True)
 class Area:
-    """A rectangle of cells on one sheet, both corners included."""
+    """A rectangle of cells on one sheet, both corners included.
+
+    Attributes:
+        further_rows, further_columns: empty ones that belong to it too, beyond all that the sheet holds: a whole column
+            ends with the last filled cell, but keeps its size.
+    """
 
     sheet: str
     top: int
     left: int
     bottom: int
     right: int
+    further_rows: int = 0
+    further_columns: int = 0
 
     @property
     def rows(self) -> int:
@@ -93,6 +100,22 @@ class Area:
     @property
     def columns(self) -> int:
         return self.right - self.left + 1
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether it has further rows or columns."""
+        return self.further_rows > 0 or self.further_columns > 0
+
+    @property
+    def whole(self) -> Area:
+        """With its further rows and columns as any others."""
+        bottom, right = self.bottom + self.further_rows, self.right + self.further_columns
+        return Area(self.sheet, self.top, self.left, bottom, right)
+
+    @property
+    def filled(self) -> Area:
+        """Without its further rows and columns."""
+        return Area(self.sheet, self.top, self.left, self.bottom, self.right)
 
     def __contains__(self, cell: Cell) -> bool:
         return (

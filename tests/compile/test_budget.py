@@ -46,6 +46,9 @@ RUNS = {
         "Z2": '=SUM(INDIRECT("B1:Y1048576"))+SUM(OFFSET(B2,0,0,1048575,9))',
         "Z1": "=Z2+A1",
     },
+    "a sheet by INDIRECT": {"Z1": '=SUM(INDIRECT("A2:XFC1048575"))+A1'},
+    "a sheet by OFFSET": {"Z1": "=SUM(OFFSET(A2,0,0,1048574,16383))+A1"},
+    "a sheet": {"Z1": "=SUM(A2:XFC1048575)+A1"},
 }
 
 REFUSED = {
@@ -59,9 +62,6 @@ REFUSED = {
     "a doubling array": ("=SUM(REDUCE(A1,SEQUENCE(60),LAMBDA(p,q,VSTACK(p,p))))", "cells"),
     "MAKEARRAY": ("=SUM(MAKEARRAY(1000,1000,LAMBDA(r,c,r*c)))+A1", "LAMBDAs more than 100,000 times"),
     "calls that call twice": ("=LET(f,LAMBDA(f,n,IF(n=0,A1,f(f,n-1)+f(f,n-1))),f(f,50))", "more than 100,000 times"),
-    "a sheet by INDIRECT": ('=SUM(INDIRECT("A2:XFC1048575"))+A1', "1,048,574 rows and 16,383 columns"),
-    "a sheet by OFFSET": ("=SUM(OFFSET(A2,0,0,1048574,16383))+A1", "1,048,574 rows and 16,383 columns"),
-    "a sheet": ("=SUM(A2:XFC1048575)+A1", "1,048,574 rows and 16,383 columns"),
     "a formula of 60,000 characters": ("=" + "+".join(["A1"] * 20_000), "Excel takes 8,192"),
     "as many texts": ("=SUM(LEN(SEQUENCE(1000000,4)&A1))", "texts in one array"),
 }
@@ -112,6 +112,16 @@ def test_what_is_too_large_is_refused_with_its_cell(book, name):
     message = outcome(lambda: answer(book, {"Z1": formula}))
     assert message.startswith("S!Z1: "), message
     assert said in message
+
+
+SHEETS = ['=SUM(INDIRECT("A2:XFC1048575"))+A1', "=SUM(OFFSET(A2,0,0,1048574,16383))+A1", "=SUM(A2:XFC1048575)+A1"]
+
+
+@pytest.mark.parametrize("formula", SHEETS)
+def test_a_sheet_that_is_filled_to_its_end_is_refused(book, formula):
+    message = outcome(lambda: answer(book, {"Z1": formula, "XFC1048575": 1.0}))
+    assert message.startswith("S!Z1: "), message
+    assert "1,048,574 rows and 16,383 columns" in message
 
 
 def test_the_values_of_large_constants(run):

@@ -66,7 +66,7 @@ PLAIN = {
     "B:A": "S!A1:B5",
     "3:3": "S!A3:D3",
     "Data!A:C": "Data!A1:C2",
-    "Empty!A:A": "Empty!A1",
+    "Empty!A:A": "Empty!A1:A1",
     "F:F": "S!F1:F5",
     # names
     "Rate": "S!C3",

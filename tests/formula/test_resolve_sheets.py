@@ -36,7 +36,7 @@ def read(workbook):
         ("SUM(Dec:Dec!A1)", ["Dec!A1"]),
         ("SUM(S:Jan!A1)", ["S!A1", "Mar!A1", "Jan!A1"]),
         ("SUM(Dec:Apr!A1,Mar:Mar!A1)", ["Dec!A1", "Apr!A1", "Mar!A1"]),
-        ("SUM('It''s:Apr'!A:A)", ["'It''s'!A1:A2", "Dec!A1:A4", "Apr!A1"]),  # each as far as it is used
+        ("SUM('It''s:Apr'!A:A)", ["'It''s'!A1:A2", "Dec!A1:A4", "Apr!A1:A1"]),  # each as far as it is used
         ("SUM(Year)", ["Jan!A1", "'It''s'!A1", "Dec!A1"]),
         ("SUM(Moving)", ["Jan!C3", "'It''s'!C3", "Dec!C3"]),
     ],

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from xlmc.address import Cell
+from xlmc.address import Area, Cell
 from xlmc.formula import Resolver, formula_text, parse
 from xlmc.workbook.model import Formula
 
@@ -79,7 +79,11 @@ def resolver(workbook, table):
 
 def round_trip(resolver, text):
     tree = resolver.formula(HERE, Formula(text, HERE.row, HERE.column))
-    return tree, resolver.tree(parse(formula_text(tree)), HERE)
+    return tree, resolver.tree(parse(formula_text(tree, whole)), HERE)
+
+
+def whole(place):
+    return str(place.whole if isinstance(place, Area) else place)
 
 
 @pytest.mark.parametrize("text", LEAVES + [template.replace("{}", "1.5") for template in templates])

@@ -125,3 +125,10 @@ def test_unique_rows_as_a_dictionary_has_them(rows):
     named = [tuple((type(item), item) for item in row) for row in rows]
     found = function_named("UNIQUE")([from_objects(np.array([rows], object))]).objects()[0]
     assert [tuple((type(item), item) for item in row) for row in found.tolist()] == list(dict.fromkeys(named))
+
+
+def test_filter_is_taken_trial_by_trial_where_what_stands_in_is_empty_in_some():
+    instead = from_objects(np.array([None, "none"], object))
+    none = from_objects(np.full((1, 2, 1), False, object))
+    with pytest.raises(ShapeVaries):
+        function_named("FILTER")([none, none, instead])

@@ -12,10 +12,11 @@ from typing import assert_never
 import numpy as np
 
 from xlmc.address import Area, Cell, host_of
-from xlmc.compile import choices, lambdas
+from xlmc.compile import choices, lambdas, whole_columns
 from xlmc.compile.arrays import cell_by_cell, element, grid, size_of
 from xlmc.compile.counts import check_count
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Range
+from xlmc.compile.empty_cells import refused
 from xlmc.compile.engine import Target
 from xlmc.compile.fallback import fallback
 from xlmc.compile.places import PLACES
@@ -239,6 +240,8 @@ class Lowering:
             case Cell():
                 return self.cell(tree)
             case Area():
+                if scope.array and tree.is_cut:
+                    raise refused("what takes all cells")
                 return self.range(tree) if scope.array else self._intersected(tree, scope.cell)
             case ir.Array(rows):
                 return self.dag.add(Range(tuple(tuple(self.lower(part, scope) for part in row) for row in rows)))
@@ -283,6 +286,7 @@ class Lowering:
 
     def _intersected(self, area: Area, host: Cell) -> int:
         """The cell of a one-column (one-row) area in the host's row (column), as a plain formula takes it."""
+        area = area.whole
         if area.rows == area.columns == 1:
             return self.cell(Cell(area.sheet, area.top, area.left))
         if area.left == area.right and area.top <= host.row <= area.bottom:
@@ -303,15 +307,32 @@ class Lowering:
             hint = "put it in a cell of its own: the value Excel saved for it is then used, and the run can be repeated"
             raise FormulaError(f"{name} gives another value each time", hint=hint)
         if name == "SUM" and len(arguments) == 1 and isinstance(arguments[0], Area):
-            total = self._totals.sum_of(function, arguments[0], self.range)
+            total = self._totals.sum_of(function, arguments[0].filled, self.range)
             if total is not None:
                 return total
         beside = scope.over_arrays() if name in _OVER_ARRAYS else scope
+
+        def make(parts: tuple[ir.Expression, ...], first: Mapping[int, Function]) -> int:
+            return self._call_of(function, parts, scope, beside, first)
+
+        return whole_columns.lowered(self, name, function, arguments, beside, make)
+
+    def _call_of(
+        self,
+        function: Function,
+        arguments: tuple[ir.Expression, ...],
+        scope: Scope,
+        beside: Scope,
+        first: Mapping[int, Function],
+    ) -> int:
+        """A call of a function of the registry; some of its arguments go through another function first."""
         book = self.graph.workbook
         found: list[int] = []
         for position, argument in enumerate(arguments):
             parameter = function.parameter(position)
             part = self.whole(argument, beside) if parameter.ranged else [self.lower(argument, scope)]
+            if position in first:
+                part = [self.made(first[position], (place,)) for place in part]
             found += part if parameter.repeat else [self._stacked(part)]
         return self.made(as_set(function, book.date1904, book.macintosh), tuple(found))
 
@@ -379,6 +400,8 @@ class Lowering:
         Raises:
             TooLargeError: they are too many.
         """
+        if area.is_cut:
+            raise refused("what takes all cells")
         if area not in self._ranges:
             ask_for_reading(area.rows, area.columns)
             self._ranges[area] = self._range(area)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from xlmc.address import Area, Cell, host_of
+from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of
 from xlmc.compile.arrays import grid
 from xlmc.compile.dag import Apply, Range
-from xlmc.compile.references import REFERENCES, NoReference, NotYetNeeded, areas_of, needed
+from xlmc.compile.empty_cells import refused
+from xlmc.compile.extents import beyond, leveled
+from xlmc.compile.references import REFERENCES, NoReference, NotYetNeeded, areas_of, cut, needed
 from xlmc.compile.scope import Scope
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
@@ -41,9 +42,12 @@ def _value_of(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
 def _row_or_column(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
     def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
         place = _referred(lowering, arguments, scope)
-        if not scope.array or place.rows == place.columns == 1:
+        whole = place.whole
+        if not scope.array or whole.rows == whole.columns == 1:
             return lowering.number(float(place.top if name == "ROW" else place.left))
         ask_for_reading(place.rows if name == "ROW" else 1, place.columns if name == "COLUMN" else 1)
+        if place.further_rows if name == "ROW" else place.further_columns:
+            raise refused(name)
         if name == "ROW":
             return grid(lowering.dag, place.rows, 1, lambda r, _: lowering.number(float(place.top + r)))
         return grid(lowering.dag, 1, place.columns, lambda _, c: lowering.number(float(place.left + c)))
@@ -67,7 +71,7 @@ def _count(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
         areas = areas_of(lowering, arguments[0], scope) if len(arguments) == 1 else None
         if areas is None:
             return None
-        counted = {"ROWS": areas[0].rows, "COLUMNS": areas[0].columns, "AREAS": len(areas)}
+        counted = {"ROWS": areas[0].whole.rows, "COLUMNS": areas[0].whole.columns, "AREAS": len(areas)}
         return lowering.number(float(counted[name]))
 
     return lower
@@ -180,7 +184,7 @@ def _skipped(lowering: Lowering, name: str, options: list[int]) -> tuple[bool, b
 
 def _left_in(lowering: Lowering, area: Area, skipped: tuple[bool, bool]) -> int:
     totals, hidden = skipped
-    ask_for_reading(area.rows, area.columns)
+    ask_for_reading(area.rows, area.columns)  # further cells of a whole column are empty
     hidden_rows = lowering.graph.workbook.sheets[area.sheet].hidden_rows if hidden else frozenset()
 
     def node(cell: Cell) -> int:
@@ -201,30 +205,57 @@ def _summed_beside(name: str) -> Callable[[Lowering, Arguments, Scope], int | No
         tested, summed = (areas_of(lowering, arguments[i], scope) for i in (0, 2))
         if tested is None or summed is None or len(tested) != 1 or len(summed) != 1:
             return None
-        same = summed[0].rows == tested[0].rows and summed[0].columns == tested[0].columns
-        if same:
+        a, size = summed[0].whole, tested[0].whole
+        if not tested[0].is_cut and a.rows == size.rows and a.columns == size.columns:
             return None
-        a, size = summed[0], tested[0]
-        wider = needed(lowering, Area(a.sheet, a.top, a.left, a.top + size.rows - 1, a.left + size.columns - 1))
-        return lowering.lower(ir.Call(name, (arguments[0], arguments[1], wider)), scope)
+        bottom, right = min(MAX_ROW, a.top + size.rows - 1), min(MAX_COLUMN, a.left + size.columns - 1)
+        beside = cut(lowering, Area(a.sheet, a.top, a.left, bottom, right))
+        rows, columns = max(tested[0].rows, beside.rows), max(tested[0].columns, beside.columns)
+        parts = [
+            needed(lowering, Area(b.sheet, b.top, b.left, b.top + rows - 1, b.left + columns - 1))
+            for b in (tested[0], beside)
+        ]
+        return lowering.lower(ir.Call(name, (parts[0], arguments[1], parts[1])), scope)
 
     return lower
 
 
-def _levelled(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
-    """Whole columns of different sheets end where the longest does; the criteria stand in every other place."""
+def _counted_if(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
+    """Of a whole column, the cells up to the last filled one, and as many times one of the others as there are."""
 
     def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
-        first = 0 if name == "COUNTIFS" else 1
-        ranges = [i for i in range(len(arguments)) if i < first or (i - first) % 2 == 0]
-        areas = {i: part for i in ranges if isinstance(part := arguments[i], Area) and part.top == 1}
-        longest = max((area.bottom for area in areas.values()), default=0)
-        if len(areas) < len(ranges) or all(area.bottom == longest for area in areas.values()):
+        found = {i: areas_of(lowering, arguments[i], scope) for i in range(0, len(arguments), 2)}
+        areas = {i: parts for i, parts in found.items() if parts is not None and len(parts) == 1}
+        if len(areas) < len(found) or not any(area.is_cut for (area,) in areas.values()):
             return None
-        longer = [replace(areas[i], bottom=longest) if i in areas else argument for i, argument in enumerate(arguments)]
-        return lowering.lower(ir.Call(name, tuple(longer)), scope)
+        even = {i: area for i, (area,) in leveled(areas).items()}
+        place = _with(lowering, name, arguments, {i: area.filled for i, area in even.items()}, scope)
+        first = even[0]
+        further = first.whole.rows * first.whole.columns - first.rows * first.columns
+        same = {(area.whole.rows, area.whole.columns) for area in even.values()}
+        if len(same) > 1 or not further:
+            return place
+        one = _with(lowering, name, arguments, {i: beyond(area) for i, area in even.items()}, scope)
+        return lowering.call("+", (place, lowering.call("*", (one, lowering.number(float(further))))))
 
     return lower
+
+
+def _with(lowering: Lowering, name: str, arguments: Arguments, areas: Mapping[int, Area], scope: Scope) -> int:
+    """The call with other areas in some of its arguments."""
+    parts = [needed(lowering, areas[i]) if i in areas else argument for i, argument in enumerate(arguments)]
+    return lowering.lower(ir.Call(name, tuple(parts)), scope)
+
+
+def _blanks(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+    """COUNTBLANK, also of the cells beyond the last filled one."""
+    areas = areas_of(lowering, arguments[0], scope)
+    if areas is None or len(areas) != 1 or not areas[0].is_cut:
+        return None
+    (area,) = areas
+    place = lowering.lower(ir.Call("COUNTBLANK", (needed(lowering, area.filled),)), scope)
+    further = area.whole.rows * area.whole.columns - area.rows * area.columns
+    return lowering.call("+", (place, lowering.number(float(further))))
 
 
 PLACES: Mapping[str, Callable[[Lowering, Arguments, Scope], int | None]] = {
@@ -236,7 +267,9 @@ PLACES: Mapping[str, Callable[[Lowering, Arguments, Scope], int | None]] = {
     "ROWS": _count("ROWS"),
     "COLUMNS": _count("COLUMNS"),
     "AREAS": _count("AREAS"),
-    **{name: _levelled(name) for name in ("SUMIFS", "COUNTIFS", "AVERAGEIFS", "MAXIFS", "MINIFS")},
+    "COUNTBLANK": _blanks,
+    "COUNTIF": _counted_if("COUNTIF"),
+    "COUNTIFS": _counted_if("COUNTIFS"),
     "SUMIF": _summed_beside("SUMIF"),
     "AVERAGEIF": _summed_beside("AVERAGEIF"),
     "N": _of_first_cell("N"),

@@ -22,7 +22,7 @@ from xlmc.functions.values import Codes
 if TYPE_CHECKING:
     from xlmc.compile.lower import Lowering
 
-__all__ = ["REFERENCES", "NoReference", "NotYetNeeded", "areas_of", "needed"]
+__all__ = ["REFERENCES", "NoReference", "NotYetNeeded", "areas_of", "cut", "needed"]
 
 Arguments = tuple[ir.Expression, ...]
 
@@ -72,14 +72,15 @@ def _union(lowering: Lowering, tree: ir.Binary, scope: Scope) -> list[Area] | No
 def _combined(
     lowering: Lowering, operator: str, left: ir.Expression, right: ir.Expression, scope: Scope
 ) -> list[Area] | None:
-    a, b = areas_of(lowering, left, scope), areas_of(lowering, right, scope)
-    if a is None or b is None or len(a) != 1 or len(b) != 1 or a[0].sheet != b[0].sheet:
+    found = areas_of(lowering, left, scope), areas_of(lowering, right, scope)
+    a, b = ([area.whole for area in areas] if areas else [] for areas in found)
+    if len(a) != 1 or len(b) != 1 or a[0].sheet != b[0].sheet:
         raise FormulaError(f"the two sides of {operator!r} are not areas of one sheet")
     tops, lefts = (a[0].top, b[0].top), (a[0].left, b[0].left)
     bottoms, rights = (a[0].bottom, b[0].bottom), (a[0].right, b[0].right)
     if operator == " ":
-        return [_shared(Area(a[0].sheet, max(tops), max(lefts), min(bottoms), min(rights)))]
-    return [needed(lowering, Area(a[0].sheet, min(tops), min(lefts), max(bottoms), max(rights)))]
+        return [cut(lowering, _shared(Area(a[0].sheet, max(tops), max(lefts), min(bottoms), min(rights))))]
+    return [cut(lowering, Area(a[0].sheet, min(tops), min(lefts), max(bottoms), max(rights)))]
 
 
 def _shared(area: Area) -> Area:
@@ -87,6 +88,11 @@ def _shared(area: Area) -> Area:
     if area.top > area.bottom or area.left > area.right:
         raise NoReference(ErrorCode.NULL)
     return area
+
+
+def cut(lowering: Lowering, area: Area) -> Area:
+    """The area, up to the last filled cell where it goes on far beyond it, once everything in it is lowered."""
+    return needed(lowering, lowering.resolver.to_the_last_cell(area.whole))
 
 
 def needed(lowering: Lowering, area: Area) -> Area:
@@ -135,14 +141,14 @@ def _offset(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area
         raise FormulaError("OFFSET starts from a reference to one area")
     numbers = [_whole_number(lowering, argument, scope, "OFFSET") for argument in arguments[1:]]
     down, right = (numbers[0] or 0), (numbers[1] or 0)
-    height = numbers[2] if len(numbers) > 2 and numbers[2] is not None else base[0].rows
-    width = numbers[3] if len(numbers) > 3 and numbers[3] is not None else base[0].columns
+    height = numbers[2] if len(numbers) > 2 and numbers[2] is not None else base[0].whole.rows
+    width = numbers[3] if len(numbers) > 3 and numbers[3] is not None else base[0].whole.columns
     top, left = base[0].top + down, base[0].left + right
     if not height or not width:
         raise NoReference
     rows, columns = _span(top, height), _span(left, width)
     reached = _on_the_sheet(Area(base[0].sheet, rows[0], columns[0], rows[1], columns[1]))
-    return [needed(lowering, lowering.resolver.to_the_last_cell(reached))]
+    return [cut(lowering, reached)]
 
 
 def _span(start: int, count: int) -> tuple[int, int]:
@@ -222,7 +228,7 @@ def _index(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area]
     which = numbers[2] if len(numbers) > 2 else 1
     if not 1 <= which <= len(areas):
         raise NoReference
-    area = areas[which - 1]
+    area = areas[which - 1].whole
     row, column = (numbers[0], numbers[1]) if len(numbers) > 1 else (numbers[0], 0 if area.columns > 1 else 1)
     if len(numbers) == 1 and area.rows == 1:
         row, column = 1, numbers[0]
@@ -230,7 +236,7 @@ def _index(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area]
         raise NoReference
     top, bottom = (area.top, area.bottom) if row == 0 else (area.top + row - 1,) * 2
     left, right = (area.left, area.right) if column == 0 else (area.left + column - 1,) * 2
-    return [needed(lowering, Area(area.sheet, top, left, bottom, right))]
+    return [cut(lowering, Area(area.sheet, top, left, bottom, right))]
 
 
 def _chosen(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:

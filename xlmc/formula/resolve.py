@@ -178,7 +178,8 @@ class Resolver:
         first, rest = ir.chain(tree)
         resolved = self._resolve(first, host, origin)
         for operator, right in rest:
-            resolved = _combined(operator, resolved, self._resolve(right, host, origin))
+            combined = _combined(operator, resolved, self._resolve(right, host, origin))
+            resolved = self._cut(combined) if isinstance(combined, Area) else combined
         return resolved
 
     def _reference(self, tree: ir.Reference, host: Cell, origin: tuple[int, int]) -> ir.Expression:
@@ -219,19 +220,19 @@ class Resolver:
         return found.name
 
     def to_the_last_cell(self, area: Area) -> Area:
-        """The area, but where it reaches the last row or column of the sheet it ends with the cells that are filled."""
-        used = self._used_range(area.sheet)
-        bottom = max(area.top, used[0]) if area.bottom == MAX_ROW else area.bottom
-        right = max(area.left, used[1]) if area.right == MAX_COLUMN else area.right
-        return Area(area.sheet, area.top, area.left, bottom, right)
+        """The area, ended with the cells that are filled where it goes on far beyond them; the rest is counted."""
+        used = self.last_cell(area.sheet)
+        bottom = max(area.top, used[0]) if _is_far(area.bottom, used[0], MAX_ROW) else area.bottom
+        right = max(area.left, used[1]) if _is_far(area.right, used[1], MAX_COLUMN) else area.right
+        return Area(area.sheet, area.top, area.left, bottom, right, area.bottom - bottom, area.right - right)
 
     def last_cell(self, sheet: str) -> tuple[int, int]:
         """The last row and the last column of a sheet that are filled."""
         return self._used_range(sheet) if sheet in self.workbook.sheets else (1, 1)
 
     def _cut(self, area: Area) -> Cell | Area:
-        cut = self.to_the_last_cell(area)
-        return _area(cut.sheet, cut.top, cut.left, cut.bottom, cut.right)
+        cut = self.to_the_last_cell(area.whole)
+        return cut if cut.is_cut else _area(cut.sheet, cut.top, cut.left, cut.bottom, cut.right)
 
     def _used_range(self, sheet: str) -> tuple[int, int]:
         """Last row and column that hold anything: a whole column ends there."""
@@ -342,6 +343,14 @@ def _sorted(first: int | None, last: int | None) -> tuple[int, int] | None:
     return None if first is None or last is None else (min(first, last), max(first, last))
 
 
+_FAR: Final = 10_000
+"""Empty rows at the end of a range that are counted instead of read."""
+
+
+def _is_far(end: int, used: int, most: int) -> bool:
+    return end > used and (end == most or end - used > _FAR)
+
+
 def _area(sheet: str, top: int, left: int, bottom: int, right: int) -> Cell | Area:
     if top == bottom and left == right:
         return Cell(sheet, top, left)
@@ -359,7 +368,7 @@ def _combined(operator: str, left: ir.Expression, right: ir.Expression) -> ir.Ex
             return ir.Binary(operator, left, right)  # OFFSET(…):B9 is known only when its arguments are
         name = "range (:)" if operator == ":" else "intersection (a blank)"
         raise FormulaError(f"the {name} operator needs references on both sides", hint="is an operator missing?")
-    a, b = _as_area(left), _as_area(right)
+    a, b = _as_area(left).whole, _as_area(right).whole
     if a.sheet != b.sheet:
         return ir.ErrorLiteral(ErrorCode.VALUE)
     if operator == ":":

@@ -89,7 +89,8 @@ def _cells(place: Cell | Area) -> Iterator[Cell]:
 def _shifted(place: Cell | Area, down: int, right: int) -> Cell | Area:
     if isinstance(place, Cell):
         return Cell(place.sheet, place.row + down, place.column + right)
-    return Area(place.sheet, place.top + down, place.left + right, place.bottom + down, place.right + right)
+    ends = place.bottom + down, place.right + right
+    return Area(place.sheet, place.top + down, place.left + right, *ends, place.further_rows, place.further_columns)
 
 
 def stencil(written: ir.Expression, resolved: ir.Expression, home: Cell) -> Stencil | None:
@@ -102,6 +103,8 @@ def stencil(written: ir.Expression, resolved: ir.Expression, home: Cell) -> Sten
         steps = _steps(reference)
         if steps is None or not isinstance(place, Cell | Area):
             return None
+        if isinstance(place, Area) and (steps[0] * place.further_rows or steps[1] * place.further_columns):
+            return None  # one that moves ends with the last filled cell all the same
         moves.append((place, *steps))
     if sum(p.rows * p.columns for p, _, _ in moves if isinstance(p, Area)) > _MOST_CELLS:
         return None

@@ -12,7 +12,14 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import earliest, first_errors, if_blank, where_wrong, whole_numbers
+from xlmc.functions.arguments import (
+    earliest,
+    first_errors,
+    if_blank,
+    same_in_all_trials,
+    where_wrong,
+    whole_numbers,
+)
 from xlmc.functions.array_arguments import Refusal, array_function, decided, grid_of, kept, refuse_errors
 from xlmc.functions.ordering import ordered
 from xlmc.functions.picking import Places, flattened, picked, transposed
@@ -38,9 +45,14 @@ def _filtered(grid: Value, test: Value, if_empty: Value | None) -> Value:
     truth, errors = test.to_logicals()
     refuse_errors(first_errors(np.broadcast_to(errors, test.shape)[:, :, 0]))
     mask = np.broadcast_to(truth, test.shape)[:, :, 0]
-    if not mask.any() and if_empty is not None and not (if_empty.kinds == BLANK).all():
+    if not mask.any() and if_empty is not None and not _is_blank(if_empty):
         return if_empty.as_range()
     return _rows(grid, kept(mask))
+
+
+def _is_blank(value: Value) -> bool:
+    """Whether all cells are empty; trial by trial where that differs."""
+    return bool(same_in_all_trials(np.asarray(flattened(value.kinds == BLANK, value).all(axis=1))))
 
 
 def _rows(grid: Value, rows: Places) -> Value:

@@ -27,11 +27,14 @@ BLOCK: Final = 128
 
 _WANTED: Final = (
     "formulas",
+    "formulas.functions.stat",
     "llvmlite.binding",
     "openpyxl",
     "scipy.linalg",
     "scipy.optimize",
     "scipy.special",
+    "xlmc.cli",
+    "xlmc.compile.formulas_engine",
     "xlmc.compile.jit",
     "xlmc.functions.families",
     "xlmc.report.html",

@@ -13,7 +13,7 @@ import numpy as np
 
 from fuzzing import grammar
 from fuzzing.books import MAIN, Sheet, Table, cell, packed, parts_of
-from fuzzing.inputs import Disagreement, Input, Reached
+from fuzzing.inputs import Disagreement, Input, Reached, steps_of
 from fuzzing.splicing import spliced
 from xlmc.address import Area
 from xlmc.definitions import Definitions, read_definitions
@@ -47,8 +47,7 @@ def make(rng: random.Random) -> Input:
     """A book with one formula of chance in `S!F1`, which a forecast reads."""
     text = spliced(rng) if rng.random() < 0.2 else grammar.formula(rng)
     form = rng.choice(["plain", "plain", "array", "block", "dynamic"])
-    steps = [form]
-    steps += [step for step, often in _STEPS.items() if rng.random() < often]
+    steps = [form, *steps_of(rng, _STEPS)]
     if _DRAWN.search(text) and "file" not in steps:
         steps.append("file")
     return Input("formula.txt", text.encode("utf-8", "surrogatepass"), f"={text}", tuple(steps))

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from typing import Any, NamedTuple
 
-__all__ = ["Disagreement", "Input", "Kind", "Reached", "generator"]
+__all__ = ["Disagreement", "Input", "Kind", "Reached", "generator", "steps_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,3 +55,8 @@ class Kind(NamedTuple):
 def generator(kind: str, seed: int, number: int) -> random.Random:
     """The generator of the input of that number; the same on every machine."""
     return random.Random(f"{kind}:{seed}:{number}")
+
+
+def steps_of(rng: random.Random, often: Mapping[str, float]) -> tuple[str, ...]:
+    """The steps asked of one input: each in its share of the inputs."""
+    return tuple(step for step, share in often.items() if rng.random() < share)

@@ -15,16 +15,17 @@ from xlmc.simulation import Simulation
 __all__ = ["examined"]
 
 
-def examined(found: Simulation, folder: Path, *, written: bool) -> None:
-    """Summarise the run; where `written`, write result workbook, page, JSON and a saved run, and read them again.
+def examined(found: Simulation, folder: Path, steps: tuple[str, ...]) -> None:
+    """Summarise the run with the step `summary`; `write` result workbook, page, JSON and run, and read them again.
 
     Raises:
         Disagreement: a file is not what it must be.
         XlmcError: as xlmc does.
     """
-    summary_text(summarise(found))
-    _ = found.warnings, found.notices_of_run
-    if not written:
+    if "summary" in steps:
+        summary_text(summarise(found))
+        _ = found.warnings, found.notices_of_run
+    if "write" not in steps:
         return
     from xlmc.replay import replay
 

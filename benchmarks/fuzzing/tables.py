@@ -8,7 +8,8 @@ from typing import Final
 
 from fuzzing import grammar, hostile
 from fuzzing.books import Sheet, Table, book, cell
-from fuzzing.inputs import Input, Reached
+from fuzzing.commands import commanded
+from fuzzing.inputs import Input, Reached, steps_of
 from fuzzing.outputs import examined
 from xlmc.distributions import FAMILIES
 from xlmc.model import load
@@ -16,6 +17,7 @@ from xlmc.model import load
 __all__ = ["make", "run"]
 
 TRIALS: Final = 64
+_STEPS: Final = {"summary": 0.4, "write": 0.015, "jit": 0.01, "check": 0.1, "simulate": 0.02}
 _GOOD: Final = (
     {"Low": 1.0, "High": 3.0},
     {"Distribution": "Triangular", "Low": 1.0, "Likeliest": 2.0, "High": 3.0},
@@ -62,23 +64,25 @@ def make(rng: random.Random) -> Input:
     """Tables of some sense, of which some values were changed."""
     rows = _sensible(rng)
     said = [_change(rng, rows) for _ in range(rng.choice([0, 0, 0, 1, 1, 1, 1, 2, 2, 3, 5]))]
-    steps = tuple(step for step, often in (("write", 0.04), ("jit", 0.02)) if rng.random() < often)
-    return Input("fuzz.xlsx", _book(rng, rows), "; ".join(said), steps)
+    return Input("fuzz.xlsx", _book(rng, rows), "; ".join(said), steps_of(rng, _STEPS))
 
 
 def run(given: Input, folder: Path) -> Reached:
     """Load the book and run it.
 
-    Steps: `write` writes its results and examines them; `jit` runs it with the other engine too.
+    Steps: `summary` makes the table for people; `write` writes its results and examines them; `jit` runs it with the
+    other engine too; `check` and `simulate` give it to the command line, and to nothing else.
 
     Raises:
         XlmcError: as xlmc does.
     """
     path = folder / given.name
     path.write_bytes(given.data)
+    if {"check", "simulate"} & {*given.steps}:
+        return commanded(path, given.steps)
     model = load(path)
     found = model.simulate(TRIALS)
-    examined(found, folder, written="write" in given.steps)
+    examined(found, folder, given.steps)
     if "jit" in given.steps:
         model.simulate(TRIALS, engine="jit")
     return Reached.RAN

@@ -20,6 +20,7 @@ _OF_PYTHON: Final = re.compile(
 )
 _PLACE: Final = re.compile(
     r"!\$?[A-Z]{1,3}\$?\d|\b(xl|docProps|_rels|columns)/|\.xlsx|\.html|\.json|\.xlmcrun|run\.json|\b[Ss]heet\b|xlmc_"
+    r"|\[Content_Types\]|\bthe package\b"
 )
 _PACKAGE: Final = Path(xlmc.__file__).parent
 _SHOWN: Final = 12

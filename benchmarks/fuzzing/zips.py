@@ -14,8 +14,9 @@ from typing import Final
 
 from fuzzing import formulas
 from fuzzing.books import shipped
+from fuzzing.commands import commanded
 from fuzzing.featured import featured
-from fuzzing.inputs import Input, Reached
+from fuzzing.inputs import Input, Reached, steps_of
 from fuzzing.outputs import examined
 from fuzzing.xml_changes import changed
 from xlmc.definitions import read_definitions
@@ -26,6 +27,7 @@ from xlmc.workbook import read_workbook
 __all__ = ["make", "run"]
 
 TRIALS: Final = 64
+_STEPS: Final = {"summary": 0.3, "write": 0.015, "verify": 0.06, "check": 0.1, "simulate": 0.015}
 _NAME: Final = "fuzz.xlsx"
 
 
@@ -56,20 +58,22 @@ def make(rng: random.Random) -> Input:
         told, broken = rng.choice(_BYTE_CHANGES)
         data = broken(rng, data)
         said.append(told)
-    steps = ("verify",) if rng.random() < 0.1 else ("write",) if rng.random() < 0.06 else ()
-    return Input(_NAME, data, "; ".join(said), steps)
+    return Input(_NAME, data, "; ".join(said), steps_of(rng, _STEPS))
 
 
 def run(given: Input, folder: Path) -> Reached:
     """Read the book, all of its sheets, and run it.
 
-    Steps: `write` writes its results and examines them; `verify` recomputes its formulas.
+    Steps: `summary` makes the table for people; `write` writes its results and examines them; `verify` recomputes its
+    formulas; `check` and `simulate` give it to the command line, and to nothing else.
 
     Raises:
         XlmcError: as xlmc does.
     """
     path = folder / given.name
     path.write_bytes(given.data)
+    if {"check", "simulate"} & {*given.steps}:
+        return commanded(path, given.steps)
     workbook = read_workbook(path)
     problems: list[XlmcError] = []
     for name in workbook.sheets:
@@ -87,7 +91,7 @@ def run(given: Input, folder: Path) -> Reached:
     if definitions.problems:
         raise definitions.problems[0]
     found = Model(workbook, definitions, path).simulate(TRIALS)
-    examined(found, folder, written="write" in given.steps)
+    examined(found, folder, given.steps)
     return Reached.RAN
 
 

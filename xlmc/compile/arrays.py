@@ -12,14 +12,14 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.compile.dag import MANY, Constant, Dag, Range
+from xlmc.compile.dag import MANY, SHAPING, Constant, Dag, Range
 from xlmc.compile.dag import Apply as ApplyNode
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions import Function, Kind
 from xlmc.functions.registry import Cells
 from xlmc.functions.values import Value, constant
 
-__all__ = ["cell_by_cell", "element", "grid", "size_of"]
+__all__ = ["cell_by_cell", "element", "grid", "size_of", "spread"]
 
 LARGEST: Final = 10_000
 """Cells of a varying array that are made nodes of their own; a larger one is computed as a whole."""
@@ -75,11 +75,36 @@ def grid(dag: Dag, rows: int, columns: int, at: Callable[[int, int], int]) -> in
     return dag.add(Range(tuple(tuple(at(r, c) for c in range(columns)) for r in range(rows))))
 
 
-def cell_by_cell(dag: Dag, places: tuple[int, ...], apply: Callable[[tuple[int, ...]], int]) -> int | None:
+def spread(dag: Dag, function: Function, loose: tuple[int, ...], apply: Callable[[tuple[int, ...]], int]) -> int | None:
+    """`cell_by_cell` of a function's arguments of single values, as far as it goes for that function.
+
+    One that makes an array of a size that these decide makes one for each cell, also where all are constant. INDEX of
+    row or column 0, which gives whole columns or rows, does so for all cells at once.
+    """
+    if function.name == "INDEX" and any(_is_zero(dag, place) for place in loose):
+        return None
+    return cell_by_cell(dag, loose, apply, constants=function.name in SHAPING)
+
+
+def _is_zero(dag: Dag, place: int) -> bool:
+    """Whether it is known to count as 0 where whole numbers are wanted."""
+    node = dag.nodes[place]
+    if not isinstance(node, Constant) or dag.sizes[place] is not None:
+        return False
+    numbers, errors = node.value.to_numbers()
+    return bool(abs(numbers[0]) < 1 and errors[0] == 0)
+
+
+def cell_by_cell(
+    dag: Dag, places: tuple[int, ...], apply: Callable[[tuple[int, ...]], int], *, constants: bool = False
+) -> int | None:
     """The array of what `apply` makes of the cells of each of `places`; None where that is not worth it.
 
-    Nothing is gained for constants, which are computed at once, and nothing possible for unknown sizes. Where sizes
-    do not fit each other, what has no partner is `#N/A`.
+    Nothing is gained for constants, which are computed at once unless `constants` is set, and nothing possible for
+    unknown sizes. Where sizes do not fit each other, what has no partner is `#N/A`.
+
+    Raises:
+        FormulaError: `constants` is set, and there are too many cells.
     """
     sizes = [size for place in places if (size := dag.sizes[place]) is not None]
     if not sizes or MANY in sizes:
@@ -87,6 +112,8 @@ def cell_by_cell(dag: Dag, places: tuple[int, ...], apply: Callable[[tuple[int, 
     rows, columns = max(size[0] for size in sizes), max(size[1] for size in sizes)
     fit = all(size[0] in (1, rows) and size[1] in (1, columns) for size in sizes)
     constant_ = all(isinstance(dag.nodes[place], Constant) for place in places)
-    if fit and (constant_ or rows * columns > LARGEST):
+    if constants and rows * columns > LARGEST:
+        raise FormulaError(f"{rows * columns:,} cells would each make an array", hint="give a single number for them")
+    if fit and ((constant_ and not constants) or rows * columns > LARGEST):
         return None
     return grid(dag, rows, columns, lambda r, c: apply(tuple(element(dag, place, r, c) for place in places)))

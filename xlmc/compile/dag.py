@@ -21,6 +21,7 @@ from xlmc.functions.values import BLANK, ERROR, LOGICAL, NUMBER, TEXT, ShapeVari
 
 __all__ = [
     "MANY",
+    "SHAPING",
     "Apply",
     "Constant",
     "Dag",
@@ -126,6 +127,9 @@ _SPILLING: Final = frozenset(
     }
 )
 """Functions that give many cells, or may."""
+
+SHAPING: Final = frozenset({"DROP", "EXPAND", "SEQUENCE", "TAKE", "TOCOL", "TOROW", "WRAPCOLS", "WRAPROWS"})
+"""Those of them whose arguments of single values decide how many cells they give."""
 
 
 class Repeat(NamedTuple):

@@ -13,7 +13,7 @@ import numpy as np
 
 from xlmc.address import Area, Cell, host_of
 from xlmc.compile import choices, lambdas, whole_columns
-from xlmc.compile.arrays import cell_by_cell, element, grid, size_of
+from xlmc.compile.arrays import element, grid, size_of, spread
 from xlmc.compile.counts import check_count
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Range
 from xlmc.compile.empty_cells import refused
@@ -373,8 +373,10 @@ class Lowering:
         if all(self.dag.sizes[place] is None for place in arguments):
             return self.dag.add(Apply(function, arguments))
         loose = tuple(p for i, p in enumerate(arguments) if not function.parameter(i).ranged)
-        spread = cell_by_cell(self.dag, loose, lambda picked: self.made(function, _merged(function, arguments, picked)))
-        return self.dag.add(Apply(function, arguments)) if spread is None else spread
+        cells = spread(
+            self.dag, function, loose, lambda picked: self.made(function, _merged(function, arguments, picked))
+        )
+        return self.dag.add(Apply(function, arguments)) if cells is None else cells
 
     def _inverse(self, place: int) -> float | None:
         """1 / the number, where to multiply by it is to divide by the number, to the last bit: of powers of two."""

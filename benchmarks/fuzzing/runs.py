@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import hashlib
 import io
 import json
@@ -194,7 +195,7 @@ def _value(rng: random.Random, old: object, places: list[Any]) -> object:
         return rng.choice([old.upper(), old + "x", old * 100, "../" + old, old[:1], [old]])
     if kind < 0.85:
         holder, key, _ = rng.choice(places)
-        return holder.get(key) if isinstance(holder, dict) else None
+        return copy.deepcopy(holder.get(key)) if isinstance(holder, dict) else None  # itself would make a circle
     return hostile.text(rng)[:500].encode("utf-8", "replace").decode()
 
 

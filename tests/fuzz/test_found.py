@@ -37,3 +37,23 @@ def test_a_formula_that_was_found(text, form, tmp_path):
     given = Input("formula.txt", text.encode(), f"={text}", (form, "jit"))
     found = judged("found", Kind(lambda _: given, formulas.run), 1, 1, tmp_path).finding
     assert found is None, (found.key, found.detail)
+
+
+STILL = [
+    "INDEX(A5,0.94,OFFSET(A1,1,1,2,2))",
+    "SUM(SEQUENCE(B1:B2))",
+    "SUM(TAKE(B1:D6,B4:B5,1))",
+    "WRAPROWS(-3.5E-10,B1:B6)",
+    "WRAPROWS(B1:D1+B1:B6,B:B)",
+]
+
+
+@pytest.mark.usefixtures("small_blocks")
+@pytest.mark.parametrize("text", STILL)
+@pytest.mark.parametrize("form", ["plain", "array", "block", "dynamic"])
+def test_a_frozen_assumption_is_one_that_varies_by_nothing(text, form, tmp_path):
+    from fuzzing import formulas
+    from fuzzing.inputs import Input, Reached
+
+    given = Input("formula.txt", text.encode(), f"={text}", (form, "constants"))
+    assert formulas.run(given, tmp_path) is Reached.RAN  # raises where the two differ

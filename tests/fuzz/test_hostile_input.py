@@ -7,7 +7,7 @@ from collections import Counter
 import pytest
 
 SEED = 20261122
-INPUTS = {"zip": 120, "tables": 200}
+INPUTS = {"zip": 120, "formulas": 60, "tables": 200, "runs": 48}
 RAN = {"zip": 0.2, "formulas": 0.4, "tables": 0.2, "runs": 0.1}
 
 

@@ -44,7 +44,7 @@ STILL = [
     "SUM(SEQUENCE(B1:B2))",
     "SUM(TAKE(B1:D6,B4:B5,1))",
     "WRAPROWS(-3.5E-10,B1:B6)",
-    "WRAPROWS(B1:D1+B1:B6,B:B)",
+    "WRAPROWS(B1:D1+B1:B6,B1:B6)",
 ]
 
 

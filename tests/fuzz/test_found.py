@@ -40,6 +40,8 @@ def test_a_formula_that_was_found(text, form, tmp_path):
 
 
 STILL = [
+    "INDEX(--A4,VALUE(HOUR(1E-100))>=C2:D3)",
+    "INDEX(1.5,(B2/B1:D1))",
     "INDEX(A5,0.94,OFFSET(A1,1,1,2,2))",
     "SUM(SEQUENCE(B1:B2))",
     "SUM(TAKE(B1:D6,B4:B5,1))",

@@ -79,20 +79,25 @@ def spread(dag: Dag, function: Function, loose: tuple[int, ...], apply: Callable
     """`cell_by_cell` of a function's arguments of single values, as far as it goes for that function.
 
     One that makes an array of a size that these decide makes one for each cell, also where all are constant. INDEX of
-    row or column 0, which gives whole columns or rows, does so for all cells at once.
+    row or column 0, which gives whole columns or rows, does so for all cells at once; where 0 is one of many numbers,
+    each cell is looked up on its own.
     """
-    if function.name == "INDEX" and any(_is_zero(dag, place) for place in loose):
-        return None
-    return cell_by_cell(dag, loose, apply, constants=function.name in SHAPING)
+    shaping = function.name in SHAPING
+    if function.name == "INDEX":
+        zeros = [place for place in loose if _has_zero(dag, place)]
+        if any(dag.sizes[place] is None for place in zeros):
+            return None
+        shaping = bool(zeros)
+    return cell_by_cell(dag, loose, apply, constants=shaping)
 
 
-def _is_zero(dag: Dag, place: int) -> bool:
-    """Whether it is known to count as 0 where whole numbers are wanted."""
+def _has_zero(dag: Dag, place: int) -> bool:
+    """Whether any cell of it is known to count as 0 where whole numbers are wanted."""
     node = dag.nodes[place]
-    if not isinstance(node, Constant) or dag.sizes[place] is not None:
+    if not isinstance(node, Constant):
         return False
     numbers, errors = node.value.to_numbers()
-    return bool(abs(numbers[0]) < 1 and errors[0] == 0)
+    return bool(np.any((np.abs(numbers) < 1) & (errors == 0)))
 
 
 def cell_by_cell(

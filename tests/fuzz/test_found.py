@@ -45,6 +45,7 @@ STILL = [
     "INDEX(A5,0.94,OFFSET(A1,1,1,2,2))",
     "SUM(SEQUENCE(B1:B2))",
     "SUM(TAKE(B1:D6,B4:B5,1))",
+    "SUM(TAKE(A1:A5,SORT(B4:B5+3)))",
     "WRAPROWS(-3.5E-10,B1:B6)",
     "WRAPROWS(B1:D1+B1:B6,B1:B6)",
 ]

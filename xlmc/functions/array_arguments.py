@@ -69,6 +69,8 @@ def decided(value: Value | None, default: float | None = None) -> int | None:
         return None if default is None else int(default)
     numbers, errors = if_blank(value).to_numbers()
     refuse_errors(first_errors(flattened(errors, value)))
+    if value.numbers.ndim == 3 and value.shape[1:] != (1, 1):
+        raise Refusal(ErrorCode.CALC)  # each of many numbers would make an array of its own
     return int(np.trunc(same_in_all_trials(flattened(numbers, value))[0]))
 
 

@@ -7,7 +7,7 @@ from templates.description import CorrelationRow, Diagram, Equation, FilterRow, 
 from templates.guidance import CAVEATS, FIRST_STEPS, NAMES
 from templates.plan_view import mark, turned
 from templates.two_vehicles.answers import ANSWERS, FORCE
-from templates.two_vehicles.checks import ANGLES, ENERGY, FORWARD
+from templates.two_vehicles.checks import ANGLES, ENERGY, FORWARD, FRICTION
 from templates.two_vehicles.drawing import rest_points, vehicle_curves
 from templates.two_vehicles.equations import DELTA_V, IMPACT_SPEEDS, MASSES, RUN_OUT
 from templates.two_vehicles.options import (
@@ -150,7 +150,7 @@ def _sections(vehicles: tuple[str, str]) -> tuple[Section, ...]:
         *(Section(title, for_both(vehicles, rows)) for title, rows in patterns.items()),
         duration_section(6, vehicles),
         turn_section(7, vehicles),
-        checks_section(8, ENERGY, _CLOSING, ANGLES, FORWARD),
+        checks_section(8, ENERGY, _CLOSING, ANGLES, FORWARD, FRICTION),
     )
 
 

@@ -17,21 +17,22 @@ from xlmc.compile.engines import ENGINES, FILLERS, options_of
 from xlmc.compile.lower import Lowering
 from xlmc.compile.widening import widened
 from xlmc.correlating import correlated_groups, repair_notices
-from xlmc.definitions import Assumption, Definitions, Filter, Forecast, read_definitions
+from xlmc.definitions import Assumption, Check, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key
 from xlmc.definitions.stopping import stopping
 from xlmc.drawing import draw_of, dynamic_parameters
 from xlmc.errors import DefinitionError, Notice, SimulationError
+from xlmc.remarks import example_notices, still_notices
 from xlmc.sampling import CorrelatedGroup, Draw, Plan, Sampler, Stage
 from xlmc.sampling.draws import Filler
-from xlmc.scene import Scene, condition, in_order, survey
+from xlmc.scene import Scene, condition, definitions_of_checks, in_order, refuse_without_base, survey
 from xlmc.workbook import Workbook, read_workbook
 
 if TYPE_CHECKING:
     from xlmc.simulate import Progress
     from xlmc.simulation import Simulation
 
-__all__ = ["Model", "load", "understood"]
+__all__ = ["Model", "load", "lowered", "understood"]
 
 
 def load(path: str | Path) -> Model:
@@ -63,8 +64,12 @@ def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:
     return problems[0] if len(problems) == 1 else DefinitionError("\n".join(str(p) for p in problems).rstrip("."))
 
 
-def _understood(workbook: Workbook, definitions: Definitions) -> tuple[Scene, Lowering]:
-    """What is needed, and lowered."""
+def lowered(workbook: Workbook, definitions: Definitions) -> tuple[Scene, Lowering]:
+    """What the forecasts and filters need, and its nodes.
+
+    Raises:
+        FormulaError, DefinitionError: as for `load`.
+    """
     inputs = {a.cell: name_key(a.name) for a in definitions.assumptions if not a.frozen}
     held = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
     scenes: list[Scene] = []
@@ -77,12 +82,28 @@ def _understood(workbook: Workbook, definitions: Definitions) -> tuple[Scene, Lo
     return in_order(scenes[-1], lowering.led_to), lowering
 
 
+def _lowered_checks(workbook: Workbook, definitions: Definitions, live: Sequence[Assumption]) -> Lowering | None:
+    """The nodes of the checks, apart from those of the run, which they must not change; None without checks.
+
+    Raises:
+        FormulaError, DefinitionError: a check cannot be computed.
+    """
+    if not definitions.checks:
+        return None
+    asked = definitions_of_checks(definitions, live)
+    scene, lowering = lowered(workbook, asked)
+    refuse_without_base(definitions.checks, scene, asked)
+    for check in definitions.checks:
+        lowering.target(Target(check.cell, check.cell))
+    return lowering
+
+
 class Model:
     """A workbook's assumptions, forecasts and filters, and the function that computes them.
 
     Attributes:
         workbook, definitions, path: what it was made from.
-        assumptions, forecasts, filters: as defined.
+        assumptions, forecasts, filters, checks: as defined.
         live: the assumptions that are drawn: needed and not frozen.
         groups: of correlated ones among them.
         notices: what the person should know.
@@ -91,15 +112,17 @@ class Model:
     def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
         definitions = with_base_parameters(workbook, definitions)
         self.workbook, self.definitions, self.path = workbook, definitions, path
-        self.scene, self._lowering = _understood(workbook, definitions)
+        self.scene, self._lowering = lowered(workbook, definitions)
         self.live: tuple[Assumption, ...] = self.scene.live
         self._draws = {a.name: draw_of(a, self._lowering) for a in self.live}
         names = [a.name for a in self.live]
         self.groups: tuple[CorrelatedGroup, ...] = tuple(correlated_groups(definitions.correlations, names))
         self._programs: dict[tuple[str, str], Program] = {}
         self._check_targets()
+        self._checks = _lowered_checks(workbook, definitions, self.live)
         repairs = repair_notices(self.groups, definitions.correlations, names)
-        notices = workbook.notices, definitions.notices, self.scene.notices, self._lowering.notices, repairs
+        remarks = *still_notices(self.scene, self._draws, self.forecasts), *example_notices(definitions, self.scene)
+        notices = workbook.notices, definitions.notices, self.scene.notices, self._lowering.notices, repairs, remarks
         self.notices: tuple[Notice, ...] = tuple(notice for part in notices for notice in part)
 
     @property
@@ -115,9 +138,13 @@ class Model:
         return self.definitions.filters
 
     @property
+    def checks(self) -> tuple[Check, ...]:
+        return self.definitions.checks
+
+    @property
     def read(self) -> frozenset[Cell]:
-        """Every cell that the forecasts and filters read, blank cells of ranges among them."""
-        return self._lowering.read
+        """Every cell that the forecasts, filters and checks read, blank cells of ranges among them."""
+        return self._lowering.read | (frozenset() if self._checks is None else self._checks.read)
 
     @property
     def saved(self) -> frozenset[Cell]:
@@ -337,6 +364,18 @@ class Model:
     def program_of(self, filters: Sequence[Target]) -> Program:
         """Other targets in place of the filters, and the forecasts, compiled for the engine `numpy`."""
         return ENGINES["numpy"](self._lowering, filters, self._forecast_targets, self.fallible)
+
+    def check_program(self) -> Program:
+        """The cells of the checks as filters, a function of the live assumptions; others stand at their base values."""
+        assert self._checks is not None, "the workbook has no checks"
+        targets = [Target(check.cell, check.cell) for check in self.checks]
+        return ENGINES["numpy"](self._checks, targets, [], self.fallible)
+
+    @property
+    def checked(self) -> tuple[Assumption, ...]:
+        """The live assumptions that the checks need."""
+        reached = frozenset() if self._checks is None else self._checks.graph.reached
+        return tuple(a for a in self.live if a.cell in reached)
 
     @property
     def filter_targets(self) -> list[Target]:

@@ -7,12 +7,23 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from xlmc.address import Cell, InFormula
-from xlmc.definitions import Assumption, Definitions, Filter
+from xlmc.definitions import Assumption, Check, Definitions, Filter, Forecast
 from xlmc.errors import DefinitionError, Notice
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.workbook import Workbook
 
-__all__ = ["Scene", "condition", "filter_limits", "in_order", "parameter_cells", "survey", "targets_of", "upstream"]
+__all__ = [
+    "Scene",
+    "condition",
+    "definitions_of_checks",
+    "filter_limits",
+    "in_order",
+    "parameter_cells",
+    "refuse_without_base",
+    "survey",
+    "targets_of",
+    "upstream",
+]
 
 
 MOST_CALLS: Final = 10_000
@@ -89,6 +100,34 @@ def in_order(scene: Scene, led_to: Mapping[Cell, Iterable[Cell]]) -> Scene:
         DefinitionError: assumptions need each other in a circle.
     """
     return replace(scene, stages=_stages(scene.graph, scene.live, led_to)) if led_to else scene
+
+
+def definitions_of_checks(definitions: Definitions, live: Sequence[Assumption]) -> Definitions:
+    """The checks as what is asked for, over the assumptions that a run draws; all others are held at their base values.
+
+    Args:
+        definitions: the workbook's.
+        live: the assumptions that its forecasts and filters have drawn. A check adds none to them: it must not change
+            a run.
+    """
+    drawn = {a.cell for a in live}
+    assumptions = tuple(a if a.cell in drawn else replace(a, frozen=True) for a in definitions.assumptions)
+    asked = tuple(Forecast(check.name, check.cell, check.row) for check in definitions.checks)
+    return replace(definitions, assumptions=assumptions, forecasts=asked, filters=(), correlations=(), checks=())
+
+
+def refuse_without_base(checks: Sequence[Check], scene: Scene, definitions: Definitions) -> None:
+    """Refuse checks that need a draw in a cell that is held, and that has no value to be held at.
+
+    Raises:
+        DefinitionError: one does.
+    """
+    held = [a for a in definitions.assumptions if a.frozen and a.base is None and isinstance(a.cell, InFormula)]
+    needed = next((a for a in held if a.cell in scene.graph.reached), None)
+    if needed is not None:
+        message = f"the checks need {needed.name!r}, which no forecast or filter needs and which has no base value"
+        hint = "give the draw a base value, such as RiskStatic, or point the check to another cell"
+        raise DefinitionError(message, where=checks[0].row, hint=hint)
 
 
 def _refuse_too_many(reached: Sequence[Assumption]) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.blocks import Block, FilterTally, Task
+from xlmc.checking import LEAST_CHECKED
 from xlmc.definitions.model import name_key
 from xlmc.definitions.stopping import LIMIT, NO_GOAL, Stopping
 from xlmc.errors import SimulationError
@@ -86,6 +87,8 @@ def simulate(
     block = min(BLOCK, program.largest_block)
     rounding = checked_rounding(model, program, settings, block) if settings.arithmetic == "float32" else None
     most_inputs = plan.trials if keep_inputs is None else keep_inputs
+    if model.checks:
+        most_inputs = max(most_inputs, LEAST_CHECKED)
     gathered = _Gathered(model, block, most_inputs)
 
     def task(start: int, trials: int) -> Task:

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from xlmc import statistics
 from xlmc.blocks import FilterTally
+from xlmc.cell_errors import Root, error_roots
+from xlmc.checking import CheckResult, check_results
 from xlmc.definitions import Forecast, Settings
 from xlmc.definitions.model import name_key
 from xlmc.digits import lost_digits
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
     import pandas
     from matplotlib.figure import Figure
 
+    from xlmc.address import Cell
     from xlmc.model import Model
     from xlmc.rare.account import RareAccount
     from xlmc.rounding import Rounding
@@ -300,14 +303,27 @@ class Simulation:
         if self.error_trials > ERROR_SHARE * self.trials:
             share = self.error_trials / self.trials
             found.append(f"{self.error_trials:,} trials ({share:.2%}) were lost to errors in cells")
-        found += [*self._sparse(), *self._lost_digits, *(() if self.rare is None else self.rare.warnings)]
+        failing = [warning for check in self.checks for warning in check.warnings]
+        rare = () if self.rare is None else self.rare.warnings
         missing = unavailable_warning(self.shown_results)
-        return [*found, missing] if missing else found
+        return [*failing, *found, *self._sparse(), *self._lost_digits, *rare, *([missing] if missing else [])]
 
     @cached_property
     def shown_results(self) -> ShownResults:
         """What the workbook's own cells show of this run, `=RiskMean(B9)` and all that depends on it."""
         return shown_results(self)
+
+    @cached_property
+    def error_roots(self) -> dict[Cell, Root]:
+        """Cell of a forecast or filter that was an error in some trials -> the cell it comes from, and its error."""
+        cells = [f.cell for f, errors in zip(self.model.filters, self.tally.errors, strict=True) if errors.total()]
+        cells += [f.cell for f in self.model.forecasts if self.faults[f.name].total()]
+        return error_roots(self.model, cells, (self.prior, self.inputs)) if cells else {}
+
+    @cached_property
+    def checks(self) -> tuple[CheckResult, ...]:
+        """The workbook's checks at the base case and in the accepted trials; evaluated when they are first asked."""
+        return check_results(self.model, self.inputs, self.accepted)
 
     @cached_property
     def _lost_digits(self) -> list[str]:

@@ -20,7 +20,7 @@ from templates.plan_view import line, mark
 from templates.planar_forward.equations import model_sections
 from templates.planar_forward.guide import GUIDE
 from templates.two_vehicles.answers import DELTA_V_ANSWER, FORCE, ROTATION
-from templates.two_vehicles.checks import CLOSING, ENERGY
+from templates.two_vehicles.checks import CLOSING, ENERGY, FRICTION
 from templates.two_vehicles.drawing import rest_points, vehicle_curves
 from templates.two_vehicles.options import drawing_inputs, duration_input, duration_section
 from templates.two_vehicles.results import shared_road_note
@@ -133,10 +133,10 @@ _CHECKS = (
     ),
     check(
         "check_ratio",
-        "The impulse ratio is not negative",
-        "mu>=0",
+        "The impulse ratio lies between 0 and 2",
+        "AND(mu>=0,mu<=2)",
         "eq (26)",
-        "FALSE: the direction of sliding is found by the model; enter its size only.",
+        "FALSE: the model finds the direction of sliding, so enter the size only. A percentage entered as a number?",
     ),
     check(
         "check_push",
@@ -152,6 +152,7 @@ _CHECKS = (
         "convention",
         "FALSE: turn the approach angle by 180° for a vehicle that moved backward.",
     ),
+    FRICTION,
 )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from templates.checks import checks_section
 from templates.description import Equation, Section
 from templates.two_vehicles.answers import ANSWERS, FORCE, ROTATION
-from templates.two_vehicles.checks import ANGLES, BOUNDS, CLOSING, ENERGY, FORWARD
+from templates.two_vehicles.checks import ANGLES, BOUNDS, CLOSING, ENERGY, FORWARD, FRICTION
 from templates.two_vehicles.options import duration_section, turn_section
 from templates.vehicles import for_both
 
@@ -45,5 +45,5 @@ def answer_sections(vehicles: tuple[str, str], *, turning: bool) -> tuple[Sectio
         Section("6  Answers (the forecasts)", for_both(vehicles, ANSWERS)),
         Section("7  Direction of force, yaw, energy", for_both(vehicles, FORCE + ROTATION + _NORMAL)),
         *optional,
-        checks_section(8 + len(optional), ENERGY, CLOSING, ANGLES, FORWARD, BOUNDS),
+        checks_section(8 + len(optional), ENERGY, CLOSING, ANGLES, FORWARD, BOUNDS, FRICTION),
     )

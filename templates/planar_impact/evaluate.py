@@ -158,6 +158,7 @@ def _checks(v: Values) -> Values:
         "check_angles": np.abs(v["sin_delta"]) >= _sin(np.float64(10)),
         "check_forward": (v["V1_i"] > 0) & (v["V2_i"] > 0),
         "check_restitution": (np.abs(v["e_n"]) <= 1) & (np.abs(v["e_t"]) <= 1),
+        "check_friction": (np.minimum(v["f_1"], v["f_2"]) > 0) & (np.maximum(v["f_1"], v["f_2"]) <= 1.2),
     }
     every = np.logical_and.reduce(tuple(np.broadcast_arrays(*checks.values())))
     return {"d_1": d[1], "d_2": d[2], "approach_mph": approach} | checks | {"checks_hold": every}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from templates.checks import check
 
-__all__ = ["ANGLES", "BOUNDS", "CLOSING", "ENERGY", "FORWARD"]
+__all__ = ["ANGLES", "BOUNDS", "CLOSING", "ENERGY", "FORWARD", "FRICTION"]
 
 ENERGY = check(
     "check_energy",
@@ -40,4 +40,11 @@ BOUNDS = check(
     "AND(ABS(e_n)<=1,ABS(e_t)<=1)",
     "eqs (9), (10)",
     "FALSE: no impact behaves so. The filters reject such trials; a base case should not be one.",
+)
+FRICTION = check(
+    "check_friction",
+    "Frictions are those of road tyres, up to 1.2",
+    "AND(MIN(f_1,f_2)>0,MAX(f_1,f_2)<=1.2)",
+    "published values",
+    "FALSE: more than road tyres give; the published range ends at 0.95. A percentage entered as a number?",
 )

@@ -1,4 +1,4 @@
-"""Sheet `Results wanted`: forecasts, filters, correlations, settings.
+"""Sheet `Results wanted`: forecasts, filters, checks, correlations, settings.
 
 All tables begin in column A and none is wider than the one above it: Excel can then insert rows into any of them.
 """
@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from xlsxwriter.worksheet import Worksheet
 
-from templates.description import CorrelationRow, FilterRow, ForecastRow, Template
+from templates.description import ALL_CHECKS, CorrelationRow, FilterRow, ForecastRow, Role, Template
 from templates.writer.cached import Values
 from templates.writer.page import add_table, begin_sheet, fit_row, guard, write_formula
 from templates.writer.places import Place, reference
@@ -19,6 +19,7 @@ __all__ = ["draw_results_wanted"]
 
 _FORECASTS = ("Name", "Cell", "Units", "Range %", "Threshold", "Symbol", "Note")
 _FILTERS = ("Name", "Cell", "At least", "At most", "Above", "Below", "Because")
+_CHECKS = ("Name", "Cell", "Because")
 _CORRELATIONS = ("First", "Second", "Correlation")
 _SETTINGS = ("Setting", "Value")
 _WIDTHS = (38, 22, 12, 12, 12, 12, 76)
@@ -35,6 +36,7 @@ def draw_results_wanted(
     begin_sheet(sheet, styles, template.title, _SUBTITLE, _WIDTHS)
     row = _draw_forecasts(sheet, styles, template, at, values, 3)
     row = _draw_filters(sheet, styles, template, at, values, row + _ROOM)
+    row = _draw_checks(sheet, styles, template, at, values, row + _ROOM)
     row = _draw_correlations(sheet, styles, template, row + _ROOM)
     _draw_settings(sheet, styles, template.settings, row + _ROOM)
 
@@ -102,6 +104,25 @@ def _rejected(excel_row: int) -> str:
         for column, sign in (("C", "<"), ("D", ">"), ("E", "<="), ("F", ">="))
     )
     return f"=OR({','.join(broken)})"
+
+
+def _draw_checks(
+    sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values, top: int
+) -> int:
+    remark = "Must be TRUE at the base case and in the accepted trials; xlmc says so first where they are not."
+    _head(sheet, styles, top, "Physics checks", remark)
+    checks = [each for each in template.equations if each.role is Role.CHECK and each.symbol != ALL_CHECKS]
+    add_table(sheet, styles, "xlmc_checks", top + 1, _CHECKS, len(checks))
+    for row, check in enumerate(checks, top + 2):
+        sheet.write_string(row, 0, check.name, styles("open text"))
+        write_formula(sheet, row, 1, reference(at[check.symbol]), styles("check", "General"), values)
+        sheet.write_string(row, 2, check.note, styles("overflowing"))
+        fit_row(sheet, row, [(check.name, _WIDTHS[0])])
+    last = top + 1 + len(checks)
+    guard(sheet, (top + 2, 1, last, 1), "A formula", _POINTS)
+    rule = {"type": "formula", "criteria": f"=NOT(IFERROR($B{top + 3},FALSE))", "format": styles("wrong")}
+    sheet.conditional_format(top + 2, 1, last, 1, rule)
+    return last + 1
 
 
 def _draw_correlations(sheet: Worksheet, styles: Styles, template: Template, top: int) -> int:

@@ -29,6 +29,7 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "assumption": _NUMBER | {"bg_color": "#C6E7B5", "locked": False},
     "fixed": _NUMBER | {"bg_color": "#FFF2C2", "locked": False},
     "open text": _WRAPPED | {"indent": 1, "locked": False},
+    "overflowing": {"indent": 1, "valign": "vcenter", "locked": False},
     "open centred": _CELL | {"align": "center", "locked": False},
     "step": _NUMBER | {"bg_color": "#F0F0F0"},
     "answer": _NUMBER | {"bg_color": "#BBDDF7", "bold": True},

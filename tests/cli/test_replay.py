@@ -62,6 +62,7 @@ def test_as_json(xlmc, results):
         "changes": [],
         "environment": [],
         "numbers": [],
+        "checks": [],
         "fault": None,
     }
     edit(results, "Model", "D9", "=nosuchname")

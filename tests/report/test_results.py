@@ -95,6 +95,7 @@ def test_too_many_errors_are_a_red_warning(run, book):
     assert warning.value.startswith("Do not use these results as they stand: ")
     assert "lost to errors" in warning.value
     assert warning.font.color.rgb == "FF9C0006"
+    assert book["Results"]["A4"].value.startswith("S!")  # then the cell that they were lost in
 
 
 def test_notices_and_sentences_stand_on_the_sheet(book, rows_of):

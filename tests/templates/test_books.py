@@ -43,6 +43,7 @@ TABLES = {
     ),
     "xlmc_forecasts": ("Results wanted", ["Name", "Cell", "Units", "Range %", "Threshold", "Symbol", "Note"]),
     "xlmc_filters": ("Results wanted", ["Name", "Cell", "At least", "At most", "Above", "Below", "Because"]),
+    "xlmc_checks": ("Results wanted", ["Name", "Cell", "Because"]),
     "xlmc_correlations": ("Results wanted", ["First", "Second", "Correlation"]),
     "xlmc_settings": ("Results wanted", ["Setting", "Value"]),
 }

@@ -29,6 +29,8 @@ CASES = [
     ("planar-forward", "check_restitution", {"e_t": 1.05, "gamma_t": 100}),
     ("planar-forward", "check_ratio", {"mu": -0.5}),
     ("planar-forward", "check_forward", {"V2_before": -1}),
+    ("planar-forward", "check_ratio", {"mu": 55}),
+    ("planar-forward", "check_friction", {"f_1": 75}),
     ("crush-energy", "check_crush", {"c_1_3": -2}),
     ("crush-energy", "check_stiffness", {"b0_2": -0.1}),
     ("crush-energy", "check_restitution", {"e": -0.1}),
@@ -41,6 +43,7 @@ CASES = [
     ("momentum", "check_energy", {"alpha_1": 110, "alpha_2": 150, "beta_1": 150, "beta_2": 30}),
     ("momentum", "check_angles", {"alpha_1": 340, "alpha_2": 170, "beta_1": 300, "beta_2": 270}),
     ("momentum", "check_forward", {"alpha_1": 190, "alpha_2": 100, "beta_1": 300, "beta_2": 230}),
+    ("momentum", "check_friction", {"f_1": 1.3, "s_1": 12}),
     # An impulse that pulls always adds energy too.
     ("momentum", "check_energy check_closing", {"alpha_1": 80, "alpha_2": 310, "beta_1": 60, "beta_2": 250}),
 ]

@@ -180,9 +180,16 @@ def test_each_check_fails_alone_where_it_should(described, failing, directions):
     angles = dict(zip(("alpha_1", "alpha_2", "beta_1", "beta_2", "gamma_t"), directions, strict=True))
     values = evaluate(base_inputs(described) | angles)
     checks = {symbol: bool(value) for symbol, value in values.items() if symbol.startswith("check_")}
-    assert len(checks) == 5
+    assert len(checks) == 6
     assert [symbol for symbol, holds in checks.items() if not holds] == ([failing] if failing else [])
     assert bool(values["checks_hold"]) is (failing is None)
+
+
+@pytest.mark.parametrize("friction", [{"f_1": 75}, {"f_2": 0}])
+def test_frictions_that_no_tyre_has_fail_their_check(described, friction):
+    values = evaluate(base_inputs(described) | friction)
+    assert not values["check_friction"]
+    assert not values["checks_hold"]
 
 
 def test_parallel_approaches_have_no_answer_and_raise_nothing(described):

@@ -20,7 +20,11 @@ __all__ = ["check"]
 @click.command()
 @click.argument("book", type=click.Path(path_type=Path))
 def check(book: Path) -> None:
-    """Show the assumptions, forecasts and filters of BOOK as understood, and every problem with its cell."""
+    """Show the assumptions, forecasts and filters of BOOK as understood, and every problem with its cell.
+
+    Checks that fail and cells in error at the base case stand first.
+    """
+    from xlmc.cli.base_lines import show_base_case
     from xlmc.cli.printing import notices
     from xlmc.definitions import read_definitions
     from xlmc.errors import XlmcError
@@ -30,12 +34,13 @@ def check(book: Path) -> None:
     workbook = read_workbook(book)
     definitions = read_definitions(workbook)
     problems: list[XlmcError] = list(definitions.problems)
-    model = None
+    model: Model | None = None
     if not problems:
         try:
             model = Model(workbook, definitions, book)
         except XlmcError as error:
             problems.append(error)
+    faults = [] if model is None else show_base_case(model)
     _show_definitions(definitions if model is None else model.definitions)
     if model is not None:
         _show_need(model, workbook)
@@ -47,6 +52,10 @@ def check(book: Path) -> None:
     if problems:
         say(f"{len(problems)} problem{'s' * (len(problems) > 1)} found; nothing can be run yet.", err=True)
         raise click.exceptions.Exit(2)
+    for fault in faults:
+        say(f"warning: {fault}; an answer must not be used as it stands.", err=True)
+    if faults:
+        raise click.exceptions.Exit(1)
     say("No problem found.")
 
 
@@ -68,6 +77,8 @@ def _show_definitions(definitions: Definitions) -> None:
     if definitions.filters:
         rows = [(f.name, str(f.cell), limits_text(f), f.because) for f in definitions.filters]
         table("Filters", ("Name", "Cell", "Keeps", "Because"), rows)
+    if definitions.checks:
+        table("Checks", ("Name", "Cell", "Because"), [(c.name, str(c.cell), c.because) for c in definitions.checks])
     if definitions.correlations:
         pairs = [(c.first, c.second, f"{c.value:g}") for c in definitions.correlations]
         table("Correlations", ("First", "Second", "Spearman"), pairs, right=(2,))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from xlmc.cli.check_lines import failing_lines
 from xlmc.cli.run_options import jobs_option
 from xlmc.cli.terminal import say, say_json
 
@@ -51,6 +52,8 @@ def _lines(found: Replayed, path: Path) -> Iterator[str]:
         f"{path.name} records a run of {record['file.name']}: {record['counts.trials']:,.0f} trials, "
         f"seed {record['settings.seed']}."
     )
+    if found.repeated is not None:
+        yield from failing_lines(found.repeated)
     yield f"{_verdict(found)}."
     yield from _changes(found.changes, "Not as the record says:")
     if found.fault is not None:
@@ -166,6 +169,7 @@ def _as_json(found: Replayed) -> dict[str, object]:
             "missing": list(found.shown.missing),
             "not_compared": list(found.shown.left_out),
         },
+        "checks": [] if found.repeated is None else failing_lines(found.repeated),
         "fault": None if found.fault is None else str(found.fault),
     }
 

@@ -149,11 +149,13 @@ def _hints(model: Model, trials: int | None, engine: str | None) -> list[Notice]
 
 def show_run(run: Simulation) -> None:
     """Print the paper's table, the acceptance and what each filter rejected."""
+    from xlmc.cli.check_lines import check_table, show_first
     from xlmc.cli.printing import table
     from xlmc.record.sampling_words import sampling_sentence
     from xlmc.report.summary import ERROR_SENTENCE, summarise, summary_text
     from xlmc.stopping.stopped import ALL_TRIALS
 
+    show_first(run)
     headings, rows = summary_text(summarise(run))
     table(f"{run.model.workbook.name}: accepted trials", headings, rows, right=range(2, len(headings)))
     say(f"{_accepted(run)}; seed {run.settings.seed}.")
@@ -162,12 +164,14 @@ def show_run(run: Simulation) -> None:
     if run.model.filters:
         of = "Trials rejected" if run.rare is None else f"Trials rejected of {run.trials:,} drawn plainly"
         table(of, ("Filter", "Keeps", "Rejected", "Only by it"), _rejections(run), right=(2, 3))
+    check_table(run)
     say(paragraph(ERROR_SENTENCE))
     for notice in run.notices_of_run:
         say(paragraph(f"{notice}."))
 
 
 def _accepted(run: Simulation) -> str:
+    from xlmc.record.errors_met import rest_sentences
     from xlmc.statistics import format_estimate
 
     share = run.acceptance
@@ -175,6 +179,9 @@ def _accepted(run: Simulation) -> str:
         chance = format_estimate(share.value, share.error)
         return f"{run.accepted:,} accepted trials; one is accepted with probability {chance}"
     percent = format_estimate(100 * share.value, 100 * (share.error or 0))
+    if any(errors.total() for errors in run.faults.values()):
+        kept = [f"the filters kept {run.accepted:,}, {percent} %"] if run.accepted < run.trials else []
+        return "; ".join((*rest_sentences(run), *kept))
     return f"Accepted {run.accepted:,} of {run.trials:,} trials, {percent} %"
 
 

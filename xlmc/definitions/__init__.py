@@ -1,9 +1,10 @@
-"""What a workbook asks of a run: assumptions, forecasts, filters, correlations and settings, and their readers."""
+"""What a workbook asks of a run (assumptions, forecasts, filters, checks, correlations, settings), and its readers."""
 
 from __future__ import annotations
 
 from xlmc.definitions.model import (
     Assumption,
+    Check,
     Correlation,
     Definitions,
     Filter,
@@ -16,6 +17,7 @@ from xlmc.definitions.reader import read_definitions
 
 __all__ = [
     "Assumption",
+    "Check",
     "Correlation",
     "Definitions",
     "Filter",

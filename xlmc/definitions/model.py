@@ -1,4 +1,4 @@
-"""Assumptions, forecasts, filters, correlations and settings: what a workbook asks of a run."""
+"""Assumptions, forecasts, filters, checks, correlations and settings: what a workbook asks of a run."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from xlmc.formula.ir import Expression
 
 __all__ = [
     "Assumption",
+    "Check",
     "Correlation",
     "DataRange",
     "Definitions",
@@ -124,6 +125,21 @@ class Filter:
 
 
 @dataclass(frozen=True, slots=True)
+class Check:
+    """What must be TRUE wherever the model is used: at the base case, and in the accepted trials. It rejects nothing.
+
+    Attributes:
+        because: what it means when the cell is not TRUE, and where to look.
+    """
+
+    name: str
+    cell: Cell
+    row: Cell
+    because: str = ""
+    notes: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
 class Correlation:
     """A Spearman rank correlation between two assumptions, by name as defined."""
 
@@ -172,3 +188,4 @@ class Definitions:
     rewritten: Mapping[Cell, Expression | FormulaError] = field(default_factory=dict)
     results: tuple[Cell, ...] = ()
     unavailable: Mapping[Cell, str] = field(default_factory=dict)
+    checks: tuple[Check, ...] = ()

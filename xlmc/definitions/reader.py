@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from xlmc.definitions.assumptions import read_assumptions
+from xlmc.definitions.checks import read_checks
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.correlations import read_correlations
 from xlmc.definitions.data_tables import TABLE_REASON, TablesOfRun
@@ -36,6 +37,7 @@ def read_definitions(workbook: Workbook) -> Definitions:
     assumptions = read_assumptions(workbook, tables["xlmc_assumptions"], computed, uncertain, findings)
     forecasts = read_forecasts(workbook, tables["xlmc_forecasts"], computed, central, answers, findings)
     filters = read_filters(workbook, tables["xlmc_filters"], computed, tests, findings)
+    checks = read_checks(workbook, tables["xlmc_checks"], computed, Claims("check"), findings)
     calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings)
     _remark_on_stored_assumptions(workbook, findings)
     if not (calls or any(tables.values())):
@@ -70,6 +72,7 @@ def read_definitions(workbook: Workbook) -> Definitions:
         rewritten={**calls.rewritten, **faults_of(workbook, what_if.varying)},
         results=tuple(calls.results),
         unavailable=unavailable,
+        checks=checks,
     )
 
 

@@ -15,7 +15,14 @@ from xlmc.workbook.model import CellContent, CellValue, Table, Workbook
 
 __all__ = ["KINDS", "DefinitionTable", "Row", "as_text", "definition_tables", "holds_rows", "is_blank", "rows_of"]
 
-KINDS = ("xlmc_assumptions", "xlmc_forecasts", "xlmc_filters", "xlmc_correlations", "xlmc_settings")
+KINDS = (
+    "xlmc_assumptions",
+    "xlmc_forecasts",
+    "xlmc_filters",
+    "xlmc_checks",
+    "xlmc_correlations",
+    "xlmc_settings",
+)
 """What the names of the tables start with; a copied sheet's `xlmc_assumptions3` counts too."""
 
 _PREFIX = "xlmc"

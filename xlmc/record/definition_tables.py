@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from xlmc.definitions import Assumption, Filter
     from xlmc.simulation import ForecastResult, Simulation
 
-__all__ = ["assumption_section", "correlation_section", "filter_section", "forecast_section", "plain"]
+__all__ = ["assumption_section", "check_section", "correlation_section", "filter_section", "forecast_section", "plain"]
 
 _FORECAST = (
     ("name", "Forecast"),
@@ -36,6 +36,15 @@ _FILTER = (
     ("rejected", "Rejected"),
     ("only", "Rejected by it alone"),
     ("errors", "Errors in it"),
+    ("notes", "Notes"),
+)
+_CHECK = (
+    ("name", "Check"),
+    ("cell", "Cell"),
+    ("base", "Base case"),
+    ("tried", "Trials"),
+    ("failed", "Failing"),
+    ("because", "Because"),
     ("notes", "Notes"),
 )
 _ASSUMPTION = (
@@ -105,6 +114,23 @@ def _filter_row(simulation: Simulation, place: int, filter_: Filter) -> tuple[Va
         sum(tally.errors[place].values()),
         notes_text(filter_.notes),
     )
+
+
+def check_section(simulation: Simulation) -> Section:
+    """Every check with what its cell holds at the base case, and the accepted trials that fail it."""
+    rows = tuple(
+        (
+            check.name,
+            str(check.cell),
+            check.base.found,
+            check.trials,
+            check.failed,
+            check.because,
+            notes_text(check.base.definition.notes),
+        )
+        for check in simulation.checks
+    )
+    return Section("checks", "Checks", table=RecordTable(_CHECK, rows))
 
 
 def assumption_section(simulation: Simulation) -> Section:

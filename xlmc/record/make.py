@@ -9,6 +9,7 @@ from xlmc.record.cell_table import cell_section
 from xlmc.record.contents import needed_contents
 from xlmc.record.definition_tables import (
     assumption_section,
+    check_section,
     correlation_section,
     filter_section,
     forecast_section,
@@ -74,6 +75,7 @@ def make_record(simulation: Simulation, command: str | None = None) -> Record:
             *([] if simulation.rare is None else [_rare(simulation.rare)]),
             forecast_section(simulation),
             filter_section(simulation),
+            *([check_section(simulation)] if simulation.checks else []),
             assumption_section(simulation),
             correlation_section(simulation),
             _messages("warnings", "Warnings", simulation.warnings),

@@ -51,6 +51,10 @@ class Record:
 
     sections: tuple[Section, ...]
 
+    def __contains__(self, key: object) -> bool:
+        """Whether there is a section of that key."""
+        return any(section.key == key for section in self.sections)
+
     def section(self, key: str) -> Section:
         """The section of that key.
 

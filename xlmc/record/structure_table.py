@@ -36,6 +36,7 @@ def structure_section(model: Model, contents: Collection[str]) -> Section:
     workbook = model.workbook
     words = _words(contents) | {name_key(a.name) for a in model.assumptions}
     words |= {name_key(f.name) for f in model.forecasts} | {name_key(f.name) for f in model.filters}
+    words |= {name_key(check.name) for check in model.checks}
     names = sorted(_mentioned(workbook.names, words), key=_order)
     words |= _words([name.text for name in names])
     rows = [(f"{name.sheet}!{name.name}" if name.sheet else name.name, "defined name", name.text) for name in names]

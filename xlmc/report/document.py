@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from xlmc.errors import WorkbookError
 from xlmc.record import make_record
 from xlmc.record.correlations_met import correlations_met
-from xlmc.record.errors_met import errors_met
+from xlmc.record.errors_met import errors_met, lost_sentences
 from xlmc.record.wording import cutoffs_text, limits_text, parameters_text, status
 from xlmc.report.base_case import BaseCase, base_case
 from xlmc.report.conditioning import Marginal, conditioning
@@ -21,6 +21,7 @@ from xlmc.workbook.target import Target
 from xlmc.workbook.writer import write_workbook
 
 if TYPE_CHECKING:
+    from xlmc.checking import CheckResult
     from xlmc.definitions import Assumption, Filter
     from xlmc.record.correlations_met import CorrelationMet
     from xlmc.simulation import ForecastResult, Simulation
@@ -60,6 +61,8 @@ def document(simulation: Simulation, *, command: str | None = None) -> Json:
     return {
         "format": FORMAT,
         "version": VERSION,
+        "warnings": simulation.warnings,
+        "checks": [_check(each) for each in simulation.checks],
         "record": make_record(simulation, command).as_dict(),
         "trials": _trials(simulation),
         "forecasts": [_forecast(result, base) for result in simulation.results.values()],
@@ -71,10 +74,10 @@ def document(simulation: Simulation, *, command: str | None = None) -> Json:
         "correlations": [_correlation(met) for met in correlations_met(simulation)],
         "errors": [
             {"in": met.kind, "name": met.name, "cell": str(met.cell), "error": met.error, "trials": met.trials}
+            | {"from": None if met.root is None else f"{met.root[0]} {met.root[1].text}"}
             for met in errors_met(simulation)
         ],
         "base_case": None if base is None else {"rejected_by": list(base.rejected_by)},
-        "warnings": simulation.warnings,
         "notices": [
             {"message": notice.message, "where": None if notice.where is None else str(notice.where)}
             for notice in simulation.notices
@@ -123,6 +126,7 @@ def _trials(simulation: Simulation) -> Json:
         "acceptance": estimate_json(simulation.acceptance),
         "lost_to_errors": simulation.error_trials,
         "undecided": simulation.tally.by_error,
+        "losses": lost_sentences(simulation),
         "ended_by": simulation.stopped.by,
         "ended_when": simulation.stopped.sentence,
     }
@@ -164,6 +168,19 @@ def _filter(simulation: Simulation, place: int, each: Filter) -> Json:
         "share_only": estimate_json(proportion(only, simulation.trials)),
         "also_by": {other.name: count for other, count in together if other is not each},
         "errors": sum(tally.errors[place].values()),
+    }
+
+
+def _check(each: CheckResult) -> Json:
+    return {
+        "name": each.name,
+        "cell": str(each.cell),
+        "because": each.because,
+        "base": each.base.found,
+        "holds": each.holds,
+        "trials": each.trials,
+        "failed": each.failed,
+        "share": estimate_json(each.share),
     }
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from xlmc.record.errors_met import lost_sentences
 from xlmc.record.sampling_words import sampling_sentence
 from xlmc.report import cells
 from xlmc.report.accounting import write_accounting
 from xlmc.report.base_case import base_case
 from xlmc.report.cells import Shown
+from xlmc.report.checks_table import write_checks
 from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, range_heading, summarise
 from xlmc.statistics import Estimate, proportion
 from xlmc.stopping.stopped import ALL_TRIALS
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
     from xlmc.report.page import Page
     from xlmc.simulation import Simulation
 
-__all__ = ["LAST", "WIDTHS", "base_sentences", "range_sentences", "write_counts", "write_results"]
+__all__ = ["LAST", "WIDTHS", "base_sentences", "opening_sentences", "range_sentences", "write_counts", "write_results"]
 
 WIDTHS = (30, 9, *[10] * 16)
 LAST = 11
@@ -29,15 +31,24 @@ def write_results(page: Page, simulation: Simulation) -> None:
     book = simulation.model.workbook.name
     settings = simulation.settings
     page.title("Results of the simulation", f"{book}, seed {settings.seed}, {simulation.evaluated:,} trials")
-    for warning in simulation.warnings:
-        page.wide(f"Do not use these results as they stand: {warning}", "warning", LAST)
-    if simulation.stopped.interrupted:
-        page.wide(f"Fewer trials than were asked for: {simulation.stopped.sentence}", "warning", LAST)
+    for sentence in opening_sentences(simulation):
+        page.wide(sentence, "warning", LAST)
     _write_answers(page, simulation)
     write_counts(page, simulation)
+    write_checks(page, simulation, LAST)
     write_accounting(page, simulation, LAST)
     _write_notices(page, simulation)
     page.printed(book)
+
+
+def opening_sentences(simulation: Simulation) -> list[str]:
+    """What stands before the answers: why not to use them, checks that fail first; then the trials lost to errors."""
+    ended = simulation.stopped
+    return [
+        *(f"Do not use these results as they stand: {warning}" for warning in simulation.warnings),
+        *lost_sentences(simulation),
+        *([f"Fewer trials than were asked for: {ended.sentence}"] if ended.interrupted else []),
+    ]
 
 
 def _write_answers(page: Page, simulation: Simulation) -> None:

@@ -10,7 +10,7 @@ from xlmc.record.sampling_words import sampling_sentence
 from xlmc.record.wording import limits_text
 from xlmc.report.html.element import EMPTY, Html, element
 from xlmc.report.html.shown import estimate_html, number, share_html
-from xlmc.report.results import base_sentences, range_sentences
+from xlmc.report.results import base_sentences, opening_sentences, range_sentences
 from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, range_heading, share_text, summarise
 from xlmc.statements import MEANING, statements
 from xlmc.stopping.stopped import ALL_TRIALS
@@ -28,7 +28,7 @@ def answers(simulation: Simulation) -> Html:
     return element(
         "section",
         element("h2", "The answer"),
-        *_warnings(simulation),
+        *map(_warning, opening_sentences(simulation)),
         element("p", *_question(simulation)),
         element("ul", *(element("li", *_said(each)) for each in statements(simulation)), class_="statements"),
         element("p", MEANING, class_="remark"),
@@ -37,13 +37,6 @@ def answers(simulation: Simulation) -> Html:
         *(element("p", sentence, class_="remark") for sentence in _remarks(simulation, rows)),
         id="answer",
     )
-
-
-def _warnings(simulation: Simulation) -> Iterator[Html]:
-    for warning in simulation.warnings:
-        yield _warning(f"Do not use these results as they stand: {warning}")
-    if simulation.stopped.interrupted:
-        yield _warning(f"Fewer trials than were asked for: {simulation.stopped.sentence}")
 
 
 def _warning(sentence: str) -> Html:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from xlmc.record import make_record
 from xlmc.report.accounting import write_accounting
 from xlmc.report.certainty_sheet import write_ranges
+from xlmc.report.checks_table import write_checks
 from xlmc.report.figure import figures_of
 from xlmc.report.html.answers import answers
 from xlmc.report.html.dependence import dependence, limits
@@ -58,6 +59,7 @@ _LINKS = {
     "pairs": "Pairs",
     "statistics": "Statistics",
     "sensitivity": "Sensitivity",
+    "checks": "Checks",
     "filters": "Filters",
     "limits": "Filter limits",
     "assumptions": "Assumptions",
@@ -83,6 +85,7 @@ def page_text(simulation: Simulation, *, command: str | None = None) -> str:
         "pairs": _pairs(simulation),
         "statistics": _statistics(simulation),
         "sensitivity": dependence(found),
+        "checks": _checks(simulation),
         "filters": _filters(simulation),
         "limits": limits(found),
         "assumptions": inputs(simulation),
@@ -164,6 +167,14 @@ def _pairs(simulation: Simulation) -> Html:
     write_pair_table(flow, pairs)
     remarks = (element("p", said, class_="remark") for said in pair_sentences(simulation, pairs))
     return element("section", element("h2", "Forecasts two at a time"), flow.html, *remarks, id="pairs")
+
+
+def _checks(simulation: Simulation) -> Html:
+    if not simulation.checks:
+        return EMPTY
+    flow = Flow()
+    write_checks(flow, simulation, LAST)
+    return element("section", element("h2", "Checks"), flow.html, id="checks")
 
 
 def _filters(simulation: Simulation) -> Html:

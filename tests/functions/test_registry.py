@@ -18,8 +18,8 @@ from xlmc.compile.settings import as_set
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions import Function, Kind
 from xlmc.functions.families import REGISTRY, function_named
-from xlmc.functions.registry import Logical, Number, Numbers, excel
-from xlmc.functions.values import ShapeVaries, Value, from_objects
+from xlmc.functions.registry import Logical, Number, Numbers, Text, excel
+from xlmc.functions.values import ShapeVaries, Value, constant, from_objects
 
 ROWS = {function.name: function for function in REGISTRY.values()}
 FAST = {name: function for name, function in ROWS.items() if function.ufunc is not None}
@@ -208,3 +208,15 @@ def test_one_made_for_a_workbook_goes_whole():
     assert found([from_objects(np.array([0.5], object))]).numbers.tolist() == [1904.0]
     assert found.parameters == made.parameters
     assert all(parameter.required for parameter in found.parameters)
+
+
+def test_a_body_is_not_called_where_every_trial_has_an_error_in_its_arguments():
+    def body(*_):
+        raise AssertionError("called")
+
+    row = Function("TEST", (Text, Text), body, Kind.TEXT)
+    codes = np.array([ErrorCode.DIV0, ErrorCode.NA], np.uint8)
+    found = row([Value.of_errors(codes), constant("x")])
+    assert found.objects().tolist() == [ErrorCode.DIV0, ErrorCode.NA]
+    over_cells = row([Value.of_errors(codes[:1]), constant("x").as_range().take(np.zeros(1, np.intp))])
+    assert over_cells.objects().tolist() == [[[ErrorCode.DIV0]]]

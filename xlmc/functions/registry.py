@@ -193,6 +193,9 @@ class Function:
             array, found = known[key]
             arrays.append(array)
             errors = np.where(errors > 0, errors, found).astype(np.uint8)
+        if errors.all():  # a body would compute what its arguments' errors cover, text by text at worst
+            shape = np.broadcast_shapes(errors.shape, *(array.shape for array in arrays))
+            return Value.of_errors(np.broadcast_to(errors, shape))
         arrays += [p.default for p in self.parameters[len(arguments) :] if not p.repeat]
         return _as_value(self.body(*arrays), self.returns, errors if errors.any() else None)
 

@@ -118,6 +118,11 @@ class Value:
         return cls(zeros, kinds, x)
 
     @classmethod
+    def of_errors(cls, codes: Codes) -> Value:
+        """An error everywhere."""
+        return cls(np.zeros(codes.shape), (codes + np.uint8(ERROR)).astype(np.uint8))
+
+    @classmethod
     def _with_errors(cls, x: Floats, codes: Codes, kind: int) -> Value:
         if not codes.any():
             return cls(x, np.full((1,) * x.ndim, kind, np.uint8))
@@ -188,6 +193,8 @@ class Value:
         errors = np.broadcast_to(self.errors, self.shape)
         if self.texts is not None and (self.kinds == TEXT).all():
             return np.broadcast_to(self.texts, self.shape), errors
+        if errors.all():
+            return np.full(self.shape, "", object), errors
         return self._each(_text), errors
 
     def objects(self) -> Objects:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 FORMULAS = [
+    "AGGREGATE(A1:A4,{1,2;3,4},-1,-657434,100)",
+    "AND(COUPPCD(1,2,3,0,5),B:B)",
     "AREAS(A3,ANCHORARRAY(E1),{1,2,3})",
     "CELL()",
     "CORREL(CUMIPMT(H9,A1,(ODDLPRICE(-2147483649,0.5,B2,7,0.05,B2,TRANSPOSE(B1:D2))"

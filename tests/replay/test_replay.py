@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -384,3 +385,15 @@ def test_entries_are_read_back_as_they_were(results, run):
             expected = None if entry.value == "" else entry.value
             assert read[f"{section.key}.{entry.key}"] == expected
     assert isinstance(read.section("run").entries[0], Entry)
+
+
+def test_a_record_without_one_of_its_sections_is_refused_by_name(edited):
+    def without_forecasts(book):
+        keys = [cell for sheet in book for row in sheet.iter_rows() for cell in row]
+        keys = [cell for cell in keys if isinstance(cell.value, str) and re.match(r"forecasts(\W|$)", cell.value)]
+        assert keys
+        for cell in keys:
+            cell.value = None
+
+    with pytest.raises(WorkbookError, match="the record lacks 'forecasts'"):
+        replay(edited(without_forecasts))

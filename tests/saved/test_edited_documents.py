@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
+import io
 import json
 import re
 import zipfile
 
+import numpy as np
 import pytest
 
 from xlmc.errors import XlmcError
@@ -74,3 +77,22 @@ def test_any_value_of_another_kind(tiny_run, tmp_path):
         assert error is None or not OF_PYTHON.search(error.message), (path, value)
         refused += error is not None
     assert refused > 2 * len(found)
+
+
+@pytest.mark.parametrize("kind", ["input", "prior", "forecast"])
+def test_an_infinite_number_in_a_column_is_refused(kind, tiny_run, tmp_path):
+    with zipfile.ZipFile(tiny_run) as package:
+        entries = {name: package.read(name) for name in package.namelist()}
+    document = json.loads(entries[RUN])
+    column = next(each for each in document["columns"] if each["kind"] == kind)
+    values = np.load(io.BytesIO(entries[column["entry"]]))
+    values[3] = np.inf
+    file = io.BytesIO()
+    np.save(file, values)
+    column["sha256"] = hashlib.sha256(file.getvalue()).hexdigest()
+    target = tmp_path / "infinite.xlmcrun"
+    with zipfile.ZipFile(target, "w") as made:
+        for name, content in (entries | {column["entry"]: file.getvalue(), RUN: json.dumps(document)}).items():
+            made.writestr(name, content)
+    with pytest.raises(XlmcError, match=r"the saved run is damaged: the (draws|forecast)"):
+        open_run(target)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of
 from xlmc.compile.arrays import grid
-from xlmc.compile.dag import Apply, Range
+from xlmc.compile.dag import Range
 from xlmc.compile.empty_cells import refused
 from xlmc.compile.extents import beyond, leveled
 from xlmc.compile.references import REFERENCES, NoReference, NotYetNeeded, areas_of, cut, needed
@@ -165,7 +165,7 @@ def _without_subtotals(name: str) -> Callable[[Lowering, Arguments, Scope], int 
             else:
                 skipped = _skipped(lowering, name, found)
                 found += [_left_in(lowering, area, skipped) for area in areas]
-        return lowering.dag.add(Apply(function, tuple(found)))
+        return lowering.made(function, tuple(found))
 
     return lower
 

@@ -335,6 +335,8 @@ def _exposed(lowering: Lowering, tree: ir.Expression, scope: Scope, change: _Cha
         case ir.Binary() | ir.Variable():
             return _referred(lowering, tree, scope, change)
         case ir.Call(name, arguments) if (function := function_named(name)) is not None and arguments:
+            if len(arguments) > function.arity()[1]:
+                return tree  # it is refused when it is lowered
             spared = [len(function.parameters) == 0 or function.parameter(i).ranged for i in range(len(arguments))]
             parts = zip(arguments, spared, strict=True)
             made = tuple(part if kept else _exposed(lowering, part, scope, change) for part, kept in parts)

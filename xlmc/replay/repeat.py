@@ -123,13 +123,14 @@ def _replayed(
         return Replayed(record, None, fault, changes, (), (), same_bits=False)
     found = make_record(repeated)
     same_bits = record["run.fingerprint"] == found["run.fingerprint"]
-    numbers = number_changes(record, found)
-    changes = (
-        *cell_changes(cells, contents_now(workbook, cells) | needed_contents(model)),
-        *structure_changes(record, found),
-        *definition_changes(record, found),
-    )
-    environment = tuple(environment_changes(record, found))
+    try:
+        numbers = number_changes(record, found)
+        of_the_model = (*structure_changes(record, found), *definition_changes(record, found))
+        environment = tuple(environment_changes(record, found))
+    except KeyError as error:
+        message = f"the record lacks {error.args[0]!r}"
+        raise WorkbookError(message, where=path, hint="It was edited: run the workbook again") from error
+    changes = (*cell_changes(cells, contents_now(workbook, cells) | needed_contents(model)), *of_the_model)
     shown = SheetComparison()
     if path is not None:
         rewritten = not _is_untouched(path)

@@ -188,7 +188,10 @@ def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
     _check_index(index, trials if rare is None else rare.kept)
     forecasts, faults = columns.of("forecast"), mapping(found["faults"], "its faults")
     for name in forecasts:
-        told(not any(bool(np.isinf(part).any()) for part in parts(forecasts[name])), f"the forecast {name!r}")
+        told(not _holds_infinity(forecasts[name]), f"the forecast {name!r}")
+    inputs, prior = columns.of("input"), columns.of("prior")
+    for name in inputs:
+        told(not _holds_infinity(inputs[name]) and not _holds_infinity(prior[name]), f"the draws of {name!r}")
     return Simulation(
         model=model,
         settings=settings,
@@ -196,8 +199,8 @@ def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
         block=max(1, whole(found["block"], "the size of its blocks")),
         trials=trials,
         trial_index=index,
-        inputs=columns.of("input"),
-        prior=columns.of("prior"),
+        inputs=inputs,
+        prior=prior,
         forecasts=forecasts,
         faults={name: counts(faults[name], f"the faults of {name!r}") for name in forecasts},
         tally=tally_of(found["tally"], len(model.filters), trials),
@@ -208,6 +211,10 @@ def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
         rare=rare,
         origin=origin_of(found["origin"]),
     )
+
+
+def _holds_infinity(column: Column) -> bool:
+    return any(bool(np.isinf(part).any()) for part in parts(column))
 
 
 def _check_index(index: Column, trials: int) -> None:

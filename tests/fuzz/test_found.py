@@ -15,6 +15,7 @@ FORMULAS = [
     'INDEX(B1:D6,0,1)&A1:A4 A2:B3/"1"',
     "ISOMITTED()",
     'SHEETS(INDIRECT("1",FALSE))',
+    "SORTBY(IFS(),OFFSET(A1:D1,1,-1))",
     "TAKE(SEQUENCE(3)-INDEX(B1:D6,0,1),(A9))",
     'TOCOL(INDIRECT("no such"))',
     'VALUETOTEXT({"x",1;TRUE,2},_xlfn.T.DIST.2T($A$1,{TRUE,#N/A}))',

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Area, Cell
 from xlmc.compile.choices import CHOICES
+from xlmc.compile.counts import check_count
 from xlmc.compile.dag import Constant, Range, Rescue
 from xlmc.compile.empty_cells import FIRST_ONLY, IGNORING, LASTING, ON_NUMBERS, PAIRING, SUMMING, kept, refused
 from xlmc.compile.extents import as_filled, by_halves, leveled, one_behind, one_further, sized
@@ -290,13 +291,10 @@ def _areas(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area] 
     """What a tree refers to; None where it is no reference, or one that cannot be worked out."""
     if not isinstance(tree, Cell | Area | ir.Binary | ir.Call | ir.Variable):
         return None
-    if (
-        isinstance(tree, ir.Call)
-        and tree.name in CHOICES
-        and scope.array
-        and _holds(lowering, tree.arguments[0], scope)
-    ):
-        return None  # a condition of many cells
+    if isinstance(tree, ir.Call) and tree.name in CHOICES:
+        check_count(tree.name, tree.arguments)
+        if scope.array and _holds(lowering, tree.arguments[0], scope):
+            return None  # a condition of many cells
     try:
         return areas_of(lowering, tree, scope)
     except NoReference:
@@ -335,8 +333,7 @@ def _exposed(lowering: Lowering, tree: ir.Expression, scope: Scope, change: _Cha
         case ir.Binary() | ir.Variable():
             return _referred(lowering, tree, scope, change)
         case ir.Call(name, arguments) if (function := function_named(name)) is not None and arguments:
-            if len(arguments) > function.arity()[1]:
-                return tree  # it is refused when it is lowered
+            check_count(name, arguments)
             spared = [len(function.parameters) == 0 or function.parameter(i).ranged for i in range(len(arguments))]
             parts = zip(arguments, spared, strict=True)
             made = tuple(part if kept else _exposed(lowering, part, scope, change) for part, kept in parts)

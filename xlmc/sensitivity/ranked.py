@@ -25,6 +25,9 @@ LEAST_IN_A_CLASS = 50
 _FLAT = 1e-24
 """Of the column's variance: less within a class is rounding, and no line is laid through it."""
 
+_LARGE = 1e100
+"""From here on squares may overflow when many are added up."""
+
 
 @dataclass(frozen=True)
 class Classes:
@@ -123,7 +126,7 @@ class Ranked:
         label = self._labels(min(MOST_CLASSES, max(1, self.n // LEAST_IN_A_CLASS)))
         starts = np.flatnonzero(np.concatenate([[True], label[1:] != label[:-1]]))
         sizes = np.diff(np.append(starts, self.n))
-        x = self.values[self.order]
+        x = _squarable(self.values[self.order])
         x = x - x.mean()
         centred = x - np.repeat(np.add.reduceat(x, starts) / sizes, sizes)
         squares = np.add.reduceat(centred**2, starts)
@@ -131,3 +134,9 @@ class Ranked:
         centred[np.repeat(flat, sizes)] = 0.0
         freedom = int(starts.size + np.count_nonzero(~flat))
         return Classes(starts, sizes, label, centred, np.where(flat, 1.0, squares), freedom)
+
+
+def _squarable(x: Floats) -> Floats:
+    """The values; very large ones in units of the largest: their squares are numbers, and lines fit them as well."""
+    largest = float(np.abs(x).max(initial=0.0))
+    return x / largest if largest > _LARGE else x

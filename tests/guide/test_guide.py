@@ -34,10 +34,10 @@ CHANGES = {
     "both decelerations Trapezoid: 0.60, 0.70, 0.85, 0.95": {
         ("Inputs", f"{column}{row}"): value for row in (11, 17) for column, value in TRAPEZOID.items()
     },
-    "decelerations correlated by 0.8: one road": {("Results wanted", "C31"): 0.8},
+    "decelerations correlated by 0.8: one road": {("Results wanted", "C42"): 0.8},
 }
 
-CHECKS = ("energy", "closing", "angles", "forward", "restitution", "all")
+CHECKS = ("energy", "closing", "angles", "forward", "restitution", "friction", "all")
 """The rows of the physics checks at the end of sheet Model."""
 
 MADE = ("my-case", "my-case-results", "my-case-again")

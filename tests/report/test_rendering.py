@@ -141,7 +141,7 @@ def test_the_sentences_are_printed_whole(pages, case):
 
 @pytest.mark.parametrize(
     ("sheet", "count"),
-    [("Results", 1), ("Statistics", 4), ("Assumptions", 1), ("Sensitivity", 8), ("Filter limits", 5)],
+    [("Results", 2), ("Statistics", 4), ("Assumptions", 1), ("Sensitivity", 8), ("Filter limits", 5)],
 )
 def test_no_table_is_broken_across_pages(pages, sheet, count):
     assert [page.sheet for page in pages].count(sheet) == count

@@ -25,6 +25,9 @@ __all__ = ["LAST", "WIDTHS", "base_sentences", "opening_sentences", "range_sente
 WIDTHS = (30, 9, *[10] * 16)
 LAST = 11
 
+_SCALE, _SCALE_WITH_THRESHOLDS = 60, 45
+"""In percent: as wide as a page."""
+
 
 def write_results(page: Page, simulation: Simulation) -> None:
     """Write the sheet."""
@@ -35,10 +38,15 @@ def write_results(page: Page, simulation: Simulation) -> None:
         page.wide(sentence, "warning", LAST)
     _write_answers(page, simulation)
     write_counts(page, simulation)
+    checks_from = page.row
     write_checks(page, simulation, LAST)
     write_accounting(page, simulation, LAST)
     _write_notices(page, simulation)
-    page.printed(book)
+    if simulation.checks:  # so that no table is cut in two
+        wide = any(forecast.threshold is not None for forecast in simulation.model.forecasts)
+        page.printed(book, scale=_SCALE_WITH_THRESHOLDS if wide else _SCALE, breaks=[checks_from])
+    else:
+        page.printed(book)
 
 
 def opening_sentences(simulation: Simulation) -> list[str]:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.fields import optional_text
+from xlmc.definitions.filters import LIMITS
 from xlmc.definitions.findings import Findings
 from xlmc.definitions.identity import Claims, identify
 from xlmc.definitions.model import Check
@@ -16,7 +17,6 @@ from xlmc.workbook.model import Workbook
 __all__ = ["read_checks"]
 
 _KNOWN = ("Name", "Value", "Cell", "Because")
-_LIMITS = ("At least", "At most", "Above", "Below")
 
 
 def read_checks(
@@ -62,7 +62,7 @@ def _refuse_limits(row: Row) -> None:
     Raises:
         DefinitionError: the row fills in a limit.
     """
-    given = next((heading for heading in _LIMITS if row.filled(heading)), None)
+    given = next((heading for heading in LIMITS.values() if row.filled(heading)), None)
     if given is not None:
         message = f"A check has no limits: its cell must be TRUE, and {row.heading(given)} would not be tested"
         hint = "Write the limits into the check's cell, such as =AND(B7>0,B7<=1.5), or make the row a filter"

@@ -15,10 +15,11 @@ from xlmc.distributions.base import show
 from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.workbook.model import Workbook
 
-__all__ = ["read_filters"]
+__all__ = ["LIMITS", "read_filters"]
 
-_LIMITS = {"at_least": "At least", "at_most": "At most", "above": "Above", "below": "Below"}
-_KNOWN = ("Name", "Value", "Cell", *_LIMITS.values(), "Because")
+LIMITS = {"at_least": "At least", "at_most": "At most", "above": "Above", "below": "Below"}
+"""Limits of a filter and their headings."""
+_KNOWN = ("Name", "Value", "Cell", *LIMITS.values(), "Because")
 _LIMIT_HINT = "Fill in At least, At most, Above or Below, or make the cell a test such as =B7>0"
 
 
@@ -46,14 +47,14 @@ def read_filters(
 def _filter(row: Row, computed: Computed, claims: Claims, findings: Findings) -> Filter | None:
     before = len(findings.problems)
     identity = identify(row, claims, findings)
-    limits = {key: findings.attempt(parameter, row, heading) for key, heading in _LIMITS.items()}
+    limits = {key: findings.attempt(parameter, row, heading) for key, heading in LIMITS.items()}
     because = findings.attempt(optional_text, row, "Because") or ""
     if len(findings.problems) > before or not identity:
         return None
     name, cell = identity
     findings.attempt(_refuse_contradiction, row, limits)
     findings.attempt(
-        _look_at, row.workbook, cell, not any(map(row.filled, _LIMITS.values())), computed.at_all(cell), findings
+        _look_at, row.workbook, cell, not any(map(row.filled, LIMITS.values())), computed.at_all(cell), findings
     )
     if len(findings.problems) > before:
         return None
@@ -76,9 +77,9 @@ def _refuse_contradiction(row: Row, limits: Mapping[str, Parameter | None]) -> N
         if low is None or high is None or low < high:
             continue
         if low > high or (floor, ceiling) != ("at_least", "at_most"):
-            pair = f"{_LIMITS[floor]} ({show(low)}) and {_LIMITS[ceiling]} ({show(high)})"
+            pair = f"{LIMITS[floor]} ({show(low)}) and {LIMITS[ceiling]} ({show(high)})"
             message = f"{pair} contradict each other: no trial could pass"
-            raise DefinitionError(message, where=row.cell(_LIMITS[floor]), hint="Correct one of them")
+            raise DefinitionError(message, where=row.cell(LIMITS[floor]), hint="Correct one of them")
 
 
 def _look_at(workbook: Workbook, cell: Cell, must_be_true: bool, computed: bool, findings: Findings) -> None:

@@ -23,19 +23,18 @@ from typing import Any
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
-# The paths above make a plain `python benchmarks/compare.py` work: E402 is about imports below code.
-import accuracy  # noqa: E402
-import figures  # noqa: E402
-import hand_c  # noqa: E402
-import machine  # noqa: E402
-import memory  # noqa: E402
-import peers  # noqa: E402
-import rates  # noqa: E402
-import scaling  # noqa: E402
-import tables  # noqa: E402
-import whole_command  # noqa: E402
-from books import BOOKS, CASE_STUDY, make_books  # noqa: E402
-from line_up import Entry, line_up  # noqa: E402
+import accuracy
+import figures
+import hand_c
+import machine
+import memory
+import peers
+import rates
+import scaling
+import tables
+import whole_command
+from books import BOOKS, CASE_STUDY, make_books
+from line_up import Entry, line_up
 
 RESULTS = HERE / "results"
 QUICK_BOOKS = ("case-study", "skid")

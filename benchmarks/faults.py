@@ -13,32 +13,32 @@ import os
 for _library in ("OPENBLAS", "OMP", "MKL"):  # a process with threads is not to be forked
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
-import argparse  # noqa: E402 - the above before NumPy is imported
-import random  # noqa: E402
-import resource  # noqa: E402
-import signal  # noqa: E402
-import subprocess  # noqa: E402
-import sys  # noqa: E402
-import tempfile  # noqa: E402
-import time  # noqa: E402
-from collections import Counter  # noqa: E402
-from collections.abc import Callable, Iterator  # noqa: E402
-from contextlib import contextmanager  # noqa: E402
-from dataclasses import dataclass, field  # noqa: E402
-from pathlib import Path  # noqa: E402
-from typing import NoReturn  # noqa: E402
+import argparse
+import random
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NoReturn
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-import numpy as np  # noqa: E402
+import numpy as np
 
-import xlmc  # noqa: E402
-from xlmc.errors import XlmcError  # noqa: E402
-from xlmc.scratch import columns  # noqa: E402
-from xlmc.simulation import Simulation  # noqa: E402
-from xlmc.templates_folder import templates  # noqa: E402
-from xlmc.workbook.writer import write_workbook  # noqa: E402
+import xlmc
+from xlmc.errors import XlmcError
+from xlmc.scratch import columns
+from xlmc.simulation import Simulation
+from xlmc.templates_folder import templates
+from xlmc.workbook.writer import write_workbook
 
 TOLD = 7
 """Exit code of a child that was told of a full disk in words."""

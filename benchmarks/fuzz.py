@@ -12,20 +12,20 @@ import os
 for _library in ("OPENBLAS", "OMP", "MKL"):  # a thread each would take address space, which is limited
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
-import argparse  # noqa: E402 - the above before NumPy is imported
-import itertools  # noqa: E402
-import sys  # noqa: E402
-import time  # noqa: E402
-from concurrent.futures import ThreadPoolExecutor  # noqa: E402
-from pathlib import Path  # noqa: E402
+import argparse
+import itertools
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent), str(HERE)]
 
-from fuzzing import KINDS, warm_up  # noqa: E402
-from fuzzing.campaign import HEADINGS, Summary, campaign  # noqa: E402
-from fuzzing.child import Outcome  # noqa: E402
-from fuzzing.inputs import generator  # noqa: E402
+from fuzzing import KINDS, warm_up
+from fuzzing.campaign import HEADINGS, Summary, campaign
+from fuzzing.child import Outcome
+from fuzzing.inputs import generator
 
 
 def main() -> None:

@@ -20,7 +20,7 @@ sys.path += [
     str(HERE),
 ]  # the templates, whose forms are measured; `stressing`, when not run from here
 
-from stressing import draw_rounding, draw_statistics, full_size, page  # noqa: E402 - found by the path above
+from stressing import draw_rounding, draw_statistics, full_size, page
 
 __all__ = ["PAGE", "PARTS", "PICTURES", "RESULTS", "Part"]
 

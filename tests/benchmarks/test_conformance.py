@@ -1,0 +1,78 @@
+"""The conformance of a folder of workbooks, made here: what is counted, by cell and by shape, and what is printed."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import xlsxwriter
+
+SCRIPT = Path(__file__).resolve().parents[2] / "benchmarks" / "conformance.py"
+
+
+def written(path, formulas):
+    """A workbook of these formulas, address -> (formula, saved value)."""
+    with xlsxwriter.Workbook(path) as book:
+        sheet = book.add_worksheet("S")
+        sheet.write_column("A1", [1, 2, 3])
+        for address, (formula, saved) in formulas.items():
+            sheet.write_formula(address, formula, None, saved)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    inside = tmp_path / "books"
+    inside.mkdir()
+    written(
+        inside / "good.xlsx",
+        {"B1": ("=A1*2", 2), "B2": ("=A2*2", 4), "B3": ("=A3*2", 6), "C1": ("=RAND()", 0.5), "C2": ("=NOW()", 1)},
+    )
+    written(
+        inside / "mixed.xlsx",
+        {"B1": ("=A1*2", 2), "B2": ("=A2*2", 5), "C1": ("=CUBEVALUE(A1)", 7), "D1": ("=SUM(A1:A3)", 6)},
+    )
+    (inside / "broken.xlsx").write_bytes(b"no package")
+    return tmp_path
+
+
+def test_cells_and_shapes_are_counted(folder):
+    from conformance import Status, check_folder
+
+    found = check_folder(folder)
+    assert {name: len(cells) for name, cells in found.books.items()} == {
+        "good.xlsx": 3,
+        "mixed.xlsx": 4,
+        "broken.xlsx": 1,
+    }
+    assert found.cell_share() == 5 / 8
+    assert found.cell_share(Status.DIFFERING) == 1 / 8
+    assert found.shape_share() == 2 / 5  # good A*2 and SUM; A*2 of the mixed book has a cell that differs
+    assert sorted(found.book_shares()) == [0.0, 0.5, 1.0]
+
+
+def test_a_list_of_sizes_counts_a_refused_book(folder):
+    from conformance import check_folder
+
+    (folder / "INDEX.tsv").write_text("file\tformula_cells\nbroken.xlsx\t12\n")
+    assert len(check_folder(folder).books["broken.xlsx"]) == 12
+
+
+def test_the_command_prints_both_figures_and_lists_the_rest(folder):
+    done = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "8 cells: 5 matched (62.500%), 1 differing (12.500%), 2 unsupported (25.000%)" in done.stdout
+    assert "5 shapes: 2 matched (40.000%)" in done.stdout
+    assert "refused, 1 shape: the function CUBEVALUE is not known to xlmc" in done.stdout
+    assert "mixed.xlsx S!B2 =A2*2\n    Excel: 5.0\n    xlmc:  4.0" in done.stdout
+
+
+def test_a_folder_where_all_match_ends_well(folder):
+    (folder / "books" / "mixed.xlsx").unlink()
+    (folder / "books" / "broken.xlsx").unlink()
+    done = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    missing = subprocess.run([sys.executable, SCRIPT, folder / "none"], capture_output=True, text=True, check=False)
+    assert missing.returncode == 2
+    assert "is no folder" in missing.stderr

@@ -20,7 +20,7 @@ FLOORS = [
     {"functions"},
     {"compile", "sampling"},
     {"scene", "drawing", "correlating", "remarks", "stopping"},
-    {"base_parameters"},
+    {"base_parameters", "filter_values"},
     {"model", "verify"},
     {"blocks", "cell_errors", "checking", "derivatives", "digits", "result_cells"},
     {"simulation", "scheduling"},

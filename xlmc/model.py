@@ -22,6 +22,7 @@ from xlmc.definitions.model import name_key
 from xlmc.definitions.stopping import stopping
 from xlmc.drawing import draw_of, dynamic_parameters
 from xlmc.errors import DefinitionError, Notice, SimulationError
+from xlmc.filter_values import filter_faults
 from xlmc.remarks import example_notices, still_notices
 from xlmc.sampling import CorrelatedGroup, Draw, Plan, Sampler, Stage
 from xlmc.sampling.draws import Filler
@@ -57,7 +58,10 @@ def understood(workbook: Workbook, path: Path) -> Model:
         definitions = read_definitions(workbook)
         if definitions.problems:
             raise _joined(definitions.problems)
-        return Model(workbook, definitions, path)
+        model = Model(workbook, definitions, path)
+        if faults := filter_faults(model):
+            raise _joined(faults)
+        return model
 
 
 def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:

@@ -95,3 +95,17 @@ def test_limits_that_are_computed_from_the_own_cell_are_shown_as_numbers(xlmc, c
     assert f"Uniform: {shown}" in outcome.out
     said = " ".join(outcome.err.split())
     assert f"computed from the base value of the assumption's own cell ({base:g}): {shown}" in said
+
+
+@pytest.mark.parametrize("command", [("check",), ("simulate", "-n", "100", "--quiet")])
+def test_a_filter_without_a_limit_over_a_quantity_is_refused_by_what_its_cell_computes(
+    xlmc, small_book, tmp_path, command
+):
+    book = openpyxl.load_workbook(small_book)  # which saves no values of formulas
+    book["Wanted"]["C6"] = None
+    book.save(tmp_path / "spoiled.xlsx")
+    outcome = xlmc(command[0], tmp_path / "spoiled.xlsx", *command[1:])
+    assert outcome.code == 2
+    assert outcome.err.count("Model!A3: The filter 'root' has no limit, and its cell is 0.94868") == 1
+    assert "Fill in At least, At most, Above or Below" in outcome.err
+    assert not list(tmp_path.glob("*-results.xlsx"))

@@ -19,10 +19,15 @@ MISTAKES = [
     ({AT_LEAST: None, ABOVE: 1}, ABOVE, "Above (1) and Below (1) contradict", "Correct one"),
     ({AT_LEAST: None, ABOVE: 1, BELOW: None, AT_MOST: 1}, ABOVE, "Above (1) and At most (1) contradict", "Correct one"),
     ({AT_LEAST: ("=4/2", 2.0)}, AT_LEAST, "At least (2) and Below (1) contradict", "Correct one"),
-    ({AT_LEAST: None, BELOW: None}, "Model!B2", "The filter has no limit, and its cell holds 0.4", "Fill in At least"),
+    (
+        {AT_LEAST: None, BELOW: None, "Model!B2": 0.4},
+        "Model!B2",
+        "The filter has no limit, and its cell holds 0.4",
+        "Fill in At least",
+    ),
     ({"Answers!B12": ("=Model!Z9", 0.0)}, "Model!Z9", "The filter cell is blank", "Point to the cell"),
     ({"Answers!B12": ("=Model!A1", "Speed")}, "Model!A1", "The filter cell holds the text 'Speed'", "Fill in At least"),
-    ({"Model!B3": ('=IF(B1>0,"ok")', "ok")}, "Model!B3", "The filter cell holds the text 'ok'", "such as =B7>0"),
+    ({"Model!B3": "ok"}, "Model!B3", "The filter cell holds the text 'ok'", "such as =B7>0"),
 ]
 
 
@@ -50,8 +55,8 @@ def test_limits(read, changes, limits):
     assert (first.at_least, first.at_most, first.above, first.below) == limits
 
 
-@pytest.mark.parametrize("cached", [True, False, 1.0, 0.0, None, ErrorCode.DIV0])
-def test_without_limits_the_cell_must_be_true(read, cached):
+@pytest.mark.parametrize("cached", [True, False, 1.0, 0.0, 0.4, "ok", None, ErrorCode.DIV0])
+def test_what_excel_saved_of_a_formula_says_nothing_of_the_filter(read, cached):
     found = read({"Model!B3": ("=B1>0", cached)})
     assert found.problems == found.notices == ()
     assert found.filters[1].at_least is found.filters[1].below is None

@@ -28,6 +28,7 @@ def check(book: Path) -> None:
     from xlmc.cli.printing import notices
     from xlmc.definitions import read_definitions
     from xlmc.errors import XlmcError
+    from xlmc.filter_values import filter_faults
     from xlmc.model import Model
     from xlmc.workbook import read_workbook
 
@@ -38,6 +39,7 @@ def check(book: Path) -> None:
     if not problems:
         try:
             model = Model(workbook, definitions, book)
+            problems += filter_faults(model)
         except XlmcError as error:
             problems.append(error)
     faults = [] if model is None else show_base_case(model)

@@ -15,12 +15,13 @@ from xlmc.distributions.base import show
 from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.workbook.model import Workbook
 
-__all__ = ["LIMITS", "read_filters"]
+__all__ = ["LIMITS", "LIMIT_HINT", "read_filters"]
 
 LIMITS = {"at_least": "At least", "at_most": "At most", "above": "Above", "below": "Below"}
 """Limits of a filter and their headings."""
 _KNOWN = ("Name", "Value", "Cell", *LIMITS.values(), "Because")
-_LIMIT_HINT = "Fill in At least, At most, Above or Below, or make the cell a test such as =B7>0"
+LIMIT_HINT = "Fill in At least, At most, Above or Below, or make the cell a test such as =B7>0"
+"""What to do where the cell of a filter is no test."""
 
 
 def read_filters(
@@ -83,22 +84,23 @@ def _refuse_contradiction(row: Row, limits: Mapping[str, Parameter | None]) -> N
 
 
 def _look_at(workbook: Workbook, cell: Cell, must_be_true: bool, computed: bool, findings: Findings) -> None:
-    """Remark on a filter whose cell no formula computes.
+    """Remark on a filter whose cell no formula computes. What a formula gives is looked at when it can be computed.
 
     Raises:
         DefinitionError: the cell is blank or text, or, without limits, holds a number other than 0 and 1.
     """
+    if computed:
+        return
     content = workbook.content(cell)
-    if is_blank(content) and not computed:
+    if is_blank(content):
         raise DefinitionError("The filter cell is blank", where=cell, hint="Point to the cell to be tested")
     if isinstance(content.value, str) and content.value.strip():
         message = f"The filter cell holds the text {as_text(content.value)!r}"
-        raise DefinitionError(message, where=cell, hint=_LIMIT_HINT)
+        raise DefinitionError(message, where=cell, hint=LIMIT_HINT)
     if must_be_true and _is_a_quantity(content.value):
         message = f"The filter has no limit, and its cell holds {as_text(content.value)}, neither TRUE nor FALSE"
-        raise DefinitionError(message, where=cell, hint=_LIMIT_HINT)
-    if not computed:
-        findings.notice("The filter is a constant: it does not depend on anything", cell)
+        raise DefinitionError(message, where=cell, hint=LIMIT_HINT)
+    findings.notice("The filter is a constant: it does not depend on anything", cell)
 
 
 def _is_a_quantity(value: object) -> bool:

@@ -11,6 +11,8 @@ from xlmc.errors import DefinitionError, XlmcError
         (XlmcError("the file is empty"), "the file is empty."),
         (XlmcError("the file is empty", hint="Save it again"), "the file is empty. Save it again."),
         (XlmcError("no such function", where="Sheet1!A1"), "Sheet1!A1: no such function."),
+        (XlmcError("did you mean A?", hint="Rename it A"), "did you mean A? Rename it A."),
+        (XlmcError("it holds '#REF!'.", hint="Type a number!"), "it holds '#REF!'. Type a number!"),
         (DefinitionError("there is no Nrmal", hint="Did you mean Normal?"), "there is no Nrmal. Did you mean Normal?"),
     ],
 )

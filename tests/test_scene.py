@@ -29,7 +29,7 @@ def test_only_assumptions_that_something_needs_are_drawn(scene):
     found = scene({name: {"cell": name, **UNIT} for name in ("A1", "A2", "A3", "A4")}, {"x": "B1"})
     assert names(found.live) == ["A1", "A2"]
     assert names(found.idle) == ["A3", "A4"]
-    assert [str(notice) for notice in found.notices] == [
+    assert [str(notice) for notice in found.notices()] == [
         "S!A3: no forecast or filter needs the assumption 'A3'",
         "S!A4: no forecast or filter needs the assumption 'A4'",
     ]

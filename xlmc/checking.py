@@ -74,12 +74,14 @@ class CheckResult:
 
     Attributes:
         base: at the base case.
+        accepted: trials of the run.
         trials: accepted trials that it was evaluated in, from the first on.
         failed: how many of them failed it.
         held: what its cell held in the first of these, in words; empty where none failed.
     """
 
     base: BaseCheck
+    accepted: int
     trials: int
     failed: int
     held: str
@@ -102,6 +104,11 @@ class CheckResult:
         return self.base.holds
 
     @property
+    def looked_at(self) -> str:
+        """`the first 65,536 accepted trials`; without `the first` where they are all."""
+        return f"{'the first ' if self.trials < self.accepted else ''}{self.trials:,} accepted trials"
+
+    @property
     def share(self) -> Estimate:
         """Of the accepted trials that fail it."""
         return proportion(self.failed, self.trials)
@@ -114,7 +121,7 @@ class CheckResult:
             check = self.base.definition
             held = "" if self.held == "FALSE" else f", first with {self.held}"
             found.append(
-                f"{self.failed:,} of {self.trials:,} accepted trials ({self.share.value:.2%}) fail the check "
+                f"{self.failed:,} of {self.looked_at} ({self.share.value:.2%}) fail the check "
                 f"{check.name!r} ({check.cell}{held}){meaning(check)}"
             )
         return found
@@ -154,29 +161,23 @@ def check_results(model: Model, inputs: Mapping[str, Floats], accepted: int) -> 
     trials = min(accepted, MOST_CHECKED, *(values.size for values in draws.values()))
     failed, held = _failures(model, draws, trials)
     return tuple(
-        CheckResult(base, trials, int(count), first)
+        CheckResult(base, accepted, trials, int(count), first)
         for base, count, first in zip(base_checks(model), failed, held, strict=True)
     )
 
 
-def checks_sentence(checks: Sequence[CheckResult], accepted: int) -> str:
-    """How many checks hold, without a full stop; empty where the workbook has none.
-
-    Args:
-        checks: of a run.
-        accepted: how many trials it accepted.
-    """
+def checks_sentence(checks: Sequence[CheckResult]) -> str:
+    """How many checks of a run hold, without a full stop; empty where the workbook has none."""
     if not checks:
         return ""
-    trials = checks[0].trials
-    first = "" if trials == accepted else "first "
     where = [] if checks[0].holds is None else ["at the base case"]
-    where += [f"in the {first}{trials:,} accepted trials"] if trials else []
+    where += [f"in the {checks[0].looked_at.removeprefix('the ')}"] if checks[0].trials else []
     looked = f"looked at {' and '.join(where)}" if where else "not looked at: there is no base case and no trial"
     failing = sum(check.holds is False or check.failed > 0 for check in checks)
     if failing:
         return f"{failing} of {_counted(len(checks))} fail{'s' * (failing == 1)}; {looked}"
-    verb = "hold" if where else "were"
+    one = len(checks) == 1
+    verb = ("holds" if one else "hold") if where else ("was" if one else "were")
     return f"{_counted(len(checks))} {verb} {' and '.join(where) or looked}"
 
 
@@ -207,11 +208,12 @@ def _fails(column: Column) -> NDArray[np.bool_]:
 
 
 def _held(column: Column, trial: int) -> str:
-    """What the cell holds in a trial: `TRUE`, `FALSE`, `0.35, neither TRUE nor FALSE`, `#DIV/0!`, `a text`, `blank`."""
+    """What the cell holds in a trial: `TRUE`, `FALSE`, `0.35, neither TRUE nor FALSE`, `#DIV/0!`, `blank` and so on."""
     code = 0 if column.codes is None else int(column.codes[trial])
     if code:
-        return {TEXT_RESULT: "a text, neither TRUE nor FALSE", BLANK_RESULT: "blank"}.get(code) or ErrorCode(code).text
+        return {TEXT_RESULT: "a text, not the logical TRUE", BLANK_RESULT: "blank"}.get(code) or ErrorCode(code).text
     value = float(column.values[trial])
     if value in (0.0, 1.0):
         return "TRUE" if value else "FALSE"
-    return f"{show(value)}, neither TRUE nor FALSE"
+    shown = show(value)
+    return f"{repr(value) if shown in ('0', '-0', '1') else shown}, neither TRUE nor FALSE"

@@ -18,6 +18,7 @@ __all__ = [
     "SimulationError",
     "WorkbookError",
     "XlmcError",
+    "sentence",
 ]
 
 
@@ -68,6 +69,11 @@ _TEXT = {
 _CODE = {text: code for code, text in _TEXT.items()}
 
 
+def sentence(text: str) -> str:
+    """The text with a full stop, where it does not end as a sentence does."""
+    return text if text.endswith(("?", "!", ".")) else f"{text}."
+
+
 class XlmcError(Exception):
     """A message for the person at the keyboard: where it is, what is wrong, what to do.
 
@@ -85,9 +91,8 @@ class XlmcError(Exception):
 
     def __str__(self) -> str:
         place = f"{self.where}: " if self.where else ""
-        advice = f". {self.hint}" if self.hint else ""
-        text = f"{place}{self.message}{advice}"
-        return text if text.endswith("?") else f"{text}."
+        said = sentence(f"{place}{self.message}")
+        return sentence(f"{said} {self.hint}") if self.hint else said
 
 
 class WorkbookError(XlmcError):

@@ -126,7 +126,8 @@ class Model:
         self._checks = _lowered_checks(workbook, definitions, self.live)
         repairs = repair_notices(self.groups, definitions.correlations, names)
         remarks = *still_notices(self.scene, self._draws, self.forecasts), *example_notices(definitions, self.scene)
-        notices = workbook.notices, definitions.notices, self.scene.notices, self._lowering.notices, repairs, remarks
+        idle = self.scene.notices(frozenset() if self._checks is None else self._checks.graph.reached)
+        notices = workbook.notices, definitions.notices, idle, self._lowering.notices, repairs, remarks
         self.notices: tuple[Notice, ...] = tuple(notice for part in notices for notice in part)
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -49,15 +49,22 @@ class Scene:
         """The assumptions to draw, in order."""
         return tuple(assumption for stage in self.stages for assumption in stage)
 
-    @property
-    def notices(self) -> tuple[Notice, ...]:
-        """What was left out; draws in cells, which may be very many, together."""
-        calls = [a for a in self.idle if isinstance(a.cell, InFormula)]
-        rows = (a for a in self.idle if not isinstance(a.cell, InFormula))
-        found = [Notice(f"no forecast or filter needs the assumption {a.name!r}", a.cell) for a in rows]
+    def notices(self, checked: Container[Cell] = ()) -> tuple[Notice, ...]:
+        """What was left out; draws in cells, which may be very many, together.
+
+        Args:
+            checked: the cells that checks need.
+        """
+
+        def notice(what: str, cell: Cell) -> Notice:
+            held = ": the checks take its base value" if cell in checked else ""
+            return Notice(f"no forecast or filter needs {what}{held}", cell)
+
+        calls = [a.cell for a in self.idle if isinstance(a.cell, InFormula)]
+        found = [notice(f"the assumption {a.name!r}", a.cell) for a in self.idle if not isinstance(a.cell, InFormula)]
         if calls:
-            what = "this draw" if len(calls) == 1 else f"{len(calls):,} draws in cells, of which this is the first"
-            found.append(Notice(f"no forecast or filter needs {what}", calls[0].cell))
+            many = f"{len(calls):,} draws in cells, of which this is the first"
+            found.append(notice("this draw" if len(calls) == 1 else many, calls[0]))
         return tuple(found)
 
 
@@ -117,17 +124,20 @@ def definitions_of_checks(definitions: Definitions, live: Sequence[Assumption]) 
 
 
 def refuse_without_base(checks: Sequence[Check], scene: Scene, definitions: Definitions) -> None:
-    """Refuse checks that need a draw in a cell that is held, and that has no value to be held at.
+    """Refuse checks that need an assumption that is held, and that has no value to be held at.
 
     Raises:
         DefinitionError: one does.
     """
-    held = [a for a in definitions.assumptions if a.frozen and a.base is None and isinstance(a.cell, InFormula)]
+    held = [a for a in definitions.assumptions if a.frozen and a.base is None]
     needed = next((a for a in held if a.cell in scene.graph.reached), None)
-    if needed is not None:
-        message = f"the checks need {needed.name!r}, which no forecast or filter needs and which has no base value"
+    if needed is None:
+        return
+    message = f"the checks need {needed.name!r}, which no forecast or filter needs and which has no base value"
+    if isinstance(needed.cell, InFormula):
         hint = "give the draw a base value, such as RiskStatic, or point the check to another cell"
         raise DefinitionError(message, where=checks[0].row, hint=hint)
+    raise DefinitionError(message, where=needed.cell, hint="type its base value into the cell")
 
 
 def _refuse_too_many(reached: Sequence[Assumption]) -> None:

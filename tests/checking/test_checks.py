@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from xlmc.address import parse_address
-from xlmc.checking import LEAST_CHECKED, base_checks
+from xlmc.checking import LEAST_CHECKED, base_checks, checks_sentence
 from xlmc.definitions import Check
-from xlmc.errors import FormulaError
+from xlmc.errors import DefinitionError, FormulaError
 from xlmc.model import Model
 
 CELLS = {"A1": 0.75, "A2": 3.0, "A3": 0.5, "B1": "=A1*2", "C1": "=A1<0.9", "C2": "=1/(A1-0.75)>0", "C3": "=A1"}
@@ -44,7 +44,11 @@ def checked(book):
         ("=2*(A1<0.9)", "2, neither TRUE nor FALSE", False),
         ("=1/(A1-0.75)>0", "#DIV/0!", False),
         ("=SQRT(A1-1)>0", "#NUM!", False),
-        ('=IF(A1<0.9,"ok","no")', "a text, neither TRUE nor FALSE", False),
+        ('=IF(A1<0.9,"ok","no")', "a text, not the logical TRUE", False),
+        ('=IF(A1<0.9,"TRUE","FALSE")', "a text, not the logical TRUE", False),
+        ("=1+1E-12*(A1<0.9)", "1.000000000001, neither TRUE nor FALSE", False),
+        ("=1E-300*A1", "7.5e-301, neither TRUE nor FALSE", False),
+        ("=1+2*2^-52", "1.0000000000000004, neither TRUE nor FALSE", False),
         ("=IFERROR(1/(A1-0.75)>0,TRUE)", "TRUE", True),
     ],
 )
@@ -112,6 +116,40 @@ def test_an_assumption_that_only_a_check_needs_is_held_at_its_base_value(checked
     assert list(run.inputs) == ["friction"]
     assert run.checks[0].failed == 0
     assert run.checks[0].holds
+
+
+def test_a_check_of_a_blank_assumption_cell_is_refused(checked):
+    cells = {**CELLS, "A3": None, "C1": "=AND(A1<2,A3<0.6)"}
+    inputs = {**INPUTS, "extra": {"cell": "A3", "low": 0, "high": 1}}
+    with pytest.raises(DefinitionError, match=r"S!A3: the checks need 'extra'.*type its base value into the cell"):
+        checked(cells, {"both": "C1"}, inputs)
+
+
+def test_what_the_checks_hold_is_said(checked):
+    inputs = {**INPUTS, "extra": {"cell": "A3", "low": 0, "high": 1}, "idle": {"cell": "A2", "low": 0, "high": 1}}
+    said = [str(notice) for notice in checked({**CELLS, "C1": "=A3<0.6"}, {"both": "C1"}, inputs).notices]
+    assert "S!A3: no forecast or filter needs the assumption 'extra': the checks take its base value" in said
+    assert "S!A2: no forecast or filter needs the assumption 'idle'" in said
+
+
+@pytest.mark.parametrize(
+    ("checks", "sentence"),
+    [
+        ({"a": "C1"}, "1 check holds at the base case and in the 300 accepted trials"),
+        ({"a": "C1", "b": "C3"}, "2 checks hold at the base case and in the 300 accepted trials"),
+        ({"a": "C2"}, "1 of 1 check fails; looked at at the base case and in the 300 accepted trials"),
+    ],
+)
+def test_the_sentence_agrees_with_the_number_of_checks(checked, checks, sentence):
+    cells = {**CELLS, "C1": "=A1<2", "C2": "=A1>2", "C3": "=A1>0"}
+    assert checks_sentence(checked(cells, checks).simulate(trials=300).checks) == sentence
+
+
+def test_it_is_said_that_not_all_accepted_trials_were_looked_at(checked):
+    run = checked(CELLS, {"below": "C1"}).simulate(trials=40_000, keep_inputs=0)
+    check = run.checks[0]
+    assert check.looked_at == "the first 10,000 accepted trials"
+    assert f"of the first 10,000 accepted trials ({check.share.value:.2%}) fail the check" in check.warnings[0]
 
 
 def test_without_a_base_case_the_trials_are_looked_at_alone(checked):

@@ -107,3 +107,12 @@ def test_a_failing_example_is_not_passed_over(xlmc, case_study):
     outcome = xlmc("check", case_study.with_name("textbook-claim.xlsx"))
     assert outcome.code == 1
     assert "The claimed speed is possible" in outcome.err
+
+
+def test_a_reason_that_is_a_question_ends_as_one(xlmc, failing, tmp_path):
+    book = openpyxl.load_workbook(failing(base=1.995))
+    book["Model"]["I2"] = "FALSE: a percentage?"
+    book.save(tmp_path / "case.xlsx")
+    for command in (["check"], ["simulate", "-n", "2000"]):
+        outcome = xlmc(command[0], tmp_path / "case.xlsx", *command[1:])
+        assert outcome.out.splitlines()[2].endswith("is FALSE: a percentage?")

@@ -58,3 +58,10 @@ def test_a_constant_check_is_pointed_out(read, rows):
     found = read({**rows(["Always", ("=Model!D9", True)]), "Model!D9": True}, {"xlmc_checks": "Answers!A40:D41"})
     assert found.problems == ()
     assert "does not depend on anything" in found.notices[0].message
+
+
+def test_a_table_without_rows_is_pointed_out(read, rows):
+    found = read(rows([None, None]), {"xlmc_checks": "Answers!A40:D41"})
+    assert found.problems == found.checks == ()
+    (notice,) = found.notices
+    assert str(notice) == "Answers!A40: The table xlmc_checks holds no check"

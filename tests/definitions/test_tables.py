@@ -170,3 +170,21 @@ def test_a_slip_in_another_heading_is_pointed_out(read, changes, told):
     found = read(changes)
     assert found.problems == ()
     assert [str(notice) for notice in found.notices if "note only" in notice.message] == [told]
+
+
+@pytest.mark.parametrize(
+    ("below", "tables", "said"),
+    [
+        (["b", 1], [], True),  # typed below the table, where no program takes it in
+        (["b"], [], False),  # a remark
+        ([None, 1], [], False),
+        ([None], [], False),
+        (["Name", "Cell"], [("other", "S!B4:E5")], False),  # another table
+    ],
+)
+def test_a_row_right_below_a_table_is_pointed_out(make_book, blocks, below, tables, said):
+    cells = blocks("S!B2", [HEADINGS, ["a", 1, 0], below, ["c", 3]])
+    names, findings = names_of(make_book(cells, [("xlmc_filters", "S!B2:E3"), *tables]), "xlmc_filters")
+    assert (names, findings.problems) == (["a"], [])
+    assert [str(notice.where) for notice in findings.notices] == ["S!B4"] * said
+    assert all("drag the table's corner over it" in notice.message for notice in findings.notices)

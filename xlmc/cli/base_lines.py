@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from xlmc.cli.terminal import paragraph, say
+from xlmc.errors import sentence
 
 if TYPE_CHECKING:
     from xlmc.cell_errors import BaseErrors
@@ -24,7 +25,7 @@ def show_base_case(model: Model) -> list[str]:
 
     failing = [check.fault for check in base_checks(model) if check.holds is False]
     errors = errors_at_base(model)
-    lines = [f"{fault[0].upper()}{fault[1:]}." for fault in failing]
+    lines = [sentence(f"{fault[0].upper()}{fault[1:]}") for fault in failing]
     lines += _error_lines(model, errors)
     if lines:
         say(f"{model.workbook.name}: at the base case, every assumption at its cell's own value\n")

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from xlmc.cli.terminal import paragraph, say
+from xlmc.errors import sentence
 
 if TYPE_CHECKING:
     from xlmc.checking import CheckResult
@@ -16,7 +17,7 @@ __all__ = ["check_table", "failing_lines", "show_first"]
 
 def failing_lines(run: Simulation) -> list[str]:
     """One line a check that fails, at the base case or in too many accepted trials."""
-    return [f"{warning[0].upper()}{warning[1:]}." for check in run.checks for warning in check.warnings]
+    return [sentence(f"{warning[0].upper()}{warning[1:]}") for check in run.checks for warning in check.warnings]
 
 
 def show_first(run: Simulation) -> None:
@@ -45,11 +46,10 @@ def check_table(run: Simulation) -> None:
     if not run.checks:
         return
     if all(check.holds and not check.failed for check in run.checks):
-        say(paragraph(f"{checks_sentence(run.checks, run.accepted)}.") + "\n")
+        say(paragraph(f"{checks_sentence(run.checks)}.") + "\n")
         return
     rows = [(check.name, check.base.found or "", f"{check.failed:,}", _share(check)) for check in run.checks]
-    trials = run.checks[0].trials
-    title = f"Checks, in {trials:,} accepted trials"
+    title = f"Checks, in {run.checks[0].looked_at}"
     table(title, ("Check", "Base case", "Failing", "Share"), rows, right=(2, 3))
 
 

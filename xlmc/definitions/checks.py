@@ -10,7 +10,7 @@ from xlmc.definitions.filters import LIMITS
 from xlmc.definitions.findings import Findings
 from xlmc.definitions.identity import Claims, identify
 from xlmc.definitions.model import Check
-from xlmc.definitions.tables import DefinitionTable, Row, is_blank, rows_of
+from xlmc.definitions.tables import DefinitionTable, Row, holds_rows, is_blank, rows_of
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import Workbook
 
@@ -35,6 +35,10 @@ def read_checks(
         claims: takes their names and cells.
         findings: takes mistakes and remarks.
     """
+    tables = tuple(tables)
+    for table in tables:
+        if not holds_rows(workbook, table):
+            findings.notice(f"The table {table.table.name} holds no check", table.where)
     rows = rows_of(workbook, tables, ("Name",), _KNOWN, findings)
     found = [_check(row, computed, claims, findings) for row in rows]
     return tuple(each for each in found if each is not None)

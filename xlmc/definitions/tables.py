@@ -174,6 +174,7 @@ def rows_of(
     for table in tables:
         _point_out_slips(workbook, table, known, required, findings)
         if _complete(table, required, findings):
+            _point_out_row_below(workbook, table, required, findings)
             yield from _filled_rows(workbook, table)
 
 
@@ -222,6 +223,20 @@ def _point_out_slips(
             findings.problem(f"The column {written!r} is not read: did you mean {meant}?", where, hint)
         else:
             findings.notice(f"The column {written!r} is kept as a note only: did you mean {slip}?", where)
+
+
+def _point_out_row_below(
+    workbook: Workbook, table: DefinitionTable, required: Iterable[str], findings: Findings
+) -> None:
+    """Excel takes a row that is typed below a table into it; other programs do not, and nobody would miss the row."""
+    area = table.table.area
+    row = Row(workbook, table, area.bottom + 1)
+    filled = sum(row.filled(written) for written in row.headings)
+    taken = table.table.totals_rows or any(row.where in other.area for other in workbook.tables)
+    if filled > 1 and all(map(row.filled, required)) and not taken:
+        name = table.table.name
+        message = f"This row stands below the table {name} and is not read: drag the table's corner over it"
+        findings.notice(f"{message}, or leave a blank row above it", row.where)
 
 
 def _filled_rows(workbook: Workbook, table: DefinitionTable) -> Iterator[Row]:

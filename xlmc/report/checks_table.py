@@ -35,7 +35,7 @@ def write_checks(page: Page, simulation: Simulation, last: int) -> None:
     for check in checks:
         page.spread(_line(check), _STARTS, last)
     page.row += 1
-    page.wide(f"{checks_sentence(checks, simulation.accepted)}. A check rejects no trial.", "remark", last)
+    page.wide(f"{checks_sentence(checks)}. A check rejects no trial.", "remark", last)
 
 
 def _line(check: CheckResult) -> list[Shown]:

@@ -52,10 +52,14 @@ def _shown(tree):
             return f"{name}({' '.join(map(_shown, arguments))})"
         case ir.Variable(name):
             return name
-        case ir.Let(bindings, body):
-            return f"LET({' '.join(f'{name}={_shown(value)}' for name, value in bindings)} {_shown(body)})"
-        case ir.Lambda(parameters, body):
-            return f"λ({' '.join([*parameters, _shown(body)])})"
+        case ir.FunctionName(name):
+            return f"ƒ{name}"
+        case ir.Let(bindings, body, recursive):
+            bound = " ".join(f"{name}={_shown(value)}" for name, value in bindings)
+            return f"LET{'!' * recursive}({bound} {_shown(body)})"
+        case ir.Lambda(parameters, body, optional):
+            shown = [f"[{p}]" if i >= len(parameters) - optional else p for i, p in enumerate(parameters)]
+            return f"λ({' '.join([*shown, _shown(body)])})"
         case ir.Invoke(called, arguments):
             return f"[{_shown(called)}]({' '.join(map(_shown, arguments))})"
         case ir.Array(rows):

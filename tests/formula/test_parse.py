@@ -136,7 +136,7 @@ TREES = {
     "_xlfn.STDEV.S(A1)": "STDEV.S(A1)",
     "_xlfn._xlws.SORT(A1)": "SORT(A1)",
     "[1]!CB.GetForeFN(A1)": "CB.GETFOREFN(A1)",
-    "Sheet1!MyLambda(2)": "MYLAMBDA(2)",
+    "Sheet1!MyLambda(2)": "[<Sheet1!MyLambda>](2)",
     "LAMBDA(x,x+1)(2)": "[LAMBDA(<x> (+ <x> 1))](2)",
     "2*LAMBDA(x,LAMBDA(y,x))(1)(2)": "(* 2 [[LAMBDA(<x> LAMBDA(<y> <x>))](1)](2))",
     "SUM(LAMBDA(x,x)(1),2)": "SUM([LAMBDA(<x> <x>)](1) 2)",

@@ -20,6 +20,14 @@ NAMES = {
     "Step": "LAMBDA(S!A1)",
     "Again": "LAMBDA(n,IF(n,Again(n-1),0))",
     "Area": "S!$A$1:$B$2",
+    "Other": "Twice",
+    "Made": "LET(_xlpm.k,3,LAMBDA(_xlpm.v,_xlpm.v*_xlpm.k))",
+    "Plus": "LAMBDA(p,LAMBDA(q,p+q))",
+    "AddTwo": "Plus(2)",
+    "Chosen": "IF(S!$B$2,Twice,Scaled)",
+    "Total": "_xleta.SUM",
+    "Even": "LAMBDA(n,IF(n,Uneven(n-1),TRUE))",
+    "Uneven": "LAMBDA(n,IF(n,Even(n-1),FALSE))",
 }
 
 TREES = {
@@ -43,7 +51,7 @@ TREES = {
     "LAMBDA(a,LAMBDA(b,a+b))(1)(2)": "[[λ(a λ(b (+ a b)))](1)](2)",
     "LAMBDA(a,LAMBDA(a,a)(a+1)+a)": "λ(a (+ [λ(a a)]((+ a 1)) a))",
     "LAMBDA(A1)()": "[λ(S!A1)]()",
-    "LAMBDA(_xlpm.a,_xlop.b,_xlpm.a+_xlop.b)(1)": "[λ(a b (+ a b))](1)",
+    "LAMBDA(_xlpm.a,_xlop.b,_xlpm.a+_xlop.b)(1)": "[λ(a [b] (+ a b))](1)",
     "MAP(A1:A3,LAMBDA(v,v^2))": "MAP(S!A1:A3 λ(v (^ v 2)))",
     # variables that are called, and those that only share their name with a function
     "LET(f,LAMBDA(a,a+1),f(2))": "LET(f=λ(a (+ a 1)) [f](2))",
@@ -60,6 +68,22 @@ TREES = {
     "Scaled(2)": "[λ(v (* v S!C3))](2)",
     "Step()": "[λ(S!B2)]()",
     "LET(twice,3,twice)": "LET(twice=3 twice)",
+    # other ways to come to one
+    "Other(3)": "[λ(v (* 2 v))](3)",
+    "Made(3)": "[LET(k=3 λ(v (* v k)))](3)",
+    "AddTwo(3)": "[[λ(p λ(q (+ p q)))](2)](3)",
+    "Chosen(3)": "[IF(S!B2 λ(v (* 2 v)) λ(v (* v S!C3)))](3)",
+    "Total(A1:A3)": "[ƒSUM](S!A1:A3)",
+    "Rate(3)": "RATE(3)",  # a number: the call is of Excel's own
+    "Data!Twice(3)": "[λ(v (+ v v))](3)",
+    "[0]!Twice(3)": "[λ(v (* 2 v))](3)",
+    "MAP(A1:A3,_xleta.ABS)": "MAP(S!A1:A3 ƒABS)",
+    "MAP(A1:A3,_xlfn._xleta.STDEV.S)": "MAP(S!A1:A3 ƒSTDEV.S)",
+    "LAMBDA(a,[b],a+b)(1)": "[λ(a [b] (+ a b))](1)",
+    # one that calls itself, and two that call each other
+    "Again(3)": "[LET!(=none!again=s=λ(n IF(n [=none!again=s]((- n 1)) 0)) =none!again=s)](3)",
+    "Even(3)": "[LET!(=none!even=s=λ(n IF(n [λ(n IF(n [=none!even=s]((- n 1)) FALSE))]((- n 1)) TRUE))"
+    " =none!even=s)](3)",
     # a name does not see the variables around it
     "LET(x,1,x+Apart)": "LET(x=1 (+ x (+ S!Z1 1)))",
     "LET(v,7,Twice(v))": "LET(v=7 [λ(v (* 2 v))](v))",
@@ -114,12 +138,12 @@ def test_what_they_mean_elsewhere(see, text, at, expected):
         ("LAMBDA(a,b)(1)", "there is no name 'b'", None),
         ("LET(v,1,Hidden)", "there is no name 'v'", None),
         ("LET(hiden,1,hidn)", "there is no name 'hidn'", "did you mean 'Hidden'?"),
-        ("Again(3)", "the name 'Again' is defined by itself", None),
+        ("Loop", "the name 'Loop' is defined by itself", None),
     ],
 )
 def test_what_may_not_be(resolved, text, message, hint):
     with pytest.raises(FormulaError) as caught:
-        resolved(text, at="S!B2", names={"Hidden": "v*2", "Again": NAMES["Again"]}, sheets=("Data",))
+        resolved(text, at="S!B2", names={"Hidden": "v*2", "Loop": "Ring", "Ring": "Loop"}, sheets=("Data",))
     assert (caught.value.message, caught.value.hint, caught.value.where) == (message, hint, "S!B2")
 
 

@@ -57,6 +57,8 @@ templates = [
     "LET(_xlpm.p,{},_xlpm.q,{},SUM(_xlpm.p:_xlpm.q))",
     "LAMBDA(p,{}*p)({})",
     "LAMBDA(p,q,{})",
+    "LAMBDA(_xlpm.p,_xlop.q,IF(ISOMITTED(_xlop.q),{},_xlpm.q))({})",
+    "MAP({},_xleta.ABS)",
     "LET(f,LAMBDA(p,{}),f({}))",
     "Twice({})",
     "A1#+{}",

@@ -18,7 +18,7 @@ from xlmc.functions.values import ERROR
 if TYPE_CHECKING:
     from xlmc.compile.lower import Lowering
 
-__all__ = ["CHOICES", "decided"]
+__all__ = ["CHOICES", "decided", "select"]
 
 Arguments = tuple[ir.Expression, ...]
 
@@ -39,12 +39,14 @@ def _chosen(lowering: Lowering, condition: int, branches: Arguments, scope: Scop
     if known is not None:
         return lowering.zero_if_blank(lowering.lower(branches[0 if known else 1], scope))
     yes, no = (lowering.zero_if_blank(lowering.lower(branch, scope)) for branch in branches)
-    return _select(lowering, condition, yes, no)
+    return select(lowering, condition, yes, no)
 
 
-def _select(lowering: Lowering, condition: int, yes: int, no: int) -> int:
+def select(lowering: Lowering, condition: int, yes: int, no: int) -> int:
+    """The node of an IF between two nodes."""
+
     def single(picked: tuple[int, ...]) -> int:
-        return _select(lowering, *picked)
+        return select(lowering, *picked)
 
     known = decided(lowering, condition)
     if known is not None:
@@ -60,7 +62,7 @@ def _ifs(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
     pairs = list(zip(arguments[::2], arguments[1::2], strict=True))
     for test, value in reversed(pairs):
         condition = lowering.lower(test, scope)
-        place = _select(lowering, condition, lowering.zero_if_blank(lowering.lower(value, scope)), place)
+        place = select(lowering, condition, lowering.zero_if_blank(lowering.lower(value, scope)), place)
     return place
 
 
@@ -70,7 +72,7 @@ def _switch(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
     place = lowering.zero_if_blank(lowering.lower(last, scope))
     for match, result in reversed(list(zip(rest[: len(rest) // 2 * 2 : 2], rest[1::2], strict=True))):
         same = lowering.call("=", (subject, lowering.lower(match, scope)))
-        place = _select(lowering, same, lowering.zero_if_blank(lowering.lower(result, scope)), place)
+        place = select(lowering, same, lowering.zero_if_blank(lowering.lower(result, scope)), place)
     return place
 
 
@@ -84,7 +86,7 @@ def _choose(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
     place = _bad_index(lowering)
     for number in range(len(arguments) - 1, 0, -1):
         is_it = lowering.call("=", (index, lowering.number(float(number))))
-        place = _select(lowering, is_it, lowering.zero_if_blank(lowering.lower(arguments[number], scope)), place)
+        place = select(lowering, is_it, lowering.zero_if_blank(lowering.lower(arguments[number], scope)), place)
     return place
 
 

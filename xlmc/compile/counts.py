@@ -8,7 +8,7 @@ from typing import Final
 from xlmc.errors import FormulaError
 from xlmc.functions.families import function_named
 
-__all__ = ["MOST", "SPECIAL", "check_count"]
+__all__ = ["MOST", "SPECIAL", "check_count", "limits"]
 
 MOST: Final = 255
 
@@ -52,12 +52,13 @@ def check_count(name: str, arguments: Sequence[object]) -> None:
     Raises:
         FormulaError: it takes another number.
     """
-    limits = _limits(name)
-    if limits is not None and not limits[0] <= len(arguments) <= limits[1]:
-        raise FormulaError(f"{name} has {_number(len(arguments))}; it takes {_range(*limits)}")
+    found = limits(name)
+    if found is not None and not found[0] <= len(arguments) <= found[1]:
+        raise FormulaError(f"{name} has {_number(len(arguments))}; it takes {_range(*found)}")
 
 
-def _limits(name: str) -> tuple[int, int] | None:
+def limits(name: str) -> tuple[int, int] | None:
+    """The fewest and the most arguments; None of a function that nobody knows."""
     if name in SPECIAL:
         return SPECIAL[name]
     function = function_named(name)

@@ -27,6 +27,7 @@ from xlmc.compile.scope import Scope
 from xlmc.compile.settings import as_set
 from xlmc.errors import ErrorCode, FormulaError, Notice
 from xlmc.formula import Filled, Graph, Resolver, ir
+from xlmc.formula.callables import gives_function
 from xlmc.functions import Function, Kind
 from xlmc.functions.budget import CallCount, ask_for_reading
 from xlmc.functions.families import REGISTRY, function_named
@@ -165,7 +166,7 @@ class Lowering:
                 raise self.graph.faults[cell]
             if formula is None:
                 return self._filled_cell(cell, tree)
-            place = self.lower(tree, Scope(cell, array=formula.array is not None or formula.dynamic))
+            place = self._whole_formula(tree, Scope(cell, array=formula.array is not None or formula.dynamic))
             self._arrays[cell] = place
             place = self.single(place)
         except NotYetNeeded as needed:
@@ -176,6 +177,15 @@ class Lowering:
         if self._led:
             self.led_to[cell] = self._led
         return self._shown(place)
+
+    def _whole_formula(self, tree: ir.Expression, scope: Scope) -> int:
+        """The node of a cell's formula; a LAMBDA that nothing calls is `#CALC!` there."""
+        try:
+            return self.lower(tree, scope)
+        except lambdas.NothingCallsError:
+            if not gives_function(tree):
+                raise
+            return self.error(ErrorCode.CALC)
 
     def _shown(self, place: int) -> int:
         """What a formula's cell shows: 0 for an empty one, in each trial."""
@@ -253,7 +263,7 @@ class Lowering:
                 return self._chain(tree, scope)
             case ir.Call(name, arguments):
                 return self._function_call(name, arguments, scope)
-            case ir.Variable() | ir.Let() | ir.Lambda() | ir.Invoke():
+            case ir.Variable() | ir.Let() | ir.Lambda() | ir.FunctionName() | ir.Invoke():
                 return lambdas.lower(self, tree, scope)
             case ir.Reference() | ir.Name() | ir.TableReference():
                 raise TypeError(f"not resolved: {tree}")

@@ -6,7 +6,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode
@@ -18,6 +18,7 @@ __all__ = [
     "Corner",
     "ErrorLiteral",
     "Expression",
+    "FunctionName",
     "Invoke",
     "Lambda",
     "Let",
@@ -126,10 +127,15 @@ class Binary:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """`SUM(x, y)`: the name in capitals, without `_xlfn.`. `@x` is `SINGLE(x)`, `A1#` is `ANCHORARRAY(A1)`."""
+    """`SUM(x, y)`: the name in capitals, without `_xlfn.`. `@x` is `SINGLE(x)`, `A1#` is `ANCHORARRAY(A1)`.
+
+    Attributes:
+        foreign: whether the file marks it as of an add-in (`_xll.`, `[1]!`) or of a newer Excel (`_xlfn.`).
+    """
 
     name: str
     arguments: tuple[Expression, ...]
+    foreign: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,18 +147,27 @@ class Variable:
 
 @dataclass(frozen=True, slots=True)
 class Let:
-    """`LET(x, 1, y, x+1, body)`: each binding sees those before it."""
+    """`LET(x, 1, y, x+1, body)`: each binding sees those before it, and itself if `recursive`, as defined names may."""
 
     bindings: tuple[tuple[str, Expression], ...]
     body: Expression
+    recursive: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Lambda:
-    """`LAMBDA(x, y, body)`."""
+    """`LAMBDA(x, y, body)`: so many of the last parameters are `optional`, which Excel shows in square brackets."""
 
     parameters: tuple[str, ...]
     body: Expression
+    optional: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class FunctionName:
+    """A function of Excel given as a value, `BYROW(A1:C3, SUM)`: its name in capitals."""
+
+    name: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,6 +202,7 @@ Expression = (
     | Variable
     | Let
     | Lambda
+    | FunctionName
     | Invoke
     | Array
 )

@@ -47,6 +47,9 @@ _LINE_BREAK_IN_TEXT = "\0"  # no XML holds it, so no text of a workbook does
 _LONGEST = 4 * 8192
 """Characters of a formula in a file, where functions have prefixes and tables their long names."""
 
+_ADD_INS = ("CB.", "RISK")
+"""Functions before which the file of their add-in may stand, in quotes like a sheet: `'CB.xla'!CB.GetForeStatFN(`."""
+
 _BLANKS = str.maketrans("\t\r\n", "   ")
 _CORNER = re.compile(r"(?P<cf>\$?)(?P<c>[A-Za-z]{1,3})?(?P<rf>\$?)(?P<r>[0-9]+)?")
 
@@ -335,7 +338,10 @@ class _TreeBuilder:
 def _call(token: Any, arguments: tuple[ir.Expression, ...]) -> ir.Expression:
     if not _opens_array(token):
         name = re.sub(r"^(_xlfn\.|_xlws\.|_xll\.|_xludf\.)+", "", token.name, flags=re.IGNORECASE)
-        return ir.Call(name.upper(), arguments)
+        sheet, _, book = _place(token.attr)
+        if sheet is not None and not name.upper().startswith(_ADD_INS):
+            return ir.Invoke(ir.Name(name, sheet, book), arguments)
+        return ir.Call(name.upper(), arguments, book is not None or sheet is not None or name != token.name)
     if arguments and isinstance(arguments[0], ir.Array):  # the outer of the two nested ARRAY( that `formulas` makes
         return ir.Array(tuple(row for part in arguments if isinstance(part, ir.Array) for row in part.rows))
     if not all(_is_constant(element) for element in arguments):

@@ -59,7 +59,9 @@ def references(tree: ir.Expression) -> Iterator[Cell | Area]:
             for row in rows:
                 for part in row:
                     yield from references(part)
-        case ir.Variable() | ir.Number() | ir.Text() | ir.Logical() | ir.ErrorLiteral() | ir.Missing():
+        case ir.Variable() | ir.FunctionName():
+            return
+        case ir.Number() | ir.Text() | ir.Logical() | ir.ErrorLiteral() | ir.Missing():
             return
         case ir.Reference() | ir.Name() | ir.TableReference():
             raise TypeError(f"not resolved: {tree}")

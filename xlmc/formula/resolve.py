@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from difflib import get_close_matches
 from typing import Final, assert_never
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
+from xlmc.formula.callables import function_named_by, stands_for_function
 from xlmc.formula.parse import parse
 from xlmc.formula.shape import Shapes
 from xlmc.formula.stencil import Stencil, stencil
@@ -25,7 +27,8 @@ _REF = ir.ErrorLiteral(ErrorCode.REF)
 _NULL = ir.ErrorLiteral(ErrorCode.NULL)
 
 _PARAMETER: Final = re.compile(r"_xl[po][mp]\.", re.IGNORECASE)
-_LAMBDA: Final = re.compile(r"\s*(_xlfn\.)?LAMBDA\(", re.IGNORECASE)
+_OPTIONAL: Final = "_xlop."
+_NEEDED: Final = "_xlpm."
 
 _DEEPEST: Final = 200
 """Levels of brackets, calls and names in a formula; Excel stops at 64 calls."""
@@ -58,6 +61,7 @@ class Resolver:
         self._used: dict[str, tuple[int, int]] = {}
         self._shapes = Shapes()
         self._open_names: list[str] = []
+        self._recursive: set[str] = set()
         self._variables: frozenset[str] = frozenset()
         self._depth = self._parts = 0
 
@@ -130,7 +134,7 @@ class Resolver:
             case ir.Call(name, arguments):
                 resolved = tuple(self._resolve(part, host, origin) for part in arguments)
                 called = self._called(name, host)
-                return ir.Call(name, resolved) if called is None else ir.Invoke(called, resolved)
+                return replace(tree, arguments=resolved) if called is None else ir.Invoke(called, resolved)
             case ir.Invoke(function, arguments):
                 called = self._resolve(function, host, origin)
                 return ir.Invoke(called, tuple(self._resolve(part, host, origin) for part in arguments))
@@ -138,7 +142,7 @@ class Resolver:
                 return ir.Array(tuple(tuple(self._resolve(part, host, origin) for part in row) for row in rows))
             case ir.Number() | ir.Text() | ir.Logical() | ir.ErrorLiteral() | ir.Missing() | Cell() | Area():
                 return tree
-            case ir.Variable() | ir.Let() | ir.Lambda():
+            case ir.Variable() | ir.Let() | ir.Lambda() | ir.FunctionName():
                 raise TypeError(f"resolved twice: {tree}")
             case _:
                 assert_never(tree)
@@ -159,18 +163,18 @@ class Resolver:
     def _lambda(self, arguments: tuple[ir.Expression, ...], host: Cell, origin: tuple[int, int]) -> ir.Expression:
         if not arguments:
             raise FormulaError("LAMBDA takes at least a calculation")
-        parameters = tuple(_variable(name, "LAMBDA") for name in arguments[:-1])
-        outer, self._variables = self._variables, self._variables | set(parameters)
+        parameters = [_parameter(name) for name in arguments[:-1]]
+        names = {form for name, _ in parameters for form in _forms(name)}
+        outer, self._variables = self._variables, self._variables | names
         body = self._resolve(arguments[-1], host, origin)
         self._variables = outer
-        return ir.Lambda(tuple(_bare(parameter) for parameter in parameters), body)
+        return ir.Lambda(tuple(_bare(name) for name, _ in parameters), body, _optional(parameters))
 
     def _called(self, name: str, host: Cell) -> ir.Expression | None:
-        """What a call calls when it is no function of Excel: a variable, or a defined name that holds a LAMBDA."""
+        """What a call calls when it is no function of Excel: a variable, or a defined name that stands for a LAMBDA."""
         if name.casefold() in self._variables:
             return ir.Variable(_bare(name))
-        found = self.workbook.defined_name(name, host.sheet)
-        if found is None or not _LAMBDA.match(found.text):
+        if not stands_for_function(self.workbook, name, host.sheet):
             return None
         return self._name(ir.Name(name), host)
 
@@ -245,6 +249,9 @@ class Resolver:
     def _name(self, tree: ir.Name, host: Cell) -> ir.Expression:
         if tree.name.casefold() in self._variables and tree.sheet is None and tree.book is None:
             return ir.Variable(_bare(tree.name))
+        function = function_named_by(tree.name)
+        if function is not None:
+            return ir.FunctionName(function)
         _refuse_other_books(tree.book)
         scope = host.sheet if tree.sheet is None else self._sheet(tree.sheet, host)
         found = self.workbook.defined_name(tree.name, scope)
@@ -253,16 +260,26 @@ class Resolver:
         if found is None:
             known = (name.name for name in self.workbook.names)
             raise FormulaError(f"there is no name {tree.name!r}", hint=_did_you_mean(tree.name, known))
-        key = f"{found.sheet}!{found.name}"
+        key = f"={found.sheet}!{found.name}={scope}".casefold()
         if key in self._open_names:
-            raise FormulaError(f"the name {found.name!r} is defined by itself")
+            return self._again(found.name, key, scope)
         self._open_names.append(key)
         outer, self._variables = self._variables, frozenset()
         try:  # a name's relative references are written as seen from A1
-            return self._resolve(parse(found.text), Cell(scope, host.row, host.column), (1, 1))
+            resolved = self._resolve(parse(found.text), Cell(scope, host.row, host.column), (1, 1))
         finally:
             self._open_names.pop()
             self._variables = outer
+            calls_itself = key in self._recursive
+            self._recursive.discard(key)
+        return ir.Let(((key, resolved),), ir.Variable(key), recursive=True) if calls_itself else resolved
+
+    def _again(self, name: str, key: str, scope: str) -> ir.Expression:
+        """A name within its own definition: a LAMBDA may call itself, by whatever way round."""
+        if not stands_for_function(self.workbook, name, scope):
+            raise FormulaError(f"the name {name!r} is defined by itself")
+        self._recursive.add(key)
+        return ir.Variable(key)
 
     def _table(self, tree: ir.TableReference, host: Cell) -> ir.Expression:
         table = self._named_table(tree.table, host)
@@ -290,6 +307,24 @@ def _variable(name: ir.Expression, of: str) -> str:
     if not isinstance(name, ir.Name) or name.sheet is not None or name.book is not None:
         raise FormulaError(f"{of} needs a name where it has something else", hint="a name that looks like no cell")
     return name.name.casefold()
+
+
+def _parameter(name: ir.Expression) -> tuple[str, bool]:
+    """The folded name of a parameter, and whether it may be left out: `[b]`, as Excel shows one, reads as a column."""
+    if isinstance(name, ir.TableReference) and name.first and name == ir.TableReference(None, (), name.first):
+        return name.first.casefold(), True
+    found = _variable(name, "LAMBDA")
+    return found, found.startswith(_OPTIONAL)
+
+
+def _forms(parameter: str) -> tuple[str, ...]:
+    """How the calculation may call a parameter."""
+    return (parameter, _NEEDED + _bare(parameter)) if parameter.startswith(_OPTIONAL) else (parameter,)
+
+
+def _optional(parameters: list[tuple[str, bool]]) -> int:
+    """How many of the last parameters may be left out."""
+    return next((i for i, (_, optional) in enumerate(reversed(parameters)) if not optional), len(parameters))
 
 
 def _bare(name: str) -> str:

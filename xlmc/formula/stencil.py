@@ -168,7 +168,7 @@ def _rebuilt(tree: ir.Expression, moved: Callable[[Cell | Area], Cell | Area]) -
             for operator, right in rest:
                 built = ir.Binary(operator, built, _rebuilt(right, moved))
             return built
-        case ir.Call(name, arguments):
-            return ir.Call(name, tuple(_rebuilt(part, moved) for part in arguments))
+        case ir.Call(_, arguments):
+            return replace(tree, arguments=tuple(_rebuilt(part, moved) for part in arguments))
         case _:
             return tree

@@ -29,9 +29,9 @@ def substituted(tree: ir.Expression, change: Callable[[ir.Expression], ir.Expres
             return replace(tree, arguments=tuple(substituted(part, change) for part in arguments))
         case ir.Let(bindings, body):
             bound = tuple((name, substituted(value, change)) for name, value in bindings)
-            return ir.Let(bound, substituted(body, change))
-        case ir.Lambda(parameters, body):
-            return ir.Lambda(parameters, substituted(body, change))
+            return replace(tree, bindings=bound, body=substituted(body, change))
+        case ir.Lambda(_, body):
+            return replace(tree, body=substituted(body, change))
         case ir.Invoke(function, arguments):
             called = substituted(function, change)
             return ir.Invoke(called, tuple(substituted(part, change) for part in arguments))

@@ -13,6 +13,10 @@ __all__ = ["formula_text"]
 _PARAMETER: Final = "_xlpm."
 """What files put before a variable: without it, `x:y` would be two columns."""
 
+_OPTIONAL: Final = "_xlop."
+_FUNCTION: Final = "_xleta."
+"""What they put before a parameter that may be left out, and before a function that is given as a value."""
+
 
 def formula_text(tree: ir.Expression, name: Callable[[Cell | Area], str] = str) -> str:
     """The text of a resolved tree without its leading `=`, every operation in brackets of its own."""
@@ -41,11 +45,14 @@ def formula_text(tree: ir.Expression, name: Callable[[Cell | Area], str] = str) 
             return f"{function}({','.join(formula_text(part, name) for part in arguments)})"
         case ir.Variable(variable):
             return _PARAMETER + variable
+        case ir.FunctionName(function):
+            return _FUNCTION + function
         case ir.Let(bindings, body):
             pairs = (f"{_PARAMETER}{bound},{formula_text(value, name)}" for bound, value in bindings)
             return f"LET({','.join(pairs)},{formula_text(body, name)})"
-        case ir.Lambda(parameters, body):
-            bound = (_PARAMETER + parameter for parameter in parameters)
+        case ir.Lambda(parameters, body, optional):
+            needed = len(parameters) - optional
+            bound = ((_PARAMETER if i < needed else _OPTIONAL) + name_ for i, name_ in enumerate(parameters))
             return f"LAMBDA({','.join([*bound, formula_text(body, name)])})"
         case ir.Invoke(called, arguments):
             return f"{formula_text(called, name)}({','.join(formula_text(part, name) for part in arguments)})"

@@ -1,0 +1,248 @@
+"""LAMBDA, its names and the functions that call one: as constants, and with every number drawn, in each engine.
+
+The rules are Microsoft's: another number of arguments is `#VALUE!` (the page of LAMBDA), "not providing a LAMBDA
+function or anything but a single value returned" is `#CALC!` (that of BYROW), a LAMBDA that nothing calls is `#CALC!`.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+
+import numpy as np
+import pytest
+
+from xlmc.compile.engines import ENGINES
+from xlmc.compile.tracking import TrackingEvaluator
+from xlmc.errors import ErrorCode, XlmcError
+from xlmc.verify import verify
+
+VALUE, CALC, NA = ErrorCode.VALUE, ErrorCode.CALC, ErrorCode.NA
+
+NUMBERS = {"A1": 1.0, "A2": 2.0, "A3": 3.0, "B1": 10.0, "B2": 20.0, "B3": 30.0}
+NAMES = {
+    "Twice": "_xlfn.LAMBDA(_xlpm.x,2*_xlpm.x)",
+    "Other!Twice": "_xlfn.LAMBDA(_xlpm.x,_xlpm.x&_xlpm.x)",
+    "Alias": "Twice",
+    "AliasOfAlias": "Alias",
+    "Plus": "LAMBDA(a,LAMBDA(b,a+b))",
+    "PlusTwo": "Plus(2)",
+    "PlusA3": "Plus(S!$A$3)",
+    "Made": "LET(k,S!$A$2,LAMBDA(x,x*k))",
+    "Either": "LAMBDA(w,IF(w,Twice,PlusTwo))",
+    "Total": "_xleta.SUM",
+    "Factorial": "LAMBDA(n,IF(n<2,1,n*Factorial(n-1)))",
+    "Fib": "LAMBDA(n,IF(n<2,n,Fib(n-1)+Fib(n-2)))",
+    "Even": "LAMBDA(n,IF(n=0,TRUE,Uneven(n-1)))",
+    "Uneven": "LAMBDA(n,IF(n=0,FALSE,Even(n-1)))",
+    "Ackermann": "LAMBDA(m,n,IF(m=0,n+1,IF(n=0,Ackermann(m-1,1),Ackermann(m-1,Ackermann(m,n-1)))))",
+    "Deep": "LAMBDA(n,LET(f,Deep,IF(n=0,0,1+f(n-1))))",
+    "Spaced": '_xlfn.LAMBDA(_xlpm.t,IF(LEN(_xlpm.t)<2,_xlpm.t,LEFT(_xlpm.t)&" "&Spaced(MID(_xlpm.t,2,99))))',
+    "Power": "_xlfn.LAMBDA(_xlpm.a,_xlop.b,IF(_xlfn.ISOMITTED(_xlop.b),_xlpm.a^2,_xlpm.a^_xlop.b))",
+    "Onwards": "LAMBDA(a,[b],Power(a,b))",
+    "Sheets": "LAMBDA(x,x+S!$A$1)",
+    "Number": "5",
+}
+
+CALLS = [
+    ("LAMBDA(x,x+1)(A2)", 3.0),
+    ("LAMBDA(7)()", 7.0),
+    ("LAMBDA(x,y,x-y)(A3,A1)", 2.0),
+    ("LAMBDA(x,LAMBDA(x,x)(x+1)+x)(A1)", 3.0),
+    ("LAMBDA(x,x+1)()", VALUE),
+    ("LAMBDA(x,x+1)(A1,A2)", VALUE),
+    ("LAMBDA(a,b,a+b)(A1)", VALUE),
+    ("IFERROR(LAMBDA(x,x+1)(A1,A2),-1)", -1.0),
+    ("ISERROR(Twice())*1", 1.0),
+    # currying
+    ("LAMBDA(a,LAMBDA(b,a+b))(A1)(A2)", 3.0),
+    ("LAMBDA(a,LAMBDA(b,LAMBDA(c,a*100+b*10+c)))(A1)(A2)(A3)", 123.0),
+    ("LET(add,LAMBDA(a,LAMBDA(b,a+b)),two,add(A2),two(A3)+add(A1)(A1))", 7.0),
+    ("LAMBDA(f,LAMBDA(x,f(f(x))))(LAMBDA(y,y*3))(A2)", 18.0),
+    ("LET(k,A2,f,LAMBDA(x,x*k),k,100,f(A3))", 6.0),  # the scope it was written in
+    ("Plus(A1)(A2)", 3.0),
+    # names
+    ("Twice(A2)", 4.0),
+    ("Alias(A2)", 4.0),
+    ("AliasOfAlias(A2)", 4.0),
+    ("S!Alias(A2)", 4.0),
+    ("Other!Twice(A2)", "22"),
+    ("LEN(Other!Twice(A2))", 2.0),
+    ("PlusTwo(A3)", 5.0),
+    ("PlusA3(A1)", 4.0),
+    ("Made(A3)", 6.0),
+    ("Either(A1=1)(A3)", 6.0),
+    ("Either(A1>1)(A3)", 5.0),
+    ("CHOOSE(2,Twice,PlusTwo)(A3)", 5.0),
+    ("IF(A1=1,LAMBDA(x,x+1),LAMBDA(x,1/0))(A3)", 4.0),
+    ("LET(f,Alias,f(A2))", 4.0),
+    ("Total(A1:A3)", 6.0),
+    ("Sheets(A1)", 2.0),
+    # parameters that may be left out
+    ("Power(A3)", 9.0),
+    ("Power(A3,)", 9.0),
+    ("Power(A2,A3)", 8.0),
+    ("Power()", VALUE),
+    ("Power(A1,A2,A3)", VALUE),
+    ("Onwards(A3)", 9.0),
+    ("Onwards(A2,A3)", 8.0),
+    ("LAMBDA(a,[b],[c],a+b+c)(A1)", 1.0),
+    ("LAMBDA(a,[b],IF(ISOMITTED(b),A3,b)+a)(A1)", 4.0),
+    ("LAMBDA([a],ISOMITTED(a)*1)()", 1.0),
+    ("LAMBDA(a,ISOMITTED(a)*1)(A1)", 0.0),
+    ('LAMBDA(x,y,x&IF(ISOMITTED(y),"no",y))(A1,)', "1no"),
+]
+
+RECURSIVE = [
+    ("Factorial(5)", 120.0),
+    ("Factorial(A3)", 6.0),
+    ("Fib(A3+A3)", 8.0),
+    ("Even(A3)*1", 0.0),
+    ("Uneven(A3)*1", 1.0),
+    ("Ackermann(A2,A2)", 7.0),
+    ("Deep(A3)", 3.0),
+    ('Spaced("abc")', "a b c"),
+    ("SUM(MAP(A1:A3,Factorial))", 9.0),
+    ("REDUCE(0,A1:A3,LAMBDA(a,x,a+Fib(x)))", 4.0),
+    ("LET(f,LAMBDA(me,n,IF(n=0,0,n+me(me,n-1))),f(f,A3))", 6.0),
+]
+
+BY_NAME = [
+    ("SUM(MAP(A1:A3,_xleta.SQRT)^2)", 6.0),
+    ("SUM(BYROW(A1:B3,_xleta.SUM))", 66.0),
+    ("SUM(BYROW(A1:B3,_xleta.MAX))", 60.0),
+    ("SUM(BYCOL(A1:B3,_xlfn._xleta.STDEV.S))", 11.0),
+    ("REDUCE(0,A1:A3,_xleta.SUM)", 6.0),
+    ("SUM(MAP(A1:A3,B1:B3,_xleta.MAX))", 60.0),
+    ("SUM(MAP(A1:A3,_xleta.ATAN2))", VALUE),
+    ("LET(f,_xleta.MAX,f(A1:A3))", 3.0),
+    ("LAMBDA(f,f(A1:A3))(_xleta.AVERAGE)", 2.0),
+    ("_xleta.ABS", CALC),
+    # what LAMBDAs are given
+    ("SUM(MAP(A1:A3,LAMBDA(x,ROW(x))))", 6.0),
+    ("SUM(BYROW(A1:B3,LAMBDA(r,COUNTIF(r,\">2\"))))", 4.0),
+    ("SUM(BYCOL(A1:B3,LAMBDA(c,SUBTOTAL(9,c))))", 66.0),
+    ("SUM(BYROW(A1:B3,LAMBDA(r,INDEX(r,1,2)/COLUMNS(r))))", 30.0),
+    ("SUM(MAP(A1:A3,{1;2},LAMBDA(x,y,IFERROR(x*y,100))))", 105.0),
+    ("SUM(MAP(A1:A3,A2,LAMBDA(x,y,x*y)))", 12.0),
+    ("SUM(MAP(A1:A3*2,LAMBDA(x,x+1)))", 15.0),
+    ("ROWS(MAP(A1:B3,LAMBDA(x,x)))", 3.0),
+    ("SUM(MAP(A1:A3,LAMBDA(x,y,x)))", VALUE),
+    ("SUM(MAP(A1:A3,B1:B3,Twice))", VALUE),
+    ("SUM(MAP(A1:A3,LAMBDA(x,SEQUENCE(2))))", CALC),
+    ("SUM(BYROW(A1:B3,LAMBDA(r,r)))", CALC),
+    ("SUM(BYROW(A1:B3,LAMBDA(r,s,1)))", VALUE),
+    ("REDUCE(A1,A1:A3,LAMBDA(a,x,a*10+x))", 1123.0),
+    ("REDUCE(,A1:A3,LAMBDA(a,x,a*10+x))", 123.0),
+    ("REDUCE(0,A1:A3,LAMBDA(x,x))", VALUE),
+    ("SUM(REDUCE(A1:A2,A1:A3,LAMBDA(a,x,a+x)))", 15.0),
+    ("SUM(SCAN(0,A1:A3,LAMBDA(a,x,a+x)))", 10.0),
+    ("SUM(SCAN(0,A1:A3,LAMBDA(a,x,VSTACK(a,x))))", CALC),
+    ("INDEX(SCAN(\"\",A1:A3,LAMBDA(a,x,a&x)),3)", "123"),
+    ("SUM(MAKEARRAY(ROWS(A1:A3),COLUMNS(A1:B3),LAMBDA(r,c,r*10+c)))", 129.0),
+    ("SUM(MAKEARRAY(2.9,1,LAMBDA(r,c,r+A1)))", 5.0),
+    ("SUM(MAKEARRAY(0,1,LAMBDA(r,c,r)))", VALUE),
+    ("SUM(MAKEARRAY(-1,1,LAMBDA(r,c,r)))", VALUE),
+    ("SUM(MAKEARRAY(2,2,LAMBDA(r,r)))", VALUE),
+    ("SUM(MAKEARRAY(1/0,2,LAMBDA(r,c,r)))", ErrorCode.DIV0),
+    ("LET(f,LAMBDA(x,x^2),s,SEQUENCE(3),SUM(MAP(s,f))+f(A2))", 18.0),
+    # nothing calls them
+    ("LAMBDA(x,x)", CALC),
+    ("Twice", CALC),
+    ("Alias", CALC),
+    ("Factorial", CALC),
+    ("LAMBDA(a,LAMBDA(b,a+b))(A1)", CALC),
+    ("LET(f,LAMBDA(x,x+A1),f)", CALC),
+    ("PlusTwo", CALC),
+]  # fmt: skip
+ALL = [*CALLS, *RECURSIVE, *BY_NAME]
+CALL = pytest.mark.parametrize(("formula", "expected"), ALL, ids=[case[0] for case in ALL])
+
+with_jit = pytest.mark.skipif(importlib.util.find_spec("llvmlite") is None, reason="the engine jit needs llvmlite")
+
+
+def same(got, expected):
+    if isinstance(expected, float):
+        return isinstance(got, float) and got == pytest.approx(expected, rel=1e-14)
+    return type(got) is type(expected) and got == expected
+
+
+@CALL
+def test_of_constants(workbook, formula, expected):
+    book = workbook({**NUMBERS, "H9": f"={formula}"}, names=NAMES, sheets=("Other",))
+    (check,) = verify(book).cells
+    assert check.reason == ""
+    assert same(check.got, expected), check.got
+
+
+@pytest.fixture
+def drawn(lower):
+    """`drawn("=…", {"A1": [1.0, 2.0]})`: what the formula gives in each trial; every engine must agree."""
+
+    def evaluate(formula, draws=None, names=NAMES):
+        draws = {name: np.asarray(values) for name, values in (draws or {}).items()}
+        n = len(next(iter(draws.values())))
+        lowering, targets = lower({**NUMBERS, "H9": formula}, draws, ["H9"], names=names, sheets=("Other",))
+        place = lowering.target(targets[0])
+        careful = TrackingEvaluator(lowering.dag, [], [place])
+        careful.filters(draws, n)
+        values = careful._values
+        found = _shown(careful.forecasts(np.arange(n))[0])
+        for engine in ["numpy", *(["jit"] if importlib.util.find_spec("llvmlite") else [])]:
+            evaluator = ENGINES[engine](lowering, [], targets, frozenset()).evaluator(n)
+            evaluator.filters(draws, n)
+            assert _shown(evaluator.forecasts(np.arange(n))[0]) == found, (engine, values)
+        return found
+
+    return evaluate
+
+
+def _shown(column):
+    codes = np.zeros(column.values.size, int) if column.codes is None else column.codes.astype(int)
+    kinds = {code.value: code for code in ErrorCode}
+    return [kinds.get(c, "text") if c else float(x) for c, x in zip(codes, column.values, strict=True)]
+
+
+DRAWN = [*CALLS, *BY_NAME]
+
+
+@pytest.mark.parametrize(("formula", "expected"), DRAWN, ids=[case[0] for case in DRAWN])
+def test_of_draws(drawn, formula, expected):
+    draws = {name: np.full(3, value) for name, value in NUMBERS.items()}
+    found = drawn(f"={formula}", draws)
+    wanted = "text" if isinstance(expected, str) else expected
+    assert all(same(got, wanted) for got in found), found
+
+
+def test_which_lambda_is_called_may_vary(drawn):
+    assert drawn("=IF(A1>1,Twice,PlusTwo)(A2)", {"A1": [0.0, 2.0], "A2": [5.0, 7.0]}) == [7.0, 14.0]
+
+
+def test_a_cell_that_shows_calc_is_read_as_such(workbook):
+    book = workbook({"H9": "=LAMBDA(x,x)", "H10": "=H9", "H11": "=IFERROR(H9,5)", "H12": "=SUM(H9,1)"})
+    got = {str(check.cell): check.got for check in verify(book).cells}
+    assert got == {"S!H9": CALC, "S!H10": CALC, "S!H11": 5.0, "S!H12": CALC}
+
+
+@pytest.mark.parametrize(
+    ("formula", "message"),
+    [
+        ("1+LAMBDA(x,x)", "a LAMBDA stands here that nothing calls"),
+        ("SUM(MAP(A1:A3,LAMBDA(x,LAMBDA(y,x))))", "a LAMBDA stands here that nothing calls"),
+        ("LET(f,5,f(2))", "what is called here is no LAMBDA"),
+        ("SUM(MAP(A1:A3,5))", "what is called here is no LAMBDA"),
+        ("Number(2)", "the function NUMBER is not known"),
+        ("Nowhere!Twice(2)", "there is no sheet 'Nowhere'"),
+        ("Other!Nothing(2)", "there is no name 'Nothing'"),
+        ("SUM(MAKEARRAY(A1,1,LAMBDA(r,c,r)))", "the size of an array must be a fixed number"),
+    ],
+)
+def test_what_is_refused_with_its_cell(book, formula, message):
+    with pytest.raises(XlmcError, match="S!H9") as refused:
+        book(
+            {**NUMBERS, "H9": f"=A1+{formula}"},
+            {"a": {"cell": "A1", "low": 1, "high": 2}},
+            {"answer": "H9"},
+            names=NAMES,
+            sheets=("Other",),
+        )
+    assert message in str(refused.value)

@@ -10,6 +10,9 @@ from pathlib import Path
 import openpyxl
 import pytest
 
+from xlmc import __version__
+from xlmc.errors import XlmcError
+
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
@@ -63,6 +66,8 @@ def test_as_json(xlmc, results):
         "environment": [],
         "numbers": [],
         "checks": [],
+        "made_by": __version__,
+        "rules_since": [],
         "fault": None,
     }
     edit(results, "Model", "D9", "=nosuchname")
@@ -85,6 +90,45 @@ def test_an_edited_record_is_found_out(xlmc, results):
     assert "differs, although the" in outcome.out
     assert "Chevrolet delta-V: mean: recorded 10.5, repeated 11." in outcome.out
     assert "The numbers in the record were edited" in outcome.out
+
+
+def test_a_run_of_an_older_version_that_gives_other_numbers(xlmc, results):
+    """It is told which version made it, what has changed since, and how to have that version; nobody is accused."""
+    book = openpyxl.load_workbook(results)
+    sheet = book["Record"]
+    rows = {sheet.cell(row, 1).value: row for row in range(1, sheet.max_row + 1)}
+    sheet.cell(rows["software.xlmc"], 3).value = "0.1.0"
+    place = next(c for c in range(1, sheet.max_column) if sheet.cell(rows["forecasts[0]"] - 2, c).value == "mean")
+    sheet.cell(rows["forecasts[0]"], place).value = 10.5
+    book.save(results)
+    outcome = xlmc("replay", results)
+    assert outcome.code == 1
+    lines = outcome.out.splitlines()
+    assert lines[1].startswith("differs, although the ")
+    assert lines[2] == f"xlmc 0.1.0 made this run, and this is xlmc {__version__}."
+    assert any(line.startswith("  git worktree add ../xlmc-0.1.0 ") for line in lines)
+    assert "Chevrolet delta-V: mean: recorded 10.5, repeated 11." in outcome.out
+    assert "edited" not in outcome.out
+    found = json.loads(xlmc("replay", results, "--json").out)
+    assert found["made_by"] == "0.1.0"
+
+
+def test_a_workbook_that_an_older_version_ran_and_this_one_refuses(xlmc, results, monkeypatch):
+    book = openpyxl.load_workbook(results)
+    sheet = book["Record"]
+    row = next(row for row in range(1, sheet.max_row) if sheet.cell(row, 1).value == "software.xlmc")
+    sheet.cell(row, 3).value = "0.1.0"
+    book.save(results)
+
+    def refuse(*_):
+        raise XlmcError("no")
+
+    monkeypatch.setattr("xlmc.replay.repeat.understood", refuse)
+    outcome = xlmc("replay", results)
+    assert outcome.code == 1
+    assert outcome.out.splitlines()[1:3] == ["differs.", f"xlmc 0.1.0 made this run, and this is xlmc {__version__}."]
+    assert "The workbook cannot be run any more: no" in outcome.out
+    assert "edited" not in outcome.out
 
 
 def test_edited_results_are_named_and_counted(xlmc, results):

@@ -175,13 +175,22 @@ def test_of_another_model_no_sheet_is_compared(edited):
     assert not found.identical
 
 
-def test_sheets_of_another_version_are_not_held_against_the_file(edited, monkeypatch):
+def test_sheets_that_another_version_laid_out_otherwise_are_not_held_against_the_file(edited, monkeypatch):
     path = edited(put("Results", "A1", "Results"))
+    now = xlmc.__version__
     monkeypatch.setattr("xlmc.__version__", "9.9.9")
     found = replay(path)
     assert found.identical
-    assert "were written by xlmc 0.1.0, and this is 9.9.9" in found.shown.left_out[-1]
-    assert "1 cell differs" in found.shown.left_out[-1]
+    assert found.shown.left_out == (f"the sheet Results, which xlmc {now} wrote otherwise than 9.9.9 does",)
+
+
+def test_numbers_that_differ_from_those_of_another_version_are_named(edited, monkeypatch):
+    path = edited(put("Results", "D6", 12.5))
+    monkeypatch.setattr("xlmc.__version__", "9.9.9")
+    found = replay(path)
+    assert not found.identical
+    assert [str(each.where) for each in found.shown.differences] == ["Results!D6"]
+    assert found.shown.left_out == ()
 
 
 @pytest.mark.skipif(bool(missing("soffice")), reason=missing("soffice"))

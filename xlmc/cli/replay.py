@@ -55,14 +55,33 @@ def _lines(found: Replayed, path: Path) -> Iterator[str]:
     if found.repeated is not None:
         yield from failing_lines(found.repeated)
     yield f"{_verdict(found)}."
+    if not found.of_this_version and not found.to_the_last_bit:
+        yield from _other_version(found)
     yield from _changes(found.changes, "Not as the record says:")
     if found.fault is not None:
         yield f"The workbook cannot be run any more: {found.fault}"
     yield from _numbers(found.numbers)
     yield from _shown(found)
-    if not found.changes and not found.identical:
+    if found.of_this_version and not found.changes and not found.identical:
         yield from _unexplained(found)
     yield from _changes(found.environment, "Other software or another processor than then:")
+
+
+def _other_version(found: Replayed) -> Iterator[str]:
+    """Which xlmc made the run, what has changed since, and how to repeat it as it was."""
+    import xlmc
+    from xlmc.replay.versions import install
+
+    made = f"xlmc {found.version}" if found.version else "An xlmc that did not record its version"
+    yield f"{made} made this run, and this is xlmc {xlmc.__version__}."
+    if found.rules:
+        yield "What has changed since, and may concern its formulas:"
+        yield from (f"  {rule.said} ({rule.since})" for rule in found.rules)
+    elif not found.identical:
+        yield "No rule is listed that has changed since and that concerns its formulas."
+    if found.version:
+        yield "To repeat it as it was made, install that version beside this one, in a clone of xlmc's repository:"
+        yield f"  {install(found.version)}"
 
 
 def _verdict(found: Replayed) -> str:
@@ -170,6 +189,8 @@ def _as_json(found: Replayed) -> dict[str, object]:
             "not_compared": list(found.shown.left_out),
         },
         "checks": [] if found.repeated is None else failing_lines(found.repeated),
+        "made_by": found.version,
+        "rules_since": [{"version": rule.since, "rule": rule.said} for rule in found.rules],
         "fault": None if found.fault is None else str(found.fault),
     }
 

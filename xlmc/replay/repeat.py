@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import xlmc
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.model import understood
 from xlmc.record import Record, make_record
@@ -28,6 +29,7 @@ from xlmc.replay.closeness import Closeness
 from xlmc.replay.restored import restored
 from xlmc.replay.sheets import SheetComparison
 from xlmc.replay.shown import compare_shown
+from xlmc.replay.versions import Rule, recorded_version, rules_since
 from xlmc.saved import SUFFIX, is_saved_run, open_run
 from xlmc.simulation import KEPT_INPUTS
 from xlmc.workbook import read_workbook
@@ -58,6 +60,8 @@ class Replayed:
         numbers: of the record that the repeat did not give to the last bit.
         same_bits: the accepted trials are the same to the last bit.
         shown: the result sheets, and the workbook's own cells that show results, beside those of the repeat.
+        version: the xlmc that made the run.
+        rules: what this xlmc computes otherwise than that one, where the recorded cells hold something of it.
     """
 
     record: Record
@@ -68,6 +72,13 @@ class Replayed:
     numbers: tuple[NumberChange, ...]
     same_bits: bool
     shown: SheetComparison = field(default_factory=SheetComparison)
+    version: str = xlmc.__version__
+    rules: tuple[Rule, ...] = ()
+
+    @property
+    def of_this_version(self) -> bool:
+        """Whether this xlmc made the run."""
+        return self.version == xlmc.__version__
 
     @property
     def to_the_last_bit(self) -> bool:
@@ -93,7 +104,8 @@ def replay(path: str | Path, *, jobs: int = 1, progress: Progress | None = None)
 
     Raises:
         WorkbookError: the file cannot be read, holds no record, or one by an xlmc that recorded less.
-        XlmcError: the workbook cannot be run, though nothing that was recorded of it has changed.
+        XlmcError: the workbook cannot be run, though this xlmc made the run, and nothing that was recorded has
+            changed.
     """
     path = Path(path)
     if path.suffix.casefold() == SUFFIX or is_saved_run(path):
@@ -113,14 +125,16 @@ def _replayed(
     path: Path | None = None,
 ) -> Replayed:
     cells, settings = _recorded(record, path)
+    version = recorded_version(record)
+    rules = rules_since(version, cells.values())
     try:
         model = model or understood(workbook, path or Path(workbook.name))
         repeated = _repeated(model, record, settings, jobs, progress)
     except XlmcError as fault:
         changes = tuple(cell_changes(cells, contents_now(workbook, cells)))
-        if not changes:
+        if not changes and version == xlmc.__version__:
             raise
-        return Replayed(record, None, fault, changes, (), (), same_bits=False)
+        return Replayed(record, None, fault, changes, (), (), same_bits=False, version=version, rules=rules)
     found = make_record(repeated)
     same_bits = record["run.fingerprint"] == found["run.fingerprint"]
     try:
@@ -129,7 +143,8 @@ def _replayed(
         environment = tuple(environment_changes(record, found))
     except KeyError as error:
         message = f"the record lacks {error.args[0]!r}"
-        raise WorkbookError(message, where=path, hint="It was edited: run the workbook again") from error
+        edited = "It was edited" if version == xlmc.__version__ else f"xlmc {version} made it"
+        raise WorkbookError(message, where=path, hint=f"{edited}: run the workbook again") from error
     changes = (*cell_changes(cells, contents_now(workbook, cells) | needed_contents(model)), *of_the_model)
     shown = SheetComparison()
     if path is not None:
@@ -149,6 +164,8 @@ def _replayed(
         numbers=tuple(number for number in numbers if not (same_bits and number.close)),
         same_bits=same_bits,
         shown=shown,
+        version=version,
+        rules=rules,
     )
 
 

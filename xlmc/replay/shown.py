@@ -6,9 +6,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import xlmc
+from xlmc.replay.closeness import is_number
 from xlmc.replay.own_cells import compare_own_cells
 from xlmc.replay.restored import entry
 from xlmc.replay.sheets import SheetComparison, compare_sheets
+from xlmc.replay.versions import recorded_version
 
 if TYPE_CHECKING:
     from xlmc.record import Record
@@ -43,17 +45,20 @@ def compare_shown(
         sheets.missing,
         (*own.left_out, *sheets.left_out),
     )
-    return _of_version(found, str(entry(record, "software.xlmc")))
+    return _of_version(found, recorded_version(record))
 
 
 def _of_version(found: SheetComparison, version: str) -> SheetComparison:
-    """The comparison; where another version of xlmc wrote the sheets, what differs may be its way of writing."""
+    """The comparison; of sheets that another version of xlmc laid out otherwise, the numbers cannot be compared."""
     if found.same or version == xlmc.__version__:
         return found
-    count = len(found.differences)
-    cells = f"{count:,} cell{'s' * (count != 1)} differ{'s' * (count == 1)}, {len(found.missing)} sheets are missing"
-    said = (
-        f"the result sheets were written by xlmc {version}, and this is {xlmc.__version__}, which may write them "
-        f"otherwise ({cells}): compare their numbers with that version"
+    laid_out = {each.where.sheet for each in found.differences if not (is_number(each.says) and is_number(each.gives))}
+    otherwise = dict.fromkeys((*found.missing, *(each.where.sheet for each in found.differences)))
+    wrote = f"xlmc {version} wrote" if version else "another xlmc wrote"
+    said = tuple(
+        f"the sheet {sheet}, which {wrote} otherwise than {xlmc.__version__} does"
+        for sheet in otherwise
+        if sheet in laid_out or sheet in found.missing
     )
-    return replace(found, differences=(), missing=(), left_out=(*found.left_out, said))
+    differences = tuple(each for each in found.differences if each.where.sheet not in laid_out)
+    return replace(found, differences=differences, missing=(), left_out=(*found.left_out, *said))

@@ -1,0 +1,71 @@
+"""Runs that another version of xlmc made."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import xlmc
+from xlmc.replay import versions
+from xlmc.replay.versions import RULES, Rule, install, rules_since
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def rules(monkeypatch):
+    said = tuple(
+        Rule(version, version, re.compile(met)) for version, met in (("0.3.0", "a"), ("0.10.0", "a"), ("9.0", "a"))
+    )
+    monkeypatch.setattr(versions, "RULES", said)
+    monkeypatch.setattr(xlmc, "__version__", "0.10.1")
+
+
+@pytest.mark.parametrize(
+    ("version", "contents", "expected"),
+    [
+        ("0.1.0", ["=a"], ["0.3.0", "0.10.0"]),
+        ("0.3.0", ["=b", "=a"], ["0.10.0"]),
+        ("0.10.0", ["=a"], []),
+        ("0.1.0", ["=b"], []),
+        ("0.1.0", [], []),
+        ("", ["=a"], ["0.3.0", "0.10.0"]),
+        ("0.3.0rc1", ["=a"], ["0.10.0"]),
+    ],
+)
+def test_rules_are_those_since_the_version_that_the_cells_may_meet(rules, version, contents, expected):
+    assert [rule.said for rule in rules_since(version, contents)] == expected
+
+
+def test_rules_are_in_the_order_of_versions_and_none_is_of_the_future():
+    numbers = [tuple(map(int, rule.since.split("."))) for rule in RULES]
+    assert numbers == sorted(numbers)
+    assert numbers[-1] <= tuple(map(int, xlmc.__version__.split(".")))
+
+
+@pytest.mark.parametrize(
+    ("said", "formula", "met"),
+    [
+        ("TRUNC", "=1+trunc(A1,2)", True),
+        ("TRUNC", "=MYTRUNC(A1)", False),
+        ("TRUNC", '="TRUNC"', False),
+    ],
+)
+def test_what_a_rule_concerns(said, formula, met):
+    [rule] = [rule for rule in RULES if rule.said.startswith(said)]
+    assert bool(rule.met.search(formula)) is met
+
+
+@pytest.mark.parametrize("version", versions._COMMITS)
+def test_the_commit_of_a_version_has_it(version):
+    commit = versions._COMMITS[version]
+    shown = subprocess.run(
+        ["git", "-C", str(REPOSITORY), "show", f"{commit}:pyproject.toml"], capture_output=True, encoding="utf-8"
+    )
+    if shown.returncode:
+        pytest.skip("the history is not here")
+    assert f'version = "{version}"' in shown.stdout
+    assert commit in install(version)

@@ -185,11 +185,11 @@ def test_sheets_that_another_version_laid_out_otherwise_are_not_held_against_the
 
 
 def test_numbers_that_differ_from_those_of_another_version_are_named(edited, monkeypatch):
-    path = edited(put("Results", "D6", 12.5))
+    path = edited(lambda book: setattr(first_number(book["Results"]), "value", 12.5))
     monkeypatch.setattr("xlmc.__version__", "9.9.9")
     found = replay(path)
     assert not found.identical
-    assert [str(each.where) for each in found.shown.differences] == ["Results!D6"]
+    assert [(each.where.sheet, each.says) for each in found.shown.differences] == [("Results", 12.5)]
     assert found.shown.left_out == ()
 
 

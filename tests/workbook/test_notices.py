@@ -4,6 +4,7 @@ from xlmc.address import Area, Cell
 from xlmc.workbook.model import DataTable
 
 LINK = ("link", "externalLink", "externalLinks/externalLink1.xml")
+REFERENCE = '<externalReferences><externalReference r:id="link"/></externalReferences>'
 TABLE = '<sheetData><row r="4"><c r="C4"><f t="dataTable" ref="C4:C5" r1="B1"/><v>1</v></c></row></sheetData>'
 SIGNED = "http://schemas.openxmlformats.org/package/2006/relationships/digital-signature/origin"
 
@@ -29,21 +30,25 @@ def test_an_ordinary_workbook_gives_none(book):
     assert messages(book(in_workbook='<calcPr calcId="1" calcMode="auto" fullPrecision="1" iterate="0"/>')) == []
 
 
-def test_external_links_name_their_files(book, rels):
+READS = "which xlmc does not open: where a formula reads them, it gets the value that Excel stored"
+
+
+def test_external_links_name_their_files_and_how_old_their_values_are(book, rels):
     pointer = rels(("r1", "externalLinkPath", "file:///C:\\Cases\\Other.xlsx", "External"))
     more = {
         "xl/externalLinks/externalLink1.xml": "<externalLink/>",
         "xl/externalLinks/_rels/externalLink1.xml.rels": pointer,
+        "docProps/core.xml": "<c><dcterms:modified xsi:type='x'>2019-03-04T10:00:00Z</dcterms:modified></c>",
     }
-    assert messages(book(rels=[LINK], more=more)) == [
-        "book.xlsx: the workbook links to other files, which xlmc does not open: Other.xlsx"
+    assert messages(book(in_workbook=REFERENCE, rels=[LINK], more=more)) == [
+        f"book.xlsx: the workbook links to other files (Other.xlsx), {READS}, of 2019-03-04 or older"
     ]
 
 
-def test_external_links_without_a_file(book):
+def test_external_links_without_a_file_or_a_date(book):
     more = {"xl/externalLinks/externalLink1.xml": "<externalLink/>"}
     assert messages(book(rels=[LINK], more=more)) == [
-        "book.xlsx: the workbook links to other files, which xlmc does not open"
+        f"book.xlsx: the workbook links to other files, {READS}, at a time that the file does not tell"
     ]
 
 

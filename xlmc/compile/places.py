@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of
+from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of, quote_sheet
 from xlmc.compile.arrays import grid
 from xlmc.compile.dag import Range
 from xlmc.compile.empty_cells import refused
@@ -113,8 +113,19 @@ def _formula_text(lowering: Lowering, arguments: Arguments, scope: Scope) -> int
 
 
 def _sheet(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
-    tabs = list(lowering.graph.workbook.sheets)
-    return lowering.number(float(tabs.index(_referred(lowering, arguments, scope).sheet) + 1))
+    """SHEET of a reference, or of a sheet's name."""
+    tabs = [name.casefold() for name in lowering.graph.workbook.sheets]
+    name = _sheet_name(lowering, arguments, scope).casefold()
+    return lowering.number(float(tabs.index(name) + 1)) if name in tabs else lowering.error(ErrorCode.NA)
+
+
+def _sheet_name(lowering: Lowering, arguments: Arguments, scope: Scope) -> str:
+    if arguments and areas_of(lowering, arguments[0], scope) is None:
+        known = lowering.known_single(lowering.lower(arguments[0], scope))
+        if known is None:
+            raise FormulaError("SHEET needs a reference, or the name of a sheet that does not vary")
+        return str(known.to_texts()[0][0])
+    return _referred(lowering, arguments, scope).sheet
 
 
 def _sheets(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
@@ -126,21 +137,48 @@ def _sheets(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | Non
 
 def _cell(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
     known = lowering.known_single(lowering.lower(arguments[0], scope))
-    what = "" if known is None else str(known.to_texts()[0][0]).casefold()
+    if known is None:
+        raise FormulaError("the first argument of CELL must not vary")
+    what = str(known.to_texts()[0][0]).casefold()
     area = _referred(lowering, arguments[1:], scope)
     cell = Cell(area.sheet, area.top, area.left)
-    if what == "row":
-        return lowering.number(float(cell.row))
-    if what == "col":
-        return lowering.number(float(cell.column))
-    if what == "contents":
+    if what in ("contents", "type"):
         if lowering.awaits(cell):
             raise NotYetNeeded([cell])
-        return lowering.zero_if_blank(lowering.cell(cell))
-    if what == "address":
-        column, row = re.fullmatch(r"([A-Z]+)(\d+)", cell.a1).groups()  # type: ignore[union-attr]  # it is an address
-        return lowering.dag.constant(constant(f"${column}${row}"))
-    raise FormulaError(f"CELL({what!r}) is not supported")
+        return lowering.zero_if_blank(lowering.cell(cell)) if what == "contents" else _kind(lowering, cell, scope)
+    if what not in _OF_PLACE:
+        told = ", ".join(("contents", "type", *_OF_PLACE))
+        raise FormulaError(f"CELL({what!r}) is not supported", hint=f"xlmc knows {told}")
+    return lowering.dag.constant(constant(_OF_PLACE[what](cell, lowering, host_of(scope.cell))))
+
+
+def _kind(lowering: Lowering, cell: Cell, scope: Scope) -> int:
+    """`b` of a blank cell, `l` of a text, `v` of anything else."""
+    otherwise = ir.Call("IF", (ir.Call("ISTEXT", (cell,)), ir.Text("l"), ir.Text("v")))
+    return lowering.lower(ir.Call("IF", (ir.Call("ISBLANK", (cell,)), ir.Text("b"), otherwise)), scope)
+
+
+def _absolute(cell: Cell, lowering: Lowering, host: Cell) -> str:
+    column, row = re.fullmatch(r"([A-Z]+)(\d+)", cell.a1).groups()  # type: ignore[union-attr]  # it is an address
+    address = f"${column}${row}"
+    if cell.sheet == host.sheet:
+        return address
+    book = "" if cell.sheet.startswith("[") else f"[{lowering.graph.workbook.name}]"
+    return f"{quote_sheet(book + cell.sheet)}!{address}"
+
+
+def _file_name(cell: Cell, lowering: Lowering, host: Cell) -> str:
+    """As of a workbook without a folder, so that a run does not depend on where it is made."""
+    return f"[{lowering.graph.workbook.name}]{cell.sheet}"
+
+
+_OF_PLACE: Mapping[str, Callable[[Cell, Lowering, Cell], float | str]] = {
+    "row": lambda cell, lowering, host: float(cell.row),
+    "col": lambda cell, lowering, host: float(cell.column),
+    "address": _absolute,
+    "filename": _file_name,
+}
+"""What CELL tells of a cell's place, without a look at what it holds."""
 
 
 def _spilled(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
@@ -185,7 +223,8 @@ def _skipped(lowering: Lowering, name: str, options: list[int]) -> tuple[bool, b
 def _left_in(lowering: Lowering, area: Area, skipped: tuple[bool, bool]) -> int:
     totals, hidden = skipped
     ask_for_reading(area.rows, area.columns)  # further cells of a whole column are empty
-    hidden_rows = lowering.graph.workbook.sheets[area.sheet].hidden_rows if hidden else frozenset()
+    sheet = lowering.graph.workbook.sheet_of(area)
+    hidden_rows = sheet.hidden_rows if hidden and sheet is not None else frozenset()
 
     def node(cell: Cell) -> int:
         if cell.row in hidden_rows or (totals and _TOTAL.search(lowering.graph.text(cell))):

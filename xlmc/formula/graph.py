@@ -217,7 +217,9 @@ class _Walk:
 
 def _held(workbook: Workbook, area: Area, inputs: frozenset[Cell]) -> Iterator[Cell]:
     """The area's cells that hold something, row by row."""
-    sheet = workbook.sheets[area.sheet]
+    sheet = workbook.sheet_of(area)
+    if sheet is None:
+        return
     if area.rows * area.columns <= len(sheet.cells):
         yield from area.cells()
         return

@@ -30,6 +30,8 @@ _PARAMETER: Final = re.compile(r"_xl[po][mp]\.", re.IGNORECASE)
 _OPTIONAL: Final = "_xlop."
 _NEEDED: Final = "_xlpm."
 
+_COPY: Final = "copy the value into this workbook; links are not followed"
+
 _DEEPEST: Final = 200
 """Levels of brackets, calls and names in a formula; Excel stops at 64 calls."""
 
@@ -62,6 +64,7 @@ class Resolver:
         self._shapes = Shapes()
         self._open_names: list[str] = []
         self._recursive: set[str] = set()
+        self._linked: str | None = None  # the workbook whose name is open
         self._variables: frozenset[str] = frozenset()
         self._depth = self._parts = 0
 
@@ -187,10 +190,12 @@ class Resolver:
         return resolved
 
     def _reference(self, tree: ir.Reference, host: Cell, origin: tuple[int, int]) -> ir.Expression:
-        _refuse_other_books(tree.book)
+        book = self._book(tree.book)
         if tree.last_sheet is not None:
+            if book is not None:
+                raise FormulaError("refers to several sheets of another workbook", hint=_COPY)
             return self._over_sheets(tree, host, origin)
-        sheet = self._sheet(tree.sheet, host)
+        sheet = self._sheet(tree.sheet, host) if book is None else self._linked_sheet(book, tree.sheet, host)
         first, last = (_place(corner, host, origin) for corner in (tree.first, tree.last or tree.first))
         if self._open_names:  # in a name, relative references go around the edge of the sheet
             first, last = _wrapped(first), _wrapped(last)
@@ -215,6 +220,41 @@ class Resolver:
             joined = ir.Binary(",", joined, part)
         return joined
 
+    def _book(self, book: str | None) -> str | None:
+        """The linked workbook that is meant; None of this one."""
+        if book is None:
+            return self._linked
+        if book == "[0]":  # this book
+            return None
+        if book not in self.workbook.links:
+            raise FormulaError("refers to another workbook", hint=_COPY)
+        return book
+
+    def _linked_sheet(self, book: str, name: str | None, host: Cell) -> str:
+        sheets = {title.casefold(): title for title in self.workbook.links[book].sheets}
+        found = sheets.get((host.sheet if name is None else f"{book}{name}").casefold())
+        if found is None:
+            file = self.workbook.links[book].file
+            raise FormulaError(f"refers to {file or 'another workbook'}, of which no values are stored", hint=_COPY)
+        return found
+
+    def _linked_name(self, book: str, tree: ir.Name) -> ir.Expression:
+        """A name of another workbook, by what it stood for when Excel last read it."""
+        linked = self.workbook.links[book]
+        scopes = (None,) if tree.sheet is None else (f"{book}{tree.sheet}".casefold(), None)
+        named = [name for name in linked.names if name.name.casefold() == tree.name.casefold()]
+        found = next((n for scope in scopes for n in named if (n.sheet and n.sheet.casefold()) == scope), None)
+        if found is None and tree.sheet is None and len(named) == 1:
+            found = named[0]
+        if found is None or self._linked is not None:
+            message = f"refers to {tree.name!r} of {linked.file or 'another workbook'}, which is not stored"
+            raise FormulaError(message, hint=_COPY)
+        variables, self._variables, self._linked = self._variables, frozenset(), book
+        try:
+            return self._resolve(parse(found.text), Cell(found.sheet or book, 1, 1), (1, 1))
+        finally:
+            self._variables, self._linked = variables, None
+
     def _sheet(self, name: str | None, host: Cell) -> str:
         if name is None:
             return host.sheet
@@ -232,7 +272,7 @@ class Resolver:
 
     def last_cell(self, sheet: str) -> tuple[int, int]:
         """The last row and the last column of a sheet that are filled."""
-        return self._used_range(sheet) if sheet in self.workbook.sheets else (1, 1)
+        return self._used_range(sheet)
 
     def _cut(self, area: Area) -> Cell | Area:
         cut = self.to_the_last_cell(area.whole)
@@ -242,7 +282,8 @@ class Resolver:
         """Last row and column that hold anything: a whole column ends there."""
         if sheet not in self._used:
             cells = [(cell.row, cell.column) for cell in self._inputs if cell.sheet == sheet]
-            cells += self.workbook.sheets[sheet].cells
+            found = self.workbook.sheet_of(Cell(sheet, 1, 1))
+            cells += () if found is None else found.cells
             self._used[sheet] = (max((r for r, _ in cells), default=1), max((c for _, c in cells), default=1))
         return self._used[sheet]
 
@@ -252,7 +293,9 @@ class Resolver:
         function = function_named_by(tree.name)
         if function is not None:
             return ir.FunctionName(function)
-        _refuse_other_books(tree.book)
+        book = self._book(tree.book)
+        if book is not None:
+            return self._linked_name(book, tree)
         scope = host.sheet if tree.sheet is None else self._sheet(tree.sheet, host)
         found = self.workbook.defined_name(tree.name, scope)
         if found is None and not self._strict:
@@ -334,13 +377,6 @@ def _bare(name: str) -> str:
 
 def _about(error: FormulaError, text: str) -> FormulaError:
     return FormulaError(error.message, where=error.where, hint=error.hint, text=text)
-
-
-def _refuse_other_books(book: str | None) -> None:
-    if book not in (None, "[0]"):  # [0] is this book
-        raise FormulaError(
-            "refers to another workbook", hint="copy the value into this workbook; links are not followed"
-        )
 
 
 def _did_you_mean(name: str, known: object) -> str | None:

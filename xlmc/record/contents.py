@@ -34,7 +34,8 @@ def needed_contents(model: Model) -> dict[Cell, str]:
     for assumption in model.assumptions:
         if assumption.data is not None:
             cells |= set(_held(workbook, assumption.data.area))
-    by_sheet: dict[str, list[Cell]] = {name: [] for name in workbook.sheets}
+    linked = sorted({cell.sheet for cell in cells if cell.sheet not in workbook.sheets and workbook.sheet_of(cell)})
+    by_sheet: dict[str, list[Cell]] = {name: [] for name in (*workbook.sheets, *linked)}
     for cell in cells:
         if cell.sheet in by_sheet:
             by_sheet[cell.sheet].append(cell)
@@ -88,7 +89,7 @@ def _formula_text(formula: Formula, cell: Cell) -> str:
 
 def _held(workbook: Workbook, area: Area) -> Iterator[Cell]:
     """The cells of an area that hold something."""
-    sheet = workbook.sheets.get(area.sheet)
+    sheet = workbook.sheet_of(area)
     if sheet is None:
         return
     cells: Mapping[tuple[int, int], CellContent] = sheet.cells

@@ -83,7 +83,7 @@ def contents_now(workbook: Workbook, recorded: Mapping[Cell, str]) -> dict[Cell,
     """The recorded cells as they are now, needed or not, and those of the reserved tables."""
     saved = {cell for cell, text in recorded.items() if SAVED in text}
     cells = [*recorded, *sorted(definition_cells(workbook) - recorded.keys())]
-    found = {cell: content_text(workbook, cell, saved) for cell in cells if cell.sheet in workbook.sheets}
+    found = {cell: content_text(workbook, cell, saved) for cell in cells if workbook.sheet_of(cell) is not None}
     return {cell: text for cell, text in found.items() if text}
 
 

@@ -9,7 +9,17 @@ from functools import cached_property
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, Notice
 
-__all__ = ["CellContent", "CellValue", "DataTable", "DefinedName", "Formula", "Sheet", "Table", "Workbook"]
+__all__ = [
+    "CellContent",
+    "CellValue",
+    "DataTable",
+    "DefinedName",
+    "Formula",
+    "LinkedBook",
+    "Sheet",
+    "Table",
+    "Workbook",
+]
 
 CellValue = float | bool | str | ErrorCode | None
 """A number, a logical, a text, an error or nothing, as a cell holds it."""
@@ -64,6 +74,21 @@ class DefinedName:
 
 
 @dataclass(frozen=True, slots=True)
+class LinkedBook:
+    """What Excel stored of another workbook when it last read it.
+
+    Attributes:
+        file: its name, without a folder.
+        sheets: with the cells that were read, under their names as formulas write them: `[1]Prices`.
+        names: with what they stand for in that workbook; `sheet` is such a name, too.
+    """
+
+    file: str
+    sheets: Mapping[str, Sheet]
+    names: tuple[DefinedName, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Table:
     """An Excel table. `area` includes header and totals rows."""
 
@@ -112,6 +137,7 @@ class Workbook:
     Attributes:
         sheets: worksheets in tab order, by name as written.
         data_tables: the what-if tables of all sheets.
+        links: to other workbooks, as formulas write them (`[1]`), with the values that Excel stored.
         macintosh: last saved by Excel for the Macintosh, whose CHAR and CODE use its own character set.
         parts: every part of the zip package in its order, name -> bytes, as in the file.
         sha256: of the file.
@@ -123,6 +149,7 @@ class Workbook:
     names: tuple[DefinedName, ...] = ()
     tables: tuple[Table, ...] = ()
     data_tables: tuple[DataTable, ...] = ()
+    links: Mapping[str, LinkedBook] = field(default_factory=dict)
     date1904: bool = False
     macintosh: bool = False
     notices: tuple[Notice, ...] = ()
@@ -163,11 +190,19 @@ class Workbook:
                 return local
         return self._names.get((None, name.casefold()))
 
+    def sheet_of(self, cell: Cell | Area) -> Sheet | None:
+        """The sheet that a resolved cell or area stands on, one of a linked workbook among them."""
+        found = self.sheets.get(cell.sheet)
+        if found is None and cell.sheet.startswith("["):
+            book = cell.sheet[: cell.sheet.find("]") + 1]
+            found = self.links[book].sheets.get(cell.sheet) if book in self.links else None
+        return found
+
     def content(self, cell: Cell) -> CellContent:
         """What the cell holds; blank where the file holds nothing or has no such sheet."""
         cells = self._cells.get(cell.sheet)
         if cells is None:
-            sheet = self.sheets.get(cell.sheet)
+            sheet = self.sheet_of(cell)
             self._cells[cell.sheet] = cells = {} if sheet is None else sheet.cells
         return cells.get(cell[1:], _BLANK)
 

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-import posixpath
+import re
 from collections.abc import Iterator, Mapping
+from typing import Final
 
 from xlmc.errors import Notice
+from xlmc.workbook.links import linked_files
 from xlmc.workbook.package import relationships
 from xlmc.workbook.safe_xml import is_true
 from xlmc.workbook.structure import Structure
 
 __all__ = ["workbook_notices"]
+
+_SAVED_AT: Final = re.compile(rb"<dcterms:modified[^>]*>\s*(\d{4}-\d\d-\d\d)")
 
 
 def workbook_notices(parts: Mapping[str, bytes], structure: Structure, name: str) -> Iterator[Notice]:
@@ -31,11 +35,18 @@ def _on_calculation(settings: Mapping[str, str]) -> Iterator[str]:
 
 
 def _on_links(parts: Mapping[str, bytes], structure: Structure) -> Iterator[str]:
-    links = [rel.target for rel in structure.relationships.values() if rel.kind == "externalLink"]
-    if links:
-        files = [rel.target for link in links for rel in relationships(parts, link).values() if rel.external]
-        named = ", ".join(dict.fromkeys(posixpath.basename(file.replace("\\", "/")) for file in files))
-        yield f"the workbook links to other files, which xlmc does not open{f': {named}' if named else ''}"
+    if any(rel.kind == "externalLink" for rel in structure.relationships.values()):
+        named = ", ".join(linked_files(parts, structure))
+        yield (
+            f"the workbook links to other files{f' ({named})' if named else ''}, which xlmc does not open: where a "
+            f"formula reads them, it gets the value that Excel stored{_age(parts)}"
+        )
+
+
+def _age(parts: Mapping[str, bytes]) -> str:
+    """The file does not say when its links were updated last: it was before it was saved."""
+    found = _SAVED_AT.search(parts.get("docProps/core.xml", b""))
+    return f", of {found[1].decode()} or older" if found else ", at a time that the file does not tell"
 
 
 def _on_signature(parts: Mapping[str, bytes]) -> Iterator[str]:

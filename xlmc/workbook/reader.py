@@ -9,6 +9,7 @@ from xlmc.errors import WorkbookError
 from xlmc.printable import label
 from xlmc.workbook.blame import told_of
 from xlmc.workbook.lazy_sheets import LazySheets
+from xlmc.workbook.links import Links
 from xlmc.workbook.model import Workbook
 from xlmc.workbook.notices import workbook_notices
 from xlmc.workbook.package import LIMITS, SMALLER, read_parts
@@ -46,6 +47,7 @@ def _read(data: bytes, name: str, place: str) -> Workbook:
             sheets=sheets,
             names=structure.names,
             tables=tuple(tables),
+            links=Links(parts, structure),
             data_tables=tuple(sheets.data_tables()),
             date1904=structure.date1904,
             macintosh=b"Macintosh" in parts.get("docProps/app.xml", b""),

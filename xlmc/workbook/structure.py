@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -40,6 +40,7 @@ class Structure:
         sheets: all tabs in order, also those without cells.
         strays: notices of names that belong to no sheet and are left out of `names`.
         calculation: the attributes of `calcPr`.
+        links: the parts of linked workbooks, in the order in which formulas number them.
     """
 
     part: str
@@ -49,6 +50,7 @@ class Structure:
     strays: tuple[Notice, ...]
     date1904: bool
     calculation: Mapping[str, str]
+    links: tuple[str, ...] = ()
 
     @property
     def worksheets(self) -> tuple[SheetEntry, ...]:
@@ -80,7 +82,14 @@ def read_structure(parts: Mapping[str, bytes]) -> Structure:
         strays=tuple(name for name in names if isinstance(name, Notice)),
         date1904=properties is not None and is_true(properties.get("date1904")),
         calculation={} if calculation is None else calculation.attrib,
+        links=tuple(_links(root, rels)),
     )
+
+
+def _links(root: Element, rels: Mapping[str, Relationship]) -> Iterator[str]:
+    for element in root.findall("{*}externalReferences/{*}externalReference"):
+        rel = rels.get(attribute(element, "id") or "")
+        yield "" if rel is None or rel.kind != "externalLink" else rel.target
 
 
 def _workbook_part(parts: Mapping[str, bytes]) -> str:

@@ -20,8 +20,9 @@ OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
 STORED = """<sheetNames><sheetName val="Prices"/><sheetName val="It's"/><sheetName val="Empty"/></sheetNames>
 <definedNames><definedName name="Rate" refersTo="='Prices'!$B$2"/><definedName name="Own" refersTo="='It''s'!$A$1"
 sheetId="1"/><definedName name="Rate" refersTo="=Prices!$B$3" sheetId="1"/><definedName name="Gone"/></definedNames>
-<sheetDataSet><sheetData sheetId="0"><row r="1"><cell r="A1" t="str"><v>Hello</v></cell><cell r="B1" t="b"><v>1</v></cell>
-</row><row r="2"><cell r="B2"><v>142</v></cell><cell r="C2" t="e"><v>#DIV/0!</v></cell></row><row r="3"><cell r="B3">
+<sheetDataSet><sheetData sheetId="0"><row r="1"><cell r="A1" t="str"><v>Hello</v></cell>
+<cell r="B1" t="b"><v>1</v></cell></row>
+<row r="2"><cell r="B2"><v>142</v></cell><cell r="C2" t="e"><v>#DIV/0!</v></cell></row><row r="3"><cell r="B3">
 <v>0.5</v></cell></row></sheetData><sheetData sheetId="1"><row r="1"><cell r="A1"><v>7</v></cell></row></sheetData>
 </sheetDataSet>"""
 
@@ -31,7 +32,8 @@ def linked(book, rels):
     """`linked(rows, stored)`: a workbook with these rows on its sheet, and a link to prices.xlsx."""
 
     def make(rows, stored=STORED, read=book):
-        link = f'<externalLink xmlns="{MAIN}" xmlns:r="{OFFICE}"><externalBook r:id="r1">{stored}</externalBook></externalLink>'
+        book = f'<externalBook r:id="r1">{stored}</externalBook>'
+        link = f'<externalLink xmlns="{MAIN}" xmlns:r="{OFFICE}">{book}</externalLink>'
         return read(
             {"S": f"<sheetData>{rows}</sheetData>"},
             in_workbook='<externalReferences><externalReference r:id="link"/></externalReferences>',

@@ -16,6 +16,7 @@ from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
 from xlmc.formula.callables import function_named_by, stands_for_function
+from xlmc.formula.linked import COPY, linked_name, linked_sheet, meant_book
 from xlmc.formula.parse import parse
 from xlmc.formula.shape import Shapes
 from xlmc.formula.stencil import Stencil, stencil
@@ -29,8 +30,6 @@ _NULL = ir.ErrorLiteral(ErrorCode.NULL)
 _PARAMETER: Final = re.compile(r"_xl[po][mp]\.", re.IGNORECASE)
 _OPTIONAL: Final = "_xlop."
 _NEEDED: Final = "_xlpm."
-
-_COPY: Final = "copy the value into this workbook; links are not followed"
 
 _DEEPEST: Final = 200
 """Levels of brackets, calls and names in a formula; Excel stops at 64 calls."""
@@ -190,12 +189,12 @@ class Resolver:
         return resolved
 
     def _reference(self, tree: ir.Reference, host: Cell, origin: tuple[int, int]) -> ir.Expression:
-        book = self._book(tree.book)
+        book = meant_book(self.workbook, tree.book, self._linked)
         if tree.last_sheet is not None:
             if book is not None:
-                raise FormulaError("refers to several sheets of another workbook", hint=_COPY)
+                raise FormulaError("refers to several sheets of another workbook", hint=COPY)
             return self._over_sheets(tree, host, origin)
-        sheet = self._sheet(tree.sheet, host) if book is None else self._linked_sheet(book, tree.sheet, host)
+        sheet = self._sheet(tree.sheet, host) if book is None else linked_sheet(self.workbook, book, tree.sheet, host)
         first, last = (_place(corner, host, origin) for corner in (tree.first, tree.last or tree.first))
         if self._open_names:  # in a name, relative references go around the edge of the sheet
             first, last = _wrapped(first), _wrapped(last)
@@ -220,35 +219,11 @@ class Resolver:
             joined = ir.Binary(",", joined, part)
         return joined
 
-    def _book(self, book: str | None) -> str | None:
-        """The linked workbook that is meant; None of this one."""
-        if book is None:
-            return self._linked
-        if book == "[0]":  # this book
-            return None
-        if book not in self.workbook.links:
-            raise FormulaError("refers to another workbook", hint=_COPY)
-        return book
-
-    def _linked_sheet(self, book: str, name: str | None, host: Cell) -> str:
-        sheets = {title.casefold(): title for title in self.workbook.links[book].sheets}
-        found = sheets.get((host.sheet if name is None else f"{book}{name}").casefold())
-        if found is None:
-            file = self.workbook.links[book].file
-            raise FormulaError(f"refers to {file or 'another workbook'}, of which no values are stored", hint=_COPY)
-        return found
-
-    def _linked_name(self, book: str, tree: ir.Name) -> ir.Expression:
-        """A name of another workbook, by what it stood for when Excel last read it."""
-        linked = self.workbook.links[book]
-        scopes = (None,) if tree.sheet is None else (f"{book}{tree.sheet}".casefold(), None)
-        named = [name for name in linked.names if name.name.casefold() == tree.name.casefold()]
-        found = next((n for scope in scopes for n in named if (n.sheet and n.sheet.casefold()) == scope), None)
-        if found is None and tree.sheet is None and len(named) == 1:
-            found = named[0]
-        if found is None or self._linked is not None:
-            message = f"refers to {tree.name!r} of {linked.file or 'another workbook'}, which is not stored"
-            raise FormulaError(message, hint=_COPY)
+    def _linked_name(self, book: str, name: ir.Name) -> ir.Expression:
+        """A name of another workbook, by what it stood for when Excel last read that."""
+        found = linked_name(self.workbook, book, name)
+        if self._linked is not None:
+            raise FormulaError(f"refers to {name.name!r} of another workbook, which stands for another name", hint=COPY)
         variables, self._variables, self._linked = self._variables, frozenset(), book
         try:
             return self._resolve(parse(found.text), Cell(found.sheet or book, 1, 1), (1, 1))
@@ -293,7 +268,7 @@ class Resolver:
         function = function_named_by(tree.name)
         if function is not None:
             return ir.FunctionName(function)
-        book = self._book(tree.book)
+        book = meant_book(self.workbook, tree.book, self._linked)
         if book is not None:
             return self._linked_name(book, tree)
         scope = host.sheet if tree.sheet is None else self._sheet(tree.sheet, host)

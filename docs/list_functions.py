@@ -11,6 +11,30 @@ from xlmc.functions.families import REGISTRY
 
 PAGE = Path(__file__).with_name("functions.md")
 
+RANGES = """## Ranges in plain formulas
+
+A formula that was entered neither with Ctrl-Shift-Enter nor as a dynamic array takes, of a range that stands where
+one value is wanted, the cell beside the formula: in its row of a column, in its column of a row, else `#VALUE!`. Some
+arguments have what is computed in them taken cell by cell all the same. Excel's file format keeps this for each
+argument of each function as its class: reference, value or array ("OpenOffice.org's Documentation of the Microsoft
+Excel File Format", section 3.2). The rows of the registry keep it too. What is computed of ranges is taken
+
+- cell by cell in all arguments of `SUMPRODUCT`, `MMULT`, `MDETERM`, `MINVERSE`, `FREQUENCY`, `MODE`, `CORREL`,
+  `COVAR`, `SLOPE` and kin, `SUMX2MY2` and kin, `CHITEST` and `FTEST`; in the data of `INDEX`, `LOOKUP`, `LINEST`,
+  `LOGEST`, `TREND`, `GROWTH`, `FORECAST`, `IRR`, `MIRR`, `PROB`, `TTEST` and `AGGREGATE` 14 to 19; and in the ranges
+  of `XLOOKUP`, `XMATCH`, `FILTER`, `SORT` and the other dynamic-array functions;
+- as the cell beside the formula, even within `SUMPRODUCT`, in conditions and branches of `IF`, `IFS`, `SWITCH`,
+  `CHOOSE`, `IFERROR` and `IFNA`, in the arguments of `VLOOKUP`, `HLOOKUP` and `TRANSPOSE`, and in the numbers of
+  `INDEX`. A range that is a branch, or the table of `VLOOKUP`, stays whole;
+- as around the call in all others, such as `SUM`, `AND`, `LARGE`, `MATCH`, `NPV`: cell by cell within `SUMPRODUCT`,
+  else as the cell beside the formula.
+
+So `SUM(INDEX((C1:C3>3)*C1:C3,0))` and `MATCH(1,INDEX((A1:A3="x")*(B1:B3=3),0),0)` need no Ctrl-Shift-Enter, and
+`SUMPRODUCT(IF(C1:C3>3,C1:C3))` needs it. In `VLOOKUP`, `CHOOSE({1,2},A1:A3,B1:B3)` does not need it, and
+`CHOOSE({1,2},A1:A3&C1:C3,B1:B3)` does. `OFFSET` that leads to several places at once is refused. A row or column
+number 0 of `INDEX` gives the same whether it is typed or drawn.
+"""
+
 LIMITS = """## Limits
 
 A workbook may ask for more than a machine has. xlmc asks before it takes memory, and refuses with the cell, the size
@@ -60,7 +84,7 @@ def page() -> str:
         "",
     ]
     lines += [f"**{letter}** {' '.join(f'`{name}`' for name in found)}\n" for letter, found in letters.items()]
-    return "\n".join([*lines, LIMITS])
+    return "\n".join([*lines, RANGES, LIMITS])
 
 
 if __name__ == "__main__":

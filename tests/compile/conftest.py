@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from xlmc.address import parse_address
 from xlmc.compile import Target
 from xlmc.compile import numpy_engine as module
 from xlmc.compile.engine import BLANK_RESULT, TEXT_RESULT
+from xlmc.compile.engines import ENGINES
 from xlmc.compile.lower import Lowering
 from xlmc.compile.numpy_engine import NumpyProgram
 from xlmc.errors import ErrorCode
@@ -98,3 +100,62 @@ def value(run):
         return outcome.forecasts[0][0]
 
     return evaluate
+
+
+def _plain(item):
+    """As a column of results has it: logicals as numbers, errors by their text."""
+    if isinstance(item, bool):
+        return float(item)
+    return item.text if isinstance(item, ErrorCode) else item
+
+
+WAYS = ["constants", "numpy", *(["jit"] if importlib.util.find_spec("llvmlite") else [])]
+
+
+@pytest.fixture(scope="session")
+def ways(lower):
+    """`ways(cells, formulas)`: what each formula gives from constants, and from assumptions of zero width in engines.
+
+    Every number among the cells is such an assumption, but for those in `held`. A formula is a text, which lies in
+    column Z of sheet S beside nothing, or a pair of its address and its text.
+    """
+
+    def compute(cells, formulas, held=(), **of_workbook):
+        placed = [f if isinstance(f, tuple) else (f"Z{100 + i}", f) for i, f in enumerate(formulas)]
+        book = cells | {address: f"={text}" for address, text in placed}
+        targets = [address for address, _ in placed]
+        lowering, found = lower(book, {}, targets, **of_workbook)
+        known = [lowering.known(target) for target in found]
+        answers = {"constants": [_plain(value.objects().ravel()[0]) for value in known]}
+        drawn = {a: v for a, v in cells.items() if type(v) in (int, float) and a not in held}
+        draws = {address: np.full(3, float(value)) for address, value in drawn.items()}
+        for way in WAYS[1:]:
+            lowering, found = lower(book, draws, targets, **of_workbook)
+            program = ENGINES[way](lowering, [], found, frozenset(draws))
+            evaluator = program.evaluator(3)
+            list(evaluator.filters(draws, 3))
+            columns = [_objects(column) for column in evaluator.forecasts(np.arange(3))]
+            assert all(len(set(map(str, column))) == 1 for column in columns)
+            answers[way] = [column[0] for column in columns]
+        return answers
+
+    return compute
+
+
+@pytest.fixture(scope="session")
+def gives(ways):
+    """`gives(cells, table)`: what differs from a table of formula -> value, as a list of lines."""
+
+    def compare(cells, table, held=(), **of_workbook):
+        found = ways(cells, [formula for formula, _ in table], held, **of_workbook)
+        lines = []
+        for way, answers in found.items():
+            for (formula, expected), got in zip(table, answers, strict=True):
+                wanted = _plain(expected)
+                wanted = "text" if isinstance(wanted, str) and way != "constants" and wanted[:1] != "#" else wanted
+                same = got == wanted if isinstance(wanted, str) or isinstance(got, str) else abs(got - wanted) < 1e-12
+                if not same:
+                    lines.append(f"{way}: {formula} gives {got!r}, not {wanted!r}")
+        return lines
+
+    return compare

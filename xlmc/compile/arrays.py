@@ -19,7 +19,7 @@ from xlmc.functions import Function, Kind
 from xlmc.functions.registry import Cells
 from xlmc.functions.values import Value, constant
 
-__all__ = ["cell_by_cell", "element", "grid", "size_of", "spread"]
+__all__ = ["beside", "cell_by_cell", "element", "grid", "size_of", "spread"]
 
 LARGEST: Final = 10_000
 """Cells of a varying array that are made nodes of their own; a larger one is computed as a whole."""
@@ -68,6 +68,33 @@ def _picked(value: Value, row: int, column: int) -> Value:
         return constant(ErrorCode.NA)
     parts = [None if a is None else np.broadcast_to(a, value.shape)[:, row, column] for a in value.arrays()]
     return Value(parts[0], parts[1], parts[2])  # type: ignore[arg-type]  # only texts may be None
+
+
+def beside(dag: Dag, place: int, row: int, column: int) -> int:
+    """The node of a single value of what may be a whole column or row of a range: its cell beside the formula.
+
+    Args:
+        dag: of the nodes.
+        place: a cell, column, row or all of a range.
+        row: the formula's, counted from the first cell of the range.
+        column: likewise.
+    """
+    return place if dag.sizes[place] is None else dag.add(ApplyNode(_picker_beside(row, column), (place,)))
+
+
+@cache
+def _picker_beside(row: int, column: int) -> Function:
+    body = partial(_picked_beside, row=row, column=column)
+    return Function(f"cell beside {row},{column}", (Cells,), body, Kind.ANY)
+
+
+def _picked_beside(value: Value, row: int, column: int) -> Value:
+    """(n, r, c) -> (n,)."""
+    rows, columns = value.shape[1:] or (1, 1)
+    at = (0 if rows == 1 else row), (0 if columns == 1 else column)
+    if (rows > 1 and columns > 1) or not (0 <= at[0] < rows and 0 <= at[1] < columns):
+        return constant(ErrorCode.VALUE)
+    return _picked(value, *at)
 
 
 def grid(dag: Dag, rows: int, columns: int, at: Callable[[int, int], int]) -> int:

@@ -1,6 +1,8 @@
 """Functions that take one of their arguments: IF, IFS, SWITCH, CHOOSE, IFERROR, IFNA.
 
-A condition that is known decides while the formula is lowered, and the other branches are never looked at.
+A condition that is known decides while the formula is lowered, and the other branches are never looked at. In a plain
+formula, conditions and what is computed in branches take the cell of a range beside the formula, also within SUMPRODUCT
+and its like, as in Excel; a branch that is a range goes on whole.
 """
 
 from __future__ import annotations
@@ -31,7 +33,7 @@ def decided(lowering: Lowering, condition: int) -> bool | None:
 
 def _if(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
     no = arguments[2] if len(arguments) == 3 else ir.Logical(False)
-    return _chosen(lowering, lowering.lower(arguments[0], scope), (arguments[1], no), scope)
+    return _chosen(lowering, lowering.lower(arguments[0], scope.plainly()), (arguments[1], no), scope.branch())
 
 
 def _chosen(lowering: Lowering, condition: int, branches: Arguments, scope: Scope) -> int:
@@ -61,23 +63,24 @@ def _ifs(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
     place = lowering.error(ErrorCode.NA)
     pairs = list(zip(arguments[::2], arguments[1::2], strict=True))
     for test, value in reversed(pairs):
-        condition = lowering.lower(test, scope)
-        place = select(lowering, condition, lowering.zero_if_blank(lowering.lower(value, scope)), place)
+        condition = lowering.lower(test, scope.plainly())
+        place = select(lowering, condition, lowering.zero_if_blank(lowering.lower(value, scope.branch())), place)
     return place
 
 
 def _switch(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
-    subject, rest = lowering.lower(arguments[0], scope), arguments[1:]
+    subject, rest = lowering.lower(arguments[0], scope.plainly()), arguments[1:]
     last = rest[-1] if len(rest) % 2 else ir.ErrorLiteral(ErrorCode.NA)
-    place = lowering.zero_if_blank(lowering.lower(last, scope))
+    place = lowering.zero_if_blank(lowering.lower(last, scope.branch()))
     for match, result in reversed(list(zip(rest[: len(rest) // 2 * 2 : 2], rest[1::2], strict=True))):
-        same = lowering.call("=", (subject, lowering.lower(match, scope)))
-        place = select(lowering, same, lowering.zero_if_blank(lowering.lower(result, scope)), place)
+        same = lowering.call("=", (subject, lowering.lower(match, scope.plainly())))
+        place = select(lowering, same, lowering.zero_if_blank(lowering.lower(result, scope.branch())), place)
     return place
 
 
 def _choose(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
-    index = lowering.call("TRUNC", (lowering.lower(arguments[0], scope),))
+    index = lowering.call("TRUNC", (lowering.lower(arguments[0], scope.plainly()),))
+    scope = scope.branch()
     known = lowering.known_single(index)
     if known is not None and known.plain:
         place = int(known.numbers[0])
@@ -96,7 +99,7 @@ def _bad_index(lowering: Lowering) -> int:
 
 def _rescue(only_na: bool) -> Callable[[Lowering, Arguments, Scope], int]:
     def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
-        return _rescued(lowering, lowering.lower(arguments[0], scope), arguments[1], scope, only_na)
+        return _rescued(lowering, lowering.lower(arguments[0], scope.plainly()), arguments[1], scope.branch(), only_na)
 
     return lower
 
@@ -120,7 +123,7 @@ def _rescued(lowering: Lowering, value: int, instead: ir.Expression, scope: Scop
 
 def _single(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
     """`@x`: the cell of a range beside the formula."""
-    plain = Scope(scope.cell, False, scope.variables, scope.depth)
+    plain = Scope(scope.cell, variables=scope.variables, depth=scope.depth)
     return lowering.single(lowering.lower(arguments[0], plain))
 
 

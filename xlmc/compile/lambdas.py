@@ -63,10 +63,9 @@ def _variable(lowering: Lowering, name: str, scope: Scope) -> int:
     if isinstance(found, Closure):
         raise NothingCallsError
     if isinstance(found, Thunk):
-        if scope.array not in found.known:
-            seen = found.scope.seen_from(scope)
-            found.known[scope.array] = lowering.lower(found.tree, seen)
-        return found.known[scope.array]
+        if scope.taking not in found.known:
+            found.known[scope.taking] = lowering.lower(found.tree, found.scope.seen_from(scope))
+        return found.known[scope.taking]
     return found
 
 

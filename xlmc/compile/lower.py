@@ -32,7 +32,7 @@ from xlmc.functions import Function, Kind
 from xlmc.functions.budget import CallCount, ask_for_reading
 from xlmc.functions.families import REGISTRY, function_named
 from xlmc.functions.logical import zero_if_blank
-from xlmc.functions.registry import Anything
+from xlmc.functions.registry import Anything, Ranges
 from xlmc.functions.values import BLANK, Value, constant
 
 __all__ = ["Lowering"]
@@ -41,10 +41,8 @@ __all__ = ["Lowering"]
 _FACTORS = {"RADIANS": np.pi / 180, "DEGREES": 180 / np.pi}
 """Functions that are a multiplication, to the last bit; NumPy's own are several times slower."""
 
-_OVER_ARRAYS = {"SUMPRODUCT", "MMULT", "MDETERM", "MINVERSE", "LOOKUP", "FREQUENCY"}
-"""Functions that evaluate their arguments cell by cell, as an array formula does; all others have Excel pick the cell
-of a range that stands beside the formula."""
-
+_PASSING_ON = ir.Call | ir.Let | ir.Invoke
+"""Trees that may give a range whole where one is wanted: choices, INDEX, LET, LAMBDA."""
 
 _SHOWN = Function("shown", (Anything,), zero_if_blank, Kind.ANY)
 
@@ -166,7 +164,7 @@ class Lowering:
                 raise self.graph.faults[cell]
             if formula is None:
                 return self._filled_cell(cell, tree)
-            place = self._whole_formula(tree, Scope(cell, array=formula.array is not None or formula.dynamic))
+            place = self._whole_formula(tree, Scope(cell, formula.array is not None or formula.dynamic))
             self._arrays[cell] = place
             place = self.single(place)
         except NotYetNeeded as needed:
@@ -250,15 +248,13 @@ class Lowering:
             case Cell():
                 return self.cell(tree)
             case Area():
-                if scope.array and tree.is_cut:
-                    raise refused("what takes all cells")
-                return self.range(tree) if scope.array else self._intersected(tree, scope.cell)
+                return self.range(tree) if scope.array or scope.whole else self._intersected(tree, scope.cell)
             case ir.Array(rows):
                 return self.dag.add(Range(tuple(tuple(self.lower(part, scope) for part in row) for row in rows)))
             case ir.Unary("+", operand):
-                return self.lower(operand, scope)
+                return self.lower(operand, scope.inside())
             case ir.Unary(operator, operand):
-                return self.call("%" if operator == "%" else "u-", (self.lower(operand, scope),))
+                return self.call("%" if operator == "%" else "u-", (self.lower(operand, scope.inside()),))
             case ir.Binary():
                 return self._chain(tree, scope)
             case ir.Call(name, arguments):
@@ -274,6 +270,7 @@ class Lowering:
         if tree.operator in (",", ":", " "):
             return self._joined(tree, scope)
         first, rest = ir.chain(tree)
+        scope = scope.inside()
         place = self.lower(first, scope)
         for operator, run in groupby(rest, lambda step: step[0]):
             parts = [self.lower(right, scope) for _, right in run]
@@ -308,8 +305,10 @@ class Lowering:
     def _function_call(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int:
         check_count(name, arguments)
         made = self._special(name, arguments, scope)
-        if made is not None:
-            return made
+        return self.applied(name, arguments, scope) if made is None else made
+
+    def applied(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int:
+        """The node of a function of values."""
         function = function_named(name) or self._fallback(name, scope)
         if function is None:
             raise _unknown_function(name)
@@ -320,19 +319,18 @@ class Lowering:
             total = self._totals.sum_of(function, arguments[0].filled, self.range)
             if total is not None:
                 return total
-        beside = scope.over_arrays() if name in _OVER_ARRAYS else scope
+        scope = scope.inside()
 
         def make(parts: tuple[ir.Expression, ...], first: Mapping[int, Function]) -> int:
-            return self._call_of(function, parts, scope, beside, first)
+            return self._call_of(function, parts, scope, first)
 
-        return whole_columns.lowered(self, name, function, arguments, beside, make)
+        return whole_columns.lowered(self, name, function, arguments, scope, make)
 
     def _call_of(
         self,
         function: Function,
         arguments: tuple[ir.Expression, ...],
         scope: Scope,
-        beside: Scope,
         first: Mapping[int, Function],
     ) -> int:
         """A call of a function of the registry; some of its arguments go through another function first."""
@@ -340,7 +338,9 @@ class Lowering:
         found: list[int] = []
         for position, argument in enumerate(arguments):
             parameter = function.parameter(position)
-            part = self.whole(argument, beside) if parameter.ranged else [self.lower(argument, scope)]
+            beside = scope.of(parameter.ranges)
+            whole = parameter.ranged and (beside.array or parameter.ranges is not Ranges.SINGLE)
+            part = self.whole(argument, beside) if whole else [self.lower(argument, beside)]
             if position in first:
                 part = [self.made(first[position], (place,)) for place in part]
             found += part if parameter.repeat else [self._stacked(part)]
@@ -403,7 +403,7 @@ class Lowering:
         except NoReference as found:
             return [self.error(found.code)]
         if areas is None:
-            return [self.lower(tree, scope.over_arrays() if _gives_area(tree) else scope)]
+            return [self.lower(tree, scope.wanted_whole() if isinstance(tree, _PASSING_ON) else scope)]
         return [self.range(area) for area in areas]
 
     def range(self, area: Area) -> int:
@@ -433,13 +433,6 @@ class Lowering:
         if name == "^" and arguments[1] == self.number(2.0):
             return self.call("*", (arguments[0], arguments[0]))
         return self.made(REGISTRY[name], arguments)
-
-
-def _gives_area(tree: ir.Expression) -> bool:
-    """Whether a choice that varies is one between ranges, which it then gives whole."""
-    if isinstance(tree, ir.Call) and tree.name in choices.CHOICES:
-        return any(_gives_area(branch) for branch in tree.arguments[1:])
-    return isinstance(tree, Area)
 
 
 def _merged(function: Function, arguments: tuple[int, ...], picked: tuple[int, ...]) -> tuple[int, ...]:

@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of, quote_sheet
-from xlmc.compile.arrays import grid
+from xlmc.compile.arrays import beside, grid
 from xlmc.compile.dag import Range
 from xlmc.compile.empty_cells import refused
 from xlmc.compile.extents import beyond, leveled
-from xlmc.compile.references import REFERENCES, NoReference, NotYetNeeded, areas_of, cut, needed
+from xlmc.compile.references import REFERENCES, NoReference, NotYetNeeded, areas_of, cut, many_numbers, needed, one_area
 from xlmc.compile.scope import Scope
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
@@ -37,6 +37,22 @@ def _value_of(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
         return lowering.lower(areas[0], scope)
 
     return lower
+
+
+def _index(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+    """INDEX; where row or column 0 makes it a whole column or row, a plain formula takes the cell beside it."""
+    if REFERENCES["INDEX"](lowering, arguments, scope) is not None:
+        return _value_of("INDEX")(lowering, arguments, scope)
+    areas = areas_of(lowering, arguments[0], scope.inside())
+    if areas is None:
+        return None
+    if len(areas) > 1:
+        area = one_area(lowering, arguments, areas, scope)
+        return lowering.lower(ir.Call("INDEX", (area, *arguments[1:3])), scope)
+    if scope.array or scope.whole or many_numbers(lowering, arguments[1:], scope):
+        return None
+    place = lowering.applied("INDEX", arguments, scope)
+    return beside(lowering.dag, place, scope.cell.row - areas[0].top, scope.cell.column - areas[0].left)
 
 
 def _row_or_column(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
@@ -91,7 +107,7 @@ def _of_first_cell(name: str) -> Callable[[Lowering, Arguments, Scope], int | No
     def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
         areas = areas_of(lowering, arguments[0], scope)
         if areas is None:
-            return None
+            return lowering.call(name, (lowering.whole(arguments[0], scope)[0],))
         first = areas[0]
         return lowering.call(name, (lowering.cell(Cell(first.sheet, first.top, first.left)),))
 
@@ -300,7 +316,7 @@ def _blanks(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | Non
 PLACES: Mapping[str, Callable[[Lowering, Arguments, Scope], int | None]] = {
     "OFFSET": _value_of("OFFSET"),
     "INDIRECT": _value_of("INDIRECT"),
-    "INDEX": _value_of("INDEX"),
+    "INDEX": _index,
     "ROW": _row_or_column("ROW"),
     "COLUMN": _row_or_column("COLUMN"),
     "ROWS": _count("ROWS"),

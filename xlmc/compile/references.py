@@ -7,7 +7,7 @@ beforehand; `NotYetNeeded` then asks for a wider graph.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of
@@ -22,7 +22,7 @@ from xlmc.functions.values import Codes
 if TYPE_CHECKING:
     from xlmc.compile.lower import Lowering
 
-__all__ = ["REFERENCES", "NoReference", "NotYetNeeded", "areas_of", "cut", "needed"]
+__all__ = ["REFERENCES", "NoReference", "NotYetNeeded", "areas_of", "cut", "many_numbers", "needed", "one_area"]
 
 Arguments = tuple[ir.Expression, ...]
 
@@ -126,7 +126,10 @@ def _whole_number(lowering: Lowering, tree: ir.Expression, scope: Scope, functio
     """A known argument, cut to a whole number; None where it is left out."""
     if isinstance(tree, ir.Missing):
         return None
-    known = lowering.known_single(lowering.single(lowering.lower(tree, scope)))
+    place = lowering.lower(tree, scope.inside())
+    if lowering.dag.sizes[place] not in (None, (1, 1)) and scope.array:
+        raise FormulaError(f"{function} leads to several places at once")
+    known = lowering.known_single(lowering.single(place))
     if known is None:
         hint = "INDEX or a lookup function does the same with arguments that vary"
         raise FormulaError(f"{function} depends on a value that varies; where it leads must be fixed", hint=hint)
@@ -216,23 +219,49 @@ def _step(text: str | None, base: int) -> int:
     return base + int(text[1:-1]) if text.startswith("[") else int(text)
 
 
+def many_numbers(lowering: Lowering, numbers: Arguments, scope: Scope) -> bool:
+    """Whether INDEX is given several numbers at once; of numbers in braces a plain formula takes the first."""
+    computed = [tree for tree in numbers if not isinstance(tree, ir.Array | ir.Missing)]
+    return any(lowering.dag.sizes[lowering.lower(tree, scope.plainly())] is not None for tree in computed)
+
+
+def one_area(lowering: Lowering, arguments: Arguments, areas: Sequence[Area], scope: Scope) -> Area:
+    """The area that the fourth argument of INDEX names.
+
+    Raises:
+        NoReference: it names none.
+        FormulaError: it varies.
+    """
+    which = 1 if len(arguments) < 4 else _whole_number(lowering, arguments[3], scope.plainly(), "INDEX")
+    if which is not None and which < 1:
+        raise NoReference(ErrorCode.VALUE)
+    if which is not None and which > len(areas):
+        raise NoReference
+    return areas[(which or 1) - 1]
+
+
 def _index(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
     """INDEX of a reference at a known place; None leaves it to the function of values."""
     areas = areas_of(lowering, arguments[0], scope)
+    if many_numbers(lowering, arguments[1:], scope):
+        return None
     try:
-        numbers = [_whole_number(lowering, argument, scope, "INDEX") or 0 for argument in arguments[1:]]
+        plain = scope.plainly()
+        numbers = [_whole_number(lowering, argument, plain, "INDEX") or 0 for argument in arguments[1:]]
     except FormulaError:
         return None
     if areas is None or scope.array:
         return None
     which = numbers[2] if len(numbers) > 2 else 1
-    if not 1 <= which <= len(areas):
+    if any(number < 0 for number in numbers) or which == 0:
+        raise NoReference(ErrorCode.VALUE)
+    if which > len(areas):
         raise NoReference
     area = areas[which - 1].whole
     row, column = (numbers[0], numbers[1]) if len(numbers) > 1 else (numbers[0], 0 if area.columns > 1 else 1)
     if len(numbers) == 1 and area.rows == 1:
         row, column = 1, numbers[0]
-    if row < 0 or column < 0 or row > area.rows or column > area.columns:
+    if row > area.rows or column > area.columns:
         raise NoReference
     top, bottom = (area.top, area.bottom) if row == 0 else (area.top + row - 1,) * 2
     left, right = (area.left, area.right) if column == 0 else (area.left + column - 1,) * 2
@@ -243,18 +272,19 @@ def _chosen(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area
     """IF and CHOOSE of references, the choice being known."""
     if not any(isinstance(part, Cell | Area | ir.Call) for part in arguments[1:]):
         return None
-    known = lowering.known_single(lowering.single(lowering.lower(arguments[0], scope)))
+    known = lowering.known_single(lowering.lower(arguments[0], scope.plainly()))
     if known is None or not known.plain:
         return None
     place = int(known.numbers[0])
-    return areas_of(lowering, arguments[place], scope) if 0 < place < len(arguments) else None
+    return areas_of(lowering, arguments[place], scope.branch()) if 0 < place < len(arguments) else None
 
 
 def _either(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
-    condition = choices.decided(lowering, lowering.lower(arguments[0], scope)) if len(arguments) > 1 else None
+    place = lowering.lower(arguments[0], scope.plainly()) if len(arguments) > 1 else None
+    condition = None if place is None else choices.decided(lowering, place)
     if condition is None or (not condition and len(arguments) < 3):
         return None
-    return areas_of(lowering, arguments[1 if condition else 2], scope)
+    return areas_of(lowering, arguments[1 if condition else 2], scope.branch())
 
 
 REFERENCES: Mapping[str, Callable[[Lowering, Arguments, Scope], list[Area] | None]] = {

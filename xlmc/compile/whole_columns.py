@@ -23,6 +23,7 @@ from xlmc.errors import FormulaError
 from xlmc.formula import ir
 from xlmc.functions import Function
 from xlmc.functions.families import function_named
+from xlmc.functions.registry import Ranges
 from xlmc.functions.values import BLANK, ERROR, LOGICAL, NUMBER
 
 if TYPE_CHECKING:
@@ -43,7 +44,9 @@ _LOOKUPS: Final[Mapping[str, int]] = {"MATCH": 2, "VLOOKUP": 3, "HLOOKUP": 3, "X
 
 @dataclass(frozen=True)
 class _Call:
-    """A call of a function: by position, the areas of arguments that refer, and whether others hold such ranges."""
+    """A call of a function: by position, the areas of arguments that refer, and which others compute something of such
+    ranges cell by cell; the scope is that of these.
+    """
 
     lowering: Lowering
     name: str
@@ -97,19 +100,21 @@ def lowered(lowering: Lowering, name: str, function: Function, arguments: Argume
         name: the function's.
         function: its row.
         arguments: trees.
-        scope: of the arguments that take ranges.
+        scope: of the call.
         make: makes the node of a call with arguments of which none is cut.
 
     Raises:
         FormulaError: what the function makes of the empty cells is not known.
     """
     ranged = [i for i in range(len(arguments)) if function.parameter(i).ranged]
-    found = {i: _areas(lowering, arguments[i], scope) for i in ranged}
+    scopes = {i: scope.of(function.parameter(i).ranges) for i in ranged}
+    found = {i: _areas(lowering, arguments[i], scopes[i]) for i in ranged}
     direct = {i: areas for i, areas in found.items() if areas is not None}
-    mixed = tuple(i for i in ranged if i not in direct and scope.array and _holds(lowering, arguments[i], scope))
+    computed = [i for i in ranged if i not in direct and scopes[i].array]
+    mixed = tuple(i for i in computed if _holds(lowering, arguments[i], scopes[i]))
     if not mixed and not any(area.is_cut for areas in direct.values() for area in areas):
         return make(arguments, {})
-    call = _Call(lowering, name, function, arguments, scope, make, direct, mixed)
+    call = _Call(lowering, name, function, arguments, scope.over_arrays(), make, direct, mixed)
     return _of_expressions(call) if mixed else _of_areas(call)
 
 
@@ -293,7 +298,7 @@ def _areas(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area] 
         return None
     if isinstance(tree, ir.Call) and tree.name in CHOICES:
         check_count(tree.name, tree.arguments)
-        if scope.array and _holds(lowering, tree.arguments[0], scope):
+        if scope.of_array and _holds(lowering, tree.arguments[0], scope):
             return None  # a condition of many cells
     try:
         return areas_of(lowering, tree, scope)
@@ -326,20 +331,37 @@ def _exposed(lowering: Lowering, tree: ir.Expression, scope: Scope, change: _Cha
             for step, right in rest:
                 built = ir.Binary(step, built, _exposed(lowering, right, scope, change))
             return built
-        case ir.Call(name, arguments) if name in CHOICES:
+        case ir.Call(name, arguments) if name in CHOICES and scope.of_array:
             return ir.Call(name, tuple(_exposed(lowering, part, scope, change) for part in arguments))
+        case ir.Call(name, (test, *branches)) if name in CHOICES:
+            return ir.Call(name, (test, *(_exposed_branch(lowering, part, scope, change) for part in branches)))
         case ir.Call(name) if name in REFERENCES:
             return _referred(lowering, tree, scope, change)
         case ir.Binary() | ir.Variable():
             return _referred(lowering, tree, scope, change)
         case ir.Call(name, arguments) if (function := function_named(name)) is not None and arguments:
             check_count(name, arguments)
-            spared = [len(function.parameters) == 0 or function.parameter(i).ranged for i in range(len(arguments))]
+            spared = [_is_spared(function, i, scope) for i in range(len(arguments))]
             parts = zip(arguments, spared, strict=True)
             made = tuple(part if kept else _exposed(lowering, part, scope, change) for part, kept in parts)
             return ir.Call(name, made)
         case _:
             return tree
+
+
+def _exposed_branch(lowering: Lowering, tree: ir.Expression, scope: Scope, change: _Change) -> ir.Expression:
+    """A branch in a plain formula: a range goes on whole, what is computed takes the cell of a range beside it."""
+    goes_on = isinstance(tree, Area | ir.Variable) or (isinstance(tree, ir.Call) and tree.name in CHOICES)
+    return _exposed(lowering, tree, scope, change) if goes_on else tree
+
+
+def _is_spared(function: Function, position: int, scope: Scope) -> bool:
+    """Whether an argument takes a range whole, or the cell of a range beside the formula, rather than cell by cell."""
+    if not function.parameters:
+        return True
+    parameter = function.parameter(position)
+    beside = parameter.ranges in (Ranges.BESIDE, Ranges.SINGLE) and not scope.of_array
+    return parameter.ranged or beside
 
 
 def _referred(lowering: Lowering, tree: ir.Expression, scope: Scope, change: _Change) -> ir.Expression:

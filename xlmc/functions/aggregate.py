@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import direct_errors, earliest, with_errors
-from xlmc.functions.registry import Cells, Number, Numbers, excel
+from xlmc.functions.registry import Arrays, Cells, Number, Numbers, excel
 from xlmc.functions.values import BLANK, DIV0, NUM, NUMBER, TEXT, Bools, Codes, Floats, Value, constant
 
 __all__: list[str] = []
@@ -164,7 +164,7 @@ def _first(errors: Iterable[Codes]) -> Codes:
     return first
 
 
-@excel("SUMPRODUCT", Cells(repeat=True))
+@excel("SUMPRODUCT", Arrays(repeat=True))
 def sum_product(*values: Value) -> Value:
     """Sum of the products of the cells in one place; what is not a number is 0; `#VALUE!` for unequal shapes.
 

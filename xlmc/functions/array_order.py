@@ -24,13 +24,13 @@ from xlmc.functions.array_arguments import Refusal, array_function, decided, gri
 from xlmc.functions.ordering import ordered
 from xlmc.functions.picking import Places, flattened, picked, transposed
 from xlmc.functions.portions import by_portions
-from xlmc.functions.registry import Anything, Cells, Logical, Number
+from xlmc.functions.registry import Anything, Arrays, Logical, Number
 from xlmc.functions.values import BLANK, ERROR, Bools, Codes, Floats, Value, constant
 
 __all__: list[str] = []
 
 
-@array_function("FILTER", Cells, Cells, Anything(default=None))
+@array_function("FILTER", Arrays, Arrays, Anything(default=None))
 def filter_(array: Value, include: Value, if_empty: Value | None = None) -> Value:
     """The rows, or columns, where `include` holds; `if_empty`, or `#CALC!`, where it holds nowhere."""
     grid, test = grid_of(array), grid_of(include)
@@ -60,7 +60,7 @@ def _rows(grid: Value, rows: Places) -> Value:
     return picked(grid, rows[:, :, None], np.arange(grid.shape[2])[None, None, :])
 
 
-@array_function("SORT", Cells, Cells(default=None), Cells(default=None), Logical(default=False))
+@array_function("SORT", Arrays, Arrays(default=None), Arrays(default=None), Logical(default=False))
 def sort(array: Value, index: Value | None = None, order: Value | None = None, by_column: Value | None = None) -> Value:
     """The rows in the order of one column, or of several; 1 rising, -1 falling. Or so the columns."""
     grid = grid_of(array)
@@ -89,7 +89,7 @@ def _numbers(value: Value | None) -> tuple[Floats, Codes]:
     return flattened(numbers, value), flattened(errors, value)
 
 
-@array_function("SORTBY", Cells, Cells(repeat=True), Number(default=1.0, repeat=True))
+@array_function("SORTBY", Arrays, Arrays(repeat=True), Number(default=1.0, repeat=True))
 def sort_by(array: Value, *pairs: Value) -> Value:
     """The rows, or columns, in the order of the first column, or row, beside the array; of the next where equal."""
     grid, keys = grid_of(array), [grid_of(key) for key in pairs[::2]]
@@ -120,7 +120,7 @@ def _in_order(keys: Sequence[Value], signs: Sequence[Floats]) -> Places:
     return np.asarray(np.lexsort(np.broadcast_arrays(*least_first), axis=-1))
 
 
-@array_function("UNIQUE", Cells, Logical(default=False), Logical(default=False))
+@array_function("UNIQUE", Arrays, Logical(default=False), Logical(default=False))
 def unique(array: Value, by_column: Value | None = None, once: Value | None = None) -> Value:
     """Each different row, or column, once; or those only that occur once. Texts differ by more than case."""
     grid = grid_of(array)

@@ -10,7 +10,7 @@ from xlmc.functions.arguments import earliest, first_errors, if_blank, where_wro
 from xlmc.functions.array_arguments import Refusal, array_function, decided, grid_of, kept, padded, refuse_errors
 from xlmc.functions.budget import ask_for_cells
 from xlmc.functions.picking import Places, each_part, joined, picked, transposed
-from xlmc.functions.registry import Anything, Cells, Logical, Number
+from xlmc.functions.registry import Anything, Arrays, Logical, Number
 from xlmc.functions.values import BLANK, ERROR, Floats, Value
 
 __all__: list[str] = []
@@ -39,7 +39,7 @@ def _number(value: Value | None) -> Floats:
     return numbers[:, :1, :1]
 
 
-@array_function("TAKE", Cells, Number, Number(default=None))
+@array_function("TAKE", Arrays, Number, Number(default=None))
 def take(array: Value, rows: Value, columns: Value | None = None) -> Value:
     """The first rows and columns, or with negative numbers the last."""
     grid = grid_of(array)
@@ -55,7 +55,7 @@ def _taken(count: int | None) -> slice:
     return slice(count) if count > 0 else slice(count, None)
 
 
-@array_function("DROP", Cells, Number, Number(default=None))
+@array_function("DROP", Arrays, Number, Number(default=None))
 def drop(array: Value, rows: Value, columns: Value | None = None) -> Value:
     """All but the first rows and columns, or with negative numbers but the last."""
     grid = grid_of(array)
@@ -70,7 +70,7 @@ def _left(count: int | None, size: int) -> slice:
     return slice(count, None) if count >= 0 else slice(count)
 
 
-@array_function("CHOOSEROWS", Cells, Cells(repeat=True))
+@array_function("CHOOSEROWS", Arrays, Arrays(repeat=True))
 def choose_rows(array: Value, *numbers: Value) -> Value:
     """Rows by their numbers, from 1, or from -1 backwards; these may differ between trials."""
     grid = grid_of(array)
@@ -79,7 +79,7 @@ def choose_rows(array: Value, *numbers: Value) -> Value:
     return picked(grid, rows[:, :, None], np.arange(grid.shape[2])[None, None, :])
 
 
-@array_function("CHOOSECOLS", Cells, Cells(repeat=True))
+@array_function("CHOOSECOLS", Arrays, Arrays(repeat=True))
 def choose_columns(array: Value, *numbers: Value) -> Value:
     """Columns by their numbers, from 1, or from -1 backwards; these may differ between trials."""
     grid = grid_of(array)
@@ -102,7 +102,7 @@ def _chosen(numbers: tuple[Value, ...], size: int) -> Places:
     return np.where(places > 0, places - 1, places + size).astype(np.intp)
 
 
-@array_function("EXPAND", Cells, Number, Number(default=None), Anything(default=None))
+@array_function("EXPAND", Arrays, Number, Number(default=None), Anything(default=None))
 def expand(array: Value, rows: Value, columns: Value | None = None, pad: Value | None = None) -> Value:
     """The array with rows and columns of `pad` added, up to so many; `#VALUE!` for fewer than there are."""
     grid = grid_of(array)
@@ -114,13 +114,13 @@ def expand(array: Value, rows: Value, columns: Value | None = None, pad: Value |
     return padded(grid, np.arange(r)[None, :, None], np.arange(c)[None, None, :], pad)
 
 
-@array_function("VSTACK", Cells(repeat=True))
+@array_function("VSTACK", Arrays(repeat=True))
 def vstack(*arrays: Value) -> Value:
     """The arrays one below the other, the narrow ones filled up with `#N/A`."""
     return _stacked([value.as_range() for value in arrays])
 
 
-@array_function("HSTACK", Cells(repeat=True))
+@array_function("HSTACK", Arrays(repeat=True))
 def hstack(*arrays: Value) -> Value:
     """The arrays side by side, the short ones filled up with `#N/A`."""
     return transposed(_stacked([transposed(value.as_range()) for value in arrays]))
@@ -135,7 +135,7 @@ def _stacked(grids: list[Value]) -> Value:
     return joined(tall, axis=1)
 
 
-@array_function("TOCOL", Cells, Number(default=0.0), Logical(default=False))
+@array_function("TOCOL", Arrays, Number(default=0.0), Logical(default=False))
 def to_column(array: Value, ignore: Value | None = None, by_column: Value | None = None) -> Value:
     """All cells in one column, row by row or column by column; `ignore` is 1 for blanks, 2 for errors, 3 for both."""
     grid = grid_of(array)
@@ -149,13 +149,13 @@ def to_column(array: Value, ignore: Value | None = None, by_column: Value | None
     return picked(column, kept(~(blank | wrong)[:, :, 0])[:, :, None], np.zeros((1, 1, 1), np.intp))
 
 
-@array_function("TOROW", Cells, Number(default=0.0), Logical(default=False))
+@array_function("TOROW", Arrays, Number(default=0.0), Logical(default=False))
 def to_row(array: Value, ignore: Value | None = None, by_column: Value | None = None) -> Value:
     """All cells in one row, as `TOCOL` has them in one column."""
     return transposed(to_column(array, ignore, by_column))
 
 
-@array_function("WRAPROWS", Cells, Number, Anything(default=None))
+@array_function("WRAPROWS", Arrays, Number, Anything(default=None))
 def wrap_rows(vector: Value, count: Value, pad: Value | None = None) -> Value:
     """A row or column laid out in rows of so many cells, the last filled up with `pad`."""
     grid, size = grid_of(vector), decided(count, 0)
@@ -169,7 +169,7 @@ def wrap_rows(vector: Value, count: Value, pad: Value | None = None) -> Value:
     return padded(row, np.zeros((1, 1, 1), np.intp), places, pad)
 
 
-@array_function("WRAPCOLS", Cells, Number, Anything(default=None))
+@array_function("WRAPCOLS", Arrays, Number, Anything(default=None))
 def wrap_columns(vector: Value, count: Value, pad: Value | None = None) -> Value:
     """A row or column laid out in columns of so many cells, the last filled up with `pad`."""
     return transposed(wrap_rows(vector, count, pad))

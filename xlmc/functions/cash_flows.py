@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from xlmc.errors import ErrorCode
 from xlmc.functions.annuities import growth
 from xlmc.functions.arguments import earliest, first_errors, where_wrong
-from xlmc.functions.registry import Anything, Cells, excel
+from xlmc.functions.registry import Anything, Arrays, Cells, excel
 from xlmc.functions.roots import growth_root
 from xlmc.functions.values import NUMBER, Bools, Codes, Floats, Value
 
@@ -86,7 +86,7 @@ def has_both_signs(flows: Floats, counts: Bools) -> Bools:
     return np.asarray((counts & (flows > 0)).any(axis=1) & (counts & (flows < 0)).any(axis=1))
 
 
-@excel("IRR", Cells, Anything(default=None))
+@excel("IRR", Arrays, Anything(default=None))
 def internal_rate(values: Value, guess: Value | None = None) -> Value:
     """Rate at which the payments are worth nothing; of several, the one nearest to the guess (10 %).
 
@@ -117,7 +117,7 @@ def guess_of(guess: Value | None) -> tuple[Floats, Codes]:
     return (np.full(1, 0.1), np.zeros(1, np.uint8)) if guess is None else _single(guess)
 
 
-@excel("MIRR", Cells, Anything, Anything)
+@excel("MIRR", Arrays, Anything, Anything)
 def modified_rate(values: Value, finance: Value, reinvest: Value) -> Value:
     """Rate when what is paid is borrowed at one rate and what is received is invested at another.
 

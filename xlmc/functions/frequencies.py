@@ -10,7 +10,7 @@ import numpy as np
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong
 from xlmc.functions.picking import Places, flattened
-from xlmc.functions.registry import Cells, Kind, Number, excel
+from xlmc.functions.registry import Arrays, Kind, Number, excel
 from xlmc.functions.samples import laid_out, pairs_of, places_of, row_sums, sample_of
 from xlmc.functions.values import ERROR, NA, NUM, NUMBER, Bools, Codes, Floats, Value
 
@@ -67,7 +67,7 @@ def _places_of_modes(x: Floats, counts: Bools) -> Places:
     return np.sort(np.where(length == longest, np.take_along_axis(order, start, axis=1), k), axis=1)
 
 
-@excel("MODE.SNGL", Cells(repeat=True), aliases=("MODE",))
+@excel("MODE.SNGL", Arrays(repeat=True), aliases=("MODE",))
 def mode(*values: Value) -> Value:
     """The most frequent number, the first of several; `#N/A` where none occurs twice."""
     modes = _modes_of(values)
@@ -76,7 +76,7 @@ def mode(*values: Value) -> Value:
     return Value.of_numbers(np.where(modes.how_many > 0, found, NA), modes.errors)
 
 
-@excel("MODE.MULT", Cells(repeat=True), returns=Kind.ANY)
+@excel("MODE.MULT", Arrays(repeat=True), returns=Kind.ANY)
 def modes_in_a_column(*values: Value) -> Value:
     """All of the most frequent numbers, in the order they appear in: (n, modes, 1); `#N/A` where none occurs twice.
 
@@ -90,7 +90,7 @@ def modes_in_a_column(*values: Value) -> Value:
     return Value.of_numbers(found[:, :, None], modes.errors.reshape(-1, 1, 1))
 
 
-@excel("FREQUENCY", Cells, Cells, returns=Kind.ANY)
+@excel("FREQUENCY", Arrays, Arrays, returns=Kind.ANY)
 def frequency(values: Value, bins: Value) -> Value:
     """How many numbers are at most each bin, and above the bin below it, and how many above all: (n, b + 1, 1).
 
@@ -112,7 +112,7 @@ def frequency(values: Value, bins: Value) -> Value:
     return Value.of_numbers(result[:, :, None], errors[:, None, None])
 
 
-@excel("PROB", Cells, Cells, Number, Number(default=None))
+@excel("PROB", Arrays, Arrays, Number, Number(default=None))
 def probability_between(values: Value, shares: Value, low: Value, high: Value | None = None) -> Value:
     """Sum of the probabilities of the values from `low` to `high`, or of those that equal `low`.
 

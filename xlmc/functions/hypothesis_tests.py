@@ -7,7 +7,7 @@ import numpy as np
 from xlmc.functions.arguments import earliest
 from xlmc.functions.beta_distributions import f_above, f_below
 from xlmc.functions.gamma_distributions import chi_square_above
-from xlmc.functions.registry import Cells, Number, excel
+from xlmc.functions.registry import Arrays, Cells, Number, excel
 from xlmc.functions.samples import (
     Sample,
     at_each,
@@ -68,7 +68,7 @@ def _unpooled(one: Sample, other: Sample) -> Floats:
     return _outside(mean1 - mean2, np.sqrt(part1 + part2), freedom)
 
 
-@excel("T.TEST", Cells, Cells, Number, Number, aliases=("TTEST",))
+@excel("T.TEST", Arrays, Arrays, Number, Number, aliases=("TTEST",))
 def t_test(first: Value, second: Value, tails: Value, kind: Value) -> Value:
     """Probability of means so far apart: with 1 or 2 tails, of pairs (1), equal variances (2) or unequal ones (3).
 
@@ -85,7 +85,7 @@ def t_test(first: Value, second: Value, tails: Value, kind: Value) -> Value:
     return laid_out(result, earliest(one.errors[:, None], other.errors[:, None], *codes), shape)
 
 
-@excel("F.TEST", Cells, Cells, aliases=("FTEST",))
+@excel("F.TEST", Arrays, Arrays, aliases=("FTEST",))
 def f_test(first: Value, second: Value) -> Value:
     """Two-sided probability of variances so unlike; `#DIV/0!` of fewer than two numbers, or of equal ones."""
     one, other = sample_of(first), sample_of(second)
@@ -102,7 +102,7 @@ def _freedom_of_table(rows: int, columns: int) -> int:
     return (rows - 1) * (columns - 1) if min(rows, columns) > 1 else max(rows, columns) - 1
 
 
-@excel("CHISQ.TEST", Cells, Cells, aliases=("CHITEST",))
+@excel("CHISQ.TEST", Arrays, Arrays, aliases=("CHITEST",))
 def chi_square_test(actual: Value, expected: Value) -> Value:
     """Probability of counts so far from those expected; `#N/A` for unequal sizes or one cell, `#DIV/0!` by 0."""
     pairs = pairs_of(actual, expected)

@@ -16,18 +16,22 @@ from xlmc.functions.arguments import (
     whole_numbers,
     with_errors,
 )
-from xlmc.functions.picking import Places, picked
-from xlmc.functions.registry import Cells, Kind, Number, excel
+from xlmc.functions.picking import Places, cell_of, picked
+from xlmc.functions.registry import Arrays, Kind, Number, Ranges, excel
 from xlmc.functions.values import Codes, Floats, Value, constant
 
 __all__: list[str] = []
 
 
-@excel("INDEX", Cells, Number, Number(default=None), Number(default=1.0), returns=Kind.ANY)
+_NUMBER = Number(ranges=Ranges.SINGLE)
+
+
+@excel("INDEX", Arrays, _NUMBER, _NUMBER(default=None), _NUMBER(default=1.0), returns=Kind.ANY)
 def index(cells: Value, row: Value, column: Value | None = None, area: Value | None = None) -> Value:
     """The cell in a row and a column; row 0 stands for a whole column, column 0 for a whole row.
 
-    Of a single row the second argument alone counts the columns. Only one area is known here: area 1.
+    Of a single row the second argument alone counts the columns. Of a single value, it gives a single value. Only one
+    area is known here: area 1.
 
     Raises:
         ShapeVaries: some trials ask for a cell and some for a whole row or column.
@@ -42,7 +46,8 @@ def index(cells: Value, row: Value, column: Value | None = None, area: Value | N
     codes = (direct_errors(cells), wrong_row, wrong_column, wrong_area, off_rows, off_columns, no_area)
     many = max(row_places.ndim, column_places.ndim) == 3
     places = [_spread(places, many) for places in (row_places, column_places)]
-    return with_errors(picked(grid, *places), earliest(*(_spread(found, many) for found in codes)))
+    found = with_errors(picked(grid, *places), earliest(*(_spread(part, many) for part in codes)))
+    return cell_of(found, 0, 0) if cells.numbers.ndim == 1 else found
 
 
 def _alone(number: Value, grid: Value) -> tuple[Value, Value]:

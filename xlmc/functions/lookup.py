@@ -25,12 +25,19 @@ from xlmc.functions.halving import last_not_beyond
 from xlmc.functions.nearest import EXACT, nearest
 from xlmc.functions.picking import Places, each_part, picked, transposed
 from xlmc.functions.portions import by_portions, width_of
-from xlmc.functions.registry import Anything, Cells, Kind, Logical, Number, excel
+from xlmc.functions.registry import Anything, Arrays, Cells, Kind, Logical, Number, Ranges, excel
 from xlmc.functions.values import Codes, Floats, Value, constant
 
 __all__: list[str] = []
 
 _NOT_FOUND: Final = ErrorCode.NA
+
+_IN_A_TABLE: Final = (
+    Anything(ranges=Ranges.SINGLE),
+    Cells(ranges=Ranges.BESIDE),
+    Number(ranges=Ranges.BESIDE),
+    Logical(default=True, ranges=Ranges.SINGLE),
+)
 
 
 def _is_vector(cells: Value) -> bool:
@@ -72,13 +79,13 @@ def _counted_from_1(places: Places, errors: Codes) -> Value:
     return Value.of_numbers((places + 1).astype(np.float64), earliest(errors, where_wrong(places < 0, _NOT_FOUND)))
 
 
-@excel("VLOOKUP", Anything, Cells, Number, Logical(default=True), returns=Kind.ANY)
+@excel("VLOOKUP", *_IN_A_TABLE, returns=Kind.ANY)
 def vlookup(key: Value, table: Value, column: Value, near: Value | None = None) -> Value:
     """What stands in a column of the table, in the row whose first cell is the key; or the last up to it if `near`."""
     return by_portions(_vlookup, [key, table, column, constant(True) if near is None else near], width_of(table))
 
 
-@excel("HLOOKUP", Anything, Cells, Number, Logical(default=True), returns=Kind.ANY)
+@excel("HLOOKUP", *_IN_A_TABLE, returns=Kind.ANY)
 def hlookup(key: Value, table: Value, row: Value, near: Value | None = None) -> Value:
     """What stands in a row of the table, in the column whose first cell is the key; or the last up to it if `near`."""
     turned = transposed(table) if table.numbers.ndim == 3 else table
@@ -101,7 +108,7 @@ def _vlookup(key: Value, table: Value, column: Value, near: Value) -> Value:
     return with_errors(found, errors)
 
 
-@excel("LOOKUP", Anything, Cells, Cells(default=None), returns=Kind.ANY)
+@excel("LOOKUP", Anything, Arrays, Arrays(default=None), returns=Kind.ANY)
 def lookup(key: Value, cells: Value, results: Value | None = None) -> Value:
     """What stands beside the last value up to the key.
 

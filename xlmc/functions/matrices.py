@@ -18,7 +18,7 @@ from xlmc.functions.arguments import (
 )
 from xlmc.functions.budget import ask_for_cells, ask_for_work
 from xlmc.functions.picking import cell_of, flattened, transposed
-from xlmc.functions.registry import Anything, Cells, Kind, excel
+from xlmc.functions.registry import Anything, Arrays, Cells, Kind, Ranges, excel
 from xlmc.functions.values import ERROR, NUM, NUMBER, Codes, Floats, Value, constant
 
 __all__: list[str] = []
@@ -35,7 +35,7 @@ def _matrix(value: Value) -> tuple[Floats, Codes]:
     return np.broadcast_to(cells.numbers, cells.shape), first_errors(flattened(codes, cells))[:, None, None]
 
 
-@excel("MMULT", Cells, Cells, returns=Kind.ANY)
+@excel("MMULT", Arrays, Arrays, returns=Kind.ANY)
 def product(left: Value, right: Value) -> Value:
     """Matrix product, (n, r, k) by (n, k, c); `#VALUE!` where the sizes do not go together.
 
@@ -53,7 +53,7 @@ def product(left: Value, right: Value) -> Value:
     return Value.of_numbers(total, np.where(a_errors > 0, a_errors, b_errors).astype(np.uint8))
 
 
-@excel("MDETERM", Cells)
+@excel("MDETERM", Arrays)
 def determinant(matrix: Value) -> Value:
     """Determinant; `#VALUE!` unless the matrix is square."""
     a, errors = _matrix(matrix)
@@ -64,7 +64,7 @@ def determinant(matrix: Value) -> Value:
     return Value.of_numbers(sign * np.multiply.accumulate(pivots, axis=1)[:, -1], errors[:, 0, 0])
 
 
-@excel("MINVERSE", Cells, returns=Kind.ANY)
+@excel("MINVERSE", Arrays, returns=Kind.ANY)
 def inverse(matrix: Value) -> Value:
     """Inverse; `#VALUE!` unless the matrix is square, `#NUM!` where it is singular."""
     a, errors = _matrix(matrix)
@@ -113,7 +113,7 @@ def unit_matrix(dimension: Value) -> Value:
     return Value.of_numbers(np.eye(common)[None])
 
 
-@excel("TRANSPOSE", Cells, returns=Kind.ANY)
+@excel("TRANSPOSE", Cells(ranges=Ranges.SINGLE), returns=Kind.ANY)
 def transpose(cells: Value) -> Value:
     """Rows as columns: (n, r, c) -> (n, c, r)."""
     return transposed(cells.as_range())

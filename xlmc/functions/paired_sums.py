@@ -9,7 +9,7 @@ import numpy as np
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import direct_errors, earliest, first_errors, leveled, with_errors
 from xlmc.functions.picking import flattened
-from xlmc.functions.registry import Anything, Cells, excel
+from xlmc.functions.registry import Anything, Arrays, Cells, excel
 from xlmc.functions.toolpak import strict_numbers
 from xlmc.functions.values import BLANK, DIV0, ERROR, NUMBER, Codes, Floats, Value, constant
 
@@ -33,19 +33,19 @@ def _over_pairs(x: Value, y: Value, term: Callable[[Floats, Floats], Floats]) ->
     return Value.of_numbers(np.where(counts.any(axis=1), total, DIV0), errors)
 
 
-@excel("SUMX2MY2", Cells, Cells)
+@excel("SUMX2MY2", Arrays, Arrays)
 def sum_of_differences_of_squares(x: Value, y: Value) -> Value:
     """Sum of x² - y²."""
     return _over_pairs(x, y, lambda a, b: a * a - b * b)
 
 
-@excel("SUMX2PY2", Cells, Cells)
+@excel("SUMX2PY2", Arrays, Arrays)
 def sum_of_sums_of_squares(x: Value, y: Value) -> Value:
     """Sum of x² + y²."""
     return _over_pairs(x, y, lambda a, b: a * a + b * b)
 
 
-@excel("SUMXMY2", Cells, Cells)
+@excel("SUMXMY2", Arrays, Arrays)
 def sum_of_squares_of_differences(x: Value, y: Value) -> Value:
     """Sum of (x - y)²."""
     return _over_pairs(x, y, lambda a, b: (a - b) * (a - b))

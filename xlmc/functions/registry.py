@@ -29,6 +29,7 @@ from xlmc.functions.values import ERROR, LOGICAL, NUMBER, Bools, Codes, Value, f
 __all__ = [
     "REGISTRY",
     "Anything",
+    "Arrays",
     "Cells",
     "Elementwise",
     "Function",
@@ -38,6 +39,7 @@ __all__ = [
     "Number",
     "Numbers",
     "Parameter",
+    "Ranges",
     "Text",
     "excel",
     "function_named",
@@ -67,6 +69,20 @@ class _Required(Enum):
 _REQUIRED: Final = _Required.REQUIRED
 
 
+class Ranges(Enum):
+    """How what is computed in an argument takes its ranges, in a formula that is no array formula.
+
+    Excel keeps this for each argument of each function, as a class of its own file format: reference, value or array.
+    """
+
+    AROUND = "as what stands around the call: cell by cell within SUMPRODUCT, else the cell beside the formula"
+    CELLS = "cell by cell: as in an array formula"
+    BESIDE = "the cell beside the formula, even within SUMPRODUCT; a range that is all of the argument stays whole"
+    SINGLE = "the cell beside the formula, even within SUMPRODUCT, and even of a range that is all of the argument"
+
+    __hash__ = object.__hash__
+
+
 @dataclass(frozen=True, slots=True)
 class Parameter:
     """One argument of a function; call it to give a default or to let it repeat: `Number(default=0)`.
@@ -74,6 +90,7 @@ class Parameter:
     Attributes:
         as_set: it and all others are flattened to one set.
         ranged: it takes a range whole; any other argument takes the cell of the range beside the formula.
+        ranges: how what is computed there takes ranges; makes no difference in array formulas.
     """
 
     kind: Kind
@@ -81,9 +98,10 @@ class Parameter:
     repeat: bool = False
     as_set: bool = False
     ranged: bool = False
+    ranges: Ranges = Ranges.AROUND
 
-    def __call__(self, *, default: object = _REQUIRED, repeat: bool = False) -> Parameter:
-        return replace(self, default=default, repeat=repeat)
+    def __call__(self, *, default: object = _REQUIRED, repeat: bool = False, ranges: Ranges | None = None) -> Parameter:
+        return replace(self, default=default, repeat=repeat, ranges=ranges or self.ranges)
 
     @property
     def required(self) -> bool:
@@ -95,6 +113,7 @@ Logical: Final = Parameter(Kind.LOGICAL)
 Text: Final = Parameter(Kind.TEXT)
 Anything: Final = Parameter(Kind.ANY)
 Cells: Final = Parameter(Kind.ANY, ranged=True)
+Arrays: Final = Parameter(Kind.ANY, ranged=True, ranges=Ranges.CELLS)
 Numbers: Final = Parameter(Kind.NUMBER, repeat=True, as_set=True, ranged=True)
 Logicals: Final = Parameter(Kind.LOGICAL, repeat=True, as_set=True, ranged=True)
 

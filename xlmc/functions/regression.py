@@ -14,12 +14,13 @@ from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong
 from xlmc.functions.least_squares import Fit, fit
 from xlmc.functions.picking import flattened
-from xlmc.functions.registry import Anything, Cells, Kind, excel
+from xlmc.functions.registry import Anything, Arrays, Kind, Ranges, excel
 from xlmc.functions.values import BLANK, ERROR, NA, NUM, NUMBER, Bools, Codes, Floats, Value, constant
 
 __all__: list[str] = []
 
-_OPTIONS = (Cells(default=None), Anything(default=None), Anything(default=None))
+_SETTING = Anything(default=None, ranges=Ranges.SINGLE)
+_OPTIONS = (Arrays(default=None), _SETTING, _SETTING)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -140,7 +141,7 @@ def _estimate(known: _Known | None, const: Value | None, stats: Value | None, *,
     return Value.of_numbers(result, earliest(known.errors, wrong, wrong_too)[:, None, None])
 
 
-@excel("LINEST", Cells, *_OPTIONS, returns=Kind.ANY)
+@excel("LINEST", Arrays, *_OPTIONS, returns=Kind.ANY)
 def linest(ys: Value, xs: Value | None = None, const: Value | None = None, stats: Value | None = None) -> Value:
     """Coefficients of the plane of least squares, the last variable's first: (n, 1, p + 1), with `stats` (n, 5, p + 1).
 
@@ -154,7 +155,7 @@ def linest(ys: Value, xs: Value | None = None, const: Value | None = None, stats
     return _estimate(_known(ys, xs), const, stats, exponential=False)
 
 
-@excel("LOGEST", Cells, *_OPTIONS, returns=Kind.ANY)
+@excel("LOGEST", Arrays, *_OPTIONS, returns=Kind.ANY)
 def logest(ys: Value, xs: Value | None = None, const: Value | None = None, stats: Value | None = None) -> Value:
     """Bases of the exponential curve b·m₁^x₁·m₂^x₂…, as LINEST of ln y gives it; the statistics are those of ln y.
 
@@ -192,10 +193,10 @@ def _predict(ys: Value, xs: Value | None, new: Value | None, const: Value | None
     return Value.of_numbers(y.reshape(y.shape[0], *shape), earliest(known.errors, wrong_x, wrong)[:, None, None])
 
 
-_NEW = (Cells(default=None), Cells(default=None), Anything(default=None))
+_NEW = (Arrays(default=None), Arrays(default=None), _SETTING)
 
 
-@excel("TREND", Cells, *_NEW, returns=Kind.ANY)
+@excel("TREND", Arrays, *_NEW, returns=Kind.ANY)
 def trend(ys: Value, xs: Value | None = None, new: Value | None = None, const: Value | None = None) -> Value:
     """The plane of least squares at new x, or at the known ones: (n, rows, columns of these).
 
@@ -204,7 +205,7 @@ def trend(ys: Value, xs: Value | None = None, new: Value | None = None, const: V
     return _predict(ys, xs, new, const, exponential=False)
 
 
-@excel("GROWTH", Cells, *_NEW, returns=Kind.ANY)
+@excel("GROWTH", Arrays, *_NEW, returns=Kind.ANY)
 def growth(ys: Value, xs: Value | None = None, new: Value | None = None, const: Value | None = None) -> Value:
     """The exponential curve of LOGEST at new x, or at the known ones; `#NUM!` where some y is not above 0."""
     return _predict(ys, xs, new, const, exponential=True)

@@ -16,7 +16,7 @@ from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import leveled, refused, whole_numbers
 from xlmc.functions.logical import choose
 from xlmc.functions.picking import each_part, flattened
-from xlmc.functions.registry import Cells, Number, excel, row_of
+from xlmc.functions.registry import Arrays, Cells, Number, excel, row_of
 from xlmc.functions.values import BLANK, ERROR, ShapeVaries, Value, constant
 
 __all__ = ["Skips", "aggregate", "aggregate_skips", "subtotal", "subtotal_skips"]
@@ -125,7 +125,7 @@ def _subtotal(number: Value, *values: Value) -> Value:
     return _by_number(number, lambda chosen: subtotal(chosen, values))
 
 
-@excel("AGGREGATE", Number, Number, Cells(repeat=True))
+@excel("AGGREGATE", Number, Number, Arrays(repeat=True))
 def _aggregate(number: Value, options: Value, *values: Value) -> Value:
     """A function by number of ranges, errors left out with options 2, 3, 6 and 7: as SUBTOTAL, and 12 MEDIAN to 19."""
     number, options = leveled(number, options)

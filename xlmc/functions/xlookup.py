@@ -28,7 +28,7 @@ from xlmc.functions.nearest import EXACT, LARGER, SMALLER, nearest
 from xlmc.functions.ordering import ordered
 from xlmc.functions.picking import Places, each_part, picked, transposed
 from xlmc.functions.portions import by_portions, width_of
-from xlmc.functions.registry import Anything, Cells, Kind, Number, excel
+from xlmc.functions.registry import Anything, Arrays, Kind, Number, excel
 from xlmc.functions.values import BLANK, Codes, Value, constant
 
 __all__: list[str] = []
@@ -72,7 +72,7 @@ def _by_halves(key: Value, vector: Value, side: int, falling: bool) -> Places:
     return np.where(equal, before, -1 if side == EXACT else after)
 
 
-@excel("XMATCH", Anything, Cells, Number(default=0.0), Number(default=1.0))
+@excel("XMATCH", Anything, Arrays, Number(default=0.0), Number(default=1.0))
 def xmatch(key: Value, cells: Value, mode: Value | None = None, direction: Value | None = None) -> Value:
     """Place of the key in a row or column: its equal, or the next smaller (-1) or larger (1); 2 for wildcards."""
     modes, directions = constant(None) if mode is None else mode, constant(None) if direction is None else direction
@@ -94,7 +94,7 @@ def _xmatch(key: Value, cells: Value, mode: Value, direction: Value) -> Value:
 _OPTIONS: Final = (Anything(default=None), Number(default=0.0), Number(default=1.0))
 
 
-@excel("XLOOKUP", Anything, Cells, Cells, *_OPTIONS, returns=Kind.ANY)
+@excel("XLOOKUP", Anything, Arrays, Arrays, *_OPTIONS, returns=Kind.ANY)
 def xlookup(
     key: Value,
     cells: Value,

@@ -64,7 +64,7 @@ class Trees:
         formula = self._graph.workbook.content(host_of(cell)).formula
         array = formula is not None and (formula.array is not None or formula.dynamic)
         try:
-            return self.lowering.single(self.lowering.lower(tree, Scope(cell, array=array)))
+            return self.lowering.single(self.lowering.lower(tree, Scope(cell, array)))
         except (FormulaError, NotYetNeeded):
             return None
 

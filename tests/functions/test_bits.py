@@ -27,7 +27,10 @@ TABLE = [
     ("BITLSHIFT", (4, 2), 16),
     ("BITLSHIFT", (13, -2), 3),
     ("BITLSHIFT", (1, 2.9), 4),
-    ("BITLSHIFT", (1, 53), 2**53),
+    ("BITLSHIFT", (1, 47), 2**47),
+    ("BITLSHIFT", (1, 48), NUM),
+    ("BITLSHIFT", (0, 53), 0),
+    ("BITRSHIFT", (3, -47), NUM),
     ("BITLSHIFT", (1, 54), NUM),
     ("BITLSHIFT", (1, -54), NUM),
     ("BITLSHIFT", (1.1, 2), NUM),
@@ -56,4 +59,4 @@ def test_bits_are_those_of_whole_numbers(evaluate, x, y, places):
     assert evaluate("BITOR", x, y) == x | y
     assert evaluate("BITXOR", x, y) == x ^ y
     assert evaluate("BITRSHIFT", x, places) == x >> places
-    assert evaluate("BITLSHIFT", x, places) == float(x << places)
+    assert evaluate("BITLSHIFT", x, places) == (float(x << places) if x << places < 2**48 else NUM)

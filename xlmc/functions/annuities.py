@@ -133,14 +133,14 @@ def straight_interest(rate: Any, per: Any, nper: Any, pv: Any) -> Floats:
 
 def _totals(rate: Any, nper: Any, pv: Any, first: Any, last: Any, when: Any) -> tuple[Floats, Floats]:
     """Interest and principal paid from the first to the last period, both with the sign of the payments."""
-    first, last = np.ceil(first), np.floor(last)
+    first, last, when = np.ceil(first), np.floor(last), np.trunc(when)
     pmt = payment(rate, nper, pv, 0.0, when)
     owed_at_last = _owed_after(rate, last, pmt, pv, when)
     principal = owed_at_last - _owed_after(rate, first - 1, pmt, pv, when)
     bearing = np.where((np.asarray(when) != 0) & (first == 1), 2.0, first)  # the first that bears interest
     interest = pmt * (last - bearing + 1) - owed_at_last + _owed_after(rate, bearing - 1, pmt, pv, when)
     wrong = (rate <= 0) | (nper <= 0) | (pv <= 0) | (first < 1) | (last < first) | (last > nper)
-    wrong = wrong | ((np.trunc(when) != 0) & (np.trunc(when) != 1))
+    wrong = wrong | ((when != 0) & (when != 1))
     return np.where(wrong, NUM, interest), np.where(wrong, NUM, principal)
 
 

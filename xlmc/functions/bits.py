@@ -36,11 +36,14 @@ _register("BITXOR", "Bits that only one of the numbers has.", np.bitwise_xor)
 
 @excel("BITLSHIFT", Number, Number)
 def shifted_left(x: Floats, places: Floats) -> Floats:
-    """Bits moved left by up to 53 places, or right by a negative number; what falls off is lost."""
+    """Bits moved left by up to 53 places, or right by a negative number; what falls off on the right is lost.
+
+    `#NUM!` where the result has more than 48 bits.
+    """
     shift = np.trunc(places)
     fit = _has_bits(x) & (np.abs(shift) <= _FURTHEST)
-    moved = np.ldexp(np.where(fit, x, 0.0), np.where(fit, shift, 0.0).astype(np.intc))
-    return np.where(fit, np.floor(moved), NUM)
+    moved = np.floor(np.ldexp(np.where(fit, x, 0.0), np.where(fit, shift, 0.0).astype(np.intc)))
+    return np.where(fit & (moved < _END), moved, NUM)
 
 
 @excel("BITRSHIFT", Number, Number)

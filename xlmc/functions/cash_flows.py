@@ -121,15 +121,16 @@ def guess_of(guess: Value | None) -> tuple[Floats, Codes]:
 def modified_rate(values: Value, finance: Value, reinvest: Value) -> Value:
     """Rate when what is paid is borrowed at one rate and what is received is invested at another.
 
-    `#DIV/0!` unless there are payments of both signs.
+    `#DIV/0!` unless something is paid, and at a rate of -100 %; where nothing is received, Excel gives -100 %.
     """
     flows, counts, errors = _flows([values.as_range()])
     (borrowed, borrowed_errors), (invested, invested_errors) = _single(finance), _single(reinvest)
     paid = _discounted(borrowed, np.minimum(flows, 0.0), counts) * (1 + borrowed)
     k = counts.sum(axis=1)
     received = _discounted(invested, np.maximum(flows, 0.0), counts) * growth(invested, k)
-    usable = has_both_signs(flows, counts)
-    ratio = np.where(usable, -received / np.where(paid == 0, np.nan, paid), 1.0)
-    rate = np.expm1(np.log(ratio) / np.where(k > 1, k - 1, 1))
-    one_sided = where_wrong(~usable | (k < 2), ErrorCode.DIV0)
-    return Value.of_numbers(rate, earliest(errors, borrowed_errors, invested_errors, one_sided))
+    pays = (counts & (flows < 0)).any(axis=1)
+    receives = (counts & (flows > 0)).any(axis=1)
+    ratio = np.where(pays, -received / np.where(paid == 0, np.nan, paid), 1.0)
+    rate = np.where(receives, np.expm1(np.log(np.where(receives, ratio, 1.0)) / np.where(k > 1, k - 1, 1)), -1.0)
+    divided = where_wrong(~pays | (k < 2) | (borrowed == -1) | (invested == -1), ErrorCode.DIV0)
+    return Value.of_numbers(rate, earliest(errors, borrowed_errors, invested_errors, divided))

@@ -12,6 +12,7 @@ from xlmc.errors import ErrorCode
 from xlmc.functions.calendar import SECONDS_A_DAY, in_calendar, parts_of, serial_of
 from xlmc.functions.date_text import parse_moment
 from xlmc.functions.months import months_later
+from xlmc.functions.number_text import SPACES
 from xlmc.functions.per_element import per_element
 from xlmc.functions.registry import Logical, Number, Text, excel
 from xlmc.functions.toolpak_rows import Date, toolpak
@@ -44,7 +45,7 @@ def date_value(text: Objects, *, date1904: bool = False) -> Value:
     """Serial of the date in a text; 0 if it holds a time only, `#VALUE!` if neither."""
 
     def value(written: str) -> float | ErrorCode:
-        moment = parse_moment(written, date1904)
+        moment = parse_moment(written.strip(SPACES), date1904)
         return ErrorCode.VALUE if moment is None else moment.day or 0.0
 
     return per_element(value)(text)

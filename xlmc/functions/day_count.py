@@ -78,13 +78,13 @@ def days_in_year(start: Any, end: Any, basis: Any) -> Floats:
 
 def _true_year(start: Any, end: Any) -> Floats:
     """Up to a year apart: 366 days if a 29 February lies between the dates, or both lie in one leap year; else 365.
-    Further apart: the mean length of all years that they touch.
+    Further apart: the mean length of all years that they touch. 1900 has a 29 February, as it has in Excel's calendar.
     """
     (year, month, day), (last_year, last_month, last_day) = parts_of(start), parts_of(end)
     passed = (month > last_month) | ((month == last_month) & (day >= last_day))
     within_year = (year == last_year) | ((last_year == year + 1) & passed)
     mean = (serial_of(last_year + 1, 1, 1) - serial_of(year, 1, 1)) / (last_year - year + 1)
-    leap, leap_end = is_leap_year(year), is_leap_year(last_year)
+    leap, leap_end = (is_leap_year(each) | (each == 1900) for each in (year, last_year))
     has_29 = (leap & (month <= 2)) | (leap_end & (last_month > 2)) | ((last_month == 2) & (last_day == 29))
     long = np.where(year == last_year, leap, has_29)
     return np.where(within_year, np.where(long, 366.0, 365.0), mean)

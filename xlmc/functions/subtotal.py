@@ -86,9 +86,14 @@ def aggregate(number: int, options: int, values: Sequence[Value]) -> Value:
     if number in _OF_ARRAYS:
         if len(values) != 2:
             return constant(ErrorCode.VALUE)
-        return row_of(_OF_ARRAYS[number])([keep(values[0].as_range()), values[1]])
+        return row_of(_OF_ARRAYS[number])([keep(values[0].as_range()), _rank(values[1])])
     name = (_OF_SETS | _MORE_OF_SETS).get(number)
     return constant(ErrorCode.VALUE) if name is None else row_of(name)([keep(v) for v in _ranges(values)])
+
+
+def _rank(value: Value) -> Value:
+    """Which number is wanted; of one cell a single value, so that the result is one too."""
+    return each_part(value, lambda part: part[:, 0, 0]) if value.shape[1:] == (1, 1) else value
 
 
 def _ranges(values: Sequence[Value]) -> list[Value]:

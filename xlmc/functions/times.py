@@ -9,6 +9,7 @@ import numpy as np
 from xlmc.errors import ErrorCode
 from xlmc.functions.calendar import SECONDS_A_DAY, in_calendar, time_of
 from xlmc.functions.date_text import parse_moment
+from xlmc.functions.number_text import SPACES
 from xlmc.functions.per_element import per_element
 from xlmc.functions.registry import Number, Text, excel
 from xlmc.functions.values import NUM, Floats
@@ -54,7 +55,7 @@ def time(hours: Any, minutes: Any, seconds: Any) -> Floats:
 
 def _time_value(text: str) -> float | ErrorCode:
     """Time of day in a text, as a fraction; 0 if it holds a date only, `#VALUE!` if neither."""
-    moment = parse_moment(text)
+    moment = parse_moment(text.strip(SPACES))
     return ErrorCode.VALUE if moment is None else (moment.time or 0.0) % 1.0
 
 

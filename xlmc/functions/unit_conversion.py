@@ -41,8 +41,10 @@ def convert(number: Value, source: Value, target: Value) -> Value:
     number, source, target = leveled(number, source, target)
     x, errors = strict_numbers(number)
     old, new = _units(source), _units(target)
-    base = (x * _part(old, "prefix") - _part(old, "zero")) * _part(old, "scale")
-    result = (base / _part(new, "scale") + _part(new, "zero")) / _part(new, "prefix")
+    proportional = _part(old, "absolute") * _part(new, "absolute") > 0  # else a tiny one would lose its digits
+    from_zero, to_zero = (np.where(proportional, 0.0, _part(part, "zero")) for part in (old, new))
+    base = (x * _part(old, "prefix") - from_zero) * _part(old, "scale")
+    result = (base / _part(new, "scale") + to_zero) / _part(new, "prefix")
     groups = _groups(old)
     found = np.where((groups == _groups(new)) & (groups != ""), result, NA)
     return Value.of_numbers(found, earliest(errors, source.errors, target.errors))

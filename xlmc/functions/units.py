@@ -23,12 +23,14 @@ class Unit:
         scale: as above.
         zero: where the scale of a temperature begins.
         prefix: the prefix's factor, 1 without one.
+        absolute: it is a temperature that is counted from absolute zero.
     """
 
     group: str
     scale: float
     zero: float = 0.0
     prefix: float = 1.0
+    absolute: bool = False
 
 
 _IN, _FT, _YD, _MI, _NMI = 0.0254, 0.3048, 0.9144, 1609.344, 1852.0
@@ -81,8 +83,9 @@ _SCALES: Final[dict[str, dict[str, float]]] = {
 
 _TEMPERATURES: Final = {  # degrees Celsius
     "C": Unit("temperature", 1.0), "cel": Unit("temperature", 1.0), "F": Unit("temperature", 5 / 9, 32.0),
-    "fah": Unit("temperature", 5 / 9, 32.0), "K": Unit("temperature", 1.0, 273.15),
-    "kel": Unit("temperature", 1.0, 273.15), "Rank": Unit("temperature", 5 / 9, 491.67),
+    "fah": Unit("temperature", 5 / 9, 32.0), "K": Unit("temperature", 1.0, 273.15, absolute=True),
+    "kel": Unit("temperature", 1.0, 273.15, absolute=True),
+    "Rank": Unit("temperature", 5 / 9, 491.67, absolute=True),
     "Reau": Unit("temperature", 1.25),
 }  # fmt: skip
 

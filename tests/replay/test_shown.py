@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import re
 import shutil
 import subprocess
 import zipfile
 
+import numpy as np
 import openpyxl
 import pytest
 import xlsxwriter
 from needed_programs import missing
 
 import xlmc
-from xlmc.errors import ErrorCode
+from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.replay import replay
 from xlmc.report.save import save
 from xlmc.workbook.package import read_parts
@@ -144,6 +146,95 @@ def test_a_range_that_somebody_typed_is_said_and_no_edit(edited):
     assert found.identical
     [said] = found.shown.left_out
     assert "holds a range that somebody typed" in said
+
+
+def typed_range(book):
+    """The cells From, to, Certainty, ±, Trials of the first line for a person's own range."""
+    row = next(row for row in book["Certainty"].iter_rows() if str(row[4].value).startswith("=SUMPRODUCT"))
+    return row[2:7]
+
+
+@pytest.mark.parametrize("forged", [0.95, "=0.95", "95 %"])
+def test_a_certainty_that_somebody_typed_beside_a_range_of_their_own_is_named(edited, forged):
+    def change(book):
+        low, _, certainty, *_ = typed_range(book)
+        low.value, certainty.value = 12, forged
+
+    found = replay(edited(change))
+    [difference] = found.shown.differences
+    assert difference.where.sheet == "Certainty"
+    assert difference.says == forged
+    assert not found.identical
+
+
+def test_what_a_program_counts_in_a_range_of_ones_own_is_recounted(results, tmp_path):
+    """The value that stands with the formula, as Excel saves it, must be the share in that range."""
+    book = openpyxl.load_workbook(results)
+    low, high, certainty, error, _ = typed_range(book)
+    where = certainty.coordinate, error.coordinate
+    values = replay(results).repeated.forecasts["area"]
+    values = values[~np.isnan(values)]
+    share = np.mean((values >= 12) & (values <= high.value))
+    shown = {low.coordinate: 12, where[0]: share, where[1]: math.sqrt(share * (1 - share) / values.size)}
+    found = replay(with_numbers(results, tmp_path, shown))
+    assert (found.identical, found.shown.differences) == (True, ())
+    assert "holds a range that somebody typed" in found.shown.left_out[0]
+    found = replay(with_numbers(results, tmp_path, {**shown, where[0]: share + 0.01}))
+    assert [str(each.where) for each in found.shown.differences] == [f"Certainty!{where[0]}"]
+
+
+def with_numbers(results, folder, values):
+    """A copy whose sheet Certainty holds other numbers, each with the formula that stands with it."""
+    parts = read_parts(results.read_bytes())
+    name = next(name for name, xml in parts.items() if "worksheets/sheet" in name and b"SUMPRODUCT" in xml)
+    xml = parts[name].decode()
+    for address, value in values.items():
+        xml, count = re.subn(rf'(<c r="{address}"[^>]*>(?:<f>[^<]*</f>)?<v>)[^<]*', rf"\g<1>{float(value)!r}", xml)
+        assert count == 1
+    path = folder / "edited.xlsx"
+    with zipfile.ZipFile(path, "w") as package:
+        for each, content in {**parts, name: xml.encode()}.items():
+            package.writestr(each, content)
+    return path
+
+
+RECORD = ["sampling.seed", "end.most_trials", "end.reached", "run.repeat", "conventions.mode", "counts.acceptance"]
+
+
+@pytest.mark.parametrize("key", RECORD)
+def test_an_edited_entry_of_the_record_is_named(edited, key):
+    def change(book):
+        cell = next(row[2] for row in book["Record"].iter_rows() if row[0].value == key)
+        cell.value = cell.value + 1 if isinstance(cell.value, int | float) else f"{cell.value} or so"
+        where.append(f"Record!{cell.coordinate}")
+
+    where = []
+    found = replay(edited(change))
+    assert where == [str(each.where) for each in found.shown.differences]
+    assert not found.identical
+
+
+def test_a_warning_that_was_taken_off_the_record_is_named(tmp_path, edited, small_book):
+    source = tmp_path / "warned.xlsx"
+    xlmc.load(small_book).simulate(trials=100, until_accepted=90).save(source)
+
+    def change(book):
+        row = next(row for row in book["Record"].iter_rows() if row[0].value == "warnings[0]")
+        row[1].value = None
+
+    found = replay(edited(change, source))
+    assert "90" in found.shown.differences[0].gives
+    assert not found.identical
+
+
+@pytest.mark.parametrize("key", ["counts.accepted", "file.name", "end.by", "counts", "end"])
+def test_a_record_that_lacks_an_entry_is_refused_by_name(edited, key):
+    def change(book):
+        cell = next(row[0] for row in book["Record"].iter_rows() if row[0].value == key)
+        cell.value = f"{key}x"
+
+    with pytest.raises(WorkbookError, match=f"the record lacks '{key}.*It was edited"):
+        replay(edited(change))
 
 
 def test_results_beside_a_sheet_of_their_name(small_book, tmp_path):

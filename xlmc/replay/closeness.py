@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from decimal import ROUND_DOWN, ROUND_HALF_EVEN, ROUND_HALF_UP, Context, Decimal
 from typing import Final, TypeGuard
 
 from xlmc.workbook.model import CellValue
 
 __all__ = ["Closeness", "is_number"]
-
-_FIFTEEN_DIGITS: Final = 1e-14
-"""How far a number is off, relative to itself, that was written with 15 digits, rounded or cut off."""
 
 _ROUNDING: Final = 1e-12
 _OTHER_PROGRAM: Final = 1e-9
@@ -39,15 +37,27 @@ class Closeness:
             computed: the file holds a formula, whose value another program may have computed anew.
         """
         if is_number(says) and is_number(gives):
-            return abs(says - gives) <= self._apart(max(abs(says), abs(gives)), scale, computed)
+            apart = abs(says - gives)
+            if apart <= self._apart(max(abs(says), abs(gives)), scale, computed):
+                return True
+            return self.rewritten and float(says) in _with_fewer_digits(gives)
         if self.rewritten and isinstance(says, str) and isinstance(gives, str):
             return says.splitlines() == gives.splitlines()
         return type(says) is type(gives) and says == gives
 
     def _apart(self, size: float, scale: float, computed: bool) -> float:
         """How far two numbers of this size may be apart."""
-        rewritten = (_OTHER_PROGRAM if computed else _FIFTEEN_DIGITS) * size if self.rewritten else 0.0
+        rewritten = _OTHER_PROGRAM * size if self.rewritten and computed else 0.0
         return max(rewritten, _ROUNDING * max(size, scale) if self.elsewhere else 0.0)
+
+
+def _with_fewer_digits(number: float) -> set[float]:
+    """The number as programs write it: of its shortest decimal, or of its exact one, 15 or 16 digits, or cut off."""
+    shortest, exact = Decimal(repr(float(number))), Decimal(float(number))
+    rules = [(15, ROUND_DOWN), *((digits, rule) for digits in (15, 16) for rule in (ROUND_HALF_UP, ROUND_HALF_EVEN))]
+    return {
+        float(Context(prec=digits, rounding=rule).plus(whole)) for digits, rule in rules for whole in (shortest, exact)
+    }
 
 
 def is_number(value: CellValue) -> TypeGuard[int | float]:

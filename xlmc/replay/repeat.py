@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import xlmc
 from xlmc.errors import WorkbookError, XlmcError
@@ -45,6 +45,16 @@ if TYPE_CHECKING:
     from xlmc.workbook import Workbook
 
 __all__ = ["Replayed", "replay"]
+
+_NEEDED: Final = (
+    "run.fingerprint",
+    "file.name",
+    "counts.trials",
+    "counts.accepted",
+    "counts.inputs_kept",
+    "end.by",
+)
+"""Entries that the repeat, or what is said of it, cannot do without."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +137,7 @@ def _replayed(
     cells, settings = _recorded(record, path)
     version = recorded_version(record)
     rules = rules_since(version, cells.values())
+    _refuse_incomplete(record, version, path)
     try:
         model = model or understood(workbook, path or Path(workbook.name))
         repeated = _repeated(model, record, settings, jobs, progress)
@@ -142,9 +153,7 @@ def _replayed(
         of_the_model = (*structure_changes(record, found), *definition_changes(record, found))
         environment = tuple(environment_changes(record, found))
     except KeyError as error:
-        message = f"the record lacks {error.args[0]!r}"
-        edited = "It was edited" if version == xlmc.__version__ else f"xlmc {version} made it"
-        raise WorkbookError(message, where=path, hint=f"{edited}: run the workbook again") from error
+        raise _lacking(error.args[0], version, path) from error
     changes = (*cell_changes(cells, contents_now(workbook, cells) | needed_contents(model)), *of_the_model)
     shown = SheetComparison()
     if path is not None:
@@ -188,6 +197,24 @@ def _recorded(record: Record, path: Path | None) -> tuple[dict[Cell, str], Setti
         command = _repeat_command(record)
         hint = f"Repeat it by hand, and compare: {command}" if command else "Run the workbook again"
         raise WorkbookError(message, where=path, hint=hint) from error
+
+
+def _refuse_incomplete(record: Record, version: str, path: Path | None) -> None:
+    """Refuse a record without an entry that the repeat or what is said of it needs.
+
+    Raises:
+        WorkbookError: it lacks one.
+    """
+    for key in _NEEDED:
+        try:
+            record[key]
+        except KeyError as error:
+            raise _lacking(key, version, path) from error
+
+
+def _lacking(key: object, version: str, path: Path | None) -> WorkbookError:
+    edited = "It was edited" if version == xlmc.__version__ else f"xlmc {version} made it"
+    return WorkbookError(f"the record lacks {key!r}", where=path, hint=f"{edited}: run the workbook again")
 
 
 def _repeat_command(record: Record) -> str:

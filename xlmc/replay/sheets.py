@@ -15,6 +15,7 @@ from xlmc.address import Cell
 from xlmc.formula.mentions import mentioned
 from xlmc.replay.closeness import Closeness, is_number
 from xlmc.replay.matching import matched
+from xlmc.replay.own_ranges import counted
 from xlmc.report.book import build_sheets
 from xlmc.report.trials import HEADER, TRIAL_ROWS
 from xlmc.workbook import read_workbook
@@ -27,8 +28,10 @@ if TYPE_CHECKING:
 __all__ = ["CellDifference", "SheetComparison", "compare_sheets"]
 
 _RECORD: Final = "Record"
-_NUMBERS_OF: Final = re.compile(r"(assumptions|correlations|counts|errors|filters|forecasts|rare)\b")
-"""Sections of the Record whose numbers are compared here; the rest of it is compared as a record."""
+_COMPARED_ELSEWHERE: Final = re.compile(
+    r"(file\.\w*sha256|run\.fingerprint|run\.format|software|processor|structure|cells)\b"
+)
+"""Keys of the Record that say something of the file or of the machine; `xlmc.replay.changes` compares them."""
 
 _ONLY_FIRST: Final = re.compile(r"Only the first ([\d,]+) of [\d,]+ accepted trials stand here\.")
 _BLANK: Final = CellContent()
@@ -131,14 +134,8 @@ class _Pair:
 
     def _is_compared(self, place: _Place) -> bool:
         if self.expected.name == _RECORD:
-            return self._is_number_of_record(place)
-        is_formula = self._expected(place).formula is not None
-        return place not in self._typed and not (is_formula and place[0] in self._own_rows)
-
-    def _is_number_of_record(self, place: _Place) -> bool:
-        key = str(self._expected((place[0], 1)).value)
-        contents = self._expected(place), self._found(place)
-        return _NUMBERS_OF.match(key) is not None and any(is_number(content.value) for content in contents)
+            return _COMPARED_ELSEWHERE.match(self._keys.get(place[0], "")) is None
+        return place not in self._typed
 
     def _same(self, place: _Place) -> bool:
         says, gives = self._found(place), self._expected(place)
@@ -154,6 +151,16 @@ class _Pair:
         content = self._found(place)
         shows_formula = content.formula is not None and (content.value is None or self._expected(place).formula is None)
         return f"={content.formula.text}" if shows_formula and content.formula is not None else content.value
+
+    @cached_property
+    def _keys(self) -> dict[int, str]:
+        """Row of the Record -> its key; the section's where the row has none, as the headings of a table."""
+        found, section = {}, ""
+        for row in range(1, max((row for row, _ in {**self.expected.cells, **self.sheet.cells}), default=0) + 1):
+            key = self._expected((row, 1)).value
+            section = key if isinstance(key, str) and key.isalpha() else section
+            found[row] = key if isinstance(key, str) else section
+        return found
 
     def _scale(self, row: int) -> float:
         return self._scales.get(row, 0.0)
@@ -176,7 +183,9 @@ class _Pair:
                 host = Cell(self.expected.name, row, column)
                 areas = mentioned(content.formula, host, self.built)
                 found |= {cell[1:] for area in areas if area.sheet == self.expected.name for cell in area.cells()}
-        return frozenset(place for place in found if self._expected(place).formula is None)
+        return frozenset(
+            place for place in found if place in self.expected.cells and self.expected.cells[place].formula is None
+        )
 
     @cached_property
     def _own_rows(self) -> frozenset[int]:
@@ -184,11 +193,17 @@ class _Pair:
         return frozenset(
             place[0]
             for place in self._typed
-            if not self.closeness.equal(self._found(place).value, self._expected(place).value)
+            if not self.closeness.equal(self._found(place).value, self.expected.cells[place].value)
         )
 
     def _expected(self, place: _Place) -> CellContent:
-        return self.expected.cells.get(place, _BLANK)
+        return self._counted.get(place) or self.expected.cells.get(place, _BLANK)
+
+    @cached_property
+    def _counted(self) -> dict[_Place, CellContent]:
+        """The formulas of the rows that are filled in otherwise, with what they give then."""
+        found = {place: self.sheet.cells.get(place, _BLANK) for place in self._typed}
+        return counted(self.built, self.expected, found, self._own_rows) if self._own_rows else {}
 
     def _found(self, place: _Place) -> CellContent:
         return self.sheet.cells.get(place, _BLANK)

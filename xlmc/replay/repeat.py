@@ -213,7 +213,7 @@ def _refuse_incomplete(record: Record, version: str, path: Path | None) -> None:
 
 
 def _lacking(key: object, version: str, path: Path | None) -> WorkbookError:
-    edited = "It was edited" if version == xlmc.__version__ else f"xlmc {version} made it"
+    edited = "It was edited" if version in ("", xlmc.__version__) else f"xlmc {version} made it"
     return WorkbookError(f"the record lacks {key!r}", where=path, hint=f"{edited}: run the workbook again")
 
 

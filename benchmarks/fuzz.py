@@ -42,11 +42,9 @@ def main() -> None:
     warm_up()
     kinds = given.kind or list(KINDS)
     minutes = given.minutes * min(given.jobs, len(kinds)) / len(kinds)
+    print(HEADINGS, flush=True)
     with ThreadPoolExecutor(given.jobs) as pool:
         summaries = list(pool.map(lambda kind: _campaign(kind, given, 60 * minutes), kinds))
-    print(HEADINGS)
-    for summary in summaries:
-        print(summary.line())
     for summary in summaries:
         _show(summary, given.seed)
     sys.exit(any(summary.found for summary in summaries))
@@ -71,7 +69,9 @@ def _campaign(kind: str, given: argparse.Namespace, seconds: float) -> Summary:
             if given.keep:
                 _keep(given.keep / f"{kind}-{given.seed}-{outcome.number}-{outcome.name}", outcome.data)
 
-    return campaign(kind, KINDS[kind], given.seed, numbers, until, found)
+    summary = campaign(kind, KINDS[kind], given.seed, numbers, until, found)
+    print(summary.line(), flush=True)
+    return summary
 
 
 def _keep(path: Path, data: bytes) -> None:

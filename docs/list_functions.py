@@ -57,6 +57,11 @@ their size: the empty cells beyond are counted, not read. A function that would 
 | arguments of a function | 255, as in Excel |
 | characters of a text | 32,767, as in Excel: a longer one is `#VALUE!` |
 
+Formulas filled down over ranges that begin at one cell, as `=SUM(B$1:B7)`, `=MAX(A$1:B7)` and the same with `COUNT`,
+`COUNTA`, `MIN`, `AVERAGE` and `PRODUCT`, take one step a row, to the same numbers. So do those over ranges that end at
+one cell, as `=SUM(B7:B$5000)`: where 64 or more end there, their sums, means and products are taken from the last row
+up, and may differ from Excel's by their rounding, in the last of 17 digits.
+
 The first limits count one trial. Where arrays are large, fewer trials are evaluated at a time, to the same numbers.
 """
 

@@ -134,3 +134,15 @@ def test_any_matrix_gives_correlations_that_are_possible(k, seed):
     assert np.abs(found).max() <= 1 + 1e-12
     assert np.linalg.eigvalsh(2 * np.sin(np.pi / 6 * found))[0] > -1e-7
     assert GaussianCopula(found).spearman == pytest.approx(found, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_a_uniform_of_0_is_joined_as_half_of_the_least_step(name):
+    k = len(TARGETS[name])
+    zero, least = uniforms(k, k + 1), uniforms(k, k + 1)
+    zero[:, 0], least[:, 0] = 0.0, 2.0**-54
+    zero[np.arange(k), np.arange(1, k + 1)], least[np.arange(k), np.arange(1, k + 1)] = 0.0, 2.0**-54
+    for u in (zero, least):
+        GaussianCopula(TARGETS[name]).join(u)
+    assert zero[1:].tolist() == least[1:].tolist()
+    assert ((zero[1:] > 0.0) & (zero[1:] < 1.0)).all()

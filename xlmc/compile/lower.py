@@ -22,7 +22,7 @@ from xlmc.compile.fallback import fallback
 from xlmc.compile.places import PLACES
 from xlmc.compile.recipes import Recipes
 from xlmc.compile.references import NoReference, NotYetNeeded, areas_of
-from xlmc.compile.running import RunningTotals
+from xlmc.compile.running import FOLDS, RunningTotals
 from xlmc.compile.scope import Scope
 from xlmc.compile.settings import as_set
 from xlmc.errors import ErrorCode, FormulaError, Notice
@@ -87,7 +87,8 @@ class Lowering:
         self.calls = CallCount()
         self._cells: dict[Cell, int] = {cell: self.dag.input(name) for cell, name in inputs.items()}
         self._cells |= {cell: self.dag.constant(constant(value)) for cell, value in held.items()}
-        self._recipes, self._totals = Recipes(self.dag), RunningTotals(self.dag)
+        trees = (placed for placed in graph.formulas.placed.values() if not isinstance(placed, Filled))
+        self._recipes, self._totals = Recipes(self.dag), RunningTotals(self.dag, trees, self.cell)
         for cell, placed in graph.formulas.placed.items():
             self._computed[cell] = place = self._formula_cell(cell, placed)
             self.dag.host_ends(cell)
@@ -315,10 +316,9 @@ class Lowering:
         if function.volatile and not self._audit:
             hint = "put it in a cell of its own: the value Excel saved for it is then used, and the run can be repeated"
             raise FormulaError(f"{name} gives another value each time", hint=hint)
-        if name == "SUM" and len(arguments) == 1 and isinstance(arguments[0], Area):
-            total = self._totals.sum_of(function, arguments[0].filled, self.range)
-            if total is not None:
-                return total
+        if name in FOLDS and len(arguments) == 1 and isinstance(arguments[0], Area):
+            area = arguments[0].filled
+            return self._totals.of_area(name, area, lambda: self._call_of(function, (area,), scope, {}))
         scope = scope.inside()
 
         def make(parts: tuple[ir.Expression, ...], first: Mapping[int, Function]) -> int:

@@ -24,7 +24,12 @@ DOUBLE: Final = 2.0**-53
 SINGLE: Final = 2.0**-24
 """Half a unit of the last place, as a share of the number."""
 
-_EXACT: Final = frozenset({"u-", "u+", "shown", "ABS", "SIGN", "MIN", "MAX", "LARGE", "SMALL", "INT", "TRUNC", "IF"})
+_EXACT: Final = frozenset(
+    {"u-", "u+", "shown", "ABS", "SIGN", "MIN", "MAX", "LARGE", "SMALL", "INT", "TRUNC", "IF"}
+) | {
+    "MIN so far",
+    "MAX so far",
+}
 
 
 _ADDS: Final = frozenset({"+", "-", "SUM"})

@@ -97,7 +97,7 @@ def deviation(function: Function, result: Value, operands: Sequence[Operand]) ->
     return Outcome(_squares(operands).times(1 / (count - 1 if function.name == "STDEV.S" else count)).sqrt())
 
 
-@rule("PRODUCT")
+@rule("PRODUCT", "PRODUCT so far")
 def product(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
     """Product: each number times that of all others, without a division, which might be by 0."""
     jets, counts = _counted(operands)
@@ -111,7 +111,7 @@ def product(function: Function, result: Value, operands: Sequence[Operand]) -> O
     return Outcome(running)
 
 
-@rule("MIN", "MAX", why="two of the numbers are equal there, and do not change alike")
+@rule("MIN", "MAX", "MIN so far", "MAX so far", why="two of the numbers are equal there, and do not change alike")
 def extreme(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
     """The derivatives of the cell that is it."""
     jet, counts = _side_by_side(*_counted(operands))

@@ -190,7 +190,7 @@ class _Walk:
             parts = [tuple([need for need in found.cells if (known[need] if need in known else self._counts(need))])]
         else:
             places = dict.fromkeys(references(found))
-            parts = [self._strips.of(place) for place in places if isinstance(place, Area)]
+            parts = [part for place in places if isinstance(place, Area) for part in self._strips.of(place)]
             parts.append(tuple([place for place in places if isinstance(place, Cell) and self._counts(place)]))
         if cell in self._more:
             parts.append(tuple(self._more[cell]))

@@ -1,7 +1,8 @@
 """What the formulas of a workbook need, cell by cell, without a list of its own for each range.
 
 Many formulas read one column: all of it, or down to their own row. A `Strip` lists what counts in a column or row once,
-and a range of it is a `Stretch`: two places in that list. Ranges of several rows and columns are listed once each.
+and a range of it is a `Stretch`: two places in that list. A range of a few columns is a stretch of each; larger tables
+are listed once each.
 """
 
 from __future__ import annotations
@@ -17,6 +18,9 @@ __all__ = ["Needs", "Part", "Stretch", "Strips"]
 
 _SHORTEST = 64
 """Cells of a range that is worth a stretch."""
+
+_NARROW = 8
+"""Columns, or rows, of a range that is worth a stretch of each."""
 
 
 @dataclass(eq=False, slots=True)
@@ -72,10 +76,12 @@ class Stretch:
 
     def varies(self, varying: Set[Cell]) -> bool:
         """Whether any is among the cells that vary; that is settled of all of them."""
-        cells = self.strip.cells
-        if any(cells[place] in varying for place in chain(*self.strip.constant.outside(self.start, self.stop))):
-            return True
-        self.strip.constant.add(self.start, self.stop)
+        cells, constant = self.strip.cells, self.strip.constant
+        for places in constant.outside(self.start, self.stop):
+            found = next((place for place in places if cells[place] in varying), None)
+            constant.add(places.start, places.stop if found is None else found)
+            if found is not None:
+                return True
         return False
 
 
@@ -101,16 +107,19 @@ class Strips:
         self._strips: dict[tuple[str, int, int], _Strip] = {}
         self._tables: dict[Area, tuple[Cell, ...]] = {}
 
-    def of(self, area: Area) -> Part:
-        """The cells of an area that count."""
-        if area.rows * area.columns >= _SHORTEST:
-            if area.columns == 1:
-                return self._stretch(self._column(area.sheet, area.left), area.top, area.bottom)
-            if area.rows == 1:
-                return self._stretch(self._row(area.sheet, area.top), area.left, area.right)
+    def of(self, area: Area) -> Iterator[Part]:
+        """The cells of an area that count; of a narrow one column by column, or row by row."""
+        if area.rows * area.columns >= _SHORTEST and area.columns <= _NARROW:
+            for column in range(area.left, area.right + 1):
+                yield self._stretch(self._column(area.sheet, column), area.top, area.bottom)
+            return
+        if area.rows * area.columns >= _SHORTEST and area.rows <= _NARROW:
+            for row in range(area.top, area.bottom + 1):
+                yield self._stretch(self._row(area.sheet, row), area.left, area.right)
+            return
         if area not in self._tables:
             self._tables[area] = tuple(filter(self._counts, self._held(area)))
-        return self._tables[area]
+        yield self._tables[area]
 
     def _column(self, sheet: str, column: int) -> _Strip:
         key = sheet, 0, column

@@ -12,8 +12,9 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.compile.dag import MANY, SHAPING, Constant, Dag, Range
+from xlmc.compile.dag import MANY, SHAPING, Constant, Dag, Range, Select
 from xlmc.compile.dag import Apply as ApplyNode
+from xlmc.compile.either import parts_of
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions import Function, Kind
 from xlmc.functions.registry import Cells
@@ -50,6 +51,9 @@ def element(dag: Dag, place: int, row: int, column: int) -> int:
         return node.rows[row][column]
     if isinstance(node, Constant):
         return dag.constant(_picked(node.value, row, column))
+    chosen = parts_of(dag, place)
+    if chosen is not None:
+        return dag.add(Select(chosen[0], *(element(dag, part, row, column) for part in chosen[1:])))
     return dag.add(ApplyNode(_picker(row, column), (place,)))
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from xlmc.compile.arrays import cell_by_cell
 from xlmc.compile.dag import Rescue, Select
+from xlmc.compile.either import differ, either
 from xlmc.compile.scope import Scope
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
@@ -53,6 +54,8 @@ def select(lowering: Lowering, condition: int, yes: int, no: int) -> int:
     known = decided(lowering, condition)
     if known is not None:
         return yes if known else no
+    if differ(lowering.dag, condition, yes, no):
+        return either(lowering.dag, condition, yes, no)
     spread = cell_by_cell(lowering.dag, (condition, yes, no), single)
     return lowering.dag.add(Select(condition, yes, no)) if spread is None else spread
 
@@ -112,6 +115,9 @@ def _rescued(lowering: Lowering, value: int, instead: ir.Expression, scope: Scop
         lost = kind == ERROR + ErrorCode.NA or (kind >= ERROR and not only_na)
         return lowering.zero_if_blank(lowering.lower(instead, scope)) if lost else value
     other = lowering.zero_if_blank(lowering.lower(instead, scope))
+    if differ(lowering.dag, value, value, other):
+        lost_ = lowering.call("ISNA" if only_na else "ISERROR", (value,))
+        return select(lowering, lost_, other, value)
 
     def single(picked: tuple[int, ...]) -> int:
         node = Rescue(picked[0], picked[1], only_na)

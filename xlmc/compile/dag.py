@@ -20,6 +20,7 @@ from xlmc.functions.logical import if_, if_error, if_na
 from xlmc.functions.values import BLANK, ERROR, LOGICAL, NUMBER, TEXT, ShapeVaries, Value, constant
 
 __all__ = [
+    "EITHER",
     "MANY",
     "SHAPING",
     "Apply",
@@ -92,8 +93,12 @@ Size = tuple[int, ...] | None
 MANY: Final = (-1, -1)
 """The size of a value that may be many cells, how many being known only during the run."""
 
+EITHER: Final = "one of two sizes"
+"""The name of the function that chooses between values of different sizes."""
+
 _SPILLING: Final = frozenset(
     {
+        EITHER,
         "CHOOSECOLS",
         "CHOOSEROWS",
         "DROP",

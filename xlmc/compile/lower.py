@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from difflib import get_close_matches
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import groupby
 from typing import assert_never
 
@@ -16,6 +16,7 @@ from xlmc.compile import choices, lambdas, whole_columns
 from xlmc.compile.arrays import element, grid, size_of, spread
 from xlmc.compile.counts import check_count
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Range
+from xlmc.compile.either import shared_out
 from xlmc.compile.empty_cells import refused
 from xlmc.compile.engine import Target
 from xlmc.compile.fallback import fallback
@@ -378,6 +379,9 @@ class Lowering:
             return self.call("*", (arguments[0], self.number(_FACTORS[function.name])))
         if function.name == "/" and (factor := self._inverse(arguments[1])) is not None:
             return self.call("*", (arguments[0], self.number(factor)))
+        chosen = self._shared_out(function, arguments)
+        if chosen is not None:
+            return chosen
         if function.takes_sets:
             return self._totals.made(function, arguments)
         if all(self.dag.sizes[place] is None for place in arguments):
@@ -387,6 +391,16 @@ class Lowering:
             self.dag, function, loose, lambda picked: self.made(function, _merged(function, arguments, picked))
         )
         return self.dag.add(Apply(function, arguments)) if cells is None else cells
+
+    def _shared_out(self, function: Function, arguments: tuple[int, ...]) -> int | None:
+        """The function of a choice between sizes, as a choice between two results; None without such an argument."""
+        return shared_out(
+            self.dag,
+            arguments,
+            partial(self.made, function),
+            lambda place: self.call("ISERROR", (place,)),
+            partial(choices.select, self),
+        )
 
     def _inverse(self, place: int) -> float | None:
         """1 / the number, where to multiply by it is to divide by the number, to the last bit: of powers of two."""

@@ -33,6 +33,17 @@ So `SUM(INDEX((C1:C3>3)*C1:C3,0))` and `MATCH(1,INDEX((A1:A3="x")*(B1:B3=3),0),0
 `SUMPRODUCT(IF(C1:C3>3,C1:C3))` needs it. In `VLOOKUP`, `CHOOSE({1,2},A1:A3,B1:B3)` does not need it, and
 `CHOOSE({1,2},A1:A3&C1:C3,B1:B3)` does. `OFFSET` that leads to several places at once is refused. A row or column
 number 0 of `INDEX` gives the same whether it is typed or drawn.
+
+## Hidden rows and spilled ranges
+
+`SUBTOTAL` 1 to 11 leaves out the rows that a filter hides, and counts those hidden by hand; 101 to 111 leave out both.
+The file marks both alike: a hidden row counts as filtered where it lies within a filter, of the sheet or of a table,
+that has a condition. An advanced filter leaves no such condition in the file, so that the rows it hides count as hidden
+by hand; `xlmc verify` shows where the saved value says otherwise. Where rows are hidden and the function number of
+`SUBTOTAL` varies, it is refused.
+
+`A1#` is the range that the dynamic array in A1 fills, `#REF!` where there is none (an array formula entered with
+Ctrl-Shift-Enter does not spill). Where its size varies, it is what the formula gives in each trial.
 """
 
 LIMITS = """## Limits

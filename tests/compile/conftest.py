@@ -15,6 +15,7 @@ from xlmc.compile.engine import BLANK_RESULT, TEXT_RESULT
 from xlmc.compile.engines import ENGINES
 from xlmc.compile.lower import Lowering
 from xlmc.compile.numpy_engine import NumpyProgram
+from xlmc.compile.widening import widened
 from xlmc.errors import ErrorCode
 from xlmc.formula import Resolver, build_graph
 
@@ -61,8 +62,12 @@ def lower(workbook):
         places = {parse_address(address, "S"): address for address in inputs}
         held = {parse_address(address, "S"): value for address, value in (held or {}).items()}
         found = [parse_address(address, "S") for address in targets]
-        graph = build_graph(Resolver(book, places), found, frozenset(places), frozenset(held))
-        return Lowering(graph, places, held), [Target(cell, cell) for cell in found]
+
+        def lowered(more):
+            graph = build_graph(Resolver(book, places), found, frozenset(places), frozenset(held), more=more)
+            return Lowering(graph, places, held)
+
+        return widened(lowered), [Target(cell, cell) for cell in found]
 
     return make
 

@@ -107,6 +107,10 @@ class Lowering:
         """The node of all that an array formula in a cell gives."""
         return self._arrays.get(cell, self.cell(cell))
 
+    def is_saved(self, cell: Cell) -> bool:
+        """Whether formulas see what Excel saved in a formula's cell, rather than what it gives."""
+        return self._audit or cell in self.saved
+
     def target(self, target: Target) -> int:
         """The node of a target."""
         return self.single(self.lower(target.tree, Scope(target.cell)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of, quote_sheet
@@ -11,12 +11,13 @@ from xlmc.compile.arrays import beside, grid
 from xlmc.compile.dag import Range
 from xlmc.compile.empty_cells import refused
 from xlmc.compile.extents import beyond, leveled
-from xlmc.compile.references import REFERENCES, NoReference, NotYetNeeded, areas_of, cut, many_numbers, needed, one_area
+from xlmc.compile.references import REFERENCES, NoReference, NotYetNeeded, areas_of, cut, many_numbers, needed
 from xlmc.compile.scope import Scope
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
 from xlmc.functions.budget import ask_for_reading
 from xlmc.functions.families import function_named
+from xlmc.functions.subtotal import Skips, aggregate_skips, subtotal_skips
 from xlmc.functions.values import constant
 
 if TYPE_CHECKING:
@@ -47,12 +48,23 @@ def _index(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None
     if areas is None:
         return None
     if len(areas) > 1:
-        area = one_area(lowering, arguments, areas, scope)
-        return lowering.lower(ir.Call("INDEX", (area, *arguments[1:3])), scope)
+        return lowering.lower(_by_area(arguments, areas), scope)
     if scope.array or scope.whole or many_numbers(lowering, arguments[1:], scope):
         return None
     place = lowering.applied("INDEX", arguments, scope)
     return beside(lowering.dag, place, scope.cell.row - areas[0].top, scope.cell.column - areas[0].left)
+
+
+def _by_area(arguments: Arguments, areas: Sequence[Area]) -> ir.Expression:
+    """INDEX of several areas as that of the one which its fourth argument counts, which may vary."""
+    parts = [ir.Call("INDEX", (area, *arguments[1:3])) for area in areas]
+    if len(arguments) < 4 or isinstance(arguments[3], ir.Missing):
+        return parts[0]
+    tree: ir.Expression = ir.ErrorLiteral(ErrorCode.REF)
+    for count in range(len(parts), 0, -1):
+        below = ir.Binary("<", arguments[3], ir.Number(count + 1.0))
+        tree = ir.Call("IF", (below, parts[count - 1], tree))
+    return ir.Call("IF", (ir.Binary("<", arguments[3], ir.Number(1.0)), ir.ErrorLiteral(ErrorCode.VALUE), tree))
 
 
 def _row_or_column(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
@@ -198,7 +210,10 @@ _OF_PLACE: Mapping[str, Callable[[Cell, Lowering, Cell], float | str]] = {
 
 
 def _spilled(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
-    """`A1#`: all that the array formula in A1 gives."""
+    """`A1#`: the cells that the dynamic array in A1 fills; where their number varies, all that it gives in a trial."""
+    areas = REFERENCES["ANCHORARRAY"](lowering, arguments, scope)
+    if areas is not None:
+        return lowering.lower(areas[0], scope)
     area = _referred(lowering, arguments, scope)
     return lowering.array(Cell(area.sheet, area.top, area.left))
 
@@ -227,20 +242,35 @@ def _without_subtotals(name: str) -> Callable[[Lowering, Arguments, Scope], int 
 _TOTAL = re.compile(r"\b(SUBTOTAL|AGGREGATE)\(", re.IGNORECASE)
 
 
-def _skipped(lowering: Lowering, name: str, options: list[int]) -> tuple[bool, bool]:
-    """Whether totals within the range are left out, and whether hidden rows are."""
+def _skipped(lowering: Lowering, name: str, options: list[int]) -> Skips | None:
+    """What is left out of ranges; None where that varies."""
     known = [lowering.known_single(option) for option in options]
-    numbers = [int(value.numbers[0]) if value is not None and value.plain else 0 for value in known]
-    if name == "SUBTOTAL":
-        return True, numbers[0] > 100
-    return numbers[1] < 4, numbers[1] in (1, 3, 5, 7)
+    numbers = [int(value.numbers[0]) if value is not None and value.plain else None for value in known]
+    if numbers[-1] is None:
+        return None
+    return subtotal_skips(numbers[-1]) if name == "SUBTOTAL" else aggregate_skips(numbers[-1])
 
 
-def _left_in(lowering: Lowering, area: Area, skipped: tuple[bool, bool]) -> int:
-    totals, hidden = skipped
-    ask_for_reading(area.rows, area.columns)  # further cells of a whole column are empty
+def _hidden_rows(lowering: Lowering, area: Area, skips: Skips | None) -> frozenset[int]:
+    """The rows of an area that a total leaves out because they are hidden.
+
+    Raises:
+        FormulaError: some are hidden, and whether they are left out varies.
+    """
     sheet = lowering.graph.workbook.sheet_of(area)
-    hidden_rows = sheet.hidden_rows if hidden and sheet is not None else frozenset()
+    rows = frozenset[int]() if sheet is None else sheet.hidden_rows & frozenset(range(area.top, area.bottom + 1))
+    if sheet is None or not rows:
+        return frozenset()
+    if skips is None:
+        raise FormulaError("rows of the range are hidden, and whether the total leaves them out varies")
+    if skips.hidden:
+        return rows
+    return rows & lowering.graph.workbook.filtered_rows(sheet) if skips.filtered else frozenset()
+
+
+def _left_in(lowering: Lowering, area: Area, skips: Skips | None) -> int:
+    ask_for_reading(area.rows, area.columns)  # further cells of a whole column are empty
+    hidden_rows, totals = _hidden_rows(lowering, area, skips), skips is None or skips.nested
 
     def node(cell: Cell) -> int:
         if cell.row in hidden_rows or (totals and _TOTAL.search(lowering.graph.text(cell))):

@@ -7,7 +7,7 @@ beforehand; `NotYetNeeded` then asks for a wider graph.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of
@@ -22,7 +22,7 @@ from xlmc.functions.values import Codes
 if TYPE_CHECKING:
     from xlmc.compile.lower import Lowering
 
-__all__ = ["REFERENCES", "NoReference", "NotYetNeeded", "areas_of", "cut", "many_numbers", "needed", "one_area"]
+__all__ = ["REFERENCES", "NoReference", "NotYetNeeded", "areas_of", "cut", "many_numbers", "needed"]
 
 Arguments = tuple[ir.Expression, ...]
 
@@ -225,21 +225,6 @@ def many_numbers(lowering: Lowering, numbers: Arguments, scope: Scope) -> bool:
     return any(lowering.dag.sizes[lowering.lower(tree, scope.plainly())] is not None for tree in computed)
 
 
-def one_area(lowering: Lowering, arguments: Arguments, areas: Sequence[Area], scope: Scope) -> Area:
-    """The area that the fourth argument of INDEX names.
-
-    Raises:
-        NoReference: it names none.
-        FormulaError: it varies.
-    """
-    which = 1 if len(arguments) < 4 else _whole_number(lowering, arguments[3], scope.plainly(), "INDEX")
-    if which is not None and which < 1:
-        raise NoReference(ErrorCode.VALUE)
-    if which is not None and which > len(areas):
-        raise NoReference
-    return areas[(which or 1) - 1]
-
-
 def _index(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
     """INDEX of a reference at a known place; None leaves it to the function of values."""
     areas = areas_of(lowering, arguments[0], scope)
@@ -287,10 +272,32 @@ def _either(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area
     return areas_of(lowering, arguments[1 if condition else 2], scope.branch())
 
 
+def _spilled(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    """`A1#`: the range that the file declares for the dynamic array in A1; None where its size varies, or is another,
+    or where the file holds none of its values.
+
+    Raises:
+        NoReference: nothing spills from there.
+    """
+    areas = areas_of(lowering, arguments[0], scope)
+    if not areas:
+        raise NoReference
+    cell = Cell(areas[0].sheet, areas[0].top, areas[0].left)
+    formula = lowering.graph.workbook.content(cell).formula
+    if formula is None or not formula.dynamic or formula.array is None:
+        raise NoReference
+    size = lowering.dag.sizes[lowering.array(cell)] or (1, 1)
+    declared = formula.array.rows, formula.array.columns
+    in_file = all(lowering.graph.workbook.content(cell).value is not None for cell in formula.array.cells())
+    taken = in_file and (size == declared or lowering.is_saved(cell))
+    return [needed(lowering, formula.array)] if taken else None
+
+
 REFERENCES: Mapping[str, Callable[[Lowering, Arguments, Scope], list[Area] | None]] = {
     "OFFSET": _offset,
     "INDIRECT": _indirect,
     "INDEX": _index,
     "IF": _either,
     "CHOOSE": _chosen,
+    "ANCHORARRAY": _spilled,
 }

@@ -5,7 +5,7 @@ A criterion of one trial is held against the cells of the same trial. Letters: n
 * Without an operator, or with `=`, a number meets equal numbers and the texts that read as one; a text meets texts,
   with wildcards and whatever their case; a logical or an error meets its like. An empty cell as criterion is the number
   0.
-* `<>` is the opposite in every cell, be it empty or an error.
+* `<>` is the opposite in every cell, be it empty or an error; but `<>5` meets the text `5`, which `5` meets too.
 * `<`, `<=`, `>` and `>=` meet cells of the operand's kind only.
 * `""` meets what is empty or an empty text, `"="` what is empty, `"<>"` what is not.
 """
@@ -107,14 +107,15 @@ def _holds(operator: str, wanted: Ordered, found: Ordered, read: Read) -> Bools:
     if operator in _RELATIONS:
         comparable = (found.kinds == wanted.kinds) & (found.kinds != BLANK) & (found.kinds < ERROR)
         return np.asarray(comparable & _RELATIONS[operator](found.order, wanted.order))
-    equal = _equal(wanted, found, operator == _BEGINS, read)
+    equal = _equal(wanted, found, operator == _BEGINS, read if operator != "<>" else None)
     return ~equal if operator == "<>" else equal
 
 
-def _equal(wanted: Ordered, found: Ordered, begins: bool, read: Read) -> Bools:
+def _equal(wanted: Ordered, found: Ordered, begins: bool, read: Read | None) -> Bools:
+    """Which cells equal the operand; of a number also the texts that read as it, where `read` is given."""
     result = (found.kinds == wanted.kinds) & (found.order == wanted.order)
     is_number, is_text = wanted.kinds == NUMBER, wanted.kinds == TEXT
-    if is_number.any() and (found.kinds == TEXT).any():
+    if read is not None and is_number.any() and (found.kinds == TEXT).any():
         result = result | (is_number & (_text_numbers(found, read) == wanted.order))
     for place in np.unique(wanted.order[is_text]).astype(np.intp):
         text = wanted.texts[place]

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import first_errors
+from xlmc.functions.picking import flattened as in_rows
 from xlmc.functions.registry import Anything, Cells, Kind, Number, excel
 from xlmc.functions.toolpak import flattened, numbers_only
-from xlmc.functions.values import NUM, Bools, Codes, Floats, Value
+from xlmc.functions.values import BLANK, NUM, Bools, Codes, Floats, Value
 
 __all__: list[str] = []
 
@@ -47,10 +49,24 @@ def gcd(*values: Value) -> Value:
     return Value.of_numbers(np.gcd.reduce(whole, axis=1).astype(np.float64), _refused(x, errors, bad))
 
 
+def _without_blanks(values: Sequence[Value], x: Floats) -> Floats:
+    """1 in the place of each empty cell, which changes no multiple, unless there is nothing else: (n, k)."""
+    empty = [
+        in_rows((value.kinds == BLANK) & (value.numbers.ndim == 3), value)  # what is left out of a call is 0
+        for value in values
+    ]
+    blank = np.concatenate([np.broadcast_to(part, (x.shape[0], part.shape[1])) for part in empty], axis=1)
+    return np.where(blank & ~blank.all(axis=1, keepdims=True), 1.0, x)
+
+
 @excel("LCM", Cells(repeat=True))
 def lcm(*values: Value) -> Value:
-    """Least common multiple; `#NUM!` below 0, and where a number or the multiple is 2^53 or more."""
+    """Least common multiple; `#NUM!` below 0, and where a number or the multiple is 2^53 or more.
+
+    Empty cells are left out; of these alone it is 0.
+    """
     x, errors = flattened(values)
+    x = _without_blanks(values, x)
     bad = (x < 0) | (x >= _EXACT)
     result = np.ones(x.shape[0])
     for column in np.where(bad, 1.0, np.trunc(x)).T:

@@ -54,7 +54,12 @@ class CellContent:
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """One worksheet. `cells` holds only what the file holds; everything else is blank."""
+    """One worksheet. `cells` holds only what the file holds; everything else is blank.
+
+    Attributes:
+        hidden_rows: hidden by hand or by a filter; the file marks both alike.
+        filtered: the rows, with the heading, of each filter that leaves rows out.
+    """
 
     name: str
     part: str
@@ -62,6 +67,7 @@ class Sheet:
     merged: tuple[Area, ...] = ()
     visible: bool = True
     hidden_rows: frozenset[int] = frozenset()
+    filtered: tuple[Area, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,13 +96,14 @@ class LinkedBook:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """An Excel table. `area` includes header and totals rows."""
+    """An Excel table. `area` includes header and totals rows, `filtered` is that of a filter that leaves rows out."""
 
     name: str
     area: Area
     columns: tuple[str, ...]
     header_rows: int = 1
     totals_rows: int = 0
+    filtered: Area | None = None
 
     @property
     def body(self) -> Area:
@@ -177,6 +184,13 @@ class Workbook:
         """The sheet of that name, whatever its case."""
         found = self._folded.get(name.casefold())
         return None if found is None else self.sheets[found]
+
+    def filtered_rows(self, sheet: Sheet) -> frozenset[int]:
+        """The hidden rows within a filter of the sheet or of a table: Excel takes all of these for filtered."""
+        tables = (table.filtered for table in self.tables)
+        areas = [*sheet.filtered, *(area for area in tables if area is not None and area.sheet == sheet.name)]
+        below = [range(area.top + 1, area.bottom + 1) for area in areas]
+        return frozenset(row for row in sheet.hidden_rows if any(row in rows for rows in below))
 
     def table_named(self, name: str) -> Table | None:
         """The table of that name, whatever its case."""

@@ -21,6 +21,8 @@ _NAMESPACES = (
     "http://schemas.openxmlformats.org/spreadsheetml/2006/main",
     "http://purl.oclc.org/ooxml/spreadsheetml/main",  # strict
 )
+_CONDITIONS = ("filters", "customFilters", "dynamicFilter", "top10", "colorFilter", "iconFilter")
+"""What a column of a filter holds that leaves rows out."""
 _SPACE = "http://www.w3.org/XML/1998/namespace space"
 _ROW = re.compile("[1-9][0-9]{0,6}")
 _A1 = re.compile("([A-Z]{1,3})([1-9][0-9]{0,6})")
@@ -49,7 +51,9 @@ def parse_sheet(xml: bytes, entry: SheetEntry, context: CellContext) -> ParsedSh
     parser.CharacterDataHandler = reading.text.append
     feed(parser, xml, entry.part)
     sheet = Sheet(
-        entry.name, entry.part, reading.cells, tuple(reading.merged), entry.visible, frozenset(reading.hidden_rows)
+        *(entry.name, entry.part, reading.cells, tuple(reading.merged), entry.visible),
+        frozenset(reading.hidden_rows),
+        tuple(reading.filtered),
     )
     return ParsedSheet(sheet, tuple(reading.data_tables))
 
@@ -62,6 +66,7 @@ class _Pass:
         self.merged: list[Area] = []
         self.data_tables: list[DataTable] = []
         self.hidden_rows: set[int] = set()
+        self.filtered: list[Area] = []
         self.text: list[str] = []  # pieces of the text at hand
         self._sheet = sheet
         self._context = context
@@ -73,6 +78,8 @@ class _Pass:
         self._masters: dict[str | None, Formula] = {}
         self._runs: list[str] = []
         self._phonetic = False
+        self._filter: str | None = None
+        self._has_condition = False
 
     def start(self, tag: str, attributes: _Attributes) -> None:
         self._attributes = attributes
@@ -148,6 +155,17 @@ class _Pass:
     def start_merged(self) -> None:
         self.merged.append(area_of(self._attributes.get("ref"), self._sheet, "a merged cell"))
 
+    def start_filter(self) -> None:
+        self._filter, self._has_condition = self._attributes.get("ref"), False
+
+    def start_condition(self) -> None:
+        self._has_condition = True
+
+    def end_filter(self) -> None:
+        if self._has_condition:
+            self.filtered.append(area_of(self._filter, self._sheet, "a filter"))
+        self._has_condition = False
+
     def _go_to(self, reference: str) -> None:
         found = _A1.fullmatch(reference)
         if found is None:
@@ -201,6 +219,8 @@ _STARTS = _in_each_namespace(
         "c": _Pass.start_cell,
         "rPh": _Pass.start_phonetic,
         "mergeCell": _Pass.start_merged,
+        "autoFilter": _Pass.start_filter,
+        **dict.fromkeys(_CONDITIONS, _Pass.start_condition),
     }
 )
 _ENDS = _in_each_namespace(
@@ -211,5 +231,6 @@ _ENDS = _in_each_namespace(
         "t": _Pass.end_run,
         "is": _Pass.end_inline,
         "rPh": _Pass.end_phonetic,
+        "autoFilter": _Pass.end_filter,
     }
 )

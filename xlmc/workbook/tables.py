@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
 
 from xlmc.errors import WorkbookError
 from xlmc.workbook.model import Table
@@ -10,6 +11,11 @@ from xlmc.workbook.package import relationships
 from xlmc.workbook.reference import area_of
 from xlmc.workbook.safe_xml import REPAIR, tree, whole_number
 from xlmc.workbook.strings import decode
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+    from xlmc.address import Area
 
 __all__ = ["read_table", "tables_of"]
 
@@ -40,7 +46,15 @@ def read_table(xml: bytes, part: str, sheet: str) -> Table:
     header, totals = (whole_number(root.get(key, default)) for key, default in _ROWS)
     if header is None or totals is None or header + totals > area.rows or len(columns) != area.columns:
         raise WorkbookError(f"the table {name!r} of sheet {sheet!r} does not fit its range {area.a1}", hint=REPAIR)
-    return Table(name, area, columns, header, totals)
+    return Table(name, area, columns, header, totals, _filtered(root, sheet, name))
+
+
+def _filtered(root: Element, sheet: str, name: str) -> Area | None:
+    """The range of its filter; None where no column of it has a condition."""
+    element = root.find("{*}autoFilter")
+    if element is None or not any(len(column) for column in element.findall("{*}filterColumn")):
+        return None
+    return area_of(element.get("ref"), sheet, f"the filter of the table {name!r}")
 
 
 _ROWS = (("headerRowCount", "1"), ("totalsRowCount", "0"))

@@ -142,7 +142,7 @@ def _accuracy(given: _Measured) -> dict[str, Any]:
     path = given.output / "rates.json"
     if not path.exists():
         sys.exit(f"the part `accuracy` needs the rates: {path} does not exist; run the part `rates` first")
-    known = json.loads(path.read_text())["found"]["case-study"]
+    known = json.loads(path.read_text(encoding="utf-8"))["found"]["case-study"]
     plan = given.plan
     return accuracy.measure(given.entries, CASE_STUDY, known, plan.ladder, plan.seeds, plan.limit, _say)
 
@@ -171,7 +171,9 @@ def _with_one_variant(entry: Entry) -> Entry:
 
 
 def _write(path: Path, described: dict[str, Any], found: dict[str, Any]) -> None:
-    path.write_text(json.dumps({"machine": described, "found": found}, indent=1, ensure_ascii=False) + "\n")
+    path.write_text(
+        json.dumps({"machine": described, "found": found}, indent=1, ensure_ascii=False) + "\n", encoding="utf-8"
+    )
 
 
 def _say(text: str) -> None:

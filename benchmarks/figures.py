@@ -42,7 +42,7 @@ def draw_accuracy(results: Path, target: Path) -> None:
     """Error against seconds, log–log, one panel a statistic."""
     from matplotlib.ticker import LogLocator
 
-    curves = json.loads(results.read_text())["found"]
+    curves = json.loads(results.read_text(encoding="utf-8"))["found"]
     plot = _pyplot()
     figure, axes = plot.subplots(2, 2, figsize=(11, 9.4), sharex=True, sharey=True, layout="constrained")
     for k, (axis, name) in enumerate(zip(axes.flat, STATISTICS, strict=True)):
@@ -84,7 +84,7 @@ def _slope(axis: Any, curves: dict[str, Any], k: int) -> None:
 
 def draw_rates(results: Path, target: Path) -> None:
     """Trials per second of every contestant over those of xlmc/numpy, one panel a book where that was measured."""
-    books = json.loads(results.read_text())["found"]
+    books = json.loads(results.read_text(encoding="utf-8"))["found"]
     found: dict[str, Any] = {book: records for book, records in books.items() if _shown(records)}
     if not found:
         return

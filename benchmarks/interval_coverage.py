@@ -119,8 +119,8 @@ def main() -> None:
             cells.append(measure(name, method, given.runs))
             print(*cells[-1], flush=True)
     found = {"runs": given.runs, "statistics": STATISTICS, "cells": cells}
-    given.results.write_text(json.dumps(found, indent=1) + "\n")
-    given.page.write_text(placed(given.page.read_text(), "coverage", table(found)))
+    given.results.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    given.page.write_text(placed(given.page.read_text(encoding="utf-8"), "coverage", table(found)), encoding="utf-8")
     missed = faults(cells, given.runs)
     print("\n".join(missed) or "every cell meets the bar")
     sys.exit(1 if missed else 0)

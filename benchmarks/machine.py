@@ -51,7 +51,7 @@ def _cpu_info() -> dict[str, str]:
     path = Path("/proc/cpuinfo")
     if not path.exists():
         return {}
-    pairs = (line.partition(":") for line in path.read_text().split("\n\n")[0].splitlines())
+    pairs = (line.partition(":") for line in path.read_text(encoding="utf-8").split("\n\n")[0].splitlines())
     return {key.strip(): value.strip() for key, _, value in pairs}
 
 
@@ -75,7 +75,7 @@ def _busy() -> float | None:
 
 def _ticks(path: Path) -> tuple[int, int]:
     """Of all cores since the start, idle or waiting for a disk, and in all."""
-    _, *ticks = path.read_text().splitlines()[0].split()
+    _, *ticks = path.read_text(encoding="utf-8").splitlines()[0].split()
     counts = [int(count) for count in ticks[:8]]  # the guests' after them are among the first
     return counts[3] + counts[4], sum(counts)
 

@@ -176,18 +176,18 @@ def main() -> None:
     parser.add_argument("--page", type=Path, default=PAGE)
     given = parser.parse_args()
     os.environ["OPENBLAS_NUM_THREADS"] = "1"  # in the processes to come: each has one core
-    found: dict[str, Entry] = json.loads(given.results.read_text()) if given.results.exists() else {}
+    found: dict[str, Entry] = json.loads(given.results.read_text(encoding="utf-8")) if given.results.exists() else {}
     for name in given.only or NAMES:
 
         def keep(entry: Entry, name: str = name) -> None:
             found[name] = entry
-            given.results.write_text(json.dumps(found, indent=1) + "\n")
+            given.results.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
             print(name, entry["runs"], entry["hits"], flush=True)
 
         measured(subject(name, given.jobs), given.runs, given.jobs, keep)
     if given.page.exists():
-        page = placed(given.page.read_text(), "rare-coverage", coverage_table(found))
-        given.page.write_text(placed(page, "rare-methods", method_table(found)))
+        page = placed(given.page.read_text(encoding="utf-8"), "rare-coverage", coverage_table(found))
+        given.page.write_text(placed(page, "rare-methods", method_table(found)), encoding="utf-8")
     missed = faults(found)
     print("\n".join(missed) or "every cell meets the bar")
     sys.exit(1 if missed else 0)

@@ -91,8 +91,8 @@ def main() -> None:
                 measured[case][method] = gains(plain, means(model, method, range(SEEDS[case])))
                 print(case, method, measured[case][method], flush=True)
     found = {"trials": TRIALS, "seeds": SEEDS, "forecasts": [f.name for f in book.forecasts], "gains": measured}
-    given.results.write_text(json.dumps(found, indent=1) + "\n")
-    given.page.write_text(placed(given.page.read_text(), "sobol", table(found)))
+    given.results.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    given.page.write_text(placed(given.page.read_text(encoding="utf-8"), "sobol", table(found)), encoding="utf-8")
     missed = [case for case, least in LEAST.items() if measured[case]["sobol"][0][-1] < least]
     print(f"the bar is missed {' and '.join(missed)}" if missed else "the bar is met")
     sys.exit(1 if missed else 0)

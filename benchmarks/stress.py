@@ -68,11 +68,11 @@ def main() -> None:
     for name in given.parts or PARTS:
         part, path = PARTS[name], given.results / f"stress-{name}.json"
         if not given.draw_only:
-            path.write_text(json.dumps(part.measure(given.fewer), separators=(",", ":")) + "\n")
-        for picture in part.draw(json.loads(path.read_text()), given.pictures):
+            path.write_text(json.dumps(part.measure(given.fewer), separators=(",", ":")) + "\n", encoding="utf-8")
+        for picture in part.draw(json.loads(path.read_text(encoding="utf-8")), given.pictures):
             print(f"{name}: {picture}", flush=True)
     if given.page.exists():
-        given.page.write_text(page.filled(given.page.read_text(), given.results))
+        given.page.write_text(page.filled(given.page.read_text(encoding="utf-8"), given.results), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -30,7 +30,7 @@ PROVISIONAL = (
 
 def write(results: Path, page: Path = PAGE) -> None:
     """Put the tables of all results there are into the page."""
-    page.write_text(filled(page.read_text(), results))
+    page.write_text(filled(page.read_text(encoding="utf-8"), results), encoding="utf-8")
 
 
 def filled(text: str, results: Path) -> str:
@@ -40,7 +40,7 @@ def filled(text: str, results: Path) -> str:
         ValueError: a table's markers are missing.
     """
     paths = {name: results / f"{name}.json" for name in TABLES}
-    found = {name: json.loads(path.read_text()) for name, path in paths.items() if path.exists()}
+    found = {name: json.loads(path.read_text(encoding="utf-8")) for name, path in paths.items() if path.exists()}
     if not found:
         return text
     machine = next(iter(found.values()))["machine"]

@@ -93,8 +93,8 @@ def main(given: Sequence[str] | None = None) -> None:
         told=lambda what: print(what, file=sys.stderr, flush=True),
     )
     record: dict[str, Any] = {"machine": describe(), "found": study_json(found)}
-    RESULTS.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n")
-    PAGE.write_text(filled(PAGE.read_text(), found))
+    RESULTS.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), found), encoding="utf-8")
     save_methods(found, PICTURE, overwrite=True)
     ratios = [float(cell.partition(" ")[0]) for row in theory_rows(found) for cell in row[2:]]
     print(

@@ -73,4 +73,4 @@ def _parameter(spec: ParameterSpec) -> str:
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page())
+    PAGE.write_text(page(), encoding="utf-8")

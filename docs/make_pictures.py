@@ -123,7 +123,7 @@ def _write_books(folder: Path) -> None:
 def _printed(book: Path) -> tuple[Path, list[list[Word]]]:
     """The workbook as PDF, and the words of each of its pages."""
     fonts = book.with_name("fonts.conf")
-    fonts.write_text(_FONTS)
+    fonts.write_text(_FONTS, encoding="utf-8")
     profile = f"-env:UserInstallation={book.with_name('profile').as_uri()}"
     command = ["soffice", profile, "--headless", "--convert-to", "pdf", "--outdir", str(book.parent), str(book)]
     subprocess.run(command, check=True, capture_output=True, env=os.environ | {"FONTCONFIG_FILE": str(fonts)})

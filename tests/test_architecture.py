@@ -40,7 +40,7 @@ MODULES = sorted(path for path in PACKAGE.rglob("*.py") if "templates" not in pa
 
 def imported(path: Path, *, at_run_time_only: bool = True) -> set[str]:
     """Full names of the modules a file imports at its top level, those for type checkers left out."""
-    tree = ast.parse(path.read_text())
+    tree = ast.parse(path.read_text(encoding="utf-8"))
     nodes = tree.body if at_run_time_only else list(ast.walk(tree))
     names: set[str] = set()
     for node in nodes:
@@ -100,7 +100,7 @@ def test_only_doors_for_people_reach_upwards():
     """`Model.simulate`, `Simulation.save…`, `.keep` and the like are doors; they import what they open when called."""
     reached = set()
     for path in MODULES:
-        tree, own = ast.parse(path.read_text()), room_of(path)
+        tree, own = ast.parse(path.read_text(encoding="utf-8")), room_of(path)
         skipped = for_type_checkers(tree)
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and node.module and node not in skipped:
@@ -117,7 +117,7 @@ def test_scipy_stats_is_never_imported():
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_no_text_is_run_as_code_and_only_the_command_line_prints(path):
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             assert node.func.id not in ("eval", "exec", "compile", "__import__"), f"{path}:{node.lineno}"
             assert node.func.id != "print", f"{path}:{node.lineno}"

@@ -15,8 +15,8 @@ from xlmc.cli import xlmc
 from xlmc.distributions import FAMILIES
 
 ROOT = Path(__file__).resolve().parents[1]
-README = (ROOT / "README.md").read_text()
-COMMAND_LINE = (ROOT / "docs" / "command-line.md").read_text()
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+COMMAND_LINE = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("name", sorted(xlmc.commands))
@@ -40,7 +40,7 @@ def script_of_docs(name):
 
 def test_every_distribution_is_documented():
     page = script_of_docs("list_distributions").page()
-    assert (ROOT / "docs" / "distributions.md").read_text() == page
+    assert (ROOT / "docs" / "distributions.md").read_text(encoding="utf-8") == page
     for family in FAMILIES.values():
         assert f"\n## {family.name}\n" in page
         if family.roles or family.data:
@@ -50,13 +50,13 @@ def test_every_distribution_is_documented():
 
 def test_every_function_is_documented():
     script = script_of_docs("list_functions")
-    assert (ROOT / "docs" / "functions.md").read_text() == script.page()
+    assert (ROOT / "docs" / "functions.md").read_text(encoding="utf-8") == script.page()
     assert len(script.names()) >= 350
 
 
 def test_ci_runs_the_readmes_test_command():
     command = next(line for line in README.splitlines() if "pytest" in line and "venv" in line)
-    assert command in (ROOT / ".ci" / "run").read_text().splitlines()
+    assert command in (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines()
 
 
 def test_readme_python_runs(tmp_path, monkeypatch):
@@ -83,5 +83,5 @@ def test_readme_shows_the_output_of_its_command(tmp_path):
 
 def test_links_between_documents_lead_somewhere():
     for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
-        for target in re.findall(r"\]\((?!http)([^)#]+)", page.read_text()):
+        for target in re.findall(r"\]\((?!http)([^)#]+)", page.read_text(encoding="utf-8")):
             assert (page.parent / target).exists(), f"{page.name}: {target}"

@@ -135,7 +135,7 @@ def _children(kind: str, how: Kind, seed: int, numbers: list[int], until: float)
 def _processor_time(pid: int | None) -> float:
     """Of a process so far, in seconds; 0 of one that is gone."""
     try:
-        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+        fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     except OSError:
         return 0.0
     return (int(fields[11]) + int(fields[12])) / _TICKS

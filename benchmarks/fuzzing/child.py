@@ -6,11 +6,12 @@ import contextlib
 import gc
 import os
 import resource
+import shutil
 import sys
 import tempfile
 import time
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -18,6 +19,7 @@ from typing import Final
 
 from fuzzing.inputs import Kind, Reached, generator
 from fuzzing.verdict import Finding, of_error
+from xlmc.scratch.owners import new_folder_name, owned, remove_stray_folders
 
 __all__ = ["MEMORY", "Outcome", "judged", "serve"]
 
@@ -48,15 +50,29 @@ class Outcome:
 
 def serve(kind: str, how: Kind, seed: int, numbers: Iterable[int], parent: Connection) -> None:
     """Run the inputs of these numbers, and tell the parent each number before and its outcome after."""
-    sys.stdout = sys.stderr = open(os.devnull, "w")  # noqa: SIM115 - as long as the process lives
+    sys.stdout = sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - as long as the process lives
     resource.setrlimit(resource.RLIMIT_AS, (_held("VmSize") + MEMORY,) * 2)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    with tempfile.TemporaryDirectory(prefix="fuzz-") as folder:
+    with _folder_of_its_own() as folder:
         os.chdir(folder)
         for number in numbers:
             parent.send(number)
-            parent.send(judged(kind, how, seed, number, Path(folder)))
+            parent.send(judged(kind, how, seed, number, folder))
     parent.send(None)
+
+
+@contextlib.contextmanager
+def _folder_of_its_own() -> Iterator[Path]:
+    """A temporary folder; those of children that were killed are removed first, known by the process in their names."""
+    remove_stray_folders()
+    name = new_folder_name()
+    folder = Path(tempfile.gettempdir()) / name
+    with owned(name):
+        folder.mkdir()
+        try:
+            yield folder
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def judged(kind: str, how: Kind, seed: int, number: int, folder: Path) -> Outcome:
@@ -82,12 +98,12 @@ def judged(kind: str, how: Kind, seed: int, number: int, folder: Path) -> Outcom
 def _forget_the_most() -> int:
     """Start anew to look for the largest memory; what is held now."""
     with contextlib.suppress(OSError):
-        Path("/proc/self/clear_refs").write_text("5")
+        Path("/proc/self/clear_refs").write_text("5", encoding="utf-8")
     return _held("VmRSS")
 
 
 def _held(what: str) -> int:
     """A line of `/proc/self/status`, in bytes."""
-    with open("/proc/self/status") as status:
+    with open("/proc/self/status", encoding="utf-8") as status:
         line = next(line for line in status if line.startswith(what))
     return int(line.split()[1]) << 10

@@ -61,7 +61,7 @@ _SPECIAL: Final = (
 @cache
 def names() -> tuple[str, ...]:
     """Every function that xlmc computes, as its page lists them."""
-    listed = (ROOT / "docs" / "functions.md").read_text()
+    listed = (ROOT / "docs" / "functions.md").read_text(encoding="utf-8")
     return tuple(sorted(set(re.findall("`([A-Z][A-Z0-9.]*)`", listed))))
 
 

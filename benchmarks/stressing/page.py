@@ -24,7 +24,7 @@ def filled(text: str, results: Path) -> str:
     for part, table in TABLES.items():
         path = results / f"stress-{part}.json"
         if path.exists():
-            text = placed(text, f"stress {part}", table(json.loads(path.read_text())))
+            text = placed(text, f"stress {part}", table(json.loads(path.read_text(encoding="utf-8"))))
     return text
 
 

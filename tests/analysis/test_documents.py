@@ -9,7 +9,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_the_python_of_the_page_on_comparing_runs():
-    block = re.search(r"```python\n(.*?)```", (ROOT / "docs" / "comparing.md").read_text(), re.DOTALL)
+    block = re.search(r"```python\n(.*?)```", (ROOT / "docs" / "comparing.md").read_text(encoding="utf-8"), re.DOTALL)
     assert block is not None
     done = subprocess.run([sys.executable, "-c", block[1]], check=True, cwd=ROOT, capture_output=True, text=True)
     assert "is enough for Chevrolet delta-V to 1.5 mph" in done.stdout

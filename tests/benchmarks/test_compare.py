@@ -24,7 +24,7 @@ def results(tmp_path_factory):
 
 
 def found(results, part):
-    return json.loads((results / f"{part}.json").read_text())["found"]
+    return json.loads((results / f"{part}.json").read_text(encoding="utf-8"))["found"]
 
 
 def test_contestants_agree_on_the_case_study(results):
@@ -100,6 +100,6 @@ def test_tables_stand_between_their_markers(results):
 
 
 def test_the_page_shows_the_committed_results():
-    text = tables.PAGE.read_text()
+    text = tables.PAGE.read_text(encoding="utf-8")
     assert all((compare.RESULTS / f"{name}.json").exists() for name in tables.TABLES)
     assert tables.filled(text, compare.RESULTS) == text

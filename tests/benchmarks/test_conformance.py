@@ -55,7 +55,7 @@ def test_cells_and_shapes_are_counted(folder):
 def test_a_list_of_sizes_counts_a_refused_book(folder):
     from conformance import check_folder
 
-    (folder / "INDEX.tsv").write_text("file\tformula_cells\nbroken.xlsx\t12\n")
+    (folder / "INDEX.tsv").write_text("file\tformula_cells\nbroken.xlsx\t12\n", encoding="utf-8")
     assert len(check_folder(folder).books["broken.xlsx"]) == 12
 
 

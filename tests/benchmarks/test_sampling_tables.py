@@ -35,11 +35,11 @@ def sobol():
 
 
 def page_table(page, name):
-    return re.search(rf"<!-- {name} -->\n\n(.*?)\n\n<!-- /{name} -->", page.read_text(), re.DOTALL)[1]
+    return re.search(rf"<!-- {name} -->\n\n(.*?)\n\n<!-- /{name} -->", page.read_text(encoding="utf-8"), re.DOTALL)[1]
 
 
 def test_the_committed_table_meets_the_bar(coverage):
-    found = json.loads(coverage.RESULTS.read_text())
+    found = json.loads(coverage.RESULTS.read_text(encoding="utf-8"))
     cells = [coverage.Cell(*each) for each in found["cells"]]
     assert found["runs"] == 4_000
     assert {(cell.problem, cell.method) for cell in cells} == {(p, m) for p in coverage.PROBLEMS for m in METHODS}
@@ -71,7 +71,7 @@ def test_the_truths_are_true(coverage, name):
 
 
 def test_the_committed_gains_meet_the_bar(sobol):
-    found = json.loads(sobol.RESULTS.read_text())
+    found = json.loads(sobol.RESULTS.read_text(encoding="utf-8"))
     assert found["trials"] == 131_072
     for case, least in sobol.LEAST.items():
         ratios, _ = found["gains"][case]["sobol"]

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = (ROOT / "docs" / "uncertainty-methods.md").read_text()
+PAGE = (ROOT / "docs" / "uncertainty-methods.md").read_text(encoding="utf-8")
 
 
 def test_the_committed_errors_are_those_of_theory():
@@ -19,7 +19,9 @@ def test_the_committed_errors_are_those_of_theory():
 
 
 def test_the_page_and_the_results_are_of_one_run():
-    found = json.loads((ROOT / "benchmarks" / "results" / "uncertainty-methods.json").read_text())["found"]
+    found = json.loads((ROOT / "benchmarks" / "results" / "uncertainty-methods.json").read_text(encoding="utf-8"))[
+        "found"
+    ]
     assert f"Reference: {found['reference']['trials']:,} trials" in PAGE
     for said in found["recommendation"]:
         assert said in PAGE

@@ -42,7 +42,7 @@ def test_simulate_says_first_which_check_fails_and_which_cell_is_an_error(xlmc, 
     assert "from Model!D11 #DIV/0!: =1/ROUND(B2*100,0)" in " ".join(before.split())
     assert "Statistics of 'r' rest on 59,9" in before
     assert "Accepted" not in after
-    found = json.loads((tmp_path / "case.json").read_text())
+    found = json.loads((tmp_path / "case.json").read_text(encoding="utf-8"))
     assert list(found)[:4] == ["format", "version", "warnings", "checks"]
     assert found["checks"][0]["holds"] is True
     assert found["checks"][0]["failed"] > 60

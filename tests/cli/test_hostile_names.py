@@ -40,7 +40,9 @@ def test_every_part_is_well_formed_and_no_control_is_raw(xlmc, hostile, tmp_path
                 ElementTree.fromstring(package.read(name))
     for name in ("p.html", "t.csv"):
         assert not RAW.search((tmp_path / name).read_text(encoding="utf-8-sig")), name
-    assert not RAW.search(json.dumps(json.loads((tmp_path / "j.json").read_text())["forecasts"], ensure_ascii=False))
+    assert not RAW.search(
+        json.dumps(json.loads((tmp_path / "j.json").read_text(encoding="utf-8"))["forecasts"], ensure_ascii=False)
+    )
     assert xlmc("replay", "s.xlmcrun").code == 0
     assert xlmc("replay", "r.xlsx").code == 0
 
@@ -76,7 +78,7 @@ def test_headings_and_file_names_that_steer_a_terminal_are_escaped(xlmc, with_he
             if name.endswith((".xml", ".rels", ".vml")):
                 ElementTree.fromstring(package.read(name))
     assert not RAW.search((tmp_path / "p.html").read_text(encoding="utf-8"))
-    written = json.loads((tmp_path / "j.json").read_text())
+    written = json.loads((tmp_path / "j.json").read_text(encoding="utf-8"))
     for exact in ("cells", "structure"):  # what the run was made from, to the letter: a replay compares it
         del written["record"][exact]
     assert not RAW.search(json.dumps(written, ensure_ascii=False))
@@ -117,7 +119,7 @@ def test_forecast_names_are_escaped_in_json_keys_and_headings_of_extracts(xlmc, 
             for each in value:
                 yield from keys(each)
 
-    written = json.loads((tmp_path / "j.json").read_text())
+    written = json.loads((tmp_path / "j.json").read_text(encoding="utf-8"))
     assert not [key for key in keys(written) if RAW.search(key)]
     head = (tmp_path / "t.csv").read_text(encoding="utf-8-sig").splitlines()[0]
     assert "\\x1b[2J\\x07" in head

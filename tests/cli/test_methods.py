@@ -20,7 +20,7 @@ def test_words_and_files(xlmc, case_study, tmp_path):
     assert "Recommended:" in text
     assert "does not see filters" in text
     assert files[0].read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
-    page = files[1].read_text()
+    page = files[1].read_text(encoding="utf-8")
     assert page.count("<svg") == 2
     assert "<script" not in page
     assert "https://" not in page.replace("https://matplotlib.org", "")

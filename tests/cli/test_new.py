@@ -55,11 +55,11 @@ def test_names_the_copy_after_the_template(xlmc, tmp_path):
 
 def test_never_overwrites(xlmc, tmp_path):
     mine = tmp_path / "case.xlsx"
-    mine.write_text("my work")
+    mine.write_text("my work", encoding="utf-8")
     outcome = xlmc("new", "planar-impact", mine)
     assert outcome.code == 2
     assert "exists already" in outcome.err
-    assert mine.read_text() == "my work"
+    assert mine.read_text(encoding="utf-8") == "my work"
 
 
 def test_refuses_an_unknown_template(xlmc):

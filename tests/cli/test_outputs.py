@@ -63,7 +63,7 @@ CHANGES = [
     (save_again, "xlmc did not write it, or another program has saved it since"),
     (change_a_part, "it was changed since xlmc wrote it"),
     (results_of_another_book, "it holds results of 'other.xlsx', not of 'book.xlsx'"),
-    (lambda path: path.write_text("my notes"), "xlmc did not write it"),
+    (lambda path: path.write_text("my notes", encoding="utf-8"), "xlmc did not write it"),
     (lambda path: path.chmod(0o444), "the file is read-only"),
     (become_a_folder, "this is a folder"),
     (become_a_link_to_nothing, "this is a link to"),
@@ -215,12 +215,12 @@ def during_the_run(monkeypatch, act):
 def test_files_that_appear_during_the_run_are_spared_and_no_result_is_lost(xlmc, book, tmp_path, monkeypatch):
     def appear():
         for name in NAMED:
-            (tmp_path / name).write_text("mine")
+            (tmp_path / name).write_text("mine", encoding="utf-8")
 
     during_the_run(monkeypatch, appear)
     outcome = xlmc("simulate", book, *ALL)
     for name in NAMED:
-        assert (tmp_path / name).read_text() == "mine"
+        assert (tmp_path / name).read_text(encoding="utf-8") == "mine"
         stem, _, ending = name.partition(".")
         assert (tmp_path / f"{stem}-2.{ending}").stat().st_size > 100
         assert f"{stem}-2.{ending} was written instead" in outcome.err
@@ -319,9 +319,9 @@ def test_in_python_the_same_holds(book, tmp_path, monkeypatch):
         assert str(write(name)) == name
         if name != "a.csv":
             write(name)
-        (tmp_path / name).write_text("mine")
+        (tmp_path / name).write_text("mine", encoding="utf-8")
         with pytest.raises(WorkbookError, match="overwrite=True"):
             write(name)
-        assert (tmp_path / name).read_text() == "mine"
+        assert (tmp_path / name).read_text(encoding="utf-8") == "mine"
         write(name, overwrite=True)
         assert (tmp_path / name).stat().st_size > 10

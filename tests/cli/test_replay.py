@@ -188,15 +188,15 @@ def test_the_documents_show_what_is_printed(xlmc, case_study, tmp_path):
     """docs/saved-runs.md shows a replay before and after a cell was changed; docs/json.md a number and a program."""
     shutil.copy(case_study, tmp_path / "intersection.xlsx")
     xlmc("simulate", "intersection.xlsx", "--json", "book.json")
-    before, after = re.findall(r"```text\n\$ (.*?)```", (DOCS / "saved-runs.md").read_text(), re.DOTALL)
+    before, after = re.findall(r"```text\n\$ (.*?)```", (DOCS / "saved-runs.md").read_text(encoding="utf-8"), re.DOTALL)
     for shown in (before, after):
         command, *lines = shown.splitlines()
         printed = xlmc(*command.split()[1:]).out.splitlines()
         assert [line for line in lines if line != "  …"] == printed[: len(lines) - ("  …" in lines)]
         edit(tmp_path / "intersection-results.xlsx", "Model", "D9", "=SQRT(2*g*f_1*s_1)*1.001")
-    page = (DOCS / "json.md").read_text()
+    page = (DOCS / "json.md").read_text(encoding="utf-8")
     number, program = (re.search(rf"```{kind}\n(.*?)```", page, re.DOTALL)[1] for kind in ("json", "python"))
-    found = json.loads((tmp_path / "book.json").read_text())
+    found = json.loads((tmp_path / "book.json").read_text(encoding="utf-8"))
     assert found["forecasts"][0]["statistics"]["mean"] == json.loads(number)
     printed = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout
     assert printed.splitlines()[0].startswith("Chevrolet delta-V 11.25")

@@ -71,7 +71,7 @@ def test_it_writes_no_workbook_where_something_else_is_asked_for(xlmc, book, tmp
         "first.json",
         "first.xlmcrun",
     ]
-    assert json.loads((tmp_path / "first.json").read_text())["trials"]["run"] == 400
+    assert json.loads((tmp_path / "first.json").read_text(encoding="utf-8"))["trials"]["run"] == 400
 
 
 def test_a_run_with_an_extract_keeps_every_draw(xlmc, book, monkeypatch):

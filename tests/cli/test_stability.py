@@ -65,7 +65,7 @@ def _words(text):
 
 
 def test_the_documents_show_the_output(xlmc, as_printed):
-    page = (ROOT / "docs" / "stability.md").read_text()
+    page = (ROOT / "docs" / "stability.md").read_text(encoding="utf-8")
     shown = page.partition("<!-- output of `xlmc stability as-printed.xlsx` -->\n```text\n")[2].partition("\n```")[0]
     assert "What cells amplify and lose" in shown
     assert _words(xlmc("stability", as_printed).out).startswith(_words(shown))

@@ -160,7 +160,7 @@ def test_json_on_the_terminal_is_the_same_json(monkeypatch, encoding):
 def test_only_the_terminal_module_prints():
     """`click.echo` and `print` neither escape nor degrade: xlmc.cli.terminal.say does both."""
     for path in (ROOT / "xlmc" / "cli").rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             called = ast.unparse(node.func) if isinstance(node, ast.Call) else ""
             assert called not in ("click.echo", "print", "click.secho"), f"{path.name}:{node.lineno}: use say"
 

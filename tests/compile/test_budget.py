@@ -76,7 +76,11 @@ def outcome(work):
     if child == 0:
         text = "failed"
         try:
-            with open("/proc/self/statm") if sys.platform == "linux" else open(os.devnull) as file:
+            with (
+                open("/proc/self/statm", encoding="utf-8")
+                if sys.platform == "linux"
+                else open(os.devnull, encoding="utf-8") as file
+            ):
                 now = int((file.read().split() or ["0"])[0]) * resource.getpagesize()
             resource.setrlimit(resource.RLIMIT_AS, (now + MORE_MEMORY, resource.RLIM_INFINITY))
             resource.setrlimit(resource.RLIMIT_CPU, (120, 120))

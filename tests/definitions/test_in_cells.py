@@ -445,7 +445,7 @@ def test_a_shared_formula_draws_in_each_cell(workbook):
 
 
 def test_the_documentation_names_every_function():
-    text = (Path(__file__).parents[2] / "docs" / "workbooks.md").read_text()
+    text = (Path(__file__).parents[2] / "docs" / "workbooks.md").read_text(encoding="utf-8")
     section = text[text.index("## Functions in cells") : text.index("## What formulas may use")]
     missing = [name for name in (*RISK, *CRYSTAL_BALL, *RESULTS) if f"`{name}" not in section]
     assert missing == []

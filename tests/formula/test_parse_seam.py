@@ -53,7 +53,7 @@ def stream(text):
 
 
 def test_the_release_is_the_one_that_was_measured():
-    pinned = tomllib.loads(PYPROJECT.read_text())["project"]["dependencies"]
+    pinned = tomllib.loads(PYPROJECT.read_text(encoding="utf-8"))["project"]["dependencies"]
     assert "formulas==1.3.*" in pinned
     assert re.match(r"1\.3\.", version("formulas"))
 

@@ -64,3 +64,22 @@ def test_memory_that_was_given_back_is_counted(monkeypatch):
     found = summary(once(lambda: len(b"x" * (200 << 20))), monkeypatch, 30.0)
     assert not found.found
     assert found.largest[0] > 150 << 20
+
+
+def test_the_folder_of_a_killed_child_is_removed_at_the_next_start(monkeypatch, tmp_path):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+
+    def run(given, folder):
+        from fuzzing.inputs import Reached
+
+        (folder / "left.txt").write_text("x", encoding="utf-8")
+        return Reached.RAN
+
+    def kill():
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    summary(lambda given, folder: (run(given, folder), kill()), monkeypatch, 30.0)
+    folders = list(tmp_path.iterdir())
+    assert len(folders) == 1  # of the last child; those of the others were removed when it started
+    summary(run, monkeypatch, 30.0)
+    assert list(tmp_path.iterdir()) == []

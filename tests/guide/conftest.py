@@ -17,7 +17,7 @@ import xlmc
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT))
 
-GUIDE = (ROOT / "docs" / "guide.md").read_text()
+GUIDE = (ROOT / "docs" / "guide.md").read_text(encoding="utf-8")
 RANGES = re.findall(r"^\| `(\w+)` \| ([^|]+) \| ([-\d.]+) \| ([-\d.]+) \| ([^|]+) \|$", GUIDE, re.MULTILINE)
 FILTERS = re.findall(r"^\| ([^|]+) \| ((?:at least|above) [^|]+) \| ([^|]+) \|$", GUIDE, re.MULTILINE)
 NAMES = re.findall(r"`(Vehicle \d)` by `(\w+)`", GUIDE)

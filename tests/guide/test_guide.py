@@ -16,7 +16,7 @@ import xlmc
 from xlmc.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
-GUIDE = (ROOT / "docs" / "guide.md").read_text()
+GUIDE = (ROOT / "docs" / "guide.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"(?:<!-- (.*?) -->\n)?```(sh|text)\n(.*?)```", GUIDE, re.DOTALL)
 PROSE = " ".join(re.sub(r"```.*?```", "", GUIDE, flags=re.DOTALL).split())
 

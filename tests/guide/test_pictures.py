@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-GUIDE = (ROOT / "docs" / "guide.md").read_text()
+GUIDE = (ROOT / "docs" / "guide.md").read_text(encoding="utf-8")
 FOLDER = ROOT / "docs" / "pictures"
 SHOWN = re.findall(r"!\[([^\]]+)\]\(pictures/(\S+)\.png\)", GUIDE)
 MOST_BYTES = 150_000

@@ -20,7 +20,7 @@ from xlmc.statistics import Estimate
 
 @pytest.fixture(scope="session")
 def validator():
-    schema = json.loads(SCHEMA.read_text())
+    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
     return jsonschema.Draft202012Validator(schema)
 
@@ -171,7 +171,9 @@ def test_it_is_written_whole_in_utf8(run, tmp_path):
     path = tmp_path / "run.json"
     assert save_json(run, path) == path
     found = json.loads(path.read_text("utf-8"))
-    assert re.fullmatch(json.loads(SCHEMA.read_text())["properties"]["seal"]["pattern"], found.pop("seal"))
+    assert re.fullmatch(
+        json.loads(SCHEMA.read_text(encoding="utf-8"))["properties"]["seal"]["pattern"], found.pop("seal")
+    )
     assert found == json.loads(json.dumps(document(run)))
     before = path.read_bytes()
     run.save_json(path)

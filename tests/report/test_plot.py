@@ -82,3 +82,14 @@ def test_without_matplotlib_it_is_a_message(run, monkeypatch):
     monkeypatch.setattr("xlmc.report.plot.find_spec", lambda name: None)
     with pytest.raises(SimulationError, match=r"need matplotlib, which is not installed.*xlmc\[plots\]"):
         run.plot()
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("ends", [(-1.7e8, 1.7e8), (1e8, 1.7e8), (-1e6, 1e6)])
+def test_numbers_that_span_all_doubles_are_drawn(make, tmp_path, ends):
+    cells = {"A1": 0.0, "B1": "=A1*1E300", "B2": "=A1*1E290"}
+    forecasts = [make.forecast("vast", "B1"), make.forecast("less", "B2")]
+    run = make.simulate(cells, [make.uniform("x", "A1", *ends)], forecasts)
+    run.plot().savefig(tmp_path / "run.png")
+    assert (tmp_path / "run.png").stat().st_size > 10_000
+    assert np.isfinite(run["vast"].statistics.mode.value)

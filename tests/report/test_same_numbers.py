@@ -34,7 +34,7 @@ def told(request, small_book, tmp_path_factory):
     run.save(folder / "run.xlsx")
     run.save_json(folder / "run.json")
     run.keep(folder / "run.xlmcrun")
-    document = json.loads((folder / "run.json").read_text())
+    document = json.loads((folder / "run.json").read_text(encoding="utf-8"))
     return run, document, openpyxl.load_workbook(folder / "run.xlsx"), xlmc.open_run(folder / "run.xlmcrun")
 
 

@@ -196,7 +196,8 @@ def test_a_script_needs_no_guard(tmp_path, case_study):
     script.write_text(
         "import xlmc\n"
         f"run = xlmc.load({str(case_study)!r}).simulate(70_000, jobs=2, scheduler='processes')\n"
-        "print('once', run.accepted)\n"
+        "print('once', run.accepted)\n",
+        encoding="utf-8",
     )
     where = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     found = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True, env=where)

@@ -21,7 +21,7 @@ print(all((first == second).all() for first, second in zip(*(run.forecasts.value
 
 
 def test_processes_need_no_fork_and_no_guarded_main_module(tmp_path):
-    (tmp_path / "script.py").write_text(SCRIPT)
+    (tmp_path / "script.py").write_text(SCRIPT, encoding="utf-8")
     done = subprocess.run(
         [sys.executable, str(tmp_path / "script.py")], capture_output=True, text=True, cwd=ROOT, check=False
     )

@@ -19,10 +19,10 @@ def run_tests(tmp_path) -> Callable[..., tuple[int, str]]:
     """
     project = tmp_path / "project"
     project.mkdir()
-    (project / "pytest.ini").write_text("[pytest]\n")
+    (project / "pytest.ini").write_text("[pytest]\n", encoding="utf-8")
 
     def run(source: str, *arguments: str, plugin: str, **environment: str) -> tuple[int, str]:
-        (project / "test_given.py").write_text(source)
+        (project / "test_given.py").write_text(source, encoding="utf-8")
         kept = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "HYPOTHESIS"))}
         command = [sys.executable, "-m", "pytest", "-p", plugin, "-p", "no:cacheprovider", *arguments]
         where = kept | {"PYTHONPATH": os.pathsep.join([str(SESSION), *sys.path]), **environment}

@@ -32,7 +32,7 @@ def drawn(run_tests, tmp_path):
         source = before + TESTS
         code, shown = run_tests(source, *arguments, plugin="example_profiles", DRAWN=str(tmp_path / "d"), **environment)
         assert code == 0, shown
-        return json.loads((tmp_path / "d").read_text())
+        return json.loads((tmp_path / "d").read_text(encoding="utf-8"))
 
     return run
 
@@ -41,7 +41,9 @@ def test_the_default_examples_are_the_same_everywhere(drawn, tmp_path):
     first = drawn()
     assert len(first) > 350
     constants = ", ".join(str(2.5 + n) for n in range(300))
-    (tmp_path / "project" / "local.py").write_text(f"A = [{constants}, 'a text that stands in the source']")
+    (tmp_path / "project" / "local.py").write_text(
+        f"A = [{constants}, 'a text that stands in the source']", encoding="utf-8"
+    )
     assert drawn(before="import local", PYTHONHASHSEED="1", CI="true") == first
     assert drawn(PYTHONHASHSEED="2") == first
 

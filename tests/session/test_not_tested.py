@@ -37,7 +37,7 @@ def test_nothing_is_said_where_nothing_is_skipped(run_tests):
 
 
 def test_a_program_that_is_there_is_not_missing(tmp_path, monkeypatch):
-    (tmp_path / "soffice").write_text("#!/bin/sh\n")
+    (tmp_path / "soffice").write_text("#!/bin/sh\n", encoding="utf-8")
     (tmp_path / "soffice").chmod(0o755)
     monkeypatch.setenv("PATH", str(tmp_path))
     assert missing("soffice") == ""

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = (ROOT / "docs" / "stress.md").read_text()
+PAGE = (ROOT / "docs" / "stress.md").read_text(encoding="utf-8")
 PNG = b"\x89PNG\r\n"
 
 
@@ -25,7 +25,7 @@ def stress():
 
 
 def results(stress, part):
-    return json.loads((stress.RESULTS / f"stress-{part}.json").read_text())
+    return json.loads((stress.RESULTS / f"stress-{part}.json").read_text(encoding="utf-8"))
 
 
 def test_every_chart_stands_on_the_page_with_its_command(stress):

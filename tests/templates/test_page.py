@@ -5,7 +5,7 @@ from pathlib import Path
 
 from templates.build import TEMPLATES
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "templates.md").read_text()
+PAGE = (Path(__file__).resolve().parents[2] / "docs" / "templates.md").read_text(encoding="utf-8")
 
 
 def test_every_template_is_on_the_page_in_the_order_of_the_ladder():

@@ -127,7 +127,7 @@ def test_an_endless_file(monkeypatch):
 
 def test_complaints_name_the_file(tmp_path):
     path = tmp_path / "notes.xlsx"
-    path.write_text("not a workbook")
+    path.write_text("not a workbook", encoding="utf-8")
     with pytest.raises(WorkbookError) as caught:
         read_workbook(path)
     assert str(caught.value) == (

@@ -7,6 +7,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from xlmc.errors import SimulationError
 from xlmc.report.figure import Figure as Drawn
@@ -29,6 +30,8 @@ _POINTS: Final = 1_001
 """Of a cumulative curve: a tenth of a percent each, finer than a line is thick."""
 
 _LONGEST: Final = 55
+
+Floats = NDArray[np.float64]
 
 
 def plot(simulation: Simulation) -> Figure:
@@ -67,10 +70,9 @@ def _draw_histogram(axes: Axes, each: Drawn) -> None:
     inside = f"central {percent(answer.share)}: {estimate_text(answer.low)} to {estimate_text(answer.high)}"
     axes.stairs(bins.inside + bins.outside, edges, fill=True, color=LIGHT, label="other accepted trials")
     axes.stairs(bins.inside, edges, fill=True, color=DARK, label=inside)
-    most = float((bins.inside + bins.outside).max())
-    axes.vlines(
-        answer.mean.value, 0.0, 1.05 * most, color=INK, linewidth=1.2, label=f"mean: {estimate_text(answer.mean)}"
-    )
+    most = max(1.0, float((bins.inside + bins.outside).max()))  # 0 where all trials lie outside, below and above
+    mean = float(_near(each, np.array(answer.mean.value)))
+    axes.vlines(mean, 0.0, 1.05 * most, color=INK, linewidth=1.2, label=f"mean: {estimate_text(answer.mean)}")
     axes.set_title(_heading(each), loc="left", color=INK, fontsize=10, fontweight="bold", parse_math=False)
     axes.set_ylabel(f"Trials per {bins.width:g}" + (f" {answer.units}" if answer.units else ""), parse_math=False)
     axes.set_ylim(0, 1.5 * most)
@@ -84,12 +86,14 @@ def _draw_histogram(axes: Axes, each: Drawn) -> None:
 def _draw_cumulative(axes: Axes, each: Drawn, simulation: Simulation) -> None:
     answer, share = each.answer, np.linspace(0.0, 1.0, _POINTS)
     values = simulation.results[answer.name].sample.quantile(share)
-    axes.axvspan(answer.low.value, answer.high.value, color=LIGHT, alpha=0.45, linewidth=0)
-    axes.plot(values, 100.0 * share, color=DARK, linewidth=1.6)
+    low, high = _near(each, np.array([answer.low.value, answer.high.value]))
+    axes.axvspan(low, high, color=LIGHT, alpha=0.45, linewidth=0)
+    axes.plot(_near(each, values), 100.0 * share, color=DARK, linewidth=1.6)
     tail = 50.0 * (1.0 - answer.share)
     axes.hlines([tail, 100.0 - tail], *_ends(each), color=INK, linewidth=0.7, linestyle=":")
     if answer.threshold is not None:
-        axes.axvline(answer.threshold, color="#9C0006", linewidth=1.0, label=f"threshold {answer.threshold:g}")
+        threshold = float(_near(each, np.array(answer.threshold)))
+        axes.axvline(threshold, color="#9C0006", linewidth=1.0, label=f"threshold {answer.threshold:g}")
         axes.legend(loc="upper left", fontsize=8, frameon=False)
     axes.set_ylim(0, 100)
     axes.set_ylabel("Trials not above, %")
@@ -99,6 +103,12 @@ def _draw_cumulative(axes: Axes, each: Drawn, simulation: Simulation) -> None:
 
 def _ends(each: Drawn) -> tuple[float, float]:
     return float(each.bins.edges[0]), float(each.bins.upper_edges[-1])
+
+
+def _near(each: Drawn, values: Floats) -> Floats:
+    """The values no farther outside the axis than it is long: matplotlib loses its way among the largest doubles."""
+    low, high = _ends(each)
+    return values.clip(low - (high - low), high + (high - low))
 
 
 def _heading(each: Drawn) -> str:

@@ -65,11 +65,12 @@ def half_sample_mode(sample: Sample) -> float:
     x, w = sample.x, sample.w
     if _counts(x):
         return _most_frequent(x, w)
-    while x.size > 3:
-        half = _densest_half(x) if w is None else _densest_weighted_half(x, w)
-        x, w = x[half], None if w is None else w[half]
-        if x[0] == x[-1]:
-            return float(x[0])
+    with np.errstate(over="ignore"):  # a half that is wider than all doubles is not the densest
+        while x.size > 3:
+            half = _densest_half(x) if w is None else _densest_weighted_half(x, w)
+            x, w = x[half], None if w is None else w[half]
+            if x[0] == x[-1]:
+                return float(x[0])
     return _mode_of_three(x, np.ones(x.size) if w is None else w)
 
 

@@ -25,14 +25,14 @@ def test_its_files_are_unmodified(name):
 
 
 def test_the_note_says_which_it_is():
-    note = (FOLDER / "README.md").read_text()
-    version = re.search(r"\(v([\d.]+)\)", (FOLDER / "uPlot.iife.min.js").read_text()[:200])
+    note = (FOLDER / "README.md").read_text(encoding="utf-8")
+    version = re.search(r"\(v([\d.]+)\)", (FOLDER / "uPlot.iife.min.js").read_text(encoding="utf-8")[:200])
     assert version is not None
     assert f"uPlot {version[1]}" in note
     assert dict(re.findall(r"`(?:dist/)?([\w.]+)` \| `(\w{64})`", note)) == SUMS
 
 
 def test_nothing_in_the_room_is_kept_from_the_wheel():
-    build = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["hatch"]["build"]
+    build = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["hatch"]["build"]
     assert build["targets"]["wheel"]["packages"] == ["xlmc"]
     assert build["exclude"] == ["__pycache__", "*.pyc"]

@@ -13,7 +13,7 @@ from xlmc.functions.budget import TooLargeError
 from xlmc.functions.registry import Number
 from xlmc.functions.values import Floats
 
-__all__ = ["FIRST_ONLY", "IGNORING", "LASTING", "ON_NUMBERS", "PAIRING", "SUMMING", "kept", "refused"]
+__all__ = ["FIRST_ONLY", "IGNORING", "LASTING", "ON_NUMBERS", "PAIRING", "SUMMING", "at_the_last", "kept", "refused"]
 
 
 def _names(text: str) -> frozenset[str]:
@@ -67,6 +67,16 @@ def kept(held: int, whole: int, zero_is_all: bool) -> Function:
     """Numbers of rows or columns beyond the `held` ones, as that of the last of them, if they are of the `whole`."""
     body = partial(_within, held=held, whole=whole, zero_is_all=zero_is_all)
     return Function(f"within {held} of {whole}", (Number,), body, Kind.NUMBER)
+
+
+@cache
+def at_the_last(held: int, whole: int) -> Function:
+    """Numbers of rows or columns beyond the `held` ones, as that of the last of the `whole`."""
+    return Function(f"{held} or {whole}", (Number,), partial(_of_whole, held=held, whole=whole), Kind.NUMBER)
+
+
+def _of_whole(numbers: Floats, held: int, whole: int) -> Floats:
+    return np.where(numbers > held, float(whole), numbers)
 
 
 def _within(numbers: Floats, held: int, whole: int, zero_is_all: bool) -> Floats:

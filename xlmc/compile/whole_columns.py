@@ -8,22 +8,31 @@ as in `SUMPRODUCT((A:A>0)*B:B)`, is taken up to the last filled cell of all of t
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from xlmc.address import Area, Cell
-from xlmc.compile.choices import CHOICES
-from xlmc.compile.counts import check_count
+from xlmc.address import Area
 from xlmc.compile.dag import Constant, Range, Rescue
-from xlmc.compile.empty_cells import FIRST_ONLY, IGNORING, LASTING, ON_NUMBERS, PAIRING, SUMMING, kept, refused
+from xlmc.compile.empty_cells import (
+    FIRST_ONLY,
+    IGNORING,
+    LASTING,
+    ON_NUMBERS,
+    PAIRING,
+    SUMMING,
+    at_the_last,
+    kept,
+    refused,
+)
+from xlmc.compile.exposed import Change, exposed, holds, is_spared, referred_areas
 from xlmc.compile.extents import as_filled, by_halves, leveled, one_behind, one_further, sized
-from xlmc.compile.references import REFERENCES, NoReference, areas_of, needed
+from xlmc.compile.references import needed
+from xlmc.compile.row_numbers import CURVED, degree, is_numbered
 from xlmc.compile.scope import Scope
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
 from xlmc.functions import Function
 from xlmc.functions.families import function_named
-from xlmc.functions.registry import Ranges
 from xlmc.functions.values import BLANK, ERROR, LOGICAL, NUMBER
 
 if TYPE_CHECKING:
@@ -34,8 +43,6 @@ __all__ = ["lowered"]
 Arguments = tuple[ir.Expression, ...]
 Make = Callable[[Arguments, Mapping[int, Function]], int]
 """Makes the node of a call from its arguments, some of which go through a function first."""
-
-_Change = Callable[[Area], Area]
 
 
 _LOOKUPS: Final[Mapping[str, int]] = {"MATCH": 2, "VLOOKUP": 3, "HLOOKUP": 3, "XMATCH": 3, "XLOOKUP": 5, "LOOKUP": 9}
@@ -67,7 +74,7 @@ class _Call:
             for i, argument in enumerate(self.arguments)
         )
 
-    def changed(self, change: _Change) -> Arguments:
+    def changed(self, change: Change) -> Arguments:
         """The arguments with every range that is cut changed."""
         direct = {i: [change(area) if area.is_cut else area for area in areas] for i, areas in self.direct.items()}
         made = self.with_areas(direct)
@@ -76,7 +83,7 @@ class _Call:
             return needed(self.lowering, change(area).filled)
 
         return tuple(
-            _exposed(self.lowering, part, self.scope, read) if i in self.mixed else part for i, part in enumerate(made)
+            exposed(self.lowering, part, self.scope, read) if i in self.mixed else part for i, part in enumerate(made)
         )
 
     def cut(self) -> list[Area]:
@@ -88,7 +95,7 @@ class _Call:
             return area
 
         for i in self.mixed:
-            _exposed(self.lowering, self.arguments[i], self.scope, note)
+            exposed(self.lowering, self.arguments[i], self.scope, note)
         return found + [area for areas in self.direct.values() for area in areas if area.is_cut]
 
 
@@ -108,14 +115,19 @@ def lowered(lowering: Lowering, name: str, function: Function, arguments: Argume
     """
     ranged = [i for i in range(len(arguments)) if function.parameter(i).ranged]
     scopes = {i: scope.of(function.parameter(i).ranges) for i in ranged}
-    found = {i: _areas(lowering, arguments[i], scopes[i]) for i in ranged}
+    found = {i: referred_areas(lowering, arguments[i], scopes[i]) for i in ranged}
     direct = {i: areas for i, areas in found.items() if areas is not None}
-    computed = [i for i in ranged if i not in direct and scopes[i].array]
-    mixed = tuple(i for i in computed if _holds(lowering, arguments[i], scopes[i]))
+    computed = [i for i in ranged if i not in direct and (scopes[i].array or _is_index(arguments[i]))]
+    mixed = tuple(i for i in computed if holds(lowering, arguments[i], scopes[i]))
     if not mixed and not any(area.is_cut for areas in direct.values() for area in areas):
         return make(arguments, {})
     call = _Call(lowering, name, function, arguments, scope.over_arrays(), make, direct, mixed)
     return _of_expressions(call) if mixed else _of_areas(call)
+
+
+def _is_index(tree: ir.Expression) -> bool:
+    """Whether a tree is an INDEX, of which the first argument is computed cell by cell also in a plain formula."""
+    return isinstance(tree, ir.Call) and tree.name == "INDEX"
 
 
 def _of_areas(call: _Call) -> int:
@@ -143,9 +155,9 @@ def _of_expressions(call: _Call) -> int:
         return _looked_up(call)
     filled, further, count = _parted(call)
     if name in ("SUMPRODUCT", *SUMMING):
-        return _summed(call, filled, further, count)
+        return _summed(call, filled, _ends(call, further), count)
     if name in LASTING:
-        return call.make((*filled, *further), {})
+        return call.make((*filled, *(part for end in _ends(call, further) for part in end)), {})
     if name in ON_NUMBERS and all(_is_ignored(call, further[i]) for i in call.mixed):
         return call.make(filled, {})
     if name == "FILTER" and 1 in call.mixed and _is_false(call, further[1]):
@@ -175,24 +187,49 @@ def _parted(call: _Call) -> tuple[Arguments, Arguments, int]:
 
 def _check(call: _Call, tree: ir.Expression, length: int, across: bool) -> None:
     """Make sure that an argument is as long as the whole columns in it: nothing longer is combined with them."""
+    if isinstance(tree, ir.Call) and _is_index(tree):
+        tree = tree.arguments[0]
     size = call.lowering.dag.sizes[call.lowering.lower(tree, call.scope)] or (1, 1)
     if size[1 if across else 0] != length:
         raise call.refused()
 
 
-def _summed(call: _Call, filled: Arguments, further: Arguments, count: int) -> int:
+def _ends(call: _Call, further: Arguments) -> list[Arguments]:
+    """The arguments of the first further row; and of the last where these differ, the others lying between them."""
+    degrees = [_degree(call, i) for i in call.mixed]
+    if not any(degrees):
+        return [further]
+    if CURVED in degrees or call.name in ("SUMSQ", "AND", "OR") or (call.name == "SUMPRODUCT" and sum(degrees) > 1):
+        raise call.refused()
+    area = call.cut()[0]
+    across = area.further_columns > 0
+    length = (area.whole.columns if across else area.whole.rows) - 1
+    return [further, call.changed(lambda area: one_behind(area, length, across))]
+
+
+def _degree(call: _Call, position: int) -> int:
+    """How an argument depends on the number of the row."""
+
+    def taken(tree: ir.Call) -> list[ir.Expression]:
+        function = function_named(tree.name)
+        if function is None:
+            return list(tree.arguments)
+        return [part for i, part in enumerate(tree.arguments) if not is_spared(function, i, call.scope)]
+
+    return degree(call.arguments[position], taken) if position in call.mixed else 0
+
+
+def _summed(call: _Call, filled: Arguments, ends: Sequence[Arguments], count: int) -> int:
     lowering = call.lowering
-    if call.name == "SUMPRODUCT":
-        if any(not area.is_cut for areas in call.direct.values() for area in areas):
-            raise call.refused()
-        parts = [further]
-    else:
-        parts = [(further[i],) for i in call.mixed]
+    if call.name == "SUMPRODUCT" and any(not area.is_cut for areas in call.direct.values() for area in areas):
+        raise call.refused()
+    share = lowering.number(count / len(ends))
     place = call.make(filled, {})
-    for part in parts:
-        one = call.make(part, {})
-        if one != lowering.number(0.0):
-            place = lowering.call("+", (place, lowering.call("*", (one, lowering.number(float(count))))))
+    for end in ends:
+        for part in [end] if call.name == "SUMPRODUCT" else [(end[i],) for i in call.mixed]:
+            one = call.make(part, {})
+            if one != lowering.number(0.0):
+                place = lowering.call("+", (place, lowering.call("*", (one, share))))
     return place
 
 
@@ -202,14 +239,38 @@ def _looked_up(call: _Call) -> int:
     how = arguments[_LOOKUPS[name]] if len(arguments) > _LOOKUPS[name] else None
     if name in ("XMATCH", "XLOOKUP"):
         given = ir.Number(1.0) if how is None or isinstance(how, ir.Missing) else how
-        if given == ir.Number(1.0):
+        if given == ir.Number(1.0) and not _degree(call, 1):
             return call.make(_as_unequal(call), {})
+        if given == ir.Unary("-", ir.Number(1.0)) and not _degree(call, 1):
+            return _from_behind(call)
         raise call.refused()
     exact = how is not None and (isinstance(how, ir.Missing) or how in (ir.Number(0.0), ir.Logical(False)))
     if call.mixed:
         return _sought(call, exact)
     made = call.changed(lambda area: _searched(area, name, exact))
     return call.make(made, _beside(call))
+
+
+def _from_behind(call: _Call) -> int:
+    """XLOOKUP and XMATCH from the last cell on: the further cells come first, and of these the last."""
+    made = _as_unequal(call)
+    sizes = {(area.rows, area.whole.rows, area.columns, area.whole.columns) for area in call.cut()}
+    if call.name == "XLOOKUP":
+        if _degree(call, 2) and not _is_not_found(call):
+            raise call.refused()
+        return call.make(made, {})
+    area = call.cut()[0]
+    if len(sizes) > 1:
+        raise call.refused()
+    across = area.further_columns > 0
+    held, whole = (area.columns, area.whole.columns) if across else (area.rows, area.whole.rows)
+    return call.lowering.made(at_the_last(held, whole), (call.make(made, {}),))
+
+
+def _is_not_found(call: _Call) -> bool:
+    """Whether what is looked for is TRUE, exactly, and the further cells are not."""
+    exact = len(call.arguments) < 5 or call.arguments[4] in (ir.Missing(), ir.Number(0.0))
+    return exact and call.arguments[0] == ir.Logical(True) and _is_false(call, _parted(call)[1][1])
 
 
 def _searched(area: Area, name: str, exact: bool) -> Area:
@@ -227,7 +288,10 @@ def _searched(area: Area, name: str, exact: bool) -> Area:
 def _sought(call: _Call, exact: bool) -> int:
     """A lookup in something computed of whole columns."""
     _, further, _ = _parted(call)
-    passed = exact or all(_is_passed_over(call, further[i]) for i in call.mixed)
+    passed = 1 in call.mixed and _is_passed_over(call, further[1])
+    if _degree(call, 1) and not passed:
+        raise call.refused()
+    passed = passed or exact
     cut = call.cut()
     across = cut[0].further_columns > 0
     length = max(area.columns if across else area.rows for area in map(one_further if exact else by_halves, cut))
@@ -240,11 +304,12 @@ def _at_the_end(call: _Call, further: Arguments, otherwise: int) -> int:
     dag = call.lowering.dag
     longest = max(max(area.rows, area.columns) for area in call.cut())
     shortest = min(max(area.whole.rows, area.whole.columns) for area in call.cut())
-    if call.name != "LOOKUP" or call.mixed != (1,) or 2 not in call.direct or 2 * longest >= shortest:
+    numbered = call.mixed == (1, 2) and is_numbered(call.arguments[2])
+    if call.name != "LOOKUP" or not (numbered or (call.mixed == (1,) and 2 in call.direct)) or 2 * longest >= shortest:
         raise call.refused()
-    if not all(area.is_cut for area in call.direct[2]):
+    if not numbered and not all(area.is_cut for area in call.direct[2]):
         raise call.refused()
-    there = call.make(further, {})
+    there = call.make(_ends(call, further)[-1], {})
     if dag.sizes[there] is not None or dag.sizes[otherwise] is not None:
         raise call.refused()
     return dag.add(Rescue(there, otherwise, True))
@@ -290,83 +355,6 @@ def _as_unequal(call: _Call) -> Arguments:
         return call.changed(lambda area: sized(area, length, across))
     longer = {i: [one_further(area) if area.is_cut else area for area in areas] for i, areas in call.direct.items()}
     return call.with_areas(leveled(longer))
-
-
-def _areas(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
-    """What a tree refers to; None where it is no reference, or one that cannot be worked out."""
-    if not isinstance(tree, Cell | Area | ir.Binary | ir.Call | ir.Variable):
-        return None
-    if isinstance(tree, ir.Call) and tree.name in CHOICES:
-        check_count(tree.name, tree.arguments)
-        if scope.of_array and _holds(lowering, tree.arguments[0], scope):
-            return None  # a condition of many cells
-    try:
-        return areas_of(lowering, tree, scope)
-    except NoReference:
-        return None
-
-
-def _holds(lowering: Lowering, tree: ir.Expression, scope: Scope) -> bool:
-    """Whether a tree computes something of ranges that are cut, cell by cell."""
-    found: list[Area] = []
-
-    def note(area: Area) -> Area:
-        found.append(area)
-        return area
-
-    _exposed(lowering, tree, scope, note)
-    return bool(found)
-
-
-def _exposed(lowering: Lowering, tree: ir.Expression, scope: Scope, change: _Change) -> ir.Expression:
-    """The tree with every cut range that it takes cell by cell changed."""
-    match tree:
-        case Area():
-            return change(tree) if tree.is_cut else tree
-        case ir.Unary(_, operand):
-            return replace(tree, operand=_exposed(lowering, operand, scope, change))
-        case ir.Binary(operator) if operator not in (",", ":", " "):
-            first, rest = ir.chain(tree)
-            built = _exposed(lowering, first, scope, change)
-            for step, right in rest:
-                built = ir.Binary(step, built, _exposed(lowering, right, scope, change))
-            return built
-        case ir.Call(name, arguments) if name in CHOICES and scope.of_array:
-            return ir.Call(name, tuple(_exposed(lowering, part, scope, change) for part in arguments))
-        case ir.Call(name, (test, *branches)) if name in CHOICES:
-            return ir.Call(name, (test, *(_exposed_branch(lowering, part, scope, change) for part in branches)))
-        case ir.Call(name) if name in REFERENCES:
-            return _referred(lowering, tree, scope, change)
-        case ir.Binary() | ir.Variable():
-            return _referred(lowering, tree, scope, change)
-        case ir.Call(name, arguments) if (function := function_named(name)) is not None and arguments:
-            check_count(name, arguments)
-            spared = [_is_spared(function, i, scope) for i in range(len(arguments))]
-            parts = zip(arguments, spared, strict=True)
-            made = tuple(part if kept else _exposed(lowering, part, scope, change) for part, kept in parts)
-            return ir.Call(name, made)
-        case _:
-            return tree
-
-
-def _exposed_branch(lowering: Lowering, tree: ir.Expression, scope: Scope, change: _Change) -> ir.Expression:
-    """A branch in a plain formula: a range goes on whole, what is computed takes the cell of a range beside it."""
-    goes_on = isinstance(tree, Area | ir.Variable) or (isinstance(tree, ir.Call) and tree.name in CHOICES)
-    return _exposed(lowering, tree, scope, change) if goes_on else tree
-
-
-def _is_spared(function: Function, position: int, scope: Scope) -> bool:
-    """Whether an argument takes a range whole, or the cell of a range beside the formula, rather than cell by cell."""
-    if not function.parameters:
-        return True
-    parameter = function.parameter(position)
-    beside = parameter.ranges in (Ranges.BESIDE, Ranges.SINGLE) and not scope.of_array
-    return parameter.ranged or beside
-
-
-def _referred(lowering: Lowering, tree: ir.Expression, scope: Scope, change: _Change) -> ir.Expression:
-    areas = _areas(lowering, tree, scope)
-    return change(areas[0]) if areas is not None and len(areas) == 1 and areas[0].is_cut else tree
 
 
 def _joined(areas: Sequence[Area]) -> ir.Expression:

@@ -2,8 +2,8 @@
 
 `python benchmarks/conformance.py FOLDER` checks every workbook in the folder and in those below it. A shape is a
 formula's text with relative references as distances, within one book; it matches when all its cells do. Cells that
-change by themselves (volatile ones) and cells without a saved value are left out. Refused shapes are listed by reason
-and differing ones one by one. Exit code 1 where a cell differs.
+change by themselves (volatile ones) and cells without a saved value are left out, and so are files that are damaged:
+these are listed. Refused shapes are listed by reason and differing ones one by one. Exit code 1 where a cell differs.
 """
 
 from __future__ import annotations
@@ -28,6 +28,10 @@ from xlmc.workbook import read_workbook
 
 ENDINGS = (".xlsx", ".xlsm")
 LEFT_OUT = (Status.VOLATILE, Status.NOT_CACHED)
+VOLATILE = re.compile(r"\b(CELL|INFO)\(")
+"""What changes in Excel without its arguments, and what xlmc computes in part only."""
+ENCRYPTED = b"\xd0\xcf\x11\xe0"
+"""How a package begins that Excel encrypted."""
 WHOLE_BOOK = "the whole book"
 """The one shape of a book that is refused as a whole."""
 
@@ -45,9 +49,10 @@ class Checked:
 
 @dataclass
 class Conformance:
-    """All formula cells of a folder that count, by book."""
+    """All formula cells of a folder that count, by book, and the files that are no whole workbooks."""
 
     books: dict[str, list[Checked]] = field(default_factory=dict)
+    damaged: list[str] = field(default_factory=list)
 
     def cells(self) -> list[Checked]:
         """The cells of all books."""
@@ -85,8 +90,24 @@ def _matches(cells: list[Checked]) -> bool:
 def check_folder(folder: Path) -> Conformance:
     """Recompute every workbook of a folder."""
     sizes = _listed_sizes(folder)
-    paths = sorted(path for path in folder.rglob("*") if path.suffix.lower() in ENDINGS)
-    return Conformance({path.name: list(check_book(path, sizes)) for path in paths})
+    found = Conformance()
+    for path in sorted(path for path in folder.rglob("*") if path.suffix.lower() in ENDINGS):
+        if _is_damaged(path):
+            found.damaged.append(path.name)
+        else:
+            found.books[path.name] = list(check_book(path, sizes))
+    return found
+
+
+def _is_damaged(path: Path) -> bool:
+    """Whether a file is no package, or one whose parts are not what was packed; an encrypted workbook is whole."""
+    if path.read_bytes()[: len(ENCRYPTED)] == ENCRYPTED:
+        return False
+    try:
+        with zipfile.ZipFile(path) as package:
+            return package.testzip() is not None
+    except zipfile.BadZipFile:
+        return True
 
 
 def check_book(path: Path, sizes: dict[str, int]) -> Iterator[Checked]:
@@ -105,9 +126,15 @@ def check_book(path: Path, sizes: dict[str, int]) -> Iterator[Checked]:
         return
     for check in checks:
         formula = book.content(check.cell).formula
-        if check.status not in LEFT_OUT and formula is not None:
+        if formula is not None and not _is_left_out(check):
             shape = shape_of(formula.text, formula.row, formula.column)
             yield Checked(path.name, shape, check.status, check.reason, check)
+
+
+def _is_left_out(check: CellCheck) -> bool:
+    """Whether a cell has no one value: it is volatile, in xlmc or at least in Excel, or nothing is saved for it."""
+    volatile = VOLATILE.search(check.formula.upper()) is not None
+    return check.status in LEFT_OUT or (check.status is Status.UNSUPPORTED and volatile)
 
 
 def _listed_sizes(folder: Path) -> dict[str, int]:
@@ -120,7 +147,7 @@ def _listed_sizes(folder: Path) -> dict[str, int]:
 
 
 def _formulas_written(path: Path) -> int:
-    """How many formulas the sheets of a package hold; 1 for what is no package, so that the book counts."""
+    """How many formulas the sheets of a package hold; 1 for what is encrypted, so that the book counts."""
     try:
         with zipfile.ZipFile(path) as package:
             sheets = [name for name in package.namelist() if re.fullmatch(r"xl/worksheets/[^/]+\.xml", name)]
@@ -134,6 +161,7 @@ def lines_of(found: Conformance) -> Iterator[str]:
     cells, shapes = found.cells(), found.shapes()
     yield _line("cells", [cell.status for cell in cells])
     yield _line("shapes", [_worst(shape) for shape in shapes.values()])
+    yield from (f"damaged, not counted: {name}" for name in found.damaged)
     yield from _by_reason(shapes)
     yield from _differing(cells)
 

@@ -31,9 +31,18 @@ def folder(tmp_path):
     )
     written(
         inside / "mixed.xlsx",
-        {"B1": ("=A1*2", 2), "B2": ("=A2*2", 5), "C1": ("=CUBEVALUE(A1)", 7), "D1": ("=SUM(A1:A3)", 6)},
+        {
+            "B1": ("=A1*2", 2),
+            "B2": ("=A2*2", 5),
+            "C1": ("=CUBEVALUE(A1)", 7),
+            "D1": ("=SUM(A1:A3)", 6),
+            "E1": ('=CELL("width",A1)', 8),
+        },
     )
+    (inside / "locked.xlsx").write_bytes(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600))
     (inside / "broken.xlsx").write_bytes(b"no package")
+    whole = (inside / "good.xlsx").read_bytes()
+    (inside / "spoiled.xlsx").write_bytes(whole.replace(b"xl/worksheets", b"xl/worksheetz", 1))
     return tmp_path
 
 
@@ -44,8 +53,9 @@ def test_cells_and_shapes_are_counted(folder):
     assert {name: len(cells) for name, cells in found.books.items()} == {
         "good.xlsx": 3,
         "mixed.xlsx": 4,
-        "broken.xlsx": 1,
+        "locked.xlsx": 1,
     }
+    assert found.damaged == ["broken.xlsx", "spoiled.xlsx"]
     assert found.cell_share() == 5 / 8
     assert found.cell_share(Status.DIFFERING) == 1 / 8
     assert found.shape_share() == 2 / 5  # good A*2 and SUM; A*2 of the mixed book has a cell that differs
@@ -55,8 +65,8 @@ def test_cells_and_shapes_are_counted(folder):
 def test_a_list_of_sizes_counts_a_refused_book(folder):
     from conformance import check_folder
 
-    (folder / "INDEX.tsv").write_text("file\tformula_cells\nbroken.xlsx\t12\n", encoding="utf-8")
-    assert len(check_folder(folder).books["broken.xlsx"]) == 12
+    (folder / "INDEX.tsv").write_text("file\tformula_cells\nlocked.xlsx\t12\n", encoding="utf-8")
+    assert len(check_folder(folder).books["locked.xlsx"]) == 12
 
 
 def test_the_command_prints_both_figures_and_lists_the_rest(folder):
@@ -64,13 +74,14 @@ def test_the_command_prints_both_figures_and_lists_the_rest(folder):
     assert done.returncode == 1
     assert "8 cells: 5 matched (62.500%), 1 differing (12.500%), 2 unsupported (25.000%)" in done.stdout
     assert "5 shapes: 2 matched (40.000%)" in done.stdout
+    assert "damaged, not counted: broken.xlsx" in done.stdout
     assert "refused, 1 shape: the function CUBEVALUE is not known to xlmc" in done.stdout
     assert "mixed.xlsx S!B2 =A2*2\n    Excel: 5.0\n    xlmc:  4.0" in done.stdout
 
 
 def test_a_folder_where_all_match_ends_well(folder):
     (folder / "books" / "mixed.xlsx").unlink()
-    (folder / "books" / "broken.xlsx").unlink()
+    (folder / "books" / "locked.xlsx").unlink()
     done = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     missing = subprocess.run([sys.executable, SCRIPT, folder / "none"], capture_output=True, text=True, check=False)

@@ -123,6 +123,17 @@ class Lowering:
         """What a formula cell computes where that is constant; None where it is not."""
         return self.known_single(self._computed[cell])
 
+    def last_step(self, cell: Cell) -> tuple[str, list[Value]] | None:
+        """The function that a formula cell ends with, and its arguments, where all is constant; None otherwise."""
+        place = self._computed[cell]
+        node = self.dag.origins.get(place, self.dag.nodes[place])
+        if not isinstance(node, Apply):
+            return None
+        known = [self.known_single(argument) for argument in node.arguments]
+        return (
+            (node.function.name, values) if len(values := [v for v in known if v is not None]) == len(known) else None
+        )
+
     @property
     def read(self) -> frozenset[Cell]:
         """Every cell that the targets read: formulas, inputs, constants, and blank cells of ranges."""

@@ -8,7 +8,7 @@ import pytest
 from xlmc.address import Area
 from xlmc.compile.either import MOST_WAYS
 from xlmc.compile.engines import ENGINES
-from xlmc.errors import ErrorCode
+from xlmc.errors import ErrorCode, FormulaError
 from xlmc.workbook.model import CellContent, Formula
 
 CELLS = {"B1": 1.0, "C1": 2.0, "D1": 3.0, "B2": 10.0, "C2": 20.0, "D2": 30.0}
@@ -86,3 +86,9 @@ def test_many_choices_together_are_not_written_out(lower):
     text = "SUM(" + "+".join(f"IF(A1>{i},B1:D1,{i})" for i in range(40)) + ")"
     lowering, _ = lower(CELLS | {"A1": 0.0, "Z9": array(text)}, ["A1"], ["Z9"])
     assert len(lowering.dag.nodes) < 40 * MOST_WAYS
+
+
+@pytest.mark.parametrize("formula", ["=ISREF(INDEX(B1:D1,A1))", "=ISREF(IF(A1>0,B1,5))", "=ISREF(CHOOSE(A1,B1,5))"])
+def test_whether_a_varying_choice_is_a_reference_is_refused(lower, formula):
+    with pytest.raises(FormulaError, match="varies"):
+        lower(CELLS | {"A1": 0.0, "Z9": formula}, ["A1"], ["Z9"])

@@ -109,8 +109,24 @@ def _is_reference(lowering: Lowering, arguments: Arguments, scope: Scope) -> int
     try:
         found = areas_of(lowering, arguments[0], scope) is not None
     except NoReference:
-        found = False
+        return lowering.dag.constant(constant(False))
+    if not found and _may_be_reference(lowering, arguments[0], scope):
+        raise FormulaError("what ISREF is asked about depends on a value that varies", hint="make that value fixed")
     return lowering.dag.constant(constant(found))
+
+
+def _may_be_reference(lowering: Lowering, tree: ir.Expression, scope: Scope) -> bool:
+    """Whether it picks a cell or a range out of others; asked where `areas_of` finds none."""
+    match tree:
+        case ir.Call("INDEX", arguments):
+            return isinstance(arguments[0], Cell | Area)
+        case ir.Call("IF" | "CHOOSE", arguments):
+            known = lowering.known_single(lowering.single(lowering.lower(arguments[0], scope)))
+            return known is None and any(
+                isinstance(part, Cell | Area) or _may_be_reference(lowering, part, scope) for part in arguments[1:]
+            )
+        case _:
+            return False
 
 
 def _of_first_cell(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:

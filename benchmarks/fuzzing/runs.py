@@ -209,7 +209,8 @@ def _edit_column(rng: random.Random, entries: Entries) -> str:
     made, said = rng.choice(_COLUMN_EDITS)(rng, content)
     entries[at] = name, made
     where, document = _document(entries)
-    for column in document.get("columns", ()) if isinstance(document, dict) else ():
+    listed = document.get("columns") if isinstance(document, dict) else None
+    for column in listed if isinstance(listed, list) else ():
         if isinstance(column, dict) and column.get("entry") == name and rng.random() < 0.9:
             column["sha256"] = hashlib.sha256(made).hexdigest()
             body = _body(made)

@@ -173,12 +173,15 @@ def filter_limits(filter_: Filter) -> list[tuple[str, float | Cell]]:
 
 
 def condition(filter_: Filter) -> ir.Expression:
-    """What a filter asks, as a formula. Its cell is taken as a number, so that a text is `#VALUE!`, not "large"."""
+    """What a filter asks, as a formula. Its cell is taken as a number, so that a text is `#VALUE!`, not "large".
+
+    Limits are compared to the last bit, not at the 15 digits of comparisons in formulas.
+    """
     number = ir.Binary("+", filter_.cell, ir.Number(0.0))
     limits = filter_limits(filter_)
     if not limits:
-        return ir.Binary("<>", number, ir.Number(0.0))
-    parts = tuple(ir.Binary(relation, number, _bound(bound)) for relation, bound in limits)
+        return ir.Binary("<>", number, ir.Number(0.0), all_bits=True)
+    parts = tuple(ir.Binary(relation, number, _bound(bound), all_bits=True) for relation, bound in limits)
     return parts[0] if len(parts) == 1 else ir.Call("AND", parts)
 
 

@@ -7,9 +7,10 @@ from collections.abc import Iterable, Mapping
 from typing import Final
 
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Select
+from xlmc.functions.last_sum import SETTLED
 from xlmc.functions.values import NUMBER
 
-__all__ = ["Bounds", "bounds"]
+__all__ = ["Bounds", "bounds", "of_constant"]
 
 Bounds = tuple[float, float]
 """The least and the largest number, but for the rounding of the operations that led to them."""
@@ -35,7 +36,7 @@ def bounds(dag: Dag, places: Iterable[int], inputs: Mapping[str, Bounds]) -> dic
 
 def _of(dag: Dag, place: int, inputs: Mapping[str, Bounds], found: Mapping[int, Bounds]) -> Bounds:
     def part(used: int) -> Bounds:
-        return found[used] if used in found else _known(dag, used)
+        return found[used] if used in found else of_constant(dag, used) or _ANY
 
     match dag.nodes[place]:
         case Input(name):
@@ -48,6 +49,8 @@ def _of(dag: Dag, place: int, inputs: Mapping[str, Bounds], found: Mapping[int, 
             low, high = part(second)
             away = low > 0.0 or high < 0.0
             return _combined("*", part(first), _around((1.0 / low, 1.0 / high))) if away else _ANY
+        case Apply(function, (result, _)) if function.name == SETTLED.name:
+            return part(result)
         case Apply(function, (only,)) if function.name == "u-":
             low, high = part(only)
             return -high, -low
@@ -55,12 +58,13 @@ def _of(dag: Dag, place: int, inputs: Mapping[str, Bounds], found: Mapping[int, 
             return _ANY
 
 
-def _known(dag: Dag, place: int) -> Bounds:
+def of_constant(dag: Dag, place: int) -> Bounds | None:
+    """A number that is known, twice; None of all else."""
     node = dag.nodes[place]
     if isinstance(node, Constant) and dag.sizes[place] is None and int(node.value.kinds[0]) == NUMBER:
         number = float(node.value.numbers[0])
         return number, number
-    return _ANY
+    return None
 
 
 def _combined(operator: str, left: Bounds, right: Bounds) -> Bounds:

@@ -16,6 +16,7 @@ from xlmc.compile.either import differ, either
 from xlmc.compile.scope import Scope
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
+from xlmc.functions.operators import ALL_BITS
 from xlmc.functions.values import ERROR
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ def _switch(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
     last = rest[-1] if len(rest) % 2 else ir.ErrorLiteral(ErrorCode.NA)
     place = lowering.zero_if_blank(lowering.lower(last, scope.branch()))
     for match, result in reversed(list(zip(rest[: len(rest) // 2 * 2 : 2], rest[1::2], strict=True))):
-        same = lowering.call("=", (subject, lowering.lower(match, scope.plainly())))
+        same = lowering.made(ALL_BITS["="], (subject, lowering.lower(match, scope.plainly())))
         place = select(lowering, same, lowering.zero_if_blank(lowering.lower(result, scope.branch())), place)
     return place
 
@@ -91,7 +92,7 @@ def _choose(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
         return lowering.zero_if_blank(lowering.lower(arguments[place], scope)) if inside else _bad_index(lowering)
     place = _bad_index(lowering)
     for number in range(len(arguments) - 1, 0, -1):
-        is_it = lowering.call("=", (index, lowering.number(float(number))))
+        is_it = lowering.made(ALL_BITS["="], (index, lowering.number(float(number))))
         place = select(lowering, is_it, lowering.zero_if_blank(lowering.lower(arguments[number], scope)), place)
     return place
 

@@ -1,8 +1,9 @@
 """A trial evaluated again with 50 digits: what the formulas say, rounding apart.
 
 Numbers typed into cells count as the decimals that were typed, draws as the doubles they are, and π as π. A result that
-differs from 0 in the last digits alone is 0, as COS of 270° is. A function that is not known here is evaluated as in
-the run, on arguments rounded to doubles, and its cell is told of as not checked.
+differs from 0 in the last digits alone is 0, as COS of 270° is. What Excel does about the last digits of doubles is
+left out: comparisons are exact, and the sum that a formula ends with is what it is. A function that is not known here
+is evaluated as in the run, on arguments rounded to doubles, and its cell is told of as not checked.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from mpmath import mp, mpf
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Range, Rescue, Select
 from xlmc.compile.replicas import formula_of
 from xlmc.errors import ErrorCode
+from xlmc.functions.last_sum import SETTLED
 from xlmc.functions.values import ShapeVaries, Value, constant, from_objects
 
 __all__ = ["DIGITS", "Exact", "exactly"]
@@ -287,6 +289,7 @@ EXACT: Final[Mapping[str, Callable[..., Item]]] = {
     "u-": _of_numbers(lambda x: -x),
     "%": _of_numbers(lambda x: x / 100),
     "u+": _single,
+    SETTLED.name: lambda result, first: _single(result),
     "shown": lambda item: _zero_if_blank(_single(item)),
     "PI": lambda: +mp.pi,
     "SQRT": _real(mp.sqrt, 0),

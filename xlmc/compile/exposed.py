@@ -64,7 +64,7 @@ def exposed(lowering: Lowering, tree: ir.Expression, scope: Scope, change: Chang
             built = exposed(lowering, first, scope, change)
             for step, right in rest:
                 built = ir.Binary(step, built, exposed(lowering, right, scope, change))
-            return built
+            return ir.marked_as(built, tree)
         case ir.Call(name, arguments) if name in CHOICES and scope.of_array:
             return ir.Call(name, tuple(exposed(lowering, part, scope, change) for part in arguments))
         case ir.Call(name, (test, *branches)) if name in CHOICES:

@@ -32,7 +32,9 @@ from xlmc.formula.callables import gives_function
 from xlmc.functions import Function, Kind
 from xlmc.functions.budget import CallCount, ask_for_reading
 from xlmc.functions.families import REGISTRY, function_named
+from xlmc.functions.last_sum import SETTLED
 from xlmc.functions.logical import zero_if_blank
+from xlmc.functions.operators import ALL_BITS
 from xlmc.functions.registry import Anything, Ranges
 from xlmc.functions.values import BLANK, Value, constant
 
@@ -288,15 +290,17 @@ class Lowering:
             return self._joined(tree, scope)
         first, rest = ir.chain(tree)
         scope = scope.inside()
-        place = self.lower(first, scope)
+        place = before = self.lower(first, scope)
+        if tree.all_bits:
+            return self.made(ALL_BITS[tree.operator], (place, self.lower(tree.right, scope)))
         for operator, run in groupby(rest, lambda step: step[0]):
             parts = [self.lower(right, scope) for _, right in run]
             if operator == "&":
                 place = self.call(operator, (place, *parts))
                 continue
             for part in parts:
-                place = self.call(operator, (place, part))
-        return place
+                before, place = place, self.call(operator, (place, part))
+        return self.made(SETTLED, (place, before)) if tree.last and place != before else place
 
     def _joined(self, tree: ir.Binary, scope: Scope) -> int:
         """References put together, where one value is wanted."""

@@ -15,6 +15,7 @@ from typing import Final
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Select
 from xlmc.compile.steps import reads
 from xlmc.functions import Kind
+from xlmc.functions.last_sum import SETTLED
 
 __all__ = ["ROOT", "SURVIVORS", "Context", "Placement"]
 
@@ -36,6 +37,7 @@ _DEEPEST: Final = 8
 """Branches within branches; below, both branches are evaluated on the trials of the one around them."""
 
 _SAFE = {"+", "-", "*", "u-", "u+", "%", "=", "<>", "<", "<=", ">", ">=", "NOT", "ABS", "SIGN", "MIN", "MAX", "SUM"}
+_SAFE |= {SETTLED.name}
 
 
 class Placement:

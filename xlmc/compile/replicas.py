@@ -3,7 +3,8 @@
 Every result of a function is a little off, by up to half a unit of its last place; which way is chance. Here every
 other one, at random, is moved up or down by a unit (Vignes 1978, Parker 1997), and so are constants that were computed
 while the formulas were compiled. The replicas differ from the plain evaluation about as much as that differs from the
-exact one. Functions that round, compare or choose give what they give.
+exact one. Functions that round, compare or choose give what they give; that Excel makes 0 of the last bits of the sum
+that a formula ends with is left out, for they are what is looked for.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Node, Range, Rescue, Select, evaluated, uses
 from xlmc.compile.ragged import Ragged
 from xlmc.functions import Kind
+from xlmc.functions.last_sum import SETTLED
 from xlmc.functions.values import ERROR, LOGICAL, Floats, Value
 
 __all__ = ["DOUBLE", "SINGLE", "Jitter", "closure", "evaluation", "formula_of", "numbers", "term_sizes"]
@@ -132,6 +134,8 @@ def evaluation(
             values[place] = drawn if of_inputs is None else of_inputs.moved(drawn, n, whole_too=True)
         elif isinstance(node, Constant):
             values[place] = node.value
+        elif isinstance(node, Apply) and node.function.name == SETTLED.name:
+            values[place] = values[node.arguments[0]]
         else:
             assert isinstance(node, Apply | Select | Rescue | Range)
             moved = typed and isinstance(node, Apply) and node.function.name in _CALCULATES

@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from xlmc.compile.bounds import Bounds
+from xlmc.compile.bounds import Bounds, of_constant
 from xlmc.compile.buffers import Buffers
 from xlmc.compile.dag import Apply, Constant, Dag, Select, uses
 from xlmc.compile.steps import Departure, Frame, Step, is_elementwise_ufunc, make_step
 from xlmc.functions import Kind
 from xlmc.functions.guards import Within
+from xlmc.functions.last_sum import SETTLED, keep, never_cancels
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.sine import sine_and_cosine
 from xlmc.functions.values import Value
@@ -23,7 +24,7 @@ from xlmc.functions.values import Value
 __all__ = ["Steps"]
 
 
-_Line = tuple[Elementwise | None, int, int, int, int, Any]
+_Line = tuple[Elementwise | Callable[..., Any] | None, int, int, int, int, Any]
 """(ufunc, place, first, second, buffer, guard): the ufunc of `values[first]` and `values[second]` (-1 for none) goes to
 `values[place]`, in that buffer, where the guard, if any, holds. Without a ufunc it is the choice between `first` and
 `second` by the logical at the place that stands for the guard."""
@@ -73,7 +74,8 @@ class Steps:
             buffer = self._buffers.exchange(done, place, self._loose)  # it may write over what it reads
             if buffer is not None:
                 second = used[1] if len(used) == 2 else -1
-                self._lines.append((function.ufunc, place, used[0], second, buffer, self._guard(place)))
+                ufunc = keep if self._keeps(node) else function.ufunc
+                self._lines.append((ufunc, place, used[0], second, buffer, self._guard(place)))
                 return
         elif is_elementwise_ufunc(self._dag, place):
             self._free(done)
@@ -150,6 +152,19 @@ class Steps:
             return guard
         known = self._between.get(node.arguments[0])
         return None if known is not None and guard.surely(*known) else guard
+
+    def _keeps(self, node: Apply) -> bool:
+        """Whether what Excel makes of a formula's last sum is known to be that sum."""
+        if node.function.name != SETTLED.name:
+            return False
+        total, first = node.arguments
+        added = self._dag.nodes[total]
+        second = self._bounds(added.arguments[1]) if type(added) is Apply and added.function.name == "+" else None
+        known = self._bounds(total), self._bounds(first)
+        return known[0] is not None and known[1] is not None and never_cancels(known[0], known[1], second)
+
+    def _bounds(self, place: int) -> Bounds | None:
+        return self._between.get(place) or of_constant(self._dag, place)
 
     def _close(self) -> None:
         if self._lines:

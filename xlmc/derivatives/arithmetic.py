@@ -9,6 +9,7 @@ import numpy as np
 from xlmc.derivatives.jet import chained
 from xlmc.derivatives.rules import Operand, Outcome, elementwise, leveled, rule
 from xlmc.functions import Function
+from xlmc.functions.last_sum import SETTLED
 from xlmc.functions.values import Floats, Value
 
 __all__: list[str] = []
@@ -23,9 +24,9 @@ elementwise("RADIANS", lambda y, x: (np.pi / 180,), lambda y, x: (0.0,))
 elementwise("DEGREES", lambda y, x: (180 / np.pi,), lambda y, x: (0.0,))
 
 
-@rule("u+", "shown")
+@rule("u+", "shown", SETTLED.name)
 def same(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """What gives a number as it is."""
+    """What gives a number as it is, or but for its last bits."""
     return Outcome(operands[0].jet)
 
 

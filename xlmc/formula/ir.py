@@ -6,7 +6,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode
@@ -32,6 +32,7 @@ __all__ = [
     "Unary",
     "Variable",
     "chain",
+    "marked_as",
 ]
 
 
@@ -118,11 +119,20 @@ class Unary:
 
 @dataclass(frozen=True, slots=True)
 class Binary:
-    """`x + y` and the rest; `:` makes a range, a blank intersects, `,` joins references."""
+    """`x + y` and the rest; `:` makes a range, a blank intersects, `,` joins references.
+
+    Attributes:
+        last: it is the `+` or `-` that a cell's formula ends with, outside of all brackets: Excel makes 0 of a
+            result that cancels but for the last bits.
+        all_bits: it compares numbers to the last bit, as xlmc does with the limits in its tables; a comparison in a
+            formula is one at 15 digits.
+    """
 
     operator: str
     left: Expression
     right: Expression
+    last: bool = field(default=False, kw_only=True)
+    all_bits: bool = field(default=False, kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,3 +230,10 @@ def chain(tree: Expression) -> tuple[Expression, list[tuple[str, Expression]]]:
         rest.append((tree.operator, tree.right))
         tree = tree.left
     return tree, rest[::-1]
+
+
+def marked_as(built: Expression, tree: Binary) -> Expression:
+    """What was built of the parts of a binary operation, with the marks of that operation itself."""
+    if not isinstance(built, Binary) or not (tree.last or tree.all_bits):
+        return built
+    return replace(built, last=tree.last, all_bits=tree.all_bits)

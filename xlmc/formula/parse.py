@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cache, lru_cache
 from typing import Any, ClassVar
 
@@ -36,7 +37,7 @@ from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
 from xlmc.formula.table_reference import TABLE_REFERENCE, parse_table_reference
 
-__all__ = ["compile_with_formulas", "foreign_functions", "parse"]
+__all__ = ["compile_with_formulas", "foreign_functions", "parse", "parse_cell"]
 
 _SHEET = r"[^\W\d][\w.]*"
 _PREFIX = rf"(?:'(?P<quoted>(?:[^']|'')+)'|(?P<book>\[[^\[\]]+\])?(?P<sheet>{_SHEET}(?::{_SHEET})?)?)!"
@@ -425,6 +426,29 @@ def parse(text: str) -> ir.Expression:
         ) from None
     tree: ir.Expression = builder[-1]
     return tree
+
+
+def parse_cell(text: str) -> ir.Expression:
+    """The tree of a cell's whole formula: its last operation is marked where that is a `+` or `-` outside of brackets.
+
+    Raises:
+        FormulaError: as `parse`.
+    """
+    tree = parse(text)
+    if isinstance(tree, ir.Binary) and tree.operator in ("+", "-") and not _is_bracketed(text.strip()):
+        return replace(tree, last=True)
+    return tree
+
+
+def _is_bracketed(text: str) -> bool:
+    """Whether a formula's first bracket is closed by its last: only then is what is between them one, too."""
+    if not (text.startswith("(") and text.endswith(")")):
+        return False
+    try:
+        parse(text[1:-1])
+    except FormulaError:
+        return False
+    return True
 
 
 def _without_line_breaks(text: str) -> str:

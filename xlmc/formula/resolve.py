@@ -186,7 +186,7 @@ class Resolver:
         for operator, right in rest:
             combined = _combined(operator, resolved, self._resolve(right, host, origin))
             resolved = self._cut(combined) if isinstance(combined, Area) else combined
-        return resolved
+        return ir.marked_as(resolved, tree)
 
     def _reference(self, tree: ir.Reference, host: Cell, origin: tuple[int, int]) -> ir.Expression:
         book = meant_book(self.workbook, tree.book, self._linked)

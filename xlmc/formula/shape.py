@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, column_letters, column_number
 from xlmc.formula import ir
-from xlmc.formula.parse import parse
+from xlmc.formula.parse import parse_cell
 from xlmc.formula.stencil import Stencil
 
 __all__ = ["Shape", "Shapes", "shape_of", "text_at"]
@@ -174,7 +174,7 @@ class Shapes:
         key = shape_of(text, row, column)
         found = self._known.get(key)
         if found is None:
-            self._known[key] = found = Shape(parse(text), (row, column))
+            self._known[key] = found = Shape(parse_cell(text), (row, column))
         filling = _filling(text, row)
         if filling is not None:
             self._columns[column] = filling, found

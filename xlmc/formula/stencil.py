@@ -167,7 +167,7 @@ def _rebuilt(tree: ir.Expression, moved: Callable[[Cell | Area], Cell | Area]) -
             built = _rebuilt(first, moved)
             for operator, right in rest:
                 built = ir.Binary(operator, built, _rebuilt(right, moved))
-            return built
+            return ir.marked_as(built, tree)
         case ir.Call(_, arguments):
             return replace(tree, arguments=tuple(_rebuilt(part, moved) for part in arguments))
         case _:

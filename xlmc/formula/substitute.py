@@ -45,7 +45,7 @@ def _chain(tree: ir.Binary, change: Callable[[ir.Expression], ir.Expression | No
     built = substituted(first, change)
     for operator, right in rest:
         built = ir.Binary(operator, built, substituted(right, change))
-    return built
+    return ir.marked_as(built, tree)
 
 
 def is_bound(tree: ir.Expression) -> bool:

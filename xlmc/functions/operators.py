@@ -1,17 +1,24 @@
-"""The operators of formulas, as functions of one or two arguments. `x - y` and `-x` are `-` and `u-`."""
+"""The operators of formulas, as functions of one or two arguments. `x - y` and `-x` are `-` and `u-`.
+
+Comparisons are those of Excel, at 15 digits; see `fifteen_digits`.
+"""
 
 from __future__ import annotations
 
 import operator
 from collections.abc import Callable
-from typing import Any
+from functools import partial
+from typing import Any, Final
 
 import numpy as np
 
-from xlmc.functions.registry import Anything, Kind, Number, excel
+from xlmc.functions.fifteen_digits import COMPARISONS
+from xlmc.functions.registry import Anything, Function, Kind, Number, excel
 from xlmc.functions.values import BLANK, DIV0, ERROR, NUM, TEXT, Floats, Value
 
-__all__ = ["compare"]
+__all__ = ["ALL_BITS", "compare"]
+
+_Relation = Callable[[Any, Any], Any]
 
 excel("+", Number, Number, ufunc=np.add)(np.add)
 excel("-", Number, Number, ufunc=np.subtract)(np.subtract)
@@ -44,16 +51,23 @@ def power(x: Floats, y: Floats) -> Floats:
     return np.where((x == 0) & (y == 0), NUM, result)
 
 
-def compare(relation: Callable[[Any, Any], Any], x: Value, y: Value) -> Value:
-    """Excel's order: numbers before texts before logicals; texts without case; a blank is 0, "" or FALSE."""
+def compare(relation: _Relation, of_numbers: _Relation, x: Value, y: Value) -> Value:
+    """Excel's order: numbers before texts before logicals; texts without case; a blank is 0, "" or FALSE.
+
+    Args:
+        relation: of what is not a number.
+        of_numbers: the same, of numbers.
+        x: what stands on the left.
+        y: what stands on the right.
+    """
     if x.numbers.ndim != y.numbers.ndim:
         x, y = x.as_range(), y.as_range()
     if x.plain and y.plain and not _mixed(x, y):
-        return Value.of_logicals(np.atleast_1d(relation(x.numbers, y.numbers)))
+        return Value.of_logicals(np.atleast_1d(of_numbers(x.numbers, y.numbers)))
     errors = np.where(x.errors > 0, x.errors, y.errors).astype(np.uint8)
     rank_x, rank_y = _ranks(x, y), _ranks(y, x)
     by_rank = relation(rank_x, rank_y)
-    by_value = relation(x.numbers, y.numbers)
+    by_value = of_numbers(x.numbers, y.numbers)
     texts = (rank_x == TEXT) & (rank_y == TEXT)
     by_text = relation(_text_order(x, y), 0) if texts.any() else by_value
     result = np.where(rank_x == rank_y, np.where(texts, by_text, by_value), by_rank)
@@ -81,16 +95,21 @@ def _text_order(x: Value, y: Value) -> Floats:
     return np.asarray(order(left, right), np.float64)
 
 
-def _register(symbol: str, relation: Callable[[Any, Any], Any], ufunc: np.ufunc) -> None:
-    def body(x: Value, y: Value) -> Value:
-        return compare(relation, x, y)
-
-    excel(symbol, Anything, Anything, returns=Kind.LOGICAL, ufunc=ufunc)(body)
+ALL_BITS: Final[dict[str, Function]] = {}
+"""Comparisons to the last bit, as SWITCH and CHOOSE and the limits in the tables of xlmc make them."""
 
 
-_register("=", operator.eq, np.equal)
-_register("<>", operator.ne, np.not_equal)
-_register("<", operator.lt, np.less)
-_register("<=", operator.le, np.less_equal)
-_register(">", operator.gt, np.greater)
-_register(">=", operator.ge, np.greater_equal)
+def _register(symbol: str, relation: _Relation) -> None:
+    digits = COMPARISONS[symbol]
+    body = partial(compare, relation, digits)
+    excel(symbol, Anything, Anything, returns=Kind.LOGICAL, ufunc=digits)(body)
+    strict = partial(compare, relation, digits.plain)
+    ALL_BITS[symbol] = Function(symbol, (Anything, Anything), strict, Kind.LOGICAL, ufunc=digits.plain)
+
+
+_register("=", operator.eq)
+_register("<>", operator.ne)
+_register("<", operator.lt)
+_register("<=", operator.le)
+_register(">", operator.gt)
+_register(">=", operator.ge)

@@ -17,13 +17,12 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from importlib import import_module
 from math import prod
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.functions.budget import ask_for_cells
-from xlmc.functions.sine import Tangents
 from xlmc.functions.values import ERROR, LOGICAL, NUMBER, Bools, Codes, Value, from_objects
 
 __all__ = [
@@ -58,8 +57,16 @@ class Kind(Enum):
     __hash__ = object.__hash__  # kinds are looked up in dicts for every node
 
 
-Elementwise = np.ufunc | Tangents
-"""What is called as a NumPy ufunc is."""
+class Called(Protocol):
+    """What is called as a NumPy ufunc is."""
+
+    @property
+    def nin(self) -> int: ...
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any: ...
+
+
+Elementwise = np.ufunc | Called
 
 
 class _Required(Enum):

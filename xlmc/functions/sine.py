@@ -11,13 +11,13 @@ The cosine as (1 - T²) / (1 + T²) would be quicker and loses digits where it i
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 from typing import Final
 
 import numpy as np
 
 from xlmc.functions.values import Floats
+from xlmc.functions.work_memory import work_arrays
 
 __all__ = ["COSINE", "SINE", "Tangents", "sine_and_cosine"]
 
@@ -86,24 +86,13 @@ class Tangents:
 
 
 def _sine_alone(x: Floats, out: Floats) -> None:
-    _sine(x, out, *_scratch(x.size, 1))
+    _sine(x, out, *work_arrays(x.size, 1))
 
 
 def _cosine_alone(x: Floats, out: Floats) -> None:
-    sine, work = _scratch(x.size, 2)
+    sine, work = work_arrays(x.size, 2)
     _sine(x, sine, work)
     _cosine(x, sine, out, work)
-
-
-_MEMORY = threading.local()
-
-
-def _scratch(n: int, arrays: int) -> list[Floats]:
-    """Memory of this thread's own, kept from call to call: pages of fresh memory would cost more than the sine."""
-    kept: list[Floats] = getattr(_MEMORY, "arrays", [])
-    if len(kept) < arrays or kept[0].size < n:
-        _MEMORY.arrays = kept = [np.empty(n) for _ in range(2)]
-    return [array[:n] for array in kept[:arrays]]
 
 
 SINE: Final = Tangents(np.sin, _sine_alone)

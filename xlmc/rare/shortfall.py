@@ -7,7 +7,7 @@ formula, through AND, OR and NOT, to the comparisons there. What is no compariso
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -76,10 +76,10 @@ def _logical(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Express
             return Together(found, (tree.name == "AND") is wanted)
         case ir.Binary(relation, left, right) if relation in _NEGATED:
             relation = relation if wanted else _NEGATED[relation]
-            holds = Target(ir.Binary(relation, left, right), cell)
+            holds = Target(replace(tree, operator=relation), cell)
             gap = _gap(relation, left, right)
             return Leaf(holds, None if gap is None else Target(gap, cell))
-    return Leaf(Target(ir.Binary("<>" if wanted else "=", tree, ir.Number(0.0)), cell))
+    return Leaf(Target(ir.Binary("<>" if wanted else "=", tree, ir.Number(0.0), all_bits=True), cell))
 
 
 def _gap(relation: str, left: ir.Expression, right: ir.Expression) -> ir.Expression | None:

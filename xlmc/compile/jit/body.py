@@ -51,6 +51,7 @@ class Body:
     Attributes:
         builder: where instructions go.
         real: the type of numbers.
+        single: whether they are float32.
     """
 
     def __init__(
@@ -64,7 +65,7 @@ class Body:
     ) -> None:
         self.builder: Any = builder
         self.real: Any = ir.FloatType() if single else ir.DoubleType()
-        self._single = single
+        self.single = single
         self._dag, self._contexts, self._fused = dag, contexts, fused
         self._known = dict(loaded)
         self._checked: set[tuple[Operand, Context]] = set()
@@ -79,7 +80,7 @@ class Body:
         Raises:
             SimulationError: it is out of the range of float32.
         """
-        if self._single and value and not _SMALLEST <= abs(value) <= _LARGEST:
+        if self.single and value and not _SMALLEST <= abs(value) <= _LARGEST:
             hint = "use float64"
             raise SimulationError(f"the number {value:g} in a formula is out of the range of float32", hint=hint)
         return ir.Constant(self.real, value)
@@ -95,7 +96,7 @@ class Body:
     def of_doubles(self, function: Callable[..., Any], *arguments: Any) -> Any:
         """A function that is made of arithmetic on doubles; with float32 its result is rounded."""
         do = Arithmetic(self.builder, self._fused)
-        if not self._single:
+        if not self.single:
             return function(do, *arguments)
         wide = [self.builder.fpext(argument, ir.DoubleType()) for argument in arguments]
         return self.builder.fptrunc(function(do, *wide), self.real)
@@ -103,12 +104,12 @@ class Body:
     @property
     def largest_angle(self) -> float:
         """Above it a sine is computed again: Excel refuses it, or it has too few digits in float32."""
-        return LARGEST_ANGLE if self._single else _EXCELS_LARGEST_ANGLE
+        return LARGEST_ANGLE if self.single else _EXCELS_LARGEST_ANGLE
 
     def sine_and_cosine(self, angle: Any) -> tuple[Any, Any]:
         """Both, computed once for each angle."""
         if id(angle) not in self._turns:
-            both = single_sine_and_cosine if self._single else sine_and_cosine
+            both = single_sine_and_cosine if self.single else sine_and_cosine
             self._turns[id(angle)] = angle, both(self.builder, angle, self._fused)
         return self._turns[id(angle)][1]
 

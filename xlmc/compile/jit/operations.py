@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING, Any, Final
 from xlmc.compile.dag import Apply, Dag
 from xlmc.compile.jit.arcsine import arccosine, arcsine
 from xlmc.compile.jit.arctangent import arctangent, arctangent_of_two
+from xlmc.compile.jit.fifteen_digits import at_15_digits, settled
 from xlmc.compile.jit.recipes import PLAIN, Emit, Operand, Recipe, literal
 from xlmc.functions import Kind
+from xlmc.functions.fifteen_digits import Comparison
+from xlmc.functions.last_sum import SETTLED
 
 if TYPE_CHECKING:
     from xlmc.compile.jit.body import Body
@@ -32,7 +35,7 @@ class _Row:
 
 def operation(dag: Dag, node: Apply) -> Recipe | None:
     """The recipe of a function of single values; None where there is none."""
-    row = _power(dag, node) if node.function.name == "^" else _ROWS.get(node.function.name)
+    row = _row(dag, node)
     if row is None or len(node.arguments) != len(node.function.parameters):
         return None
     operands = []
@@ -44,6 +47,13 @@ def operation(dag: Dag, node: Apply) -> Recipe | None:
                 return None
         operands.append(Operand(place, kind))
     return Recipe(tuple(operands), row.emit, row.absorbs, row.makes)
+
+
+def _row(dag: Dag, node: Apply) -> _Row | None:
+    function = node.function
+    if isinstance(function.ufunc, Comparison):
+        return _Row(at_15_digits(dag, node, function.ufunc.symbol), _ALL)
+    return _power(dag, node) if function.name == "^" else _ROWS.get(function.name)
 
 
 def _instruction(name: str, *absorbs: int) -> _Row:
@@ -152,6 +162,7 @@ _ROWS: Final[Mapping[str, _Row]] = {
     "<=": _comparison("<="),
     ">": _comparison(">"),
     ">=": _comparison(">="),
+    SETTLED.name: _Row(settled, makes=False),
     "NOT": _Row(lambda body, parts: body.builder.not_(parts[0])),
     "ABS": _Row(lambda body, parts: body.intrinsic("llvm.fabs", parts[0]), makes=False),
     "SQRT": _Row(_root),

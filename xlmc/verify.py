@@ -20,10 +20,7 @@ from xlmc.workbook import CellValue, Workbook
 __all__ = ["TOLERANCE", "CellCheck", "Status", "Verification", "verify"]
 
 TOLERANCE: Final = 1e-9
-"""Relative difference up to which two numbers match."""
-
-ROUND_OFF: Final = 1e-13
-"""Where Excel saved 0, a number up to this matches: Excel makes a difference that cancels to 15 digits 0."""
+"""Relative difference up to which two numbers match: with 0 nothing but 0 does."""
 
 
 _PERIODIC: Final = frozenset({"SIN", "COS", "TAN"})
@@ -143,8 +140,6 @@ def _checked(lowering: Lowering, cell: Cell) -> CellCheck:
 
 def _same(expected: CellValue, got: object) -> bool:
     if _is_number(expected) and _is_number(got):
-        if expected == 0 and abs(float(got)) <= ROUND_OFF:  # type: ignore[arg-type]
-            return True
         return _relative(float(expected), float(got)) <= TOLERANCE  # type: ignore[arg-type]
     if isinstance(expected, str) and got is None:
         return expected == ""

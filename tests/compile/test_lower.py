@@ -25,9 +25,11 @@ def names(found):
 @pytest.mark.parametrize(
     ("formula", "expected"),
     [
-        ("A1+A2", ["Input", "Input", "+"]),
+        ("A1+A2", ["Input", "Input", "+", "settled"]),
+        ("(A1+A2)", ["Input", "Input", "+"]),
         ("(A1+A2)*(A1+A2)", ["Input", "Input", "+", "*"]),  # a common part is computed once
-        ("A1+2*3", ["Input", "+"]),  # and what is known before the run
+        ("A1+2*3", ["Input", "+", "settled"]),
+        ("0+A1", ["Input"]),  # and what is known before the run
         ("SQRT(2)*A1", ["Input", "*"]),
         ("A1^2", ["Input", "*"]),
         ("+A1", ["Input"]),
@@ -45,7 +47,7 @@ def names(found):
         ("SUM(A1:A2)", ["Input", "Input", "Range", "SUM"]),
         ("SUM((A1,A2))", ["Input", "Input", "Range", "Range", "SUM"]),
         ("POWER(A1,A2)", ["Input", "Input", "^"]),
-        ("A1:A1+1", ["Input", "+"]),
+        ("A1:A1+1", ["Input", "+", "settled"]),
     ],
 )
 def test_the_nodes_of_a_formula(nodes, formula, expected):

@@ -66,7 +66,7 @@ def test_any_other_constant_stays_a_value(item):
 @pytest.mark.parametrize(
     ("formula", "expected"),
     [
-        ("A1+A2", {"A1", "A2"}),
+        ("(A1+A2)", {"A1", "A2"}),
         ("IFERROR(A1,A2)", {"A1"}),
         ("SUM(A1:A3)", {"A1", "A2", "A3"}),
         ("MAX(A1:A3,B1)", {"A1", "A2", "A3", "B1"}),

@@ -288,11 +288,11 @@ class Lowering:
     def _chain(self, tree: ir.Binary, scope: Scope) -> int:
         if tree.operator in (",", ":", " "):
             return self._joined(tree, scope)
-        first, rest = ir.chain(tree)
         scope = scope.inside()
-        place = before = self.lower(first, scope)
         if tree.all_bits:
-            return self.made(ALL_BITS[tree.operator], (place, self.lower(tree.right, scope)))
+            return self.made(ALL_BITS[tree.operator], (self.lower(tree.left, scope), self.lower(tree.right, scope)))
+        first, rest = ir.chain(tree)
+        place = before = self.lower(first, scope)
         for operator, run in groupby(rest, lambda step: step[0]):
             parts = [self.lower(right, scope) for _, right in run]
             if operator == "&":
@@ -300,7 +300,9 @@ class Lowering:
                 continue
             for part in parts:
                 before, place = place, self.call(operator, (place, part))
-        return self.made(SETTLED, (place, before)) if tree.last and place != before else place
+        if not tree.last or place in (before, parts[-1]):
+            return place
+        return self.made(SETTLED, (place, before))
 
     def _joined(self, tree: ir.Binary, scope: Scope) -> int:
         """References put together, where one value is wanted."""

@@ -17,6 +17,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache, lru_cache
+from itertools import accumulate
 from typing import Any, ClassVar
 
 import numpy as np
@@ -50,6 +51,9 @@ _LONGEST = 4 * 8192
 
 _ADD_INS = ("CB.", "RISK")
 """Functions before which the file of their add-in may stand, in quotes like a sheet: `'CB.xla'!CB.GetForeStatFN(`."""
+
+_QUOTED = re.compile(r""""(?:[^"]|"")*"|'(?:[^']|'')*'|\[(?:'.|[^\[\]']|\[(?:'.|[^\[\]'])*\])*\]""", re.DOTALL)
+"""Texts, names of sheets in quotes, and what stands in square brackets."""
 
 _BLANKS = str.maketrans("\t\r\n", "   ")
 _CORNER = re.compile(r"(?P<cf>\$?)(?P<c>[A-Za-z]{1,3})?(?P<rf>\$?)(?P<r>[0-9]+)?")
@@ -441,23 +445,19 @@ def parse_cell(text: str) -> ir.Expression:
 
 
 def _is_bracketed(text: str) -> bool:
-    """Whether a formula's first bracket is closed by its last: only then is what is between them one, too."""
+    """Whether the bracket that a formula begins with is closed at its end."""
     if not (text.startswith("(") and text.endswith(")")):
         return False
-    try:
-        parse(text[1:-1])
-    except FormulaError:
-        return False
-    return True
+    signs = _QUOTED.sub("", text)
+    depths = list(accumulate((sign == "(") - (sign == ")") for sign in signs))
+    return all(depths[:-1])
 
 
 def _without_line_breaks(text: str) -> str:
     """Line breaks and tabs between tokens are blanks to Excel; inside texts and brackets they are kept."""
     if not any(blank in text for blank in "\n\r\t"):
         return text
-    pieces = re.split(
-        r"""("(?:[^"]|"")*"|'(?:[^']|'')*'|\[(?:'.|[^\[\]']|\[(?:'.|[^\[\]'])*\])*\])""", text, flags=re.DOTALL
-    )
+    pieces = re.split(f"({_QUOTED.pattern})", text, flags=re.DOTALL)
     kept = [p.replace("\n", _LINE_BREAK_IN_TEXT) if i % 2 else p.translate(_BLANKS) for i, p in enumerate(pieces)]
     return "".join(kept)
 

@@ -3,7 +3,7 @@
 `=`, `<>`, `<`, `<=`, `>` and `>=` compare both numbers rounded to 15 significant decimal digits, halves away from zero:
 0.1+0.2 equals 0.3. Numbers of the same digits are equal; all others are ordered as they are. What is below 2^-1022 in
 size is 0. Doubles were tried in Excel for where its answer changes (Apache POI, `NumberComparisonExamples`): the rule
-gives each of these 33 places to the last bit.
+gives each of these 33 steps to the last bit.
 
 Digits are counted only where they may matter. All doubles that are equal to a constant lie between two, so that to
 compare with the constant is to compare with one of these. Of two numbers that vary, their difference nearly always

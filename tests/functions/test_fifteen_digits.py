@@ -1,0 +1,147 @@
+"""Comparisons at 15 digits, against digits counted one by one in decimal arithmetic."""
+
+from __future__ import annotations
+
+import math
+import operator
+import struct
+from decimal import ROUND_HALF_UP, Context
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from xlmc.functions.families import function_named
+from xlmc.functions.fifteen_digits import COMPARISONS, TINIEST, equals
+from xlmc.functions.operators import ALL_BITS
+from xlmc.functions.values import from_objects
+
+RELATIONS = {
+    "=": operator.eq,
+    "<>": operator.ne,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+DIGITS = Context(prec=15, rounding=ROUND_HALF_UP)
+
+# Doubles from which on Excel's answer changes: one less is equal to it, one more is larger, two more equal to that.
+# Found by trying in Excel: Apache POI, NumberComparisonExamples.
+STEPS = [
+    "4010000000000005",
+    "4010000000000010",
+    "401000000000001C",
+    "403CE0FFFFFFFFF1",
+    "5010000000000006",
+    "5010000000000010",
+    "501000000000001A",
+    "544CE6345CF32018",
+    "544CE6345CF3205A",
+    "544CE6345CF3209C",
+    "544CE6345CF320DE",
+    "54B250001000101D",
+    "54B2500010001050",
+    "54B2500010001083",
+    "6230100010001000",
+    "6230100010001005",
+    "623010001000100A",
+    "7F50300020001011",
+    "7F5030002000102B",
+    "7F50300020001044",
+    "2B2BFFFF1000102A",
+    "2B2BFFFF10001079",
+    "2B2BFFFF100010C8",
+    "2B2BFF001000102D",
+    "2B2BFF0010001035",
+    "2B2BFF001000103D",
+    "2B61800040002024",
+    "2B61800040002055",
+    "2B61800040002086",
+    "008000000000000B",
+    "0010000000000007",
+    "001000000000001B",
+    "001000000000002F",
+]
+
+
+def double(bits):
+    return struct.unpack("<d", struct.pack("<q", bits))[0]
+
+
+def neighbour(number, steps):
+    """The double so many places on, away from 0."""
+    (bits,) = struct.unpack("<q", struct.pack("<d", abs(number)))
+    return math.copysign(double(max(bits + steps, 0)), number)
+
+
+def rounded(number):
+    return DIGITS.create_decimal_from_float(0.0 if abs(number) < TINIEST else number)
+
+
+NUMBERS = st.floats(allow_nan=False, allow_infinity=False)
+NEARBY = st.tuples(NUMBERS, st.integers(-120, 120)).map(lambda pair: (pair[0], neighbour(*pair)))
+PAIRS = NEARBY.filter(lambda pair: math.isfinite(pair[1])) | st.tuples(NUMBERS, NUMBERS)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("bits", STEPS)
+def test_the_answer_changes_where_excels_does(bits, sign):
+    before, last, first, after = (sign * double(int(bits, 16) + step) for step in (-1, 0, 1, 2))
+    for equal in ((before, last), (first, after)):
+        assert COMPARISONS["="](*np.atleast_2d(equal).T)[0]
+    assert COMPARISONS["<" if sign > 0 else ">"](np.array([last]), np.array([first]))[0]
+
+
+@pytest.mark.parametrize("symbol", RELATIONS)
+@given(PAIRS)
+def test_numbers_are_compared_by_their_digits(symbol, pair):
+    """As two that vary, and each beside the other as a constant."""
+    x, y = pair
+    truth = RELATIONS[symbol](rounded(x), rounded(y))
+    compare = COMPARISONS[symbol]
+    with np.errstate(all="ignore"):
+        varying = compare(np.array([x, 1.0, x]), np.array([y, 2.0, y]))
+    assert varying[[0, 2]].tolist() == [truth, truth]
+    assert compare(np.array([x, x]), y).tolist() == [truth, truth]
+    assert compare(x, np.array([y, y])).tolist() == [truth, truth]
+
+
+@given(PAIRS)
+def test_just_one_of_less_equal_and_more_holds_and_both_ways_alike(pair):
+    x, y = (np.array([number, 5.0]) for number in pair)
+    with np.errstate(all="ignore"):
+        assert sum(bool(COMPARISONS[symbol](x, y)[0]) for symbol in "<=>") == 1
+        assert COMPARISONS["="](x, y)[0] == COMPARISONS["="](y, x)[0]
+        assert COMPARISONS["<"](x, y)[0] == COMPARISONS[">"](y, x)[0]
+
+
+@given(NUMBERS)
+def test_the_ends_are_the_last_doubles_that_are_equal(number):
+    least, most = equals(number)
+    assert least <= number <= most or abs(number) < TINIEST
+    assert rounded(least) == rounded(number) == rounded(most)
+    outside = math.nextafter(least, -math.inf), math.nextafter(most, math.inf)
+    assume(all(map(math.isfinite, outside)))
+    assert rounded(number) not in map(rounded, outside)
+
+
+def test_ranges_are_compared_cell_by_cell():
+    cells = np.array([0.1, 0.2, 0.3]).reshape(1, 3, 1)
+    trials = np.array([3.0, 2.0]).reshape(2, 1, 1)
+    found = COMPARISONS["="](cells * 3, np.broadcast_to(cells * trials, (2, 3, 1)))
+    assert found[..., 0].tolist() == [[True] * 3, [False] * 3]
+    assert COMPARISONS["="](cells * trials, 0.3)[..., 0].tolist() == [[True, False, False], [False] * 3]
+
+
+def test_what_is_no_number_is_compared_as_it_is():
+    infinite = np.array([math.inf, -math.inf, math.nan])
+    assert COMPARISONS["="](infinite, math.inf).tolist() == [True, False, False]
+
+
+@pytest.mark.parametrize("symbol", RELATIONS)
+def test_limits_in_tables_keep_all_bits(symbol):
+    x, y = (from_objects(np.array([number], object)) for number in (0.1 * 3, 0.3))
+    assert bool(ALL_BITS[symbol]([x, y]).numbers[0]) is RELATIONS[symbol](0.1 * 3, 0.3)
+    assert bool(function_named(symbol)([x, y]).numbers[0]) is RELATIONS[symbol](0.3, 0.3)

@@ -46,6 +46,33 @@ by hand; `xlmc verify` shows where the saved value says otherwise. Where rows ar
 Ctrl-Shift-Enter does not spill). Where its size varies, it is what the formula gives in each trial.
 """
 
+DIGITS = """## Excel's 15 digits
+
+Numbers are doubles, in Excel as here. Excel hides their last bits in three places, and so does xlmc, in constants and
+in each trial, with the engines `numpy` and `jit` alike:
+
+- `=` `<>` `<` `<=` `>` `>=` between numbers compare both rounded to 15 significant decimal digits, halves away from
+  zero. `0.1+0.2=0.3` and `1-0.9=0.1` are TRUE, `1.1*3>3.3` is FALSE, `10.1-10=0.1` is FALSE (the 15th digit differs).
+  A number below 2^-1022 in size is 0. Texts and logicals are compared as ever.
+- The `+` or `-` that a cell's formula ends with gives 0 where the size of the result is less than 8 units in the last
+  place of its first number: `=0.5-0.4-0.1` is 0. In brackets, `=(0.5-0.4-0.1)`, or where another operation or a
+  function comes last, `=1*(0.5-0.4-0.1)` and `=0.5-0.4-0.1+0`, it is -2.78E-17. In an array
+  formula the rule is used for each cell, and a defined name's formula is not a cell's: no source tells of these two.
+- A sum or difference is that of the doubles everywhere else.
+
+All bits are kept by `MATCH`, `XLOOKUP` and the other lookups, criteria such as those of `COUNTIF`, `SWITCH` and
+`CHOOSE`, `SUM` (which Excel makes 0 in some cases and not in others, by no rule that is known), and the limits in the
+tables of xlmc. Bounds, derivatives, `xlmc stability` and its recomputation with 50 digits leave the second rule out:
+they see the sum as it is. With float32, numbers are compared as they are. LibreOffice differs: it makes 0 of every sum
+that cancels to some 16 units, in brackets, too.
+
+Sources. Comparisons: Apache POI, `NumberComparer` and the doubles at which Excel's answer changes in its
+`NumberComparisonExamples` (all 33 steps are met to the last bit); S. Byrne, Stack Overflow 40293983. The last sum:
+joeu2004 and J. W. Lewis, microsoft.public.excel.worksheet.functions, April 2009 (1 to 7 units give 0, 8 do not,
+from 1E-7 to 1E308); S. Byrne, who names the first number; forum.bebac.at 22126 (`=0=0.5-0.4-0.1` is FALSE). Microsoft's
+article 78113 says no more than "at or very close to zero". Lookups: Microsoft Answers 11355118.
+"""
+
 LIMITS = """## Limits
 
 A workbook may ask for more than a machine has. xlmc asks before it takes memory, and refuses with the cell, the size
@@ -100,7 +127,7 @@ def page() -> str:
         "",
     ]
     lines += [f"**{letter}** {' '.join(f'`{name}`' for name in found)}\n" for letter, found in letters.items()]
-    return "\n".join([*lines, RANGES, LIMITS])
+    return "\n".join([*lines, RANGES, DIGITS, LIMITS])
 
 
 if __name__ == "__main__":

@@ -182,7 +182,7 @@ def parses(monkeypatch):
         texts.append(text)
         return parse(text)
 
-    monkeypatch.setattr(module, "parse", listening)
+    monkeypatch.setattr(module, "parse_cell", listening)
     return texts
 
 

@@ -9,12 +9,14 @@ It was found by trying numbers in Excel: `n` units with n from 1 to 7 give 0, 8 
 
 from __future__ import annotations
 
+import math
 from typing import Any, Final
 
 import numpy as np
 
 from xlmc.functions.registry import Function, Kind, Number
 from xlmc.functions.values import Bools, Floats
+from xlmc.functions.work_memory import work_arrays
 
 __all__ = ["EIGHT_UNITS", "SETTLED", "Settled", "keep", "never_cancels"]
 
@@ -53,11 +55,12 @@ def _size(x: Floats) -> float:
 
 
 def _is_far_from_0(result: Floats, first: Floats) -> bool:
-    """Whether the least result is too large to be the last bits of even the largest number."""
-    if not result.size:
-        return True
+    """Whether no result is as small as the last bits of the largest number."""
     limit = EIGHT_UNITS * _size(first)
-    return bool(result.min() >= limit or result.max() <= -limit or not (np.abs(result) < limit).any())
+    if result.min(initial=math.inf) >= limit or result.max(initial=-math.inf) <= -limit:
+        return True
+    (work,) = work_arrays(result.size, 1)
+    return not (np.abs(result, out=work.reshape(result.shape)) < limit).any()
 
 
 def _dust(result: Floats, first: Floats) -> Bools:

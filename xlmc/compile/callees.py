@@ -12,7 +12,7 @@ from xlmc.formula import ir
 if TYPE_CHECKING:
     from xlmc.compile.lower import Lowering
 
-__all__ = ["Arguments", "bound", "callee", "check_depth", "is_omitted", "within"]
+__all__ = ["Arguments", "TooDeepError", "bound", "callee", "check_depth", "function_given", "is_omitted", "within"]
 
 Arguments = tuple[int | Thunk | Closure, ...]
 
@@ -20,14 +20,26 @@ _DEEPEST: Final = 60
 """Calls within calls that are written out."""
 
 
+class TooDeepError(FormulaError):
+    """Calls within calls are too many to be written out.
+
+    Attributes:
+        repeated: the LAMBDAs among them that call themselves.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(f"LAMBDAs call each other more than {_DEEPEST} deep", hint="use REDUCE or SCAN")
+        self.repeated: set[Closure] = set()
+
+
 def check_depth(scope: Scope) -> None:
-    """Refuse calls within calls that go on.
+    """Stop calls within calls that go on.
 
     Raises:
-        FormulaError: they are too many.
+        TooDeepError: they are too many.
     """
     if scope.depth >= _DEEPEST:
-        raise FormulaError(f"LAMBDAs call each other more than {_DEEPEST} deep")
+        raise TooDeepError
 
 
 def bound(value: ir.Expression, scope: Scope) -> Thunk | Closure:
@@ -75,10 +87,14 @@ def _of_variable(lowering: Lowering, name: str, scope: Scope) -> Callee:
     if isinstance(found, Closure):
         return found
     if isinstance(found, Thunk):
-        if found.callee is None:
-            found.callee = callee(lowering, found.tree, found.scope)
-        return found.callee
+        return _of_thunk(lowering, found)
     raise FormulaError("what is called here is no LAMBDA")
+
+
+def _of_thunk(lowering: Lowering, thunk: Thunk) -> Callee:
+    if thunk.callee is None:
+        thunk.callee = callee(lowering, thunk.tree, thunk.scope)
+    return thunk.callee
 
 
 def _given_by(lowering: Lowering, called: Closure, arguments: Arguments, scope: Scope) -> Callee:
@@ -95,6 +111,19 @@ def _of_if(lowering: Lowering, condition: int, yes: ir.Expression, no: ir.Expres
     if known is not None:
         return callee(lowering, yes if known else no, scope)
     return Fork(condition, callee(lowering, yes, scope), callee(lowering, no, scope))
+
+
+def function_given(lowering: Lowering, argument: int | Thunk | Closure) -> Callee | None:
+    """The function that an argument is; None where it is a value, or that cannot be seen at once."""
+    while isinstance(argument, Thunk):
+        match argument.tree:
+            case ir.Variable(name):
+                argument = argument.scope.variables.get(name, -1)
+            case ir.Let(_, ir.Variable(), True) | ir.FunctionName():
+                return _of_thunk(lowering, argument)
+            case _:
+                return None
+    return argument if isinstance(argument, Closure) else None
 
 
 def is_omitted(tree: ir.Expression, scope: Scope) -> bool:

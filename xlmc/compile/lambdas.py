@@ -9,7 +9,7 @@ from xlmc.address import Area, Cell
 from xlmc.compile import choices
 from xlmc.compile.alignment import single
 from xlmc.compile.arrays import element, grid, size_of
-from xlmc.compile.callees import Arguments, bound, callee, check_depth, is_omitted, within
+from xlmc.compile.callees import Arguments, TooDeepError, bound, callee, check_depth, is_omitted, within
 from xlmc.compile.counts import limits
 from xlmc.compile.dag import MANY, Apply
 from xlmc.compile.references import areas_of
@@ -82,9 +82,25 @@ def _called(lowering: Lowering, function: Callee, arguments: Arguments, scope: S
             inner = scope.bound(dict(zip(names, arguments, strict=True)))
             return lowering.lower(ir.Call(name, tuple(ir.Variable(each) for each in names)), inner)
         case Closure():
+            return _called_lambda(lowering, function, arguments, scope)
+
+
+def _called_lambda(lowering: Lowering, function: Closure, arguments: Arguments, scope: Scope) -> int:
+    """A call written out, unless the LAMBDA calls itself too deep for that."""
+    recursions = lowering.recursions
+    if recursions.is_open(function):
+        check_depth(scope)
+        return recursions.call(lowering, function, arguments, scope)
+    outermost = not recursions.is_called(function)
+    try:
+        with recursions.calling(function):
             check_depth(scope)
             lowering.calls.add()
             return lowering.lower(function.function.body, function.inside(arguments, scope))
+    except (TooDeepError, RecursionError) as error:
+        if not outermost or (isinstance(error, TooDeepError) and function not in error.repeated):
+            raise
+    return recursions.call(lowering, function, arguments, scope)
 
 
 def _takes(function: Callee, count: int) -> bool:

@@ -22,6 +22,7 @@ from xlmc.compile.engine import Target
 from xlmc.compile.fallback import fallback
 from xlmc.compile.places import PLACES
 from xlmc.compile.recipes import Recipes
+from xlmc.compile.recursion import Recursions
 from xlmc.compile.references import NoReference, NotYetNeeded, areas_of
 from xlmc.compile.running import FOLDS, RunningTotals
 from xlmc.compile.scope import Scope
@@ -70,6 +71,7 @@ class Lowering:
         dag: the nodes.
         notices: what the person should know.
         calls: of LAMBDAs, which must not be too many.
+        recursions: the LAMBDAs that call themselves.
     """
 
     def __init__(
@@ -87,7 +89,7 @@ class Lowering:
         self._arrays: dict[Cell, int] = {}
         self._numbers: dict[float, int] = {}
         self._ranges: dict[Area, int] = {}
-        self.calls = CallCount()
+        self.calls, self.recursions = CallCount(), Recursions()
         self._cells: dict[Cell, int] = {cell: self.dag.input(name) for cell, name in inputs.items()}
         self._cells |= {cell: self.dag.constant(constant(value)) for cell, value in held.items()}
         trees = (placed for placed in graph.formulas.placed.values() if not isinstance(placed, Filled))

@@ -133,9 +133,9 @@ class Resolver:
                 return self._let(arguments, host, origin)
             case ir.Call("LAMBDA", arguments):
                 return self._lambda(arguments, host, origin)
-            case ir.Call(name, arguments):
+            case ir.Call(name, arguments, foreign):
                 resolved = tuple(self._resolve(part, host, origin) for part in arguments)
-                called = self._called(name, host)
+                called = None if foreign else self._called(name, host)
                 return replace(tree, arguments=resolved) if called is None else ir.Invoke(called, resolved)
             case ir.Invoke(function, arguments):
                 called = self._resolve(function, host, origin)

@@ -34,12 +34,43 @@ def _calls(*names: str) -> re.Pattern[str]:
     return re.compile(rf"(?<![\w.])(?:{'|'.join(map(re.escape, names))})\(", re.IGNORECASE)
 
 
-RULES: Final = (
-    Rule("0.2.0", "TRUNC rounds, exactly, the 15 digits that Excel shows", _calls("TRUNC")),
-    Rule("0.2.0", "CB.GetCertaintyFN gives percent", _calls("CB.GetCertaintyFN")),
-)
+_COMPARED: Final = re.compile(r"=.*[<>=]")
+_LAST_SUM: Final = re.compile(r"=.*[+-]")
+_CHOICES: Final = ("IF", "IFS", "SWITCH", "CHOOSE", "IFERROR", "IFNA")
+_BESIDE: Final = ("INDEX", "IRR", "MODE", "CORREL", "LINEST", "TREND", "PROB", "LOOKUP", "XLOOKUP", "SUMPRODUCT")
+_WHOLE: Final = re.compile(r"=.*\$?[A-Z]{1,3}:\$?[A-Z]{1,3}\b|=.*\$?\d+:\$?\d+\b")
 
-_COMMITS: Final = {"0.1.0": "d3e17ac5424b50737653deb8db6e08c4a44ef1d3"}
+RULES: Final = tuple(
+    Rule("0.2.0", said, met)
+    for said, met in (
+        ("= <> < <= > >= between numbers compare 15 significant digits, as in Excel", _COMPARED),
+        ("the + or - that a formula ends with gives 0 where it cancels but for the last bits", _LAST_SUM),
+        (
+            "ranges within INDEX, IRR, MODE, LINEST and kin are computed cell by cell in plain formulas",
+            _calls(*_BESIDE),
+        ),
+        ("a choice that varies between ranges of different sizes gives the one it chooses, whole", _calls(*_CHOICES)),
+        ("SUBTOTAL 1 to 11 leaves out the rows that a filter hides", _calls("SUBTOTAL")),
+        ('the criterion "<>23" counts the text "23"', _calls("COUNTIF", "COUNTIFS", "SUMIF", "SUMIFS", "AVERAGEIF")),
+        ("whole columns and rows keep their size, empty cells included", _WHOLE),
+        ("an array within a cell of an array is #CALC!; arrays side by side are filled up with #N/A", _calls("LAMBDA")),
+        ("TRUNC rounds, exactly, the 15 digits that Excel shows", _calls("TRUNC")),
+        ("LCM leaves out empty cells", _calls("LCM")),
+        ("BITLSHIFT and BITRSHIFT give #NUM! above 48 bits", _calls("BITLSHIFT", "BITRSHIFT")),
+        ("MIRR gives -1 where nothing is received, and #DIV/0! at -100 %", _calls("MIRR")),
+        ("CONVERT keeps the digits of small absolute temperatures", _calls("CONVERT")),
+        ("YEARFRAC counts 1900 as a leap year, as Excel's calendar does", _calls("YEARFRAC")),
+        ("CUMIPMT and CUMPRINC truncate the type of payment", _calls("CUMIPMT", "CUMPRINC")),
+        ("CB.GetCertaintyFN gives percent", _calls("CB.GetCertaintyFN")),
+        (
+            "RiskMean and kin of another simulation than the first are not available",
+            _calls("RiskMean", "RiskPercentile"),
+        ),
+    )
+)
+"""In the order of versions."""
+
+_COMMITS: Final = {"0.1.0": "46fd152e6dd49dcf68dc416c020a215c696d0a3d"}
 """The last commit of each version before this one."""
 
 

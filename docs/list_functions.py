@@ -73,6 +73,28 @@ from 1E-7 to 1E308); S. Byrne, who names the first number; forum.bebac.at 22126 
 article 78113 says no more than "at or very close to zero". Lookups: Microsoft Answers 11355118.
 """
 
+DIFFERENCES = """## What differs from Excel on purpose
+
+- `ERF`, `GAMMALN`, `BESSELI` and kin, distributions and their inverses are right to the last digits of a double, where
+  Excel's own have 7 to 15 right digits.
+- `SIN`, `COS` and `TAN` are exact near multiples of pi/2: `COS(PI()/2)` is 6.123E-17. 32-bit Excel gives 6.126E-17;
+  `xlmc verify` takes either.
+- Dates and numbers as texts, and `TEXT`, are as in Excel for the United States: month before day, points for decimals.
+  A book does not hold the settings of the machine that it was last opened on. A date without its year is `#VALUE!`:
+  it would be one of the year of the run.
+- `NOW` and `TODAY` are what Excel saved, so that a run can be repeated. `RAND`, `RANDBETWEEN` and kin are assumptions,
+  drawn anew in each trial. `CELL("filename")` has no folder.
+- Formulas that read other workbooks get the values that Excel stored in this one, with a notice. Where Excel computes
+  with precision as displayed, xlmc computes with full precision, with a notice.
+- `OFFSET`, `INDIRECT` and `INDEX(…):INDEX(…)` that lead elsewhere in each trial are refused, and so are formulas that
+  need iteration.
+- Sums from the last row up are rounded in another order where 64 or more of them end at one cell (below).
+- `AND("",…)`, `XLOOKUP` of the nearest across numbers and texts, and which of several equal keys a binary search gives,
+  are not documented by Microsoft: Excel may do otherwise. So are `ACCRINT` with FALSE for its method after the first
+  coupon, and `YEARFRAC` of basis 1 in 1900. ToolPak functions such as `EDATE` take ranges in array formulas, where
+  Excel gives `#VALUE!`.
+"""
+
 LIMITS = """## Limits
 
 A workbook may ask for more than a machine has. xlmc asks before it takes memory, and refuses with the cell, the size
@@ -127,7 +149,7 @@ def page() -> str:
         "",
     ]
     lines += [f"**{letter}** {' '.join(f'`{name}`' for name in found)}\n" for letter, found in letters.items()]
-    return "\n".join([*lines, RANGES, DIGITS, LIMITS])
+    return "\n".join([*lines, RANGES, DIGITS, DIFFERENCES, LIMITS])
 
 
 if __name__ == "__main__":

@@ -125,7 +125,7 @@ def check_book(path: Path, sizes: dict[str, int]) -> Iterator[Checked]:
         yield from [Checked(path.name, WHOLE_BOOK, Status.UNSUPPORTED, refused.message)] * size
         return
     for check in checks:
-        formula = book.content(check.cell).formula
+        formula = book.content(check.anchor or check.cell).formula
         if formula is not None and not _is_left_out(check):
             shape = shape_of(formula.text, formula.row, formula.column)
             yield Checked(path.name, shape, check.status, check.reason, check)

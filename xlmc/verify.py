@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
@@ -43,12 +43,13 @@ class Status(Enum):
 
 @dataclass(frozen=True, slots=True)
 class CellCheck:
-    """One formula cell.
+    """One formula cell; of an array formula the first cell that does not match, if there is one.
 
     Attributes:
         expected: what Excel saved.
         got: what xlmc computes; None where it computes nothing.
         reason: why it is unsupported, or cannot be compared.
+        anchor: the cell that holds the formula, where that is another.
     """
 
     cell: Cell
@@ -57,6 +58,7 @@ class CellCheck:
     expected: CellValue
     got: object = None
     reason: str = ""
+    anchor: Cell | None = None
 
     @property
     def difference(self) -> float | None:
@@ -117,6 +119,27 @@ def _has_formula(workbook: Workbook, cell: Cell) -> bool:
 
 
 def _checked(lowering: Lowering, cell: Cell) -> CellCheck:
+    check = _checked_cell(lowering, cell)
+    others = _filled_by(lowering, cell) if check.status is Status.MATCHED else ()
+    return next((found for found in others if found.status is Status.DIFFERING), check)
+
+
+def _filled_by(lowering: Lowering, anchor: Cell) -> Iterator[CellCheck]:
+    """The other cells that an array formula fills, as far as Excel saved a value there."""
+    workbook = lowering.graph.workbook
+    formula = workbook.content(anchor).formula
+    for cell in formula.array.cells() if formula is not None and formula.array is not None else ():
+        expected = workbook.content(cell)
+        if cell == anchor or expected.value is None or expected.formula is not None:
+            continue
+        value = lowering.filled(cell, anchor)
+        if formula is not None and value is not None:
+            got = value.objects().ravel()[0]
+            status = Status.MATCHED if _same(expected.value, got) else Status.DIFFERING
+            yield CellCheck(cell, formula.text, status, expected.value, got, anchor=anchor)
+
+
+def _checked_cell(lowering: Lowering, cell: Cell) -> CellCheck:
     content = lowering.graph.workbook.content(cell)
     text = "" if content.formula is None else content.formula.text
 

@@ -127,6 +127,10 @@ class Lowering:
         """What a formula cell computes where that is constant; None where it is not."""
         return self.known_single(self._computed[cell])
 
+    def filled(self, cell: Cell, anchor: Cell) -> Value | None:
+        """What the array formula of another cell puts into a cell, where that is constant; None where it is not."""
+        return self.known_single(self._filled_cell(cell, anchor))
+
     def last_step(self, cell: Cell) -> tuple[str, list[Value]] | None:
         """The function that a formula cell ends with, and its arguments, where all is constant; None otherwise."""
         place = self._computed[cell]

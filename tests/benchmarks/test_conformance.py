@@ -75,7 +75,7 @@ def test_the_command_prints_both_figures_and_lists_the_rest(folder):
     assert "8 cells: 5 matched (62.500%), 1 differing (12.500%), 2 unsupported (25.000%)" in done.stdout
     assert "5 shapes: 2 matched (40.000%)" in done.stdout
     assert "damaged, not counted: broken.xlsx" in done.stdout
-    assert "refused, 1 shape: the function CUBEVALUE is not known to xlmc" in done.stdout
+    assert "refused, 1 shape: xlmc does not compute the function CUBEVALUE of Excel" in done.stdout
     assert "mixed.xlsx S!B2 =A2*2\n    Excel: 5.0\n    xlmc:  4.0" in done.stdout
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from difflib import get_close_matches
 from functools import cached_property, partial
 from itertools import groupby
 from typing import assert_never
@@ -19,7 +18,7 @@ from xlmc.compile.dag import Apply, Constant, Dag, Input, Range
 from xlmc.compile.either import shared_out
 from xlmc.compile.empty_cells import refused
 from xlmc.compile.engine import Target
-from xlmc.compile.fallback import fallback
+from xlmc.compile.not_computed import not_computed
 from xlmc.compile.places import PLACES
 from xlmc.compile.recipes import Recipes
 from xlmc.compile.recursion import Recursions
@@ -338,9 +337,9 @@ class Lowering:
 
     def applied(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int:
         """The node of a function of values."""
-        function = function_named(name) or self._fallback(name, scope)
+        function = function_named(name)
         if function is None:
-            raise _unknown_function(name)
+            raise not_computed(name)
         if function.volatile and not self._audit:
             hint = "put it in a cell of its own: the value Excel saved for it is then used, and the run can be repeated"
             raise FormulaError(f"{name} gives another value each time", hint=hint)
@@ -383,12 +382,6 @@ class Lowering:
                 except NoReference as found:
                     return self.error(found.code)
         return None
-
-    def _fallback(self, name: str, scope: Scope) -> Function | None:
-        found = fallback(name)
-        if found is not None:
-            self.notices.append(Notice(f"{name} is computed by the formulas package, trial by trial: slow", scope.cell))
-        return found
 
     def _stacked(self, parts: list[int]) -> int:
         """Joined areas as one, for a function that takes a single range: their cells in one column."""
@@ -480,9 +473,3 @@ def _merged(function: Function, arguments: tuple[int, ...], picked: tuple[int, .
     """The arguments with those that take single values replaced, in order."""
     singles = iter(picked)
     return tuple(p if function.parameter(i).ranged else next(singles) for i, p in enumerate(arguments))
-
-
-def _unknown_function(name: str) -> FormulaError:
-    close = get_close_matches(name, [key for key in REGISTRY if key[0].isalpha()], n=1)
-    hint = f"did you mean {close[0]}?" if close else "check its spelling, or replace it by functions xlmc knows"
-    return FormulaError(f"the function {name} is not known to xlmc", hint=hint)

@@ -2,7 +2,7 @@
 
 from xlmc.formula import ir
 from xlmc.formula.graph import Filled, Graph, build_graph
-from xlmc.formula.parse import compile_with_formulas, foreign_functions, parse
+from xlmc.formula.parse import compile_with_formulas, parse
 from xlmc.formula.resolve import Resolver
 from xlmc.formula.stencil import Stencil
 from xlmc.formula.text import formula_text
@@ -14,7 +14,6 @@ __all__ = [
     "Stencil",
     "build_graph",
     "compile_with_formulas",
-    "foreign_functions",
     "formula_text",
     "ir",
     "parse",

@@ -16,14 +16,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import cache, lru_cache
+from functools import lru_cache
 from itertools import accumulate
 from typing import Any, ClassVar
 
 import numpy as np
 from formulas.errors import FormulaError as ForeignFormulaError
 from formulas.errors import TokenError
-from formulas.functions import get_functions, not_implemented
 from formulas.parser import Parser
 from formulas.tokens.function import Array as ArrayToken
 from formulas.tokens.function import Function as FunctionToken
@@ -38,7 +37,7 @@ from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
 from xlmc.formula.table_reference import TABLE_REFERENCE, parse_table_reference
 
-__all__ = ["compile_with_formulas", "foreign_functions", "parse", "parse_cell"]
+__all__ = ["compile_with_formulas", "parse", "parse_cell"]
 
 _SHEET = r"[^\W\d][\w.]*"
 _PREFIX = rf"(?:'(?P<quoted>(?:[^']|'')+)'|(?P<book>\[[^\[\]]+\])?(?P<sheet>{_SHEET}(?::{_SHEET})?)?)!"
@@ -464,13 +463,6 @@ def _without_line_breaks(text: str) -> str:
 
 def _with_line_breaks(text: str) -> str:
     return text.replace("\r" + _LINE_BREAK_IN_TEXT, "\n").replace(_LINE_BREAK_IN_TEXT, "\n")
-
-
-@cache
-def foreign_functions() -> frozenset[str]:
-    """The names of the functions that `formulas` implements."""
-    known = get_functions()  # looking up a name that is not there leaves an entry for it behind
-    return frozenset(name for name, found in known.items() if found is not not_implemented)
 
 
 def compile_with_formulas(text: str) -> Callable[[Mapping[str, Any]], object]:

@@ -1,0 +1,31 @@
+"""What is said of a function that xlmc does not compute: that it is Excel's, or that nobody knows it."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import Final
+
+from xlmc.errors import FormulaError
+from xlmc.functions.families import REGISTRY
+
+__all__ = ["LEFT_OUT", "not_computed"]
+
+LEFT_OUT: Final = (
+    frozenset({"ASC", "DBCS", "JIS", "PHONETIC", "BAHTTEXT", "PERCENTOF", "EUROCONVERT", "INFO"})
+    | {"REGEXTEST", "REGEXEXTRACT", "REGEXREPLACE", "TRANSLATE", "DETECTLANGUAGE", "COPILOT"}
+    | {"FORECAST.ETS", "FORECAST.ETS.CONFINT", "FORECAST.ETS.SEASONALITY", "FORECAST.ETS.STAT"}
+    | {"GROUPBY", "PIVOTBY", "TRIMRANGE", "GETPIVOTDATA", "FIELDVALUE", "STOCKHISTORY"}
+    | {"CUBEKPIMEMBER", "CUBEMEMBER", "CUBEMEMBERPROPERTY", "CUBERANKEDMEMBER", "CUBESET", "CUBESETCOUNT", "CUBEVALUE"}
+    | {"CALL", "REGISTER.ID", "RTD", "SQL.REQUEST", "WEBSERVICE", "FILTERXML", "IMAGE", "IMPORTCSV", "IMPORTTEXT"}
+)
+"""Functions of Excel that xlmc has no body for."""
+
+
+def not_computed(name: str) -> FormulaError:
+    """The refusal of a function without a body here."""
+    if name in LEFT_OUT:
+        hint = "replace it by functions that xlmc computes: docs/functions.md lists them"
+        return FormulaError(f"xlmc does not compute the function {name} of Excel", hint=hint)
+    close = get_close_matches(name, [key for key in REGISTRY if key[0].isalpha()], n=1)
+    hint = f"did you mean {close[0]}?" if close else "check its spelling, or replace it by functions xlmc knows"
+    return FormulaError(f"the function {name} is not known to xlmc", hint=hint)

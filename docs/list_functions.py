@@ -7,6 +7,7 @@ from pathlib import Path
 from xlmc.compile.choices import CHOICES
 from xlmc.compile.lambdas import LAMBDAS
 from xlmc.compile.places import PLACES
+from xlmc.compile.written_out import WRITTEN_OUT
 from xlmc.functions.families import REGISTRY
 
 PAGE = Path(__file__).with_name("functions.md")
@@ -80,6 +81,7 @@ DIFFERENCES = """## What differs from Excel on purpose
 - `SIN`, `COS` and `TAN` are exact near multiples of pi/2: `COS(PI()/2)` is 6.123E-17. 32-bit Excel gives 6.126E-17;
   `xlmc verify` takes either.
 - Dates and numbers as texts, and `TEXT`, are as in Excel for the United States: month before day, points for decimals.
+  `ASC` leaves every text as it is: full-width letters change only in Chinese, Japanese and Korean versions.
   A book does not hold the settings of the machine that it was last opened on. A date without its year is `#VALUE!`:
   it would be one of the year of the run.
 - `NOW` and `TODAY` are what Excel saved, so that a run can be repeated. `RAND`, `RANDBETWEEN` and kin are assumptions,
@@ -129,7 +131,7 @@ The first limits count one trial. Where arrays are large, fewer trials are evalu
 def names() -> list[str]:
     """Every function of Excel that xlmc computes, in alphabetical order."""
     internal = {"SINGLE", "ANCHORARRAY"}
-    known = {*REGISTRY, *CHOICES, *PLACES, *LAMBDAS, "LET", "LAMBDA"} - internal
+    known = {*REGISTRY, *CHOICES, *PLACES, *LAMBDAS, *WRITTEN_OUT, "LET", "LAMBDA"} - internal
     return sorted(name for name in known if name[0].isalpha() and name == name.upper())
 
 

@@ -42,6 +42,7 @@ SPECIAL: Final[Mapping[str, tuple[int, int]]] = {
     "BYCOL": (2, 2),
     "MAKEARRAY": (3, 3),
     "ISOMITTED": (1, 1),
+    "PERCENTOF": (2, 2),
 }
 """The fewest and the most arguments of functions that are lowered in a way of their own."""
 

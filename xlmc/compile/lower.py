@@ -26,6 +26,7 @@ from xlmc.compile.references import NoReference, NotYetNeeded, areas_of
 from xlmc.compile.running import FOLDS, RunningTotals
 from xlmc.compile.scope import Scope
 from xlmc.compile.settings import as_set
+from xlmc.compile.written_out import WRITTEN_OUT
 from xlmc.errors import ErrorCode, FormulaError, Notice
 from xlmc.formula import Filled, Graph, Resolver, ir
 from xlmc.formula.callables import gives_function
@@ -375,7 +376,7 @@ class Lowering:
 
     def _special(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int | None:
         """The node of a function that is more than a function of values; None where it is no more."""
-        for special in (choices.CHOICES, PLACES, lambdas.LAMBDAS):
+        for special in (choices.CHOICES, PLACES, lambdas.LAMBDAS, WRITTEN_OUT):
             if name in special:
                 try:
                     return special[name](self, arguments, scope)

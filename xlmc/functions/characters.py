@@ -95,6 +95,13 @@ def lower(text: str) -> str:
     return "".join(map(_small, text))
 
 
+@excel("ASC", Text, returns=Kind.TEXT)
+@per_element
+def half_width(text: str) -> str:
+    """The text: only versions of Excel for Chinese, Japanese and Korean have full-width characters to change."""
+    return text
+
+
 @excel("PROPER", Text, returns=Kind.TEXT)
 @per_element
 def proper(text: str) -> str:

@@ -24,27 +24,6 @@ def model(small_book):
     return xlmc.load(small_book)
 
 
-@pytest.fixture(scope="module")
-def results(model, tmp_path_factory):
-    path = tmp_path_factory.mktemp("results") / "small-results.xlsx"
-    model.simulate().save(path)
-    return path
-
-
-@pytest.fixture
-def edited(results, tmp_path):
-    """`edited(change)`: the result workbook after a person's change to it, saved by another program."""
-
-    def edit(change, source=results):
-        book = openpyxl.load_workbook(source)
-        change(book)
-        path = tmp_path / "edited.xlsx"
-        book.save(path)
-        return path
-
-    return edit
-
-
 def put(sheet, address, value):
     def change(book):
         book[sheet][address] = value

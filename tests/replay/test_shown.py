@@ -21,27 +21,6 @@ from xlmc.report.save import save
 from xlmc.workbook.package import read_parts
 
 
-@pytest.fixture(scope="module")
-def results(small_book, tmp_path_factory):
-    path = tmp_path_factory.mktemp("shown") / "small-results.xlsx"
-    xlmc.load(small_book).simulate().save(path)
-    return path
-
-
-@pytest.fixture
-def edited(results, tmp_path):
-    """`edited(change)`: the result workbook after a person's change to it."""
-
-    def edit(change, source=results):
-        book = openpyxl.load_workbook(source)
-        change(book)
-        path = tmp_path / "edited.xlsx"
-        book.save(path)
-        return path
-
-    return edit
-
-
 def first_number(sheet, after=3):
     """The first cell below the title that holds a number and no formula."""
     return next(

@@ -112,6 +112,8 @@ their size: the empty cells beyond are counted, not read. A function that would 
 | cells taken one by one, as texts are, in one array | 2,097,152 |
 | characters of all texts of one array | 67,108,864 |
 | calls of `LAMBDA`s in one formula; in all formulas | 100,000; 500,000 |
+| calls of a `LAMBDA` by itself, within each other | 16,384 / (its parameters + 1); deeper is `#NUM!`, as in Excel |
+| steps of all such calls, from 60 within each other or 1,000 in all | 100,000 |
 | steps of one `MMULT`, `MDETERM` or `MINVERSE` | 2,147,483,648 |
 | memory of all constant arrays; of all arrays of a block of trials | 256 MB each |
 | characters of a formula as the file holds it (Excel: 8,192 as it shows it) | 32,768 |

@@ -48,6 +48,7 @@ RUNS = {
     },
     "a sheet by INDIRECT": {"Z1": '=SUM(INDIRECT("A2:XFC1048575"))+A1'},
     "a sheet by OFFSET": {"Z1": "=SUM(OFFSET(A2,0,0,1048574,16383))+A1"},
+    "calls of the same twice": {"Z1": "=LET(f,LAMBDA(f,n,IF(n=0,A1,f(f,n-1)+f(f,n-1))),f(f,50))"},
     "a sheet": {"Z1": "=SUM(A2:XFC1048575)+A1"},
 }
 
@@ -61,7 +62,7 @@ REFUSED = {
     "HSTACK": ("=SUM(HSTACK(" + ",".join(["SEQUENCE(99999)"] * 99) + "))+A1", "cells"),
     "a doubling array": ("=SUM(REDUCE(A1,SEQUENCE(60),LAMBDA(p,q,VSTACK(p,p))))", "cells"),
     "MAKEARRAY": ("=SUM(MAKEARRAY(1000,1000,LAMBDA(r,c,r*c)))+A1", "LAMBDAs more than 100,000 times"),
-    "calls that call twice": ("=LET(f,LAMBDA(f,n,IF(n=0,A1,f(f,n-1)+f(f,n-1))),f(f,50))", "more than 100,000 times"),
+    "calls that call twice": ("=LET(f,LAMBDA(f,n,IF(n<2,A1,f(f,n-1)+f(f,n-2))),f(f,50))", "more than 100,000 steps"),
     "a formula of 60,000 characters": ("=" + "+".join(["A1"] * 20_000), "Excel takes 8,192"),
     "as many texts": ("=SUM(LEN(SEQUENCE(1000000,4)&A1))", "texts in one array"),
 }

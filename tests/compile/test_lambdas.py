@@ -321,20 +321,52 @@ def test_how_deep_calls_may_go(workbook, formula, expected):
     assert same(check.got, expected), check.got
 
 
-def test_trials_that_never_end_are_num_and_the_others_are_not(drawn):
+def test_trials_that_never_end_are_num_and_the_others_are_not(drawn, monkeypatch):
+    monkeypatch.setattr("xlmc.compile.recursion.DEEPEST", 600)
     found = drawn("=IF(A1>1,Forever(A1),A1)+Sum.Down(A1*100)", {"A1": [0.5, 2.0, 1.0, 90.0]}, DEEP)
     assert found == [1275.5, ErrorCode.NUM, 5051.0, ErrorCode.NUM]
-    assert drawn("=Sum.Down(A1)", {"A1": [3.0, 8191.5, 2.0, 9000.0]}, DEEP)[::2] == [6.0, 3.0]
+    assert drawn("=Sum.Down(A1)", {"A1": [3.0, 299.5, 2.0, 9000.0]}, DEEP)[::2] == [6.0, 3.0]
 
 
 @pytest.mark.parametrize(
     ("formula", "message"),
     [
-        ("Fib(A1+30)", "calls itself more than 100 times"),
+        ("Fib(A1+30)", "calls of a LAMBDA by itself take more than 100 steps"),
     ],
 )
 def test_calls_that_cannot_be_computed_are_refused_with_their_cell(drawn, formula, message, monkeypatch):
-    monkeypatch.setattr("xlmc.compile.recursive_calls.MOST_CALLS", 100)
+    monkeypatch.setattr("xlmc.compile.recursive_calls.MOST_STEPS", 100)
     with pytest.raises(XlmcError, match="S!H9") as refused:
         drawn(f"={formula}", {"A1": [1.5, 2.5]}, DEEP)
     assert message in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        ("Sized({1;2}*A1,INT(A1))", [6.0, 528.0, 3 * 29.5 * 2.0**29]),
+        ("Sized({1;2}*A1,3)", [24.0, 132.0, 708.0]),
+    ],
+)
+def test_an_array_may_be_handed_on_from_call_to_call(drawn, formula, expected):
+    assert drawn(f"={formula}", {"A1": [1.0, 5.5, 29.5]}, {"Sized": DEEP["Sized"]}) == expected
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "MAKEARRAY(100,11,LAMBDA(r,c,7))",
+        "MAP(SEQUENCE(100,11),LAMBDA(x,7))",
+        "REDUCE(0,SEQUENCE(100,11),LAMBDA(a,x,7))",
+        "SCAN(0,SEQUENCE(100,11),LAMBDA(a,x,7))",
+        "BYROW(SEQUENCE(1001),LAMBDA(x,7))",
+        "BYCOL(SEQUENCE(1,1001),LAMBDA(x,7))",
+    ],
+)
+def test_too_many_calls_are_refused_before_the_first(drawn, formula, monkeypatch):
+    made = []
+    monkeypatch.setattr("xlmc.functions.budget.MOST_CALLS", 1_000)
+    monkeypatch.setattr("xlmc.functions.budget.CallCount.add", lambda _: made.append(1))
+    with pytest.raises(XlmcError, match=r"S!H9: .*more than 1,000 times\. make its arrays smaller"):
+        drawn(f"=SUM({formula})+A1", {"A1": [1.5, 2.5]})
+    assert not made

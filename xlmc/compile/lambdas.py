@@ -123,6 +123,12 @@ def _one(lowering: Lowering, function: Callee, arguments: Arguments, scope: Scop
     return _only(lowering, _called(lowering, function, arguments, scope.over_arrays()))
 
 
+def _ask_for_calls(lowering: Lowering, function: Callee, calls: int) -> None:
+    """Ask for all calls of a LAMBDA over an array before the first; a function of Excel by its name makes none."""
+    if not isinstance(function, Native):
+        lowering.calls.ask_for(calls)
+
+
 def _only(lowering: Lowering, place: int) -> int:
     size = lowering.dag.sizes[place]
     if size == MANY:
@@ -189,6 +195,7 @@ def _map(lowering: Lowering, arguments: Trees, scope: Scope) -> int:
     rows, columns = max(array.rows for array in arrays), max(array.columns for array in arrays)
     if not _takes(function, len(arrays)):
         return lowering.error(ErrorCode.VALUE)
+    _ask_for_calls(lowering, function, rows * columns)
 
     def at(r: int, c: int) -> int:
         return _one(lowering, function, tuple(array.at(r, c) for array in arrays), scope)
@@ -213,6 +220,7 @@ def _accumulated(lowering: Lowering, arguments: Trees, scope: Scope) -> int | tu
     function, array = callee(lowering, arguments[2], scope), _Items(lowering, arguments[1], scope)
     if not _takes(function, 2):
         return lowering.error(ErrorCode.VALUE)
+    _ask_for_calls(lowering, function, array.rows * array.columns - isinstance(arguments[0], ir.Missing))
     state: int | Thunk | Closure = bound(arguments[0], scope)
     states: dict[tuple[int, int], int] = {}
     for r in range(array.rows):
@@ -229,6 +237,7 @@ def _by(rows: bool) -> Callable[[Lowering, Trees, Scope], int]:
         function, array = callee(lowering, arguments[1], scope), _Items(lowering, arguments[0], scope)
         if not _takes(function, 1):
             return lowering.error(ErrorCode.VALUE)
+        _ask_for_calls(lowering, function, array.rows if rows else array.columns)
         if rows:
             return grid(lowering.dag, array.rows, 1, lambda r, _: _one(lowering, function, (array.row(r),), scope))
         return grid(lowering.dag, 1, array.columns, lambda _, c: _one(lowering, function, (array.column(c),), scope))
@@ -244,6 +253,7 @@ def _make_array(lowering: Lowering, arguments: Trees, scope: Scope) -> int:
         return lowering.error(wrong or ErrorCode.VALUE)
     rows, columns = (int(size) for size in sizes)
     ask_for_cells(1, rows, columns)
+    _ask_for_calls(lowering, function, rows * columns)
 
     def at(r: int, c: int) -> int:
         return _one(lowering, function, (lowering.number(r + 1.0), lowering.number(c + 1.0)), scope)

@@ -18,7 +18,7 @@ from xlmc.compile.alignment import corner
 from xlmc.compile.dag import Apply, Range, Rescue, Select, evaluated, uses
 from xlmc.compile.ragged import Ragged
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.functions.budget import MOST_CALLS, ask_for_live
+from xlmc.functions.budget import MOST_STEPS, ask_for_live
 from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.picking import each_part, joined
 from xlmc.functions.values import BLANK, ERROR, Codes, Value, constant
@@ -125,14 +125,14 @@ def called(body: Body, *values: Value) -> Value:
     """What a call gives, (n,), of its arguments and of what it takes from outside.
 
     Raises:
-        FormulaError: it gives an array, or calls itself too often; calls too deep are `#NUM!`.
+        FormulaError: it gives an array, or its calls take too many steps; calls too deep are `#NUM!`.
     """
     n = max((value.shape[0] for value in values), default=1)
-    left, parts = np.arange(n), list[tuple[Trials, Value]]()
+    left, parts, work = np.arange(n), list[tuple[Trials, Value]](), _Work()
     while left.size:
         try:
             given = values if left.size == n else [value.take(left) for value in values]
-            parts.append((left, _single(_Run(body).value(given, np.arange(left.size)))))
+            parts.append((left, _single(_Run(body, work).value(given, np.arange(left.size)))))
             break
         except _TooDeep as stopped:
             parts.append((left[stopped.trials], constant(ErrorCode.NUM)))
@@ -153,14 +153,31 @@ def _single(found: Value) -> Value:
 
 
 def _too_often() -> FormulaError:
-    message = f"a LAMBDA calls itself more than {MOST_CALLS:,} times"
-    return FormulaError(message, hint="let its calls end sooner, or use REDUCE")
+    message = f"the calls of a LAMBDA by itself take more than {MOST_STEPS:,} steps"
+    return FormulaError(message, hint="let its calls end sooner, let it call itself once and not twice, or use REDUCE")
+
+
+@dataclass(slots=True)
+class _Work:
+    """Counts what is worked out in all calls, also in those that are made again."""
+
+    steps: int = 0
+
+    def add(self) -> None:
+        """Count a step.
+
+        Raises:
+            FormulaError: there are too many.
+        """
+        self.steps += 1
+        if self.steps > MOST_STEPS:
+            raise _too_often()
 
 
 @dataclass(slots=True)
 class _Run:
     body: Body
-    calls: int = 0
+    work: _Work
     live: int = 0
     _waiting: list[Asking] = field(default_factory=list)
 
@@ -235,15 +252,14 @@ class _Run:
         """Count one more call within a call of that depth."""
         if depth >= self.body.deepest:
             raise _TooDeep(trials)
-        self.calls += 1
-        if self.calls > MOST_CALLS:
-            raise _too_often()
+        self.work.add()
 
     def _known(self, frame: _Frame, slot: int) -> Value | None:
         return self.body.constants.get(slot) or frame.find(slot)
 
     def _worked_out(self, frame: _Frame, slot: int) -> Asking:
         step = self.body.steps[slot]
+        self.work.add()
         if isinstance(step, Select):
             found = yield from self._select(frame, step)
         elif isinstance(step, Rescue):

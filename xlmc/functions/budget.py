@@ -22,6 +22,7 @@ __all__ = [
     "MOST_KEPT",
     "MOST_LIVE",
     "MOST_READ",
+    "MOST_STEPS",
     "MOST_TEXTS",
     "MOST_WORK",
     "CallCount",
@@ -50,6 +51,9 @@ MOST_CALLS: Final = 100_000
 
 MOST_CALLS_TOGETHER: Final = 500_000
 """Calls of LAMBDAs in all formulas of a workbook."""
+
+MOST_STEPS: Final = 100_000
+"""Steps of all calls of a LAMBDA by itself, once its calls are not written out any more: 50 microseconds each."""
 
 MOST_READ: Final = 1 << 21
 """Cells of one area of a sheet, after whole columns and rows end where the last cell is filled."""
@@ -172,14 +176,22 @@ class CallCount:
         Raises:
             TooLargeError: there are too many.
         """
+        self.ask_for(1)
         self._in_formula += 1
         self._together += 1
-        if self._in_formula > MOST_CALLS:
+
+    def ask_for(self, calls: int) -> None:
+        """Ask for so many more calls, before the first of them.
+
+        Raises:
+            TooLargeError: they are too many.
+        """
+        if self._in_formula + calls > MOST_CALLS:
             raise TooLargeError(
                 f"the formula calls LAMBDAs more than {MOST_CALLS:,} times",
                 hint="make its arrays smaller, or use arithmetic on whole arrays, as in SEQUENCE(9)*2",
             )
-        if self._together > MOST_CALLS_TOGETHER:
+        if self._together + calls > MOST_CALLS_TOGETHER:
             raise TooLargeError(
                 f"the formulas of the workbook call LAMBDAs more than {MOST_CALLS_TOGETHER:,} times up to here",
                 hint="make the arrays smaller, or use arithmetic on whole arrays, as in SEQUENCE(9)*2",

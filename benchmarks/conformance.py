@@ -201,7 +201,7 @@ def _differing(cells: list[Checked]) -> Iterator[str]:
 
 
 def _where(cell: Checked) -> str:
-    return cell.book if cell.check is None else f"{cell.book} {cell.check.cell} ={cell.check.formula}"
+    return cell.book if cell.check is None else f"{cell.book} {cell.check.cell} {cell.check.formula}"
 
 
 def main() -> int:

@@ -14,6 +14,7 @@ from xlmc.definitions import Definitions
 from xlmc.definitions.in_cells import holds_call
 from xlmc.errors import ErrorCode
 from xlmc.formula import Resolver, build_graph
+from xlmc.formula.shown import shown_formula
 from xlmc.scene import targets_of
 from xlmc.workbook import CellValue, Workbook
 
@@ -46,6 +47,7 @@ class CellCheck:
     """One formula cell; of an array formula the first cell that does not match, if there is one.
 
     Attributes:
+        formula: that of the cell, as Excel shows it: with its `=`.
         expected: what Excel saved.
         got: what xlmc computes; None where it computes nothing.
         reason: why it is unsupported, or cannot be compared.
@@ -136,15 +138,15 @@ def _filled_by(lowering: Lowering, anchor: Cell) -> Iterator[CellCheck]:
         if formula is not None and value is not None:
             got = value.objects().ravel()[0]
             status = Status.MATCHED if _same(expected.value, got) else Status.DIFFERING
-            yield CellCheck(cell, formula.text, status, expected.value, got, anchor=anchor)
+            yield CellCheck(cell, shown_formula(formula, anchor), status, expected.value, got, anchor=anchor)
 
 
 def _checked_cell(lowering: Lowering, cell: Cell) -> CellCheck:
     content = lowering.graph.workbook.content(cell)
-    text = "" if content.formula is None else content.formula.text
+    text, shown = ("", "") if content.formula is None else (content.formula.text, shown_formula(content.formula, cell))
 
     def made(status: Status, got: object = None, reason: str = "") -> CellCheck:
-        return CellCheck(cell, text, status, content.value, got, reason)
+        return CellCheck(cell, shown, status, content.value, got, reason)
 
     if holds_call(text):
         return made(Status.VOLATILE, reason=NOT_COMPARABLE)

@@ -78,7 +78,7 @@ def _show(found: Verification) -> None:
     differing = found.of(Status.DIFFERING)
     if differing:
         rows = [
-            (str(c.cell), f"={c.formula}", str(_plain(c.expected)), str(_plain(c.got)), _percent(c.difference))
+            (str(c.cell), c.formula, str(_plain(c.expected)), str(_plain(c.got)), _percent(c.difference))
             for c in differing[:_SHOWN]
         ]
         table("Differing", ("Cell", "Formula", "Excel saved", "xlmc", "Relative"), rows, right=(4,))

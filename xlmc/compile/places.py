@@ -15,6 +15,7 @@ from xlmc.compile.references import REFERENCES, NoReference, NotYetNeeded, areas
 from xlmc.compile.scope import Scope
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
+from xlmc.formula.shown import shown_formula
 from xlmc.functions.budget import ask_for_reading
 from xlmc.functions.families import function_named
 from xlmc.functions.subtotal import Skips, aggregate_skips, subtotal_skips
@@ -143,9 +144,11 @@ def _of_first_cell(name: str) -> Callable[[Lowering, Arguments, Scope], int | No
 
 
 def _formula(lowering: Lowering, arguments: Arguments, scope: Scope, of: Callable[[str | None], object]) -> int:
+    """What `of` makes of the formula of the first cell, as Excel shows it."""
     area = _referred(lowering, arguments, scope)
-    formula = lowering.graph.workbook.content(Cell(area.sheet, area.top, area.left)).formula
-    return lowering.dag.constant(constant(of(None if formula is None else formula.text)))
+    cell = Cell(area.sheet, area.top, area.left)
+    formula = lowering.graph.workbook.content(cell).formula
+    return lowering.dag.constant(constant(of(None if formula is None else shown_formula(formula, cell))))
 
 
 def _is_formula(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
@@ -153,7 +156,7 @@ def _is_formula(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
 
 
 def _formula_text(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
-    return _formula(lowering, arguments, scope, lambda text: ErrorCode.NA if text is None else f"={text}")
+    return _formula(lowering, arguments, scope, lambda text: ErrorCode.NA if text is None else text)
 
 
 def _sheet(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:

@@ -29,3 +29,8 @@ def test_nearest_can_be_strict():
 def test_hint_names_one_or_lists_all():
     assert did_you_mean("Unform", ["Normal", "Uniform"]) == "Did you mean Uniform?"
     assert did_you_mean("xyz", ["Normal", "Uniform"]) == "Use one of Normal, Uniform"
+
+
+def test_a_hint_is_one_line():
+    assert did_you_mean("xyz", ["initial\nspeed", "weight"]) == "Use one of initial speed, weight"
+    assert did_you_mean("inital speed", ["initial\nspeed", "weight"]) == "Did you mean initial speed?"

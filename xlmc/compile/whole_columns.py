@@ -317,11 +317,11 @@ def _at_the_end(call: _Call, further: Arguments, otherwise: int) -> int:
 
 def _beside(call: _Call) -> dict[int, Function]:
     """What keeps the number of the column of VLOOKUP, or the row of HLOOKUP, within what is read."""
-    (area,) = call.direct[1]
-    if call.name == "VLOOKUP" and area.further_columns:
-        return {2: kept(area.columns + 1, area.whole.columns, False)}
-    if call.name == "HLOOKUP" and area.further_rows:
-        return {2: kept(area.rows + 1, area.whole.rows, False)}
+    for area in call.direct.get(1, ()):
+        if call.name == "VLOOKUP" and area.further_columns:
+            return {2: kept(area.columns + 1, area.whole.columns, False)}
+        if call.name == "HLOOKUP" and area.further_rows:
+            return {2: kept(area.rows + 1, area.whole.rows, False)}
     return {}
 
 

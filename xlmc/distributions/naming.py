@@ -37,6 +37,6 @@ def did_you_mean(text: str, known: Iterable[str]) -> str:
     >>> did_you_mean("xyz", ["Normal", "Uniform"])
     'Use one of Normal, Uniform'
     """
-    known = tuple(known)
+    known = tuple(" ".join(name.split()) for name in known)  # a name may have a line break
     found = nearest(text, known)
     return f"Did you mean {found}?" if found else f"Use one of {', '.join(known)}"

@@ -345,7 +345,8 @@ def _call(token: Any, arguments: tuple[ir.Expression, ...]) -> ir.Expression:
         sheet, _, book = _place(token.attr)
         if sheet is not None and not name.upper().startswith(_ADD_INS):
             return ir.Invoke(ir.Name(name, sheet, book), arguments)
-        return ir.Call(name.upper(), arguments, book is not None or sheet is not None or name != token.name)
+        elsewhere = book not in (None, "[0]")  # [0] is this book
+        return ir.Call(name.upper(), arguments, elsewhere or sheet is not None or name != token.name)
     if arguments and isinstance(arguments[0], ir.Array):  # the outer of the two nested ARRAY( that `formulas` makes
         return ir.Array(tuple(row for part in arguments if isinstance(part, ir.Array) for row in part.rows))
     if not all(_is_constant(element) for element in arguments):

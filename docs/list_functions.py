@@ -35,6 +35,14 @@ So `SUM(INDEX((C1:C3>3)*C1:C3,0))` and `MATCH(1,INDEX((A1:A3="x")*(B1:B3=3),0),0
 `CHOOSE({1,2},A1:A3&C1:C3,B1:B3)` does. `OFFSET` that leads to several places at once is refused. A row or column
 number 0 of `INDEX` gives the same whether it is typed or drawn.
 
+The functions of the former Analysis ToolPak, such as `EDATE`, `EOMONTH`, `WEEKNUM`, `YEARFRAC`, `NETWORKDAYS`,
+`ISODD`, `MROUND`, `QUOTIENT`, `CONVERT`, `DEC2BIN`, `IMABS`, `BESSELJ`, `ERF`, `PRICE` and kin, and `NETWORKDAYS.INTL`
+and `WORKDAY.INTL`, give `#VALUE!` for a range of several cells where one value is wanted: in plain formulas, array
+formulas and dynamic arrays, and within `SUMPRODUCT`. An array is computed element by element, so that
+`SUMPRODUCT(--(WEEKNUM(A1:A3)=1))` is `#VALUE!`, and `SUMPRODUCT(--(WEEKNUM(+A1:A3)=1))` is a count. Holidays, the
+payments and dates of `XIRR` and `XNPV`, and the arguments of `GCD`, `LCM`, `MULTINOMIAL`, `IMSUM` and `IMPRODUCT` take
+ranges.
+
 ## Hidden rows and spilled ranges
 
 `SUBTOTAL` 1 to 11 leaves out the rows that a filter hides, and counts those hidden by hand; 101 to 111 leave out both.
@@ -93,8 +101,7 @@ DIFFERENCES = """## What differs from Excel on purpose
 - Sums from the last row up are rounded in another order where 64 or more of them end at one cell (below).
 - `AND("",…)`, `XLOOKUP` of the nearest across numbers and texts, and which of several equal keys a binary search gives,
   are not documented by Microsoft: Excel may do otherwise. So are `ACCRINT` with FALSE for its method after the first
-  coupon, and `YEARFRAC` of basis 1 in 1900. ToolPak functions such as `EDATE` take ranges in array formulas, where
-  Excel gives `#VALUE!`.
+  coupon, `YEARFRAC` of basis 1 in 1900, and `WORKDAY.INTL` of a range of several dates, which is `#VALUE!` here.
 """
 
 LIMITS = """## Limits

@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import pytest
 
+from xlmc.address import Area
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions.families import REGISTRY
 from xlmc.functions.registry import Ranges
+from xlmc.workbook.model import CellContent, Formula
 
 VALUE, NA, REF = ErrorCode.VALUE, ErrorCode.NA, ErrorCode.REF
 
@@ -167,14 +169,72 @@ OUTSIDE = [
     ("SUMPRODUCT(INDEX((C1:C3,D1:D3),0,1,2)*C1:C3)", 35.0),
 ]
 
+ONE_CELL = [
+    ("EDATE(D1:D3,1)", VALUE),
+    ("EDATE(D1,1)", 32.0),
+    ("EDATE(D1:D1,1)", 32.0),
+    ("EDATE(D1,C1:C3)", VALUE),
+    ("SUMPRODUCT(EDATE(D1:D3,1))", VALUE),
+    ("SUMPRODUCT(EDATE(+D1:D3,1))", 32.0 + 33 + 34),
+    ("SUMPRODUCT(EDATE(D1:D3*1,1))", 32.0 + 33 + 34),
+    ("SUM(EDATE({1,2,3},1))", 32.0 + 33 + 34),
+    ("EDATE(D1:D3*1,1)", VALUE),
+    ("SUMPRODUCT(EDATE(INDEX(D1:D3,0),1))", VALUE),
+    ("SUMPRODUCT(EDATE(INDEX(D1:D3,2),1))", 33.0),
+    ("SUMPRODUCT(EDATE(INDEX(D1:D3,D2),1))", 33.0),
+    ("EDATE(OFFSET(D1,0,0,3),1)", VALUE),
+    ("SUMPRODUCT(EDATE(IF(B1>1,D1:D3,C1),1))", VALUE),
+    ("SUMPRODUCT(EDATE(IF(B1>9,D1:D3,D1),1))", 32.0),
+    ("EDATE(CHOOSE(D2,D1:D3,D1),1)", 32.0),
+    ("EDATE(CHOOSE(D1,D1:D3,D1),1)", VALUE),
+    ("EDATE((D1:D2 D2:D3),1)", 33.0),
+    ("LET(x,D1:D3,SUMPRODUCT(EDATE(x,1)))", VALUE),
+    ("LET(x,D1:D3,SUMPRODUCT(EDATE(+x,1)))", 32.0 + 33 + 34),
+    ("SUM(MAP(D1:D3,LAMBDA(x,EDATE(x,1))))", 32.0 + 33 + 34),
+    ("SUMPRODUCT(--(WEEKNUM(D:D)=1))", VALUE),
+    ("SUMPRODUCT(--(WEEKNUM(D1:D3)=1))", VALUE),
+    ("SUMPRODUCT(--(WEEKNUM(D1:D3+0)=1))", 3.0),
+    ("SUMPRODUCT(--ISODD(D1:D3))", VALUE),
+    ("SUMPRODUCT(--ISODD(D1:D3+0))", 2.0),
+    ("IFERROR(MROUND(D1:D3,2),7)", 7.0),
+    ("SUMPRODUCT(QUOTIENT(C1:C3,2))", VALUE),
+    ("SUMPRODUCT(QUOTIENT(+C1:C3,2))", 7.0),
+    ("SUMPRODUCT(--DEC2BIN(D1:D3))", VALUE),
+    ("SUMPRODUCT(--DEC2BIN(-D1:D3*-1))", 22.0),
+    ("SUMPRODUCT(DELTA(D1:D3,2))", VALUE),
+    ("SUMPRODUCT(NETWORKDAYS(D1:D3,C1:C3))", VALUE),
+    ("NETWORKDAYS(D2,C3)", 6.0),
+    ("NETWORKDAYS(D2,C3,C1:C3)", 3.0),
+    ("SUMPRODUCT(NETWORKDAYS(+D1:D3,C3+0,C1:C3))", 3.0 + 3 + 3),
+    ("GCD(C1:C3)", 1.0),
+    ("LCM(C1:C3)", 36.0),
+    ("MULTINOMIAL(D1:D3)", 60.0),
+    ("SERIESSUM(2,0,1,D1:D3)", 17.0),
+    ("SERIESSUM(D1:D3,0,1,D1:D3)", VALUE),
+    ('IMSUM(D1:D3)', "6"),
+    ("SUMPRODUCT(ISOWEEKNUM(D2:D3))", 2.0),
+    ("SUMPRODUCT(WEEKDAY(D1:D3))", 6.0),
+]  # fmt: skip
+"""The arguments of the former Analysis ToolPak: `#VALUE!` for a range of several cells, arrays element by element."""
+
 
 @pytest.mark.parametrize(
     "table",
-    [CELL_BY_CELL, BESIDE, BRANCHES_THAT_ARE_RANGES, OUTSIDE],
-    ids=["cell by cell", "beside", "branches", "outside"],
+    [CELL_BY_CELL, BESIDE, BRANCHES_THAT_ARE_RANGES, OUTSIDE, ONE_CELL],
+    ids=["cell by cell", "beside", "branches", "outside", "one cell"],
 )
 def test_arguments_of_plain_formulas(gives, table):
     assert gives(CELLS, table, held=("E1", "E2", "E3")) == []
+
+
+@pytest.mark.parametrize("dynamic", [False, True])
+@pytest.mark.parametrize(("formula", "expected"), [("EDATE(D1:D3,1)", VALUE), ("EDATE(+D1:D3,1)", 32.0)])
+def test_an_array_formula_refuses_a_range_where_one_cell_is_wanted(ways, formula, expected, dynamic):
+    anchor = CellContent(None, Formula(formula, 1, 8, array=Area("S", 1, 8, 3, 8), dynamic=dynamic))
+    answers = ways(CELLS | {"H1": anchor}, ["H1"])
+    assert {way: found[0] for way, found in answers.items()} == dict.fromkeys(
+        answers, expected.text if isinstance(expected, ErrorCode) else expected
+    )
 
 
 @pytest.mark.parametrize("zero", ["0", "F1", "F1*1"])

@@ -79,7 +79,7 @@ def exposed(lowering: Lowering, tree: ir.Expression, scope: Scope, change: Chang
             return _referred(lowering, tree, scope, change)
         case ir.Call(name, arguments) if (function := function_named(name)) is not None and arguments:
             check_count(name, arguments)
-            spared = [is_spared(function, i, scope) for i in range(len(arguments))]
+            spared = [is_spared(function, i, scope) or _is_refused(function, i, a) for i, a in enumerate(arguments)]
             parts = zip(arguments, spared, strict=True)
             made = tuple(part if kept else exposed(lowering, part, scope, change) for part, kept in parts)
             return ir.Call(name, made)
@@ -100,6 +100,12 @@ def is_spared(function: Function, position: int, scope: Scope) -> bool:
     parameter = function.parameter(position)
     beside = parameter.ranges in (Ranges.BESIDE, Ranges.SINGLE) and not scope.of_array
     return parameter.ranged or beside
+
+
+def _is_refused(function: Function, position: int, tree: ir.Expression) -> bool:
+    """Whether an argument is a range where one cell is wanted."""
+    ranged = isinstance(tree, Area) and bool(function.parameters)
+    return ranged and function.parameter(position).ranges is Ranges.ONE_CELL
 
 
 def _referred(lowering: Lowering, tree: ir.Expression, scope: Scope, change: Change) -> ir.Expression:

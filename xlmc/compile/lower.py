@@ -19,6 +19,7 @@ from xlmc.compile.either import shared_out
 from xlmc.compile.empty_cells import refused
 from xlmc.compile.engine import Target
 from xlmc.compile.not_computed import not_computed
+from xlmc.compile.one_cell import of_one_cell
 from xlmc.compile.places import PLACES
 from xlmc.compile.recipes import Recipes
 from xlmc.compile.recursion import Recursions
@@ -367,6 +368,8 @@ class Lowering:
         for position, argument in enumerate(arguments):
             parameter = function.parameter(position)
             beside = scope.of(parameter.ranges)
+            if parameter.ranges is Ranges.ONE_CELL:
+                argument = of_one_cell(self, argument, beside)
             whole = parameter.ranged and (beside.array or parameter.ranges is not Ranges.SINGLE)
             part = self.whole(argument, beside) if whole else [self.lower(argument, beside)]
             if position in first:

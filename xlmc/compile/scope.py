@@ -118,7 +118,7 @@ class Scope:
         """That of an argument."""
         if ranges is Ranges.CELLS:
             return self.over_arrays()
-        return self if ranges is Ranges.AROUND else self.plainly()
+        return self if ranges in (Ranges.AROUND, Ranges.ONE_CELL) else self.plainly()
 
     def seen_from(self, user: Scope) -> Scope:
         """The same, taken as the scope takes ranges in which a variable of this one is used, and as deep."""

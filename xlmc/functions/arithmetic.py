@@ -7,11 +7,12 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.functions.registry import Number, Numbers, excel
+from xlmc.functions.registry import Number, Numbers, Ranges, excel
 from xlmc.functions.values import DIV0, NUM, Bools, Floats
 
 __all__: list[str] = []
 
+_ONE_CELL: Final = Number(ranges=Ranges.ONE_CELL)
 _FACTORIALS: Final = np.array([float(math.factorial(n)) for n in range(171)])
 
 excel("ABS", Number, ufunc=np.absolute)(np.absolute)
@@ -22,7 +23,7 @@ excel("LN", Number, ufunc=np.log)(np.log)
 excel("LOG10", Number, ufunc=np.log10)(np.log10)
 
 
-@excel("SQRTPI", Number)
+@excel("SQRTPI", _ONE_CELL)
 def sqrt_pi(x: Floats) -> Floats:
     """Square root of `x` times π."""
     return np.asarray(np.sqrt(x * np.pi))
@@ -47,7 +48,7 @@ def mod(x: Floats, divisor: Floats) -> Floats:
     return np.where(divisor == 0, DIV0, np.remainder(x, divisor))
 
 
-@excel("QUOTIENT", Number, Number)
+@excel("QUOTIENT", _ONE_CELL, _ONE_CELL)
 def quotient(x: Floats, divisor: Floats) -> Floats:
     """Whole part of the quotient, towards zero; `#DIV/0!` by zero."""
     return np.where(divisor == 0, DIV0, np.trunc(x / divisor))

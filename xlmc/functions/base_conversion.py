@@ -7,8 +7,8 @@ from typing import Final
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.numerals import digits_of, read_digits
-from xlmc.functions.registry import Anything, Kind, excel
-from xlmc.functions.toolpak import number_of, per_object
+from xlmc.functions.registry import Kind, excel
+from xlmc.functions.toolpak import OneCell, number_of, per_object
 from xlmc.functions.values import general_text
 
 __all__: list[str] = []
@@ -84,7 +84,7 @@ def _from_decimal(target: int) -> Callable[..., str | ErrorCode]:
 
 def _register(name: str, meaning: str, function: Callable[..., object], *, text: bool) -> None:
     function.__doc__ = meaning
-    parameters = (Anything, Anything(default=None)) if text else (Anything,)
+    parameters = (OneCell, OneCell(default=None)) if text else (OneCell,)
     excel(name, *parameters, returns=Kind.TEXT if text else Kind.NUMBER)(per_object(function))
 
 

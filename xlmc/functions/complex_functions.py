@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.complex_numbers import Read, common_suffix, read, written
-from xlmc.functions.registry import Anything, Cells, Kind, excel
-from xlmc.functions.toolpak import number_of, per_object
+from xlmc.functions.registry import Anything, Cells, Kind, Parameter, excel
+from xlmc.functions.toolpak import OneCell, number_of, per_object
 from xlmc.functions.values import Value, from_objects
 
 __all__: list[str] = []
 
 
-@excel("COMPLEX", Anything, Anything, Anything(default=None), returns=Kind.TEXT)
+@excel("COMPLEX", OneCell, OneCell, OneCell(default=None), returns=Kind.TEXT)
 @per_object
 def complex_(real: object, imaginary: object, suffix: object = None) -> str | ErrorCode:
     """The text of a complex number from its coefficients; `#VALUE!` for another suffix than i or j."""
@@ -40,7 +40,7 @@ def _measure(name: str, meaning: str, function: Callable[[complex], float | Erro
         return found if isinstance(found, ErrorCode) else function(found[0])
 
     measure.__doc__ = meaning
-    excel(name, Anything)(per_object(measure))
+    excel(name, OneCell)(per_object(measure))
 
 
 _measure("IMREAL", "The real coefficient.", lambda z: z.real)
@@ -66,14 +66,14 @@ def _applied(function: Callable[..., complex], numbers: Sequence[Read], *more: f
     return written(result, suffix)
 
 
-def _register(name: str, meaning: str, function: Callable[..., complex], count: int = 1) -> None:
+def _register(name: str, meaning: str, function: Callable[..., complex], *parameters: Parameter) -> None:
     """Register a complex number of one or two complex ones."""
 
     def apply(*items: object) -> str | ErrorCode:
         return _applied(function, [read(item) for item in items])
 
     apply.__doc__ = meaning
-    excel(name, *[Anything] * count, returns=Kind.TEXT)(per_object(apply))
+    excel(name, *(parameters or (OneCell,)), returns=Kind.TEXT)(per_object(apply))
 
 
 def _square_root(z: complex) -> complex:
@@ -93,16 +93,16 @@ _register("IMLOG10", "The logarithm to base 10.", cmath.log10)
 _register("IMLOG2", "The logarithm to base 2.", _binary_logarithm)
 _register("IMSIN", "The sine.", cmath.sin)
 _register("IMCOS", "The cosine.", cmath.cos)
-_register("IMTAN", "The tangent.", cmath.tan)
-_register("IMSEC", "1 / cosine.", lambda z: 1 / cmath.cos(z))
-_register("IMCSC", "1 / sine.", lambda z: 1 / cmath.sin(z))
-_register("IMCOT", "1 / tangent.", lambda z: 1 / cmath.tan(z))
-_register("IMSINH", "The hyperbolic sine.", cmath.sinh)
-_register("IMCOSH", "The hyperbolic cosine.", cmath.cosh)
-_register("IMSECH", "1 / hyperbolic cosine.", lambda z: 1 / cmath.cosh(z))
-_register("IMCSCH", "1 / hyperbolic sine.", lambda z: 1 / cmath.sinh(z))
-_register("IMSUB", "The difference.", lambda z, w: z - w, 2)
-_register("IMDIV", "The quotient.", lambda z, w: z / w, 2)
+_register("IMTAN", "The tangent.", cmath.tan, Anything)
+_register("IMSEC", "1 / cosine.", lambda z: 1 / cmath.cos(z), Anything)
+_register("IMCSC", "1 / sine.", lambda z: 1 / cmath.sin(z), Anything)
+_register("IMCOT", "1 / tangent.", lambda z: 1 / cmath.tan(z), Anything)
+_register("IMSINH", "The hyperbolic sine.", cmath.sinh, Anything)
+_register("IMCOSH", "The hyperbolic cosine.", cmath.cosh, Anything)
+_register("IMSECH", "1 / hyperbolic cosine.", lambda z: 1 / cmath.cosh(z), Anything)
+_register("IMCSCH", "1 / hyperbolic sine.", lambda z: 1 / cmath.sinh(z), Anything)
+_register("IMSUB", "The difference.", lambda z, w: z - w, OneCell, OneCell)
+_register("IMDIV", "The quotient.", lambda z, w: z / w, OneCell, OneCell)
 
 
 def _to_the_power(z: complex, power: float) -> complex:
@@ -112,7 +112,7 @@ def _to_the_power(z: complex, power: float) -> complex:
     return cmath.rect(abs(z) ** power, cmath.phase(z) * power)
 
 
-@excel("IMPOWER", Anything, Anything, returns=Kind.TEXT)
+@excel("IMPOWER", OneCell, OneCell, returns=Kind.TEXT)
 @per_object
 def power(item: object, exponent: object) -> str | ErrorCode:
     """The number to a real power."""

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, where_wrong
 from xlmc.functions.cash_flows import guess_of, has_both_signs, rows
-from xlmc.functions.registry import Anything, Cells, excel
+from xlmc.functions.registry import Cells, excel
 from xlmc.functions.roots import growth_root
-from xlmc.functions.toolpak import strict_numbers
+from xlmc.functions.toolpak import OneCell, strict_numbers
 from xlmc.functions.toolpak_rows import whole_days
 from xlmc.functions.values import BLANK, Codes, Floats, Value
 
@@ -44,7 +44,7 @@ def _filled(value: Value) -> tuple[Floats, NDArray[np.intp], Codes]:
     return packed, filled.sum(axis=1), first_errors(rows(errors, value))
 
 
-@excel("XNPV", Anything, Cells, Cells, dated=True)
+@excel("XNPV", OneCell, Cells, Cells, dated=True)
 def dated_present_value(rate: Value, values: Value, dates: Value, *, date1904: bool = False) -> Value:
     """Worth, on the first date, of payments on dates, by years of 365 days; `#NUM!` unless the rate is above 0."""
     r, rate_errors = (rows(a, rate)[:, 0] for a in strict_numbers(rate))
@@ -57,7 +57,7 @@ def dated_present_value(rate: Value, values: Value, dates: Value, *, date1904: b
     return Value.of_numbers(total, earliest(rate_errors, errors, where_wrong(lost, ErrorCode.NUM)))
 
 
-@excel("XIRR", Cells, Cells, Anything(default=None), dated=True)
+@excel("XIRR", Cells, Cells, OneCell(default=None), dated=True)
 def dated_rate(values: Value, dates: Value, guess: Value | None = None, *, date1904: bool = False) -> Value:
     """Rate at which payments on dates are worth nothing; of several, the one nearest to the guess (10 %).
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, where_wrong
-from xlmc.functions.registry import Anything, Cells, Number, excel
-from xlmc.functions.toolpak import strict_numbers
+from xlmc.functions.registry import Cells, Number, excel
+from xlmc.functions.toolpak import OneCell, strict_numbers
 from xlmc.functions.toolpak_rows import toolpak
 from xlmc.functions.values import BLANK, DIV0, LOGICAL, NUM, TEXT, Floats, Value
 
@@ -52,7 +52,7 @@ def growth_periods(rate: Any, pv: Any, fv: Any) -> Floats:
     return np.where(wrong, NUM, (np.log(fv) - np.log(pv)) / np.log1p(rate))
 
 
-@excel("FVSCHEDULE", Anything, Cells)
+@excel("FVSCHEDULE", OneCell, Cells)
 def scheduled_growth(principal: Value, schedule: Value) -> Value:
     """What a principal grows to at one rate after the other; blank rates are 0, texts and logicals `#VALUE!`."""
     result, errors = strict_numbers(principal)

@@ -11,8 +11,8 @@ import numpy as np
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import first_errors
 from xlmc.functions.picking import flattened as in_rows
-from xlmc.functions.registry import Anything, Cells, Kind, Number, excel
-from xlmc.functions.toolpak import flattened, numbers_only
+from xlmc.functions.registry import Cells, Kind, Number, excel
+from xlmc.functions.toolpak import OneCell, flattened, numbers_only
 from xlmc.functions.values import BLANK, NUM, Bools, Codes, Floats, Value
 
 __all__: list[str] = []
@@ -126,7 +126,7 @@ def permutationa(number: Floats, chosen: Floats) -> Floats:
     return np.where(bad, NUM, np.float_power(np.where(bad, 1.0, n), np.where(bad, 0.0, k)))
 
 
-@excel("FACTDOUBLE", Anything)
+@excel("FACTDOUBLE", OneCell)
 @numbers_only
 def factdouble(x: Floats) -> Floats:
     """Product of every other whole number down from `x`; `#NUM!` below -1 and above 300."""
@@ -148,14 +148,14 @@ def multinomial(*values: Value) -> Value:
     return Value.of_numbers(result, _refused(x, errors, bad))
 
 
-@excel("ISEVEN", Anything, returns=Kind.LOGICAL)
+@excel("ISEVEN", OneCell, returns=Kind.LOGICAL)
 @numbers_only
 def is_even(x: Floats) -> Bools:
     """Whether the whole part is even."""
     return np.asarray(np.trunc(x) % 2 == 0)
 
 
-@excel("ISODD", Anything, returns=Kind.LOGICAL)
+@excel("ISODD", OneCell, returns=Kind.LOGICAL)
 @numbers_only
 def is_odd(x: Floats) -> Bools:
     """Whether the whole part is odd."""

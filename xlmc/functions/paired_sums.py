@@ -9,8 +9,8 @@ import numpy as np
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import direct_errors, earliest, first_errors, leveled, with_errors
 from xlmc.functions.picking import flattened
-from xlmc.functions.registry import Anything, Arrays, Cells, excel
-from xlmc.functions.toolpak import strict_numbers
+from xlmc.functions.registry import Arrays, Cells, excel
+from xlmc.functions.toolpak import OneCell, strict_numbers
 from xlmc.functions.values import BLANK, DIV0, ERROR, NUMBER, Codes, Floats, Value, constant
 
 __all__: list[str] = []
@@ -51,7 +51,7 @@ def sum_of_squares_of_differences(x: Value, y: Value) -> Value:
     return _over_pairs(x, y, lambda a, b: (a - b) * (a - b))
 
 
-@excel("SERIESSUM", Anything, Anything, Anything, Cells)
+@excel("SERIESSUM", OneCell, OneCell, OneCell, Cells)
 def series_sum(x: Value, first: Value, step: Value, coefficients: Value) -> Value:
     """Sum of a·x^first + b·x^(first + step) + …, the coefficients read row by row; a blank one is 0."""
     values = leveled(x, first, step)

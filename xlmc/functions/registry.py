@@ -79,13 +79,15 @@ _REQUIRED: Final = _Required.REQUIRED
 class Ranges(Enum):
     """How what is computed in an argument takes its ranges, in a formula that is no array formula.
 
-    Excel keeps this for each argument of each function, as a class of its own file format: reference, value or array.
+    `ONE_CELL` holds in array formulas, too. Excel keeps this for each argument of each function, as a class of its own
+    file format: reference, value or array.
     """
 
     AROUND = "as what stands around the call: cell by cell within SUMPRODUCT, else the cell beside the formula"
     CELLS = "cell by cell: as in an array formula"
     BESIDE = "the cell beside the formula, even within SUMPRODUCT; a range that is all of the argument stays whole"
     SINGLE = "the cell beside the formula, even within SUMPRODUCT, and even of a range that is all of the argument"
+    ONE_CELL = "as what stands around the call; a range of several cells that is all of the argument is #VALUE!"
 
     __hash__ = object.__hash__
 
@@ -97,7 +99,7 @@ class Parameter:
     Attributes:
         as_set: it and all others are flattened to one set.
         ranged: it takes a range whole; any other argument takes the cell of the range beside the formula.
-        ranges: how what is computed there takes ranges; makes no difference in array formulas.
+        ranges: how what is computed there takes ranges; but for `ONE_CELL` it makes no difference in array formulas.
     """
 
     kind: Kind

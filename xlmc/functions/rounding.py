@@ -14,11 +14,12 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.functions.registry import Number, excel
+from xlmc.functions.registry import Number, Ranges, excel
 from xlmc.functions.values import DIV0, NUM, Bools, Floats
 
 __all__: list[str] = []
 
+_ONE_CELL: Final = Number(ranges=Ranges.ONE_CELL)
 _TENS: Final = np.array([float(f"1e{n}") for n in range(309)])
 _DECADES: Final = np.array([float(f"1e{n}") for n in range(-290, 309)])
 _HALF_OF_15TH_DIGIT: Final = np.array([0.0, *(float(f"5e{n - 15}") for n in range(-290, 309))])
@@ -154,7 +155,7 @@ def floor_math(x: Floats, multiple: Floats, mode: Floats) -> Floats:
     return np.where((x < 0) & (mode != 0), _up(x, size), _down(x, size))
 
 
-@excel("MROUND", Number, Number)
+@excel("MROUND", _ONE_CELL, _ONE_CELL)
 def mround(x: Floats, multiple: Floats) -> Floats:
     """To the nearest multiple, halves away from zero; `#NUM!` when the signs differ.
 

@@ -7,13 +7,13 @@ from collections.abc import Callable
 import numpy as np
 
 from xlmc.functions.registry import Anything, excel
-from xlmc.functions.toolpak import numbers_only
+from xlmc.functions.toolpak import OneCell, numbers_only
 from xlmc.functions.values import NUM, Floats
 
 __all__: list[str] = []
 
 
-@excel("ERF", Anything, Anything(default=None))
+@excel("ERF", OneCell, OneCell(default=None))
 @numbers_only
 def erf_between(lower: Floats, upper: Floats | None = None) -> Floats:
     """Error function, or how much it grows from one number to another.
@@ -38,7 +38,8 @@ def erf_precise(x: Floats) -> Floats:
     return np.asarray(erf(x))
 
 
-@excel("ERFC", Anything, aliases=("ERFC.PRECISE",))
+@excel("ERFC.PRECISE", Anything)
+@excel("ERFC", OneCell)
 @numbers_only
 def erf_complement(x: Floats) -> Floats:
     """1 - error function."""
@@ -53,7 +54,7 @@ def _of_order(function: Callable[[Floats, Floats], Floats], x: Floats, order: Fl
     return np.where(n < 0, NUM, function(np.where(n < 0, 0.0, n), x))
 
 
-@excel("BESSELJ", Anything, Anything)
+@excel("BESSELJ", OneCell, OneCell)
 @numbers_only
 def bessel_j(x: Floats, order: Floats) -> Floats:
     """Bessel function of the first kind."""
@@ -62,7 +63,7 @@ def bessel_j(x: Floats, order: Floats) -> Floats:
     return _of_order(jv, x, order)
 
 
-@excel("BESSELI", Anything, Anything)
+@excel("BESSELI", OneCell, OneCell)
 @numbers_only
 def bessel_i(x: Floats, order: Floats) -> Floats:
     """Modified Bessel function of the first kind."""
@@ -71,7 +72,7 @@ def bessel_i(x: Floats, order: Floats) -> Floats:
     return _of_order(iv, x, order)
 
 
-@excel("BESSELY", Anything, Anything)
+@excel("BESSELY", OneCell, OneCell)
 @numbers_only
 def bessel_y(x: Floats, order: Floats) -> Floats:
     """Bessel function of the second kind; `#NUM!` unless `x` is above 0."""
@@ -80,7 +81,7 @@ def bessel_y(x: Floats, order: Floats) -> Floats:
     return np.where(x <= 0, NUM, _of_order(yv, np.where(x <= 0, 1.0, x), order))
 
 
-@excel("BESSELK", Anything, Anything)
+@excel("BESSELK", OneCell, OneCell)
 @numbers_only
 def bessel_k(x: Floats, order: Floats) -> Floats:
     """Modified Bessel function of the second kind; `#NUM!` unless `x` is above 0."""
@@ -89,14 +90,14 @@ def bessel_k(x: Floats, order: Floats) -> Floats:
     return np.where(x <= 0, NUM, _of_order(kv, np.where(x <= 0, 1.0, x), order))
 
 
-@excel("DELTA", Anything, Anything(default=None))
+@excel("DELTA", OneCell, OneCell(default=None))
 @numbers_only
 def delta(x: Floats, y: Floats | None = None) -> Floats:
     """1 where the numbers are equal, else 0; the second is 0 when left out."""
     return np.where(x == (0.0 if y is None else y), 1.0, 0.0)
 
 
-@excel("GESTEP", Anything, Anything(default=None))
+@excel("GESTEP", OneCell, OneCell(default=None))
 @numbers_only
 def step(x: Floats, threshold: Floats | None = None) -> Floats:
     """1 from a threshold on, else 0; the threshold is 0 when left out."""

@@ -1,14 +1,16 @@
 """How the functions of the former Analysis ToolPak take their arguments.
 
 To them a logical is no number but `#VALUE!`; a text that stands for a number is one wherever it stands, in a range
-too, and a blank is 0.
+too, and a blank is 0. Where they want one value, a range of several cells is `#VALUE!`, in array formulas too; an array
+is not: `EDATE(A1:A3,1)` is `#VALUE!`, and `EDATE(+A1:A3,1)` in an array formula gives three dates. The file format has
+these arguments as references, not values.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import wraps
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +18,14 @@ from numpy.typing import NDArray
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, leveled
 from xlmc.functions.picking import flattened as in_rows
+from xlmc.functions.registry import Anything, Ranges
 from xlmc.functions.values import LOGICAL, Codes, Floats, Value, from_objects, parse_number
 
-__all__ = ["flattened", "number_of", "numbers_only", "per_object", "strict_numbers"]
+__all__ = ["OneCell", "flattened", "number_of", "numbers_only", "per_object", "strict_numbers"]
+
+
+OneCell: Final = Anything(ranges=Ranges.ONE_CELL)
+"""An argument that takes one value of any kind."""
 
 
 def strict_numbers(value: Value) -> tuple[Floats, Codes]:

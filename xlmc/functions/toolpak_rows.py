@@ -15,7 +15,7 @@ import numpy as np
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import leveled
 from xlmc.functions.calendar import in_calendar
-from xlmc.functions.registry import Kind, Parameter, excel
+from xlmc.functions.registry import Kind, Parameter, Ranges, excel
 from xlmc.functions.toolpak import strict_numbers
 from xlmc.functions.values import NUM, Bools, Floats, Value
 
@@ -43,7 +43,7 @@ def toolpak(
     name: str, *parameters: Parameter, gives_date: bool = False
 ) -> Callable[[Callable[..., Floats]], Callable[..., Floats]]:
     """Register a body of numbers as the Excel function `name`; logicals are `#VALUE!`, `Date`s as the module says."""
-    taken = [replace(p, kind=Kind.ANY) for p in parameters]
+    taken = [replace(p, kind=Kind.ANY, ranges=Ranges.ONE_CELL) for p in parameters]
 
     def register(body: Callable[..., Floats]) -> Callable[..., Floats]:
         def of_values(*values: Value, date1904: bool = False) -> Value:

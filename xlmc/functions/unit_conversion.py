@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.functions.arguments import earliest, leveled
-from xlmc.functions.registry import Anything, excel
-from xlmc.functions.toolpak import strict_numbers
+from xlmc.functions.registry import excel
+from xlmc.functions.toolpak import OneCell, strict_numbers
 from xlmc.functions.units import Unit, unit_named
 from xlmc.functions.values import NA, Floats, Value
 
@@ -35,7 +35,7 @@ def _groups(units: NDArray[Any]) -> NDArray[Any]:
     return np.array([unit.group for unit in units.ravel()], object).reshape(units.shape)
 
 
-@excel("CONVERT", Anything, Anything, Anything)
+@excel("CONVERT", OneCell, OneCell, OneCell)
 def convert(number: Value, source: Value, target: Value) -> Value:
     """A measurement in another unit; `#N/A` for units that are unknown or measure different things."""
     number, source, target = leveled(number, source, target)

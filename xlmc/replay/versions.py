@@ -38,6 +38,13 @@ _COMPARED: Final = re.compile(r"=.*[<>=]")
 _LAST_SUM: Final = re.compile(r"=.*[+-]")
 _CHOICES: Final = ("IF", "IFS", "SWITCH", "CHOOSE", "IFERROR", "IFNA")
 _BESIDE: Final = ("INDEX", "IRR", "MODE", "CORREL", "LINEST", "TREND", "PROB", "LOOKUP", "XLOOKUP", "SUMPRODUCT")
+_TOOLPAK: Final = re.compile(
+    r"(?<![\w.])(?:EDATE|EOMONTH|WEEKNUM|YEARFRAC|(?:NET)?WORKDAYS?(?:\.INTL)?|ISODD|ISEVEN|MROUND|QUOTIENT|SQRTPI"
+    r"|FACTDOUBLE|CONVERT|DELTA|GESTEP|ERFC?|EFFECT|NOMINAL|DOLLAR(?:DE|FR)|CUM(?:IPMT|PRINC)|XNPV|XIRR|FVSCHEDULE"
+    r"|SERIESSUM|(?:PRICE|YIELD)(?:DISC|MAT)?|DISC|INTRATE|RECEIVED|M?DURATION|ACCRINTM?|COMPLEX|BESSEL[IJKY]"
+    r"|(?:BIN|DEC|HEX|OCT)2[A-Z]+|IM[A-Z0-9]+|COUP[A-Z]+|TBILL[A-Z]+|ODD[FL][A-Z]+|AMOR[A-Z]+)\(",
+    re.IGNORECASE,
+)
 _WHOLE: Final = re.compile(r"=.*\$?[A-Z]{1,3}:\$?[A-Z]{1,3}\b|=.*\$?\d+:\$?\d+\b")
 
 RULES: Final = tuple(
@@ -54,6 +61,7 @@ RULES: Final = tuple(
         ('the criterion "<>23" counts the text "23"', _calls("COUNTIF", "COUNTIFS", "SUMIF", "SUMIFS", "AVERAGEIF")),
         ("whole columns and rows keep their size, empty cells included", _WHOLE),
         ("an array within a cell of an array is #CALC!; arrays side by side are filled up with #N/A", _calls("LAMBDA")),
+        ("EDATE, WEEKNUM, ISODD and kin give #VALUE! for a range of several cells", _TOOLPAK),
         ("TRUNC rounds, exactly, the 15 digits that Excel shows", _calls("TRUNC")),
         ("LCM leaves out empty cells", _calls("LCM")),
         ("BITLSHIFT and BITRSHIFT give #NUM! above 48 bits", _calls("BITLSHIFT", "BITRSHIFT")),

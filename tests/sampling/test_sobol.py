@@ -68,7 +68,7 @@ def test_scrambling_keeps_the_net(replicate):
             assert np.array_equal(np.bincount(box.astype(int), minlength=16), np.full(16, 16))
 
 
-@settings(max_examples=60)
+@settings(max_examples=15)
 @given(start=st.integers(0, 40_000), n=st.integers(1, 9_000), bits=st.integers(0, 15), dimension=st.integers(0, 20))
 def test_a_draw_depends_on_its_trial_alone(start, n, bits, dimension):
     whole = drawn(dimension, 2**bits, 49_000)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.functions.last_sum import SETTLED, keep, never_cancels
+from xlmc.functions.last_sum import SETTLED, Settled, keep, never_cancels
 
 NUMBERS = st.floats(-1e300, 1e300, allow_subnormal=False)
 LIMITS = st.floats(-1e6, 1e6)
@@ -28,6 +28,7 @@ def test_it_is_the_same_for_each_trial_alone_and_in_any_memory(pairs):
     total, first = np.array(pairs).T.copy()
     alone = [settled(*pair)[0] for pair in pairs]
     assert settled(total, first).tolist() == alone
+    assert Settled(float(np.abs(first).max()))(total, first).tolist() == alone
     for out in (total.copy(), first.copy()):
         a, b = total.copy(), first.copy()
         assert SETTLED.ufunc(a, b, out=out).tolist() == alone

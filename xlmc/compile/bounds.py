@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Final
 
 from xlmc.compile.dag import Apply, Constant, Dag, Input, Select
@@ -51,11 +51,20 @@ def _of(dag: Dag, place: int, inputs: Mapping[str, Bounds], found: Mapping[int, 
             return _combined("*", part(first), _around((1.0 / low, 1.0 / high))) if away else _ANY
         case Apply(function, (result, _)) if function.name == SETTLED.name:
             return part(result)
-        case Apply(function, (only,)) if function.name == "u-":
-            low, high = part(only)
-            return -high, -low
+        case Apply(function, (only,)) if function.name in _OF_ONE:
+            return _OF_ONE[function.name](*part(only))
         case _:
             return _ANY
+
+
+_OF_ONE: Final[Mapping[str, Callable[[float, float], Bounds]]] = {
+    "u-": lambda low, high: (-high, -low),
+    "SIN": lambda low, high: (-1.0, 1.0),
+    "COS": lambda low, high: (-1.0, 1.0),
+    "SQRT": lambda low, high: (0.0, max(1.0, high)),  # wide, as the root of a number near 0 makes its rounding large
+    "ABS": lambda low, high: (max(low, -high, 0.0), max(-low, high)),
+}
+"""Function of one number -> its bounds, from those of the number."""
 
 
 def of_constant(dag: Dag, place: int) -> Bounds | None:

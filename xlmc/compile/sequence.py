@@ -16,7 +16,7 @@ from xlmc.compile.dag import Apply, Constant, Dag, Select, uses
 from xlmc.compile.steps import Departure, Frame, Step, is_elementwise_ufunc, make_step
 from xlmc.functions import Kind
 from xlmc.functions.guards import Within
-from xlmc.functions.last_sum import SETTLED, keep, never_cancels
+from xlmc.functions.last_sum import SETTLED, Settled, keep, never_cancels
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.sine import sine_and_cosine
 from xlmc.functions.values import Value
@@ -71,10 +71,12 @@ class Steps:
             and (types[node.arguments[0]] is types[node.arguments[-1]] is Kind.NUMBER)
         ):
             function, used = node
+            if function.name == SETTLED.name:
+                done.sort(key=used[0].__eq__)  # the memory that was given back last is taken: nothing is copied then
             buffer = self._buffers.exchange(done, place, self._loose)  # it may write over what it reads
             if buffer is not None:
                 second = used[1] if len(used) == 2 else -1
-                ufunc = keep if self._keeps(node) else function.ufunc
+                ufunc = self._settled(node) if function.name == SETTLED.name else function.ufunc
                 self._lines.append((ufunc, place, used[0], second, buffer, self._guard(place)))
                 return
         elif is_elementwise_ufunc(self._dag, place):
@@ -153,15 +155,17 @@ class Steps:
         known = self._between.get(node.arguments[0])
         return None if known is not None and guard.surely(*known) else guard
 
-    def _keeps(self, node: Apply) -> bool:
-        """Whether what Excel makes of a formula's last sum is known to be that sum."""
-        if node.function.name != SETTLED.name:
-            return False
+    def _settled(self, node: Apply) -> Callable[..., object]:
+        """What makes of a formula's last sum what Excel makes of it: nothing, where that is known to be the sum."""
         total, first = node.arguments
         added = self._dag.nodes[total]
         second = self._bounds(added.arguments[1]) if type(added) is Apply and added.function.name == "+" else None
-        known = self._bounds(total), self._bounds(first)
-        return known[0] is not None and known[1] is not None and never_cancels(known[0], known[1], second)
+        of_total, of_first = self._bounds(total), self._bounds(first)
+        if of_first is None:
+            return Settled()
+        if of_total is not None and never_cancels(of_total, of_first, second):
+            return keep
+        return Settled(max(abs(of_first[0]), abs(of_first[1])))
 
     def _bounds(self, place: int) -> Bounds | None:
         return self._between.get(place) or of_constant(self._dag, place)

@@ -9,14 +9,13 @@ It was found by trying numbers in Excel: `n` units with n from 1 to 7 give 0, 8 
 
 from __future__ import annotations
 
-import math
-from typing import Any, Final
+from dataclasses import dataclass
+from typing import Any, ClassVar, Final
 
 import numpy as np
 
 from xlmc.functions.registry import Function, Kind, Number
 from xlmc.functions.values import Bools, Floats
-from xlmc.functions.work_memory import work_arrays
 
 __all__ = ["EIGHT_UNITS", "SETTLED", "Settled", "keep", "never_cancels"]
 
@@ -27,18 +26,24 @@ _SURELY: Final = 2.0**-30
 """The share above which a result is no matter of the last bits, even where its bounds are rounded."""
 
 
+@dataclass(frozen=True, slots=True)
 class Settled:
     """Makes the last sum of a formula what Excel makes of it, called as a ufunc of two arrays is.
 
     The second may be the memory that the result goes to.
+
+    Args:
+        largest: the size that the first number never exceeds, but for rounding, where that is known beforehand.
     """
 
-    nin: Final = 2
+    largest: float | None = None
+    nin: ClassVar[int] = 2
 
     def __call__(self, result: Any, first: Any, out: Floats | None = None) -> Floats:
         """0 where the sum is within the last bits of the first number, else the sum."""
         result, first = np.asarray(result), np.asarray(first)
-        dust = None if _is_far_from_0(result, first) else _dust(result, first)
+        limit = 2.0 * EIGHT_UNITS * (_size(first) if self.largest is None else self.largest)
+        dust = None if _is_far_from_0(result, limit) else _dust(result, first)
         if out is None:
             found: Floats = np.array(result if dust is None else np.broadcast_to(result, dust.shape))
         else:
@@ -54,13 +59,10 @@ def _size(x: Floats) -> float:
     return max(-float(x.min(initial=0.0)), float(x.max(initial=0.0)))
 
 
-def _is_far_from_0(result: Floats, first: Floats) -> bool:
-    """Whether no result is as small as the last bits of the largest number."""
-    limit = EIGHT_UNITS * _size(first)
-    if result.min(initial=math.inf) >= limit or result.max(initial=-math.inf) <= -limit:
-        return True
-    (work,) = work_arrays(result.size, 1)
-    return not (np.abs(result, out=work.reshape(result.shape)) < limit).any()
+def _is_far_from_0(result: Floats, limit: float) -> bool:
+    """Whether each result is of this size or larger."""
+    below = np.count_nonzero(result < limit)
+    return below == 0 or bool(below == np.count_nonzero(result <= -limit))
 
 
 def _dust(result: Floats, first: Floats) -> Bools:

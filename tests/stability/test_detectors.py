@@ -73,8 +73,51 @@ def test_no_quadrant_is_lost(look, formula):
     assert "quadrant" not in kinds(look({"B1": formula}))
 
 
-def test_a_formula_that_minds_the_quadrant_itself(look):
-    assert "quadrant" not in kinds(look({"B1": "=IF(A1<0,PI(),0)+ATAN(A2/A1)"}, x=(-1, 3)))
+@pytest.mark.parametrize(
+    "cells",
+    [
+        {"B1": "=IF(A1<0,PI(),0)+ATAN(A2/A1)"},
+        {"B1": "=IF(A1<0,ATAN(A2/A1)+PI(),ATAN(A2/A1))"},
+        {"B1": "=IF(A1>0,ATAN(A2/A1),IF(A1<0,ATAN(A2/A1)+PI()*SIGN(A2),PI()/2))"},
+        {"B1": "=MOD(DEGREES(ATAN(A2/A1))-30+180*(A1<0),360)"},
+        {"B1": "=DEGREES(ATAN(A2/A1))+90*(1-SIGN(A1))"},
+        {"B1": "=SIN(ATAN(A2/A1))*SIGN(A1)"},
+        {"B1": "=IF(C1=1,C2,C2+180)", "C1": "=IF(A1>0,1,2)", "C2": "=DEGREES(ATAN(C3))", "C3": "=A2/A1"},
+        {"B1": "=IF(A1+5<5,180,0)+DEGREES(ATAN(A2/A1))"},
+        {"B1": "=IF(A1>0,ATAN(A2/A1),0)"},
+        {"B1": "=TAN(ATAN(A2/A1))*A1"},
+    ],
+)
+def test_a_formula_that_minds_the_quadrant_itself(look, cells):
+    found = look({"D1": "=IF(A1<0,1,2)", **cells}, filters={"some": {"cell": "D1", "at_least": 0}}, x=(-1, 3))
+    assert "quadrant" not in kinds(found)
+
+
+def test_the_choice_that_mends_a_quadrant_is_no_jump(look):
+    assert "jump" not in kinds(look({"B1": "=IF(A1<0,ATAN(A2/A1)+PI(),ATAN(A2/A1))"}, x=(-1, 3)))
+    assert "jump" not in kinds(look({"B1": "=IF(A1<0,180,0)+DEGREES(ATAN(A2/A1))"}, x=(-1, 3)))
+
+
+def test_only_assumptions_that_a_cell_depends_on_are_named(look):
+    """Some fifteen trials of 3,000: of y, which has no part in it, they may well take up half."""
+    found = look({"B1": "=LN(A1-1.005)", "C1": "=A2*2"}, filters={"y": {"cell": "C1", "at_least": 0}})
+    assert [one.name for one in only(found, "edge").where] == ["x"]
+
+
+@pytest.mark.parametrize(
+    ("cells", "filters"),
+    [
+        ({"B1": "=ATAN(A2/A1)*IF(A1<0,1,2)"}, {}),
+        ({"B1": "=ATAN(A2/A1)+IF(A1<0,1,2)"}, {}),
+        ({"B1": "=ATAN(A2/A1)", "C1": "=A1+0"}, {"near": {"cell": "C1", "at_least": -0.5}}),
+        ({"B1": "=ATAN(A2/A1)"}, {"some": {"cell": "A1", "at_least": -0.5}}),
+        ({"B1": "=ATAN(C1)+IF(A1<0,1,2)", "C1": "=A2/A1"}, {}),
+        ({"B1": "=C1+IF(C1>9,1,2)", "C1": "=ATAN(A2/A1)"}, {"guarded": {"cell": "C2", "below": 9}}),
+    ],
+)
+def test_a_comparison_that_does_not_guard_the_arctangent_changes_nothing(look, cells, filters):
+    found = look({"C2": "=IF(A1<0,PI(),0)+ATAN(A2/A1)", **cells}, filters=filters, x=(-1, 3))
+    assert only(found, "quadrant").level is Level.WRONG
 
 
 @pytest.mark.parametrize(

@@ -95,7 +95,9 @@ def test_differences_of_angles(case, formula, better):
 def test_the_quadrant(case, formula, better):
     made, cell = case(formula)
     part = next(part for part in made.trees.parts(cell) if getattr(part, "name", "") == "ATAN")
-    assert shown(made, cell, with_quadrant(made.lowering.graph.formulas[cell], part)) == better
+    (ratio,) = part.arguments
+    tree = with_quadrant(made.lowering.graph.formulas[cell], part, ratio.left, ratio.right)
+    assert shown(made, cell, tree) == better
 
 
 def test_a_filter_without_a_quotient_decides_alike(case, book):

@@ -20,7 +20,17 @@ from xlmc.functions import Kind
 from xlmc.functions.last_sum import SETTLED
 from xlmc.functions.values import ERROR, LOGICAL, Floats, Value
 
-__all__ = ["DOUBLE", "SINGLE", "Jitter", "closure", "evaluation", "formula_of", "numbers", "term_sizes"]
+__all__ = [
+    "DOUBLE",
+    "SINGLE",
+    "Jitter",
+    "closure",
+    "evaluation",
+    "follow",
+    "formula_of",
+    "numbers",
+    "term_sizes",
+]
 
 DOUBLE: Final = 2.0**-53
 SINGLE: Final = 2.0**-24
@@ -143,6 +153,29 @@ def evaluation(
             moves = isinstance(node, Apply) and _rounds(node) and not isinstance(found, Ragged)
             values[place] = jitter.moved(found, n) if jitter is not None and moves else found
     return values
+
+
+def follow(
+    dag: Dag, places: Sequence[int], values: Mapping[int, Value], given: Mapping[int, Value]
+) -> dict[int, Value]:
+    """What becomes of nodes when some get other values: these, and all that follow from them.
+
+    Args:
+        dag: the nodes.
+        places: which of them, each after those that it needs; see `closure`.
+        values: of all of them, as they are.
+        given: node -> another value of it.
+    """
+    found = dict(given)
+    for place in places:
+        node = formula_of(dag, place)
+        if place in given or isinstance(node, Input | Constant) or not any(part in found for part in uses(node)):
+            continue
+        if isinstance(node, Apply) and node.function.name == SETTLED.name:
+            found[place] = found.get(node.arguments[0], values[node.arguments[0]])
+        else:
+            found[place] = evaluated(node, {part: found.get(part, values[part]) for part in uses(node)})
+    return found
 
 
 def _typed(dag: Dag, places: Sequence[int]) -> set[int]:

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
+from xlmc.compile.dag import Apply, Input, uses
 from xlmc.compile.engine import Target
 from xlmc.compile.exact import Exact, exactly
-from xlmc.compile.replicas import DOUBLE, Jitter, closure, evaluation, numbers, term_sizes
+from xlmc.compile.replicas import DOUBLE, Jitter, closure, evaluation, formula_of, numbers, term_sizes
 from xlmc.definitions.model import name_key
 from xlmc.derivatives import Derivatives, derivatives
 from xlmc.functions.values import Value
@@ -25,13 +26,15 @@ from xlmc.simulation import Simulation
 from xlmc.stability.findings import Where
 from xlmc.stability.trees import Trees
 
-__all__ = ["REPLICAS", "Case"]
+__all__ = ["RELATIONS", "REPLICAS", "Case"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 REPLICAS: Final = 6
 """Evaluations with random rounding: their root mean square is known to a third of itself."""
+
+RELATIONS: Final = frozenset({"<", "<=", ">", ">=", "=", "<>"})
 
 _PRIOR: Final = 2048
 _ACCEPTED: Final = 1024
@@ -136,6 +139,35 @@ class Case:
         return numbers(self.values[place], self.n)
 
     @cached_property
+    def users(self) -> dict[int, list[int]]:
+        """Node -> the nodes that use it."""
+        found: dict[int, list[int]] = {}
+        for place in self.places:
+            for part in uses(formula_of(self.dag, place)):
+                found.setdefault(part, []).append(place)
+        return found
+
+    @cached_property
+    def comparisons(self) -> list[int]:
+        """The nodes that compare."""
+        nodes = ((place, formula_of(self.dag, place)) for place in self.places)
+        return [place for place, node in nodes if isinstance(node, Apply) and node.function.name in RELATIONS]
+
+    def after(self, *places: int) -> list[int]:
+        """The nodes that follow from some, each after those that it needs."""
+        found: set[int] = set()
+        open_ = list(places)
+        while open_:
+            new = [user for user in self.users.get(open_.pop(), ()) if user not in found]
+            found.update(new)
+            open_ += new
+        return sorted(found, key=self._order.__getitem__)
+
+    @cached_property
+    def _order(self) -> dict[int, int]:
+        return {place: at for at, place in enumerate(self.places)}
+
+    @cached_property
     def derivatives(self) -> Derivatives:
         """Of every needed cell."""
         inputs = {a.name: self.draws[key] for a, key in zip(self.model.live, self.names, strict=True)}
@@ -190,24 +222,42 @@ class Case:
         """The nodes of functions that were not computed with 50 digits."""
         return self._exact.unchecked
 
-    def where(self, trials: Bools, most: int = 2) -> tuple[Where, ...]:
-        """The assumptions whose ranges tell the trials from others: those that they take up least of."""
-        count = int(trials.sum())
-        if count < _FEWEST or trials.all():
+    def where(self, trials: Bools, place: int, most: int = 2) -> tuple[Where, ...]:
+        """The assumptions whose ranges tell the trials from others: those that they take up least of.
+
+        An assumption is named only where the node depends on it, and where so many trials, drawn by chance, would
+        hardly ever lie so close together in its range.
+
+        Args:
+            trials: which.
+            place: the node that it happens to.
+            most: assumptions to name.
+        """
+        among = trials[self.special :]
+        count, drawn = int(among.sum()), self.n - self.special
+        if count < _FEWEST or count == drawn:
             return ()
+        needed = self._inputs_of(place)
         shares = []
-        for place, (assumption, key) in enumerate(zip(self.model.live, self.names, strict=True)):
-            draws = self.draws[key]
+        for number, (assumption, key) in enumerate(zip(self.model.live, self.names, strict=True)):
+            draws = self.draws[key][self.special :]
+            here = draws[among]
+            share = float(np.mean((draws >= here.min()) & (draws <= here.max())))
             width = float(draws.max() - draws.min())
-            here = draws[trials]
-            if width > 0:
-                shares.append((float(here.max() - here.min()) / width, place, assumption, here))
+            if key in needed and width > 0 and _by_chance(share, count) * len(needed) < _RARELY:
+                told = self.draws[key][trials]
+                shares.append((float(here.max() - here.min()) / width, number, assumption, told))
         shares.sort(key=lambda each: each[:2])
-        told = [each for each in shares if each[0] < _TELLING][:most]
+        named = [each for each in shares if each[0] < _TELLING][:most]
         return tuple(
             Where(assumption.name, float(here.min()), float(here.max()), assumption.units or "")
-            for _, _, assumption, here in told
+            for _, _, assumption, here in named
         )
+
+    def _inputs_of(self, place: int) -> set[str]:
+        """The keys of the assumptions that a node depends on."""
+        nodes = (formula_of(self.dag, part) for part in closure(self.dag, [place]))
+        return {node.name for node in nodes if isinstance(node, Input)}
 
     def upstream(self, cell: Cell) -> set[Cell]:
         """The cells that a cell needs, itself among them."""
@@ -241,6 +291,14 @@ _FEWEST: Final = 5
 
 _TELLING: Final = 0.5
 """Of an assumption's range: what trials take up more than that of has nothing to do with it."""
+
+
+_RARELY: Final = 1e-3
+
+
+def _by_chance(share: float, count: int) -> float:
+    """The probability that so many trials lie within a share of the range by chance (David and Nagaraja 2003, §2.3)."""
+    return count * share ** (count - 1) - (count - 1) * share**count
 
 
 def _base(base: object, draws: Floats) -> float:

@@ -125,7 +125,7 @@ def _finding(case: Case, loss: _Loss, by_form: bool) -> Finding | None:
         case.trees.written(cell),
         f"{case.trees.title(cell) or cell} loses digits" if what is None else what[1],
         _effect(case, cell, share, of, loss, missing, random, inherent),
-        ranges or case.where(np.asarray(low)),
+        ranges or case.where(np.asarray(low), node),
         instead,
         _SIZE_OF_NOTHING if missing else share if level is Level.WRONG else loss.most,
     )
@@ -188,7 +188,7 @@ def _division(case: Case, cell: Cell, division: Division) -> tuple[str, tuple[Wh
     sentence = f"it divides by {factor}, which comes down to {values[trial]:.2g}"
     key = only_assumption(case, division.place)
     if key is None:
-        return sentence, case.where(np.asarray(values <= 2 * division.least * np.nanmedian(values)))
+        return sentence, case.where(np.asarray(values <= 2 * division.least * np.nanmedian(values)), division.place)
     assumption = next(a for a, name in zip(case.model.live, case.names, strict=True) if name == key)
     units = assumption.units or ""
     draws = case.draws[key]

@@ -75,7 +75,7 @@ def _finding(case: Case, cell: Cell, part: ir.Call, low: float, high: float) -> 
             case.trees.written(cell),
             what,
             f"the cell is an error in {share:.2%} of the trials",
-            case.where(outside),
+            case.where(outside, place),
             None,
             share,
         )
@@ -92,7 +92,7 @@ def _finding(case: Case, cell: Cell, part: ir.Call, low: float, high: float) -> 
         case.trees.written(cell),
         f"{function} takes {above}, and {argument} comes down to {room.min():.2g} from that edge",
         "close to it the function is steep, and a trial beyond it is an error",
-        case.where(near),
+        case.where(near, place),
         None,
         float(room.min() / spread),
     )

@@ -8,11 +8,13 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.compile.dag import Constant
-from xlmc.compile.replicas import numbers
+from xlmc.compile.dag import Constant, uses
+from xlmc.compile.replicas import formula_of, numbers
 from xlmc.formula import ir
-from xlmc.stability.case import Bools, Case, Floats
-from xlmc.stability.findings import Finding, Level
+from xlmc.stability.case import Case, Floats
+from xlmc.stability.findings import Finding, Level, Where
+from xlmc.stability.guards import guards
+from xlmc.stability.quadrant import arctangents
 
 __all__ = ["jumps"]
 
@@ -27,9 +29,12 @@ _STEPS: Final = frozenset({"VLOOKUP", "HLOOKUP", "LOOKUP", "XLOOKUP", "MATCH", "
 
 def jumps(case: Case) -> Iterator[Finding]:
     """The choices and lookups that take different ways in different trials, and by how much the cell jumps there."""
+    mending = _mending(case)
     for cell in case.cells:
         for part in case.trees.parts(cell):
             if isinstance(part, ir.Call) and part.name == "IF" and len(part.arguments) > 1:
+                if _is_among(case, cell, part, mending):
+                    continue
                 finding = _of_choice(case, cell, part)
                 if finding is not None:
                     yield finding
@@ -37,6 +42,22 @@ def jumps(case: Case) -> Iterator[Finding]:
         if kink.function in _STEPS and kink.cell in case.node:
             text = f"{kink.function} finds {kink.ways} different cells among the trials"
             yield _finding(case, kink.cell, text, "the cell steps from one to the next", kink.share)
+
+
+def _mending(case: Case) -> set[int]:
+    """The choices that mend the quadrant of an arctangent: they jump so that the angle does not."""
+    found: set[int] = set()
+    for cell in case.cells:
+        for one in arctangents(case, cell):
+            if (case.number(one.divisor) < 0).any():
+                for place in guards(case, one.place, one.divisor).holding:
+                    found |= {place, *uses(formula_of(case.dag, place))}
+    return found
+
+
+def _is_among(case: Case, cell: Cell, part: ir.Call, mending: set[int]) -> bool:
+    place = case.trees.place(part, cell)
+    return place is not None and place in mending
 
 
 def _of_choice(case: Case, cell: Cell, part: ir.Call) -> Finding | None:
@@ -59,7 +80,8 @@ def _of_choice(case: Case, cell: Cell, part: ir.Call) -> Finding | None:
     near[nearest] = True
     text = f"{case.trees.text(test, cell)} turns inside the ranges, and the two branches of the IF differ there"
     effect = f"the choice jumps by about {share:.2g} of the central range of the cell"
-    return _finding(case, cell, text, effect, share, near)
+    place = case.trees.place(test, cell)
+    return _finding(case, cell, text, effect, share, () if place is None else case.where(near, place))
 
 
 def _numbers(case: Case, cell: Cell, tree: ir.Expression) -> Floats | None:
@@ -78,7 +100,7 @@ def _finding(
     what: str,
     effect: str,
     size: float,
-    near: Bools | None = None,
+    where: tuple[Where, ...] = (),
 ) -> Finding:
     return Finding(
         Level.NOTE,
@@ -88,7 +110,7 @@ def _finding(
         case.trees.written(cell),
         what,
         effect,
-        () if near is None else case.where(near),
+        where,
         None,
         size,
     )

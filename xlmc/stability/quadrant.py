@@ -3,68 +3,99 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.compile.dag import Apply
 from xlmc.formula import ir
 from xlmc.stability.case import Bools, Case
 from xlmc.stability.findings import Finding, Level
+from xlmc.stability.guards import guards
+from xlmc.stability.momentum import times
 from xlmc.stability.rewriting import with_quadrant
+from xlmc.stability.trees import factors
 
-__all__ = ["lost_quadrants"]
+__all__ = ["Arctangent", "arctangents", "lost_quadrants"]
+
+
+@dataclass(frozen=True, slots=True)
+class Arctangent:
+    """The arctangent of a quotient in a cell's formula.
+
+    Attributes:
+        tree: the call of ATAN.
+        above, below: the quotient's two parts.
+        place, divisor: the nodes of the call and of what stands below the line.
+    """
+
+    tree: ir.Call
+    above: ir.Expression
+    below: ir.Expression
+    place: int
+    divisor: int
+
+
+def arctangents(case: Case, cell: Cell) -> Iterator[Arctangent]:
+    """The arctangents of quotients in a cell's formula, each once; the quotient may stand in a cell of its own."""
+    seen: set[int] = set()
+    for part in case.trees.parts(cell):
+        if isinstance(part, ir.Call) and part.name == "ATAN" and len(part.arguments) == 1:
+            ratio = _quotient(case, part.arguments[0])
+            place = case.trees.place(part, cell)
+            if ratio is not None and place is not None and place in case.values and place not in seen:
+                seen.add(place)
+                above, below = ratio
+                divisor = case.trees.place(below, cell)
+                if divisor is not None and divisor in case.values:
+                    yield Arctangent(part, above, below, place, divisor)
+
+
+def _quotient(case: Case, tree: ir.Expression) -> tuple[ir.Expression, ir.Expression] | None:
+    """What stands above and below the line, if there is one below it; None for anything else."""
+    while isinstance(tree, Cell) and tree not in case.lowering.inputs:
+        if tree not in case.lowering.graph.formulas:
+            return None
+        tree = case.lowering.graph.formulas[tree]
+    if isinstance(tree, ir.Binary) and tree.operator == "/":
+        return tree.left, tree.right
+    above, below = factors(tree)
+    return (times(*above), below[0]) if len(below) == 1 and above else None
 
 
 def lost_quadrants(case: Case) -> Iterator[Finding]:
     """The cells that take the arctangent of a quotient whose divisor is negative in some trials.
 
-    A formula that looks at the sign of the divisor is taken to mind the quadrant itself. So is one that only takes the
-    tangent, sine or cosine of half of what it should be: there is no telling.
+    Formulas that put it right where the divisor is negative have nothing to mind; see `guards`. So have those that only
+    take the tangent of it. One that takes an angle that should be half of what it is cannot be told from others.
     """
     for cell in case.cells:
-        for part in case.trees.parts(cell):
-            if isinstance(part, ir.Call) and part.name == "ATAN" and len(part.arguments) == 1:
-                ratio = part.arguments[0]
-                if isinstance(ratio, ir.Binary) and ratio.operator == "/":
-                    yield from _finding(case, cell, part, ratio)
+        for found in arctangents(case, cell):
+            negative: Bools = np.asarray(case.number(found.divisor) < 0)
+            if negative.any() and case.node[cell] in guards(case, found.place, found.divisor).lost:
+                yield _finding(case, cell, found, negative)
 
 
-def _finding(case: Case, cell: Cell, part: ir.Call, ratio: ir.Binary) -> Iterator[Finding]:
-    place = case.trees.place(ratio.right, cell)
-    if place is None or place not in case.values or _is_asked_about(case, place):
-        return
-    x = case.number(place)
-    negative: Bools = np.asarray(x < 0)
-    if not negative.any():
-        return
+def _finding(case: Case, cell: Cell, found: Arctangent, negative: Bools) -> Finding:
     accepted = negative[case.first_accepted :]
     among = accepted if accepted.any() else negative
     share = float(among.mean())
     tree = case.lowering.graph.formulas[cell]
-    divisor = case.trees.text(ratio.right, cell)
+    divisor = case.trees.text(found.below, cell)
     trials = "accepted trials" if accepted.any() else "trials drawn, none of them accepted"
     how_many = f"in every one of the {trials}" if share == 1.0 else f"in {share:.1%} of the {trials}"
     half = "180°" if any(isinstance(one, ir.Call) and one.name == "DEGREES" for one in case.trees.parts(cell)) else "π"
-    yield Finding(
+    better = with_quadrant(tree, found.tree, found.above, found.below)
+    return Finding(
         Level.WRONG if accepted.any() else Level.DOUBTFUL,
         "quadrant",
         cell,
         case.trees.title(cell),
         case.trees.written(cell),
-        f"{case.trees.text(part, cell)} loses the quadrant: as the direction of a vector it is {half} off wherever "
-        f"{divisor} is negative",
+        f"{case.trees.text(found.tree, cell)} loses the quadrant: as the direction of a vector it is {half} off "
+        f"wherever {divisor} is negative",
         f"{how_many} {divisor} is negative: there the direction is wrong by {half}, and no error is shown",
-        () if share == 1.0 else case.where(negative),
-        f"={case.trees.text(with_quadrant(tree, part), cell)}",
+        () if share == 1.0 else case.where(negative, found.divisor),
+        f"={case.trees.text(better, cell)}",
         (180.0 if half == "180°" else np.pi) * share / case.scale(cell),
-    )
-
-
-def _is_asked_about(case: Case, place: int) -> bool:
-    """Whether some formula compares the divisor with something."""
-    nodes = (case.dag.nodes[one] for one in case.places)
-    return any(
-        isinstance(node, Apply) and node.function.name in ("<", "<=", ">", ">=", "SIGN") and place in node.arguments
-        for node in nodes
     )

@@ -111,12 +111,18 @@ def angles_in_degrees(tree: ir.Expression) -> ir.Expression | None:
     return None if changed == tree else changed
 
 
-def with_quadrant(tree: ir.Expression, part: ir.Expression) -> ir.Expression:
-    """(23′): `ATAN(y/x)` as `ATAN2(x, y)`, the whole brought above -180 and up to 180 where it is in degrees."""
-    assert isinstance(part, ir.Call)
-    (ratio,) = part.arguments
-    assert isinstance(ratio, ir.Binary)
-    angle = ir.Call("ATAN2", (ratio.right, ratio.left))
+def with_quadrant(
+    tree: ir.Expression, part: ir.Expression, above: ir.Expression, below: ir.Expression
+) -> ir.Expression:
+    """(23′): `ATAN(y/x)` as `ATAN2(x, y)`, the whole brought above -180 and up to 180 where it is in degrees.
+
+    Args:
+        tree: the formula.
+        part: the arctangent in it.
+        above: y.
+        below: x.
+    """
+    angle = ir.Call("ATAN2", (below, above))
     changed = substituted(tree, lambda one: angle if one == part else None)
     degrees = ir.Call("DEGREES", (angle,))
     if any(term == degrees for _, term in terms(changed)) and len(terms(changed)) > 1:

@@ -27,7 +27,7 @@ def single_precision(case: Case) -> Iterator[Finding]:
         flips = np.mean([numbers(one[node], case.n) != plain for one in found], axis=0)
         share = float(flips[case.special : case.first_accepted].mean()) if case.first_accepted > case.special else 0.0
         if share > MOST_DECISIONS:
-            where = case.where(np.asarray(flips > 0))
+            where = case.where(np.asarray(flips > 0), node)
             effect = f"{share:.2%} of its decisions would turn with `--arithmetic float32`; float64 decides them alike"
             what = "this filter decides trials by digits that float32 has not"
             yield _finding(case, row.cell, row.name, what, effect, share, where)

@@ -22,7 +22,7 @@ FLOORS = [
     {"scene", "drawing", "correlating", "remarks", "stopping"},
     {"base_parameters", "filter_values"},
     {"model", "verify"},
-    {"blocks", "cell_errors", "checking", "derivatives", "digits", "result_cells"},
+    {"blocks", "cell_errors", "checking", "derivatives", "digits", "result_cells", "tail_notices"},
     {"simulation", "scheduling"},
     {"rounding", "pilot", "rare"},
     {"simulate"},

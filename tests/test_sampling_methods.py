@@ -102,6 +102,21 @@ def test_too_few_accepted_trials_are_told(book):
     assert not model.simulate(4_000, 3).warnings
 
 
+def test_long_tails_are_told(book):
+    """The notice that it hangs on a single trial says enough; else the one on its interval is given."""
+    cells = {"A1": 0.0, "B1": "=EXP(1.5*A1)", "B2": "=EXP(A1)", "B3": "=A1"}
+    given = {"z": {"cell": "A1", "distribution": "Normal", "mean": 0, "std_dev": 1}}
+    model = book(cells, given, {"heavy": "B1", "less": "B2", "plain": "B3"})
+    for method in ("mc", "lhs", "sobol"):
+        notices = [notice.message for notice in model.simulate(20_000, 1, sampling=method).notices_of_run]
+        short = [message for message in notices if "too short" in message or "hang on a single trial" in message]
+        assert "'heavy'" in " ".join(short)
+        assert "'plain'" not in " ".join(notices)
+        plain = [message for message in notices if "independent trials" in message]
+        assert len(plain) == (method != "mc")
+        assert all("the standard deviation of 'less'" in message for message in plain)
+
+
 def test_the_pilot_finds_what_matters(book):
     cells = {"A1": 1.0, "A2": 1.0, "A3": 1.0, "B1": "=A1+9*A2+3*A3"}
     given = {name: {"cell": cell, "low": 0, "high": 1} for name, cell in zip("abc", ("A1", "A2", "A3"), strict=True)}

@@ -27,6 +27,7 @@ from xlmc.statistics import Description, Estimate, Sample
 from xlmc.statistics.sample import MOST_GROUPS
 from xlmc.stopping import Stopped
 from xlmc.stopping.stopped import ALL_TRIALS
+from xlmc.tail_notices import tail_notices
 
 if TYPE_CHECKING:
     import pandas
@@ -283,12 +284,16 @@ class Simulation:
         found = [] if self.rounding is None else [self.rounding.notice]
         if not self.plan.replicates and 0 < self.accepted < FEW:
             found.append(Notice(f"only {_trials(self.accepted)} accepted. {_OF_FEW}"))
+        samples = {name: result.sample for name, result in self.results.items()}
+        hanging = {
+            name: part for name, sample in samples.items() if sample.n >= TELLING and (part := _farthest(sample))
+        }
         found += [
             Notice(f"the mean and the standard deviation of {name!r} hang on a single trial, {part}. {_OF_TAILS}")
-            for name, result in self.results.items()
-            if result.sample.n >= TELLING and (part := _farthest(result.sample))
+            for name, part in hanging.items()
         ]
-        return tuple(found)
+        rest = {name: sample for name, sample in samples.items() if name not in hanging}
+        return (*found, *tail_notices(rest, METHODS[self.plan.method]))
 
     @property
     def warnings(self) -> list[str]:

@@ -22,11 +22,13 @@ from xlmc.statistics.quantiles import central_interval, median, percentile, perc
 from xlmc.statistics.sample import Sample
 from xlmc.statistics.smooth import (
     coefficient_of_variation,
+    errors_from_trials,
     kurtosis,
     mean,
     mean_standard_error,
     skewness,
     standard_deviation,
+    too_short,
     variance,
 )
 from xlmc.statistics.tails import farthest_part
@@ -38,6 +40,7 @@ __all__ = [
     "central_interval",
     "coefficient_of_variation",
     "describe",
+    "errors_from_trials",
     "farthest_part",
     "format_estimate",
     "inverse_proportion",
@@ -60,5 +63,6 @@ __all__ = [
     "skewness",
     "standard_deviation",
     "supported_digits",
+    "too_short",
     "variance",
 ]

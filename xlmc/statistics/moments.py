@@ -2,7 +2,7 @@
 
 Every smooth statistic is a function of the means of z, z², z³, z⁴ (z the standardised value), so its error is its
 gradient through one 4 × 4 covariance matrix: the delta method. Independent trials, weighted trials and replicates
-differ only in what an independent unit is, and so only in `_influences`.
+differ only in what an independent unit is, and so only in `_pulls` and `_totals`.
 """
 
 from __future__ import annotations
@@ -41,6 +41,8 @@ class Moments:
         skewness, kurtosis: the means of z³ and z⁴; nan where all values are equal.
         covariance: (4, 4) of the sample means of z, z², z³, z⁴.
         noise: relative standard error of the mean's own standard error.
+        fifth, sixth: the means of z⁵ and z⁶; nan where all values are equal.
+        totals: (4, replicates) how far each pulls the means of z, z², z³, z⁴; None of independent trials.
     """
 
     mean: float
@@ -49,6 +51,9 @@ class Moments:
     kurtosis: float
     covariance: Floats
     noise: float
+    fifth: float = math.nan
+    sixth: float = math.nan
+    totals: Floats | None = None
 
 
 def moments_of(x: Floats, w: Floats | None, group: NDArray[np.intp] | None, groups: int, units: float) -> Moments:
@@ -76,9 +81,18 @@ def moments_of(x: Floats, w: Floats | None, group: NDArray[np.intp] | None, grou
     root = _average(lambda here: np.square(centred(here) / largest), x.size, w) ** 0.5
 
     z = _held(lambda here: centred(here) / largest / root, x)
-    means = np.sum([(powers * share).sum(axis=1) for powers, share, _ in _blocks(z, x.size, w, None)], axis=0)
-    covariance, noise = _variation(_influences(z, x.size, w, group, groups, means), units)
-    return Moments(pivot + shift, largest * root, float(means[2]), float(means[3]), covariance, noise)
+    means = np.sum([_sums(powers, share) for powers, share, _ in _blocks(z, x.size, w, None)], axis=0)
+    totals = None if group is None else _totals(z, x.size, w, group, groups, means)
+    pulls = _pulls(z, x.size, w, means) if totals is None else iter([totals])
+    covariance, noise = _variation(pulls, units)
+    shape = float(means[2]), float(means[3])
+    return Moments(pivot + shift, largest * root, *shape, covariance, noise, float(means[4]), float(means[5]), totals)
+
+
+def _sums(powers: Floats, share: Floats | float) -> Floats:
+    """(6,) sums of z to z⁶, each trial with its share, from (4, b) powers up to the fourth."""
+    shared = powers * share
+    return np.concatenate([shared.sum(axis=1), (shared[2] * powers[1:3]).sum(axis=1)])
 
 
 def _held(made: Slices, x: Floats) -> Slices:
@@ -110,19 +124,18 @@ def _blocks(
         )
 
 
-def _influences(
-    z: Slices, n: int, w: Floats | None, group: NDArray[np.intp] | None, groups: int, means: Floats
-) -> Iterator[Floats]:
-    """(4, units) how far each independent unit pulls the means of z, z², z³, z⁴; trials in several blocks."""
+def _pulls(z: Slices, n: int, w: Floats | None, means: Floats) -> Iterator[Floats]:
+    """(4, b) how far each trial pulls the means of z, z², z³, z⁴, block by block."""
+    return ((powers - means[:4, None]) * share for powers, share, _ in _blocks(z, n, w, None))
+
+
+def _totals(z: Slices, n: int, w: Floats | None, group: NDArray[np.intp], groups: int, means: Floats) -> Floats:
+    """(4, groups) the same of each replicate."""
     totals = np.zeros((4, groups))
     for powers, share, ids in _blocks(z, n, w, group):
-        pulls = (powers - means[:, None]) * share
-        if ids is None:
-            yield pulls
-        else:
-            totals += [np.bincount(ids, weights=row, minlength=groups) for row in pulls]
-    if group is not None:
-        yield totals
+        pulls = (powers - means[:4, None]) * share
+        totals += [np.bincount(ids, weights=row, minlength=groups) for row in pulls]  # type: ignore[arg-type]
+    return totals
 
 
 def _variation(influences: Iterator[Floats], units: float) -> tuple[Floats, float]:

@@ -4,7 +4,8 @@
 too high where there are a few hits (where 0.17 are expected, it holds the truth in 84 % of the runs): there it is
 lowered as by Brown, Cai & DasGupta (2001, 4.1.1), and the upper end raised where there are a few misses. With weights
 or replicates the share counts as that of the number of independent trials that would give the same error, reduced for
-the quantile of Student's t (Korn & Graubard 1998).
+the quantile of Student's t (Korn & Graubard 1998); where replicates differ by one hit at most, the interval also holds
+that of the share of them that have one more.
 
 **Error.** √(p(1 − p)/n), or the spread between weighted trials or replicates (ratio estimate: replicates may differ in
 size). It is never less than that of a share of 0 in n trials, Wilson's half width over 1.96: no trial seen is no proof
@@ -151,7 +152,25 @@ def _pooled(
         return Estimate(p, error, _INTERVALS[method](p, effective, confidence), n)
     widening = t_quantile(dof, confidence) / t_quantile(np.inf, confidence)
     equal_trials = p * (1.0 - p) / (error * widening) ** 2
-    return Estimate(p, error, _INTERVALS[method](p, equal_trials, confidence), n)
+    low, high = _INTERVALS[method](p, equal_trials, confidence)
+    least, most = _nearly_equal(hits, totals, confidence, method)
+    return Estimate(p, error, (min(low, least), max(high, most)), n)
+
+
+def _nearly_equal(hits: Floats, totals: Floats, confidence: float, method: Method) -> tuple[float, float]:
+    """The interval where replicates of one size differ by one hit at most, (1, 0) where they do not.
+
+    Where one input decides, m even draws have k hits or k + 1, never another number. How many have one more is binomial
+    of as many trials as there are replicates, and bounds the share to one trial in each. If all have k, it may be that
+    few would have one more, or one less.
+    """
+    k = float(hits.min())
+    if not (np.all(totals == totals[0]) and np.all((hits == k) | (hits == k + 1.0))):
+        return 1.0, 0.0
+    low, high = _INTERVALS[method](float(np.mean(hits - k)), float(hits.size), confidence)
+    if hits.max() == k:
+        low = -high
+    return max(0.0, (k + low) / float(totals[0])), min(1.0, (k + high) / float(totals[0]))
 
 
 def error_of_share(hits: Floats, totals: Floats, effective: float, dof: float) -> float:

@@ -2,7 +2,8 @@
 
 Each is a value and its gradient in the means of z, z², z³, z⁴ (see `moments`); errors follow by the delta method and
 hold for any distribution with the moments they use (twice the order of the statistic). Intervals take Student's t
-with one degree of freedom less than there are independent units: trials, effective trials, or replicates.
+with one degree of freedom less than there are independent units: trials, effective trials, or replicates. Those of
+mean, variance, standard deviation and coefficient of variation allow for skewed errors: see `pulls`.
 
 All take `values` (n,), `weights` (n,) nonnegative importance weights, `replicate` (n,) integer ids, and raise
 ValueError for values that are not finite. Without trials the value is nan.
@@ -11,24 +12,49 @@ ValueError for values that are not finite. Without trials the value is nan.
 from __future__ import annotations
 
 import math
+from typing import Final, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from xlmc.statistics.estimate import LEAST_DOF, Estimate, with_error, with_relative_error
+from xlmc.statistics.pulls import (
+    Pull,
+    beyond_reach,
+    few_decide,
+    replicate_skewness,
+    trial_error,
+    trial_skewness,
+    wider,
+)
 from xlmc.statistics.sample import Sample, Values
 
 __all__ = [
     "coefficient_of_variation",
+    "errors_from_trials",
     "kurtosis",
     "mean",
     "mean_standard_error",
     "skewness",
     "standard_deviation",
+    "too_short",
     "variance",
 ]
 
 Gradient = tuple[float, float, float, float]
+
+
+class Made(Protocol):
+    """Makes an estimate; see `with_error`."""
+
+    def __call__(
+        self, value: float, error: float, dof: float, confidence: float, n: int, skewness: float = 0.0, /
+    ) -> Estimate: ...
+
+
+MEAN: Final[Pull] = (1.0, 0.0)
+SQUARE: Final[Pull] = (0.0, 1.0)
+"""Of the variance and the standard deviation, over its value and over half of it."""
 
 
 def mean(
@@ -42,8 +68,8 @@ def mean(
     nan
     """
     sample = Sample.of(values, weights, replicate)
-    error = sample.moments.scale * _error(sample, (1.0, 0.0, 0.0, 0.0))
-    return with_error(sample.moments.mean, error, sample.dof, confidence, sample.n)
+    m = sample.moments
+    return _estimate(sample, m.mean, m.scale, MEAN, _error(sample, (*MEAN, 0.0, 0.0)), confidence, with_error)
 
 
 def variance(
@@ -62,8 +88,8 @@ def variance(
     value = _deviation(sample) * _deviation(sample)
     if math.isinf(value):  # too large for a number
         return Estimate(np.nan, n=sample.n)
-    error = value * _relative_error_of_variance(sample)
-    return with_relative_error(value, error, sample.dof, confidence, sample.n)
+    error = _relative_error_of_variance(sample)
+    return _estimate(sample, value, value, SQUARE, error, confidence, with_relative_error)
 
 
 def standard_deviation(
@@ -72,8 +98,8 @@ def standard_deviation(
     """Square root of the sample variance, as Excel's STDEV.S."""
     sample = Sample.of(values, weights, replicate)
     value = _deviation(sample)
-    error = 0.5 * value * _relative_error_of_variance(sample)
-    return with_relative_error(value, error, sample.dof, confidence, sample.n)
+    error = _relative_error_of_variance(sample)
+    return _estimate(sample, value, 0.5 * value, SQUARE, error, confidence, with_relative_error)
 
 
 def coefficient_of_variation(
@@ -85,8 +111,9 @@ def coefficient_of_variation(
     if m.mean == 0.0:
         return Estimate(np.nan, n=sample.n)
     value = _deviation(sample) / m.mean
-    error = abs(value) * _error(sample, (-m.scale / m.mean, 0.5, 0.0, 0.0))
-    return with_error(value, error, sample.dof, confidence, sample.n)
+    sign = math.copysign(1.0, value)
+    pull = -sign * m.scale / m.mean, sign * 0.5
+    return _estimate(sample, value, abs(value), pull, _error(sample, (*pull, 0.0, 0.0)), confidence, with_error)
 
 
 def skewness(
@@ -122,6 +149,54 @@ def mean_standard_error(
         return Estimate(np.nan, n=sample.n)
     value = sample.moments.scale * _error(sample, (1.0, 0.0, 0.0, 0.0))
     return with_relative_error(value, value * sample.moments.noise, sample.dof, confidence, sample.n)
+
+
+def errors_from_trials(
+    values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None
+) -> list[str]:
+    """Which of mean and standard deviation have the error of independent trials, although there are replicates."""
+    sample = Sample.of(values, weights, replicate)
+    if sample.group is None or sample.dof < LEAST_DOF or sample.n < 2:
+        return []
+    n = sample.effective
+    return [name for name, pull in _TOLD.items() if few_decide(trial_skewness(sample.moments, pull, n), n)]
+
+
+def too_short(values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None) -> list[str]:
+    """Which of mean and standard deviation may have an interval that is too short, for the tail of the values."""
+    sample = Sample.of(values, weights, replicate)
+    if sample.n < 2:
+        return []
+    return [name for name, pull in _TOLD.items() if beyond_reach(sample.moments, pull, sample.effective)]
+
+
+_TOLD: Final = {"mean": MEAN, "standard deviation": SQUARE}
+
+
+def _estimate(
+    sample: Sample, value: float, size: float, pull: Pull, error: float, confidence: float, made: Made
+) -> Estimate:
+    """The interval of a number that the trials or replicates pull by so much; see `pulls`.
+
+    Args:
+        sample: the trials.
+        value: the number.
+        size: what the pull is multiplied by, in the unit of the number.
+        pull: factors of z and z².
+        error: of the number over its size.
+        confidence: of the interval.
+        made: makes an estimate.
+    """
+    n, m = sample.effective, sample.moments
+    if sample.dof < LEAST_DOF or not m.scale > 0.0:
+        return made(value, size * error, sample.dof, confidence, sample.n)
+    of_trials = trial_skewness(m, pull, n)
+    if sample.group is None:
+        return made(value, size * error, sample.dof, confidence, sample.n, of_trials)
+    found = made(value, size * error, sample.dof, confidence, sample.n, replicate_skewness(m, pull))
+    if not few_decide(of_trials, n):
+        return found
+    return wider(found, made(value, size * trial_error(m, pull, n), n - 1.0, confidence, sample.n, of_trials))
 
 
 def _error(sample: Sample, gradient: Gradient) -> float:

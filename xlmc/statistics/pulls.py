@@ -48,7 +48,7 @@ BEYOND, BEYOND_POWER = 0.63, 0.4
 """Above 0.63 n^0.4 not even the interval of a skewed sample holds: n pulls cannot have a skewness above √n."""
 
 PEAKED_BESIDE_ROOT = 0.7
-"""Kurtosis over √n, below which no tail is too heavy; a normal forecast has a kurtosis of 3, an exponential one of 9."""
+"""Kurtosis over √n, below which no tail is too heavy; a normal forecast has a kurtosis of 3, an exponential one 9."""
 
 
 class Shaped(Protocol):

@@ -1,9 +1,9 @@
 """Do 95 % intervals hold the truth for skewed, heavy-tailed, discrete and filtered forecasts, by every sampling method?
 
 `python benchmarks/tail_coverage.py --work FOLDER` makes 4,000 seeded runs of each problem, method and number of trials
-(400 of those of 200,000), and writes `results/tail-coverage.json` and the tables of docs/sampling.md. Samplers, statistics and notices are xlmc's
-own. A run that is stopped goes on where it was: the folder holds what has been done. `--minutes` ends it in time, and
-`--runs` and `--trials` ask for less. No figure depends on the machine.
+(400 of those of 200,000), and writes `results/tail-coverage.json` and the tables of docs/sampling.md. Samplers,
+statistics and notices are xlmc's own. A run that is stopped goes on where it was: the folder holds what has been done.
+`--minutes` ends it in time, and `--runs` and `--trials` ask for less. No figure depends on the machine.
 
 The bar: no number is held in fewer than 93 % of the runs unless a notice says so in 95 % of them or more; of normal,
 uniform, bimodal and kinked forecasts, from 10,000 trials on, there is a notice in 5 % at most, and the median interval

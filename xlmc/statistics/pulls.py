@@ -104,7 +104,7 @@ def replicate_skewness(m: Moments, pull: Pull) -> float:
 
 def few_decide(skewness: float, n: float) -> bool:
     """Whether the error of n trials in replicates is decided by a few far ones; the skewness is over √n."""
-    return abs(skewness) > SKEWED_BESIDE_ROOT or abs(skewness) * n**0.5 > SKEWED
+    return bool(abs(skewness) > min(SKEWED_BESIDE_ROOT, SKEWED / n**0.5))
 
 
 def beyond_reach(m: Shaped, pull: Pull, n: float) -> bool:

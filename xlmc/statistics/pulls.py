@@ -17,6 +17,7 @@ independent trials, which even draws keep below.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -104,14 +105,13 @@ def replicate_skewness(m: Moments, pull: Pull) -> float:
 
 def few_decide(skewness: float, n: float) -> bool:
     """Whether the error of n trials in replicates is decided by a few far ones; the skewness is over √n."""
-    return bool(abs(skewness) > min(SKEWED_BESIDE_ROOT, SKEWED / n**0.5))
+    return abs(skewness) > min(SKEWED_BESIDE_ROOT, SKEWED / math.sqrt(n))
 
 
 def beyond_reach(m: Shaped, pull: Pull, n: float) -> bool:
     """Whether the tail of n trials is so heavy that their interval may be too short."""
-    return (
-        m.kurtosis > PEAKED_BESIDE_ROOT * n**0.5 and abs(trial_skewness(m, pull, n)) * n**0.5 > BEYOND * n**BEYOND_POWER
-    )
+    skewness = abs(trial_skewness(m, pull, n)) * math.sqrt(n)
+    return m.kurtosis > PEAKED_BESIDE_ROOT * math.sqrt(n) and skewness > BEYOND * n**BEYOND_POWER
 
 
 def wider(one: Estimate, other: Estimate) -> Estimate:

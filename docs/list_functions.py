@@ -62,12 +62,15 @@ in each trial, with the engines `numpy` and `jit` alike:
 
 - `=` `<>` `<` `<=` `>` `>=` between numbers compare both rounded to 15 significant decimal digits, halves away from
   zero. `0.1+0.2=0.3` and `1-0.9=0.1` are TRUE, `1.1*3>3.3` is FALSE, `10.1-10=0.1` is FALSE (the 15th digit differs).
-  A number below 2^-1022 in size is 0. Texts and logicals are compared as ever.
+  Texts and logicals are compared as ever.
 - The `+` or `-` that a cell's formula ends with gives 0 where the size of the result is less than 8 units in the last
   place of its first number: `=0.5-0.4-0.1` is 0. In brackets, `=(0.5-0.4-0.1)`, or where another operation or a
   function comes last, `=1*(0.5-0.4-0.1)` and `=0.5-0.4-0.1+0`, it is -2.78E-17. In an array
   formula the rule is used for each cell, and a defined name's formula is not a cell's: no source tells of these two.
 - A sum or difference is that of the doubles everywhere else.
+- A number below 2^-1022 (2.2250738585072014E-308) in size is 0, as a result, as a cell's value, as a text that is read
+  as a number and as a draw: `=1/(1E-160*1E-150)` is `#DIV/0!` (Microsoft, article 78113). With the engine `numpy` one
+  result is an exception: within a formula, the difference of two numbers that are below 1E-291 themselves.
 
 All bits are kept by `MATCH`, `XLOOKUP` and the other lookups, criteria such as those of `COUNTIF`, `SWITCH` and
 `CHOOSE`, `SUM` (which Excel makes 0 in some cases and not in others, by no rule that is known), and the limits in the

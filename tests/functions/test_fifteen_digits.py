@@ -12,8 +12,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from xlmc.functions.denormals import TINIEST
 from xlmc.functions.families import function_named
-from xlmc.functions.fifteen_digits import COMPARISONS, TINIEST, equals
+from xlmc.functions.fifteen_digits import COMPARISONS, equals
 from xlmc.functions.operators import ALL_BITS
 from xlmc.functions.values import from_objects
 

@@ -113,3 +113,12 @@ def test_stages_have_parameters_of_their_own_in_order():
     stages += [Stage((Draw(name, UNIFORM, (0.0, f"{name} high")),), dynamic=True) for name in ("b", "c")]
     Sampler(1, stages, [], [note("b"), note("c")], 8).draw(0)
     assert seen == [("b", ["a"]), ("c", ["a", "b"])]
+
+
+def test_a_draw_that_is_too_small_for_a_cell_is_0():
+    tiny = Draw("tiny", UNIFORM, (-1e-307, 1e-307)), Draw("bell", NORMAL, (0.0, 1e-307))
+    found = sampler(*tiny, block=512).draw(0)
+    for values in found.values():
+        assert (values == 0).any()
+        assert (values[values != 0] >= 2.0**-1022).any()
+        assert (np.abs(values[values != 0]) >= 2.0**-1022).all()

@@ -56,7 +56,7 @@ class _Branch:
         whole = [values[node] for node in self._outside]
         for node, found in zip(self._outside, whole, strict=True):
             values[node] = found.take(index) if isinstance(found, Value) else found[index]
-        inner = Frame(values, (), index.size)
+        inner = Frame(values, (), index.size, frame.underflow)
         for step in self._steps:
             step(inner)
         result = values[self._result]

@@ -2,7 +2,7 @@
 
 A block runs with floating-point flags armed. Where one is raised, or a guard says that Excel and IEEE part, or a
 node's value turns out not to be a plain number, the block is evaluated again by `TrackingEvaluator`: errors cost
-nothing where there are none.
+nothing where there are none. Nor do numbers too small for Excel: the step that raises their flag makes 0 of them.
 """
 
 from __future__ import annotations
@@ -101,6 +101,10 @@ class _NumpyEvaluator:
         self._n = 0
         self._departed = False
 
+    def _armed(self) -> np.errstate:
+        """The state in which a block departs where a number is lost, and one too small for Excel is told of."""
+        return np.errstate(divide="raise", over="raise", invalid="raise", under="call", call=self._space.underflow)
+
     def __reduce__(self) -> tuple[Any, ...]:
         return NumpyProgram.evaluator, self._made_of
 
@@ -109,7 +113,7 @@ class _NumpyEvaluator:
         self._departed = not all(np.isfinite(inputs[name]).all() for name in self._may_err)
         if not self._departed:
             try:
-                with np.errstate(divide="raise", over="raise", invalid="raise"):
+                with self._armed():
                     return self._plan.run_filters(self._space, inputs, n)
             except (FloatingPointError, Departure, FormulaError):
                 self._departed = True
@@ -118,7 +122,7 @@ class _NumpyEvaluator:
     def forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
         if not self._departed:
             try:
-                with np.errstate(divide="raise", over="raise", invalid="raise"):
+                with self._armed():
                     return self._plan.run_forecasts(self._space, self._inputs, survivors)
             except (FloatingPointError, Departure, FormulaError):
                 self._tracking.filters(self._inputs, self._n)

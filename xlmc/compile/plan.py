@@ -17,6 +17,7 @@ from xlmc.compile.place import ROOT, SURVIVORS, Context, Placement
 from xlmc.compile.sequence import Steps
 from xlmc.compile.steps import Frame, Step, plain_constant
 from xlmc.functions import Kind
+from xlmc.functions.denormals import Underflow
 from xlmc.functions.values import Floats, Value
 
 __all__ = ["Plan", "Space"]
@@ -115,20 +116,25 @@ class Plan:
 
 
 class Space:
-    """The memory of one thread: buffers for blocks of up to `block` trials, and the frame of the block at hand."""
+    """The memory of one thread: buffers for blocks of up to `block` trials, and the frame of the block at hand.
+
+    Attributes:
+        underflow: to be told where NumPy raises that flag.
+    """
 
     def __init__(self, plan: Plan, block: int) -> None:
         self._buffers = plan.buffers.allocate(block)
-        self._frame = Frame([], [], 0)
+        self.underflow = Underflow()
+        self._frame = Frame([], [], 0, self.underflow)
 
     def frame(self, template: list[Any], n: int) -> Frame:
         """A fresh frame for `n` trials."""
-        self._frame = Frame(template.copy(), [buffer[:n] for buffer in self._buffers], n)
+        self._frame = Frame(template.copy(), [buffer[:n] for buffer in self._buffers], n, self.underflow)
         return self._frame
 
     def survivors(self, m: int) -> Frame:
         """The same values, for `m` of the trials."""
-        self._frame = Frame(self._frame.values, [buffer[:m] for buffer in self._buffers], m)
+        self._frame = Frame(self._frame.values, [buffer[:m] for buffer in self._buffers], m, self.underflow)
         return self._frame
 
 

@@ -214,7 +214,7 @@ def _letting_go(places: list[int]) -> Step:
 
 def _run(lines: list[_Line]) -> Step:
     def step(frame: Frame) -> None:
-        values, buffers = frame.values, frame.buffers
+        values, buffers, underflow = frame.values, frame.buffers, frame.underflow
         for ufunc, place, first, second, buffer, guard in lines:
             if ufunc is None:
                 out = buffers[buffer]
@@ -229,5 +229,7 @@ def _run(lines: list[_Line]) -> Step:
                 if guard is not None and not guard(values[first], values[second]):
                     raise Departure
                 values[place] = ufunc(values[first], values[second], out=buffers[buffer])
+            if underflow.raised:
+                frame.flush(place)
 
     return step

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from xlmc.compile.dag import Apply, Constant, Dag, Range, Rescue, Select, evaluated, uses
 from xlmc.functions import Function, Kind
 from xlmc.functions.budget import ask_for_live
+from xlmc.functions.denormals import Underflow, flush, flushed
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value
 
@@ -28,12 +29,23 @@ class Departure(Exception):  # noqa: N818 - it is no error: the block leaves the
 
 @dataclass(slots=True)
 class Frame:
-    """The values of one set of `n` trials, and the buffers that steps may write to; `live`: the bytes of `Value`s."""
+    """The values of one set of `n` trials, and the buffers that steps may write to.
+
+    Attributes:
+        underflow: whether a result may be too small a number for Excel; the step that made it sees to that.
+        live: the bytes of `Value`s.
+    """
 
     values: list[Any]
     buffers: Sequence[NDArray[Any]]
     n: int
+    underflow: Underflow
     live: int = 0
+
+    def flush(self, place: int) -> None:
+        """0 in place of the node's numbers that are too small for Excel."""
+        self.underflow.raised = False
+        flush(self.values[place])
 
 
 Step = Callable[[Frame], None]
@@ -170,6 +182,8 @@ def _ufunc(
             raise Departure
         out = None if buffer is None else frame.buffers[buffer]
         frame.values[place] = ufunc(*arguments, out=out)
+        if frame.underflow.raised:
+            frame.flush(place)
 
     return step
 
@@ -184,7 +198,7 @@ def _body(function: Function, place: int, readers: list[Reader]) -> Step:
             result = _plain(result, function.returns)
         elif not logical and not np.isfinite(result).all():
             raise Departure
-        frame.values[place] = np.broadcast_to(result, (frame.n,))
+        frame.values[place] = np.broadcast_to(result if logical else flushed(result), (frame.n,))
 
     return step
 
@@ -246,6 +260,9 @@ def _fold(function: Function, place: int, operands: list[Reader], buffer: int | 
         np.copyto(out, first)
         for operand in rest:
             ufunc(out, operand, out=out)
+            if frame.underflow.raised:
+                frame.underflow.raised = False
+                flush(out)
         frame.values[place] = out
 
     return step

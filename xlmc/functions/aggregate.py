@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import direct_errors, earliest, with_errors
+from xlmc.functions.denormals import TINIEST
 from xlmc.functions.registry import Arrays, Cells, Number, Numbers, excel
 from xlmc.functions.values import BLANK, DIV0, NUM, NUMBER, TEXT, Bools, Codes, Floats, Value, constant
 
@@ -36,9 +37,10 @@ def sum_(x: Floats, counts: Bools) -> Floats:
 
 @excel("PRODUCT", Numbers, ufunc=np.multiply)
 def product(x: Floats, counts: Bools) -> Floats:
-    """Product; 0 of nothing."""
-    result = np.multiply.accumulate(np.where(counts, x, 1.0), axis=1)[:, -1]
-    return np.where(counts.any(axis=1), result, 0.0)
+    """Product; 0 of nothing, and from where it is too small a number on."""
+    so_far = np.multiply.accumulate(np.where(counts, x, 1.0), axis=1)
+    vanished = (np.abs(so_far) < TINIEST).any(axis=1)
+    return np.where(counts.any(axis=1) & ~vanished, so_far[:, -1], 0.0)
 
 
 @excel("MIN", Numbers, ufunc=np.minimum)

@@ -22,14 +22,12 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.functions.denormals import TINIEST
 from xlmc.functions.number_text import shown
 from xlmc.functions.values import Bools, Floats
 from xlmc.functions.work_memory import work_arrays
 
-__all__ = ["COMPARISONS", "NEAR", "TINIEST", "TWINS", "Comparison", "equals"]
-
-TINIEST: Final = 2.0**-1022
-"""The smallest number that is not 0 to Excel."""
+__all__ = ["COMPARISONS", "NEAR", "TWINS", "Comparison", "equals"]
 
 NEAR: Final = 1.01e-14
 """As a share of either of two numbers: those that are equal at 15 digits differ by no more."""

@@ -4,7 +4,8 @@
 
 It was found by trying numbers in Excel: `n` units with n from 1 to 7 give 0, 8 do not, at sizes from 1E-7 to 1E308
 (joeu2004 and J. W. Lewis, microsoft.public.excel.worksheet.functions, April 2009; S. Byrne, Stack Overflow 40293983,
-2016, who names the first number). Microsoft says no more than "at or very close to zero" (article 78113).
+2016, who names the first number). Microsoft says no more than "at or very close to zero" (article 78113). A result that
+is too small a number for Excel is 0, too; see `denormals`.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
+from xlmc.functions.denormals import TINIEST
 from xlmc.functions.registry import Function, Kind, Number
 from xlmc.functions.values import Bools, Floats
 
@@ -43,7 +45,7 @@ class Settled:
         """0 where the sum is within the last bits of the first number, else the sum."""
         result, first = np.asarray(result), np.asarray(first)
         limit = 2.0 * EIGHT_UNITS * (_size(first) if self.largest is None else self.largest)
-        dust = None if _is_far_from_0(result, limit) else _dust(result, first)
+        dust = None if _is_far_from_0(result, max(limit, TINIEST)) else _dust(result, first)
         if out is None:
             found: Floats = np.array(result if dust is None else np.broadcast_to(result, dust.shape))
         else:
@@ -69,7 +71,7 @@ def _dust(result: Floats, first: Floats) -> Bools:
     """Where the result is nothing but the last bits of the first number."""
     _, exponents = np.frexp(first)
     eight = np.where(first == 0, 0.0, np.ldexp(0.5 * EIGHT_UNITS, exponents))
-    return np.asarray(np.abs(result) < eight)
+    return np.asarray(np.abs(result) < np.maximum(eight, TINIEST))
 
 
 def keep(result: Floats, first: Floats, out: Floats) -> Floats:
@@ -89,7 +91,7 @@ def never_cancels(result: tuple[float, float], first: tuple[float, float], secon
     """
     if second is not None and (min(*first, *second) >= 0 or max(*first, *second) <= 0):
         return True
-    limit = _SURELY * max(abs(first[0]), abs(first[1]))
+    limit = max(_SURELY * max(abs(first[0]), abs(first[1])), TINIEST)
     return result[0] > limit or result[1] < -limit
 
 

@@ -8,6 +8,7 @@ from decimal import ROUND_HALF_UP, Context, Decimal
 from typing import Final
 
 from xlmc.functions.date_text import parse_moment
+from xlmc.functions.denormals import TINIEST
 
 __all__ = ["SPACES", "general_text", "parse_number", "parse_plain_number", "shown"]
 
@@ -78,7 +79,7 @@ def parse_plain_number(text: str) -> float | None:
     size = _size(match, marks.count("%")) if _marks_fit(marks) else None
     if size is None or not math.isfinite(size):
         return None
-    return 0.0 if size == 0 else -size if "-" in marks or "(" in marks else size
+    return 0.0 if size < TINIEST else -size if "-" in marks or "(" in marks else size
 
 
 def _marks_fit(marks: str) -> bool:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.budget import ask_for_characters, ask_for_texts, bytes_of
+from xlmc.functions.denormals import flushed
 from xlmc.functions.number_text import general_text, parse_number
 
 __all__ = [
@@ -98,7 +99,8 @@ class Value:
 
     @classmethod
     def of_numbers(cls, x: Floats, errors: Codes | None = None) -> Value:
-        """Floats, with errors boxed in them or beside them."""
+        """Floats, with errors boxed in them or beside them; those too small for Excel as 0."""
+        x = flushed(x)
         codes = boxed_codes(x) if errors is None else np.where(errors > 0, errors, boxed_codes(x))
         return cls._with_errors(x, codes, NUMBER)
 
@@ -236,7 +238,7 @@ def from_objects(items: Objects) -> Value:
     ask_for_texts(items.size)
     flat = items.ravel().tolist()
     kinds = np.array([_kind(item) for item in flat], np.uint8).reshape(items.shape)
-    numbers = np.array([_number(item) for item in flat], np.float64).reshape(items.shape)
+    numbers = flushed(np.array([_number(item) for item in flat], np.float64).reshape(items.shape))
     if not (kinds == TEXT).any():
         return Value(numbers, kinds)
     written = [item if isinstance(item, str) else "" for item in flat]

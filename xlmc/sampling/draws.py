@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from xlmc.distributions import Family, Truncated
 from xlmc.distributions.uniform import Uniform
 from xlmc.errors import SimulationError
+from xlmc.functions.denormals import TINIEST, flush
 from xlmc.sampling.copula import GaussianCopula
 from xlmc.sampling.plan import Margin, Plan
 from xlmc.sampling.streams import Stream
@@ -19,6 +20,9 @@ from xlmc.sampling.streams import Stream
 __all__ = ["CorrelatedGroup", "Draw", "DynamicParameters", "Filler", "Linear", "Sampler", "Stage"]
 
 Floats = NDArray[np.float64]
+
+_SMALL: Final = 2.0**-900
+"""Numbers below it may have a share, of 2^-53 at least, that is too small for a cell."""
 
 DynamicParameters = Callable[[Mapping[str, Floats], int], Mapping[Hashable, Floats]]
 """Takes the draws made so far and the number of trials, gives the parameters that depend on them; NaN for an error."""
@@ -39,13 +43,18 @@ class Draw:
     cutoffs: tuple[Hashable, Hashable] | None = None
 
     def fill(self, u: Floats, dynamic: Mapping[Hashable, Floats]) -> None:
-        """Turn uniforms `(n,)` into draws, in place; NaN where the parameters of a trial are no distribution."""
+        """Turn uniforms `(n,)` into draws, in place; NaN where the parameters of a trial are no distribution.
+
+        A draw that is too small a number for a cell is 0.
+        """
         parameters = [_known(p, dynamic) for p in self.parameters]
         if self.cutoffs is None:
             self.family.ppf(u, *parameters, out=u)
         else:
             lower, upper = (_known(c, dynamic) for c in self.cutoffs)
             Truncated(self.family).ppf(u, lower, upper, *parameters, out=u)
+        if not u.min(initial=np.inf) >= TINIEST:
+            flush(u)
 
     @property
     def fixed(self) -> bool:
@@ -80,7 +89,9 @@ class Draw:
         if not isinstance(self.family, Uniform) or self.cutoffs is not None:
             return None
         low, high = self.parameters
-        return self.family.offset_and_factor(low, high) if isinstance(low, float) and isinstance(high, float) else None
+        if not isinstance(low, float) or not isinstance(high, float) or 0 < max(abs(low), abs(high)) < _SMALL:
+            return None
+        return self.family.offset_and_factor(low, high)
 
 
 def _known(parameter: Hashable, dynamic: Mapping[Hashable, Floats]) -> float | Floats:

@@ -170,4 +170,6 @@ OWN_WORDS = {
     *("trunc", "to", "uitofp", "add", "nuw", "nsw", "or", "and", "xor", "shl", "fadd", "fsub", "fmul", "fdiv", "fneg"),
     *("olt", "ogt", "oeq", "one", "ole", "oge", "uge", "une", "x", "source_filename"),
     *("llvm.fma", "llvm.fma.f64", "llvm.fabs.f64", "llvm.sqrt.f64"),
+    *("llvm.x86.sse.stmxcsr", "llvm.x86.sse.ldmxcsr", "llvm.aarch64.get.fpcr", "llvm.aarch64.set.fpcr"),
+    *("alloca", "i32", "void"),
 }

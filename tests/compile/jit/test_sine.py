@@ -9,6 +9,7 @@ pytest.importorskip("llvmlite")
 import mpmath
 
 from xlmc.compile.jit.sine import HALF_PI
+from xlmc.functions.denormals import flushed
 
 LIMIT = 2.0**27
 
@@ -60,7 +61,7 @@ ANGLES = {
 @pytest.mark.parametrize("angles", ANGLES)
 def test_within_a_unit_in_the_last_place(compiled, distance, angles):
     with mpmath.workprec(300):
-        exact = [mpmath.mpf(float(angle)) for angle in ANGLES[angles]]
+        exact = [mpmath.mpf(float(angle)) for angle in flushed(ANGLES[angles])]  # Excel knows no smaller ones
         sine, cosine, tangent = compiled({"B1": "=SIN(A1)", "B2": "=COS(A1)", "B3": "=TAN(A1)"})(ANGLES[angles])
         assert distance(sine, map(mpmath.sin, exact)) < 1
         assert distance(cosine, map(mpmath.cos, exact)) < 1

@@ -16,11 +16,13 @@ from llvmlite import ir
 from xlmc.compile.dag import Constant, Dag, Select
 from xlmc.compile.jit.arithmetic import Arithmetic, intrinsic
 from xlmc.compile.jit.contexts import ROOT, Context, branch
+from xlmc.compile.jit.machine import Machine
 from xlmc.compile.jit.recipes import Literal, Operand, Recipe, literal
 from xlmc.compile.jit.sine import sine_and_cosine
 from xlmc.compile.jit.single_sine import LARGEST_ANGLE, single_sine_and_cosine
 from xlmc.errors import SimulationError
 from xlmc.functions import Kind
+from xlmc.functions.denormals import TINIEST
 
 __all__ = ["Body", "Loaded"]
 
@@ -45,7 +47,7 @@ class Body:
     Args:
         loaded: the nodes from outside the loop, each as its own kind or, where that is none of the loop's, as wanted.
         contexts: of the nodes of the loop.
-        fused: whether the processor multiplies and adds in one instruction.
+        machine: the processor.
         single: compute in float32.
 
     Attributes:
@@ -60,13 +62,14 @@ class Body:
         builder: Any,
         loaded: Mapping[Operand, Loaded],
         contexts: Mapping[int, Context],
-        fused: bool,
+        machine: Machine,
         single: bool = False,
     ) -> None:
         self.builder: Any = builder
         self.real: Any = ir.FloatType() if single else ir.DoubleType()
         self.single = single
-        self._dag, self._contexts, self._fused = dag, contexts, fused
+        self._dag, self._contexts, self._fused = dag, contexts, machine.fused
+        self._flushes = machine.flushes or single
         self._known = dict(loaded)
         self._checked: set[tuple[Operand, Context]] = set()
         self._sums: dict[Context, Any] = {}
@@ -129,11 +132,18 @@ class Body:
                 else:
                     fallible = fallible or self._source(part)[1].fallible
             values.append(self._value(part))
-        value = recipe.emit(self, values)
+        value = self.flushed(recipe.emit(self, values))
         own = Operand(place, self._dag.types[place])
         self._known[own] = Loaded(value, fallible and own.kind is Kind.NUMBER)
         if isinstance(self._dag.nodes[place], Select):
             self._join(place, values[0])
+
+    def flushed(self, value: Any) -> Any:
+        """0 in place of a number too small for Excel, where the processor does not see to it."""
+        if self._flushes or value.type != self.real:
+            return value
+        tiny = self.builder.fcmp_ordered("<", self.intrinsic("llvm.fabs", value), self.number(TINIEST))
+        return self.builder.select(tiny, self.number(0.0), value)
 
     def result(self, place: int) -> Any:
         """A node's value as it leaves the loop."""

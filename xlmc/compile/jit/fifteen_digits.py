@@ -14,7 +14,8 @@ from llvmlite import ir
 from xlmc.compile.dag import Apply, Dag
 from xlmc.compile.jit.recipes import Emit, Operand, literal
 from xlmc.functions import Kind
-from xlmc.functions.fifteen_digits import NEAR, TINIEST, TWINS, equals
+from xlmc.functions.denormals import TINIEST
+from xlmc.functions.fifteen_digits import NEAR, TWINS, equals
 from xlmc.functions.last_sum import EIGHT_UNITS
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ from llvmlite import ir
 from xlmc.compile.dag import Dag
 from xlmc.compile.jit.body import Body, Loaded
 from xlmc.compile.jit.contexts import contexts
+from xlmc.compile.jit.flushing import while_flushing
 from xlmc.compile.jit.machine import Machine, NativeLoop
 from xlmc.compile.jit.recipes import Operand, Recipe
 from xlmc.functions import Kind
@@ -55,7 +56,7 @@ def compiled(
     """
     module = ir.Module()
     inner = _inner(dag, module, machine, recipes, loads, stores, single)
-    _entry(module, inner)
+    _entry(module, inner, None if single else machine)
     return machine.native(module, _NAME)
 
 
@@ -92,7 +93,7 @@ def _inner(
         load.operand: Loaded(_loaded(builder, pointer, picked if load.picked else i, single), load.fallible)
         for load, pointer in zip(loads, pointers, strict=False)
     }
-    body = Body(dag, builder, loaded, contexts(dag, recipes, stores), machine.fused, single)
+    body = Body(dag, builder, loaded, contexts(dag, recipes, stores), machine, single)
     for place, recipe in recipes.items():
         body.compute(place, recipe)
     for place, pointer in zip(stores, pointers[len(loads) :], strict=True):
@@ -128,8 +129,11 @@ def _loaded(builder: ir.IRBuilder, pointer: Any, i: Any, single: bool) -> Any:
     return builder.fptrunc(value, _SINGLE) if single else value
 
 
-def _entry(module: ir.Module, inner: ir.Function) -> None:
-    """The function to call: it takes the arrays' addresses as one array."""
+def _entry(module: ir.Module, inner: ir.Function, flushing: Machine | None) -> None:
+    """The function to call: it takes the arrays' addresses as one array.
+
+    float32 has so few powers of ten that its small numbers are not given up.
+    """
     function = ir.Function(module, ir.FunctionType(_LONG, [_BYTE.as_pointer().as_pointer(), _LONG]), _NAME)
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     addresses, n = function.args
@@ -137,4 +141,8 @@ def _entry(module: ir.Module, inner: ir.Function) -> None:
     for place, argument in enumerate(inner.args[:-1]):
         address = builder.load(builder.gep(addresses, [_LONG(place)]))
         arguments.append(builder.bitcast(address, argument.type))
-    builder.ret(builder.call(inner, [*arguments, n]))
+
+    def loop() -> Any:
+        return builder.call(inner, [*arguments, n])
+
+    builder.ret(loop() if flushing is None else while_flushing(builder, flushing.triple, loop))

@@ -8,6 +8,8 @@ from typing import Any, Final
 
 from llvmlite import binding, ir
 
+from xlmc.compile.jit.flushing import flushes
+
 __all__ = ["Machine", "NativeLoop", "machine", "this_machine"]
 
 _KEPT: Final = 64
@@ -40,13 +42,16 @@ class Machine:
 
     Attributes:
         fused: whether it multiplies and adds in one instruction, rounding once.
+        triple: its kind, in LLVM's words.
+        flushes: whether it makes 0 of numbers that are too small for Excel.
     """
 
     def __init__(self, cpu: str, features: str) -> None:
         self._cpu, self._features = cpu, features
         self._compiled = lru_cache(_KEPT)(self._compile)
-        triple = binding.get_default_triple()
+        self.triple = triple = binding.get_default_triple()
         self.fused = "+fma" in features.split(",") or triple.startswith(("aarch64", "arm64"))
+        self.flushes = flushes(triple)
 
     def _target(self) -> Any:
         """Made anew each time, for the code that comes of it takes it over."""

@@ -132,7 +132,7 @@ def _reciprocal(body: Body, parts: Sequence[Any]) -> Any:
 
 
 def _cube(body: Body, parts: Sequence[Any]) -> Any:
-    return body.builder.fmul(body.builder.fmul(parts[0], parts[0]), parts[0])
+    return body.builder.fmul(body.flushed(body.builder.fmul(parts[0], parts[0])), parts[0])
 
 
 _POWERS: Final = {

@@ -156,6 +156,10 @@ def _fold(instruction: str) -> Emit:
 _sum = _fold("fadd")
 
 
+def _product(body: Body, parts: Parts) -> Any:
+    return reduce(lambda so_far, part: body.flushed(body.builder.fmul(so_far, part)), parts)
+
+
 def _extreme(relation: str) -> Emit:
     def emit(body: Body, parts: Parts) -> Any:
         def better(best: Any, part: Any) -> Any:
@@ -202,7 +206,7 @@ class _Row:
 
 _ROWS: Final[Mapping[str, _Row]] = {
     "SUM": _Row(_sum),
-    "PRODUCT": _Row(_fold("fmul")),
+    "PRODUCT": _Row(_product),
     "MIN": _Row(_extreme("<"), absorbs=_ALL, makes=False),
     "MAX": _Row(_extreme(">"), absorbs=_ALL, makes=False),
     "AVERAGE": _Row(_mean),

@@ -1,0 +1,56 @@
+"""Numbers below 2^-1022 in size: Excel has none ("denormalized numbers", Microsoft, article 78113), and takes 0.
+
+The fast path has NumPy's underflow flag tell of them, so that a block in which there are none costs nothing. The flag
+tells of what is rounded: of a product, a quotient, a power or an exponential, not of a difference, which is exact.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["TINIEST", "Underflow", "flush", "flushed"]
+
+Floats = NDArray[np.float64]
+
+TINIEST: Final = 2.0**-1022
+"""The smallest number that is not 0 to Excel."""
+
+
+class Underflow:
+    """Notes that NumPy raised its underflow flag; the `call` of an `errstate`.
+
+    >>> with np.errstate(under="call", call=(underflow := Underflow())):
+    ...     tiny = np.full(2, 1e-160) * 1e-150
+    >>> underflow.raised
+    True
+    """
+
+    __slots__ = ("raised",)
+
+    def __init__(self) -> None:
+        self.raised = False
+
+    def __call__(self, kind: str, flags: int) -> None:
+        self.raised = True
+
+
+def flushed(x: Any) -> Any:
+    """Numbers of any shape, 0 in place of those that are too small; the same array where there are none.
+
+    >>> flushed(np.array([1.0, 5e-324, 0.0, -1e-310])).tolist()
+    [1.0, 0.0, 0.0, 0.0]
+    """
+    sizes = np.abs(x)
+    if sizes.min(initial=np.inf) >= TINIEST:
+        return x
+    tiny = (sizes < TINIEST) & (sizes > 0)
+    return np.where(tiny, 0.0, x) if tiny.any() else x
+
+
+def flush(x: NDArray[Any]) -> None:
+    """Write 0 in place of numbers that are too small; truth values stay."""
+    if x.dtype == np.float64:
+        x[np.abs(x) < TINIEST] = 0.0

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from xlmc.methods import study
 from xlmc.model import load
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -12,6 +13,12 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.fixture(scope="session")
 def case_study():
     return load(ROOT / "examples" / "intersection.xlsx")
+
+
+@pytest.fixture(scope="session")
+def small(case_study):
+    """Few and short runs of everything."""
+    return study(case_study, reference_trials=1 << 19, trials=1 << 13, replicates=3, seed=5)
 
 
 @pytest.fixture

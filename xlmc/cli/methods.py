@@ -26,7 +26,7 @@ QUICK = {"reference_trials": 1 << 20, "trials": 1 << 17, "replicates": 8}
     default="1%",
     show_default=True,
     help="What is asked of mean, standard deviation and both ends of the central range, in 95 of 100 runs: 1% of each"
-    " number, or 0.1 in the forecasts' units.",
+    " forecast's 5–95 % range, or 0.1 in the forecasts' units.",
 )
 @click.option(
     "--reference-trials",
@@ -37,11 +37,11 @@ QUICK = {"reference_trials": 1 << 20, "trials": 1 << 17, "replicates": 8}
     "-n",
     "--trials",
     type=WholeNumber(1_024),
-    help="Trials of the longest runs; others have a fourth and a sixteenth.  [default: what takes about a quarter of a"
-    " second, 262144 at most]",
+    help="Trials of the longest runs; others have a fourth of them, a sixteenth, and so on.  [default: 16384 times as"
+    " many as the shortest runs, or what takes two seconds]",
 )
 @click.option("--replicates", type=WholeNumber(2), help="Runs of each length.  [default: 24]")
-@click.option("--quick", is_flag=True, help="Few and short runs: a first look.")
+@click.option("--quick", is_flag=True, help="Few and short runs: a first look, in about ten seconds.")
 @click.option("--seed", type=WholeNumber(0), help="Seed of the reference; runs follow it.  [default: the book's]")
 @click.option(
     "-o",

@@ -6,6 +6,8 @@ from typing import Any
 
 from xlmc.cli.plain import estimate_json, finite
 from xlmc.methods import STATISTICS, Curve, Rung, Study, need, recommendation
+from xlmc.methods.choice import choice
+from xlmc.methods.need import shortfall
 from xlmc.report.methods.tables import cannot
 
 __all__ = ["study_json"]
@@ -14,6 +16,8 @@ __all__ = ["study_json"]
 def study_json(found: Study) -> dict[str, Any]:
     """Everything that was measured."""
     reference = found.reference
+    best = choice(found) if found.varying else None
+    chosen = best and best.chosen
     return {
         "workbook": found.model.workbook.name,
         "accuracy": found.accuracy[0],
@@ -35,7 +39,10 @@ def study_json(found: Study) -> dict[str, Any]:
                 }
                 for name, answer in reference.answers.items()
             },
+            "widths": {name: finite(width) for name, width in reference.widths.items()},
         },
+        "recommended": chosen and chosen.method.key,
+        "cheapest": [curve.method.key for curve in best.cheapest] if best else [],
         "methods": [_curve(found, curve) for curve in found.every],
         "not_used": dict(found.absent),
         "recommendation": recommendation(found),
@@ -44,7 +51,8 @@ def study_json(found: Study) -> dict[str, Any]:
 
 def _curve(found: Study, curve: Curve) -> dict[str, Any]:
     drawn = curve not in found.once
-    wanted = need(found, curve) if drawn else None
+    wanted = need(found, curve) if drawn and found.varying else None
+    near = shortfall(found, curve) if curve.answers and found.varying and not drawn else None
     return {
         "method": curve.method.key,
         "name": curve.method.name,
@@ -57,7 +65,9 @@ def _curve(found: Study, curve: Curve) -> dict[str, Any]:
             each: {"trials": finite(curve.slope(each, "budget")), "seconds": finite(curve.slope(each, "seconds"))}
             for each in STATISTICS
         },
-        "needs": wanted and {"trials": finite(wanted.trials), "seconds": finite(wanted.seconds)},
+        "needs": wanted
+        and {"trials": finite(wanted.trials), "seconds": finite(wanted.seconds), "reaches": wanted.reaches},
+        "near_enough": near and near.reaches,
     }
 
 
@@ -65,6 +75,7 @@ def _rung(found: Study, rung: Rung, drawn: bool) -> dict[str, Any]:
     return {
         "trials": rung.budget if drawn else None,
         "seconds": finite(rung.seconds),
+        "seconds_median": finite(rung.usual),
         "seconds_measured": rung.measured,
         "evaluations": rung.evaluations,
         "effective": rung.effective,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Final, Protocol
+from typing import Final, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from xlmc import statistics
 from xlmc.model import Model
 from xlmc.statistics import Sample
 
-__all__ = ["STATISTICS", "Answer", "Method", "MethodResult", "answer_of"]
+__all__ = ["STATISTICS", "Answer", "Errors", "Method", "MethodResult", "answer_of"]
 
 STATISTICS: Final[Mapping[str, str]] = {
     "mean": "Mean",
@@ -22,6 +22,10 @@ STATISTICS: Final[Mapping[str, str]] = {
     "high": "Upper end",
 }
 """Attribute of an `Answer` -> what people call it."""
+
+Errors = Literal["independent", "consistent", "weighted", "floor", "once"]
+"""How a method's errors fall with its trials: as those of independent trials; to zero, at least as fast; likewise, with
+weights; as those of independent trials, down to a floor; or there is one answer, and nothing falls."""
 
 Floats = NDArray[np.float64]
 
@@ -71,7 +75,7 @@ class Method(Protocol):
     Attributes:
         key: short, for JSON and colours.
         name: for people.
-        sampling: whether more trials bring it nearer to the answer, so that it has a curve and not one point.
+        errors: how they fall with its trials.
         cannot: what it cannot do, in words; empty where there is nothing to say.
     """
 
@@ -80,7 +84,7 @@ class Method(Protocol):
     @property
     def name(self) -> str: ...
     @property
-    def sampling(self) -> bool: ...
+    def errors(self) -> Errors: ...
     @property
     def cannot(self) -> str: ...
 

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.methods.answer import Answer, MethodResult
+from xlmc.methods.answer import Answer, Errors, MethodResult
 from xlmc.methods.box import box_of
 from xlmc.methods.dependence import assumptions_of
 from xlmc.methods.evaluation import Evaluation
@@ -33,7 +33,7 @@ class Corners:
 
     key: str = "corners"
     name: str = "Bounds, corners"
-    sampling: bool = False
+    errors: Errors = "once"
     cannot: str = (
         "gives two ends and no likelihood in between, does not see filters, and misses extremes inside the box"
     )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from xlmc.methods.answer import Answer, MethodResult
+from xlmc.methods.answer import Answer, Errors, MethodResult
 from xlmc.methods.expansion import expansion_of
 from xlmc.model import Model
 
@@ -20,7 +20,7 @@ class FirstOrder:
 
     key: str = "taylor-1"
     name: str = "Taylor, first order"
-    sampling: bool = False
+    errors: Errors = "once"
     cannot: str = "does not see filters; takes every curve for straight and every answer for normally distributed"
 
     def run(self, model: Model, budget: int, seed: int) -> MethodResult:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from xlmc.blocks import Task
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
-from xlmc.methods.answer import MethodResult, answer_of
+from xlmc.methods.answer import Errors, MethodResult, answer_of
 from xlmc.model import Model
 from xlmc.sampling import Margin, Plan, Stream
 from xlmc.scheduling.recipe import worker_of
@@ -47,7 +47,7 @@ class ImportanceGrid:
 
     key: str = "grid"
     name: str = "Importance grid"
-    sampling: bool = True
+    errors: Errors = "weighted"
     cannot: str = "sees one assumption at a time, so that it gains less where only combinations are accepted"
 
     def run(self, model: Model, budget: int, seed: int) -> MethodResult:

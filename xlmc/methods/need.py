@@ -1,31 +1,24 @@
-"""How many trials, and how many seconds, a method needs for an accuracy: its measured errors, carried on."""
+"""How many trials and seconds a method needs for an accuracy, and which answers given once are near enough."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from xlmc.methods.answer import STATISTICS
 from xlmc.methods.curve import Curve, Rung
-from xlmc.methods.rms import line
-from xlmc.methods.sampled import MONTE_CARLO, Sampled
+from xlmc.methods.law import CONFIDENCE, law
+from xlmc.methods.rms import NORMAL_95
 from xlmc.methods.study import Study
 
-__all__ = ["NORMAL_95", "Need", "Shortfall", "need", "shortfall", "worst"]
+__all__ = ["Need", "Shortfall", "Verdict", "asked_kinds", "need", "reach_of", "seconds_of", "shortfall"]
 
-NORMAL_95: Final = 1.959964
-"""95 of 100 runs lie within so many root mean square errors."""
+Verdict = Literal["yes", "no", "unknown"]
 
 _LEAST_PART: Final = 0.25
-_LEAST_SLOPE: Final = -0.05
-"""Errors that fall more slowly with the trials are not carried on."""
-
-_SHORTEST: Final = 1 / 16
-"""Of the shortest measured runs: errors are not carried on to runs that are shorter still."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +30,8 @@ class Need:
         seconds: likewise.
         forecast, statistic: whose accuracy needs the most.
         beyond: how many times as many trials as the longest measured runs had; below 1 where it is between them.
+        reaches: whether the method comes to the accuracy at all, as far as the runs can tell.
+        floor: what 95 of 100 runs of any length are off by, in tolerances; 0 for a method that converges.
     """
 
     trials: float
@@ -44,6 +39,13 @@ class Need:
     forecast: str
     statistic: str
     beyond: float
+    reaches: Verdict = "yes"
+    floor: float = 0.0
+
+    @property
+    def usable(self) -> bool:
+        """Whether it can be recommended."""
+        return self.reaches == "yes" and bool(np.isfinite(self.seconds))
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,112 +53,107 @@ class Shortfall:
     """The number that an answer given once misses by the most.
 
     Attributes:
-        error: in the forecast's units.
+        error: in the forecast's units, with its sign.
+        own: the standard error of the reference, likewise.
         times: the error over what was asked for; infinite where the method gives no number.
+        reaches: whether it is near enough, as far as the reference can tell.
     """
 
     forecast: str
     statistic: str
     error: float
+    own: float
     times: float
+    reaches: Verdict
+
+
+def asked_kinds(study: Study) -> list[tuple[str, str]]:
+    """The numbers that there is something to come near to in: forecast and attribute of `Answer`."""
+    return [(name, each) for name in study.varying for each in STATISTICS if study.converges(name, each)]
 
 
 def need(study: Study, curve: Curve) -> Need:
-    """What a method that draws needs, for 95 of 100 runs to keep the accuracy in every number of every forecast.
-
-    All its errors are taken to fall with the trials as their mean does in logarithms: the single ones are too few to
-    have slopes of their own. Of independent trials theory knows the slope, and a few runs would only guess at it.
-    """
-    budgets = [float(rung.budget) for rung in curve.rungs]
-    varying = [(forecast, statistic) for forecast in study.varying for statistic in STATISTICS]
-    kinds = [kind for kind in varying if study.converges(*kind)]
-    logs = np.array([[_log(rung.errors[kind].value) for kind in kinds] for rung in curve.rungs])
-    levels = [float(np.exp(np.mean(row[np.isfinite(row)]))) if np.isfinite(row).any() else np.nan for row in logs]
-    independent = isinstance(curve.method, Sampled) and curve.method.method == MONTE_CARLO.method
-    slope = -0.5 if independent else line(budgets, levels)[0]
+    """What a method that draws needs, for 95 of 100 runs to keep the accuracy in every number of every forecast."""
+    longest = float(curve.rungs[-1].budget)
     worst = Need(0.0, 0.0, "", "mean", 0.0)
-    for place, kind in enumerate(kinds):
-        tolerance = study.tolerance(*kind) / NORMAL_95
-        trials = _trials(budgets, logs[:, place], slope, tolerance)
-        last = curve.rungs[-1].errors[kind]
-        if last.biased and abs(last.bias) * NORMAL_95 > study.tolerance(*kind):
-            trials = np.inf
-        if trials > worst.trials:
-            worst = Need(trials, seconds_of(curve, trials), *kind, trials / budgets[-1])
-    return worst
+    for kind in asked_kinds(study):
+        tolerance = study.tolerance(kind[0])
+        found = law(study, curve, kind)
+        reaches = _verdict(found.floor_low, found.floor_high, tolerance)
+        trials = np.inf if reaches == "no" else found.trials(tolerance)
+        rank = (("yes", "unknown", "no").index(reaches), trials)
+        if rank > (("yes", "unknown", "no").index(worst.reaches), worst.trials) or not worst.forecast:
+            floor = found.floor / tolerance if tolerance > 0.0 else np.inf
+            worst = Need(trials, seconds_of(curve, trials), *kind, trials / longest, reaches, floor)
+    if np.isnan(worst.seconds):
+        worst = Need(worst.trials, np.inf, worst.forecast, worst.statistic, worst.beyond, "unknown")
+    return _agreeing(study, curve, worst)
 
 
-def shortfall(study: Study, curve: Curve) -> Shortfall:
-    """Which number of an answer that was given once is worst; of those that are not good enough, a mean comes first."""
-    found = [*_shortfalls(study, curve)]
-    means = [each for each in found if each.statistic == "mean" and each.times > 1.0]
-    return max(means or found, key=lambda each: each.times)
-
-
-def _shortfalls(study: Study, curve: Curve) -> Iterator[Shortfall]:
-    for (forecast, statistic), error in curve.rungs[-1].errors.items():
-        if not study.converges(forecast, statistic):
-            continue
-        tolerance = study.tolerance(forecast, statistic)
-        known = np.isfinite(error.value)
-        times = error.value / tolerance if known and tolerance > 0.0 else np.inf
-        yield Shortfall(forecast, statistic, error.value, float(times))
-
-
-def worst(study: Study, curve: Curve, rung: Rung) -> float:
-    """The largest error of a run length over the one asked for, in 95 of 100 runs; infinite where a number is missing.
-
-    Infinite too where a relative accuracy is asked of a number that is zero.
-    """
-    wide = 1.0 if curve in study.once else NORMAL_95
-    found = 0.0
-    for kind, error in rung.errors.items():
-        if not study.converges(*kind):
-            continue
-        tolerance = study.tolerance(*kind)
-        known = tolerance > 0.0 and np.isfinite(error.value)
-        found = max(found, wide * error.value / tolerance if known else np.inf)
+def _agreeing(study: Study, curve: Curve, found: Need) -> Need:
+    """An engine's: it is off by what its arithmetic is coarser by, in every run."""
+    for name in study.varying:
+        off = curve.apart * study.reference.answers[name].sd
+        tolerance = study.tolerance(name)
+        if off > tolerance:
+            return Need(np.inf, np.inf, name, "mean", np.inf, "no", off / tolerance)
     return found
 
 
+def _verdict(low: float, high: float, tolerance: float) -> Verdict:
+    """Whether an error between these bounds is within a tolerance."""
+    return "no" if low > tolerance else "yes" if high <= tolerance else "unknown"
+
+
+def shortfall(study: Study, curve: Curve) -> Shortfall:
+    """Which number of an answer that was given once is worst: one that is surely not good enough comes first."""
+    order = ("yes", "unknown", "no")
+    return max(_shortfalls(study, curve), key=lambda each: (order.index(each.reaches), each.times))
+
+
+def _shortfalls(study: Study, curve: Curve) -> Iterator[Shortfall]:
+    """Every number; the reference's error counts for as many comparisons as there are numbers and such methods."""
+    from scipy.special import ndtri
+
+    kinds = asked_kinds(study)
+    chances = max(len(kinds) * len([each for each in study.once if each.answers]), 1)
+    wide = float(-ndtri((1.0 - CONFIDENCE) / 2.0 / chances))
+    for kind in kinds:
+        error = curve.rungs[-1].errors[kind]
+        tolerance = study.tolerance(kind[0])
+        if not np.isfinite(error.value):
+            yield Shortfall(*kind, np.nan, error.error, np.inf, "no")
+            continue
+        own = wide * float(np.nan_to_num(error.error))
+        reaches = _verdict(error.value - own, error.value + own, tolerance)
+        yield Shortfall(*kind, error.bias, error.error, error.value / tolerance, reaches)
+
+
+def reach_of(study: Study, curve: Curve, rung: Rung, kind: tuple[str, str]) -> tuple[float, float, float]:
+    """What 95 of 100 runs of one length keep within in one number, and the 95 % bounds of that, over the tolerance.
+
+    Of an answer that was given once: its error, and the bounds that the reference's error leaves.
+    """
+    error, tolerance = rung.errors[kind], study.tolerance(kind[0])
+    wide = (1.0 if curve in study.once else NORMAL_95) / tolerance
+    low, high = error.interval
+    return wide * error.value, wide * low, wide * high
+
+
 def seconds_of(curve: Curve, trials: float) -> float:
-    """A run of so many trials: a fixed part and one for each, as the two longest measured runs have them.
+    """A run of so many trials: between measured run lengths in proportion, and beyond them as between the last two.
 
     What a trial costs is not taken for less than a quarter of the longest run's average: runs that are shorter than a
     block of trials all take the same time, and say nothing of it.
     """
-    if not np.isfinite(trials):
-        return np.inf
     timed = [rung for rung in curve.rungs if np.isfinite(rung.seconds)]
+    if not timed or not np.isfinite(trials):
+        return np.inf
     budgets = np.array([float(rung.budget) for rung in timed])
     seconds = np.array([rung.seconds for rung in timed])
-    if not timed:
-        return np.inf
-    if budgets.size < 2:
-        return float(seconds[0] * trials / budgets[0])
-    least = _LEAST_PART * float(seconds[-1] / budgets[-1])
-    each = max(float((seconds[-1] - seconds[-2]) / (budgets[-1] - budgets[-2])), least)
-    return max(float(seconds[-1]) - each * float(budgets[-1]), 0.0) + each * trials
-
-
-def _trials(budgets: list[float], logs: NDArray[np.float64], slope: float, tolerance: float) -> float:
-    """Where the line of this slope through these logarithms comes down to the tolerance.
-
-    The shortest runs do where none was off at all, as those of whole numbers; and nothing is carried on to runs that
-    are much shorter than they.
-    """
-    least = _SHORTEST * budgets[0]
-    known = np.isfinite(logs)
-    if tolerance <= 0.0 or np.isnan(logs[-1]):
-        return np.inf
-    if not known.any():
-        return budgets[0]
-    if not slope < _LEAST_SLOPE:
-        return budgets[-1] if np.exp(logs[known][-1]) <= tolerance else np.inf
-    height = float(np.mean(logs[known] - slope * np.log(np.array(budgets)[known])))
-    return max(float(np.exp((np.log(tolerance) - height) / slope)), least)
-
-
-def _log(value: float) -> float:
-    """Of an error: of none at all minus infinity, of one that is not known NaN."""
-    return float(np.log(value)) if value > 0.0 else (-np.inf if value == 0.0 else np.nan)
+    if trials <= budgets[-1]:
+        return float(np.interp(trials, budgets, seconds))
+    each = float(seconds[-1] / budgets[-1])
+    if budgets.size > 1:
+        each = max(float((seconds[-1] - seconds[-2]) / (budgets[-1] - budgets[-2])), _LEAST_PART * each)
+    return float(seconds[-1]) + each * (trials - float(budgets[-1]))

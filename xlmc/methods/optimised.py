@@ -23,7 +23,7 @@ from xlmc.derivatives import Derivative, derivatives
 from xlmc.drawing import parameter_target
 from xlmc.errors import SimulationError
 from xlmc.functions.values import ERROR, TEXT
-from xlmc.methods.answer import Answer, MethodResult
+from xlmc.methods.answer import Answer, Errors, MethodResult
 from xlmc.methods.box import Box, box_of
 from xlmc.methods.evaluation import Evaluation
 from xlmc.methods.lockstep import in_step
@@ -54,7 +54,7 @@ class Optimised:
 
     key: str = "optimised"
     name: str = "Bounds, optimised"
-    sampling: bool = False
+    errors: Errors = "once"
     cannot: str = (
         "gives two ends and no likelihood in between; a search may end at an extreme that is not the outermost"
     )

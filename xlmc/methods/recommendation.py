@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
-from xlmc.methods.answer import STATISTICS
+from xlmc.methods.causes import missed
+from xlmc.methods.choice import NO_TIME, Choice, choice
 from xlmc.methods.curve import Curve
-from xlmc.methods.need import Need, Shortfall, need, shortfall
+from xlmc.methods.need import Need, Shortfall, shortfall
+from xlmc.methods.number_words import rounded, seconds_text, spelt, trials_text
 from xlmc.methods.sampled import MONTE_CARLO, Sampled
 from xlmc.methods.study import Study
 
-__all__ = ["ERROR_WORDS", "recommendation", "rounded", "seconds_text", "trials_text"]
-
-_NO_MATTER: Final = 2.0
-"""A method that is faster by less is not worth being another one."""
-
-_SOON: Final = 5.0
-"""Seconds that nobody minds waiting for."""
+__all__ = ["ERROR_WORDS", "recommendation"]
 
 _FAR: Final = 64.0
 """So many times beyond the measured runs, errors are only carried on with a word of warning."""
@@ -46,34 +43,39 @@ def _paragraphs(study: Study) -> list[str]:
             if numbers
             else "No forecast is a number in more than one trial: there is nothing to compute with any method."
         ]
-    drawing = {curve: need(study, curve) for curve in (*study.curves, *study.engines)}
-    able = {curve: found for curve, found in drawing.items() if np.isfinite(found.seconds)}
-    said = [_asked(study), *_heavy(study)]
+    found = choice(study)
     once = [(curve, shortfall(study, curve)) for curve in study.once if curve.answers]
-    said += _without_drawing(once)
-    if able:
-        said += _drawing(study, able)
-    else:
-        said.append("No method that draws comes to this accuracy: ask for less, or in the forecasts' units.")
-    said += [_unable(curve, found) for curve, found in drawing.items() if curve not in able]
-    said += [_missed(study, curve, found) for curve, found in once if found.times > 1.0]
+    said = [_asked(study), *_heavy(study), *_drawing(study, found), *_without_drawing(once)]
+    said += [_never(study, curve, each) for curve, each in found.needs.items() if each.reaches == "no"]
+    said += [_unknown(curve, each) for curve, each in found.needs.items() if each.reaches == "unknown"]
+    said += [missed(study, curve, each) for curve, each in once if each.reaches == "no"]
+    said += [_undecided(study, curve, each) for curve, each in once if each.reaches == "unknown"]
     said += _bounds(study)
     return [*said, ERROR_WORDS]
 
 
 def _asked(study: Study) -> str:
     text, _, relative = study.accuracy
-    what = f"{text} of each number" if relative else f"{text} in each forecast's units"
-    return (
-        f"Asked for: mean, standard deviation and both ends of the central range of every forecast to {what}, in 95 of "
-        "100 runs."
-    )
+    what = f"{text} of its 5–95 % range" if relative else f"{text} in its units"
+    numbers = "mean, standard deviation and both ends of the central range of every forecast"
+    said = f"Asked for: {numbers}, each within {what} of the true number in 95 of 100 runs."
+    if relative:
+        said += (
+            " The 5–95 % range of a forecast is what nine tenths of its accepted trials lie in: "
+            f"{'; '.join(_range(study, name) for name in study.varying)}."
+        )
+    return said
+
+
+def _range(study: Study, name: str) -> str:
+    units = next((f" {f.units}" for f in study.model.forecasts if f.name == name and f.units), "")
+    return f"{name} {study.reference.widths[name]:.3g}{units} wide"
 
 
 def _heavy(study: Study) -> list[str]:
     """What no method comes near to."""
     return [
-        f"The {' and '.join(map(_spelt, lost))} of {name} {'do' if len(lost) > 1 else 'does'} not converge, for its "
+        f"The {' and '.join(map(spelt, lost))} of {name} {'do' if len(lost) > 1 else 'does'} not converge, for its "
         f"tail is too heavy, and no method brings {'them' if len(lost) > 1 else 'it'} nearer. Left out in what "
         "follows; report percentiles."
         for name, lost in study.reference.heavy.items()
@@ -81,55 +83,65 @@ def _heavy(study: Study) -> list[str]:
     ]
 
 
-def _without_drawing(once: Sequence[tuple[Curve, Shortfall]]) -> list[str]:
-    enough = [curve for curve, found in once if found.times <= 1.0]
-    if not enough:
-        return []
-    names = " and ".join(curve.method.name for curve in enough)
-    verbs = ("is", "needs") if len(enough) == 1 else ("are", "need")
-    return [f"{names} {verbs[0]} near enough, and {verbs[1]} no draws at all."]
-
-
-def _drawing(study: Study, able: dict[Curve, Need]) -> list[str]:
-    fastest = min(able, key=lambda curve: able[curve].seconds)
-    plain = next((curve for curve in able if curve.method is MONTE_CARLO), fastest)
-    worth = able[plain].seconds > _SOON and able[plain].seconds > _NO_MATTER * able[fastest].seconds
-    chosen = fastest if worth else plain
-    found = able[chosen]
-    said = [
-        f"Recommended: {chosen.method.name}, about {trials_text(found.trials)} trials, "
-        f"{seconds_text(found.seconds)}; the {_spelt(found.statistic)} of {found.forecast} needs the most."
-    ]
-    if chosen is plain and fastest is not plain:
-        said[0] += (
-            f" {fastest.method.name} would take {seconds_text(able[fastest].seconds)}, which saves too little to give "
-            "up independent trials and errors that are known without replicates."
-            if not _same_trials(study, fastest)
-            else f" With {fastest.method.name.rpartition(', ')[2]} the same trials take "
-            f"{seconds_text(able[fastest].seconds)}."
+def _drawing(study: Study, found: Choice) -> list[str]:
+    if found.chosen is None:
+        return ["No method that draws comes to this accuracy: ask for one that is more than nothing."]
+    chosen, wanted = found.chosen, found.needs[found.chosen]
+    said = (
+        f"Recommended: {chosen.method.name}, about {trials_text(wanted.trials)} trials, "
+        f"{seconds_text(wanted.seconds)}; the {spelt(wanted.statistic)} of {wanted.forecast} needs the most. "
+        f"{_saving(found)}"
+    )
+    if wanted.beyond > _FAR:
+        said += (
+            f" That is {wanted.beyond:,.0f} times as many trials as the longest measured runs had, and carried on from "
+            "them."
         )
-    if found.beyond > _FAR:
-        said[0] += (
-            f" That is {found.beyond:,.0f} times as many trials as the longest measured runs had, and so a guess: let "
-            "--precision end the run."
-        )
-    others = sorted((curve for curve in able if curve is not chosen), key=lambda curve: able[curve].seconds)
-    said[0] += f" {_command(study, chosen, found)}"
-    if others:
-        rest = "; ".join(
-            f"{curve.method.name} {trials_text(able[curve].trials)} trials, {seconds_text(able[curve].seconds)}"
-            for curve in others
-        )
-        said.append(f"The others would need: {rest}.")
-    return said
+    others = sorted(
+        (curve for curve, each in found.needs.items() if curve is not chosen and each.usable),
+        key=lambda curve: found.needs[curve].seconds,
+    )
+    rest = "; ".join(
+        f"{curve.method.name} {trials_text(found.needs[curve].trials)} trials, "
+        f"{seconds_text(found.needs[curve].seconds)}"
+        for curve in others
+    )
+    return [f"{said} {_command(study, chosen, wanted)}", *([f"The others would need: {rest}."] if rest else [])]
 
 
-def _command(study: Study, curve: Curve, found: Need) -> str:
+def _saving(found: Choice) -> str:
+    """What the clock alone would choose."""
+    assert found.chosen is not None
+    least = found.cheapest[0]
+    if found.chosen in found.cheapest:
+        saved = found.needs[found.chosen].seconds - found.needs[least].seconds
+        if saved <= NO_TIME:
+            return "No other method saves a tenth of a second."
+        return f"{_names([c for c in found.cheapest if c is not found.chosen])} cost the same within 20 %."
+    tied = [curve for curve in found.cheapest if curve is not least]
+    said = f"By the clock alone {least.method.name} is cheapest, {seconds_text(found.needs[least].seconds)}"
+    if tied:
+        said += f", and {_names(tied)} within 20 % or a tenth of a second of it, which is a tie"
+    why = "" if _same_trials(least, found.chosen) else ", and gives up independent trials"
+    return f"{said}; that saves seconds{why}."
+
+
+def _same_trials(curve: Curve, chosen: Curve) -> bool:
+    methods = curve.method, chosen.method
+    return all(isinstance(each, Sampled) and each.method == MONTE_CARLO.method for each in methods)
+
+
+def _names(curves: Sequence[Curve]) -> str:
+    names = [curve.method.name for curve in curves]
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _command(study: Study, curve: Curve, wanted: Need) -> str:
     method = curve.method
     if not isinstance(method, Sampled):
-        call = f"xlmc.methods.{type(method).__name__}().run(model, {found.trials:.0f}, seed=1)"
+        call = f"xlmc.methods.{type(method).__name__}().run(model, {wanted.trials:.0f}, seed=1)"
         return f"It runs from Python: `{call}`."
-    text = study.accuracy[0].replace(" ", "")
+    text, _, relative = study.accuracy
     options = [
         f"--{name} {chosen}"
         for name, chosen, usual in (
@@ -139,48 +151,61 @@ def _command(study: Study, curve: Curve, found: Need) -> str:
         )
         if chosen != usual
     ]
-    command = " ".join(["xlmc simulate", study.model.workbook.name, *options, f"--precision {text}"])
-    command += f" --precision-of {'range' if study.reference.heavy else 'mean,sd,range'}"
+    command = " ".join(["xlmc simulate", study.model.workbook.name, *options])
+    if relative:
+        return f"`{command} -n {_upwards(wanted.trials)}` runs it, and prints what each number is known to."
+    numbers = "range" if study.reference.heavy else "mean,sd,range"
+    command += f" --precision {text.replace(' ', '')} --precision-of {numbers}"
     return f"`{command}` goes on until the run's own errors say that it is reached."
 
 
-def _same_trials(study: Study, curve: Curve) -> bool:
-    return curve in study.engines
+def _upwards(trials: float) -> int:
+    """Two significant digits, never fewer trials than that.
+
+    >>> _upwards(383_000.0)
+    390000
+    """
+    size = int(10 ** max(len(f"{trials:.0f}") - 2, 0))
+    return math.ceil(trials / size) * size
 
 
-def _unable(curve: Curve, found: Need) -> str:
+def _without_drawing(once: Sequence[tuple[Curve, Shortfall]]) -> list[str]:
+    enough = [curve for curve, found in once if found.reaches == "yes"]
+    if not enough:
+        return []
+    verbs = ("is", "needs") if len(enough) == 1 else ("are", "need")
+    return [f"{_names(enough)} {verbs[0]} near enough, and {verbs[1]} no draws at all."]
+
+
+def _never(study: Study, curve: Curve, found: Need) -> str:
+    off = found.floor * study.tolerance(found.forecast)
+    units = next((f" {f.units}" for f in study.model.forecasts if f.name == found.forecast and f.units), "")
     return (
-        f"{curve.method.name} does not come to it however many trials it runs: the "
-        f"{_spelt(found.statistic)} of {found.forecast} stays off."
+        f"{curve.method.name} never comes to it: the {spelt(found.statistic)} of {found.forecast} stays off by about "
+        f"{rounded(off)}{units}, {rounded(found.floor)} times what was asked for, however many trials it runs."
     )
 
 
-def _missed(study: Study, curve: Curve, found: Shortfall) -> str:
-    if not np.isfinite(found.times):
-        return f"{curve.method.name} has no number for {found.forecast}."
-    truth = float(getattr(study.reference.answers[found.forecast], found.statistic))
-    units = next((f.units for f in study.model.forecasts if f.name == found.forecast), "")
-    share = f", {rounded(100.0 * found.error / abs(truth))} % of it" if truth else ""
-    text = (
-        f"{curve.method.name} misses the {_spelt(found.statistic)} of {found.forecast} by "
-        f"{rounded(found.error)}{' ' if units else ''}{units}{share}"
+def _unknown(curve: Curve, found: Need) -> str:
+    return (
+        f"These runs cannot tell whether {curve.method.name} comes to it: more trials do not remove all of its error, "
+        f"and whether what is left in the {spelt(found.statistic)} of {found.forecast} is small enough takes more and "
+        "longer runs to see."
     )
-    kept = study.reference.acceptance.value
-    if study.model.filters and kept < 1.0:
-        return f"{text}: it does not see that the filters reject {_percent(1.0 - kept)} of the trials."
-    return f"{text}: {_LEFT_OUT.get(curve.method.key, 'what it leaves out of the formulas')}."
 
 
-_LEFT_OUT: Final = {
-    "taylor-1": "it takes every curve for straight and every answer for normally distributed",
-    "taylor-2": "over these ranges the formulas are more than quadratic polynomials",
-}
+def _undecided(study: Study, curve: Curve, found: Shortfall) -> str:
+    units = next((f" {f.units}" for f in study.model.forecasts if f.name == found.forecast and f.units), "")
+    return (
+        f"This reference cannot tell whether {curve.method.name} is near enough: it is off by "
+        f"{rounded(abs(found.error))} ± {rounded(found.own)}{units} in the {spelt(found.statistic)} of "
+        f"{found.forecast}, where {rounded(study.tolerance(found.forecast))}{units} was asked for. More "
+        "--reference-trials would."
+    )
 
 
 def _bounds(study: Study) -> list[str]:
     curves = [curve for curve in study.once if curve.ranges]
-    if not curves:
-        return []
     widths = []
     for curve in curves:
         ratios = [
@@ -197,44 +222,3 @@ def _bounds(study: Study) -> list[str]:
         "Bounds answer another question, what is possible and not what is likely. Their widths, in central ranges: "
         f"{'; '.join(widths)}."
     ]
-
-
-def _spelt(statistic: str) -> str:
-    """As it stands in a sentence: `lower end`, `SD`."""
-    name = STATISTICS[statistic]
-    return name if name.isupper() else name.lower()
-
-
-def _percent(share: float) -> str:
-    return f"{100.0 * share:.3g} %"
-
-
-def rounded(value: float) -> str:
-    """Two significant digits."""
-    return f"{float(f'{value:.2g}'):g}" if 0.001 <= abs(value) < 1e4 or value == 0.0 else f"{value:.1e}"
-
-
-def trials_text(trials: float) -> str:
-    """`1,200,000`: two significant digits.
-
-    >>> trials_text(1_234_567.0)
-    '1,200,000'
-    """
-    if not np.isfinite(trials):
-        return "infinitely many"
-    size = 10 ** max(len(f"{trials:.0f}") - 2, 0)
-    return f"{round(trials / size) * size:,}"
-
-
-def seconds_text(seconds: float) -> str:
-    """`0.35 s`, `12 s`, `4 min`, `3 h`; a dash where no run came to an end.
-
-    >>> seconds_text(0.0123), seconds_text(250.0), seconds_text(9_000.0)
-    ('0.012 s', '4.2 min', '2.5 h')
-    """
-    if not np.isfinite(seconds):
-        return "–"
-    for length, name, top in ((1.0, "s", 120.0), (60.0, "min", 7_200.0), (3_600.0, "h", 172_800.0)):
-        if seconds < top:
-            return f"{float(f'{seconds / length:.2g}'):g} {name}"
-    return f"{float(f'{seconds / 86_400.0:.2g}'):,g} days"

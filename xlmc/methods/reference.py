@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -19,14 +19,29 @@ from xlmc.simulation import Simulation
 from xlmc.statistics import Estimate, Sample
 from xlmc.statistics.tail_index import heavy_tail
 
-__all__ = ["MOST_REFERENCE", "Reference", "fastest_engine", "reference_of", "reference_size"]
+__all__ = [
+    "MOST_REFERENCE",
+    "Reference",
+    "fastest_engine",
+    "reference_of",
+    "reference_size",
+    "unfiltered_of",
+]
 
 MOST_REFERENCE: Final = 1 << 25
 _LEAST: Final = 1 << 14
 _MOST_ACCEPTED: Final = 1 << 22
 """More than these, and sorting them costs more than they add."""
 
+_UNFILTERED: Final = 1 << 20
+
 _PROBE: Final = 65_536
+
+_ROUNDING: Final = 1e-12
+"""A standard deviation that is smaller beside the mean is none."""
+
+_NORMAL_WIDTH: Final = 3.289707
+"""From the 5 % to the 95 % quantile of a normal distribution, in standard deviations."""
 
 _WATCHED: Final = 256
 """Accepted trials whose draws are kept: the watch for lost digits looks at so many."""
@@ -44,6 +59,8 @@ class Reference:
         errors: forecast -> their standard errors.
         single: forecast -> the standard errors that one independent accepted trial would have; over the square root of
             their number, they are what theory says of a run by Monte Carlo.
+        widths: forecast -> from its 5 % to its 95 % quantile: what accuracies are relative to. Where these are one
+            number, the same of a normal distribution with its standard deviation.
         acceptance: the share of accepted trials.
         heavy: forecast -> attributes of `Answer` that do not converge, for its tail is too heavy.
         warnings: why its answers must not be used as they stand.
@@ -58,6 +75,7 @@ class Reference:
     answers: Mapping[str, Answer]
     errors: Mapping[str, Answer]
     single: Mapping[str, Answer]
+    widths: Mapping[str, float]
     acceptance: Estimate
     warnings: tuple[str, ...] = ()
     heavy: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -111,10 +129,36 @@ def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: in
         answers={name: found[0] for name, found in numbers.items()},
         errors={name: found[1] for name, found in numbers.items()},
         single={name: found[2] for name, found in numbers.items()},
+        widths={f.name: _width(run[f.name].sample, numbers[f.name][0]) for f in model.forecasts},
         acceptance=run.acceptance,
         warnings=tuple(run.warnings),
         heavy={f.name: lost for f in model.forecasts if (lost := _lost(run[f.name].sample.x))},
     )
+
+
+def unfiltered_of(model: Model, reference: Reference) -> Reference | None:
+    """What the forecasts are without the filters, by a run of up to 1,048,576 trials.
+
+    None where no filter rejects anything, or where forecasts are no numbers in trials that the filters reject: then
+    there is no such answer.
+    """
+    if not model.filters or reference.accepted == reference.trials:
+        return None
+    free = Model(model.workbook, replace(model.definitions, filters=(), checks=()), model.path)
+    trials = min(reference.trials, _UNFILTERED)
+    try:
+        found = reference_of(free, trials, "mc", reference.engine, reference.seed)
+    except SimulationError:
+        return None
+    return None if found.warnings or found.heavy else found
+
+
+def _width(sample: Sample, answer: Answer) -> float:
+    """From the 5 % to the 95 % quantile; 0 where a forecast does not vary."""
+    if sample.n < 2 or not answer.sd > _ROUNDING * abs(answer.mean):
+        return 0.0
+    low, high = sample.quantile(np.array([0.05, 0.95]))
+    return float(high - low) if high > low else _NORMAL_WIDTH * answer.sd
 
 
 def _lost(x: NDArray[np.float64]) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
-from xlmc.methods.answer import MethodResult, answer_of
+from xlmc.methods.answer import Errors, MethodResult, answer_of
 from xlmc.model import Model
 from xlmc.pilot import PILOT_TRIALS
 
@@ -27,7 +27,11 @@ class Sampled:
     engine: str = "numpy"
     arithmetic: str = "float64"
     cannot: str = ""
-    sampling: bool = True
+
+    @property
+    def errors(self) -> Errors:
+        """See `Method`."""
+        return "independent" if self.method == "mc" else "consistent"
 
     def run(self, model: Model, budget: int, seed: int) -> MethodResult:
         """See `Method`.

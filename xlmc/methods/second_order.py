@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.derivatives import Derivative
-from xlmc.methods.answer import Answer, MethodResult, answer_of
+from xlmc.methods.answer import Answer, Errors, MethodResult, answer_of
 from xlmc.methods.expansion import expansion_of
 from xlmc.methods.moments import drawn
 from xlmc.model import Model
@@ -29,7 +29,7 @@ class SecondOrder:
 
     key: str = "taylor-2"
     name: str = "Taylor, second order"
-    sampling: bool = False
+    errors: Errors = "once"
     cannot: str = "does not see filters; misses what the third and higher derivatives do over the ranges"
 
     def run(self, model: Model, budget: int, seed: int) -> MethodResult:

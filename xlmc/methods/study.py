@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from statistics import median
 from typing import Final
 
 import numpy as np
@@ -12,41 +14,56 @@ from xlmc.definitions.stopping import as_tolerance
 from xlmc.errors import SimulationError
 from xlmc.methods.answer import STATISTICS, Answer, Method, MethodResult
 from xlmc.methods.corners import Corners
-from xlmc.methods.curve import Curve, rung_of
+from xlmc.methods.curve import Curve, Rung, in_order, rung_of
 from xlmc.methods.first_order import FirstOrder
 from xlmc.methods.importance_grid import ImportanceGrid
 from xlmc.methods.optimised import Optimised
-from xlmc.methods.reference import Reference, fastest_engine, reference_of, reference_size
+from xlmc.methods.reference import (
+    Reference,
+    fastest_engine,
+    reference_of,
+    reference_size,
+    unfiltered_of,
+)
 from xlmc.methods.sampled import ENGINE_VARIANTS, MONTE_CARLO, SAMPLERS, Sampled
 from xlmc.methods.second_order import SecondOrder
 from xlmc.methods.surrogate import Surrogate
 from xlmc.methods.worst_case import WorstCase
 from xlmc.model import Model
 
-__all__ = ["ACCURACY", "REPLICATES", "Study", "ladder_of", "study"]
+__all__ = ["ACCURACY", "LENGTHS", "REPLICATES", "STEP", "Study", "ladder_of", "study"]
 
 ACCURACY: Final = "1%"
 REPLICATES: Final = 24
 """They know a root mean square error to 15 %."""
 
-MOST_TRIALS: Final = 1 << 18
-RUNGS: Final = (16, 4, 1)
-"""The trials of the longest runs over those of each rung."""
+STEP: Final = 4
+"""The trials of each run length over those of the next shorter one."""
+
+LENGTHS: Final = 8
+"""Run lengths: the longest has 16,384 times the trials of the shortest, four decades."""
+
+_SHORTEST: Final = 128
+_FEWEST_ACCEPTED: Final = 4.0
+"""Of the shortest runs, about."""
 
 ONCE: Final[tuple[Method, ...]] = (Corners(), Optimised(), WorstCase(), FirstOrder(), SecondOrder())
 DRAWN: Final[tuple[Method, ...]] = (*SAMPLERS, ImportanceGrid(), Surrogate())
 
 _REFERENCE_SECONDS: Final = 8.0
-_LONGEST_RUN: Final = 0.25
+_LONGEST_RUN: Final = 2.5
+"""Seconds of a run by Monte Carlo: longer ones are not measured."""
+
 _APART: Final = 1_000_000
 """Between the seeds of the runs of one length and those of the next: runs of different lengths share no trials."""
 
 SLOW: Final = "formulas"
 
-_ROUNDING: Final = 1e-12
-
-_RUNS_SECONDS, _LEAST_RUNS = 5.0, 6
+_RUNS_SECONDS, _LEAST_RUNS = 4.0, 4
 """Of one method and length, where nobody says how many there shall be."""
+
+_CLOCKED: Final = 3
+"""Runs of an engine of each length: only their seconds are wanted, for their errors are those of Monte Carlo."""
 
 _FEW: Final = 8
 """Trials that the slow reference engine is timed by."""
@@ -66,6 +83,7 @@ class Study:
         seed: of the reference; the replicates have others.
         accuracy: what is asked of the answers, as typed, the number, and whether it is a share of each number.
         reference: what the errors are from.
+        unfiltered: the same without the filters; None where they reject nothing, or where there is no such answer.
         ladder: trials of the runs of methods that draw.
         replicates: the most runs of each length.
         once: the methods that give one answer, the cheapest idea first.
@@ -78,6 +96,7 @@ class Study:
     seed: int
     accuracy: tuple[str, float, bool]
     reference: Reference
+    unfiltered: Reference | None
     ladder: tuple[int, ...]
     replicates: int
     once: tuple[Curve, ...]
@@ -92,17 +111,16 @@ class Study:
     @property
     def varying(self) -> tuple[str, ...]:
         """The forecasts that have any spread; of the others every method knows everything."""
-        found = self.reference.answers
-        return tuple(name for name, answer in found.items() if answer.sd > _ROUNDING * abs(answer.mean))
+        return tuple(name for name, width in self.reference.widths.items() if width > 0.0)
 
     def converges(self, forecast: str, statistic: str) -> bool:
         """Whether there is something to come near to: the forecast varies, and its tail is not too heavy for this."""
         return forecast in self.varying and statistic not in self.reference.heavy.get(forecast, ())
 
-    def tolerance(self, forecast: str, statistic: str) -> float:
+    def tolerance(self, forecast: str) -> float:
         """The error asked for, in the forecast's units."""
         _, value, relative = self.accuracy
-        return value * abs(float(getattr(self.reference.answers[forecast], statistic))) if relative else value
+        return value * self.reference.widths[forecast] if relative else value
 
 
 def study(
@@ -120,10 +138,10 @@ def study(
     Args:
         model: the workbook.
         accuracy: of mean, standard deviation and both ends of the central range, that 95 of 100 runs keep: `1%` of
-            each number, or a number in the forecasts' units.
+            each forecast's 5–95 % range, or a number in the forecasts' units.
         reference_trials: by default a power of two of them, up to 33,554,432, that takes about eight seconds.
-        trials: of the longest runs; by default a power of two, up to 262,144, that takes a quarter of a second.
-        replicates: runs of each length, 2 or more; by default 24, or as many as take a method five seconds, 6 at least.
+        trials: of the longest runs; by default 16,384 times those of the shortest, or what takes two seconds.
+        replicates: runs of each length, 2 or more; by default 24, or as many as take a method four seconds, 4 at least.
         seed: of the reference; by default the workbook's.
         told: called with what is being measured.
 
@@ -140,7 +158,8 @@ def study(
     size = reference_trials or size
     tell(f"the reference, {size:,} trials")
     reference = reference_of(model, size, sampling, engine, own)
-    ladder = ladder_of(model, trials, own)
+    unfiltered = unfiltered_of(model, reference)
+    ladder = ladder_of(model, trials, own, reference.acceptance.value)
     measuring = _Measuring(model, reference, ladder, replicates, own, tell)
     once = measuring.once(ONCE)
     found = measuring.drawn(DRAWN, [each for each in ENGINE_VARIANTS if each.engine != SLOW])
@@ -149,22 +168,29 @@ def study(
     for variant in ENGINE_VARIANTS:
         if variant.engine == SLOW:
             engines += measuring.slow(variant, next(curve for curve in curves if curve.method is MONTE_CARLO))
+    most = replicates or REPLICATES
     return Study(
-        model, own, wanted, reference, ladder, replicates or REPLICATES, once, curves, engines, measuring.absent
-    )
+        model, own, wanted, reference, unfiltered, ladder, most, once, curves, engines, measuring.absent
+    )  # fmt: skip
 
 
-def ladder_of(model: Model, most: int | None, seed: int) -> tuple[int, ...]:
-    """Trials of the runs, the fewest first; without a wish, as many as take a quarter of a second at the most."""
-    if most is None:
-        first = MONTE_CARLO.run(model, 1_024, seed)
-        rate = 1_024 / first.seconds
-        for trials in (8_192, 65_536, MOST_TRIALS):
-            if trials / rate > 4.0 * _LONGEST_RUN:
-                break
-            rate = trials / MONTE_CARLO.run(model, trials, seed).seconds
-        most = 1 << (int(min(MOST_TRIALS, max(rate * _LONGEST_RUN, 1_024))).bit_length() - 1)
-    return tuple(dict.fromkeys(max(most // part, 16) for part in RUNGS))
+def ladder_of(model: Model, most: int | None, seed: int, acceptance: float) -> tuple[int, ...]:
+    """Trials of the runs, the fewest first: three lengths at least.
+
+    The shortest have four accepted trials, about, or 128 trials; without a wish, the longest have 16,384 times as many,
+    or what Monte Carlo takes two and a half seconds for.
+    """
+    shortest = max(_SHORTEST, 1 << math.ceil(math.log2(_FEWEST_ACCEPTED / max(acceptance, 1e-9))))
+    if most is not None:
+        lengths = [most // STEP**k for k in range(LENGTHS) if k < 3 or most // STEP**k >= shortest]
+        return tuple(dict.fromkeys(max(each, 16) for each in reversed(lengths)))
+    found = [shortest, shortest * STEP, shortest * STEP**2]
+    while len(found) < LENGTHS:
+        seconds = min(MONTE_CARLO.run(model, found[-1], seed).seconds for _ in range(2))
+        if seconds * STEP > _LONGEST_RUN:
+            break
+        found.append(found[-1] * STEP)
+    return tuple(found)
 
 
 def _check(seed: int, replicates: int | None, trials: int | None, reference: int | None, model: Model) -> None:
@@ -225,9 +251,17 @@ class _Measuring:
                 seed = self._seed + 1 + number * _APART + replicate
                 for method in able:
                     known = results[method.key, budget]
-                    if not (self._limited and _enough(known)):
+                    if not self._enough(known, method in engines):
                         known.append(self._run(method, budget, seed))
-        return tuple(self._curve(method, firsts[method.key], results) for method in able)
+        found = {m.key: self._curve(m, firsts[m.key], results) for m in able if m not in engines}
+        same = [self._engine_curve(e, firsts[e.key], results, found[MONTE_CARLO.key]) for e in engines if e in able]
+        return (*found.values(), *same)
+
+    def _enough(self, known: Sequence[MethodResult], engine: bool) -> bool:
+        """Whether there are runs enough of one method and length: as many as wanted, or as their time allows."""
+        if engine and len(known) >= _CLOCKED:
+            return True
+        return self._limited and len(known) >= _LEAST_RUNS and sum(r.seconds for r in known) > _RUNS_SECONDS
 
     def _run(self, method: Method, budget: int, seed: int) -> MethodResult:
         """One run of a method that can be used; one that fails, for want of accepted trials, is counted as such."""
@@ -240,13 +274,28 @@ class _Measuring:
     def _curve(
         self, method: Method, first: MethodResult | None, results: Mapping[tuple[str, int], list[MethodResult]]
     ) -> Curve:
-        rungs = tuple(rung_of(budget, results[method.key, budget], self._reference) for budget in self._ladder)
+        rungs = in_order([rung_of(budget, results[method.key, budget], self._reference) for budget in self._ladder])
         remarks = results[method.key, self._ladder[-1]][-1].remarks
-        plain = results.get((MONTE_CARLO.key, self._ladder[0]))
-        if isinstance(method, Sampled) and method.engine != MONTE_CARLO.engine and plain:
-            remarks = (self._agreement(results[method.key, self._ladder[0]], plain),)
-        setup = 0.0 if first is None else float(np.nan_to_num(max(0.0, first.seconds - rungs[0].seconds)))
-        return Curve(method, rungs, setup, remarks, {})
+        return Curve(method, rungs, _setup(first, rungs[0]), remarks, {})
+
+    def _engine_curve(
+        self,
+        engine: Sampled,
+        first: MethodResult | None,
+        results: Mapping[tuple[str, int], list[MethodResult]],
+        plain: Curve,
+    ) -> Curve:
+        """The errors of the trials, which are those of `plain`, with the seconds of an engine."""
+        rungs = []
+        for rung in plain.rungs:
+            timed = [result.seconds for result in results[engine.key, rung.budget]]
+            rungs.append(replace(rung, seconds=min(timed), usual=median(timed)))
+        ordered = in_order(rungs)
+        apart = max(
+            self._apart(results[engine.key, budget], results[MONTE_CARLO.key, budget]) for budget in self._ladder
+        )
+        said = f"answers at the same trials differ from those of numpy by {apart:.1g} SD at the most"
+        return Curve(engine, ordered, _setup(first, ordered[0]), (said,), {}, apart)
 
     def slow(self, engine: Sampled, numpy: Curve) -> tuple[Curve, ...]:
         """An engine that is too slow for runs of any length: its time is worked out from a few trials."""
@@ -255,7 +304,10 @@ class _Measuring:
         if first is None:
             return ()
         again = engine.run(self._model, _FEW, self._seed).seconds
-        rungs = tuple(replace(r, seconds=again * r.budget / _FEW, measured=False) for r in numpy.rungs)
+        each = again / _FEW
+        rungs = tuple(
+            replace(r, seconds=each * r.budget, usual=each * r.budget, measured=False) for r in numpy.rungs
+        )  # fmt: skip
         said = f"the same trials as {numpy.method.name}; time worked out from {_FEW} of them"
         return (Curve(engine, rungs, max(0.0, first.seconds - again), (said,), {}),)
 
@@ -267,19 +319,18 @@ class _Measuring:
             self.absent[method.name] = str(error)
             return None
 
-    def _agreement(self, found: Sequence[MethodResult], numpy: Sequence[MethodResult]) -> str:
+    def _apart(self, found: Sequence[MethodResult], numpy: Sequence[MethodResult]) -> float:
         """How far an engine's answers are from those of `numpy` at the same trials, in standard deviations."""
         apart = [
             abs(getattr(answer, statistic) - getattr(other.answers[name], statistic)) / self._reference.answers[name].sd
             for one, other in zip(found, numpy, strict=False)
             for name, answer in one.answers.items()
             for statistic in STATISTICS
-            if self._reference.answers[name].sd > 0.0
+            if self._reference.widths[name] > 0.0
         ]
-        known = [each for each in apart if np.isfinite(each)]
-        return f"answers at the same trials differ from those of numpy by {max(known, default=0.0):.1g} SD at the most"
+        return max((each for each in apart if np.isfinite(each)), default=0.0)
 
 
-def _enough(results: Sequence[MethodResult]) -> bool:
-    """Whether runs of one length have taken their time."""
-    return len(results) >= _LEAST_RUNS and sum(result.seconds for result in results) > _RUNS_SECONDS
+def _setup(first: MethodResult | None, rung: Rung) -> float:
+    """Seconds of a first run beyond those of the next ones."""
+    return 0.0 if first is None else float(np.nan_to_num(max(0.0, first.seconds - rung.seconds)))

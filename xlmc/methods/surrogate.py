@@ -20,7 +20,7 @@ from xlmc.address import Cell
 from xlmc.definitions import Assumption
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
-from xlmc.methods.answer import MethodResult, answer_of
+from xlmc.methods.answer import Errors, MethodResult, answer_of
 from xlmc.methods.evaluation import Evaluation
 from xlmc.methods.quadratic import Quadratic, fitted
 from xlmc.model import Model
@@ -47,7 +47,7 @@ class Surrogate:
 
     key: str = "surrogate"
     name: str = "Surrogate, exact filter"
-    sampling: bool = True
+    errors: Errors = "floor"
     cannot: str = "more trials do not remove the error of its polynomials"
 
     def run(self, model: Model, budget: int, seed: int) -> MethodResult:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from xlmc.methods.answer import Answer, MethodResult
+from xlmc.methods.answer import Answer, Errors, MethodResult
 from xlmc.methods.box import box_of
 from xlmc.methods.expansion import expansion_of
 from xlmc.model import Model
@@ -21,7 +21,7 @@ class WorstCase:
 
     key: str = "worst-case"
     name: str = "Differential, worst case"
-    sampling: bool = False
+    errors: Errors = "once"
     cannot: str = (
         "gives two ends and no likelihood in between, does not see filters, and takes every curve for straight"
     )

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import io
 from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from xlmc.methods import Study, recommendation
 from xlmc.report.methods import tables
 from xlmc.report.methods.figure import draw
+from xlmc.report.methods.picture import Work
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,6 +41,9 @@ code { background: #EEF4FA; padding: .1em .3em; }
 """
 
 
+_WORKS: Final[tuple[tuple[Work, str], ...]] = (("seconds", "time"), ("evaluations", "evaluations of the workbook"))
+
+
 def page(study: Study) -> str:
     """The page."""
     name = escape(study.model.workbook.name)
@@ -53,8 +57,8 @@ def page(study: Study) -> str:
         for method, said in tables.cannot_lines(study)
     )
     figures = "".join(
-        f"<h2>Error against {what}</h2>\n<figure>{_svg(draw(study, against))}</figure>\n"
-        for against, what in (("seconds", "time"), ("evaluations", "evaluations of the workbook"))
+        f"<h2>Speed against accuracy: {what}</h2>\n<figure>{_svg(draw(study, against))}</figure>\n"
+        for against, what in _WORKS
     )
     first, *rest = (_table(each) for each in shown if each.rows)
     return (

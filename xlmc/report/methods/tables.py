@@ -9,7 +9,8 @@ from typing import Final
 import numpy as np
 
 from xlmc.methods import STATISTICS, Curve, Method, Rung, Study, need
-from xlmc.methods.recommendation import seconds_text, trials_text
+from xlmc.methods.need import shortfall
+from xlmc.methods.number_words import seconds_text, trials_text
 from xlmc.report.summary import estimate_text
 from xlmc.statistics import Estimate, format_estimate
 
@@ -40,12 +41,12 @@ class Table:
 
 
 def floor_of(study: Study, statistic: str) -> float:
-    """The reference's own error of a statistic, over the forecasts' standard deviations; below it nothing is known."""
+    """The reference's own error of a statistic, over the forecasts' 5–95 % ranges."""
     reference = study.reference
     parts = [
-        float(getattr(reference.errors[name], statistic)) / answer.sd
-        for name, answer in reference.answers.items()
-        if answer.sd > 0.0
+        float(getattr(reference.errors[name], statistic)) / width
+        for name, width in reference.widths.items()
+        if width > 0.0
     ]
     known = [part for part in parts if np.isfinite(part)]
     return float(np.sqrt(np.mean(np.square(known)))) if known else np.nan
@@ -75,8 +76,8 @@ def error_table(study: Study) -> Table:
     rows = [(curve.method.name, *_cells(study, curve)) for curve in study.every if curve.answers]
     text = study.accuracy[0]
     title = (
-        "Root mean square errors, in % of each forecast's SD (over the forecasts); of the accepted share, in % of it. "
-        f"Needs: for {text}, in 95 of 100 runs"
+        "Root mean square errors, in % of each forecast's 5–95 % range (over the forecasts); of the accepted share, in "
+        f"% of it. Needs: for {text}, in 95 of 100 runs"
     )
     return Table(title, headings, tuple(rows))
 
@@ -88,17 +89,26 @@ def _cells(study: Study, curve: Curve) -> Iterator[str]:
     yield ("" if rung.measured else "≈ ") + seconds_text(rung.seconds)
     yield f"{rung.evaluations:,.0f}"
     for statistic in STATISTICS:
-        yield _share_text(rung.shares[statistic], floor_of(study, statistic))
+        yield _share_text(rung.shares[statistic], 0.0 if drawn else floor_of(study, statistic))
     yield _NONE if rung.acceptance is None else percent_text(rung.acceptance.value / study.reference.acceptance.value)
     yield _NONE if rung.effective is None else f"{rung.effective:,.0f}"
     yield slope_text(curve.slope("mean", "budget"))
-    yield _need_text(study, curve) if drawn else _NONE
+    yield _need_text(study, curve) if drawn else _near_text(study, curve)
+
+
+def _near_text(study: Study, curve: Curve) -> str:
+    """Of an answer that was given once: whether it is near enough."""
+    if not study.varying:
+        return _NONE
+    return {"yes": "near enough", "no": "never", "unknown": "cannot tell"}[shortfall(study, curve).reaches]
 
 
 def _need_text(study: Study, curve: Curve) -> str:
     found = need(study, curve)
-    if not np.isfinite(found.seconds):
-        return "out of reach"
+    if not found.forecast:
+        return _NONE
+    if found.reaches != "yes":
+        return {"no": "never", "unknown": "cannot tell"}[found.reaches]
     return f"{trials_text(found.trials)} trials, {seconds_text(found.seconds)}"
 
 
@@ -108,6 +118,7 @@ def rung_table(study: Study) -> Table:
     headings = (*work, *STATISTICS.values(), "Accepted", "Effective", "Failed")
     rows = []
     for curve in study.every:
+        floors = {each: floor_of(study, each) if curve in study.once else 0.0 for each in STATISTICS}
         for rung in curve.rungs if curve.answers else ():
             known = study.reference.acceptance.value
             rows.append((
@@ -116,12 +127,13 @@ def rung_table(study: Study) -> Table:
                 f"{_runs(rung):,}",
                 ("" if rung.measured else "≈ ") + seconds_text(rung.seconds),
                 f"{rung.evaluations:,.0f}",
-                *(_share_text(rung.shares[each], floor_of(study, each)) for each in STATISTICS),
+                *(_share_text(rung.shares[each], floors[each]) for each in STATISTICS),
                 _NONE if rung.acceptance is None else percent_text(rung.acceptance.value / known),
                 _NONE if rung.effective is None else f"{rung.effective:,.0f}",
                 f"{rung.failed:,}" if rung.failed else _NONE,
             ))  # fmt: skip
-    return Table("Errors in % of each forecast's SD, root mean square over runs and forecasts", headings, tuple(rows))
+    title = "Errors in % of each forecast's 5–95 % range, root mean square over runs and forecasts"
+    return Table(title, headings, tuple(rows))
 
 
 def _runs(rung: Rung) -> int:

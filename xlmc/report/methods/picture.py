@@ -1,0 +1,304 @@
+"""What the chart of speed against accuracy shows, whoever draws it: matplotlib on the page, Excel in the workbook.
+
+Across: the work of a run, seconds or evaluations. Upwards: what 95 of 100 runs keep within, in the number that a method
+has most trouble with; in % of the forecast's 5–95 % range, or over the accuracy where that was given in units.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+
+from xlmc.methods import Curve, Study
+from xlmc.methods.choice import Choice, choice
+from xlmc.methods.law import law
+from xlmc.methods.need import Need, reach_of, seconds_of, shortfall
+from xlmc.methods.number_words import seconds_text, trials_text
+
+__all__ = ["HOW_TO_READ", "Label", "Line", "Mark", "Picture", "Point", "Work", "column_of", "picture_of"]
+
+Work = Literal["seconds", "evaluations"]
+
+HOW_TO_READ: Final = (
+    "Each line is one method: to the right its runs take longer, and further down its answer is nearer to the truth, "
+    "so the best method at an accuracy is the one whose line meets that accuracy's red line farthest to the left.",
+    "The texts at the line ends say what each method needs for both marked accuracies; a method that says “never” "
+    "stays above them however long it runs.",
+)
+
+FINER: Final = 10.0
+"""The second accuracy that is marked, over the one asked for."""
+
+_AHEAD: Final = 6
+"""Points of the dashed part of a line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """One run length: its work, what 95 of 100 runs keep within, and where that lies with 95 % confidence."""
+
+    x: float
+    y: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Line:
+    """A method.
+
+    Attributes:
+        curve: whose.
+        points: measured.
+        ahead: where the line goes on, by the law that was fitted, to the finer accuracy; empty where it does not.
+        needs: what it needs, in words.
+        brief: the same as briefly as a heading of the column allows, `0.35 s, 35 s`.
+        once: whether it is a single answer.
+    """
+
+    curve: Curve
+    points: tuple[Point, ...]
+    ahead: tuple[tuple[float, float], ...]
+    needs: str
+    brief: str
+    once: bool
+
+    @property
+    def name(self) -> str:
+        return self.curve.method.name
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A height with words: an accuracy, and what is cheapest there."""
+
+    y: float
+    text: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Picture:
+    """The chart.
+
+    Attributes:
+        across, upwards: what the axes show.
+        lines: the methods that have a number to show.
+        marks: the accuracy asked for, and a finer one.
+        chosen: where the recommended method has the accuracy asked for, and its words; None without one.
+        frame: left, right, bottom, top.
+        absent: what is not drawn, in words.
+        brief: what the brief needs are the needs for.
+    """
+
+    across: str
+    upwards: str
+    lines: tuple[Line, ...]
+    marks: tuple[Mark, ...]
+    chosen: tuple[float, float, str] | None
+    frame: tuple[float, float, float, float]
+    absent: tuple[str, ...]
+    brief: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Label:
+    """Words for the column at the right, and where on the chart they belong to; the recommended run has no `line`."""
+
+    text: str
+    brief: str
+    x: float
+    y: float
+    line: Line | None
+
+
+def column_of(picture: Picture) -> list[Label]:
+    """The labels from the top: those of one height from the left, so that what leads to them does not cross."""
+    found = [
+        Label(f"{line.name}: {line.needs}", f"{line.name}: {line.brief}", *_end(line, picture.frame[1]), line)
+        for line in picture.lines
+    ]
+    if picture.chosen is not None:
+        x, y, text = picture.chosen
+        found.append(Label(text, text, x, y, None))
+    return sorted(found, key=lambda each: (-round(math.log10(each.y), 3), each.x))
+
+
+def _end(line: Line, right: float) -> tuple[float, float]:
+    """Where a line's label belongs to: the end of its dotted part, or else its last measured point."""
+    if line.once:
+        return right, line.points[-1].y
+    return line.ahead[-1] if line.ahead else (line.points[-1].x, line.points[-1].y)
+
+
+def picture_of(study: Study, work: Work) -> Picture | None:
+    """The chart of a study; None where no forecast varies."""
+    if not study.varying:
+        return None
+    found, finer = choice(study), choice(study, _finer(study))
+    scale = _scale(study)
+    lines, absent = [], []
+    for curve in study.every:
+        if not curve.answers:
+            continue
+        if not all(rung.measured for rung in curve.rungs):
+            absent.append(f"{curve.method.name} is not drawn: {_needs(study, curve, found, finer)}.")
+            continue
+        line = _line(study, curve, work, scale, found, finer)
+        if line.points:
+            lines.append(line)
+    marks = (
+        Mark(scale, _mark(study, scale, found, "asked for: ")),
+        Mark(scale / FINER, _mark(study, scale / FINER, finer, "")),
+    )
+    return Picture(
+        across="time of a run, s" if work == "seconds" else "evaluations of the workbook in a run",
+        upwards=_upwards(study),
+        lines=tuple(lines),
+        marks=marks,
+        chosen=_chosen(study, found, work, scale),
+        frame=_frame(lines, scale),
+        absent=tuple(absent),
+        brief=f"needs for {_accuracy_text(study, scale)}, for {_accuracy_text(study, scale / FINER)}",
+    )
+
+
+def _finer(study: Study) -> tuple[str, float, bool]:
+    _, value, relative = study.accuracy
+    return _accuracy_text(study, _scale(study) / FINER), value / FINER, relative
+
+
+def _scale(study: Study) -> float:
+    """The accuracy asked for, as the chart counts."""
+    _, value, relative = study.accuracy
+    return 100.0 * value if relative else 1.0
+
+
+def _accuracy_text(study: Study, height: float) -> str:
+    _, value, relative = study.accuracy
+    return f"{height:g} %" if relative else f"{height * value:g}"
+
+
+def _upwards(study: Study) -> str:
+    if study.accuracy[2]:
+        return "error of the worst number, % of its 5–95 % range"
+    return f"error of the worst number, over the {study.accuracy[0]} asked for"
+
+
+def _line(study: Study, curve: Curve, work: Work, scale: float, found: Choice, finer: Choice) -> Line:
+    once = curve in study.once
+    kind = _kind(study, curve, found)
+    points = []
+    for rung in curve.rungs:
+        y, low, high = (scale * each for each in reach_of(study, curve, rung, kind))
+        x = float(getattr(rung, work))
+        if np.isfinite(y) and y > 0.0 and np.isfinite(x) and x > 0.0:
+            points.append(Point(x, y, low, high))
+    ahead = () if once or not points else _ahead(study, curve, work, scale, kind, found.needs[curve], points[-1])
+    words = _needs(study, curve, found, finer), _briefly(study, curve, found, finer)
+    return Line(curve, tuple(points), ahead, *words, once)
+
+
+def _kind(study: Study, curve: Curve, found: Choice) -> tuple[str, str]:
+    """The number that a method has most trouble with."""
+    worst = shortfall(study, curve) if curve in study.once else found.needs[curve]
+    return worst.forecast, worst.statistic
+
+
+def _ahead(
+    study: Study, curve: Curve, work: Work, scale: float, kind: tuple[str, str], wanted: Need, last: Point
+) -> tuple[tuple[float, float], ...]:
+    """From the last point to the finer accuracy, or to the one asked for; nothing where a method does not get there."""
+    tolerance = study.tolerance(kind[0])
+    rule = law(study, curve, kind)
+    budget = float(curve.rungs[-1].budget)
+    most = rule.trials(tolerance / FINER)
+    if not wanted.usable or not np.isfinite(most) or most <= budget:
+        return ()
+    trials = np.geomspace(budget, most, _AHEAD)[1:]
+    beyond = [(last.x, last.y)]
+    beyond += [(_work_of(curve, work, each), scale * rule.reach(each) / tolerance) for each in trials.tolist()]
+    return tuple((x, min(y, last.y)) for x, y in beyond)
+
+
+def _work_of(curve: Curve, work: Work, trials: float) -> float:
+    if work == "seconds":
+        return seconds_of(curve, trials)
+    across = np.array([float(rung.budget) for rung in curve.rungs])
+    spent = np.array([rung.evaluations for rung in curve.rungs])
+    if trials <= across[-1]:
+        return float(np.interp(trials, across, spent))
+    each = float((spent[-1] - spent[-2]) / (across[-1] - across[-2])) if across.size > 1 else 1.0
+    return float(spent[-1]) + each * (trials - float(across[-1]))
+
+
+def _needs(study: Study, curve: Curve, found: Choice, finer: Choice) -> str:
+    """`1 % in 0.35 s, 0.1 % in 35 s`, or `never`."""
+    texts = [_accuracy_text(study, _scale(study) / part) for part in (1.0, FINER)]
+    if curve in study.once:
+        near = shortfall(study, curve)
+        if near.reaches == "unknown":
+            return f"cannot tell at {texts[0]}"
+        return "never" if near.reaches == "no" else f"within {texts[0]}" + _also(near.times, texts[1])
+    needs = [each.needs[curve] for each in (found, finer)]
+    if needs[0].reaches == "no":
+        return "never"
+    return ", ".join(f"{text} {_when(each)}" for text, each in zip(texts, needs, strict=True))
+
+
+def _briefly(study: Study, curve: Curve, found: Choice, finer: Choice) -> str:
+    """`0.35 s, 35 s`, or `never`."""
+    if curve in study.once:
+        near = shortfall(study, curve)
+        return {"yes": "near enough", "no": "never", "unknown": "cannot tell"}[near.reaches]
+    needs = [each.needs[curve] for each in (found, finer)]
+    if needs[0].reaches == "no":
+        return "never"
+    return ", ".join(seconds_text(each.seconds) if each.reaches == "yes" else _when(each) for each in needs)
+
+
+def _also(times: float, text: str) -> str:
+    return f", {text} too" if times <= 1.0 / FINER else ""
+
+
+def _when(found: Need) -> str:
+    if found.reaches == "yes":
+        return f"in {seconds_text(found.seconds)}"
+    return "never" if found.reaches == "no" else "cannot tell"
+
+
+def _mark(study: Study, height: float, found: Choice, first: str) -> str:
+    text = f"{first}{_accuracy_text(study, height)}"
+    if not found.cheapest:
+        return text
+    names = [curve.method.name for curve in found.cheapest if curve.method.name]
+    least = seconds_text(found.needs[found.cheapest[0]].seconds)
+    if len(names) == 1:
+        return f"{text}; cheapest: {names[0]}, {least}"
+    return f"{text}; cheapest: {names[0]}, {least}; {len(names) - 1} more within 20 % or 0.1 s"
+
+
+def _chosen(study: Study, found: Choice, work: Work, scale: float) -> tuple[float, float, str] | None:
+    if found.chosen is None:
+        return None
+    wanted = found.needs[found.chosen]
+    text = (
+        f"Recommended: {found.chosen.method.name}, {trials_text(wanted.trials)} trials, {seconds_text(wanted.seconds)}"
+    )
+    return _work_of(found.chosen, work, wanted.trials), scale, text
+
+
+def _frame(lines: Sequence[Line], scale: float) -> tuple[float, float, float, float]:
+    """Round decades about everything that is drawn."""
+    xs = [point.x for line in lines for point in line.points] + [x for line in lines for x, _ in line.ahead]
+    ys = [point.y for line in lines for point in line.points] + [scale / FINER]
+    left, right = _decade(min(xs, default=1.0), math.floor), _decade(max(xs, default=1.0), math.ceil)
+    bottom = min(_decade(min(ys) * 0.999, math.floor), scale / FINER / 3.0)
+    return left, max(right, 10.0 * left), max(bottom, min(ys) / 3.0), _decade(max(ys), math.ceil)
+
+
+def _decade(value: float, rounds: Callable[[float], int]) -> float:
+    return 10.0 ** rounds(math.log10(value))

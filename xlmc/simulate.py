@@ -114,7 +114,7 @@ def simulate(
                     progress(teller.after(finished, watch.share))
         if stopped is not None:
             return gathered.simulation(settings, plan, stopped, rounding)
-        found = _searched(model, settings, gathered.trials, watch, interruption, progress)
+        found = _searched(model, settings, gathered.trials, gathered.accepted_trials, watch, interruption, progress)
     if isinstance(found, Stopped):
         return gathered.simulation(settings, plan, found, rounding)
     return _with_search(gathered.simulation(settings, plan, watch.goal_reached, rounding), found, most_inputs)
@@ -129,7 +129,13 @@ class _EndedError(Exception):
 
 
 def _searched(
-    model: Model, settings: Settings, plain: int, watch: Watch, interruption: Interruption, progress: Progress | None
+    model: Model,
+    settings: Settings,
+    plain: int,
+    accepted: NDArray[np.int64],
+    watch: Watch,
+    interruption: Interruption,
+    progress: Progress | None,
 ) -> Search | Stopped:
     """Accepted trials from a search, or what ended it before it had any."""
 
@@ -143,7 +149,7 @@ def _searched(
     from xlmc.rare.searching import search
 
     try:
-        found = search(model, settings, plain, say)
+        found = search(model, settings, plain, accepted, say)
     except _EndedError as ended:
         return ended.stopped
     return found if found.account is not None else Stopped("search", found.failure, watch.goal_reached.goal)
@@ -240,6 +246,11 @@ class _Gathered:
             self._keeper.add(("forecast", place), values)
         self._keeper.settle()
 
+    @property
+    def accepted_trials(self) -> NDArray[np.int64]:
+        """`(m,)` the numbers of the accepted trials so far."""
+        return self._keeper.columns({"trial": ("trial", 0)})["trial"]
+
     def forecast(self, place: int) -> NDArray[np.float64]:
         """A forecast's accepted trials so far, `(m,)`, NaN where it has no number."""
         return self._keeper.columns({"": ("forecast", place)})[""]
@@ -251,7 +262,7 @@ class _Gathered:
             plan=plan,
             block=self._block,
             trials=self.trials,
-            trial_index=self._keeper.columns({"trial": ("trial", 0)})["trial"],
+            trial_index=self.accepted_trials,
             inputs=self._keeper.columns(self._inputs),
             prior=self._keeper.columns(self._prior),
             forecasts=self._keeper.columns(self._forecasts),

@@ -67,7 +67,9 @@ def test_counts_are_those_of_plain_trials(model, run):
 
 def test_the_account_adds_up(run):
     rare = run.rare
-    assert rare.evaluations == run.trials + rare.learning + rare.proposals
+    assert rare.evaluations == run.trials + rare.learning + rare.proposals + rare.checked
+    assert rare.plain == run.trials
+    assert rare.plain_accepted == run.trials - run.tally.rejected[0]
     assert 0 < rare.fresh <= rare.proposals // 2
     assert rare.kept == 2000 <= rare.proposals_accepted <= rare.proposals
     assert 0.97 * rare.kept <= rare.size <= rare.kept

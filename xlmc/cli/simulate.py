@@ -176,8 +176,9 @@ def _accepted(run: Simulation) -> str:
 
     share = run.acceptance
     if run.rare is not None:
-        chance = format_estimate(share.value, share.error)
-        return f"{run.accepted:,} accepted trials; one is accepted with probability {chance}"
+        from xlmc.rare.account import probability_text
+
+        return f"{run.accepted:,} accepted trials; one is accepted with probability {probability_text(run.rare)}"
     percent = format_estimate(100 * share.value, 100 * (share.error or 0))
     if any(errors.total() for errors in run.faults.values()):
         kept = [f"the filters kept {run.accepted:,}, {percent} %"] if run.accepted < run.trials else []

@@ -13,6 +13,12 @@ __all__ = ["RareAccount", "probability_text"]
 MOST_LOST: Final = 0.001
 """Above this share of trials lost to errors the answer must not be used as it stands, as of plain trials."""
 
+MOST_MISSED: Final = 0.01
+"""Of the probability of acceptance: above this share, what was met and not found is said, and the answer not used."""
+
+LEAST_CHANCE: Final = 1e-3
+"""Below it, the number of plain trials that were accepted is no chance."""
+
 MOST_APART: Final = math.log(2.0)
 """Two estimates of the probability of acceptance, as logarithms: the first is known to some tenths."""
 
@@ -37,6 +43,11 @@ class RareAccount:
         dimensions: assumptions that are drawn.
         lost: of all but the plain trials, those in which a filter or a draw is an error.
         faulty: of the kept ones, those in which a forecast is an error.
+        plain: of the evaluations, plain trials before the search.
+        plain_accepted: of those, by the filters.
+        checked: of the evaluations, those from widened assumptions after the search, to look for what it missed.
+        missed: the probability of accepted trials that were met so, or among the plain ones, and that the proposals
+            hardly ever come to.
     """
 
     evaluations: int
@@ -55,6 +66,21 @@ class RareAccount:
     dimensions: int
     lost: int
     faulty: int = 0
+    plain: int = 0
+    plain_accepted: int = 0
+    checked: int = 0
+    missed: float = 0.0
+
+    @property
+    def at_least(self) -> bool:
+        """Whether the probability of acceptance is known from below only: a part of the region is missing."""
+        return self.missed > MOST_MISSED * self.acceptance.value or self.implausible
+
+    @property
+    def implausible(self) -> bool:
+        """Whether more plain trials were accepted than the upper end of the interval lets expect."""
+        most = (self.acceptance.interval or (0.0, self.acceptance.value))[1]
+        return _chance_of_more(self.plain_accepted, self.plain * most) < LEAST_CHANCE
 
     @property
     def plain_trials(self) -> float:
@@ -99,7 +125,19 @@ class RareAccount:
                 f"the search for rare trials has a probability of acceptance of {self.searched:.2g}, and the trials "
                 f"that it led to have {self.acceptance.value:.2g}: part of the accepted region may be missing"
             )
-        rare = self.learning + self.proposals
+        if self.missed > MOST_MISSED * self.acceptance.value:
+            found.append(
+                "accepted trials were met in a part of the region that the search could not describe: "
+                f"the probability of acceptance is at least {self.acceptance.value:.2g}, and that part, of which the "
+                f"trials here have nothing, may add {self.missed:.2g}"
+            )
+        if self.implausible:
+            found.append(
+                f"of {self.plain:,} plain trials {self.plain_accepted:,} were accepted, where "
+                f"{self.plain * self.acceptance.value:.2g} were to be expected: the probability of acceptance is at "
+                f"least {self.acceptance.value:.2g}, and part of the accepted region is missing"
+            )
+        rare = self.learning + self.proposals + self.checked
         if self.lost > MOST_LOST * rare:
             found.append(f"{self.lost:,} of the {rare:,} trials of the search were lost to errors in cells")
         if self.faulty > MOST_LOST * self.kept:
@@ -107,9 +145,17 @@ class RareAccount:
         return found
 
 
-def probability_text(found: Estimate) -> str:
-    """`(1.002 ± 0.004)e-06`."""
-    return format_estimate(found.value, found.error)
+def probability_text(found: RareAccount) -> str:
+    """`(1.002 ± 0.004)e-06`, or `at least` that."""
+    text = format_estimate(found.acceptance.value, found.acceptance.error)
+    return f"at least {text}" if found.at_least else text
+
+
+def _chance_of_more(count: int, expected: float) -> float:
+    """P(K ≥ count) of a Poisson count."""
+    from scipy.special import pdtrc
+
+    return float(pdtrc(count - 1, expected)) if count else 1.0
 
 
 def _about(count: float) -> str:

@@ -1,20 +1,29 @@
-"""The whole way: learn where trials are accepted, then draw so many of equal weight."""
+"""The whole way: learn where trials are accepted, draw so many of equal weight, and look for what was missed."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from xlmc.rare.equalising import Accepts, Equalised, equalised
-from xlmc.rare.learning import Learned, Round, Say, after, again, learn
+from xlmc.rare.learning import Learned, Round, Say, after, again, learn, widened_search
 from xlmc.rare.splitting import Distance
+from xlmc.rare.strays import Evidence
+from xlmc.rare.tempered import Tempered, widened
 
 __all__ = ["Found", "find"]
 
 _AGAIN: Final = 3
 """Times that a proposal is learnt anew because a trial was much heavier than any known."""
+
+_SURVEY: Final = 65_536
+"""Trials from the widened assumptions, before and after."""
+
+_PART: Final = 32
+"""Of the limit, a survey takes this part at most."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,6 +34,8 @@ class Found:
         learned: what the search found.
         used: the round whose proposal the trials come from; None where there is none to draw from.
         equalised: the trials; None likewise.
+        checked: trials that were drawn from the widened assumptions afterwards.
+        strays: accepted trials of other origin that the proposal hardly ever comes to.
         evaluations: trials that all this took.
     """
 
@@ -32,6 +43,8 @@ class Found:
     used: Round | None
     equalised: Equalised | None
     evaluations: int
+    checked: int = 0
+    strays: Evidence | None = None
 
 
 def find(
@@ -43,6 +56,7 @@ def find(
     learning: np.random.Generator,
     drawing: np.random.Generator,
     say: Say = lambda _: None,
+    plain: Sequence[Evidence] = (),
 ) -> Found:
     """Draw `wanted` accepted trials of equal weight.
 
@@ -55,12 +69,16 @@ def find(
         learning: random numbers to learn with.
         drawing: others, to draw the trials with: what they come from must not have served to learn.
         say: told of the evaluations so far.
+        plain: trials from before the search.
     """
-    learned, before = learn(distance, dimensions, learning, say, most), 0
+    spread, checked, trials = widened(dimensions), 0, min(_SURVEY, most // _PART)
+    first = _survey(accepts, spread, trials, learning)
+    before = first.trials
+    learned = learn(distance, dimensions, learning, after(before, say), most - before, (*plain, first))
     for tries_left in range(_AGAIN, -1, -1):
         used, done = learned.best, learned.evaluations + before
         if used is None or wanted > used.rate * (most - done):
-            return Found(learned, None, None, done)
+            return Found(learned, None, None, done, checked)
         drawn = equalised(
             accepts,
             used.proposal,
@@ -72,8 +90,21 @@ def find(
             after(done, say),
             surprises=tries_left > 0,
         )
-        if drawn.surprise is None:
+        if drawn.surprise is not None:
+            before += drawn.proposals
+            learned = again(distance, learned, drawn.surprise, learning, after(before, say), most - before)
+            continue
+        check = _survey(accepts, spread, trials, drawing)
+        checked += check.trials
+        missed = learned.strays(used.proposal, (*plain, check))
+        if not tries_left or not missed.tells(drawn.acceptance.value):
             break
-        before += drawn.proposals
-        learned = again(distance, learned, drawn.surprise, learning, after(before, say), most - before)
-    return Found(learned, used, drawn, done + drawn.proposals)
+        before += drawn.proposals + check.trials
+        learned = widened_search(distance, learned, missed, learning, after(before, say), most - before)
+    return Found(learned, used, drawn, done + drawn.proposals + check.trials, checked, missed)
+
+
+def _survey(accepts: Accepts, spread: Tempered, trials: int, random: np.random.Generator) -> Evidence:
+    """Trials from the widened assumptions."""
+    points = spread.draw(trials, random)
+    return Evidence.of(spread, trials, points[accepts(points)])

@@ -9,18 +9,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.rare.envelope import height
-from xlmc.rare.mixture import log_sum
 from xlmc.rare.proposal import Proposal, fitted_again, proposed
-from xlmc.rare.splitting import Descent, Distance, descend
+from xlmc.rare.splitting import EXPLORING, Descent, Distance, descend, explore
+from xlmc.rare.strays import Evidence, joined_evidence, pooled, strays
 
-__all__ = ["Learned", "Round", "Say", "after", "again", "learn"]
+__all__ = ["Learned", "Round", "Say", "after", "again", "learn", "widened_search"]
 
 Floats = NDArray[np.float64]
 
@@ -40,6 +40,9 @@ _FITTED: Final = 8_192
 
 _TALLEST: Final = 30.0
 """Times the mean weight, at most, that a point has in a fit: one point must not be a component."""
+
+_EXPLORED: Final = 3
+"""Times that populations are made about accepted trials that the others did not come to."""
 
 _FEWEST: Final = 100
 """Accepted points that a proposal can be fitted to."""
@@ -85,13 +88,15 @@ class Learned:
     """What is known of the accepted region.
 
     Attributes:
-        descents: the populations.
+        descents: the populations, two and two of the same way.
         rounds: in the order they were made; none where no population reached the region.
+        known: trials that nothing was learned for, with those of them that were accepted.
         evaluations: trials that this took.
     """
 
     descents: tuple[Descent, ...]
     rounds: tuple[Round, ...]
+    known: tuple[Evidence, ...]
     evaluations: int
 
     @property
@@ -112,7 +117,12 @@ class Learned:
     def probability(self) -> float:
         """Of acceptance, as the populations have it; they know it to some tenths."""
         reached = [math.exp(each.log_probability) for each in self.descents if each.reached]
-        return sum(reached) / len(self.descents)
+        return sum(reached) / _DESCENTS
+
+    def strays(self, proposal: Proposal, known: Sequence[Evidence]) -> Evidence:
+        """Accepted trials among those of other origin that a proposal hardly ever comes to; see `strays`."""
+        points, weights, _ = _of_descents(self.descents)
+        return strays(proposal, known, points, weights)
 
 
 def learn(
@@ -121,26 +131,69 @@ def learn(
     random: np.random.Generator,
     say: Say = lambda _: None,
     most: float = math.inf,
+    known: Sequence[Evidence] = (),
 ) -> Learned:
-    """Find the region where the distance is 0, and describe it; in no more evaluations than `most`, about."""
+    """Find the region where the distance is 0, and describe it; in no more evaluations than `most`, about.
+
+    Args:
+        distance: 0 where a point of so many dimensions is accepted.
+        dimensions: of the points.
+        random: to learn with.
+        say: told of the evaluations so far.
+        most: evaluations.
+        known: trials that were drawn before; those that were accepted are evidence.
+    """
     found: list[Descent] = []
     for _ in range(_DESCENTS):
         found.append(descend(distance, dimensions, random))
         say(sum(each.evaluations for each in found))
-    learned = Learned(tuple(found), (), sum(each.evaluations for each in found))
-    if not any(each.reached for each in found):
+    learned = Learned(tuple(found), (), tuple(known), sum(each.evaluations for each in found))
+    if any(each.reached for each in found):
+        learned = _with_strays(distance, learned, random, most - _TRIALS)
+    elif any(len(each.points) for each in known):
+        learned = _explored(distance, learned, joined_evidence(known), random)
+    else:
         return learned
-    points, weights, halves = _of_descents(found)
-    order = _dealt(halves, random)
-    return _refined(distance, learned, proposed(points[order], weights[order], random), random, say, most)
+    return _refined(distance, learned, _described(learned, random), random, say, most)
 
 
 def again(
     distance: Distance, learned: Learned, more: Round, random: np.random.Generator, say: Say, most: float
 ) -> Learned:
     """Learn from trials that turned out to be heavier than any that were known."""
-    known = Learned(learned.descents, (*learned.rounds, more), learned.evaluations)
+    known = replace(learned, rounds=(*learned.rounds, more))
     return _refined(distance, known, _improved(known, random), random, say, most)
+
+
+def widened_search(
+    distance: Distance, learned: Learned, found: Evidence, random: np.random.Generator, say: Say, most: float
+) -> Learned:
+    """Search on from accepted trials that lie where nothing was learned."""
+    learned = _explored(distance, learned, found, random)
+    return _refined(distance, learned, _described(learned, random), random, say, most)
+
+
+def _described(learned: Learned, random: np.random.Generator) -> Proposal:
+    """A first proposal, from the populations alone."""
+    points, weights, halves = _of_descents(learned.descents)
+    order = _dealt(halves, random)
+    return proposed(points[order], weights[order], random)
+
+
+def _with_strays(distance: Distance, learned: Learned, random: np.random.Generator, most: float) -> Learned:
+    """With populations about those accepted trials that the others did not come to."""
+    for _ in range(_EXPLORED):
+        found = learned.strays(_described(learned, random), learned.known)
+        if learned.evaluations + _DESCENTS * EXPLORING > most or not found.tells(learned.probability):
+            break
+        learned = _explored(distance, learned, found, random)
+    return learned
+
+
+def _explored(distance: Distance, learned: Learned, found: Evidence, random: np.random.Generator) -> Learned:
+    made = [explore(distance, found.points, found.shares, found.log_mass, random) for _ in range(_DESCENTS)]
+    asked = sum(each.evaluations for each in made)
+    return replace(learned, descents=(*learned.descents, *made), evaluations=learned.evaluations + asked)
 
 
 def _refined(
@@ -151,7 +204,7 @@ def _refined(
     for number in range(_ROUNDS):
         before = learned.evaluations
         drawn = _drawn(distance, proposal, random, after(before, say), most - before)
-        learned = Learned(learned.descents, (*learned.rounds, drawn), before + drawn.trials)
+        learned = replace(learned, rounds=(*learned.rounds, drawn), evaluations=before + drawn.trials)
         if learned.evaluations >= most or drawn.rate >= _GOOD or (number > 1 and drawn.rate < best * _GAIN):
             break
         best = max(best, drawn.rate)
@@ -162,7 +215,7 @@ def _refined(
 def _improved(learned: Learned, random: np.random.Generator) -> Proposal:
     """Fitted to the populations' points and to all that were drawn, half by half."""
     moved, shares, halves = _of_descents(learned.descents)
-    points, logs = _pooled(learned.rounds)
+    points, logs = pooled((*learned.rounds, *learned.known))
     if len(points) < _FEWEST:
         points, weights = moved, shares
     else:
@@ -171,15 +224,17 @@ def _improved(learned: Learned, random: np.random.Generator) -> Proposal:
         halves = np.concatenate([halves, np.arange(len(points)) % 2])
         points, weights = np.concatenate([moved, points]), np.concatenate([shares, weights / weights.sum()])
     order = _dealt(halves, random)
-    return fitted_again(learned.rounds[0].proposal, points[order], weights[order], random)
+    return fitted_again(learned.rounds[-1].proposal, points[order], weights[order], random)
 
 
 def _of_descents(descents: Sequence[Descent]) -> tuple[Floats, Floats, NDArray[np.int64]]:
     """The points of those populations that reached the region, their weights, which sum to 1, and which population."""
     reached = [each for each in descents if each.reached]
-    weights = np.concatenate([np.full(len(each.points), math.exp(each.log_probability)) for each in reached])
-    halves = np.concatenate([np.full(len(each.points), place) for place, each in enumerate(reached)])
-    if len(reached) == 1:
+    heaviest = max(each.log_probability for each in reached)
+    shares = [math.exp(each.log_probability - heaviest) / len(each.points) for each in reached]
+    weights = np.repeat(shares, [len(each.points) for each in reached])
+    halves = np.concatenate([np.full(len(each.points), p % 2) for p, each in enumerate(descents) if each.reached])
+    if np.ptp(halves) == 0:
         halves = np.arange(len(halves)) % 2
     return np.concatenate([each.points for each in reached]), weights / weights.sum(), halves
 
@@ -203,11 +258,3 @@ def _drawn(distance: Distance, proposal: Proposal, random: np.random.Generator, 
         say(trials)
     points = np.concatenate(found)
     return Round(proposal, trials, points, proposal.log_weights(points))
-
-
-def _pooled(rounds: Sequence[Round]) -> tuple[Floats, Floats]:
-    """All accepted points, and the logarithms of their weights under all proposals together."""
-    points = np.concatenate([each.points for each in rounds])
-    total = sum(each.trials for each in rounds)
-    heights = [math.log(each.trials / total) - each.proposal.log_weights(points) for each in rounds]
-    return points, -log_sum(np.stack(heights)) if len(points) else np.empty(0)

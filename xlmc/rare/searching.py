@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
@@ -12,8 +13,13 @@ from numpy.typing import NDArray
 
 from xlmc.blocks import Block, Task, Worker
 from xlmc.rare.account import RareAccount
+from xlmc.rare.equalising import Equalised
 from xlmc.rare.finding import Found, find
 from xlmc.rare.landscape import Given, Landscape, uniforms_of
+from xlmc.rare.plain import MOST_PLAIN, plain_points
+from xlmc.rare.strays import Evidence
+from xlmc.rare.tempered import as_they_are
+from xlmc.statistics.estimate import Estimate, with_relative_error
 
 if TYPE_CHECKING:
     from xlmc.definitions import Settings
@@ -43,19 +49,25 @@ class Search:
     evaluations: int
 
 
-def search(model: Model, settings: Settings, plain: int, say: Callable[[int], None]) -> Search:
+def search(
+    model: Model, settings: Settings, plain: int, accepted: NDArray[np.int64], say: Callable[[int], None]
+) -> Search:
     """Look for as many accepted trials as the settings ask for; a pure function of the model and these.
 
     Args:
         model: with filters and drawn assumptions.
         settings: of the run.
         plain: trials that were run before, which count towards the limit.
+        accepted: (k,) the numbers of those among them that were accepted.
         say: told of the evaluations so far.
     """
     learning, drawing = _random(settings.seed, "learning"), _random(settings.seed, "drawing")
     landscape = Landscape(model, learning)
     wanted, most = settings.stopping.accepted or 0, settings.trials - plain
-    found = find(landscape.distance, landscape.accepts, landscape.dimensions, wanted, most, learning, drawing, say)
+    evidence = [] if settings.sampling != "mc" else [_plain(model, settings, plain, accepted, landscape)]
+    found = find(
+        landscape.distance, landscape.accepts, landscape.dimensions, wanted, most, learning, drawing, say, evidence
+    )
     drawn = found.equalised
     if drawn is None or found.used is None or len(drawn.points) < wanted:
         failure = _failure(model, landscape, found, wanted, most)
@@ -63,12 +75,12 @@ def search(model: Model, settings: Settings, plain: int, say: Callable[[int], No
     proposal = found.used.proposal
     account = RareAccount(
         evaluations=plain + landscape.evaluations,
-        learning=landscape.evaluations - drawn.proposals,
+        learning=landscape.evaluations - drawn.proposals - found.checked,
         proposals=drawn.proposals,
         proposals_accepted=drawn.accepted,
         fresh=drawn.fresh,
         kept=len(drawn.points),
-        acceptance=drawn.acceptance,
+        acceptance=_acceptance(drawn, found.strays),
         effective=drawn.effective,
         size=drawn.size,
         searched=found.learned.probability,
@@ -77,8 +89,31 @@ def search(model: Model, settings: Settings, plain: int, say: Callable[[int], No
         directions=proposal.directions,
         dimensions=landscape.dimensions,
         lost=landscape.lost,
+        plain=plain,
+        plain_accepted=accepted.size,
+        checked=found.checked,
+        missed=0.0 if found.strays is None else found.strays.mass,
     )
     return Search(drawn.points, account, "", landscape.evaluations)
+
+
+def _plain(
+    model: Model, settings: Settings, trials: int, accepted: NDArray[np.int64], landscape: Landscape
+) -> Evidence:
+    """The plain trials, or the first of them where many were accepted."""
+    few = accepted[:MOST_PLAIN]
+    counted = int(few[-1]) + 1 if few.size < accepted.size else trials
+    points = plain_points(model, settings.seed, few)
+    return Evidence.of(as_they_are(landscape.dimensions), counted, points[landscape.accepts(points)])
+
+
+def _acceptance(drawn: Equalised, strays: Evidence | None) -> Estimate:
+    """The probability of acceptance, with the mass of what the proposal hardly ever comes to as a further error."""
+    found = drawn.acceptance
+    if strays is None or not len(strays.points) or found.error is None or found.n is None:
+        return found
+    error = math.hypot(found.error, strays.mass)
+    return with_relative_error(found.value, error, drawn.effective - 1.0, 0.95, found.n)
 
 
 def _random(seed: int, purpose: str) -> np.random.Generator:

@@ -21,7 +21,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Descent", "Distance", "descend"]
+__all__ = ["EXPLORING", "Descent", "Distance", "descend", "explore"]
 
 Floats = NDArray[np.float64]
 
@@ -48,6 +48,15 @@ _LEAST_LOG: Final = math.log(1e-15)
 """Where acceptance is likelier nowhere, the search ends."""
 
 _WANTED_RATE: Final = 0.3
+
+_EXPLORERS: Final = 1_024
+"""A population that begins within the region."""
+
+_FIRST_STEP: Final = 0.3
+"""Its steps, at first."""
+
+EXPLORING: Final = _EXPLORERS * _SWEEPS * (_SNAPSHOTS + 1)
+"""Distances that it asks for, at most."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,6 +108,30 @@ def descend(
     return Descent(np.concatenate(taken), reached, logs, tuple(levels[1:]), evaluations, nearest)
 
 
+def explore(
+    distance: Distance,
+    seeds: Floats,
+    shares: Floats,
+    log_mass: float,
+    random: np.random.Generator,
+) -> Descent:
+    """Spread a population about accepted points, without leaving the region.
+
+    Args:
+        distance: 0 in the region.
+        seeds: (k, d) accepted points.
+        shares: (k,) of the population, from each; they sum to 1.
+        log_mass: logarithm of the probability that the points stand for.
+        random: to move with.
+    """
+    points = seeds[random.choice(len(seeds), _EXPLORERS, p=shares)]
+    found, steps, asked, taken = np.zeros(_EXPLORERS), _Steps(_FIRST_STEP, _FIRST_STEP), 0, list[Floats]()
+    for turn in range(_SNAPSHOTS + 1):
+        moved = _moved(points, found, 0.0, distance, steps, _SWEEPS, random, alone=not turn)
+        points, asked, taken = moved[0], asked + moved[2], [*taken, moved[0]]
+    return Descent(np.concatenate(taken[1:]), True, log_mass, (0.0,), asked, points[0])
+
+
 def _next_level(found: Floats, wanted: int, before: float) -> float | None:
     """The next lower level; None where hardly a point lies below the last one.
 
@@ -129,13 +162,16 @@ def _moved(
     steps: _Steps,
     sweeps: int,
     random: np.random.Generator,
+    *,
+    alone: bool = False,
 ) -> tuple[Floats, Floats, int]:
+    """The population, its distances, and how many were asked for; `alone` without steps by all points' covariance."""
     count, dimensions = points.shape
     common = None
     asked = 0
     for sweep in range(sweeps):
         noise = random.standard_normal(points.shape)
-        if sweep % 2 and dimensions * 20 <= count:
+        if sweep % 2 and not alone and dimensions * 20 <= count:
             common = common or _Common.of(points)
             step = _lengths(steps.common, count, random)
             offered = common.offered(points, noise, step)

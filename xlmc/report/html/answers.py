@@ -57,7 +57,7 @@ def _question(simulation: Simulation) -> Iterator[Html | str]:
         yield f"{simulation.accepted:,} of them ({share_text(simulation.acceptance)}) agree with the evidence, which "
     else:
         yield f"{simulation.accepted:,} that agree with the evidence were kept; one as they come agrees with "
-        yield f"probability {probability_text(simulation.acceptance)}. The evidence "
+        yield f"probability {probability_text(simulation.rare)}. The evidence "
     yield "asks: "
     for place, filter_ in enumerate(model.filters):
         yield "; " if place else ""

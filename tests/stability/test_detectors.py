@@ -234,9 +234,9 @@ def test_a_divisor_that_no_assumption_changes(look):
     assert any("the digits of 'f' are not there" in warning for warning in found.run.warnings)
 
 
-def test_the_range_of_a_small_divisor_is_told_by_its_own_size(look):
+def test_the_range_that_provokes_a_loss_is_told(look):
     """x² is below 1e-6 throughout; what provokes the loss are the small x, not all of them."""
-    one = only(look({"B1": "=(1-COS(A1))/A1^2"}, x=(1e-7, 1e-3)), "division")
+    one = only(look({"B1": "=(1-COS(A1))/A1^2"}, x=(1e-7, 1e-3)), "cancellation")
     assert one.where[0].high < 0.5e-3
 
 

@@ -237,6 +237,17 @@ def _spread(x: list[mpf], lost: int) -> mpf:
     return mp.fsum((one - mean) ** 2 for one in x) / (len(x) - lost)
 
 
+def _covariance(lost: int) -> Callable[..., Item]:
+    def body(first: Item, second: Item) -> Item:
+        x, y = _cells([first]), _cells([second])
+        if len(x) != len(y) or len(x) <= lost:
+            return NotImplemented
+        of_x, of_y = mp.fsum(x) / len(x), mp.fsum(y) / len(y)
+        return mp.fsum((a - of_x) * (b - of_y) for a, b in zip(x, y, strict=True)) / (len(x) - lost)
+
+    return body
+
+
 def _sum_product(*items: Item) -> Item:
     grids = [item if isinstance(item, list) else [[item]] for item in items]
     if len({(len(grid), len(grid[0])) for grid in grids}) > 1:
@@ -332,6 +343,9 @@ EXACT: Final[Mapping[str, Callable[..., Item]]] = {
     "VAR.P": _of_cells(lambda x: _spread(x, 0)),
     "STDEV.S": _of_cells(lambda x: mp.sqrt(_spread(x, 1))),
     "STDEV.P": _of_cells(lambda x: mp.sqrt(_spread(x, 0))),
+    "DEVSQ": _of_cells(lambda x: _spread(x, len(x) - 1)),
+    "COVARIANCE.P": _covariance(0),
+    "COVARIANCE.S": _covariance(1),
     "SUMPRODUCT": _sum_product,
     "=": _compared(lambda x, y: x == y),
     "<>": _compared(lambda x, y: x != y),

@@ -45,7 +45,11 @@ _EXACT: Final = frozenset(
 
 
 _ADDS: Final = frozenset({"+", "-", "SUM"})
-_CALCULATES: Final = _ADDS | {"*", "/", "SQRT", "EXP", "LN", "SIN", "COS", "TAN"}
+_CALCULATES: Final = (
+    _ADDS
+    | {"*", "/", "SQRT", "EXP", "LN", "SIN", "COS", "TAN", "SUMSQ", "SUMPRODUCT", "PRODUCT", "AVERAGE"}
+    | {"DEVSQ", "VAR.S", "VAR.P", "STDEV.S", "STDEV.P", "^"}
+)
 
 _POOL: Final = 1 << 16
 
@@ -148,8 +152,8 @@ def evaluation(
             values[place] = values[node.arguments[0]]
         else:
             assert isinstance(node, Apply | Select | Rescue | Range)
-            moved = typed and isinstance(node, Apply) and node.function.name in _CALCULATES
-            found = evaluated(node, {part: typed.get(part, values[part]) for part in uses(node)} if moved else values)
+            known = {part: typed[part] for part in _typed_of(node) if part in typed} if typed else {}
+            found = evaluated(node, {part: known.get(part, values[part]) for part in uses(node)} if known else values)
             moves = isinstance(node, Apply) and _rounds(node) and not isinstance(found, Ragged)
             values[place] = jitter.moved(found, n) if jitter is not None and moves else found
     return values
@@ -179,17 +183,29 @@ def follow(
 
 
 def _typed(dag: Dag, places: Sequence[int]) -> set[int]:
-    """Numbers that were typed in and are calculated with; not π, which nobody measures."""
+    """Numbers that were typed in and are calculated with; not π or a small whole number, which nobody measures."""
     found: set[int] = set()
     for place in places:
-        node = formula_of(dag, place)
-        if isinstance(node, Apply) and node.function.name in _CALCULATES:
-            found.update(part for part in node.arguments if isinstance(formula_of(dag, part), Constant))
-    return {place for place in found if not _is_pi(dag.nodes[place])}
+        found.update(part for part in _typed_of(formula_of(dag, place)) if isinstance(formula_of(dag, part), Constant))
+    return {place for place in found if not _is_exact(dag.nodes[place])}
 
 
-def _is_pi(node: Node) -> bool:
-    return isinstance(node, Constant) and float(node.value.numbers.flat[0]) in (np.pi, np.pi / 180, 180 / np.pi)
+def _typed_of(node: Node) -> tuple[int, ...]:
+    """The arguments that are calculated with; of a power the base, for an exponent is exact."""
+    if not isinstance(node, Apply) or node.function.name not in _CALCULATES:
+        return ()
+    return node.arguments[:1] if node.function.name == "^" else node.arguments
+
+
+def _is_exact(node: Node) -> bool:
+    """Whether it is π, or a count or an exponent, and no measurement."""
+    if not isinstance(node, Constant):
+        return False
+    x = float(node.value.numbers.flat[0])
+    return x in (np.pi, np.pi / 180, 180 / np.pi) or (node.value.numbers.size == 1 and abs(x) < _COUNTS and x == int(x))
+
+
+_COUNTS: Final = 100
 
 
 def term_sizes(dag: Dag, places: Sequence[int], values: Mapping[int, Value]) -> dict[int, float]:

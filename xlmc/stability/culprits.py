@@ -12,7 +12,7 @@ from xlmc.formula import ir
 from xlmc.stability.case import Case
 from xlmc.stability.trees import factors, terms
 
-__all__ = ["Cancellation", "Division", "cancellation", "divisions"]
+__all__ = ["Cancellation", "Division", "cancellation", "divisions", "left_of"]
 
 _BOUNDED: Final = frozenset({"SIN", "COS", "TANH"})
 
@@ -77,13 +77,18 @@ def _division(case: Case, cell: Cell, tree: ir.Expression, factor: ir.Expression
 
 def cancellation(case: Case, cell: Cell, trial: int) -> Cancellation | None:
     """The sum of a cell's formula of which least is left in a trial."""
-    found: list[Cancellation] = []
-    for tree in case.trees.parts(cell):
-        if isinstance(tree, ir.Binary) and tree.operator in "+-":
-            size = sum(_size(case, cell, term, trial) for _, term in terms(tree))
-            if size > 0:
-                found.append(Cancellation(tree, _size(case, cell, tree, trial) / size))
+    found = [
+        Cancellation(tree, left_of(case, cell, tree, trial))
+        for tree in case.trees.parts(cell)
+        if isinstance(tree, ir.Binary) and tree.operator in "+-"
+    ]
     return min(found, key=lambda one: one.left, default=None)
+
+
+def left_of(case: Case, cell: Cell, tree: ir.Expression, trial: int) -> float:
+    """What is left of a sum in a trial, as a share of its terms; 1 where it has none."""
+    size = sum(_size(case, cell, term, trial) for _, term in terms(tree))
+    return _size(case, cell, tree, trial) / size if size > 0 else 1.0
 
 
 def _size(case: Case, cell: Cell, tree: ir.Expression, trial: int) -> float:

@@ -5,7 +5,7 @@ A cell is named where it loses more than what it depends on: what follows from i
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Final
@@ -14,10 +14,15 @@ import numpy as np
 
 from xlmc.address import Cell
 from xlmc.digits import DUST
-from xlmc.stability.case import Case, Floats
-from xlmc.stability.culprits import Division, cancellation, divisions
+from xlmc.formula import ir
+from xlmc.stability.blame import culprit
+from xlmc.stability.case import Bools, Case, Floats
+from xlmc.stability.culprits import Cancellation, Division, cancellation, divisions, left_of
 from xlmc.stability.findings import CellDigits, Finding, Level, Where
 from xlmc.stability.rewriting import of_small_changes, same, without_cosine
+from xlmc.stability.spread import Spread, spread
+from xlmc.stability.stable_forms import LOGARITHMS
+from xlmc.stability.steadying import steadied
 from xlmc.stability.zeros import only_assumption, zeros
 
 __all__ = ["cell_digits", "lost_digits"]
@@ -114,9 +119,9 @@ def _finding(case: Case, loss: _Loss, by_form: bool) -> Finding | None:
         return None
     bad = np.asarray(loss.error >= UNUSABLE)
     random = bool(bad[case.special :].any())
-    level = Level.WRONG if (share >= UNUSABLE or missing) and random else Level.DOUBTFUL
-    what, instead, ranges = _explained(case, cell, worst[0])
-    low = loss.excess >= max(EXCESS, 0.3 * loss.most) if by_form else loss.error >= max(VISIBLE, 0.1 * loss.worst)
+    blurred = spread(case, cell)
+    level = Level.WRONG if ((share >= UNUSABLE or missing) and random) or blurred.is_rounding else Level.DOUBTFUL
+    what, instead, ranges = _explained(case, cell, worst)
     return Finding(
         level,
         "rounding" if what is None else what[0],
@@ -124,11 +129,25 @@ def _finding(case: Case, loss: _Loss, by_form: bool) -> Finding | None:
         case.trees.title(cell),
         case.trees.written(cell),
         f"{case.trees.title(cell) or cell} loses digits" if what is None else what[1],
-        _effect(case, cell, share, of, loss, missing, random, inherent),
-        ranges or case.where(np.asarray(low), node),
+        _effect(case, cell, share, of, loss, missing, random, blurred),
+        ranges or case.where(_where(case, loss, by_form), node),
         instead,
         _SIZE_OF_NOTHING if missing else share if level is Level.WRONG else loss.most,
     )
+
+
+def _where(case: Case, loss: _Loss, by_form: bool) -> Bools:
+    """The trials that show it: those near the worst, but not too few of those drawn at random."""
+    measure, least, near = (loss.excess, EXCESS, 0.3) if by_form else (loss.error, VISIBLE, 0.1)
+    found = np.asarray(measure >= max(least, near * float(np.nanmax(measure))))
+    drawn = np.nan_to_num(measure[case.special :])
+    if found[case.special :].sum() < _SHOWING and drawn.size:
+        some = np.sort(drawn)[-min(_SHOWING, drawn.size)]
+        found[case.special :] |= drawn >= max(least, some)
+    return found
+
+
+_SHOWING: Final = 20
 
 
 _SIZE_OF_NOTHING: Final = 1e6
@@ -142,7 +161,7 @@ def _is_missing_before(case: Case, cell: Cell, trial: int) -> bool:
 
 
 def _effect(
-    case: Case, cell: Cell, share: float, of: str, loss: _Loss, missing: bool, random: bool, inherent: float
+    case: Case, cell: Cell, share: float, of: str, loss: _Loss, missing: bool, random: bool, blurred: Spread
 ) -> str:
     reached = [repr(name) for name in case.forecasts_of([cell]) if name != case.trees.title(cell)]
     on = f"; {', '.join(reached)} depend{'s' * (len(reached) == 1)} on it" if reached else ""
@@ -152,26 +171,58 @@ def _effect(
     digits = f"rounding puts it off by up to {share:.1g} of its {of}{at}"
     if share >= UNUSABLE:
         return f"{digits}: the digits shown are not there{on}"
+    if blurred.is_rounding:
+        return f"{digits}, and {blurred}: its spread is rounding{on}"
     return f"{digits}, {loss.most:.0f} times what rounding the assumptions alone would{on}"
 
 
-def _explained(case: Case, cell: Cell, trial: int) -> tuple[tuple[str, str] | None, str | None, tuple[Where, ...]]:
+def _explained(
+    case: Case, cell: Cell, worst: Sequence[int]
+) -> tuple[tuple[str, str] | None, str | None, tuple[Where, ...]]:
     """Why, as a kind and a sentence; a better form; and the range of the one assumption to blame."""
     small = [division for division in divisions(case, cell) if division.least < _SMALL]
+    better = without_cosine(case, cell, small[0].factor) if small else None
+    if better is not None and same(case, cell, better):
+        sentence, ranges = _division(case, cell, small[0])
+        return ("division", sentence), _formula(case, cell, better), ranges
+    guilty = culprit(case, cell, worst)
+    if isinstance(guilty, ir.Call) and guilty.name in LOGARITHMS:
+        return _of_logarithm(case, cell, guilty, worst), _better(case, cell, guilty, worst), ()
+    if isinstance(guilty, ir.Binary) and guilty.operator in "+-":
+        lost = Cancellation(guilty, min(left_of(case, cell, guilty, trial) for trial in worst))
+        if lost.left < _SMALL:
+            return _of_near_equals(case, cell, lost), _better(case, cell, guilty, worst), ()
     if small:
         sentence, ranges = _division(case, cell, small[0])
-        better = without_cosine(case, cell, small[0].factor)
-        if better is not None and not same(case, cell, better):
-            better = None
-        return ("division", sentence), _formula(case, cell, better), ranges
-    lost = cancellation(case, cell, trial)
-    if lost is not None and lost.left < _SMALL:
-        sentence = (
-            f"{case.trees.text(lost.tree, cell)} is a difference of near equals: down to {lost.left:.1g} of its terms "
-            "is left, and with it as many of their digits are lost"
-        )
-        return ("cancellation", sentence), _formula(case, cell, of_small_changes(case, cell)), ()
+        return ("division", sentence), None, ranges
+    most = cancellation(case, cell, worst[0])
+    if most is not None and most.left < _SMALL:
+        return _of_near_equals(case, cell, most), _better(case, cell, most.tree, worst), ()
+    if guilty is not None:
+        return ("rounding", f"{case.trees.text(guilty, cell)} loses digits"), _better(case, cell, guilty, worst), ()
     return None, None, ()
+
+
+def _of_near_equals(case: Case, cell: Cell, lost: Cancellation) -> tuple[str, str]:
+    return "cancellation", (
+        f"{case.trees.text(lost.tree, cell)} is a difference of near equals: down to {lost.left:.1g} of its terms "
+        "is left, and with it as many of their digits are lost"
+    )
+
+
+def _of_logarithm(case: Case, cell: Cell, part: ir.Call, worst: Sequence[int]) -> tuple[str, str]:
+    argument = case.trees.text(part.arguments[0], cell)
+    place = case.trees.place(part.arguments[0], cell)
+    off = min((abs(case.exact_number(place, trial) - 1) for trial in worst), default=0.0) if place is not None else 0.0
+    return "cancellation", (
+        f"{argument} is rounded to 16 digits, and {part.name} keeps only what it differs from 1 by, down to {off:.1g}: "
+        "with it as many digits are lost"
+    )
+
+
+def _better(case: Case, cell: Cell, part: ir.Expression, worst: Sequence[int]) -> str | None:
+    known = of_small_changes(case, cell)
+    return _formula(case, cell, steadied(case, cell, part, worst) if known is None else known)
 
 
 _SMALL: Final = 0.2

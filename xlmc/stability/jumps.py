@@ -72,7 +72,8 @@ def _of_choice(case: Case, cell: Cell, part: ir.Call) -> Finding | None:
     known = np.isfinite(gap) & np.isfinite(yes) & np.isfinite(no)
     if not ((gap[known] > 0).any() and (gap[known] < 0).any()):
         return None
-    nearest = np.argsort(np.where(known, np.abs(gap), np.inf))[:_NEAREST]
+    drawn = known & (np.arange(case.n) >= case.special)
+    nearest = np.argsort(np.where(drawn if drawn.any() else known, np.abs(gap), np.inf))[:_NEAREST]
     share = float(np.median(np.abs(yes - no)[nearest])) / case.scale(cell)
     if share < _TOLD:
         return None

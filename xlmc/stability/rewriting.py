@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.compile.exact import DIGITS, Exact, exactly
+from xlmc.compile.exact import Exact, exactly
 from xlmc.compile.replicas import closure
 from xlmc.definitions import Filter
 from xlmc.formula import ir
@@ -146,7 +146,7 @@ def without_quotient(case: Case, filter_: Filter, tree: ir.Expression) -> ir.Exp
     return ir.Call("AND", tuple(tests))
 
 
-def same(case: Case, cell: Cell, tree: ir.Expression) -> bool:
+def same(case: Case, cell: Cell, tree: ir.Expression, digits: int = 30) -> bool:
     """Whether a formula gives in a cell what the cell's own gives, to 30 digits, in some trials and beside them."""
     place = case.trees.place(tree, cell)
     if place is None:
@@ -161,6 +161,6 @@ def same(case: Case, cell: Cell, tree: ir.Expression) -> bool:
             if np.isnan(exactly(wanted)):
                 continue
             compared += 1
-            if np.isnan(exactly(found[place])) or abs(found[place] - wanted) > abs(wanted) * 10.0 ** (20 - DIGITS):
+            if np.isnan(exactly(found[place])) or abs(found[place] - wanted) > abs(wanted) * 10.0**-digits:
                 return False
     return compared > 0

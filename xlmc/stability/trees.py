@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import Final
 
@@ -11,10 +12,11 @@ from xlmc.compile.references import NotYetNeeded
 from xlmc.compile.scope import Scope
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
+from xlmc.formula.substitute import substituted
 from xlmc.formula.text import formula_text
 from xlmc.model import Model
 
-__all__ = ["Trees", "factors", "terms"]
+__all__ = ["Trees", "factors", "replaced", "terms"]
 
 _RANKS: Final[Mapping[str, int]] = {
     **dict.fromkeys(("=", "<>", "<", "<=", ">", ">="), 1),
@@ -86,6 +88,18 @@ class Trees:
                 case _:
                     pass
 
+    def opened(self, tree: ir.Expression) -> ir.Expression:
+        """A part of a formula with the formulas of cells in place of references to them, one step back."""
+        graph = self._graph
+
+        def change(part: ir.Expression) -> ir.Expression | None:
+            if not isinstance(part, Cell) or part in self.lowering.inputs or part not in graph.formulas:
+                return None
+            formula = graph.workbook.content(part).formula
+            return None if formula is None or formula.array is not None or formula.dynamic else graph.formulas[part]
+
+        return substituted(tree, change)
+
     def text(self, tree: ir.Expression, host: Cell) -> str:
         """A formula, without `=`, with defined names, and brackets only where they are needed."""
         return self._text(tree, host)[0]
@@ -116,6 +130,21 @@ class Trees:
     def _within(self, tree: ir.Expression, host: Cell, rank: int) -> str:
         text, own = self._text(tree, host)
         return text if own >= rank else f"({text})"
+
+
+def replaced(tree: ir.Expression, part: ir.Expression, other: ir.Expression) -> ir.Expression:
+    """A formula with one part of it, the very object, replaced."""
+    if tree is part:
+        return other
+    match tree:
+        case ir.Unary(_, operand):
+            return replace(tree, operand=replaced(operand, part, other))
+        case ir.Binary(_, left, right):
+            return replace(tree, left=replaced(left, part, other), right=replaced(right, part, other))
+        case ir.Call(_, arguments):
+            return replace(tree, arguments=tuple(replaced(one, part, other) for one in arguments))
+        case _:
+            return tree
 
 
 def factors(tree: ir.Expression, *, below: bool = False) -> tuple[list[ir.Expression], list[ir.Expression]]:

@@ -74,9 +74,9 @@ in each trial, with the engines `numpy` and `jit` alike:
 
 All bits are kept by `MATCH`, `XLOOKUP` and the other lookups, criteria such as those of `COUNTIF`, `SWITCH` and
 `CHOOSE`, `SUM` (which Excel makes 0 in some cases and not in others, by no rule that is known), and the limits in the
-tables of xlmc. Bounds, derivatives, `xlmc stability` and its recomputation with 50 digits leave the second rule out:
-they see the sum as it is. With float32, numbers are compared as they are. LibreOffice differs: it makes 0 of every sum
-that cancels to some 16 units, in brackets, too.
+tables of xlmc. Bounds, derivatives, `xlmc stability` and its recomputation with 50 digits leave the last sum as it is,
+and small numbers, too. With float32, numbers are compared as they are, and small ones are kept. LibreOffice differs: it
+makes 0 of every sum that cancels to some 16 units, in brackets, too.
 
 Sources. Comparisons: Apache POI, `NumberComparer` and the doubles at which Excel's answer changes in its
 `NumberComparisonExamples` (all 33 steps are met to the last bit); S. Byrne, Stack Overflow 40293983. The last sum:
@@ -95,6 +95,9 @@ DIFFERENCES = """## What differs from Excel on purpose
   `ASC` leaves every text as it is: full-width letters change only in Chinese, Japanese and Korean versions.
   A book does not hold the settings of the machine that it was last opened on. A date without its year is `#VALUE!`:
   it would be one of the year of the run.
+- A function or a name that Excel does not know is `#NAME?` only where the file bears it out: what Excel saved in the
+  cell is `#NAME?`, or what the formula makes of that error (`IFERROR(NOSUCH(1),0)`), and the book has no code of its
+  own, the function no mark of an add-in or of a newer Excel. `xlmc check` says so. It is refused in all other cases.
 - `NOW` and `TODAY` are what Excel saved, so that a run can be repeated. `RAND`, `RANDBETWEEN` and kin are assumptions,
   drawn anew in each trial. `CELL("filename")` has no folder.
 - Formulas that read other workbooks get the values that Excel stored in this one, with a notice. Where Excel computes

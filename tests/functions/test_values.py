@@ -191,7 +191,7 @@ def test_numbers_as_general_texts(number, text):
     assert general_text(number) == text
 
 
-@given(st.floats(-1e308, 1e308))
+@given(st.floats(-1e308, 1e308).filter(lambda x: x == 0 or abs(x) > 2.2250738585073e-308))
 def test_general_texts_read_back_to_fifteen_digits(number):
     far_out = abs(number) >= 1e98 or abs(number) < 1e-98  # there Excel writes one digit less
     assert math.isclose(parse_number(general_text(number)), number, rel_tol=5.6e-14 if far_out else 5.1e-15)

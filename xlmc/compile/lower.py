@@ -18,7 +18,7 @@ from xlmc.compile.dag import Apply, Constant, Dag, Input, Range
 from xlmc.compile.either import shared_out
 from xlmc.compile.empty_cells import refused
 from xlmc.compile.engine import Target
-from xlmc.compile.not_computed import not_computed
+from xlmc.compile.not_computed import not_computed, unknown_to_excel
 from xlmc.compile.one_cell import of_one_cell
 from xlmc.compile.places import PLACES
 from xlmc.compile.recipes import Recipes
@@ -85,6 +85,7 @@ class Lowering:
         self.more: dict[Cell, set[Cell]] = {}
         self.led_to: dict[Cell, set[Cell]] = {}
         self._led: set[Cell] = set()
+        self._unknown: dict[str, FormulaError | None] | None = None  # in the cell at hand; None between cells
         self.inputs, self.held, self.graph, self._audit = inputs, held, graph, audit
         self._computed: dict[Cell, int] = {}
         self._arrays: dict[Cell, int] = {}
@@ -184,7 +185,7 @@ class Lowering:
 
     def _resolved_cell(self, cell: Cell, tree: ir.Expression) -> int:
         formula = self.graph.workbook.content(host_of(cell)).formula
-        self._led = set()
+        self._led, self._unknown = set(), {}
         try:
             if cell in self.graph.faults:
                 raise self.graph.faults[cell]
@@ -192,15 +193,33 @@ class Lowering:
                 return self._filled_cell(cell, tree)
             place = self._whole_formula(tree, Scope(cell, formula.array is not None or formula.dynamic))
             self._arrays[cell] = place
-            place = self.single(place)
+            place = self._shown(self.single(place))
+            self._tell_unknown(cell, self.known_single(place))
         except NotYetNeeded as needed:
             self.more.setdefault(cell, set()).update(needed.cells)
             return self._held_cell(cell)  # only until the graph is built again
         except FormulaError as error:
             return self._uncomputed(cell, error)
+        finally:
+            self._unknown = None
         if self._led:
             self.led_to[cell] = self._led
-        return self._shown(place)
+        return place
+
+    def _tell_unknown(self, cell: Cell, value: Value | None) -> None:
+        """Tell of the names and functions in a cell that Excel does not know.
+
+        Raises:
+            FormulaError: of a function; what Excel saved in the cell does not say that it did not know it.
+        """
+        saved = self.graph.workbook.content(cell).value
+        agrees = saved is ErrorCode.NAME or (value is not None and saved is not None and value.objects()[0] == saved)
+        for name, unless_saved in (self._unknown or {}).items():
+            if agrees:
+                said = f"Excel does not know {name}, which gives #NAME?: the saved value agrees"
+                self.notices.append(Notice(said, cell))
+            elif unless_saved is not None:
+                raise unless_saved
 
     def _whole_formula(self, tree: ir.Expression, scope: Scope) -> int:
         """The node of a cell's formula; a LAMBDA that nothing calls is `#CALC!` there."""
@@ -267,8 +286,8 @@ class Lowering:
                 return self.number(value)
             case ir.Text(value) | ir.Logical(value):
                 return self.dag.constant(constant(value))
-            case ir.ErrorLiteral(code):
-                return self.error(code)
+            case ir.ErrorLiteral(code, name):
+                return self._name_error(name, None) if name else self.error(code)
             case ir.Missing():
                 return self.dag.constant(constant(None))
             case Cell():
@@ -283,8 +302,8 @@ class Lowering:
                 return self.call("%" if operator == "%" else "u-", (self.lower(operand, scope.inside()),))
             case ir.Binary():
                 return self._chain(tree, scope)
-            case ir.Call(name, arguments):
-                return self._function_call(name, arguments, scope)
+            case ir.Call():
+                return self._function_call(tree, scope)
             case ir.Variable() | ir.Let() | ir.Lambda() | ir.FunctionName() | ir.Invoke():
                 return lambdas.lower(self, tree, scope)
             case ir.Reference() | ir.Name() | ir.TableReference():
@@ -332,10 +351,21 @@ class Lowering:
             return self.cell(Cell(area.sheet, area.top, host.column))
         return self.error(ErrorCode.VALUE)
 
-    def _function_call(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int:
+    def _function_call(self, call: ir.Call, scope: Scope) -> int:
+        name, arguments = call.name, call.arguments
         check_count(name, arguments)
         made = self._special(name, arguments, scope)
-        return self.applied(name, arguments, scope) if made is None else made
+        if made is not None:
+            return made
+        if self._unknown is not None and function_named(name) is None and unknown_to_excel(call, self.graph.workbook):
+            return self._name_error(name, not_computed(name))
+        return self.applied(name, arguments, scope)
+
+    def _name_error(self, name: str, unless_saved: FormulaError | None) -> int:
+        """The node of a name or a function that Excel does not know; the error if what it saved does not say so."""
+        if self._unknown is not None:
+            self._unknown[name] = unless_saved
+        return self.error(ErrorCode.NAME)
 
     def applied(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int:
         """The node of a function of values."""

@@ -6,9 +6,15 @@ from difflib import get_close_matches
 from typing import Final
 
 from xlmc.errors import FormulaError
+from xlmc.formula import ir
 from xlmc.functions.families import REGISTRY
+from xlmc.workbook.model import Workbook
 
-__all__ = ["LEFT_OUT", "not_computed"]
+__all__ = ["LEFT_OUT", "not_computed", "unknown_to_excel"]
+
+_ADD_INS: Final = ("CB.", "RISK")
+_CODE: Final = ("vbaproject", "macrosheets")
+"""In the names of the parts that hold the functions of a book's own."""
 
 LEFT_OUT: Final = (
     frozenset({"DBCS", "JIS", "PHONETIC", "BAHTTEXT", "EUROCONVERT", "INFO"})
@@ -19,6 +25,16 @@ LEFT_OUT: Final = (
     | {"CALL", "REGISTER.ID", "RTD", "SQL.REQUEST", "WEBSERVICE", "FILTERXML", "IMAGE", "IMPORTCSV", "IMPORTTEXT"}
 )
 """Functions of Excel that xlmc has no body for."""
+
+
+def unknown_to_excel(call: ir.Call, workbook: Workbook) -> bool:
+    """Whether a function is none of Excel's, of an add-in or of the book's own code, by all that the file tells.
+
+    What Excel saved in the cell must say the same: the add-in may have been there.
+    """
+    if call.foreign or call.name in LEFT_OUT or call.name.startswith(_ADD_INS):
+        return False
+    return not any(word in part.casefold() for part in workbook.parts for word in _CODE)
 
 
 def not_computed(name: str) -> FormulaError:

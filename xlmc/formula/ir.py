@@ -59,9 +59,14 @@ class Logical:
 
 @dataclass(frozen=True, slots=True)
 class ErrorLiteral:
-    """`#N/A`."""
+    """`#N/A`.
+
+    Attributes:
+        name: the defined name that is not there, where it is the `#NAME?` of one.
+    """
 
     code: ErrorCode
+    name: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,7 +43,8 @@ class Resolver:
 
     Args:
         inputs: cells that count as used although the file may hold nothing there.
-        strict: whether a name that is not there is a mistake to tell of; `#NAME?` otherwise, as in Excel.
+        strict: whether a name that is not there is a mistake to tell of, unless Excel saved `#NAME?` in the cell too;
+            `#NAME?` otherwise, as in Excel.
         rewritten: resolved trees that stand in place of cells' formulas, or why a cell cannot be computed.
     """
 
@@ -273,8 +274,8 @@ class Resolver:
             return self._linked_name(book, tree)
         scope = host.sheet if tree.sheet is None else self._sheet(tree.sheet, host)
         found = self.workbook.defined_name(tree.name, scope)
-        if found is None and not self._strict:
-            return ir.ErrorLiteral(ErrorCode.NAME)
+        if found is None and (not self._strict or self._is_saved_as_unknown(host)):
+            return ir.ErrorLiteral(ErrorCode.NAME, tree.name)
         if found is None:
             known = (name.name for name in self.workbook.names)
             raise FormulaError(f"there is no name {tree.name!r}", hint=_did_you_mean(tree.name, known))
@@ -291,6 +292,10 @@ class Resolver:
             calls_itself = key in self._recursive
             self._recursive.discard(key)
         return ir.Let(((key, resolved),), ir.Variable(key), recursive=True) if calls_itself else resolved
+
+    def _is_saved_as_unknown(self, host: Cell) -> bool:
+        """Whether Excel did not know a name either: the cell whose own formula has it holds `#NAME?`."""
+        return not self._open_names and self.workbook.content(host).value is ErrorCode.NAME
 
     def _again(self, name: str, key: str, scope: str) -> ir.Expression:
         """A name within its own definition: a LAMBDA may call itself, by whatever way round."""

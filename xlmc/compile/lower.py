@@ -357,7 +357,8 @@ class Lowering:
         made = self._special(name, arguments, scope)
         if made is not None:
             return made
-        if self._unknown is not None and function_named(name) is None and unknown_to_excel(call, self.graph.workbook):
+        parts = self.graph.workbook.parts
+        if self._unknown is not None and function_named(name) is None and unknown_to_excel(call, parts):
             return self._name_error(name, not_computed(name))
         return self.applied(name, arguments, scope)
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Final
 
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
 from xlmc.functions.families import REGISTRY
-from xlmc.workbook.model import Workbook
 
 __all__ = ["LEFT_OUT", "not_computed", "unknown_to_excel"]
 
@@ -27,14 +27,18 @@ LEFT_OUT: Final = (
 """Functions of Excel that xlmc has no body for."""
 
 
-def unknown_to_excel(call: ir.Call, workbook: Workbook) -> bool:
+def unknown_to_excel(call: ir.Call, parts: Iterable[str]) -> bool:
     """Whether a function is none of Excel's, of an add-in or of the book's own code, by all that the file tells.
 
     What Excel saved in the cell must say the same: the add-in may have been there.
+
+    Args:
+        call: of the function.
+        parts: the names of the file's parts.
     """
     if call.foreign or call.name in LEFT_OUT or call.name.startswith(_ADD_INS):
         return False
-    return not any(word in part.casefold() for part in workbook.parts for word in _CODE)
+    return not any(word in part.casefold() for part in parts for word in _CODE)
 
 
 def not_computed(name: str) -> FormulaError:

@@ -9,7 +9,7 @@ from xlmc.address import Cell
 from xlmc.correlating import correlated_groups, repair_notices, used
 from xlmc.definitions import Correlation
 from xlmc.record.correlations_met import correlations_met
-from xlmc.sampling import METHODS
+from xlmc.sampling import METHODS, GaussianCopula
 
 UNIT = {"low": 0, "high": 1}
 
@@ -112,3 +112,43 @@ def test_with_filters_the_accepted_correlation_stands_beside_the_target(book, me
     assert met.accepted.value == pytest.approx(-0.24, abs=0.06)
     assert 0.0005 < met.accepted.error < 0.03
     assert (met.accepted == xs.rank_correlation(run.inputs["A1"], run.inputs["A2"])) is (method == "mc")
+
+
+MIXED = {"A1": {"cell": "A1", **UNIT}, "A2": {"cell": "A2", "distribution": "Yes-No", "probability": 0.1}}
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_yes_no_has_the_correlation_asked_for_where_it_can(book, method):
+    model = book({"A1": 1.0, "A2": 1.0, "B1": "=A1+A2"}, MIXED, {"x": "B1"}, correlations={("A1", "A2"): 0.4})
+    [met] = correlations_met(model.simulate(40_000, 3, sampling=method))
+    assert met.used == pytest.approx(0.4, abs=1e-9)
+    assert met.accepted.value == pytest.approx(0.4, abs=4 * 1.2 / np.sqrt(40_000))
+    assert not [each for each in model.notices if "rank correlation" in each.message]
+
+
+def test_a_correlation_out_of_reach_is_named_with_what_is_attainable(book):
+    model = book({"A1": 1.0, "A2": 1.0, "B1": "=A1+A2"}, MIXED, {"x": "B1"}, correlations={("A1", "A2"): 0.9})
+    [notice] = [each for each in model.notices if "rank correlation" in each.message]
+    assert "'A1' and 'A2' cannot have the rank correlation 0.9" in notice.message
+    assert "0.52 is the most that any two can have" in notice.message
+    [met] = correlations_met(model.simulate(40_000, 3))
+    assert met.used == pytest.approx(0.5196, abs=1e-4)
+    assert met.accepted.value == pytest.approx(0.52, abs=0.01)
+
+
+def test_what_varying_parameters_leave_open_is_said(book):
+    given = {**MIXED, "A2": {"cell": "A2", "distribution": "Yes-No", "probability": "A3"}, "A3": {"cell": "A3", **UNIT}}
+    cells = {"A1": 1.0, "A2": 1.0, "A3": 0.5, "B1": "=A1+A2"}
+    model = book(cells, given, {"x": "B1"}, correlations={("A1", "A2"): 0.4})
+    [notice] = [each for each in model.notices if "rank correlation" in each.message]
+    assert "the parameters vary from trial to trial" in notice.message
+
+
+def test_continuous_assumptions_keep_their_draws_to_the_bit(book):
+    model = book(CELLS, GIVEN, {"x": "B1"}, correlations={("A1", "A2"): 0.8, ("A2", "A3"): 0.3})
+    draws = model.sampler(5, 1000).draw(0)
+    matrix = np.array([[1.0, 0.8, 0.0], [0.8, 1.0, 0.3], [0.0, 0.3, 1.0]])
+    free = book(CELLS, GIVEN, {"x": "B1"}).sampler(5, 1000).draw(0)
+    u = np.array([free[name] for name in ("a1", "a2", "a3")])
+    GaussianCopula(matrix).join(u)
+    assert (np.array([draws[name] for name in ("a1", "a2", "a3")]) == u).all()

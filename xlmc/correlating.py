@@ -2,32 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 
 import numpy as np
 
 from xlmc.definitions import Correlation
 from xlmc.definitions.model import name_key
+from xlmc.distributions.whole_numbers import WholeNumbers
 from xlmc.errors import Notice
-from xlmc.sampling import CorrelatedGroup, GaussianCopula
+from xlmc.sampling import CorrelatedGroup, Draw, GaussianCopula
+from xlmc.sampling.ties import ties_of
 
-__all__ = ["CHANGED", "correlated_groups", "repair_notices", "used"]
+__all__ = ["CHANGED", "correlated_groups", "repair_notices", "tie_notices", "used"]
 
 CHANGED = 5e-4
 """A correlation that moved by less is the one that was asked for: three decimals say all there is to say."""
 
 
-def correlated_groups(correlations: Sequence[Correlation], live: Sequence[str]) -> list[CorrelatedGroup]:
+def correlated_groups(
+    correlations: Sequence[Correlation], live: Sequence[str], draws: Mapping[str, Draw] | None = None
+) -> list[CorrelatedGroup]:
     """The correlations among drawn assumptions, gathered in groups that have none between them.
 
     A pair of a group that no row names counts as uncorrelated, and a correlation of 0 is none: the draws are those of a
     workbook without its row, to the last bit. Correlations that contradict each other give way to the
     nearest ones that do not.
+
+    Args:
+        correlations: the rows.
+        live: the drawn assumptions.
+        draws: name -> how it is drawn, for ties; None where all are continuous.
     """
     order = [name_key(name) for name in live]
     pairs = {(name_key(c.first), name_key(c.second)): c for c in correlations if c.value}
     pairs = {pair: c for pair, c in pairs.items() if pair[0] in order and pair[1] in order}
+    how = {name_key(name): draw for name, draw in (draws or {}).items()}
     groups = []
     for names in _connected(order, list(pairs)):
         matrix = np.eye(len(names))
@@ -35,7 +45,8 @@ def correlated_groups(correlations: Sequence[Correlation], live: Sequence[str]) 
             if first in names:
                 i, j = names.index(first), names.index(second)
                 matrix[i, j] = matrix[j, i] = correlation.value
-        groups.append(CorrelatedGroup(names, GaussianCopula(matrix)))
+        ties = [ties_of(how[name]) if name in how else None for name in names]
+        groups.append(CorrelatedGroup(names, GaussianCopula(matrix, ties if any(ties) else ())))
     return groups
 
 
@@ -45,6 +56,51 @@ def used(groups: Sequence[CorrelatedGroup], first: str, second: str) -> float | 
         if name_key(first) in group.names and name_key(second) in group.names:
             return float(group.copula.spearman[group.names.index(name_key(first)), group.names.index(name_key(second))])
     return None
+
+
+def tie_notices(
+    groups: Sequence[CorrelatedGroup],
+    correlations: Sequence[Correlation],
+    draws: Mapping[str, Draw],
+) -> Iterator[Notice]:
+    """The correlations that assumptions with few values cannot have, and those that are not known beforehand.
+
+    Args:
+        groups: of correlated assumptions.
+        correlations: the rows.
+        draws: name -> how it is drawn.
+    """
+    how = {name_key(name): draw for name, draw in draws.items()}
+    for row in correlations:
+        pair = name_key(row.first), name_key(row.second)
+        group = next((each for each in groups if set(pair) <= set(each.names)), None)
+        if group is None or not row.value:
+            continue
+        i, j = (group.names.index(name) for name in pair)
+        wanted = float(group.copula.wanted[i, j])
+        if abs(wanted - row.value) >= CHANGED:
+            yield _out_of_reach(row, wanted)
+        vary = [each for name, each in zip(pair, (row.first, row.second), strict=True) if _takes_few(how[name])]
+        if vary:
+            message = (
+                f"{' and '.join(map(repr, vary))} may take few values, and the parameters vary from trial to trial: "
+                f"equal draws share ranks, so the rank correlation of {row.first!r} and {row.second!r} may be nearer "
+                f"to 0 than the {row.value:g} that was asked for; Assumptions shows what the accepted trials have"
+            )
+            yield Notice(message, row.row)
+
+
+def _takes_few(draw: Draw) -> bool:
+    return isinstance(draw.family, WholeNumbers) and not draw.fixed
+
+
+def _out_of_reach(row: Correlation, wanted: float) -> Notice:
+    message = (
+        f"{row.first!r} and {row.second!r} cannot have the rank correlation {row.value:g}: equal draws share ranks, "
+        f"and with the few values that one of them takes, {wanted:.2f} is the {'most' if row.value > 0 else 'least'} "
+        "that any two can have; they are drawn with that"
+    )
+    return Notice(message, row.row)
 
 
 def repair_notices(
@@ -68,7 +124,7 @@ def _repair(group: CorrelatedGroup, asked: dict[frozenset[str], Correlation], sp
     changes = []
     for i, j in combinations(range(len(group.names)), 2):
         row = asked.get(frozenset((group.names[i], group.names[j])))
-        before, after = 0.0 if row is None else row.value, float(group.copula.spearman[i, j])
+        before, after = float(group.copula.wanted[i, j]), float(group.copula.spearman[i, j])
         pair = f"{spelt[group.names[i]]!r} and {spelt[group.names[j]]!r} {before:g} → {after:.3f}"
         place = "in no row, which counts as 0" if row is None else str(row.row)
         changes.append((-abs(after - before), f"{pair} ({place})"))

@@ -16,7 +16,7 @@ from xlmc.compile import Evaluator, Program, Target
 from xlmc.compile.engines import ENGINES, FILLERS, options_of
 from xlmc.compile.lower import Lowering
 from xlmc.compile.widening import widened
-from xlmc.correlating import correlated_groups, repair_notices
+from xlmc.correlating import correlated_groups, repair_notices, tie_notices
 from xlmc.definitions import Assumption, Check, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key
 from xlmc.definitions.stopping import stopping
@@ -120,14 +120,17 @@ class Model:
         self.live: tuple[Assumption, ...] = self.scene.live
         self._draws = {a.name: draw_of(a, self._lowering) for a in self.live}
         names = [a.name for a in self.live]
-        self.groups: tuple[CorrelatedGroup, ...] = tuple(correlated_groups(definitions.correlations, names))
+        self.groups: tuple[CorrelatedGroup, ...] = tuple(
+            correlated_groups(definitions.correlations, names, self._draws)
+        )
         self._programs: dict[tuple[str, str], Program] = {}
         self._check_targets()
         self._checks = _lowered_checks(workbook, definitions, self.live)
         repairs = repair_notices(self.groups, definitions.correlations, names)
         remarks = *still_notices(self.scene, self._draws, self.forecasts), *example_notices(definitions, self.scene)
         idle = self.scene.notices(frozenset() if self._checks is None else self._checks.graph.reached)
-        notices = workbook.notices, definitions.notices, idle, self._lowering.notices, repairs, remarks
+        ties = tie_notices(self.groups, definitions.correlations, self._draws)
+        notices = workbook.notices, definitions.notices, idle, self._lowering.notices, ties, repairs, remarks
         self.notices: tuple[Notice, ...] = tuple(notice for part in notices for notice in part)
 
     @property

@@ -69,3 +69,15 @@ def test_the_commit_of_a_version_has_it(version):
         pytest.skip("the history is not here")
     assert f'version = "{version}"' in shown.stdout
     assert commit in install(version)
+
+
+def test_a_rule_that_concerns_two_cells_together():
+    correlated = "assumptions that take few values"
+    for contents, expected in (
+        (["Yes-No", "Correlation"], True),
+        (["=RiskBernoulli(A1,RiskCorrmat(B1:C2,1))"], True),
+        (["Normal", "Correlation"], False),
+        (["Yes-No"], False),
+    ):
+        said = [rule.said for rule in rules_since("0.1.0", contents)]
+        assert any(each.startswith(correlated) for each in said) is expected

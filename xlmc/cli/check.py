@@ -10,7 +10,7 @@ import click
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Definitions
+    from xlmc.definitions import Correlation, Definitions
     from xlmc.model import Model
     from xlmc.workbook import Workbook
 
@@ -43,7 +43,7 @@ def check(book: Path) -> None:
         except XlmcError as error:
             problems.append(error)
     faults = [] if model is None else show_base_case(model)
-    _show_definitions(definitions if model is None else model.definitions)
+    _show_definitions(definitions if model is None else model.definitions, model)
     if model is not None:
         _show_need(model, workbook)
         notices(model.notices)
@@ -61,7 +61,7 @@ def check(book: Path) -> None:
     say("No problem found.")
 
 
-def _show_definitions(definitions: Definitions) -> None:
+def _show_definitions(definitions: Definitions, model: Model | None) -> None:
     from xlmc.cli.printing import table
     from xlmc.record.wording import distribution_text, limits_text
     from xlmc.report.summary import percent
@@ -82,8 +82,15 @@ def _show_definitions(definitions: Definitions) -> None:
     if definitions.checks:
         table("Checks", ("Name", "Cell", "Because"), [(c.name, str(c.cell), c.because) for c in definitions.checks])
     if definitions.correlations:
-        pairs = [(c.first, c.second, f"{c.value:g}") for c in definitions.correlations]
-        table("Correlations", ("First", "Second", "Spearman"), pairs, right=(2,))
+        pairs = [(c.first, c.second, f"{c.value:g}", _drawn_with(model, c)) for c in definitions.correlations]
+        table("Rank correlations", ("First", "Second", "Asked for", "Drawn with"), pairs, right=(2, 3))
+
+
+def _drawn_with(model: Model | None, correlation: Correlation) -> str:
+    from xlmc.correlating import used
+
+    found = None if model is None else used(model.groups, correlation.first, correlation.second)
+    return "-" if found is None else f"{found:.3g}"
 
 
 def _show_need(model: Model, workbook: Workbook) -> None:

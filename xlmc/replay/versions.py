@@ -23,11 +23,13 @@ class Rule:
         since: the version that computes otherwise than those before.
         said: what it does now, in words.
         met: what a formula or another content of a cell looks like that it may concern.
+        beside: what another cell's content must look like, too; None where one is enough.
     """
 
     since: str
     said: str
     met: re.Pattern[str]
+    beside: re.Pattern[str] | None = None
 
 
 def _calls(*names: str) -> re.Pattern[str]:
@@ -47,34 +49,58 @@ _TOOLPAK: Final = re.compile(
 )
 _WHOLE: Final = re.compile(r"=.*\$?[A-Z]{1,3}:\$?[A-Z]{1,3}\b|=.*\$?\d+:\$?\d+\b")
 
-RULES: Final = tuple(
-    Rule("0.2.0", said, met)
-    for said, met in (
-        ("= <> < <= > >= between numbers compare 15 significant digits, as in Excel", _COMPARED),
-        ("the + or - that a formula ends with gives 0 where it cancels but for the last bits", _LAST_SUM),
-        (
-            "ranges within INDEX, IRR, MODE, LINEST and kin are computed cell by cell in plain formulas",
-            _calls(*_BESIDE),
-        ),
-        ("a choice that varies between ranges of different sizes gives the one it chooses, whole", _calls(*_CHOICES)),
-        ("SUBTOTAL 1 to 11 leaves out the rows that a filter hides", _calls("SUBTOTAL")),
-        ('the criterion "<>23" counts the text "23"', _calls("COUNTIF", "COUNTIFS", "SUMIF", "SUMIFS", "AVERAGEIF")),
-        ("whole columns and rows keep their size, empty cells included", _WHOLE),
-        ("an array within a cell of an array is #CALC!; arrays side by side are filled up with #N/A", _calls("LAMBDA")),
-        ("EDATE, WEEKNUM, ISODD and kin give #VALUE! for a range of several cells", _TOOLPAK),
-        ("TRUNC rounds, exactly, the 15 digits that Excel shows", _calls("TRUNC")),
-        ("LCM leaves out empty cells", _calls("LCM")),
-        ("BITLSHIFT and BITRSHIFT give #NUM! above 48 bits", _calls("BITLSHIFT", "BITRSHIFT")),
-        ("MIRR gives -1 where nothing is received, and #DIV/0! at -100 %", _calls("MIRR")),
-        ("CONVERT keeps the digits of small absolute temperatures", _calls("CONVERT")),
-        ("YEARFRAC counts 1900 as a leap year, as Excel's calendar does", _calls("YEARFRAC")),
-        ("CUMIPMT and CUMPRINC truncate the type of payment", _calls("CUMIPMT", "CUMPRINC")),
-        ("CB.GetCertaintyFN gives percent", _calls("CB.GetCertaintyFN")),
-        (
-            "RiskMean and kin of another simulation than the first are not available",
-            _calls("RiskMean", "RiskPercentile"),
-        ),
-    )
+_FEW_VALUES: Final = re.compile(
+    r"(?<!\w)(?:CB\.|Risk)?(?:Yes-?No|Bernoulli|(?:Neg(?:ative)? ?)?Bin(?:om(?:ial)?)?|Poisson|Geomet(?:ric)?"
+    r"|Hyper-?geo(?:metric)?|Hypergeo|(?:Discrete|Int|D) ?Uniform|Discrete|Custom|Empirical|Resampled|Resample)(?!\w)",
+    re.IGNORECASE,
+)
+_CORRELATED: Final = re.compile(r"correlation|RiskCorrmat|Risk(?:In)?DepC|CB\.Correl", re.IGNORECASE)
+
+RULES: Final = (
+    *(
+        Rule("0.2.0", said, met)
+        for said, met in (
+            ("= <> < <= > >= between numbers compare 15 significant digits, as in Excel", _COMPARED),
+            ("the + or - that a formula ends with gives 0 where it cancels but for the last bits", _LAST_SUM),
+            (
+                "ranges within INDEX, IRR, MODE, LINEST and kin are computed cell by cell in plain formulas",
+                _calls(*_BESIDE),
+            ),
+            (
+                "a choice that varies between ranges of different sizes gives the one it chooses, whole",
+                _calls(*_CHOICES),
+            ),
+            ("SUBTOTAL 1 to 11 leaves out the rows that a filter hides", _calls("SUBTOTAL")),
+            (
+                'the criterion "<>23" counts the text "23"',
+                _calls("COUNTIF", "COUNTIFS", "SUMIF", "SUMIFS", "AVERAGEIF"),
+            ),
+            ("whole columns and rows keep their size, empty cells included", _WHOLE),
+            (
+                "an array within a cell of an array is #CALC!; arrays side by side are filled up with #N/A",
+                _calls("LAMBDA"),
+            ),
+            ("EDATE, WEEKNUM, ISODD and kin give #VALUE! for a range of several cells", _TOOLPAK),
+            ("TRUNC rounds, exactly, the 15 digits that Excel shows", _calls("TRUNC")),
+            ("LCM leaves out empty cells", _calls("LCM")),
+            ("BITLSHIFT and BITRSHIFT give #NUM! above 48 bits", _calls("BITLSHIFT", "BITRSHIFT")),
+            ("MIRR gives -1 where nothing is received, and #DIV/0! at -100 %", _calls("MIRR")),
+            ("CONVERT keeps the digits of small absolute temperatures", _calls("CONVERT")),
+            ("YEARFRAC counts 1900 as a leap year, as Excel's calendar does", _calls("YEARFRAC")),
+            ("CUMIPMT and CUMPRINC truncate the type of payment", _calls("CUMIPMT", "CUMPRINC")),
+            ("CB.GetCertaintyFN gives percent", _calls("CB.GetCertaintyFN")),
+            (
+                "RiskMean and kin of another simulation than the first are not available",
+                _calls("RiskMean", "RiskPercentile"),
+            ),
+        )
+    ),
+    Rule(
+        "0.2.0",
+        "assumptions that take few values have the rank correlation asked for, ties counted, or the most they can have",
+        _FEW_VALUES,
+        _CORRELATED,
+    ),
 )
 """In the order of versions."""
 
@@ -102,7 +128,7 @@ def rules_since(version: str, contents: Iterable[str]) -> tuple[Rule, ...]:
         rule
         for rule in RULES
         if _parts(version) < _parts(rule.since) <= _parts(xlmc.__version__)
-        and any(rule.met.search(text) for text in texts)
+        and all(any(one.search(text) for text in texts) for one in (rule.met, rule.beside) if one is not None)
     )
 
 

@@ -47,8 +47,8 @@ STRATIFIED = (
 
 _CORRELATIONS = (
     "Asked for and drawn with: before filtering. They differ where no assumptions can have all the correlations that "
-    "were asked for. Filters change correlations as they change assumptions: beside them stand those of the accepted "
-    "trials."
+    "were asked for, or where one takes so few values that ties allow less. Filters change correlations as they change "
+    "assumptions: beside them stand those of the accepted trials."
 )
 
 

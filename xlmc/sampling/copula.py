@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.sampling.nearest import nearest_correlation
+from xlmc.sampling.ties import Ties, bounds, parameter, spearman
 
 __all__ = ["GaussianCopula"]
 
@@ -21,27 +25,44 @@ _ROUNDING = 1e-9
 
 
 class GaussianCopula:
-    """Joins k uniforms so that their Spearman correlations are those of `spearman`, or the nearest possible ones.
+    """Joins k uniforms so that the draws' Spearman correlations are those of `target`, or the nearest possible ones.
 
     The first keeps its own draws; each other mixes its own with those before it.
 
     Args:
-        spearman: the target matrix `(k, k)`, symmetric with a diagonal of 1.
+        target: the matrix `(k, k)`, symmetric with a diagonal of 1.
+        ties: the values that each of the k takes, None for a continuous one; by default all are continuous.
 
     Attributes:
+        wanted: the target, each number brought to what ties let its pair have.
         spearman: the matrix that the draws have.
-        repaired: whether that is another one than was asked for, because no joint distribution of this kind has it.
+        repaired: whether that is another one than was wanted, because no joint distribution of this kind has it.
 
-    Source: Pearson correlation of the normals ρ = 2 sin(π r_s / 6) (Kruskal 1958), which is exact. These are what must
-    be positive semidefinite, so it is they that are repaired (Higham 2002), and the ranks follow from them.
+    Source: Pearson correlation of the normals ρ = 2 sin(π r_s / 6) (Kruskal 1958), which is exact; see `ties` for draws
+    with few values. These are what must be positive semidefinite, so it is they that are repaired (Higham 2002), and
+    the ranks follow from them.
     """
 
-    def __init__(self, spearman: Floats) -> None:
-        pearson = 2 * np.sin(np.pi / 6 * spearman)
+    def __init__(self, target: Floats, ties: Sequence[Ties | None] = ()) -> None:
+        self._ties = ties
+        pearson = 2 * np.sin(np.pi / 6 * target)
         np.fill_diagonal(pearson, 1.0)
+        self.wanted = target.copy()
+        for i, j in self._tied():
+            least, most = bounds(ties[i], ties[j])
+            self.wanted[i, j] = self.wanted[j, i] = min(max(float(target[i, j]), least), most)
+            pearson[i, j] = pearson[j, i] = parameter(ties[i], ties[j], float(target[i, j])) if target[i, j] else 0.0
         self.repaired = bool(np.linalg.eigvalsh(pearson)[0] < -_ROUNDING)
         self._mix = _triangular_root(nearest_correlation(pearson) if self.repaired else pearson)
-        self.spearman = 6 / np.pi * np.arcsin(np.clip(self._mix @ self._mix.T, -1.0, 1.0) / 2)
+        normals = np.clip(self._mix @ self._mix.T, -1.0, 1.0)
+        self.spearman = 6 / np.pi * np.arcsin(normals / 2)
+        for i, j in self._tied():
+            self.spearman[i, j] = self.spearman[j, i] = spearman(ties[i], ties[j], float(normals[i, j]))
+
+    def _tied(self) -> Iterator[tuple[int, int]]:
+        """The pairs of which one takes few values."""
+        places = range(len(self._ties))
+        return ((i, j) for i, j in combinations(places, 2) if self._ties[i] or self._ties[j])
 
     def join(self, u: Floats) -> None:
         """Replace the rows of `u` (k, n), independent uniforms in [0, 1), by joined ones."""

@@ -41,7 +41,11 @@ FORMULAS = [
     ("=OR(A1<0.1,NOT(A2>0.2))", ("any", "gap", "gap")),
     ("=ABS(A1-A2)=0", "gap"),
     ("=A1<>A2", "only whether"),
-    ("=IF(A1>A2,TRUE,FALSE)", "only whether"),
+    (
+        "=IF(A1>A2,A2>0.5,A1>0.9)",
+        ("any", ("all", "gap", "gap"), ("all", "gap", "gap")),
+    ),
+    ("=IF(A1>A2,TRUE)", "only whether"),
     ("=AND(B2:B3)", "only whether"),
     ("=AND(B2,A1>0.5)", ("all", "gap", "gap")),
     ("=A1", "only whether"),

@@ -20,7 +20,8 @@ LEAST_CHANCE: Final = 1e-3
 """Below it, the number of plain trials that were accepted is no chance."""
 
 MOST_APART: Final = math.log(2.0)
-"""Two estimates of the probability of acceptance, as logarithms: the first is known to some tenths."""
+"""Two estimates of the probability of acceptance, as logarithms: the first is known to some tenths, and less well where
+the populations of several ways share its points."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +49,7 @@ class RareAccount:
         checked: of the evaluations, those from widened assumptions after the search, to look for what it missed.
         missed: the probability of accepted trials that were met so, or among the plain ones, and that the proposals
             hardly ever come to.
+        ways: parts of all trials, by branches and discrete assumptions, that were searched apart.
     """
 
     evaluations: int
@@ -70,6 +72,7 @@ class RareAccount:
     plain_accepted: int = 0
     checked: int = 0
     missed: float = 0.0
+    ways: int = 1
 
     @property
     def at_least(self) -> bool:
@@ -99,13 +102,18 @@ class RareAccount:
         return (
             f"Plain trials, as they come, would have taken about {_about(self.plain_trials)} "
             f"for these. Where the accepted ones lie was learned from {self.learning:,} trials (splitting, in "
-            f"{self.levels} levels; then a mixture of {self.components} normal distributions in {directions}). "
+            f"{self.levels} levels{self._apart}; then a mixture of {self.components} normal distributions "
+            f"in {directions}). "
             f"{self.proposals:,} further trials were drawn there; {self.proposals_accepted:,} of them pass all "
             f"filters, and of these each was kept with a chance that gives all kept ones equal weight. The "
             f"{self.kept:,} kept ones are independent, and spread as those that plain trials would have left "
             f"(effective sample size {self.size:,.0f}: a few stand more than once). {self._of_acceptance}No method can "
             "rule out that a separate part of the accepted region was not found."
         )
+
+    @property
+    def _apart(self) -> str:
+        return f", in {self.ways} ways by branches and discrete assumptions" if self.ways > 1 else ""
 
     @property
     def _of_acceptance(self) -> str:
@@ -120,7 +128,7 @@ class RareAccount:
     def warnings(self) -> list[str]:
         """Why the answer must not be used as it stands."""
         found = []
-        if abs(math.log(self.searched / self.acceptance.value)) > MOST_APART:
+        if abs(math.log(self.searched / self.acceptance.value)) > MOST_APART * math.sqrt(self.ways):
             found.append(
                 f"the search for rare trials has a probability of acceptance of {self.searched:.2g}, and the trials "
                 f"that it led to have {self.acceptance.value:.2g}: part of the accepted region may be missing"

@@ -57,6 +57,7 @@ def find(
     drawing: np.random.Generator,
     say: Say = lambda _: None,
     plain: Sequence[Evidence] = (),
+    ways: Sequence[Distance] = (),
 ) -> Found:
     """Draw `wanted` accepted trials of equal weight.
 
@@ -70,11 +71,12 @@ def find(
         drawing: others, to draw the trials with: what they come from must not have served to learn.
         say: told of the evaluations so far.
         plain: trials from before the search.
+        ways: see `learn`.
     """
     spread, checked, trials = widened(dimensions), 0, min(_SURVEY, most // _PART)
     first = _survey(accepts, spread, trials, learning)
     before = first.trials
-    learned = learn(distance, dimensions, learning, after(before, say), most - before, (*plain, first))
+    learned = learn(distance, dimensions, learning, after(before, say), most - before, (*plain, first), ways)
     for tries_left in range(_AGAIN, -1, -1):
         used, done = learned.best, learned.evaluations + before
         if used is None or wanted > used.rate * (most - done):

@@ -6,14 +6,17 @@ Correlations, cutoffs, whole numbers and parameters that vary follow from the un
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.compile import Column
-from xlmc.rare.shortfall import Leaf, leaves, lengths, measured, shortfall
+from xlmc.rare.shortfall import Leaf, Shortfall, leaves, lengths, measured, shortfall
+from xlmc.rare.splitting import Distance
+from xlmc.rare.ways_of import ways_of
 from xlmc.scene import condition
 
 if TYPE_CHECKING:
@@ -26,6 +29,9 @@ Floats = NDArray[np.float64]
 
 SCALING_TRIALS: Final = 16_384
 """Draws whose distances, the median of each, all distances are measured by."""
+
+_OUTSIDE: Final = 1e3
+"""More than the logarithm of any distance."""
 
 _LARGEST: Final = 1.0 - 2.0**-53
 
@@ -78,7 +84,9 @@ class Landscape:
         formulas = model.scene.graph.formulas
         self.dimensions = len(model.live)
         self._filters = [shortfall(condition(f), f.cell, formulas) for f in model.filters]
-        self._leaves = [leaf for each in self._filters for leaf in leaves(each)]
+        self._ways = ways_of(model, self._filters)
+        gates = [gate for way in self._ways for gate in way]
+        self._leaves = list(dict.fromkeys(leaf for each in (*self._filters, *gates) for leaf in leaves(each)))
         targets = [*model.filter_targets, *(leaf.holds for leaf in self._leaves)]
         gauged = [leaf for leaf in self._leaves if leaf.gap is not None]
         self._gaps = {leaf: len(targets) + i for i, leaf in enumerate(gauged)}
@@ -90,7 +98,6 @@ class Landscape:
         self._sampler = model.sampler(0, self._block, filler=self._given.filler)
         self._fallible = model.fallible
         self.evaluations = self.lost = 0
-        self._scales = [1.0] * len(self._leaves)
         self._scales = self._usual(random.standard_normal((SCALING_TRIALS, self.dimensions)))
 
     def distance(self, points: Floats) -> Floats:
@@ -118,14 +125,36 @@ class Landscape:
 
     def _of_filters(self, points: Floats) -> Iterator[list[Floats]]:
         for columns, invalid in self._columns(points):
-            scaled = {
-                leaf: found / scale
-                for (leaf, found), scale in zip(self._lengths(columns).items(), self._scales, strict=True)
-            }
-            yield [
-                _exact(measured(each, scaled), column, invalid)
-                for each, column in zip(self._filters, columns, strict=False)
-            ]
+            yield self._asked(columns, invalid, self._scaled(columns))
+
+    def _scaled(self, columns: Sequence[Column]) -> dict[Leaf, Floats]:
+        return {leaf: found / self._scales[leaf] for leaf, found in self._lengths(columns).items()}
+
+    def _asked(
+        self, columns: Sequence[Column], invalid: NDArray[np.bool_], scaled: Mapping[Leaf, Floats]
+    ) -> list[Floats]:
+        """For each filter, (n,) how far a block's trials are from what it asks."""
+        return [
+            _exact(measured(each, scaled), column, invalid)
+            for each, column in zip(self._filters, columns, strict=False)
+        ]
+
+    @property
+    def ways(self) -> list[Distance]:
+        """The distances of each way to be accepted, 0 where a trial is accepted in this way; together they are all."""
+        if len(self._ways) < 2:
+            return [self.distance]
+        return [partial(self._in_way, way) for way in self._ways]
+
+    def _in_way(self, way: Sequence[Shortfall], points: Floats) -> Floats:
+        """(n,) the distance in a way; outside of it, the distance from that way, and above any within."""
+        parts = [np.empty(0)]
+        for columns, invalid in self._columns(points):
+            scaled = self._scaled(columns)
+            within = np.log1p(np.maximum.reduce(self._asked(columns, invalid, scaled)))
+            outside = np.maximum.reduce([measured(gate, scaled) for gate in way])
+            parts.append(np.where(outside > 0.0, _OUTSIDE + np.log1p(outside), within))
+        return np.concatenate(parts)
 
     def _columns(self, points: Floats) -> Iterator[tuple[list[Column], NDArray[np.bool_]]]:
         """Block by block, every target, and where a draw is an error."""
@@ -160,10 +189,11 @@ class Landscape:
             for i, leaf in enumerate(self._leaves)
         }
 
-    def _usual(self, points: Floats) -> list[float]:
+    def _usual(self, points: Floats) -> dict[Leaf, float]:
         """The median length of every comparison where it fails."""
         parts = [list(self._lengths(columns).values()) for columns, _ in self._columns(points)]
-        return [_median(np.concatenate(each)) for each in zip(*parts, strict=True)]
+        found = [_median(np.concatenate(each)) for each in zip(*parts, strict=True)]
+        return dict(zip(self._leaves, found, strict=True))
 
 
 def _median(found: Floats) -> float:

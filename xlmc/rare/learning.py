@@ -25,6 +25,14 @@ __all__ = ["Learned", "Round", "Say", "after", "again", "learn", "widened_search
 Floats = NDArray[np.float64]
 
 _DESCENTS: Final = 2
+"""Populations of each way."""
+
+_POPULATION: Final = 4_096
+"""Points of the populations, of all ways together, as long as each has some hundreds."""
+
+_FIRST: Final = 65_536
+"""Draws that they begin from, likewise."""
+
 _TRIALS: Final = 32_768
 _MOST_TRIALS: Final = 64 * _TRIALS
 _ENOUGH: Final = 250
@@ -132,6 +140,7 @@ def learn(
     say: Say = lambda _: None,
     most: float = math.inf,
     known: Sequence[Evidence] = (),
+    ways: Sequence[Distance] = (),
 ) -> Learned:
     """Find the region where the distance is 0, and describe it; in no more evaluations than `most`, about.
 
@@ -142,11 +151,15 @@ def learn(
         say: told of the evaluations so far.
         most: evaluations.
         known: trials that were drawn before; those that were accepted are evidence.
+        ways: distances of parts of all trials, whose populations go apart; by default all together.
     """
     found: list[Descent] = []
-    for _ in range(_DESCENTS):
-        found.append(descend(distance, dimensions, random))
-        say(sum(each.evaluations for each in found))
+    apart = ways or (distance,)
+    population, first = (max(whole // len(apart), least) for whole, least in ((_POPULATION, 512), (_FIRST, 8_192)))
+    for each in apart:
+        for _ in range(_DESCENTS):
+            found.append(descend(each, dimensions, random, population=population, first=first))
+            say(sum(done.evaluations for done in found))
     learned = Learned(tuple(found), (), tuple(known), sum(each.evaluations for each in found))
     if any(each.reached for each in found):
         learned = _with_strays(distance, learned, random, most - _TRIALS)

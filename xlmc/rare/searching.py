@@ -66,7 +66,16 @@ def search(
     wanted, most = settings.stopping.accepted or 0, settings.trials - plain
     evidence = [] if settings.sampling != "mc" else [_plain(model, settings, plain, accepted, landscape)]
     found = find(
-        landscape.distance, landscape.accepts, landscape.dimensions, wanted, most, learning, drawing, say, evidence
+        landscape.distance,
+        landscape.accepts,
+        landscape.dimensions,
+        wanted,
+        most,
+        learning,
+        drawing,
+        say,
+        evidence,
+        landscape.ways,
     )
     drawn = found.equalised
     if drawn is None or found.used is None or len(drawn.points) < wanted:
@@ -92,6 +101,7 @@ def search(
         plain=plain,
         plain_accepted=accepted.size,
         checked=found.checked,
+        ways=len(landscape.ways),
         missed=0.0 if found.strays is None else found.strays.mass,
     )
     return Search(drawn.points, account, "", landscape.evaluations)

@@ -1,7 +1,7 @@
 """What a filter asks, as distances: by how much each of its comparisons fails in a trial.
 
 `at least 0 and below 1` are two comparisons of a cell with a number. A filter that must be TRUE is followed into its
-formula, through AND, OR and NOT, to the comparisons there. What is no comparison of numbers is 1 while it fails.
+formula, through AND, OR, NOT and IF, to the comparisons there. What is no comparison of numbers is 1 while it fails.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from xlmc.address import Area, Cell
 from xlmc.compile import Column, Target
 from xlmc.formula import ir
 
-__all__ = ["Leaf", "Shortfall", "Together", "leaves", "lengths", "measured", "shortfall"]
+__all__ = ["Fails", "Leaf", "Shortfall", "Together", "asked", "leaves", "lengths", "measured", "shortfall"]
 
 Floats = NDArray[np.float64]
 
@@ -47,7 +47,14 @@ class Together:
     every: bool
 
 
-Shortfall = Leaf | Together
+@dataclass(frozen=True, slots=True, eq=False)
+class Fails:
+    """One that must not hold; by how much it does is not asked."""
+
+    part: Shortfall
+
+
+Shortfall = Leaf | Together | Fails
 
 
 def shortfall(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression]) -> Shortfall:
@@ -59,27 +66,51 @@ def shortfall(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expres
         formulas: the resolved formulas of the cells that it may lead to.
     """
     match tree:
-        case ir.Binary("<>", ir.Binary("+", Cell() as asked, ir.Number(0.0)), ir.Number(0.0)) if asked in formulas:
-            return _logical(asked, cell, formulas, wanted=True)
-    return _logical(tree, cell, formulas, wanted=True)
+        case ir.Binary("<>", ir.Binary("+", Cell() as held, ir.Number(0.0)), ir.Number(0.0)) if held in formulas:
+            return asked(held, cell, formulas, wanted=True)
+    return asked(tree, cell, formulas, wanted=True)
 
 
-def _logical(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression], *, wanted: bool) -> Shortfall:
-    """The comparisons that decide whether a tree, in a cell, is TRUE, or FALSE where that is wanted."""
+def asked(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression], *, wanted: bool) -> Shortfall:
+    """The comparisons that decide whether a tree, in a cell, is TRUE, or FALSE where that is wanted.
+
+    Args:
+        tree: a condition.
+        cell: that it stands in.
+        formulas: see `shortfall`.
+        wanted: TRUE or FALSE.
+    """
     match tree:
         case Cell() if tree in formulas:
-            return _logical(formulas[tree], tree, formulas, wanted=wanted)
+            return asked(formulas[tree], tree, formulas, wanted=wanted)
         case ir.Call("NOT", (part,)):
-            return _logical(part, cell, formulas, wanted=not wanted)
+            return asked(part, cell, formulas, wanted=not wanted)
         case ir.Call("AND" | "OR", parts) if parts and not any(isinstance(part, Area | ir.Missing) for part in parts):
-            found = tuple(_logical(part, cell, formulas, wanted=wanted) for part in parts)
+            found = tuple(asked(part, cell, formulas, wanted=wanted) for part in parts)
             return Together(found, (tree.name == "AND") is wanted)
+        case ir.Call("IF", (condition, yes, no)) if not isinstance(yes, ir.Missing) and not isinstance(no, ir.Missing):
+            return _either(condition, yes, no, cell, formulas, wanted=wanted)
         case ir.Binary(relation, left, right) if relation in _NEGATED:
             relation = relation if wanted else _NEGATED[relation]
             holds = Target(replace(tree, operator=relation), cell)
             gap = _gap(relation, left, right)
             return Leaf(holds, None if gap is None else Target(gap, cell))
     return Leaf(Target(ir.Binary("<>" if wanted else "=", tree, ir.Number(0.0), all_bits=True), cell))
+
+
+def _either(
+    condition: ir.Expression,
+    yes: ir.Expression,
+    no: ir.Expression,
+    cell: Cell,
+    formulas: Mapping[Cell, ir.Expression],
+    *,
+    wanted: bool,
+) -> Shortfall:
+    """The condition and the one part, or neither."""
+    sides = (asked(condition, cell, formulas, wanted=side) for side in (True, False))
+    values = (asked(part, cell, formulas, wanted=wanted) for part in (yes, no))
+    return Together(tuple(Together(both, every=True) for both in zip(sides, values, strict=True)), every=False)
 
 
 def _gap(relation: str, left: ir.Expression, right: ir.Expression) -> ir.Expression | None:
@@ -95,13 +126,17 @@ def _gap(relation: str, left: ir.Expression, right: ir.Expression) -> ir.Express
 
 def leaves(of: Shortfall) -> list[Leaf]:
     """In order."""
-    return [of] if isinstance(of, Leaf) else [leaf for part in of.parts for leaf in leaves(part)]
+    if isinstance(of, Leaf):
+        return [of]
+    return [leaf for part in (of.parts if isinstance(of, Together) else (of.part,)) for leaf in leaves(part)]
 
 
 def measured(of: Shortfall, found: Mapping[Leaf, Floats]) -> Floats:
     """(n,) how far each trial is from what is asked, given how far from each comparison: 0 where it holds."""
     if isinstance(of, Leaf):
         return found[of]
+    if isinstance(of, Fails):
+        return np.asarray(measured(of.part, found) <= 0.0, dtype=np.float64)
     parts = [measured(part, found) for part in of.parts]
     return np.asarray((np.maximum if of.every else np.minimum).reduce(parts))
 

@@ -204,3 +204,19 @@ def test_the_ladder_on_the_case_study(planar, momentum):
     assert [(step.kind, step.name) for step in cause.steps] == [("filter", "Restitution, tangential")]
     assert len(found.inputs.alike) == 10
     assert len(found.inputs.drawn[0]) == 7
+
+
+def test_the_probability_of_being_above_the_threshold_is_compared(book):
+    given = {"a": {"cell": "A1", "low": 0, "high": 1}}
+    first, second = (book({"A1": 0.5, "D1": f"=A1+IF(A1>0.98,{more},0)"}, given, {"y": "D1"}) for more in (0, 3))
+    asked = replace(first.definitions.forecasts[0], threshold=2.0)
+    first = Model(first.workbook, replace(first.definitions, forecasts=(asked,)), first.path)
+    found = compare(first, second, "1", trials=20_000, seed=1)
+    (each,) = found.forecasts
+    assert each.judgement.verdict is Verdict.BEYOND
+    assert each.judgement.largest == "P(> 2)"
+    assert each.difference.above.second.value == pytest.approx(0.02, abs=0.004)
+    (said,) = verdict_text(found)
+    assert "y to 1 and P(> 2) to 0.1 points: P(> 2) differs by " in said
+    assert "points" in said.partition("differs by")[2]
+    assert compare(first, second, "1", chance=5, trials=20_000, seed=1).forecasts[0].judgement.verdict is Verdict.WITHIN

@@ -209,3 +209,43 @@ def test_the_cheap_ranking_foretells_the_runs(case):
     """The five that the answer needs are ranked last."""
     last = {each.name for each in case.expected[-5:]}
     assert last == {cost.names[0] for cost in case.single if cost.judgement.verdict is Verdict.BEYOND}
+
+
+def test_an_assumption_that_alone_decides_the_probability_is_needed(book):
+    """In 3 of 100 trials y is moved by up to 4.5: mean, SD and range stay within 2, and P(y > 12) is theirs alone."""
+    cells = {"A1": 0.5, "A2": 0.5, "A3": 0.5, "D1": "=10+A3+IF(A1>0.97,9*(A2-0.5),0)"}
+    given = {
+        "tail": {"cell": "A1", "low": 0, "high": 1},
+        "switch": {"cell": "A2", "low": 0, "high": 1},
+        "rest": {"cell": "A3", "low": 0, "high": 1},
+    }
+    model = book(cells, given, {"y": "D1"})
+    above = replace(model.definitions.forecasts[0], threshold=12.0)
+    asked = Model(model.workbook, replace(model.definitions, forecasts=(above,)), model.path)
+    plain, honoured = (screen(one, "2", **SIZE) for one in (model, asked))
+    assert {"switch", "tail"} <= set(plain.joint.names)
+    assert not {"switch", "tail"} & set(honoured.joint.names if honoured.joint else ())
+    cost = cost_of(honoured, "switch")
+    assert cost.judgement.verdict is Verdict.BEYOND
+    assert cost.judgement.largest == "y, P(> 12)"
+    change = cost.forecasts["y"].above
+    assert change.second.value == 0.0
+    assert change.first.value == pytest.approx(0.03 * (0.5 - 1.5 / 9), abs=0.004)
+    assert change.difference.error == pytest.approx(math.sqrt(change.first.value / 20_000), rel=0.05)
+    loose = screen(asked, "2", chance=5, **SIZE)
+    assert {"switch", "tail"} <= set(loose.joint.names)
+
+
+def test_the_range_of_each_forecast_is_its_own(book):
+    model = book({"A1": 0.5, "D1": "=A1"}, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"y": "D1"})
+    wide = replace(model.definitions.forecasts[0], central=0.9)
+    found = screen(Model(model.workbook, replace(model.definitions, forecasts=(wide,)), model.path), "0.1", **SIZE)
+    each = cost_of(found, "a").forecasts["y"]
+    assert each.share == 0.9
+    assert each.low.first.value == pytest.approx(0.05, abs=0.01)
+
+
+@pytest.mark.parametrize("chance", [0.0, -1.0, 100.0])
+def test_a_tolerance_of_the_probability_out_of_its_range(weighted, chance):
+    with pytest.raises(SimulationError, match="percentage points"):
+        screen(weighted({"a": 1.0}), chance=chance, **SIZE)

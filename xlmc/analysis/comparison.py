@@ -11,7 +11,7 @@ from xlmc.analysis.causes import Step, Variations, cause_of, steps_between
 from xlmc.analysis.differences import Acceptance, Difference, acceptance, difference
 from xlmc.analysis.influences import Accepted
 from xlmc.analysis.inputs import Inputs, inputs_of
-from xlmc.analysis.tolerances import Judgement, Tolerances, Verdict, in_tolerances, judge, read_tolerances
+from xlmc.analysis.tolerances import Judgement, Tolerances, Verdict, chance_of, in_tolerances, judge, read_tolerances
 from xlmc.analysis.units import factor_between
 from xlmc.analysis.variations import plainly_sampled
 from xlmc.definitions import Forecast
@@ -46,6 +46,7 @@ class ForecastComparison:
     Attributes:
         factor: by which the second's numbers were multiplied, to be in the first's unit.
         tolerance: in that unit; `stated` where it was asked for, else a tenth of the standard deviation.
+        limits: number -> its tolerance; that of P(> threshold) is a share.
         cause: where the difference is beyond the tolerance.
     """
 
@@ -54,6 +55,7 @@ class ForecastComparison:
     factor: float
     tolerance: float
     stated: bool
+    limits: Mapping[str, float]
     difference: Difference
     judgement: Judgement
     cause: Cause | None
@@ -110,6 +112,7 @@ def compare(
     seed: int | None = None,
     engine: str | None = None,
     jobs: int = 1,
+    chance: float | None = None,
     causes: bool = True,
     told: Callable[[str], None] | None = None,
 ) -> Comparison:
@@ -128,6 +131,9 @@ def compare(
         seed: of each run; by default the first book's.
         engine: as in `Model.simulate`.
         jobs: as in `Model.simulate`.
+        chance: the change of P(forecast > threshold) that counts as none, in percentage points; by default a tenth of
+            it or of its complement, and a tenth of a point at least. The threshold is the first book's; that of the
+            second where the first has none.
         causes: look for the cause of what differs; each step is a further run.
         told: called before every run with what it is for.
 
@@ -152,7 +158,7 @@ def compare(
 
     books = run(first, first.path.name), run(second, second.path.name)
     inputs = inputs_of(*books)
-    search = _Search(books, inputs, Variations(*books, run), causes)
+    search = _Search(books, inputs, Variations(*books, run), chance_of(chance), causes)
     forecasts = tuple(
         search.compared(mine, theirs, factor, stated) for (mine, theirs), factor in zip(matched, factors, strict=True)
     )
@@ -172,9 +178,14 @@ class _Search:
     """Differences of two books, as they are and with steps taken."""
 
     def __init__(
-        self, books: tuple[Simulation, Simulation], inputs: Inputs, variations: Variations, causes: bool
+        self,
+        books: tuple[Simulation, Simulation],
+        inputs: Inputs,
+        variations: Variations,
+        chance: float | None,
+        causes: bool,
     ) -> None:
-        self._books, self._variations = books, variations
+        self._books, self._variations, self._chance = books, variations, chance
         self._steps = steps_between(inputs, *books) if causes else ()
         self._causes = causes
 
@@ -182,25 +193,37 @@ class _Search:
         deviation = statistics.standard_deviation(_accepted(self._books[0], mine, 1.0).sample).value
         tolerance, was_stated = stated.of(mine, deviation)
         found = self._difference((), mine, theirs, factor)
-        judgement = judge({name: (change.difference, tolerance) for name, change in found.changes})
+        limits = found.tolerances(tolerance, self._chance)
+        judgement = judge({name: (change.difference, limits[name]) for name, change in found.changes})
         cause = None
         if judgement.verdict is Verdict.BEYOND and self._causes:
-            cause = self._cause(mine, theirs, factor, tolerance)
-        return ForecastComparison(mine, theirs, factor, tolerance, was_stated, found, judgement, cause)
+            cause = self._cause(mine, theirs, factor, limits)
+        return ForecastComparison(mine, theirs, factor, tolerance, was_stated, limits, found, judgement, cause)
 
     def _difference(self, steps: Iterable[Step], mine: Forecast, theirs: Forecast, factor: float) -> Difference:
         first, second = self._variations.pair(steps)
-        return difference(_accepted(first, mine, 1.0), _accepted(second, theirs, factor), mine.central)
+        return difference(
+            _accepted(first, mine, 1.0),
+            _accepted(second, theirs, factor),
+            mine.central,
+            _threshold(mine, theirs, factor),
+        )
 
-    def _cause(self, mine: Forecast, theirs: Forecast, factor: float, tolerance: float) -> Cause:
+    def _cause(self, mine: Forecast, theirs: Forecast, factor: float, limits: Mapping[str, float]) -> Cause:
         def largest(steps: Iterable[Step]) -> tuple[float, str, Estimate]:
             changes = self._difference(steps, mine, theirs, factor).changes
-            sizes = [(in_tolerances(c.difference, tolerance), name, c.difference) for name, c in changes]
+            sizes = [(in_tolerances(c.difference, limits[name]), name, c.difference) for name, c in changes]
             return max(sizes, key=lambda size: size[0])
 
         steps = cause_of(self._steps, lambda taken: largest(taken)[0])
         _, number, left = largest(steps)
         return Cause(steps, number, left)
+
+
+def _threshold(mine: Forecast, theirs: Forecast, factor: float) -> float | None:
+    if mine.threshold is not None or theirs.threshold is None:
+        return mine.threshold
+    return theirs.threshold * factor
 
 
 def _accepted(run: Simulation, forecast: Forecast, factor: float) -> Accepted:

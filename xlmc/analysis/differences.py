@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from xlmc.analysis.distances import kolmogorov, wasserstein
-from xlmc.analysis.influences import Accepted, Pair, Statistic, mean_of, quantile_of, standard_deviation_of
+from xlmc.analysis.influences import Accepted, Pair, Statistic, mean_of, quantile_of, share_above, standard_deviation_of
+from xlmc.analysis.tolerances import chance_tolerance
 from xlmc.simulation import Simulation
 from xlmc.statistics import Estimate
 
@@ -36,6 +37,8 @@ class Difference:
 
     Attributes:
         share: of the trials, held by the central range from `low` to `high`.
+        threshold: of the forecast; None where it has none.
+        above: P(> threshold); None where there is none.
         kolmogorov, wasserstein: distances of the two distributions; see `distances`.
         largest: the largest difference in a trial that both accept; nan where there is none.
     """
@@ -48,14 +51,30 @@ class Difference:
     kolmogorov: Estimate
     wasserstein: Estimate
     largest: float
+    threshold: float | None = None
+    above: Change | None = None
 
     @property
     def changes(self) -> Iterator[tuple[str, Change]]:
-        """The four numbers that an answer is judged by, each with its name."""
+        """The numbers that an answer is judged by, each with its name: four, and the probability where one is asked."""
         yield "mean", self.mean
         yield "SD", self.standard_deviation
         yield "lower end", self.low
         yield "upper end", self.high
+        if self.above is not None:
+            yield f"P(> {self.threshold:g})", self.above
+
+    def tolerances(self, tolerance: float, chance: float | None) -> Mapping[str, float]:
+        """Number -> its tolerance.
+
+        Args:
+            tolerance: of mean, SD and central range, in the forecast's unit.
+            chance: of the probability; None for `chance_tolerance` of it.
+        """
+        found = dict.fromkeys((name for name, _ in self.changes), tolerance)
+        if self.above is not None:
+            found[f"P(> {self.threshold:g})"] = chance_tolerance(self.above.first.value) if chance is None else chance
+        return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,13 +113,14 @@ def _relative(both: int, mine: int, theirs: int) -> Estimate:
     return Estimate(ratio - 1.0, max(ratio * square**0.5, 1.0 / first), n=first)
 
 
-def difference(first: Accepted, second: Accepted, share: float) -> Difference:
+def difference(first: Accepted, second: Accepted, share: float, threshold: float | None = None) -> Difference:
     """Compare a forecast in two runs over the same trials.
 
     Args:
         first: the accepted trials of one run.
         second: those of the other, in the same unit.
         share: of the trials, held by the central range.
+        threshold: what P(> threshold) is compared for; None for no such number.
     """
     pair = Pair(first, second)
     tail = (1.0 - share) / 2.0
@@ -117,4 +137,6 @@ def difference(first: Accepted, second: Accepted, share: float) -> Difference:
         kolmogorov=kolmogorov(pair),
         wasserstein=wasserstein(pair),
         largest=float(np.abs(pair.apart).max()) if pair.apart.size else float("nan"),
+        threshold=threshold,
+        above=None if threshold is None else change(share_above(first, threshold), share_above(second, threshold)),
     )

@@ -18,7 +18,16 @@ from xlmc import statistics
 from xlmc.statistics import Estimate, Sample
 from xlmc.statistics.estimate import with_error
 
-__all__ = ["Accepted", "Influence", "Pair", "Statistic", "mean_of", "quantile_of", "standard_deviation_of"]
+__all__ = [
+    "Accepted",
+    "Influence",
+    "Pair",
+    "Statistic",
+    "mean_of",
+    "quantile_of",
+    "share_above",
+    "standard_deviation_of",
+]
 
 Floats = NDArray[np.float64]
 Places = NDArray[np.intp]
@@ -90,6 +99,15 @@ def standard_deviation_of(run: Accepted) -> Statistic:
         return Statistic(found, Influence(np.zeros(run.m)))
     z = (run.values - statistics.mean(run.sample).value) / found.value
     return Statistic(found, Influence((z * z - 1.0) * (found.value / (2.0 * run.m))))
+
+
+def share_above(run: Accepted, threshold: float) -> Statistic:
+    """The share p of trials above a threshold; a trial pulls it by ([x > threshold] − p)/m."""
+    above = run.values > threshold
+    if run.m < 2:
+        return Statistic(Estimate(float(above.mean()) if run.m else np.nan), None)
+    found = statistics.proportion(int(above.sum()), run.m)
+    return Statistic(found, Influence((above - float(above.mean())) / run.m))
 
 
 def quantile_of(run: Accepted, p: float) -> Statistic:

@@ -25,7 +25,16 @@ from xlmc import statistics
 from xlmc.address import Cell
 from xlmc.analysis.differences import Acceptance, Difference, acceptance, difference
 from xlmc.analysis.influences import Accepted
-from xlmc.analysis.tolerances import Judgement, Tolerances, Verdict, in_tolerances, judge, read_tolerances
+from xlmc.analysis.tolerances import (
+    Judgement,
+    Tolerances,
+    Verdict,
+    chance_of,
+    chance_tolerance,
+    in_tolerances,
+    judge,
+    read_tolerances,
+)
 from xlmc.analysis.variations import plainly_sampled, varied
 from xlmc.definitions import Assumption, Forecast
 from xlmc.definitions.model import name_key
@@ -80,6 +89,7 @@ class Screening:
     Attributes:
         run: the book as it is.
         tolerances: forecast -> the tolerance in its unit, and whether it was stated.
+        chance: the tolerance of P(> threshold) as it was stated; None for that of `chance_tolerance`.
         acceptance_tolerance: relative.
         idle: assumptions that no forecast or filter needs.
         baseless: assumptions without a base value, which cannot be held.
@@ -98,6 +108,7 @@ class Screening:
 
     run: Simulation
     tolerances: Mapping[str, tuple[float, bool]]
+    chance: float | None
     acceptance_tolerance: float
     idle: tuple[str, ...]
     baseless: tuple[str, ...]
@@ -131,6 +142,7 @@ def screen(
     model: Model,
     tolerance: Iterable[str] | str = (),
     *,
+    chance: float | None = None,
     acceptance_tolerance: float = ACCEPTANCE_TOLERANCE,
     sets: Iterable[str] = (),
     trials: int | None = None,
@@ -147,6 +159,8 @@ def screen(
         model: to screen.
         tolerance: `0.5`, `0.5 mph`, `10 %` (of the forecast's SD), `Name=0.5 mph`; a tenth of the SD where none is
             stated. It holds for mean, SD and both ends of the central range.
+        chance: the change of P(forecast > its threshold) that counts as none, in percentage points; by default a tenth
+            of it or of its complement, and a tenth of a point at least.
         acceptance_tolerance: the relative change of the share of accepted trials that counts as none.
         sets: names of assumptions to hold at once, joined by commas, `*` for any letters.
         trials: of every run; as in `Model.simulate`, like what follows.
@@ -169,7 +183,7 @@ def screen(
     if run.accepted < 2:
         message = f"{run.accepted} of {run.trials:,} trials were accepted, too few to compare anything with"
         raise SimulationError(message, hint="run more trials, or see whether the filters contradict the assumptions")
-    return _Screen(run, stated, acceptance_tolerance, engine, jobs, tell).screening(wanted)
+    return _Screen(run, stated, chance_of(chance), acceptance_tolerance, engine, jobs, tell).screening(wanted)
 
 
 class _Screen:
@@ -179,12 +193,13 @@ class _Screen:
         self,
         run: Simulation,
         stated: Tolerances,
+        chance: float | None,
         acceptance_tolerance: float,
         engine: str | None,
         jobs: int,
         tell: Told,
     ) -> None:
-        self._run, self._acceptance_tolerance = run, acceptance_tolerance
+        self._run, self._chance, self._acceptance_tolerance = run, chance, acceptance_tolerance
         self._engine, self._jobs, self._tell = engine, jobs, tell
         self._accepted = {f.name: Accepted.of(run.trial_index, run.forecasts[f.name]) for f in run.model.forecasts}
         deviations = {name: _deviation(held) for name, held in self._accepted.items()}
@@ -210,6 +225,7 @@ class _Screen:
         return Screening(
             run=self._run,
             tolerances=self._tolerances,
+            chance=self._chance,
             acceptance_tolerance=self._acceptance_tolerance,
             idle=tuple(a.name for a in model.scene.idle),
             baseless=tuple(a.name for a in model.live if a.base is None),
@@ -241,11 +257,14 @@ class _Screen:
     def _compared(self, names: tuple[str, ...], run: Simulation) -> Cost:
         accepted = acceptance(self._run, run)
         found = {
-            f.name: difference(self._accepted[f.name], Accepted.of(run.trial_index, run.forecasts[f.name]), f.central)
+            f.name: difference(
+                self._accepted[f.name], Accepted.of(run.trial_index, run.forecasts[f.name]), f.central, f.threshold
+            )
             for f in self._run.model.forecasts
         }
+        limits = {name: each.tolerances(self._tolerances[name][0], self._chance) for name, each in found.items()}
         sizes = {
-            f"{name}, {number}": (change.difference, self._tolerances[name][0])
+            f"{name}, {number}": (change.difference, limits[name][number])
             for name, each in found.items()
             for number, change in each.changes
         }
@@ -289,12 +308,14 @@ class _Screen:
         sizes = [abs(share - 1.0) / self._acceptance_tolerance]
         for forecast in self._run.model.forecasts:
             values, tolerance = self._run.forecasts[forecast.name][: drawn.size], self._tolerances[forecast.name][0]
-            sizes.append(_moved(values, near, forecast, tolerance))
+            sizes.append(_moved(values, near, forecast, tolerance, self._chance))
         return max(sizes)
 
 
-def _moved(values: Floats, near: NDArray[np.bool_], forecast: Forecast, tolerance: float) -> float:
-    """The largest move of mean, SD and central range from all the values to those near, in tolerances."""
+def _moved(
+    values: Floats, near: NDArray[np.bool_], forecast: Forecast, tolerance: float, chance: float | None
+) -> float:
+    """The largest move of mean, SD, central range and P(> threshold) from all values to those near, in tolerances."""
     known = ~np.isnan(values)
     every, some = values[known], values[known & near]
     if some.size < 2:
@@ -305,7 +326,12 @@ def _moved(values: Floats, near: NDArray[np.bool_], forecast: Forecast, toleranc
         some.std() - every.std(),
         *(np.quantile(some, tails) - np.quantile(every, tails)),
     ]
-    return max(in_tolerances(Estimate(float(move)), tolerance) for move in moves)
+    sizes = [in_tolerances(Estimate(float(move)), tolerance) for move in moves]
+    if forecast.threshold is not None:
+        before, after = (float(np.mean(x > forecast.threshold)) for x in (every, some))
+        limit = chance_tolerance(before) if chance is None else chance
+        sizes.append(in_tolerances(Estimate(after - before), limit))
+    return max(sizes)
 
 
 def _deviation(accepted: Accepted) -> float:

@@ -21,6 +21,8 @@ __all__ = [
     "Judgement",
     "Tolerances",
     "Verdict",
+    "chance_of",
+    "chance_tolerance",
     "in_tolerances",
     "judge",
     "read_tolerances",
@@ -31,6 +33,10 @@ CERTAINTY: Final = 3.0
 
 SHARE_OF_SD: Final = 0.1
 """Of a forecast's standard deviation: the tolerance where none is stated."""
+
+SHARE_OF_CHANCE: Final = 0.1
+LEAST_OF_CHANCE: Final = 0.001
+"""Of P(> threshold), or of its complement where that is smaller: its tolerance where none is stated, and the least."""
 
 AT_THE_TOLERANCE: Final = 0.05
 """Of the tolerance: a difference known to be this near to it is as large as the tolerance, and stays undecided."""
@@ -97,6 +103,29 @@ def in_tolerances(difference: Estimate, tolerance: float) -> float:
     if math.isnan(size):
         return math.inf
     return size / tolerance if tolerance else math.inf if size else 0.0
+
+
+def chance_tolerance(share: float) -> float:
+    """The tolerance of a probability for which none is stated.
+
+    >>> chance_tolerance(0.7), chance_tolerance(0.002)
+    (0.03, 0.001)
+    """
+    return max(LEAST_OF_CHANCE, round(SHARE_OF_CHANCE * min(share, 1.0 - share), 12))
+
+
+def chance_of(points: float | None) -> float | None:
+    """A tolerance stated in percentage points as a share; None where none is.
+
+    Raises:
+        SimulationError: it is out of its range.
+    """
+    if points is None:
+        return None
+    if not 0.0 < points < 100.0:
+        message = f"the tolerance of P(> threshold) is {points:g} percentage points"
+        raise SimulationError(message, hint="give a number above 0 and below 100, such as 1")
+    return points / 100.0
 
 
 @dataclass(frozen=True, slots=True)

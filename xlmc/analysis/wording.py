@@ -10,7 +10,7 @@ from xlmc.analysis.screening import Cost
 from xlmc.analysis.tolerances import Judgement, Verdict
 from xlmc.statistics import Estimate, format_estimate
 
-__all__ = ["book_names", "inputs_text", "undecided_text", "verdict_text"]
+__all__ = ["amount", "book_names", "inputs_text", "is_chance", "points", "undecided_text", "verdict_text"]
 
 
 def book_names(comparison: Comparison) -> tuple[str, str]:
@@ -44,7 +44,7 @@ def _enough(comparison: Comparison, books: tuple[str, str]) -> Iterator[str]:
 
 def _too_little(comparison: Comparison, each: ForecastComparison, books: tuple[str, str]) -> str:
     change = dict(each.difference.changes)[each.judgement.largest]
-    number = f"the {each.judgement.largest} differs by {_amount(change.difference, each.first.units)}"
+    number = _differs(each, each.judgement.largest, change.difference)
     subject = _subject(comparison, books)
     verdict = f"{subject} is not enough for" if subject else "The two books do not agree for"
     because = "" if each.cause is None else f"{', ' * bool(each.cause.steps)}{_because(each.cause, each, books)}"
@@ -61,7 +61,7 @@ _WITHOUT = {"filter": "without {it}", "assumption": "with {it} held at the base 
 
 
 def _because(cause: Cause, each: ForecastComparison, books: tuple[str, str]) -> str:
-    left = f"the {cause.number} differs by {_amount(cause.left, each.first.units)}"
+    left = _differs(each, cause.number, cause.left)
     if not cause.steps:
         return (
             ". No filter, drawn assumption or distribution in which the books differ accounts for it: it lies in the "
@@ -91,7 +91,7 @@ def _undecided(comparison: Comparison) -> Iterator[str]:
         if math.isnan(change.difference.value) or change.difference.error is None:
             yield f"{start}: too few are accepted."
             continue
-        number = f"the {each.judgement.largest} differs by {_amount(change.difference, each.first.units)}"
+        number = _differs(each, each.judgement.largest, change.difference)
         more = _more(each.judgement, comparison)
         yield f"{start}: {number}, too near to the tolerance of {_tolerance(each)}; {more}."
 
@@ -134,10 +134,29 @@ def _name(each: ForecastComparison) -> str:
 
 
 def _tolerance(each: ForecastComparison) -> str:
-    return f"{each.tolerance:.4g} {each.first.units}".rstrip()
+    chances = [f"{number} to {points(limit)}" for number, limit in each.limits.items() if is_chance(number)]
+    return " and ".join([f"{each.tolerance:.4g} {each.first.units}".rstrip(), *chances])
 
 
-def _amount(estimate: Estimate, units: str) -> str:
+def _differs(each: ForecastComparison, number: str, difference: Estimate) -> str:
+    return f"{'' if is_chance(number) else 'the '}{number} differs by {amount(number, difference, each.first.units)}"
+
+
+def is_chance(number: str) -> bool:
+    """Whether a number is the probability P(> threshold)."""
+    return number.startswith("P(")
+
+
+def points(share: float) -> str:
+    """A difference of probabilities: `1.2 points`."""
+    return f"{100 * share:.3g} point{'s' * (share != 0.01)}"
+
+
+def amount(number: str, estimate: Estimate, units: str) -> str:
+    """A number, or a difference of it, with its error: of a probability in percentage points."""
+    if is_chance(number):
+        scaled = None if estimate.error is None else 100 * estimate.error
+        return f"{format_estimate(100 * estimate.value, scaled)} points"
     return f"{format_estimate(estimate.value, estimate.error)} {units}".rstrip()
 
 

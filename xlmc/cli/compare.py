@@ -29,6 +29,12 @@ UNDECIDED = 1
     help="What difference counts as none: 0.5, '0.5 mph', '10 %' of the SD, 'Name=0.5 mph'; may be given several"
     " times.  [default: 10 %]",
 )
+@click.option(
+    "--chance",
+    type=float,
+    help="What difference of P(forecast > its threshold) counts as none, in percentage points.  [default: a tenth of it"
+    " or of its complement, at least 0.1]",
+)
 @click.option("--pair", multiple=True, help="'A=B': forecast A of the first book is forecast B of the second.")
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials of each run.  [default: the books' larger number]")
 @click.option("--seed", type=WholeNumber(0), help="Seed of each run.  [default: the first book's]")
@@ -41,6 +47,7 @@ def compare(
     first: Path,
     second: Path,
     tolerance: tuple[str, ...],
+    chance: float | None,
     pair: tuple[str, ...],
     trials: int | None,
     seed: int | None,
@@ -60,6 +67,7 @@ def compare(
         found = analysis.compare(
             *books,
             tolerance,
+            chance=chance,
             pairs=_pairs(pair),
             trials=trials,
             seed=seed,
@@ -101,20 +109,22 @@ def _show(found: Comparison) -> None:
     from xlmc.report.summary import estimate_text
 
     books = book_names(found)
-    rows = [row for each in found.forecasts for row in _rows(each)]
-    headings = ("Forecast", "Units", "", *books, "Difference", "Tolerance")
-    table(f"{books[0]} and {books[1]}: accepted trials", headings, rows, right=(3, 4, 5, 6))
+    say(paragraph(f"{books[0]} (first) and {books[1]} (second)"))
+    say()
+    for line in verdict_text(found):
+        say(paragraph(line))
+    say()
+    for each in found.forecasts:
+        table(_title(each), ("", "First", "Second", "Difference", "Tolerance"), _rows(each), right=(1, 2, 3, 4))
     accepted, trials = found.acceptance, found.first.trials
-    say(
+    shared = (
         f"Of {trials:,} trials both accept {accepted.both:,}; {books[0]} alone {accepted.first_only:,}, "
         f"{books[1]} alone {accepted.second_only:,}; seed {found.first.settings.seed}."
     )
+    say(paragraph(shared))
     if accepted.both and not accepted.first_only + accepted.second_only:
         say(f"The acceptance is the same in both: {estimate_text(accepted.first)}.")
     for line in inputs_text(found):
-        say(line)
-    say()
-    for line in verdict_text(found):
         say(paragraph(line))
     say(paragraph(_MEANING))
 
@@ -126,19 +136,28 @@ _MEANING = (
 )
 
 
+def _title(each: ForecastComparison) -> str:
+    name = each.first.name if each.factor == 1.0 else f"{each.first.name} (second converted)"
+    return f"{name}, {each.first.units}" if each.first.units else name
+
+
 def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
+    from xlmc.analysis.wording import amount, is_chance, points
     from xlmc.report.summary import estimate_text, percent
 
-    found, tolerance = each.difference, f"{each.tolerance:.4g}"
-    name = each.first.name if each.factor == 1.0 else f"{each.first.name} (second converted)"
+    found = each.difference
     rows = []
     for number, change in found.changes:
         label = f"{percent(found.share)} range, {number}" if number.endswith("end") else number
-        values = (estimate_text(estimate) for estimate in (change.first, change.second, change.difference))
-        rows.append(("", "", label, *values, tolerance))
-    rows[0] = (name, each.first.units, *rows[0][2:])
-    rows.append(("", "", "Wasserstein-1", "", "", estimate_text(found.wasserstein), ""))
-    rows.append(("", "", "Kolmogorov", "", "", estimate_text(found.kolmogorov), ""))
+        if is_chance(number):
+            shares = [amount(number, one, "") for one in (change.first, change.second, change.difference)]
+            values = [share.removesuffix(" points") for share in shares]
+            rows.append((f"{label}, %", *values, points(each.limits[number])))
+        else:
+            values = [estimate_text(estimate) for estimate in (change.first, change.second, change.difference)]
+            rows.append((label, *values, f"{each.tolerance:.4g}"))
+    rows.append(("Wasserstein-1", "", "", estimate_text(found.wasserstein), ""))
+    rows.append(("Kolmogorov", "", "", estimate_text(found.kolmogorov), ""))
     return rows
 
 
@@ -177,6 +196,7 @@ def _entry(each: ForecastComparison, books: tuple[str, str]) -> dict[str, object
         "second_multiplied_by": each.factor,
         "tolerance": each.tolerance,
         "tolerance_stated": each.stated,
+        "tolerances": dict(each.limits),
         "verdict": each.judgement.verdict.value,
         "decided_by": each.judgement.largest,
         "same_in_every_trial_both_accept": each.same_in_every_trial,

@@ -28,6 +28,7 @@ def difference_json(found: Difference) -> dict[str, object]:
         "mean": _change(found.mean),
         "standard_deviation": _change(found.standard_deviation),
         "central_range": {"share": found.share, "low": _change(found.low), "high": _change(found.high)},
+        **({} if found.above is None else {"above_threshold": {"threshold": found.threshold, **_change(found.above)}}),
         "kolmogorov": estimate_json(found.kolmogorov),
         "wasserstein_1": estimate_json(found.wasserstein),
         "largest_in_one_trial": finite(found.largest),

@@ -29,6 +29,12 @@ NOT_TO_BE_USED = 1
     " times.  [default: 10 %]",
 )
 @click.option(
+    "--chance",
+    type=float,
+    help="What difference of P(forecast > its threshold) counts as none, in percentage points.  [default: a tenth of it"
+    " or of its complement, at least 0.1]",
+)
+@click.option(
     "--acceptance",
     type=click.FloatRange(0, min_open=True),
     default=10.0,
@@ -50,6 +56,7 @@ NOT_TO_BE_USED = 1
 def screen(
     book: Path,
     tolerance: tuple[str, ...],
+    chance: float | None,
     acceptance: float,
     freeze: tuple[str, ...],
     trials: int | None,
@@ -69,6 +76,7 @@ def screen(
         found = analysis.screen(
             model,
             tolerance,
+            chance=chance,
             acceptance_tolerance=acceptance / 100.0,
             sets=freeze,
             trials=trials,
@@ -87,37 +95,35 @@ def screen(
 
 
 def _show(found: Screening) -> None:
-    name, trials = found.run.model.workbook.name, found.run.trials
-    expected = [f"{each.size:.2g}" for each in found.expected]
-    title = f"{name}: each assumption held at its base value, the least expected cost first"
-    _table(found, title, found.single, ("Held", _names(found.single)), ("Expected", expected))
-    if found.sets:
-        _table(found, "Held at once, as asked", found.sets, ("Held", _names(found.sets)))
-    if found.filters:
-        held = " with the assumptions below held" if found.joint else ""
-        _table(found, f"Each filter left out{held}", found.filters, ("Left out", _names(found.filters)))
-    for sentence in _sentences(found):
+    say(paragraph(f"{found.run.model.workbook.name}: what it could do without"))
+    say()
+    for sentence in _verdicts(found):
         say(paragraph(sentence))
-    say(
-        paragraph(
-            f"{found.runs} runs of {trials:,} trials, seed {found.run.settings.seed}, over the same draws; ± is the "
-            "standard error of a change (Monte Carlo error). A verdict clears the tolerance by three errors."
-        )
-    )
+    say()
+    expected = [f"{each.size:.2g}" for each in found.expected]
+    title = "Each assumption held at its base value, the least expected cost first"
+    _table(title, found.single, ("Held", _names(found.single)), ("Expected", expected))
+    if found.sets:
+        _table("Held at once, as asked", found.sets, ("Held", _names(found.sets)))
+    if found.filters:
+        held = " with the assumptions named above held" if found.joint else ""
+        _table(f"Each filter left out{held}", found.filters, ("Left out", _names(found.filters)))
+    for name in found.tolerances:
+        _of_forecast(found, name)
+    for sentence in _meaning(found):
+        say(paragraph(sentence))
 
 
-def _table(found: Screening, title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> None:
-    """What each change moves: of every forecast, the number that it moves most. `first` are columns with headings."""
+def _table(title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> None:
+    """What each change costs. `first` are columns with headings."""
     from xlmc.cli.printing import table
 
     headings = [*(heading for heading, _ in first), "Cost", "Accepted, %"]
-    headings += [_heading(found, name) for name in found.tolerances]
     rows = [
         [
             *(column[place] for _, column in first),
             f"{cost.size:.2g}",
             _percent(cost),
-            *(_most_moved(cost, name) for name in found.tolerances),
             cost.judgement.verdict.value,
         ]
         for place, cost in enumerate(costs)
@@ -125,13 +131,46 @@ def _table(found: Screening, title: str, costs: Sequence[Cost], *first: tuple[st
     table(title, [*headings, "Verdict"], rows, right=range(1, len(headings)))
 
 
+def _of_forecast(found: Screening, name: str) -> None:
+    """Of every change, the number of a forecast that it moves most, measured in its tolerance."""
+    from xlmc.analysis.wording import amount
+    from xlmc.cli.printing import table
+
+    units = found.run[name].definition.units
+    rows = []
+    for cost in (*found.single, *found.sets, *found.filters):
+        number, size = _most_moved(found, cost, name)
+        change = dict(cost.forecasts[name].changes)[number]
+        rows.append([", ".join(cost.names), number, amount(number, change.difference, ""), f"{size:.2g}"])
+    title = f"{name}{f', {units}' if units else ''}: what each moves most"
+    table(title, ["Held or left out", "Number", "Moves by", "Tolerances"], rows, right=(2, 3))
+
+
+def _most_moved(found: Screening, cost: Cost, name: str) -> tuple[str, float]:
+    """The number of a forecast that moves most, and by how many tolerances."""
+    from xlmc.analysis.tolerances import in_tolerances
+
+    each = cost.forecasts[name]
+    limits = each.tolerances(found.tolerances[name][0], found.chance)
+    sizes = {number: in_tolerances(change.difference, limits[number]) for number, change in each.changes}
+    number = max(sizes, key=sizes.__getitem__)
+    return number, sizes[number]
+
+
+def _tolerance(found: Screening, name: str) -> str:
+    """In words: `1 mph, and P(> 18) 1.2 points`."""
+    from xlmc.analysis.wording import is_chance, points
+
+    value, stated = found.tolerances[name]
+    text = f"{value:.3g} {found.run[name].definition.units}".rstrip() + ("" if stated else " (a tenth of the SD)")
+    costs = (*found.single, *found.sets, *found.filters)
+    limits = costs[0].forecasts[name].tolerances(value, found.chance) if costs else {}
+    chances = [f"{number} {points(limit)}" for number, limit in limits.items() if is_chance(number)]
+    return ", and ".join([text, *chances])
+
+
 def _names(costs: Sequence[Cost]) -> list[str]:
     return [", ".join(cost.names) for cost in costs]
-
-
-def _heading(found: Screening, name: str) -> str:
-    forecast = found.run[name].definition
-    return f"{name}, {forecast.units}" if forecast.units else name
 
 
 def _percent(cost: Cost) -> str:
@@ -141,25 +180,9 @@ def _percent(cost: Cost) -> str:
     return format_estimate(100.0 * change.value, None if change.error is None else 100.0 * change.error)
 
 
-def _most_moved(cost: Cost, name: str) -> str:
-    """The largest of the changes of mean, SD and both ends of the central range."""
-    from xlmc.report.summary import estimate_text
-
-    changes = [change.difference for _, change in cost.forecasts[name].changes]
-    return estimate_text(max(changes, key=lambda change: abs(change.value)))
-
-
-def _sentences(found: Screening) -> Iterable[str]:
+def _verdicts(found: Screening) -> Iterable[str]:
     from xlmc.analysis.wording import undecided_text
 
-    yield (
-        "Under each forecast: the largest move of mean, SD and both ends of its central range. Cost and expected cost: "
-        f"the largest of all moves, measured in its tolerance. Tolerances: {_tolerances(found)}."
-    )
-    if found.idle:
-        yield f"No forecast or filter needs {'; '.join(found.idle)}."
-    if found.baseless:
-        yield f"Not screened, for their cells are blank: {'; '.join(found.baseless)}."
     if found.joint:
         yield (
             f"Not needed: {'; '.join(found.joint.names)}. With all of them held at their base values in one run, no "
@@ -169,27 +192,36 @@ def _sentences(found: Screening) -> Iterable[str]:
         yield "Every assumption is needed, as far as these trials tell."
     if found.only_alone:
         yield f"Within the tolerance alone, but not surely together with those: {'; '.join(found.only_alone)}."
+    if found.idle:
+        yield f"No forecast or filter needs {'; '.join(found.idle)}."
+    if found.baseless:
+        yield f"Not screened, for their cells are blank: {'; '.join(found.baseless)}."
     if found.reduced:
         yield (
             f"Filters that then decide nothing here: {'; '.join(found.reduced.names)}. Without them no number moves by "
             f"more than {found.reduced.size:.2f} of its tolerance. A filter that rejects the impossible may stay."
         )
-    if found.constant:
-        yield f"Formula cells that then do not vary: {', '.join(map(str, found.constant))}."
-    if found.dropped:
-        yield f"Formula cells that then are not needed: {', '.join(map(str, found.dropped))}."
-    yield f"Of {found.cells} formula cells that the book needs, {found.varying} then vary."
     if found.undecided:
         names = "; ".join(undecided_text(cost, found.run.trials) for cost in found.undecided)
         yield f"Undecided at {found.run.trials:,} trials, and therefore kept: {names}."
 
 
-def _tolerances(found: Screening) -> str:
-    parts = []
-    for name, (value, stated) in found.tolerances.items():
-        source = "" if stated else " (a tenth of the SD)"
-        parts.append(f"{name} {value:.3g} {found.run[name].definition.units}".rstrip() + source)
-    return "; ".join([*parts, f"acceptance {100 * found.acceptance_tolerance:g} % of itself"])
+def _meaning(found: Screening) -> Iterable[str]:
+    if found.constant:
+        yield f"Formula cells that then do not vary: {', '.join(map(str, found.constant))}."
+    if found.dropped:
+        yield f"Formula cells that then are not needed: {', '.join(map(str, found.dropped))}."
+    yield f"Of {found.cells} formula cells that the book needs, {found.varying} then vary."
+    tolerances = "; ".join(f"{name} {_tolerance(found, name)}" for name in found.tolerances)
+    yield (
+        "Cost: the largest move of all numbers, measured in its tolerance: of every forecast mean, SD, both ends of "
+        "its central range, and the probability of being above its threshold where it has one. Tolerances: "
+        f"{tolerances}; acceptance {100 * found.acceptance_tolerance:g} % of itself."
+    )
+    yield (
+        f"{found.runs} runs of {found.run.trials:,} trials, seed {found.run.settings.seed}, over the same draws; ± is "
+        "the standard error of a change (Monte Carlo error). A verdict clears the tolerance by three errors."
+    )
 
 
 def _as_json(found: Screening) -> dict[str, object]:
@@ -202,6 +234,7 @@ def _as_json(found: Screening) -> dict[str, object]:
         "seed": run.settings.seed,
         "acceptance": estimate_json(run.acceptance),
         "tolerances": {name: {"value": value, "stated": stated} for name, (value, stated) in found.tolerances.items()},
+        "chance_tolerance": found.chance,
         "acceptance_tolerance": found.acceptance_tolerance,
         "not_needed_by_any_cell": found.idle,
         "without_base_value": found.baseless,

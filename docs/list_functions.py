@@ -98,6 +98,9 @@ DIFFERENCES = """## What differs from Excel on purpose
 - A function or a name that Excel does not know is `#NAME?` only where the file bears it out: what Excel saved in the
   cell is `#NAME?`, or what the formula makes of that error (`IFERROR(NOSUCH(1),0)`), and the book has no code of its
   own, the function no mark of an add-in or of a newer Excel. `xlmc check` says so. It is refused in all other cases.
+- A `LAMBDA` by the name of a function of Excel, as `Sum`, is never called by that name: `Sum(2)` is `SUM`. A function
+  that came after Excel 2007 bears the mark `_xlfn.` in the file; without the mark its name is the `LAMBDA`'s. No source
+  says so of a `LAMBDA`: it is how Excel takes names of ranges and of functions in Visual Basic.
 - `NOW` and `TODAY` are what Excel saved, so that a run can be repeated. `RAND`, `RANDBETWEEN` and kin are assumptions,
   drawn anew in each trial. `CELL("filename")` has no folder.
 - Formulas that read other workbooks get the values that Excel stored in this one, with a notice. Where Excel computes

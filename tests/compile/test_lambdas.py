@@ -32,13 +32,13 @@ NAMES = {
     "Total": "_xleta.SUM",
     "Factorial": "LAMBDA(n,IF(n<2,1,n*Factorial(n-1)))",
     "Fib": "LAMBDA(n,IF(n<2,n,Fib(n-1)+Fib(n-2)))",
-    "Even": "LAMBDA(n,IF(n=0,TRUE,Uneven(n-1)))",
-    "Uneven": "LAMBDA(n,IF(n=0,FALSE,Even(n-1)))",
+    "Evens": "LAMBDA(n,IF(n=0,TRUE,Uneven(n-1)))",
+    "Uneven": "LAMBDA(n,IF(n=0,FALSE,Evens(n-1)))",
     "Ackermann": "LAMBDA(m,n,IF(m=0,n+1,IF(n=0,Ackermann(m-1,1),Ackermann(m-1,Ackermann(m,n-1)))))",
     "Deep": "LAMBDA(n,LET(f,Deep,IF(n=0,0,1+f(n-1))))",
     "Spaced": '_xlfn.LAMBDA(_xlpm.t,IF(LEN(_xlpm.t)<2,_xlpm.t,LEFT(_xlpm.t)&" "&Spaced(MID(_xlpm.t,2,99))))',
-    "Power": "_xlfn.LAMBDA(_xlpm.a,_xlop.b,IF(_xlfn.ISOMITTED(_xlop.b),_xlpm.a^2,_xlpm.a^_xlop.b))",
-    "Onwards": "LAMBDA(a,[b],Power(a,b))",
+    "Raised": "_xlfn.LAMBDA(_xlpm.a,_xlop.b,IF(_xlfn.ISOMITTED(_xlop.b),_xlpm.a^2,_xlpm.a^_xlop.b))",
+    "Onwards": "LAMBDA(a,[b],Raised(a,b))",
     "Sheets": "LAMBDA(x,x+S!$A$1)",
     "Number": "5",
 }
@@ -78,11 +78,11 @@ CALLS = [
     ("Total(A1:A3)", 6.0),
     ("Sheets(A1)", 2.0),
     # parameters that may be left out
-    ("Power(A3)", 9.0),
-    ("Power(A3,)", 9.0),
-    ("Power(A2,A3)", 8.0),
-    ("Power()", VALUE),
-    ("Power(A1,A2,A3)", VALUE),
+    ("Raised(A3)", 9.0),
+    ("Raised(A3,)", 9.0),
+    ("Raised(A2,A3)", 8.0),
+    ("Raised()", VALUE),
+    ("Raised(A1,A2,A3)", VALUE),
     ("Onwards(A3)", 9.0),
     ("Onwards(A2,A3)", 8.0),
     ("LAMBDA(a,[b],[c],a+b+c)(A1)", 1.0),
@@ -96,7 +96,7 @@ RECURSIVE = [
     ("Factorial(5)", 120.0),
     ("Factorial(A3)", 6.0),
     ("Fib(A3+A3)", 8.0),
-    ("Even(A3)*1", 0.0),
+    ("Evens(A3)*1", 0.0),
     ("Uneven(A3)*1", 1.0),
     ("Ackermann(A2,A2)", 7.0),
     ("Deep(A3)", 3.0),
@@ -251,7 +251,7 @@ def test_what_is_refused_with_its_cell(book, formula, message):
 
 
 DEEP = {
-    "Sum": "LAMBDA(n,IF(n<1,0,n+Sum.Down(n-1)))",
+    "Total": "LAMBDA(n,IF(n<1,0,n+Sum.Down(n-1)))",
     "Sum.Down": "LAMBDA(n,IF(n<1,0,n+Sum.Down(n-1)))",
     "Tail": "LAMBDA(n,s,IF(n<1,s,Tail(n-1,s+n)))",
     "Forever": "LAMBDA(n,Forever(n+1))",
@@ -269,7 +269,7 @@ DEEP = {
     "Crossed": "LAMBDA(n,IF(n<1,0,LET(g,LAMBDA(me,k,IF(k<1,Crossed(n-1)+1,me(me,k-1))),g(g,n))))",
 }
 DEEP_CALLS = {
-    "Sum(A1)": lambda x: sum(x - k for k in range(int(np.ceil(x))) if x - k >= 1),
+    "Total(A1)": lambda x: sum(x - k for k in range(int(np.ceil(x))) if x - k >= 1),
     "Tail(A1,0)": lambda x: sum(x - k for k in range(int(np.ceil(x))) if x - k >= 1),
     "Fib(INT(A1/3))": lambda x: [0, 1, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89, 144, 233, 377][int(x / 3)],
     "Root(1,A1)": lambda x: x**0.5,
@@ -285,6 +285,23 @@ DEEP_CALLS = {
 
 def collatz(n):
     return 0 if n == 1 else 1 + collatz(n // 2 if n % 2 == 0 else 3 * n + 1)
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        ("Sum(A1,2)", 5.0),  # Excel's own goes first
+        ("SUM(A1,2)", 5.0),
+        ("S!Sum(A1,2)", 1.0),  # a name of a sheet is no function's
+        ("Edate(A1,0)", 3.0),
+        ("SORT(A1,2)", 1.0),  # without the mark _xlfn. it is none of Excel's
+        ("Through(A1,2)", 5.0),
+    ],
+)
+def test_a_lambda_named_like_a_function_of_excel(drawn, formula, expected):
+    names = dict.fromkeys(("Sum", "Edate", "Sort"), "LAMBDA(a,b,a-b)")
+    names["Through"] = "LAMBDA(a,b,Sum(a,b))"
+    assert drawn(f"={formula}", {"A1": [3.0, 3.0]}, names) == [expected] * 2
 
 
 @pytest.mark.parametrize("formula", DEEP_CALLS)

@@ -26,8 +26,8 @@ NAMES = {
     "AddTwo": "Plus(2)",
     "Chosen": "IF(S!$B$2,Twice,Scaled)",
     "Total": "_xleta.SUM",
-    "Even": "LAMBDA(n,IF(n,Uneven(n-1),TRUE))",
-    "Uneven": "LAMBDA(n,IF(n,Even(n-1),FALSE))",
+    "Evens": "LAMBDA(n,IF(n,Uneven(n-1),TRUE))",
+    "Uneven": "LAMBDA(n,IF(n,Evens(n-1),FALSE))",
 }
 
 TREES = {
@@ -82,8 +82,8 @@ TREES = {
     "LAMBDA(a,[b],a+b)(1)": "[λ(a [b] (+ a b))](1)",
     # one that calls itself, and two that call each other
     "Again(3)": "[LET!(=none!again=s=λ(n IF(n [=none!again=s]((- n 1)) 0)) =none!again=s)](3)",
-    "Even(3)": "[LET!(=none!even=s=λ(n IF(n [λ(n IF(n [=none!even=s]((- n 1)) FALSE))]((- n 1)) TRUE))"
-    " =none!even=s)](3)",
+    "Evens(3)": "[LET!(=none!evens=s=λ(n IF(n [λ(n IF(n [=none!evens=s]((- n 1)) FALSE))]((- n 1)) TRUE))"
+    " =none!evens=s)](3)",
     # a name does not see the variables around it
     "LET(x,1,x+Apart)": "LET(x=1 (+ x (+ S!Z1 1)))",
     "LET(v,7,Twice(v))": "LET(v=7 [λ(v (* 2 v))](v))",

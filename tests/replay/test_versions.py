@@ -52,6 +52,14 @@ def test_rules_are_in_the_order_of_versions_and_none_is_of_the_future():
         ("TRUNC", "=1+trunc(A1,2)", True),
         ("TRUNC", "=MYTRUNC(A1)", False),
         ("TRUNC", '="TRUNC"', False),
+        ("numbers below", "=EXP(A1)", True),
+        ("numbers below", "=A1*1E-200", True),
+        ("numbers below", "=A1*1E-3", False),
+        ("FORMULATEXT", "=_xlfn.FORMULATEXT(A1)", True),
+        ("functions that xlmc has no body for", "=_xlfn.FORECAST.ETS(A1,B1:B9,C1:C9)", True),
+        ("functions that xlmc has no body for", "=FORECAST(A1,B1:B9,C1:C9)", False),
+        ("a LAMBDA that is named like", "=Sum(A1)", True),
+        ("a LAMBDA that is named like", "=SUM(A1)", False),
     ],
 )
 def test_what_a_rule_concerns(said, formula, met):

@@ -11,7 +11,7 @@ from xlmc.formula import ir
 from xlmc.formula.parse import parse
 from xlmc.workbook.model import Workbook
 
-__all__ = ["function_named_by", "gives_function", "stands_for_function"]
+__all__ = ["calls_function", "function_named_by", "gives_function", "stands_for_function"]
 
 _FUNCTION: Final = re.compile(r"(?:_xlfn\.)?_xleta\.((?:_xlfn\.|_xlws\.)*)(?P<name>.+)", re.IGNORECASE)
 _CHOOSING: Final = frozenset({"IF", "IFS", "SWITCH", "CHOOSE", "IFERROR", "IFNA"})
@@ -28,6 +28,22 @@ def function_named_by(name: str) -> str | None:
 def stands_for_function(workbook: Workbook, name: str, sheet: str) -> bool:
     """Whether a defined name, as a sheet sees it, stands for a LAMBDA or another function."""
     return _defined(workbook, name, sheet, frozenset()) is not None
+
+
+def calls_function(workbook: Workbook, name: str, sheet: str) -> bool:
+    """Whether a call by that name calls what a defined name stands for.
+
+    Excel's own functions go first: `Sum(2)` is SUM, whatever `Sum` is defined as. A file marks those that came after
+    Excel 2007 by `_xlfn.`, so that without the mark the name of one of these is the defined name's.
+    """
+    return stands_for_function(workbook, name, sheet) and not _is_excels_own(name)
+
+
+def _is_excels_own(name: str) -> bool:
+    """Whether it is a function that files name without a mark."""
+    from openpyxl.utils import FORMULAE  # slow to import
+
+    return name.upper() in FORMULAE
 
 
 def gives_function(tree: ir.Expression) -> bool:
@@ -89,7 +105,7 @@ def _written(
             return of(arguments[-1], {**bound, **dict(zip(names, arguments[1::2], strict=False))})
         case ir.Call(name, arguments) if name in _CHOOSING:
             return next((found for part in arguments[1:] if (found := of(part))), None)
-        case ir.Call(name):
+        case ir.Call(name) if not _is_excels_own(name):
             return _result(of(ir.Name(name)), of)
         case ir.Invoke(function):
             return _result(of(function), of)

@@ -15,7 +15,7 @@ from typing import Final, assert_never
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
-from xlmc.formula.callables import function_named_by, stands_for_function
+from xlmc.formula.callables import calls_function, function_named_by, stands_for_function
 from xlmc.formula.linked import COPY, linked_name, linked_sheet, meant_book
 from xlmc.formula.parse import parse
 from xlmc.formula.shape import Shapes
@@ -174,10 +174,10 @@ class Resolver:
         return ir.Lambda(tuple(_bare(name) for name, _ in parameters), body, _optional(parameters))
 
     def _called(self, name: str, host: Cell) -> ir.Expression | None:
-        """What a call calls when it is no function of Excel: a variable, or a defined name that stands for a LAMBDA."""
+        """What a call calls that is no function of Excel: a variable, or a defined name that stands for a LAMBDA."""
         if name.casefold() in self._variables:
             return ir.Variable(_bare(name))
-        if not stands_for_function(self.workbook, name, host.sheet):
+        if not calls_function(self.workbook, name, host.sheet):
             return None
         return self._name(ir.Name(name), host)
 

@@ -33,7 +33,8 @@ class Rule:
 
 
 def _calls(*names: str) -> re.Pattern[str]:
-    return re.compile(rf"(?<![\w.])(?:{'|'.join(map(re.escape, names))})\(", re.IGNORECASE)
+    """Calls of these functions, with or without the marks that a file gives to those of a newer Excel."""
+    return re.compile(rf"(?<![\w.])(?:_xl\w+\.)*(?:{'|'.join(map(re.escape, names))})\(", re.IGNORECASE)
 
 
 _COMPARED: Final = re.compile(r"=.*[<>=]")
@@ -55,6 +56,14 @@ _FEW_VALUES: Final = re.compile(
     re.IGNORECASE,
 )
 _CORRELATED: Final = re.compile(r"correlation|RiskCorrmat|Risk(?:In)?DepC|CB\.Correl", re.IGNORECASE)
+
+_TINY: Final = re.compile(r"\dE-[123]\d\d\b|\^-|(?<![\w.])(?:EXP|POWER)\(", re.IGNORECASE)
+_SMALL_LETTERS: Final = re.compile(r"=.*(?<![\w.])[A-Z]\w*[a-z]\w*\(")
+"""Calls by a name that is none of Excel's: those are in capitals in a file."""
+_REFUSED: Final = (
+    *("BAHTTEXT", "REGEXTEST", "REGEXEXTRACT", "REGEXREPLACE", "GROUPBY", "PIVOTBY", "TRIMRANGE"),
+    *("FORECAST.ETS", "FORECAST.ETS.CONFINT", "FORECAST.ETS.SEASONALITY", "FORECAST.ETS.STAT"),
+)
 
 RULES: Final = (
     *(
@@ -88,6 +97,13 @@ RULES: Final = (
             ("CONVERT keeps the digits of small absolute temperatures", _calls("CONVERT")),
             ("YEARFRAC counts 1900 as a leap year, as Excel's calendar does", _calls("YEARFRAC")),
             ("CUMIPMT and CUMPRINC truncate the type of payment", _calls("CUMIPMT", "CUMPRINC")),
+            ("numbers below 2.2250738585072014E-308 in size are 0", _TINY),
+            ("FORMULATEXT shows the formula of its own cell, as Excel does", _calls("FORMULATEXT")),
+            ("PERCENTOF and ASC give what Excel gives", _calls("PERCENTOF", "ASC")),
+            ("functions that xlmc has no body for, such as FORECAST.ETS and REGEXTEST, are refused", _calls(*_REFUSED)),
+            ("OFFSET that leads to several places at once is refused", _calls("OFFSET")),
+            ("ISREF of a choice that varies between cells is refused", _calls("ISREF")),
+            ("a LAMBDA that is named like a function of Excel is not called by that name", _SMALL_LETTERS),
             ("CB.GetCertaintyFN gives percent", _calls("CB.GetCertaintyFN")),
             (
                 "RiskMean and kin of another simulation than the first are not available",

@@ -57,7 +57,10 @@ def _index(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None
 
 
 def _by_area(arguments: Arguments, areas: Sequence[Area]) -> ir.Expression:
-    """INDEX of several areas as that of the one which its fourth argument counts, which may vary."""
+    """INDEX of several areas as that of the one which its fourth argument counts, which may vary.
+
+    Of several errors among the numbers it is the first, as where all are known.
+    """
     parts = [ir.Call("INDEX", (area, *arguments[1:3])) for area in areas]
     if len(arguments) < 4 or isinstance(arguments[3], ir.Missing):
         return parts[0]
@@ -65,7 +68,9 @@ def _by_area(arguments: Arguments, areas: Sequence[Area]) -> ir.Expression:
     for count in range(len(parts), 0, -1):
         below = ir.Binary("<", arguments[3], ir.Number(count + 1.0))
         tree = ir.Call("IF", (below, parts[count - 1], tree))
-    return ir.Call("IF", (ir.Binary("<", arguments[3], ir.Number(1.0)), ir.ErrorLiteral(ErrorCode.VALUE), tree))
+    tree = ir.Call("IF", (ir.Binary("<", arguments[3], ir.Number(1.0)), ir.ErrorLiteral(ErrorCode.VALUE), tree))
+    wrong = ir.Call("INDEX", (areas[0], *arguments[1:]))
+    return ir.Call("IF", (ir.Call("ISERROR", (arguments[3],)), wrong, tree))
 
 
 def _row_or_column(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:

@@ -228,14 +228,12 @@ def many_numbers(lowering: Lowering, numbers: Arguments, scope: Scope) -> bool:
 def _index(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
     """INDEX of a reference at a known place; None leaves it to the function of values."""
     areas = areas_of(lowering, arguments[0], scope)
-    if many_numbers(lowering, arguments[1:], scope):
+    if areas is None or scope.array or many_numbers(lowering, arguments[1:], scope):
         return None
     try:
         plain = scope.plainly()
         numbers = [_whole_number(lowering, argument, plain, "INDEX") or 0 for argument in arguments[1:]]
     except FormulaError:
-        return None
-    if areas is None or scope.array:
         return None
     which = numbers[2] if len(numbers) > 2 else 1
     if any(number < 0 for number in numbers) or which == 0:

@@ -14,7 +14,7 @@ builder makes tree nodes. The stack machine is theirs.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from itertools import accumulate
@@ -422,14 +422,32 @@ def parse(text: str) -> ir.Expression:
         _, builder = parser.ast("=" + flat)
     except ForeignFormulaError:
         start = min(max(0, len(text.rstrip()) - parser.rest), max(0, len(text.rstrip()) - 1))
-        raise FormulaError(
-            "the formula cannot be read from the marked place on",
-            hint="check brackets, separators and quotes there",
-            text=text,
-            span=(start, start + 1),
-        ) from None
+        raise _unread(text, start) from None
+    closing = _closes_too_early(text)
+    if closing is not None:
+        raise _unread(text, closing)
     tree: ir.Expression = builder[-1]
     return tree
+
+
+def _unread(text: str, start: int) -> FormulaError:
+    return FormulaError(
+        "the formula cannot be read from the marked place on",
+        hint="check brackets, separators and quotes there",
+        text=text,
+        span=(start, start + 1),
+    )
+
+
+def _closes_too_early(text: str) -> int | None:
+    """Where a bracket is closed that nothing opened: `formulas` reads `A1)-(B1` as if brackets stood around it."""
+    depths = _depths(_QUOTED.sub(lambda quoted: " " * len(quoted[0]), text))
+    return next((place for place, depth in enumerate(depths) if depth < 0), None)
+
+
+def _depths(signs: str) -> Iterator[int]:
+    """How many brackets are open after each sign."""
+    return accumulate((sign == "(") - (sign == ")") for sign in signs)
 
 
 def parse_cell(text: str) -> ir.Expression:
@@ -448,8 +466,7 @@ def _is_bracketed(text: str) -> bool:
     """Whether the bracket that a formula begins with is closed at its end."""
     if not (text.startswith("(") and text.endswith(")")):
         return False
-    signs = _QUOTED.sub("", text)
-    depths = list(accumulate((sign == "(") - (sign == ")") for sign in signs))
+    depths = list(_depths(_QUOTED.sub("", text)))
     return all(depths[:-1])
 
 

@@ -3,10 +3,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
-from xlmc.methods import Corners, Optimised, WorstCase
+from xlmc.methods import Corners, ImportanceGrid, Optimised, WorstCase
 from xlmc.methods import corners as corners_file
+from xlmc.methods.answer import extremes_of
 from xlmc.methods.box import box_of
+from xlmc.methods.evaluation import Evaluation
+from xlmc.methods.optimised import at_least_as_wide
+from xlmc.methods.sampled import SAMPLERS
 
 DOMAIN = {
     "Chevrolet delta-V": ((8.87, 18.70), (8.85, 15.88)),
@@ -147,3 +152,51 @@ def test_very_many_assumptions(book):
         Optimised().run(model, 0, 1)
     assert Corners().run(model, 0, 1).evaluations == (1 << 22) // count
     assert ends(WorstCase().run(model, 0, 1), "f") == pytest.approx((0.0, count))
+
+
+def accepted_forecast(model, name, point):
+    """The forecast that the workbook gives at a point, and whether it accepts that."""
+    found = Evaluation(model)(np.array([[point[a.name] for a in model.live]]))
+    return found.forecasts[0, [f.name for f in model.forecasts].index(name)], found.accepted[0]
+
+
+def test_every_optimised_end_names_a_point_that_the_workbook_accepts(case_study):
+    result = Optimised().run(case_study, 0, 1)
+    assert len(result.ends) == 2 * len(case_study.forecasts)
+    for (name, end), point in result.ends.items():
+        value, accepted = accepted_forecast(case_study, name, point)
+        assert accepted
+        assert value == getattr(result.answers[name], end)
+
+
+def test_no_drawn_trial_lies_outside_the_optimised_bounds(small):
+    """Of the reference and of every run of the study."""
+    curve = next(curve for curve in small.once if curve.method.key == "optimised")
+    for each in small.reference.extremes:
+        least, most = curve.ranges[each.forecast]
+        assert least <= each.value <= most
+
+
+def test_bounds_are_widened_by_trials_that_lie_outside_and_searched_from_there(book):
+    """y = cos x + x/40: from its middle the search ends at a nearer hill; a trial on the next one leads it up there."""
+    model = book({"A1": 0.1, "B1": "=COS(A1)+A1/40"}, {"x": {"cell": "A1", "low": -1, "high": 7}}, {"y": "B1"})
+    run = model.simulate(4_096, 1)
+    extremes = extremes_of(run.forecasts, run.trial_index, 1, run.plan)
+    answers, ends = at_least_as_wide(model, 1, {"y": (-1.0, 1.0003)}, extremes)
+    top = float(np.arcsin(1 / 40)) + 2 * np.pi
+    assert answers["y"].most == pytest.approx(np.cos(top) + top / 40, rel=1e-9)
+    assert ends["y", "most"]["x"] == pytest.approx(top, abs=1e-3)
+    assert np.isnan(answers["y"].least) == (("y", "least") not in ends)
+    assert at_least_as_wide(model, 1, {"y": (-2.0, 2.0)}, extremes) == ({}, {})
+
+
+@pytest.mark.parametrize("method", [*SAMPLERS, ImportanceGrid()], ids=lambda method: method.key)
+def test_an_extreme_trial_is_drawn_again_as_it_was(case_study, method):
+    extremes = method.run(case_study, 8_192, 7).extremes
+    assert len(extremes) == 2 * len(case_study.forecasts)
+    for each in extremes:
+        drawn = case_study.sampler(each.seed, 1, plan=each.plan).draw(each.trial)
+        point = {a.name: drawn[name_key(a.name)][0] for a in case_study.live}
+        value, accepted = accepted_forecast(case_study, each.forecast, point)
+        assert accepted
+        assert value == pytest.approx(each.value, rel=1e-12)

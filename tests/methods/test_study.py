@@ -186,7 +186,7 @@ def test_accuracy_in_units(straight):
     found = study(straight, accuracy="0.5", reference_trials=1 << 14, trials=1 << 10, replicates=2)
     assert found.tolerance("y") == 0.5
     said = recommendation(found)
-    assert "each within 0.5 in its units of the true number in 95 of 100 runs" in said[0]
+    assert "each known to within 0.5 in its units, in 95 of 100 runs" in said[0]
     assert any("--precision 0.5 --precision-of mean,sd,range`" in each for each in said)
 
 

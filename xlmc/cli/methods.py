@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 __all__ = ["methods"]
 
 NOT_TO_BE_USED = 1
-QUICK = {"reference_trials": 1 << 20, "trials": 1 << 17, "replicates": 8}
 
 
 @click.command()
@@ -69,17 +68,18 @@ def methods(
     """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
     from xlmc.cli.methods_json import study_json
     from xlmc.cli.printing import telling
-    from xlmc.methods import study
+    from xlmc.methods import quick_settings, study
     from xlmc.model import load
     from xlmc.report.methods import check_targets, save_methods
 
     model = load(book)
     check_targets(output, book, overwrite=overwrite)
-    asked = {"reference_trials": reference_trials, "trials": trials, "replicates": replicates}
+    asked: dict[str, Any] = {"reference_trials": reference_trials, "trials": trials, "replicates": replicates}
+    given = {name: value for name, value in asked.items() if value is not None}
     if quick:
-        asked = {name: QUICK[name] if value is None else value for name, value in asked.items()}
+        given = quick_settings(given)
     with telling(quiet) as told:
-        found = study(model, accuracy=accuracy, seed=seed, told=told, **asked)
+        found = study(model, accuracy=accuracy, seed=seed, told=told, **given)
     for path in output:
         save_methods(found, path, overwrite=overwrite)
     if as_json:

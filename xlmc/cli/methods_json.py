@@ -60,6 +60,9 @@ def _curve(found: Study, curve: Curve) -> dict[str, Any]:
         "remarks": list(curve.remarks),
         "setup_seconds": curve.setup,
         "bounds": {name: {"least": least, "most": most} for name, (least, most) in curve.ranges.items()},
+        "bounds_at": [
+            {"forecast": name, "end": end, "assumptions": dict(point)} for (name, end), point in curve.ends.items()
+        ],
         "runs": [_rung(found, rung, drawn) for rung in curve.rungs],
         "slopes": {
             each: {"trials": finite(curve.slope(each, "budget")), "seconds": finite(curve.slope(each, "seconds"))}

@@ -18,7 +18,7 @@ from xlmc.methods.reference import Reference
 from xlmc.methods.rms import Rms
 from xlmc.methods.sampled import Sampled
 from xlmc.methods.second_order import SecondOrder
-from xlmc.methods.study import ACCURACY, REPLICATES, Study, study
+from xlmc.methods.study import ACCURACY, REPLICATES, Study, quick_settings, study
 from xlmc.methods.surrogate import Surrogate
 from xlmc.methods.worst_case import WorstCase
 
@@ -44,6 +44,7 @@ __all__ = [
     "Surrogate",
     "WorstCase",
     "need",
+    "quick_settings",
     "recommendation",
     "study",
 ]

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from xlmc import statistics
 from xlmc.model import Model
+from xlmc.sampling import Plan
 from xlmc.statistics import Sample
 
-__all__ = ["STATISTICS", "Answer", "Errors", "Method", "MethodResult", "answer_of"]
+__all__ = ["STATISTICS", "Answer", "Errors", "Extreme", "Method", "MethodResult", "answer_of", "extremes_of"]
 
 STATISTICS: Final[Mapping[str, str]] = {
     "mean": "Mean",
@@ -48,6 +49,37 @@ class Answer:
     most: float = np.nan
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Extreme:
+    """The lowest or highest accepted trial of a forecast in one run.
+
+    Attributes:
+        forecast, end: whose, `least` or `most`.
+        value: of the forecast.
+        seed, plan, trial: what draws it again.
+    """
+
+    forecast: str
+    end: str
+    value: float
+    seed: int
+    plan: Plan
+    trial: int
+
+
+def extremes_of(
+    forecasts: Mapping[str, Floats], trials: NDArray[np.int64], seed: int, plan: Plan
+) -> tuple[Extreme, ...]:
+    """The extremes of every forecast `(m,)` over accepted trials `(m,)`; none of one that is nowhere a number."""
+    found = []
+    for name, values in forecasts.items():
+        if np.isnan(values).all():
+            continue
+        for end, place in (("least", np.nanargmin(values)), ("most", np.nanargmax(values))):
+            found.append(Extreme(name, end, float(values[place]), seed, plan, int(trials[place])))
+    return tuple(found)
+
+
 @dataclass(frozen=True, slots=True)
 class MethodResult:
     """What one run of a method gave.
@@ -59,6 +91,9 @@ class MethodResult:
         acceptance: the share of trials that all filters accept; None where the method does not see filters.
         effective: how many equally weighted accepted trials carry as much; None where all weigh alike.
         remarks: what this run has to say for itself: its point, its limits, what it left out.
+        ends: (forecast, `least` or `most`) -> the point that the bound is reached at, by the assumptions' names; of
+            methods whose bounds are forecasts of points that the workbook accepts.
+        extremes: the lowest and highest accepted trials, of methods that draw.
     """
 
     seconds: float
@@ -67,6 +102,8 @@ class MethodResult:
     acceptance: float | None = None
     effective: float | None = None
     remarks: tuple[str, ...] = field(default=())
+    ends: Mapping[tuple[str, str], Mapping[str, float]] = field(default_factory=dict)
+    extremes: tuple[Extreme, ...] = field(default=())
 
 
 class Method(Protocol):

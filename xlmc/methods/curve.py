@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from statistics import median
 from typing import Final
 
@@ -62,6 +62,7 @@ class Curve:
         setup: seconds of its first run beyond those of the next, in which things are compiled or imported.
         remarks: of its last run.
         ranges: forecast -> the bounds it gives, for methods that give bounds.
+        ends: of bounds, the points that they are reached at (`MethodResult.ends`).
         apart: of an engine, by how many standard deviations its answers differ at most from those of the engine
             `numpy` at the same trials.
     """
@@ -72,6 +73,7 @@ class Curve:
     remarks: tuple[str, ...]
     ranges: Mapping[str, tuple[float, float]]
     apart: float = 0.0
+    ends: Mapping[tuple[str, str], Mapping[str, float]] = field(default_factory=dict)
 
     @property
     def answers(self) -> bool:

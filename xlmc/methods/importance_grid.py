@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from xlmc.blocks import Task
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
-from xlmc.methods.answer import Errors, MethodResult, answer_of
+from xlmc.methods.answer import Errors, Extreme, MethodResult, answer_of, extremes_of
 from xlmc.model import Model
 from xlmc.sampling import Margin, Plan, Stream
 from xlmc.scheduling.recipe import worker_of
@@ -60,13 +60,13 @@ class ImportanceGrid:
         pilot = min(max(_LEAST_PILOT, budget // _PILOT_SHARE), _MOST_PILOT, max(1, budget // 2))
         grids = _learned(model, pilot, seed)
         trials = max(1, budget - pilot)
-        weights, columns = _weighted(model, grids, trials, seed + _APART)
+        weights, columns, ends = _weighted(model, grids, trials, seed + _APART)
         answers = {f.name: answer_of(c, weights, f.central) for f, c in zip(model.forecasts, columns, strict=True)}
         total, squares = float(weights.sum()), float(np.sum(weights**2))
         effective = total**2 / squares if squares else 0.0
         said = f"of {weights.size:,} accepted trials, {effective:,.0f} count fully (effective sample size)"
         seconds = time.perf_counter() - started
-        return MethodResult(seconds, pilot + trials, answers, total / trials, effective, (said,))
+        return MethodResult(seconds, pilot + trials, answers, total / trials, effective, (said,), extremes=ends)
 
 
 def _learned(model: Model, trials: int, seed: int) -> dict[str, Floats]:
@@ -92,18 +92,23 @@ def _density(counts: Floats) -> Floats:
     return np.asarray(1.0 + (1.0 - DEFENSIVE) * trusted * (counts / expected - 1.0))
 
 
-def _weighted(model: Model, grids: dict[str, Floats], trials: int, seed: int) -> tuple[Floats, list[Floats]]:
-    """The weights of the accepted trials `(m,)`, and the forecasts, `(m,)` each."""
+def _weighted(
+    model: Model, grids: dict[str, Floats], trials: int, seed: int
+) -> tuple[Floats, list[Floats], tuple[Extreme, ...]]:
+    """The weights of the accepted trials `(m,)`, the forecasts, `(m,)` each, and their extremes."""
     program = model.program("numpy")
     block = min(_BLOCK, program.largest_block)
     plan = _GridPlan("mc", trials, grids=grids, weights=np.empty(block))
     worker = worker_of(model, program, "numpy", seed, block, plan)
-    weights, columns = [], []
+    weights, columns, accepted = [], [], []
     for start in range(0, trials, block):
         found = worker.run(Task(start, min(block, trials - start), prior=False, inputs=False))
         weights.append(plan.weights[found.accepted - start])
         columns.append(found.forecasts)
-    return np.concatenate(weights), [np.concatenate(parts) for parts in zip(*columns, strict=True)]
+        accepted.append(found.accepted)
+    forecasts = [np.concatenate(parts) for parts in zip(*columns, strict=True)]
+    named = {f.name: column for f, column in zip(model.forecasts, forecasts, strict=True)}
+    return np.concatenate(weights), forecasts, extremes_of(named, np.concatenate(accepted), seed, plan)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
@@ -85,8 +85,8 @@ def need(study: Study, curve: Curve) -> Need:
         if rank > (("yes", "unknown", "no").index(worst.reaches), worst.trials) or not worst.forecast:
             floor = found.floor / tolerance if tolerance > 0.0 else np.inf
             worst = Need(trials, seconds_of(curve, trials), *kind, trials / longest, reaches, floor)
-    if np.isnan(worst.seconds):
-        worst = Need(worst.trials, np.inf, worst.forecast, worst.statistic, worst.beyond, "unknown")
+    if worst.reaches == "yes" and not np.isfinite(worst.trials):
+        worst = replace(worst, reaches="unknown")
     return _agreeing(study, curve, worst)
 
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any, Final
 
@@ -19,18 +19,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
+from xlmc.definitions.model import name_key
 from xlmc.derivatives import Derivative, derivatives
 from xlmc.drawing import parameter_target
 from xlmc.errors import SimulationError
 from xlmc.functions.values import ERROR, TEXT
-from xlmc.methods.answer import Answer, Errors, MethodResult
+from xlmc.methods.answer import Answer, Errors, Extreme, MethodResult
 from xlmc.methods.box import Box, box_of
 from xlmc.methods.evaluation import Evaluation
 from xlmc.methods.lockstep import in_step
 from xlmc.model import Model
 from xlmc.scene import filter_limits
 
-__all__ = ["PILOT", "STARTS", "Optimised"]
+__all__ = ["PILOT", "STARTS", "Optimised", "at_least_as_wide"]
 
 PILOT: Final = 32_768
 STARTS: Final = 2
@@ -46,6 +47,11 @@ _MARGINS: Final = (1e-9, 1e-7, 1e-5, 1e-3)
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Goal = Callable[[Floats], tuple[float, Floats]]
+End = tuple[str, str]
+"""Forecast, and `least` or `most`."""
+
+Point = Mapping[str, float]
+"""Assumption -> its value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,9 +80,55 @@ class Optimised:
             message = f"the filters accept none of {PILOT:,} trials, and the search has nowhere to start from"
             raise SimulationError(message, hint="see whether the filters contradict the assumptions")
         search = _Search(model, box_of(model, seed), np.column_stack([pilot.inputs[a.name] for a in model.live]))
-        answers = search.answers(pilot.forecasts)
+        answers, ends = search.answers(pilot.forecasts)
         evaluations = PILOT + search.points
-        return MethodResult(time.perf_counter() - started, evaluations, answers, remarks=search.remarks)
+        return MethodResult(
+            time.perf_counter() - started, evaluations, answers, remarks=search.remarks, ends=ends
+        )  # fmt: skip
+
+
+def at_least_as_wide(
+    model: Model, seed: int, bounds: Mapping[str, tuple[float, float]], extremes: Iterable[Extreme]
+) -> tuple[dict[str, Answer], dict[End, Point]]:
+    """Wider bounds where accepted trials lie outside those that were found, by a search from these trials.
+
+    Args:
+        model: the workbook.
+        seed: of the box.
+        bounds: forecast -> least and most, as they were found.
+        extremes: accepted trials.
+
+    Returns:
+        The wider bounds, NaN where the found ones hold, and the points that they are reached at.
+    """
+    box, evaluate, names = box_of(model, seed), Evaluation(model), [a.name for a in model.live]
+    columns = [f.name for f in model.forecasts]
+    answers: dict[str, Answer] = {}
+    ends: dict[End, Point] = {}
+    for (name, end), each in _outside(bounds, extremes).items():
+        drawn = model.sampler(each.seed, 1, plan=each.plan).draw(each.trial)
+        point = np.column_stack([drawn[name_key(assumption)] for assumption in names])
+        found = evaluate(point)
+        if not found.accepted[0]:
+            continue
+        values = {name: found.forecasts[:, columns.index(name)]}
+        wider, where = _Search(model, box, point).answers(values)
+        answers[name] = replace(answers.get(name, Answer()), **{end: getattr(wider[name], end)})
+        ends[name, end] = where[name, end]
+    return answers, ends
+
+
+def _outside(bounds: Mapping[str, tuple[float, float]], extremes: Iterable[Extreme]) -> dict[End, Extreme]:
+    """The outermost trial beyond each end."""
+    found: dict[End, Extreme] = {}
+    for each in extremes:
+        if each.forecast not in bounds:
+            continue
+        key, sign = (each.forecast, each.end), 1.0 if each.end == "least" else -1.0
+        bound = found[key].value if key in found else bounds[each.forecast][each.end == "most"]
+        if sign * each.value < sign * bound:
+            found[key] = each
+    return found
 
 
 class _Search:
@@ -98,7 +150,10 @@ class _Search:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        found = [f"{STARTS} searches for each end, with exact derivatives, from accepted trials of a pilot run"]
+        found = [
+            f"{STARTS} searches for each end, with exact derivatives, from accepted trials of a pilot run",
+            "each end is the forecast of a point that the workbook accepts; --json and the files of -o name it",
+        ]
         unseen = [name for name, limits in self._filters.items() if any(at is None for _, at in limits) or not limits]
         if unseen:
             found.append(f"checked, but not followed by the search: {', '.join(unseen)}")
@@ -112,8 +167,8 @@ class _Search:
         """(k,) which assumptions take so few values that they count as discrete."""
         return np.array([2 * np.unique(column).size < column.size > 8 for column in self._accepted.T], bool)
 
-    def answers(self, forecasts: Mapping[str, Floats]) -> dict[str, Answer]:
-        """The bounds of every forecast, given its values in the accepted trials."""
+    def answers(self, forecasts: Mapping[str, Floats]) -> tuple[dict[str, Answer], dict[End, Point]]:
+        """The bounds of every forecast, given its values in the accepted trials, and where they are reached."""
         ends = [
             (name, sign, trial)
             for name, values in forecasts.items()
@@ -121,14 +176,24 @@ class _Search:
             for trial in np.argsort(sign * values)[: min(STARTS, np.count_nonzero(~np.isnan(values)))].tolist()
         ]
         searches = [partial(self._search, name, sign, self._accepted[trial]) for name, sign, trial in ends]
-        found: dict[str, dict[float, float]] = {name: {} for name in forecasts}
-        for (name, sign, trial), value in zip(ends, in_step(searches, self._derivatives), strict=True):
-            best = min(sign * value, sign * float(forecasts[name][trial]), sign * found[name].get(sign, sign * np.inf))
-            found[name][sign] = sign * best
-        return {name: Answer(least=both[1.0], most=both[-1.0]) if both else Answer() for name, both in found.items()}
+        best: dict[End, tuple[float, Floats]] = {}
+        for (name, sign, trial), found in zip(ends, in_step(searches, self._derivatives), strict=True):
+            end = name, "least" if sign > 0.0 else "most"
+            sampled = float(forecasts[name][trial]), self._accepted[trial]
+            candidates = [each for each in (best.get(end), sampled, found) if each is not None]
+            best[end] = min(candidates, key=lambda each: sign * each[0])
+        answers = {name: Answer() for name in forecasts}
+        for (name, which), (value, _) in best.items():
+            answers[name] = replace(answers[name], **{which: value})
+        where: dict[End, Point] = {
+            end: dict(zip(self._names, point.tolist(), strict=True)) for end, (_, point) in best.items()
+        }
+        return answers, where
 
-    def _search(self, name: str, sign: float, start: Floats, ask: Callable[[Floats], _Point]) -> float:
-        """The end found from one accepted trial, in the forecast's units."""
+    def _search(
+        self, name: str, sign: float, start: Floats, ask: Callable[[Floats], _Point]
+    ) -> tuple[float, Floats] | None:
+        """The end found from one accepted trial, in the forecast's units, and its point; None where there is none."""
         at, known = (start - self._low) / self._width, _Known(ask)
         value, _ = known(at).forecasts[name]
         factor = sign / max(abs(value), 1e-300)
@@ -145,7 +210,7 @@ class _Search:
             # The optimiser keeps to constraints but for rounding: on to the nearest point that is clear of them.
             near = partial(_distance, end)
             found = self._if_accepted(name, self._minimum(near, end, self._constraints(known, margin)))
-        return value if found is None else found
+        return found
 
     def _minimum(self, goal: Goal, start: Floats, constraints: list[dict[str, Any]]) -> Floats:
         from scipy.optimize import minimize
@@ -159,12 +224,13 @@ class _Search:
             )  # fmt: skip
         return np.where(free, np.clip(np.nan_to_num(ended.x, nan=0.5), 0.0, 1.0), start)
 
-    def _if_accepted(self, name: str, point: Floats) -> float | None:
-        """The forecast at a point, if the workbook accepts it."""
+    def _if_accepted(self, name: str, point: Floats) -> tuple[float, Floats] | None:
+        """The forecast at a point, and the point in the assumptions' units, if the workbook accepts it."""
+        at = self._low + point * self._width
         with self._one_at_a_time:
-            found = self._evaluate(self._low + point[None, :] * self._width)
+            found = self._evaluate(at[None, :])
         value = float(found.forecasts[0, [f.name for f in self._model.forecasts].index(name)])
-        return value if found.accepted[0] and not np.isnan(value) else None
+        return (value, at) if found.accepted[0] and not np.isnan(value) else None
 
     def _constraints(self, known: _Known, margin: float) -> list[dict[str, Any]]:
         return [

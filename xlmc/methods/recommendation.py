@@ -58,7 +58,7 @@ def _asked(study: Study) -> str:
     text, _, relative = study.accuracy
     what = f"{text} of its 5–95 % range" if relative else f"{text} in its units"
     numbers = "mean, standard deviation and both ends of the central range of every forecast"
-    said = f"Asked for: {numbers}, each within {what} of the true number in 95 of 100 runs."
+    said = f"Asked for: {numbers}, each known to within {what}, in 95 of 100 runs."
     if relative:
         said += (
             " The 5–95 % range of a forecast is what nine tenths of its accepted trials lie in: "
@@ -187,6 +187,11 @@ def _never(study: Study, curve: Curve, found: Need) -> str:
 
 
 def _unknown(curve: Curve, found: Need) -> str:
+    if curve.method.errors != "floor":
+        return (
+            f"These runs cannot tell what {curve.method.name} needs: too few of them gave a number for the "
+            f"{spelt(found.statistic)} of {found.forecast}. Longer runs would."
+        )
     return (
         f"These runs cannot tell whether {curve.method.name} comes to it: more trials do not remove all of its error, "
         f"and whether what is left in the {spelt(found.statistic)} of {found.forecast} is small enough takes more and "

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from xlmc import statistics
 from xlmc.definitions import Forecast
 from xlmc.errors import SimulationError
-from xlmc.methods.answer import Answer
+from xlmc.methods.answer import Answer, Extreme, extremes_of
 from xlmc.model import Model
 from xlmc.simulation import Simulation
 from xlmc.statistics import Estimate, Sample
@@ -64,6 +64,7 @@ class Reference:
         acceptance: the share of accepted trials.
         heavy: forecast -> attributes of `Answer` that do not converge, for its tail is too heavy.
         warnings: why its answers must not be used as they stand.
+        extremes: its lowest and highest accepted trials.
     """
 
     trials: int
@@ -79,6 +80,7 @@ class Reference:
     acceptance: Estimate
     warnings: tuple[str, ...] = ()
     heavy: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    extremes: tuple[Extreme, ...] = ()
 
     def theory(self, forecast: str, statistic: str, trials: int) -> float:
         """The standard error of one number of a forecast in a run of so many independent trials."""
@@ -132,6 +134,7 @@ def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: in
         widths={f.name: _width(run[f.name].sample, numbers[f.name][0]) for f in model.forecasts},
         acceptance=run.acceptance,
         warnings=tuple(run.warnings),
+        extremes=extremes_of(run.forecasts, run.trial_index, seed, run.plan),
         heavy={f.name: lost for f in model.forecasts if (lost := _lost(run[f.name].sample.x))},
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
-from xlmc.methods.answer import Errors, MethodResult, answer_of
+from xlmc.methods.answer import Errors, MethodResult, answer_of, extremes_of
 from xlmc.model import Model
 from xlmc.pilot import PILOT_TRIALS
 
@@ -46,7 +46,8 @@ class Sampled:
         answers = {f.name: answer_of(run.forecasts[f.name], None, f.central) for f in model.forecasts}
         learned = PILOT_TRIALS if self.method == "sobol" else 0
         seconds = time.perf_counter() - started
-        return MethodResult(seconds, run.trials + learned, answers, run.accepted / run.trials)
+        ends = extremes_of(run.forecasts, run.trial_index, seed, run.plan)
+        return MethodResult(seconds, run.trials + learned, answers, run.accepted / run.trials, extremes=ends)
 
 
 MONTE_CARLO = Sampled("mc", "Monte Carlo")

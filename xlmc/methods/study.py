@@ -6,18 +6,18 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from statistics import median
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
 from xlmc.definitions.stopping import as_tolerance
 from xlmc.errors import SimulationError
-from xlmc.methods.answer import STATISTICS, Answer, Method, MethodResult
+from xlmc.methods.answer import STATISTICS, Answer, Extreme, Method, MethodResult
 from xlmc.methods.corners import Corners
 from xlmc.methods.curve import Curve, Rung, in_order, rung_of
 from xlmc.methods.first_order import FirstOrder
 from xlmc.methods.importance_grid import ImportanceGrid
-from xlmc.methods.optimised import Optimised
+from xlmc.methods.optimised import Optimised, at_least_as_wide
 from xlmc.methods.reference import (
     Reference,
     fastest_engine,
@@ -31,7 +31,7 @@ from xlmc.methods.surrogate import Surrogate
 from xlmc.methods.worst_case import WorstCase
 from xlmc.model import Model
 
-__all__ = ["ACCURACY", "LENGTHS", "REPLICATES", "STEP", "Study", "ladder_of", "study"]
+__all__ = ["ACCURACY", "LENGTHS", "REPLICATES", "STEP", "Study", "ladder_of", "quick_settings", "study"]
 
 ACCURACY: Final = "1%"
 REPLICATES: Final = 24
@@ -59,7 +59,7 @@ _APART: Final = 1_000_000
 
 SLOW: Final = "formulas"
 
-_RUNS_SECONDS, _LEAST_RUNS = 4.0, 4
+_RUNS_SECONDS, _LEAST_RUNS = 4.0, 6
 """Of one method and length, where nobody says how many there shall be."""
 
 _CLOCKED: Final = 3
@@ -130,6 +130,7 @@ def study(
     reference_trials: int | None = None,
     trials: int | None = None,
     replicates: int | None = None,
+    patience: float | None = None,
     seed: int | None = None,
     told: Told | None = None,
 ) -> Study:
@@ -141,7 +142,9 @@ def study(
             each forecast's 5–95 % range, or a number in the forecasts' units.
         reference_trials: by default a power of two of them, up to 33,554,432, that takes about eight seconds.
         trials: of the longest runs; by default 16,384 times those of the shortest, or what takes two seconds.
-        replicates: runs of each length, 2 or more; by default 24, or as many as take a method four seconds, 4 at least.
+        replicates: runs of each length, 2 or more; by default 24, or as many as take a method four seconds, 6 at least.
+        patience: seconds after which one length of one method is run no further, with six runs at least; by default
+            four, or as long as it takes where `replicates` is given.
         seed: of the reference; by default the workbook's.
         told: called with what is being measured.
 
@@ -160,11 +163,14 @@ def study(
     reference = reference_of(model, size, sampling, engine, own)
     unfiltered = unfiltered_of(model, reference)
     ladder = ladder_of(model, trials, own, reference.acceptance.value)
-    measuring = _Measuring(model, reference, ladder, replicates, own, tell)
+    if patience is None:
+        patience = _RUNS_SECONDS if replicates is None else np.inf
+    measuring = _Measuring(model, reference, ladder, replicates or REPLICATES, patience, own, tell)
     once = measuring.once(ONCE)
     found = measuring.drawn(DRAWN, [each for each in ENGINE_VARIANTS if each.engine != SLOW])
     curves = tuple(curve for curve in found if curve.method in DRAWN)
     engines = tuple(curve for curve in found if curve.method not in DRAWN)
+    once = tuple(measuring.widened(curve) if curve.ends else curve for curve in once)
     for variant in ENGINE_VARIANTS:
         if variant.engine == SLOW:
             engines += measuring.slow(variant, next(curve for curve in curves if curve.method is MONTE_CARLO))
@@ -172,6 +178,12 @@ def study(
     return Study(
         model, own, wanted, reference, unfiltered, ladder, most, once, curves, engines, measuring.absent
     )  # fmt: skip
+
+
+def quick_settings(given: Mapping[str, Any]) -> dict[str, Any]:
+    """What `--quick` asks of `study`, beside what is given: few and short runs."""
+    usual = {"reference_trials": 1 << 20, "trials": 1 << 17, **given}
+    return usual if "replicates" in given else {**usual, "replicates": 8, "patience": 0.5}
 
 
 def ladder_of(model: Model, most: int | None, seed: int, acceptance: float) -> tuple[int, ...]:
@@ -212,11 +224,19 @@ class _Measuring:
     """The runs of one study."""
 
     def __init__(
-        self, model: Model, reference: Reference, ladder: Sequence[int], replicates: int | None, seed: int, tell: Told
+        self,
+        model: Model,
+        reference: Reference,
+        ladder: Sequence[int],
+        replicates: int,
+        patience: float,
+        seed: int,
+        tell: Told,
     ) -> None:
         self._model, self._reference, self._ladder = model, reference, ladder
-        self._replicates, self._limited = replicates or REPLICATES, replicates is None
+        self._replicates, self._patience = replicates, patience
         self._seed, self._tell = seed, tell
+        self._extremes: dict[str, dict[str, Extreme]] = {}
         self.absent: dict[str, str] = {}
 
     def once(self, methods: Sequence[Method]) -> tuple[Curve, ...]:
@@ -232,8 +252,23 @@ class _Measuring:
             rung = rung_of(result.evaluations, [result], self._reference)
             ranges = {name: (a.least, a.most) for name, a in result.answers.items() if np.isfinite(a.least)}
             setup = max(0.0, first.seconds - again.seconds)
-            found.append(Curve(method, (rung,), setup, result.remarks, ranges))
+            found.append(Curve(method, (rung,), setup, result.remarks, ranges, ends=result.ends))
         return tuple(found)
+
+    def widened(self, curve: Curve) -> Curve:
+        """Bounds by optimisation, no narrower than what any run has drawn."""
+        extremes = [*self._reference.extremes, *(each for ends in self._extremes.values() for each in ends.values())]
+        wider, ends = at_least_as_wide(self._model, self._seed, curve.ranges, extremes)
+        if not ends:
+            return curve
+        ranges = {
+            name: (float(np.fmin(least, a.least)), float(np.fmax(most, a.most)))
+            for name, (least, most) in curve.ranges.items()
+            for a in (wider.get(name, Answer()),)
+        }
+        names = ", ".join(f"{end} {name}" for name, end in ends)
+        said = f"searched again from drawn trials that lie farther out: {names}"
+        return replace(curve, ranges=ranges, ends={**curve.ends, **ends}, remarks=(*curve.remarks, said))
 
     def drawn(self, methods: Sequence[Method], engines: Sequence[Sampled]) -> tuple[Curve, ...]:
         """The methods that draw, and the engines, which compute the trials that the first of these has computed.
@@ -261,15 +296,25 @@ class _Measuring:
         """Whether there are runs enough of one method and length: as many as wanted, or as their time allows."""
         if engine and len(known) >= _CLOCKED:
             return True
-        return self._limited and len(known) >= _LEAST_RUNS and sum(r.seconds for r in known) > _RUNS_SECONDS
+        return len(known) >= _LEAST_RUNS and sum(result.seconds for result in known) > self._patience
 
     def _run(self, method: Method, budget: int, seed: int) -> MethodResult:
         """One run of a method that can be used; one that fails, for want of accepted trials, is counted as such."""
         try:
-            return method.run(self._model, budget, seed)
+            found = method.run(self._model, budget, seed)
+            for each in found.extremes:
+                self._remember(each)
+            return replace(found, extremes=())
         except SimulationError as error:
             nothing = {forecast.name: Answer() for forecast in self._model.forecasts}
             return MethodResult(np.nan, budget, nothing, remarks=(str(error),))
+
+    def _remember(self, each: Extreme) -> None:
+        """The outermost trial of all runs, for each end of each forecast."""
+        ends = self._extremes.setdefault(each.forecast, {})
+        sign = 1.0 if each.end == "least" else -1.0
+        if each.end not in ends or sign * each.value < sign * ends[each.end].value:
+            ends[each.end] = each
 
     def _curve(
         self, method: Method, first: MethodResult | None, results: Mapping[tuple[str, int], list[MethodResult]]

@@ -13,6 +13,7 @@ from xlmc.report import cells
 from xlmc.report.cells import Shown
 from xlmc.report.methods import tables
 from xlmc.report.methods.charts import DATA, write_charts
+from xlmc.report.methods.page import ENDS
 from xlmc.report.page import Page
 from xlmc.report.styles import Styles
 
@@ -72,6 +73,11 @@ def _write_words(page: Page, study: Study) -> None:
     page.heading("What each method says of itself, and cannot do")
     for method, said in tables.cannot_lines(study):
         page.spread([cells.text(method, "name"), cells.text(said)], [0, 1], _LAST)
+    ends = tables.ends_lines(study)
+    if ends:
+        page.heading(ENDS)
+    for bound, point in ends:
+        page.spread([cells.text(bound, "name"), cells.text(point)], [0, 1], _LAST)
     page.printed(name)
 
 

@@ -11,7 +11,7 @@ from xlmc.report import cells
 from xlmc.report.chart_style import FONT, straight
 from xlmc.report.methods.figure import OTHER, STYLES, Style
 from xlmc.report.methods.labels import spread
-from xlmc.report.methods.picture import HOW_TO_READ, Line, Picture, column_of, picture_of
+from xlmc.report.methods.picture import HOW_TO_READ, Line, Picture, column_of, guides_of, picture_of
 from xlmc.report.page import Page
 from xlmc.report.styles import GRID, INK
 
@@ -97,9 +97,11 @@ def _main(made: Workbook, data: _Data, picture: Picture) -> ChartScatter:
     wide, high = math.log10(right / left), math.log10(top / bottom)
     start, end = left / 10.0 ** math.ceil(0.3 * wide), right * 10.0 ** math.ceil(0.55 * wide)
     for mark in picture.marks:
-        _add(chart, data, mark.text, [(start, mark.y), (right, mark.y)], _ASKED, width=1.25)
-        _words(chart, data, mark.text, (start, mark.y * 10.0 ** (0.025 * high)), _ASKED)
-    x0, y0, fall = start * 10.0**0.15, bottom * 10.0 ** (0.92 * high), min(0.14 * wide, 0.2 * high)
+        _add(chart, data, mark.words[0], [(start, mark.y), (right, mark.y)], _ASKED, width=1.25)
+        for place, words in enumerate(reversed(mark.words)):
+            _words(chart, data, words, (start, mark.y * 10.0 ** ((0.022 + 0.033 * place) * high)), _ASKED)
+    x0 = start * 10.0**0.15
+    y0, fall = guides_of(picture, bottom)
     for slope, text in ((-0.5, "slope −½: four times the work, half the error"), (-1.0, "slope −1")):
         foot = (x0 * 10.0 ** (fall / -slope), y0 / 10.0**fall)
         _add(chart, data, text, [(x0, y0), foot], _GREY, width=1.0)

@@ -12,7 +12,7 @@ import numpy as np
 from xlmc.methods import STATISTICS, Curve, Rung, Study
 from xlmc.methods.rms import Rms
 from xlmc.report.methods.labels import spread
-from xlmc.report.methods.picture import HOW_TO_READ, Line, Picture, Work, column_of, picture_of
+from xlmc.report.methods.picture import HOW_TO_READ, Line, Picture, Work, column_of, guides_of, picture_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,8 +54,8 @@ _APART: Final = 0.047
 """Of the panel's height: from label to label."""
 
 
-def draw(study: Study, against: Work = "seconds") -> Figure:
-    """The figure: against time, or against evaluations of the workbook."""
+def draw(study: Study, against: Work = "seconds", *, words: bool = True) -> Figure:
+    """The figure: against time, or against evaluations of the workbook; with the words that tell how to read it."""
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
@@ -67,7 +67,8 @@ def draw(study: Study, against: Work = "seconds") -> Figure:
         _say(axis, "No forecast varies.")
     else:
         _main(axis, picture)
-    upper.suptitle(_title(study, picture), fontsize=10, ha="left", x=0.008, color=_INK, linespacing=1.45)
+    if words:
+        upper.suptitle(_title(study, picture), fontsize=10, ha="left", x=0.008, color=_INK, linespacing=1.45)
     for panel, (name, get) in zip(lower.subplots(1, 5), _numbers(study).items(), strict=True):
         _small(panel, study, name, get)
     lower.suptitle(_below(study, picture), fontsize=8.5, ha="left", x=0.008, color=_GREY)
@@ -100,8 +101,8 @@ def _main(axis: Axes, picture: Picture) -> None:
     for mark in picture.marks:
         axis.plot([axis.get_xlim()[0], right], [mark.y, mark.y], color=_ASKED, lw=1.0, zorder=1)
         axis.annotate(
-            mark.text, (0.008, mark.y), xycoords=("axes fraction", "data"), xytext=(0, 3), textcoords="offset points",
-            color=_ASKED, fontsize=_LETTERS, va="bottom",
+            "\n".join(mark.words), (0.008, mark.y), xycoords=("axes fraction", "data"), xytext=(0, 3),
+            textcoords="offset points", color=_ASKED, fontsize=_LETTERS, va="bottom",
         )  # fmt: skip
     for line in picture.lines:
         _line(axis, line, right)
@@ -116,10 +117,9 @@ def _main(axis: Axes, picture: Picture) -> None:
 
 def _guides(axis: Axes, picture: Picture) -> None:
     """Slopes of −1/2 and −1, in the empty corner left of the lines."""
-    left, right, bottom, top = picture.frame
-    wide, high = math.log10(right / left), math.log10(top / bottom)
-    x0, y0 = left / 10.0 ** (0.33 * wide), bottom * 10.0 ** (0.93 * high)
-    fall = min(0.3 * wide * 0.5, 0.2 * high)
+    left, right, bottom, _ = picture.frame
+    y0, fall = guides_of(picture, bottom)
+    x0 = left / 10.0 ** (0.33 * math.log10(right / left))
     for slope, text in ((-0.5, "slope −½: four times the work, half the error"), (-1.0, "slope −1")):
         across = fall / -slope
         axis.plot([x0, x0 * 10.0**across], [y0, y0 / 10.0**fall], color=_GREY, lw=1.0, zorder=1)

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING, Final
 
 from xlmc.methods import Study, recommendation
 from xlmc.report.methods import tables
 from xlmc.report.methods.figure import draw
-from xlmc.report.methods.picture import Work
+from xlmc.report.methods.picture import HOW_TO_READ, Work
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["page"]
+__all__ = ["ENDS", "page"]
+
+ENDS: Final = "Where the optimised bounds are reached: points that the workbook accepts"
 
 _STYLE = """
 body { font: 15px/1.5 "Segoe UI", "Helvetica Neue", Arial, sans-serif; color: #1F3044; margin: 2em auto;
@@ -52,24 +55,32 @@ def page(study: Study) -> str:
         tables.error_table(study), tables.bounds_table(study), tables.reference_table(study),
         tables.forecast_table(study), tables.rung_table(study),
     )  # fmt: skip
-    cannot = "".join(
-        f'<tr><td class="left">{escape(method)}</td><td class="long">{escape(said)}</td></tr>\n'
-        for method, said in tables.cannot_lines(study)
-    )
+    how = "".join(f'<p class="said">{escape(each)}</p>\n' for each in HOW_TO_READ) if study.varying else ""
     figures = "".join(
-        f"<h2>Speed against accuracy: {what}</h2>\n<figure>{_svg(draw(study, against))}</figure>\n"
+        f"<h2>Speed against accuracy: {what}</h2>\n{how if against == 'seconds' else ''}"
+        f"<figure>{_svg(draw(study, against, words=False))}</figure>\n"
         for against, what in _WORKS
     )
+    ends = tables.ends_lines(study)
+    points = f"<h2>{ENDS}</h2>\n{_lines(ends)}" if ends else ""
     first, *rest = (_table(each) for each in shown if each.rows)
     return (
         "<!DOCTYPE html>\n"
         f'<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>Methods: {name}</title>\n'
         f"<style>{_STYLE}</style>\n</head>\n<body>\n"
         f'<h1>Methods of uncertainty analysis</h1>\n<p class="below">{name}</p>\n'
-        f"{words}{first}{figures}"
-        f'<h2>What each method says of itself, and cannot do</h2>\n<div class="wide"><table>{cannot}</table></div>\n'
-        f"{''.join(rest)}</body>\n</html>\n"
+        f"{words}{figures}{first}"
+        f"<h2>What each method says of itself, and cannot do</h2>\n{_lines(tables.cannot_lines(study))}"
+        f"{''.join(rest)}{points}</body>\n</html>\n"
     )
+
+
+def _lines(lines: Sequence[tuple[str, str]]) -> str:
+    """A table of two columns, the second of which is wrapped."""
+    rows = "".join(
+        f'<tr><td class="left">{escape(name)}</td><td class="long">{escape(said)}</td></tr>\n' for name, said in lines
+    )
+    return f'<div class="wide"><table>{rows}</table></div>\n'
 
 
 def _text(said: str) -> str:

@@ -19,7 +19,7 @@ from xlmc.methods.law import law
 from xlmc.methods.need import Need, reach_of, seconds_of, shortfall
 from xlmc.methods.number_words import seconds_text, trials_text
 
-__all__ = ["HOW_TO_READ", "Label", "Line", "Mark", "Picture", "Point", "Work", "column_of", "picture_of"]
+__all__ = ["HOW_TO_READ", "Label", "Line", "Mark", "Picture", "Point", "Work", "column_of", "guides_of", "picture_of"]
 
 Work = Literal["seconds", "evaluations"]
 
@@ -32,6 +32,12 @@ HOW_TO_READ: Final = (
 
 FINER: Final = 10.0
 """The second accuracy that is marked, over the one asked for."""
+
+_WORDS: Final = 0.033
+"""Of the panel's height: a line of words."""
+
+_NAMED: Final = 3
+"""Methods that tie, by name; the others are counted."""
 
 _AHEAD: Final = 6
 """Points of the dashed part of a line."""
@@ -74,10 +80,10 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A height with words: an accuracy, and what is cheapest there."""
+    """A height with lines of words: an accuracy, and what is cheapest there."""
 
     y: float
-    text: str
+    words: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -134,6 +140,23 @@ def _end(line: Line, right: float) -> tuple[float, float]:
     return line.ahead[-1] if line.ahead else (line.points[-1].x, line.points[-1].y)
 
 
+def guides_of(picture: Picture, bottom: float) -> tuple[float, float]:
+    """Where the lines of slope −1/2 and −1 begin, and how many decades they fall: in the larger gap between words.
+
+    Args:
+        picture: the chart.
+        bottom: of the frame as it is drawn.
+    """
+    left, right, _, top = picture.frame
+    asked, finer = picture.marks
+    high = math.log10(top / bottom)
+    above = math.log10(top / asked.y) - _WORDS * high * (len(asked.words) + 1)
+    below = math.log10(finer.y / bottom)
+    start = top if above > below else finer.y
+    fall = min(0.8 * max(above, below) - 0.07 * high, 0.15 * math.log10(right / left))
+    return start / 10.0 ** (0.07 * high), max(fall, 0.05 * high)
+
+
 def picture_of(study: Study, work: Work) -> Picture | None:
     """The chart of a study; None where no forecast varies."""
     if not study.varying:
@@ -151,7 +174,7 @@ def picture_of(study: Study, work: Work) -> Picture | None:
         if line.points:
             lines.append(line)
     marks = (
-        Mark(scale, _mark(study, scale, found, "asked for: ")),
+        Mark(scale, _mark(study, scale, found, ", as asked for")),
         Mark(scale / FINER, _mark(study, scale / FINER, finer, "")),
     )
     return Picture(
@@ -197,7 +220,7 @@ def _line(study: Study, curve: Curve, work: Work, scale: float, found: Choice, f
         x = float(getattr(rung, work))
         if np.isfinite(y) and y > 0.0 and np.isfinite(x) and x > 0.0:
             points.append(Point(x, y, low, high))
-    ahead = () if once or not points else _ahead(study, curve, work, scale, kind, found.needs[curve], points[-1])
+    ahead = () if once or not points else _ahead(study, curve, work, scale, kind, found.needs[curve])
     words = _needs(study, curve, found, finer), _briefly(study, curve, found, finer)
     return Line(curve, tuple(points), ahead, *words, once)
 
@@ -209,19 +232,17 @@ def _kind(study: Study, curve: Curve, found: Choice) -> tuple[str, str]:
 
 
 def _ahead(
-    study: Study, curve: Curve, work: Work, scale: float, kind: tuple[str, str], wanted: Need, last: Point
+    study: Study, curve: Curve, work: Work, scale: float, kind: tuple[str, str], wanted: Need
 ) -> tuple[tuple[float, float], ...]:
-    """From the last point to the finer accuracy, or to the one asked for; nothing where a method does not get there."""
+    """From the longest runs to the finer accuracy, as the law has it; nothing where a method does not get there."""
     tolerance = study.tolerance(kind[0])
     rule = law(study, curve, kind)
     budget = float(curve.rungs[-1].budget)
     most = rule.trials(tolerance / FINER)
     if not wanted.usable or not np.isfinite(most) or most <= budget:
         return ()
-    trials = np.geomspace(budget, most, _AHEAD)[1:]
-    beyond = [(last.x, last.y)]
-    beyond += [(_work_of(curve, work, each), scale * rule.reach(each) / tolerance) for each in trials.tolist()]
-    return tuple((x, min(y, last.y)) for x, y in beyond)
+    trials = np.geomspace(budget, most, _AHEAD).tolist()
+    return tuple((_work_of(curve, work, each), scale * rule.reach(each) / tolerance) for each in trials)
 
 
 def _work_of(curve: Curve, work: Work, trials: float) -> float:
@@ -270,15 +291,17 @@ def _when(found: Need) -> str:
     return "never" if found.reaches == "no" else "cannot tell"
 
 
-def _mark(study: Study, height: float, found: Choice, first: str) -> str:
-    text = f"{first}{_accuracy_text(study, height)}"
+def _mark(study: Study, height: float, found: Choice, more: str) -> tuple[str, ...]:
+    """The accuracy, the cheapest method there, and those that tie with it."""
+    text = f"{_accuracy_text(study, height)}{more}"
     if not found.cheapest:
-        return text
-    names = [curve.method.name for curve in found.cheapest if curve.method.name]
-    least = seconds_text(found.needs[found.cheapest[0]].seconds)
-    if len(names) == 1:
-        return f"{text}; cheapest: {names[0]}, {least}"
-    return f"{text}; cheapest: {names[0]}, {least}; {len(names) - 1} more within 20 % or 0.1 s"
+        return (text,)
+    first, *others = (curve.method.name for curve in found.cheapest)
+    said = (f"{text}; cheapest:", f"{first}, {seconds_text(found.needs[found.cheapest[0]].seconds)}")
+    if not others:
+        return said
+    named, rest = others[:_NAMED], len(others) - _NAMED
+    return (*said, *(f"tie: {name}" for name in named), *([f"and {rest} more"] if rest > 0 else []))
 
 
 def _chosen(study: Study, found: Choice, work: Work, scale: float) -> tuple[float, float, str] | None:

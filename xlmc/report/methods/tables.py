@@ -20,6 +20,7 @@ __all__ = [
     "bounds_table",
     "cannot",
     "cannot_lines",
+    "ends_lines",
     "error_table",
     "floor_of",
     "forecast_table",
@@ -170,6 +171,18 @@ def bounds_table(study: Study) -> Table:
     rows.append(("Time", "", *(seconds_text(rung.seconds) for rung in last), ""))
     headings = ("Forecast", "Units", *(curve.method.name for curve in curves), "Reference, central range")
     return Table("Bounds: what is possible", headings, tuple(rows), 2)
+
+
+def ends_lines(study: Study) -> list[tuple[str, str]]:
+    """Each optimised bound, and the point that it is reached at: the workbook accepts it, and gives this forecast."""
+    units = {forecast.name: f" {forecast.units}" if forecast.units else "" for forecast in study.model.forecasts}
+    found = []
+    for curve in study.once:
+        for (name, end), point in curve.ends.items():
+            value = curve.ranges[name][end == "most"]
+            said = f"{'Lowest' if end == 'least' else 'Highest'} {name}: {value:.6g}{units[name]}"
+            found.append((said, "; ".join(f"{assumption} = {at:.10g}" for assumption, at in point.items())))
+    return found
 
 
 def cannot_lines(study: Study) -> list[tuple[str, str]]:

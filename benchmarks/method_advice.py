@@ -1,0 +1,143 @@
+"""Does `xlmc methods --quick` give one advice a workbook, whatever the seed?
+
+`python benchmarks/method_advice.py` measures every shipped workbook with 20 seeds, and writes
+`results/method-advice.json` as it goes: stopped, it goes on where it was. `--table` only fills in the table of
+docs/methods.md. The seconds in it depend on the machine; the advice must not.
+
+The bar: for every workbook one recommended method, and one method at least that is among the cheapest with every seed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from tables import placed
+
+import xlmc
+from xlmc.methods import quick_settings, study
+from xlmc.methods.choice import choice
+
+__all__ = ["BOOKS", "PAGE", "RESULTS", "SEEDS", "advice", "faults", "table"]
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+PAGE = ROOT / "docs" / "methods.md"
+RESULTS = HERE / "results" / "method-advice.json"
+SEEDS = 20
+BOOKS = tuple(
+    sorted(str(path.relative_to(ROOT)) for part in ("examples", "templates") for path in (ROOT / part).glob("*.xlsx"))
+)
+
+NOTHING = "nothing is drawn"
+"""A workbook that draws nothing has nothing to advise on: the command refuses it."""
+
+Record = dict[str, Any]
+
+
+def advice(book: str, seed: int) -> Record:
+    """What the quick test says of one workbook with one seed."""
+    model = xlmc.load(ROOT / book)
+    if not model.live:
+        return {
+            "recommended": NOTHING,
+            "trials": 0,
+            "cheapest": [NOTHING],
+            "seconds": {},
+            "never": [],
+            "cannot tell": [],
+        }
+    found = study(model, seed=seed, **quick_settings({}))
+    best = choice(found)
+    needs = {curve.method.key: each for curve, each in best.needs.items()}
+    return {
+        "recommended": best.chosen and best.chosen.method.key,
+        "trials": best.chosen and round(best.needs[best.chosen].trials),
+        "cheapest": [curve.method.key for curve in best.cheapest],
+        "seconds": {key: float(f"{each.seconds:.3g}") for key, each in needs.items() if each.usable},
+        "never": sorted(key for key, each in needs.items() if each.reaches == "no"),
+        "cannot tell": sorted(key for key, each in needs.items() if each.reaches == "unknown"),
+    }
+
+
+def measure(books: Iterable[str], seeds: int) -> None:
+    """All books with one seed, then with the next."""
+    records = _known()
+    books = tuple(books)
+    for seed in range(1, seeds + 1):
+        for book in books:
+            if str(seed) not in records.setdefault(book, {}):
+                records[book][str(seed)] = advice(book, seed)
+                _write(records)
+                print(f"{book}, seed {seed}: {records[book][str(seed)]['recommended']}", file=sys.stderr, flush=True)
+
+
+def _known() -> dict[str, dict[str, Record]]:
+    found: dict[str, dict[str, Record]] = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
+    return found
+
+
+def _write(records: dict[str, dict[str, Record]]) -> None:
+    """Whole or not at all, so that a run that is stopped loses nothing."""
+    half = RESULTS.with_suffix(".part")
+    half.write_text(json.dumps(records, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+    os.replace(half, RESULTS)
+
+
+def faults(records: dict[str, dict[str, Record]]) -> list[str]:
+    """Where the advice changes with the seed, or denies that a method converges which does."""
+    found = []
+    for book, seeds in records.items():
+        said = {each["recommended"] for each in seeds.values()}
+        if len(said) != 1 or None in said:
+            found.append(f"{book}: recommends {sorted(map(str, said))}")
+        if not _always_cheapest(seeds):
+            found.append(f"{book}: no method is among the cheapest with every seed")
+        denied = {key for each in seeds.values() for key in each["never"]} & {"mc", "lhs", "sobol", "grid"}
+        if denied:
+            found.append(f"{book}: says that {sorted(denied)} never come to it")
+    return found
+
+
+def _always_cheapest(seeds: dict[str, Record]) -> set[str]:
+    return set.intersection(*(set(each["cheapest"]) for each in seeds.values()))
+
+
+def table(records: dict[str, dict[str, Record]]) -> str:
+    """One row a workbook."""
+    rows = [
+        "| Workbook | Seeds | Recommended | Trials | Always among the cheapest |",
+        "| --- | ---: | --- | ---: | --- |",
+    ]
+    for book, seeds in sorted(records.items()):
+        said = Counter(each["recommended"] for each in seeds.values())
+        trials = sorted(each["trials"] for each in seeds.values())
+        always = ", ".join(sorted(_always_cheapest(seeds))) or "–"
+        names = ", ".join(f"{name} ({count})" if len(said) > 1 else str(name) for name, count in said.most_common())
+        rows.append(f"| `{book}` | {len(seeds)} | {names} | {trials[0]:,} to {trials[-1]:,} | {always} |")
+    return "\n".join(rows)
+
+
+def main(given: Sequence[str] | None = None) -> None:
+    """Measure, write the table, and say whether the bar is met."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, default=SEEDS)
+    parser.add_argument("--table", action="store_true", help="measure nothing")
+    asked = parser.parse_args(given)
+    if not asked.table:
+        measure(BOOKS, asked.seeds)
+    records = _known()
+    PAGE.write_text(placed(PAGE.read_text(encoding="utf-8"), "advice", table(records)), encoding="utf-8")
+    found = faults(records)
+    print("\n".join(found) or f"{len(records)} workbooks, one advice each")
+    raise SystemExit(1 if found else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -18,7 +18,7 @@ def case_study():
 @pytest.fixture(scope="session")
 def small(case_study):
     """Few and short runs of everything."""
-    return study(case_study, reference_trials=1 << 19, trials=1 << 13, replicates=3, seed=5)
+    return study(case_study, reference_trials=1 << 19, trials=1 << 13, replicates=2, seed=5)
 
 
 @pytest.fixture

@@ -45,6 +45,7 @@ WAYS = [
     ("=MIN(A1,A2)", {"at_most": -2}, 2),
     ("=3-MAX(A1,40*A2)", {"at_most": 0}, 2),
     ("=B2*2", {"at_least": 3}, 2),
+    ("=SUM(B2:B2)", {"at_least": 2}, 2),
     ("=OR(A1>2,100*A2>150)", {}, 2),
     ("=AND(A1>1,A2>1)", {}, 1),
     ("=NOT(AND(A1<1.5,100*A2<150))", {}, 2),
@@ -52,6 +53,24 @@ WAYS = [
     ("=IF(A1>0,A2>1.5,A1*A2>2)", {}, 2),
     ("=CHOOSE(A4,A1,IF(A2>0,A1,A2),MAX(A1,A2))+A3", {"at_least": 2}, 12),
 ]
+
+
+UNDIVIDED = [
+    "=SUM(IF(A1:A2>0,A1:A2,9))",
+    "=LET(x,A1,IF(x>0,x,9-x))",
+    "=SUM(MAP(A1:A2,LAMBDA(x,IF(x>0,x,2*x))))",
+    "=IF(,A1,A2)",
+    "=IFERROR(SQRT(A1),A2)",
+    "=MAX(A1:A2,,A2)",
+]
+
+
+@pytest.mark.parametrize("formula", UNDIVIDED)
+def test_what_has_no_single_value_is_not_divided(landscape, random, formula):
+    found = landscape(formula, at_least=1)
+    points = random.standard_normal((500, found.dimensions))
+    (way,) = found.ways
+    assert np.array_equal(way(points) == 0.0, found.accepts(points))
 
 
 @pytest.mark.parametrize(("formula", "limits", "count"), WAYS)

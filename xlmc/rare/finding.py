@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from xlmc.rare.equalising import Accepts, Equalised, equalised
 from xlmc.rare.learning import Learned, Round, Say, after, again, learn, widened_search
@@ -16,11 +17,16 @@ from xlmc.rare.tempered import Tempered, widened
 
 __all__ = ["Found", "find"]
 
+Floats = NDArray[np.float64]
+
 _AGAIN: Final = 3
 """Times that a proposal is learnt anew because a trial was much heavier than any known."""
 
 _SURVEY: Final = 65_536
 """Trials from the widened assumptions, before and after."""
+
+_BATCH: Final = 8_192
+"""Of them, at a time."""
 
 _PART: Final = 32
 """Of the limit, a survey takes this part at most."""
@@ -108,5 +114,8 @@ def find(
 
 def _survey(accepts: Accepts, spread: Tempered, trials: int, random: np.random.Generator) -> Evidence:
     """Trials from the widened assumptions."""
-    points = spread.draw(trials, random)
-    return Evidence.of(spread, trials, points[accepts(points)])
+    found = list[Floats]()
+    for start in range(0, trials, _BATCH):
+        points = spread.draw(min(_BATCH, trials - start), random)
+        found.append(points[accepts(points)])
+    return Evidence.of(spread, trials, np.concatenate(found))

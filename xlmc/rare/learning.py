@@ -161,13 +161,12 @@ def learn(
             found.append(descend(each, dimensions, random, population=population, first=first))
             say(sum(done.evaluations for done in found))
     learned = Learned(tuple(found), (), tuple(known), sum(each.evaluations for each in found))
-    if any(each.reached for each in found):
-        learned = _with_strays(distance, learned, random, most - _TRIALS)
-    elif any(len(each.points) for each in known):
+    if not any(each.reached for each in found):
+        if not any(len(each.points) for each in known):
+            return learned
         learned = _explored(distance, learned, joined_evidence(known), random)
-    else:
-        return learned
-    return _refined(distance, learned, _described(learned, random), random, say, most)
+    learned, proposal = _with_strays(distance, learned, random, most - _TRIALS)
+    return _refined(distance, learned, proposal, random, say, most)
 
 
 def again(
@@ -193,14 +192,18 @@ def _described(learned: Learned, random: np.random.Generator) -> Proposal:
     return proposed(points[order], weights[order], random)
 
 
-def _with_strays(distance: Distance, learned: Learned, random: np.random.Generator, most: float) -> Learned:
-    """With populations about those accepted trials that the others did not come to."""
+def _with_strays(
+    distance: Distance, learned: Learned, random: np.random.Generator, most: float
+) -> tuple[Learned, Proposal]:
+    """With populations about those accepted trials that the others did not come to, and a first proposal."""
+    proposal = _described(learned, random)
     for _ in range(_EXPLORED):
-        found = learned.strays(_described(learned, random), learned.known)
+        found = learned.strays(proposal, learned.known)
         if learned.evaluations + _DESCENTS * EXPLORING > most or not found.tells(learned.probability):
             break
         learned = _explored(distance, learned, found, random)
-    return learned
+        proposal = _described(learned, random)
+    return learned, proposal
 
 
 def _explored(distance: Distance, learned: Learned, found: Evidence, random: np.random.Generator) -> Learned:

@@ -25,6 +25,15 @@ MOST_WAYS: Final = 12
 _MOST_ARGUMENTS: Final = 6
 """Of a function whose alternatives are told apart."""
 
+_MOST_SWITCHES: Final = 32
+"""That are looked for: far fewer can be told apart."""
+
+_MOST_CELLS: Final = 100
+"""Of an area that is looked through."""
+
+_OF_AREAS: Final = frozenset({"SUM", "MAX", "MIN", "AVERAGE", "COUNT", "COUNTA", "AND", "OR", "SUMSQ", "PRODUCT"})
+"""Functions that make one value of an area."""
+
 Switch = tuple[Shortfall, ...]
 """Its alternatives, one of which every trial takes."""
 
@@ -59,18 +68,35 @@ def formula_switches(
         found += [(None, switch) for switch in _any_of(each)]
         waiting += [(leaf.holds.tree, leaf.holds.cell, 0) for leaf in leaves(each)]
     seen = set[Cell]()
-    while waiting:
+    while waiting and len(found) < _MOST_SWITCHES:
         tree, cell, rising = waiting.popleft()
         if isinstance(tree, Cell):
             if tree in formulas and tree not in seen:
                 seen.add(tree)
                 waiting.append((formulas[tree], tree, rising))
             continue
-        switch = _alternatives(tree, cell, formulas, rising)
+        if isinstance(tree, Area):
+            waiting += [(each, cell, rising) for each in islice(tree.cells(), _MOST_CELLS)]
+            continue
+        switch = _alternatives(tree, cell, formulas, rising) if _is_single(tree) else None
         if switch is not None:
             found.append(switch)
         waiting += [(part, cell, side) for part, side in _parts(tree, rising)]
     return found
+
+
+def _is_single(tree: ir.Expression) -> bool:
+    """Whether a formula has one value: nothing in it stands for several cells, or for what is only known within it."""
+    match tree:
+        case Cell() | ir.Number() | ir.Text() | ir.Logical():
+            return True
+        case ir.Binary(_, left, right):
+            return _is_single(left) and _is_single(right)
+        case ir.Unary(_, operand):
+            return _is_single(operand)
+        case ir.Call(name, parts):
+            return all(_is_single(part) or (name in _OF_AREAS and isinstance(part, Area)) for part in parts)
+    return False
 
 
 def _any_of(shortfall: Shortfall) -> Iterator[Switch]:

@@ -135,7 +135,11 @@ def write_counts(page: Page, simulation: Simulation) -> None:
     for line in (
         *_searched(simulation),
         [cells.text("Run" if rare is None else "Drawn plainly", "name"), cells.count(total), *[cells.BLANK] * 4],
-        [cells.text("Accepted", "name"), cells.count(simulation.accepted), *_share(simulation.acceptance)],
+        [
+            cells.text("Accepted" if rare is None or not rare.at_least else "Accepted, at least", "name"),
+            cells.count(simulation.accepted),
+            *_share(simulation.acceptance),
+        ],
         [cells.text("Lost to errors in cells", "name"), cells.count(simulation.error_trials), *_share(lost)],
     ):
         page.spread(line, starts, 6)

@@ -11,7 +11,10 @@ import pytest
 from openpyxl.utils import range_boundaries
 
 from xlmc.report.book import build_sheets
+from xlmc.report.html.flow import Flow
+from xlmc.report.influence_table import write_influences
 from xlmc.report.limits_sheet import moved_caption
+from xlmc.report.number_format import NOISE
 from xlmc.sensitivity import sensitivities
 
 
@@ -210,3 +213,22 @@ def test_changes_of_nothing_are_explained(make, limit, unmoved):
     )
     (moved,) = sensitivities(run).filter_limits
     assert ("nothing moves" in moved_caption(moved)) == unmoved
+
+
+def test_what_is_noise_reads_noise_in_the_table(make, opened):
+    run = make.simulate(
+        {"A1": 0.5, "A2": 0.5, "B1": "=A1+0*A2"},
+        [make.uniform("a", "A1", 0.0, 1.0, base=0.5), make.uniform("b", "A2", 0.0, 1.0, base=0.5)],
+        [make.forecast("x", "B1")],
+    )
+    rows = {
+        row[0].value: row
+        for row in opened(run)["Sensitivity"].iter_rows()
+        if row[0].value in ("a", "b") and row[9].value
+    }
+    noisy = {name: [row[place].number_format == NOISE for place in (2, 5, 8, 10)] for name, row in rows.items()}
+    assert noisy == {"a": [False] * 4, "b": [True] * 4}
+    assert all(isinstance(rows["b"][place].value, float) for place in (2, 5, 8, 10))
+    flow = Flow()
+    write_influences(flow, sensitivities(run)["x"], False)
+    assert str(flow.html).count(">noise<") == 4

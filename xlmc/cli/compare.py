@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,11 +10,13 @@ import click
 
 from xlmc.cli.parameter_types import OneOf, WholeNumber
 from xlmc.cli.run_options import jobs_option
-from xlmc.cli.terminal import paragraph, say, say_json
+from xlmc.cli.terminal import say, say_json
+from xlmc.cli.told_options import show, told_options
 
 if TYPE_CHECKING:
     from xlmc.analysis import Comparison, ForecastComparison
     from xlmc.analysis.causes import Step
+    from xlmc.report.told import Block, Told
 
 __all__ = ["compare"]
 
@@ -41,6 +44,7 @@ UNDECIDED = 1
 @click.option("--engine", type=OneOf("numpy", "jit", "formulas"), help="As for xlmc simulate.")
 @jobs_option
 @click.option("--no-causes", is_flag=True, help="Do not look for what makes the difference.")
+@told_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
 def compare(
@@ -54,6 +58,9 @@ def compare(
     engine: str | None,
     jobs: int,
     no_causes: bool,
+    output: Path | None,
+    html: Path | None,
+    overwrite: bool,
     as_json: bool,
     quiet: bool,
 ) -> None:
@@ -61,8 +68,11 @@ def compare(
     from xlmc import analysis
     from xlmc.cli.printing import telling, warnings
     from xlmc.model import load
+    from xlmc.report.told_files import Files
 
     books = load(first), load(second)
+    files = Files(output, html, [first, second], overwrite=overwrite)
+    files.check()
     with telling(quiet) as told:
         found = analysis.compare(
             *books,
@@ -76,10 +86,14 @@ def compare(
             causes=not no_causes,
             told=told,
         )
+    told_of = _told(found)
+    written = files.write(told_of, "Comparison")
     if as_json:
         say_json(_as_json(found))
     else:
-        _show(found)
+        show([told_of.below, *told_of.blocks])
+        for path in written:
+            say(f"Written: {path}")
     doubts = [f"{run.model.path.name}: {warning}" for run in (found.first, found.second) for warning in run.warnings]
     warnings(doubts)
     if doubts or found.of(analysis.Verdict.UNDECIDED):
@@ -103,30 +117,29 @@ def _pairs(given: tuple[str, ...]) -> dict[str, str]:
     return found
 
 
-def _show(found: Comparison) -> None:
-    from xlmc.analysis.wording import book_names, inputs_text, verdict_text
-    from xlmc.cli.printing import table
-    from xlmc.report.summary import estimate_text
+def _told(found: Comparison) -> Told:
+    from xlmc.analysis.wording import book_names, verdict_text
+    from xlmc.report.told import Table, Told
 
     books = book_names(found)
-    say(paragraph(f"{books[0]} (first) and {books[1]} (second)"))
-    say()
-    for line in verdict_text(found):
-        say(paragraph(line))
-    say()
-    for each in found.forecasts:
-        table(_title(each), ("", "First", "Second", "Difference", "Tolerance"), _rows(each), right=(1, 2, 3, 4))
-    accepted, trials = found.acceptance, found.first.trials
-    shared = (
+    headings = ("", "First", "Second", "Difference", "Tolerance")
+    tables = [Table(_title(each), headings, tuple(_rows(each)), (1, 2, 3, 4)) for each in found.forecasts]
+    blocks: list[Block] = [*verdict_text(found), *tables, *_sentences(found), _MEANING]
+    return Told("Do two models give the same answer?", f"{books[0]} (first) and {books[1]} (second)", blocks)
+
+
+def _sentences(found: Comparison) -> Iterator[str]:
+    from xlmc.analysis.wording import book_names, inputs_text
+    from xlmc.report.summary import estimate_text
+
+    books, accepted, trials = book_names(found), found.acceptance, found.first.trials
+    yield (
         f"Of {trials:,} trials both accept {accepted.both:,}; {books[0]} alone {accepted.first_only:,}, "
         f"{books[1]} alone {accepted.second_only:,}; seed {found.first.settings.seed}."
     )
-    say(paragraph(shared))
     if accepted.both and not accepted.first_only + accepted.second_only:
-        say(f"The acceptance is the same in both: {estimate_text(accepted.first)}.")
-    for line in inputs_text(found):
-        say(paragraph(line))
-    say(paragraph(_MEANING))
+        yield f"The acceptance is the same in both: {estimate_text(accepted.first)}."
+    yield from inputs_text(found)
 
 
 _MEANING = (

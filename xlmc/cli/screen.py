@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,10 +10,12 @@ import click
 
 from xlmc.cli.parameter_types import OneOf, WholeNumber
 from xlmc.cli.run_options import jobs_option
-from xlmc.cli.terminal import paragraph, say, say_json
+from xlmc.cli.terminal import say, say_json
+from xlmc.cli.told_options import show, told_options
 
 if TYPE_CHECKING:
     from xlmc.analysis import Cost, Screening
+    from xlmc.report.told import Block, Table, Told
 
 __all__ = ["screen"]
 
@@ -51,6 +53,7 @@ NOT_TO_BE_USED = 1
 @click.option("--seed", type=WholeNumber(0), help="Seed of each run.  [default: the book's, else 999]")
 @click.option("--engine", type=OneOf("numpy", "jit", "formulas"), help="As for xlmc simulate.")
 @jobs_option
+@told_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
 def screen(
@@ -63,6 +66,9 @@ def screen(
     seed: int | None,
     engine: str | None,
     jobs: int,
+    output: Path | None,
+    html: Path | None,
+    overwrite: bool,
     as_json: bool,
     quiet: bool,
 ) -> None:
@@ -70,8 +76,11 @@ def screen(
     from xlmc import analysis
     from xlmc.cli.printing import telling, warnings
     from xlmc.model import load
+    from xlmc.report.told_files import Files
 
     model = load(book)
+    files = Files(output, html, [book], overwrite=overwrite)
+    files.check()
     with telling(quiet) as told:
         found = analysis.screen(
             model,
@@ -85,65 +94,70 @@ def screen(
             jobs=jobs,
             told=told,
         )
+    told_of = _told(found)
+    written = files.write(told_of, "Screening")
     if as_json:
         say_json(_as_json(found))
     else:
-        _show(found)
+        show([f"{told_of.below.partition(':')[0]}: what it could do without", *told_of.blocks])
+        for path in written:
+            say(f"Written: {path}")
     warnings(found.run.warnings)
     if found.run.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 
 
-def _show(found: Screening) -> None:
-    say(paragraph(f"{found.run.model.workbook.name}: what it could do without"))
-    say()
-    for sentence in _verdicts(found):
-        say(paragraph(sentence))
-    say()
+def _told(found: Screening) -> Told:
+    from xlmc.report.told import Told
+
+    run = found.run
+    below = f"{run.model.workbook.name}: {found.runs} runs of {run.trials:,} trials, seed {run.settings.seed}"
+    return Told("What the book could do without", below, [*_verdicts(found), *_tables(found), *_meaning(found)])
+
+
+def _tables(found: Screening) -> Iterator[Block]:
     expected = [f"{each.size:.2g}" for each in found.expected]
     title = "Each assumption held at its base value, the least expected cost first"
-    _table(title, found.single, ("Held", _names(found.single)), ("Expected", expected))
+    yield _table(title, found.single, ("Held", _names(found.single)), ("Expected", expected))
     if found.sets:
-        _table("Held at once, as asked", found.sets, ("Held", _names(found.sets)))
+        yield _table("Held at once, as asked", found.sets, ("Held", _names(found.sets)))
     if found.filters:
         held = " with the assumptions named above held" if found.joint else ""
-        _table(f"Each filter left out{held}", found.filters, ("Left out", _names(found.filters)))
+        yield _table(f"Each filter left out{held}", found.filters, ("Left out", _names(found.filters)))
     for name in found.tolerances:
-        _of_forecast(found, name)
-    for sentence in _meaning(found):
-        say(paragraph(sentence))
+        yield _of_forecast(found, name)
 
 
-def _table(title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> None:
+def _table(title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> Table:
     """What each change costs. `first` are columns with headings."""
-    from xlmc.cli.printing import table
+    from xlmc.report.told import Table
 
-    headings = [*(heading for heading, _ in first), "Cost", "Accepted, %"]
-    rows = [
-        [
+    headings = (*(heading for heading, _ in first), "Cost", "Accepted, %")
+    rows = tuple(
+        (
             *(column[place] for _, column in first),
             f"{cost.size:.2g}",
             _percent(cost),
             cost.judgement.verdict.value,
-        ]
+        )
         for place, cost in enumerate(costs)
-    ]
-    table(title, [*headings, "Verdict"], rows, right=range(1, len(headings)))
+    )
+    return Table(title, (*headings, "Verdict"), rows, tuple(range(1, len(headings))))
 
 
-def _of_forecast(found: Screening, name: str) -> None:
+def _of_forecast(found: Screening, name: str) -> Table:
     """Of every change, the number of a forecast that it moves most, measured in its tolerance."""
     from xlmc.analysis.wording import amount
-    from xlmc.cli.printing import table
+    from xlmc.report.told import Table
 
     units = found.run[name].definition.units
     rows = []
     for cost in (*found.single, *found.sets, *found.filters):
         number, size = _most_moved(found, cost, name)
         change = dict(cost.forecasts[name].changes)[number]
-        rows.append([", ".join(cost.names), number, amount(number, change.difference, ""), f"{size:.2g}"])
+        rows.append((", ".join(cost.names), number, amount(number, change.difference, ""), f"{size:.2g}"))
     title = f"{name}{f', {units}' if units else ''}: what each moves most"
-    table(title, ["Held or left out", "Number", "Moves by", "Tolerances"], rows, right=(2, 3))
+    return Table(title, ("Held or left out", "Number", "Moves by", "Tolerances"), tuple(rows), (2, 3))
 
 
 def _most_moved(found: Screening, cost: Cost, name: str) -> tuple[str, float]:

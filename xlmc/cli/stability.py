@@ -11,8 +11,10 @@ import click
 from xlmc.cli.parameter_types import WholeNumber
 from xlmc.cli.run_options import jobs_option
 from xlmc.cli.terminal import paragraph, say, say_json
+from xlmc.cli.told_options import show, told_options
 
 if TYPE_CHECKING:
+    from xlmc.report.told import Block, Table, Told
     from xlmc.stability import CellDigits, Finding, Stability
 
 __all__ = ["stability"]
@@ -26,23 +28,39 @@ NOT_TO_BE_USED = 1
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials of the run.  [default: the book's, else 200000]")
 @click.option("--seed", type=WholeNumber(0), help="Seed of the run.  [default: the book's, else 999]")
 @jobs_option
+@told_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is being done.")
 def stability(
-    book: Path, all_cells: bool, trials: int | None, seed: int | None, jobs: int, as_json: bool, quiet: bool
+    book: Path,
+    all_cells: bool,
+    trials: int | None,
+    seed: int | None,
+    jobs: int,
+    output: Path | None,
+    html: Path | None,
+    overwrite: bool,
+    as_json: bool,
+    quiet: bool,
 ) -> None:
     """Find where BOOK loses digits, or its numbers are not what they seem, within the ranges of its assumptions."""
     from xlmc import stability as room
     from xlmc.cli.printing import telling, warnings
     from xlmc.model import load
+    from xlmc.report.told_files import Files
 
     model = load(book)
+    files = Files(output, html, [book], overwrite=overwrite)
+    files.check()
     with telling(quiet) as told:
         found = room.stability(model, trials=trials, seed=seed, jobs=jobs, told=told)
+    written = files.write(_told(found, all_cells), "Stability")
     if as_json:
         say_json(_as_json(found))
     else:
         _show(found, all_cells)
+        for path in written:
+            say(f"Written: {path}")
     warnings(found.run.warnings)
     if found.wrong or found.run.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
@@ -84,12 +102,40 @@ def _cut(formula: str, width: int = 90) -> str:
 
 
 def _show_cells(found: Stability, all_cells: bool) -> None:
-    from xlmc.cli.printing import table
+    show([_cells(found, all_cells)])
+
+
+def _told(found: Stability, all_cells: bool) -> Told:
+    from xlmc.report.told import Told
+
+    findings = [text for number, one in enumerate(found.findings, start=1) for text in _finding_texts(number, one)]
+    blocks: list[Block] = [
+        f"{_count(found.findings).capitalize()}.",
+        *findings,
+        _cells(found, all_cells),
+        *_sentences(found),
+    ]
+    below = f"{found.run.model.workbook.name}: {found.run.trials:,} trials, seed {found.run.settings.seed}"
+    return Told("Are the digits there?", below, blocks)
+
+
+def _finding_texts(number: int, finding: Finding) -> Iterator[str]:
+    name = f" {finding.name}" if finding.name else ""
+    yield f"{number}. {_LEVELS[finding.level.name]}: {finding.cell}{name}   {finding.formula}"
+    yield from (f"{text[0].upper()}{text[1:]}." for text in (finding.what, finding.effect))
+    if finding.where:
+        yield f"Where: {'; '.join(map(str, finding.where))}"
+    if finding.instead:
+        yield f"Instead: {finding.instead}"
+
+
+def _cells(found: Stability, all_cells: bool) -> Table:
+    from xlmc.report.told import Table
 
     model = found.run.model
     targets = {row.cell for row in model.forecasts} | {row.cell for row in model.filters}
-    rows = [
-        [
+    rows = tuple(
+        (
             cell.name or str(cell.cell),
             *([str(cell.cell)] if all_cells else []),
             f"{cell.amplification:.3g}",
@@ -97,11 +143,11 @@ def _show_cells(found: Stability, all_cells: bool) -> None:
             cell.through,
             f"{cell.rounding:.1g}",
             f"{cell.excess:.2g}",
-        ]
+        )
         for cell in found.cells
         if all_cells or cell.cell in targets
-    ]
-    headings = [
+    )
+    headings = (
         "Cell",
         *(["Address"] if all_cells else []),
         "Amplifies",
@@ -109,9 +155,9 @@ def _show_cells(found: Stability, all_cells: bool) -> None:
         "Through",
         "Rounding",
         "Excess",
-    ]
+    )
     first = 3 if all_cells else 2
-    table("What cells amplify and lose", headings, rows, right=(first - 1, first, first + 2, first + 3))
+    return Table("What cells amplify and lose", headings, rows, (first - 1, first, first + 2, first + 3))
 
 
 def _sentences(found: Stability) -> Iterator[str]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.report import cells, number_format
 from xlmc.report.bar_charts import bar_chart
 from xlmc.report.cells import Shown
 from xlmc.report.ranges import TableAt
+from xlmc.sensitivity.noise import Noise, noise
 
 if TYPE_CHECKING:
     from xlsxwriter.workbook import Workbook
@@ -34,39 +36,46 @@ def write_influences(page: Page, found: ForecastSensitivity, sobol: bool) -> Tab
     headers += ["Rank correlation", "±", "Contribution to variance", "±"]
     shown = found.influences[:ROWS]
     header = page.row
+    weak = noise(found)
     page.table(
-        [*headers, *(["First order", "±", "Total effect", "±"] if sobol else [])], [_row(i, sobol) for i in shown]
+        [*headers, *(["First order", "±", "Total effect", "±"] if sobol else [])],
+        [_row(one, its, sobol) for one, its in zip(shown, weak, strict=False)],
     )
     return TableAt(page.sheet.get_name(), header, header + 1, header + min(len(shown), BARS))
 
 
-def _row(found: Influence, sobol: bool) -> list[Shown]:
+def _row(found: Influence, weak: Noise, sobol: bool) -> list[Shown]:
     row = [
         cells.text(found.assumption, "name"),
         cells.text(found.units),
-        *_with_floor(found.explained, found.explained_floor),
-        *_with_floor(found.dependence, found.dependence_floor),
-        *cells.estimate(found.rank_correlation),
-        *cells.share(found.contribution),
+        *_with_floor(found.explained, found.explained_floor, weak.explained),
+        *_with_floor(found.dependence, found.dependence_floor, weak.dependence),
+        *_as_noise(cells.estimate(found.rank_correlation), weak.correlation),
+        *_as_noise(cells.share(found.contribution), weak.correlation),
     ]
-    for index in (found.first_order, found.total) if sobol else ():
-        row += [cells.BLANK, cells.BLANK] if index is None else cells.share(index)
+    for index, is_noise in ((found.first_order, weak.first_order), (found.total, weak.total)) if sobol else ():
+        row += [cells.BLANK, cells.BLANK] if index is None else _as_noise(cells.share(index), is_noise)
     return row
 
 
-def _with_floor(found: Estimate, floor: float) -> list[Shown]:
-    return [*cells.share(found), Shown(floor, number_format.share_paired(found), "error")]
+def _with_floor(found: Estimate, floor: float, is_noise: bool) -> list[Shown]:
+    shown = _as_noise(cells.share(found), is_noise)
+    return [*shown, Shown(floor, number_format.share_paired(found), "error")]
+
+
+def _as_noise(shown: list[Shown], is_noise: bool) -> list[Shown]:
+    """A value and its error; the value, where it is noise, shows as that word: the cell keeps the number."""
+    return [replace(shown[0], format=number_format.NOISE), *shown[1:]] if is_noise else shown
 
 
 def influence_charts(book: Workbook, at: TableAt, found: ForecastSensitivity, sobol: bool) -> list[Any]:
     """Variance explained, dependence or total effects, rank correlation and contribution to variance."""
-    drawn = found.influences[:BARS]
-    weak = [each.explained.value <= each.explained_floor for each in drawn]
-    unseen = [each.dependence.value <= each.dependence_floor for each in drawn]
-    plain = [False] * len(drawn)
+    of = noise(found)[:BARS]
+    weak, unseen = [each.explained for each in of], [each.dependence for each in of]
+    flat, lone = [each.correlation for each in of], [each.total for each in of]
     second = (
         bar_chart(
-            book, at, "Total effect (Sobol)", "Share of the variance, alone and with others", _TOTAL, _TOTAL + 1, plain
+            book, at, "Total effect (Sobol)", "Share of the variance, alone and with others", _TOTAL, _TOTAL + 1, lone
         )
         if sobol
         else bar_chart(book, at, "Dependence", "Cramér–von Mises index", _DEPENDENCE, _DEPENDENCE + 1, unseen)
@@ -76,8 +85,8 @@ def influence_charts(book: Workbook, at: TableAt, found: ForecastSensitivity, so
     return [
         bar_chart(book, at, "Variance explained", "Share of the variance", _EXPLAINED, _EXPLAINED + 1, weak),
         second,
-        bar_chart(book, at, "Rank correlation", rank, _RANK, _RANK + 1, plain, "0.0"),
-        bar_chart(book, at, "Contribution to variance (approximate)", share, _CONTRIBUTION, _CONTRIBUTION + 1, plain),
+        bar_chart(book, at, "Rank correlation", rank, _RANK, _RANK + 1, flat, "0.0"),
+        bar_chart(book, at, "Contribution to variance (approximate)", share, _CONTRIBUTION, _CONTRIBUTION + 1, flat),
     ]
 
 
@@ -86,7 +95,7 @@ def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
     explained = (
         "Variance explained: how much of the forecast's variance would go, on average, if the assumption's true value "
         "were known. From the accepted trials as they are, so it holds with filters and correlations; shares need not "
-        "add up to 100 %. Pale: no more than noise."
+        "add up to 100 %. Pale, and the word noise in the table: no more than trials alone would show."
     )
     dependence = (
         "Dependence: 0 only if no part of the forecast's distribution depends on the assumption, 100 % if nothing else "

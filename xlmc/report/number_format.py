@@ -10,9 +10,12 @@ import math
 
 from xlmc.statistics import Estimate
 
-__all__ = ["COUNT", "exact", "paired", "share_paired"]
+__all__ = ["COUNT", "NOISE", "exact", "paired", "share_paired"]
 
 COUNT = "#,##0"
+
+NOISE = '"noise";"noise";"noise"'
+"""Of a number that is no more than noise: the word stands for it."""
 
 _DIGITS = 6
 """Significant digits where no error limits them."""

@@ -14,6 +14,7 @@ from xlmc.report.influence_table import BARS, influence_captions, write_influenc
 from xlmc.report.limits_sheet import limit_sentences, moved_caption, write_acceptance, write_answers
 from xlmc.report.moves_table import move_captions, write_moves
 from xlmc.report.sensitivity_sheet import sensitivity_sentences
+from xlmc.sensitivity.noise import noise
 
 if TYPE_CHECKING:
     from xlmc.sensitivity import FilterLimit, ForecastSensitivity, Sensitivities
@@ -44,13 +45,13 @@ def _forecast(found: ForecastSensitivity, whole: Sensitivities) -> Html:
 
 def _charts(found: ForecastSensitivity, whole: Sensitivities) -> Iterator[Html]:
     if found.influences:
-        drawn = found.influences[:BARS]
+        drawn, weak = found.influences[:BARS], noise(found)[:BARS]
         explained, _, _, contribution = influence_captions(found, whole.sobol_trials)
-        shares = [
-            _share(each.assumption, each.explained, each.explained.value <= each.explained_floor) for each in drawn
-        ]
+        shares = [_share(each.assumption, each.explained, one.explained) for each, one in zip(drawn, weak, strict=True)]
         yield _figure(bars(shares, "Variance explained", "Share of the variance, %"), explained)
-        scaled = [_share(each.assumption, each.contribution, pale=False) for each in drawn]
+        scaled = [
+            _share(each.assumption, each.contribution, one.correlation) for each, one in zip(drawn, weak, strict=True)
+        ]
         title = "Contribution to variance (approximate)"
         yield _figure(bars(scaled, title, "Squared rank correlation, % of all, signed"), contribution)
     if found.bars and found.base is not None:

@@ -8,6 +8,7 @@ import re
 from xlmc.record.wording import number_text
 from xlmc.report.cells import NONE, Shown
 from xlmc.report.html.element import Html, element
+from xlmc.report.number_format import NOISE
 from xlmc.report.summary import estimate_text, share_text
 from xlmc.statistics import Estimate
 
@@ -62,6 +63,8 @@ def _general(value: float) -> str:
 
 
 def _formatted(value: float, number_format: str) -> str:
+    if number_format == NOISE:
+        return "noise"
     found = _FORMAT.fullmatch(number_format)
     if found is None:
         raise ValueError(f"no number format of a result sheet: {number_format!r}")

@@ -1,0 +1,67 @@
+"""What screen, compare and stability find, as a sheet and as a page."""
+
+from __future__ import annotations
+
+import openpyxl
+import pytest
+from openpyxl.worksheet.table import Table
+
+
+@pytest.fixture
+def book(tmp_path):
+    """`a` and `<b>`, uniform on (0, 1); the forecast is their sum, and its threshold 1.5."""
+    made = openpyxl.Workbook()
+    sheet = made.active
+    sheet.title = "Inputs"
+    for row in (["Name", "Value", "Low", "High"], ["a", 0.5, 0, 1], ["<b>", 0.5, 0, 1]):
+        sheet.append(row)
+    sheet["F1"] = "=B2+B3"
+    sheet.add_table(Table(displayName="xlmc_assumptions", ref="A1:D3"))
+    answers = made.create_sheet("Answers")
+    answers.append(["Name", "Cell", "Units", "Threshold"])
+    answers.append(["Speed", "=Inputs!F1", "mph", 1.5])
+    answers.add_table(Table(displayName="xlmc_forecasts", ref="A1:D2"))
+    path = tmp_path / "book.xlsx"
+    made.save(path)
+    return path
+
+
+@pytest.fixture(params=["screen", "compare", "stability"])
+def command(request, book):
+    return [request.param, *[book] * (2 if request.param == "compare" else 1), "-n", "2000", "--quiet"]
+
+
+SAYS = {"screen": "P(> 1.5)", "compare": "P(> 1.5), %", "stability": "What cells amplify and lose"}
+
+
+def test_sheet_and_page_say_what_the_terminal_says(xlmc, command, tmp_path):
+    sheet, page = tmp_path / "found.xlsx", tmp_path / "found.html"
+    outcome = xlmc(*command, "-o", sheet, "--html", page)
+    assert outcome.code == 0, outcome.err
+    assert outcome.out.count("Written: ") == 2
+    texts = [str(cell) for row in openpyxl.load_workbook(sheet).active.iter_rows(values_only=True) for cell in row]
+    text = page.read_text(encoding="utf-8")
+    assert SAYS[command[0]] in " ".join(texts)
+    assert SAYS[command[0]].replace(">", "&gt;") in text
+    assert "<b>" not in text
+    again = xlmc(*command, "-o", sheet, "--html", page)  # untouched files of ours are replaced
+    assert again.code == 0, again.err
+
+
+def test_what_cannot_be_written_is_refused_before_anything_is_run(xlmc, command, book, tmp_path):
+    before = book.read_bytes()
+    for given, said in (
+        (["-o", book], "this is the workbook itself"),
+        (["-o", tmp_path / "found.html"], "must end in .xlsx"),
+        (["--html", tmp_path / "found.xlsx"], "must end in .html"),
+        (["--html", tmp_path / "nowhere" / "found.html"], "nowhere"),
+    ):
+        outcome = xlmc(*command, *given)
+        assert outcome.code == 2
+        assert said in outcome.err
+    theirs = tmp_path / "theirs.html"
+    theirs.write_text("mine")
+    assert xlmc(*command, "--html", theirs).code == 2
+    assert theirs.read_text() == "mine"
+    assert xlmc(*command, "--html", theirs, "--overwrite").code == 0
+    assert book.read_bytes() == before

@@ -129,6 +129,22 @@ ACCOUNT = RareAccount(
 )
 
 
+@pytest.mark.parametrize(
+    ("searched", "explored", "ways", "warns"),
+    [
+        (2.1e-6, 0.0, 1, True),
+        (0.45e-6, 0.0, 1, True),
+        (0.45e-6, 0.8e-6, 1, False),  # known accepted trials led to the rest
+        (2.1e-6, 0.8e-6, 1, True),
+        (2.1e-6, 0.0, 4, False),  # each population is smaller
+        (4.1e-6, 0.0, 4, True),
+    ],
+)
+def test_splitting_and_drawing_may_differ_by_as_much_as_splitting_is_known(searched, explored, ways, warns):
+    found = replace(ACCOUNT, searched=searched, explored=explored, ways=ways)
+    assert bool(found.warnings) is warns
+
+
 def test_what_agrees_is_no_warning():
     assert ACCOUNT.warnings == []
     assert probability_text(ACCOUNT).startswith("(1.000")

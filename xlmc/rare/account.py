@@ -38,7 +38,7 @@ class RareAccount:
         acceptance: the probability that a plain trial is accepted.
         effective: (Σw)²/Σw² of the accepted ones among those, w being their weights.
         size: the effective sample size of the kept ones: a few stand more than once.
-        searched: the same probability as the populations had it that found the region.
+        searched: the same probability as the populations had it that found the region by splitting.
         levels: distances from acceptance that these went through.
         components, directions: of the mixture of normal distributions that was learned.
         dimensions: assumptions that are drawn.
@@ -50,6 +50,7 @@ class RareAccount:
         missed: the probability of accepted trials that were met so, or among the plain ones, and that the proposals
             hardly ever come to.
         ways: parts of all trials, by branches and discrete assumptions, that were searched apart.
+        explored: the probability of parts that splitting did not find, and that other accepted trials led to.
     """
 
     evaluations: int
@@ -73,6 +74,7 @@ class RareAccount:
     checked: int = 0
     missed: float = 0.0
     ways: int = 1
+    explored: float = 0.0
 
     @property
     def at_least(self) -> bool:
@@ -125,10 +127,17 @@ class RareAccount:
         )
 
     @property
+    def _disagree(self) -> bool:
+        """Whether splitting has much more than was drawn, or, where it is all that led there, much less."""
+        factor = math.exp(MOST_APART * math.sqrt(self.ways))
+        fewer = not self.explored and self.searched * factor < self.acceptance.value
+        return fewer or self.searched > factor * self.acceptance.value
+
+    @property
     def warnings(self) -> list[str]:
         """Why the answer must not be used as it stands."""
         found = []
-        if abs(math.log(self.searched / self.acceptance.value)) > MOST_APART * math.sqrt(self.ways):
+        if self._disagree:
             found.append(
                 f"the search for rare trials has a probability of acceptance of {self.searched:.2g}, and the trials "
                 f"that it led to have {self.acceptance.value:.2g}: part of the accepted region may be missing"

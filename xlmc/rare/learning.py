@@ -124,8 +124,21 @@ class Learned:
     @property
     def probability(self) -> float:
         """Of acceptance, as the populations have it; they know it to some tenths."""
-        reached = [math.exp(each.log_probability) for each in self.descents if each.reached]
-        return sum(reached) / _DESCENTS
+        return self.searched + self.explored
+
+    @property
+    def searched(self) -> float:
+        """The part of it that splitting came to."""
+        return self._sum(explored=False)
+
+    @property
+    def explored(self) -> float:
+        """The part of it that known accepted trials led to; a few of these may be all that it is known by."""
+        return self._sum(explored=True)
+
+    def _sum(self, *, explored: bool) -> float:
+        taken = (each for each in self.descents if each.reached and each.explored is explored)
+        return sum(math.exp(each.log_probability) for each in taken) / _DESCENTS
 
     def strays(self, proposal: Proposal, known: Sequence[Evidence]) -> Evidence:
         """Accepted trials among those of other origin that a proposal hardly ever comes to; see `strays`."""

@@ -70,6 +70,7 @@ class Descent:
         levels: distances that were gone through.
         evaluations: points whose distance was asked for.
         nearest: (d,) the point that came nearest.
+        explored: whether it began at accepted points that were known, and how likely these are with it.
     """
 
     points: Floats
@@ -78,6 +79,7 @@ class Descent:
     levels: tuple[float, ...]
     evaluations: int
     nearest: Floats
+    explored: bool = False
 
 
 def descend(
@@ -129,7 +131,7 @@ def explore(
     for turn in range(_SNAPSHOTS + 1):
         moved = _moved(points, found, 0.0, distance, steps, _SWEEPS, random, alone=not turn)
         points, asked, taken = moved[0], asked + moved[2], [*taken, moved[0]]
-    return Descent(np.concatenate(taken[1:]), True, log_mass, (0.0,), asked, points[0])
+    return Descent(np.concatenate(taken[1:]), True, log_mass, (0.0,), asked, points[0], explored=True)
 
 
 def _next_level(found: Floats, wanted: int, before: float) -> float | None:

@@ -199,6 +199,8 @@ def _rare(found: RareAccount) -> Section:
         Entry("acceptance_high", "to", plain(high)),
         Entry("acceptance_effective", "Effective sample size that it comes from", plain(found.effective)),
         Entry("searched", "The same probability by splitting, for comparison", plain(found.searched)),
+        Entry("ways", "Ways that were searched apart", found.ways),
+        Entry("explored", "Probability of parts that other accepted trials led to", plain(found.explored)),
         Entry("at_least", "Known from below only", found.at_least),
         Entry("plain_accepted", "Plain trials before the search that were accepted", found.plain_accepted),
         Entry("checked", "Trials from widened assumptions after the search", found.checked),

@@ -74,11 +74,12 @@ def missed(study: Study, curve: Curve, found: Shortfall) -> str:
         return (
             f"{text}. {seen[0].upper()}{seen[1:]}; and {why}. Without the filters there is no answer to part them by."
         )
-    filters, formulas = (_part(each, parts, units) for each in (parts.filters, parts.formulas))
-    return f"{text}. Measured apart: {filters} because {seen}; {formulas} because {why}."
+    filters = _part(parts.filters, parts, units, f"because {seen}", "for the filters, which it does not see")
+    formulas = _part(parts.formulas, parts, units, f"because {why}", "for what it leaves out of the formulas")
+    return f"{text}. Measured apart: {filters}; {formulas}."
 
 
-def _part(value: float, parts: Parts, units: str) -> str:
+def _part(value: float, parts: Parts, units: str, because: str, otherwise: str) -> str:
     if abs(value) <= _BEYOND * parts.error:
-        return f"nothing that can be told from chance (±{rounded(_BEYOND * parts.error)}{units})"
-    return f"{'+' if value > 0.0 else '−'}{rounded(abs(value))}{units}"
+        return f"no more than chance (±{rounded(_BEYOND * parts.error)}{units}) {otherwise}"
+    return f"{'+' if value > 0.0 else '−'}{rounded(abs(value))}{units} {because}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,8 +54,10 @@ class Problem:
         return np.array([self.mean, self.deviation, *ranks, 1.0 - self.cdf(self.above)])
 
     def _quantile(self, p: float) -> float:
-        """The least x with P(forecast ≤ x) ≥ p."""
+        """The least x with P(forecast ≤ x) ≥ p, within the support."""
         low, high = self.support
+        if self.cdf(low) >= p or self.cdf(high) < p:
+            return low if self.cdf(low) >= p else high
         found = optimize.bisect(lambda x: -1.0 if self.cdf(x) < p else 1.0, low, high, xtol=1e-12)
         return float(np.round(found)) if abs(found - np.round(found)) < 1e-9 else float(found)
 
@@ -77,14 +79,29 @@ def _gumbel_and_uniform() -> Problem:
     )
 
 
-def _bimodal() -> Problem:
-    return Problem(
-        lambda u: ndtri(u[0]) + np.where(u[1] < 0.4, 0.0, 5.0),
-        lambda x: float(0.4 * ndtr(x) + 0.6 * ndtr(x - 5.0)),
-        3.0,
-        float(np.sqrt(1.0 + 25.0 * 0.24)),
-        4.7,
-    )
+def _two_normals(x: Floats) -> Floats:
+    return np.asarray(0.4 * ndtr(x) + 0.6 * ndtr(x - 5.0))
+
+
+def _bimodal(forecast: Callable[[Floats], Floats]) -> Problem:
+    """Two normals 5 standard deviations apart."""
+    return Problem(forecast, lambda x: float(_two_normals(np.array(x))), 3.0, float(np.sqrt(1.0 + 25.0 * 0.24)), 4.7)
+
+
+@cache
+def _table() -> tuple[Floats, Floats]:
+    """Values of the two normals, and where they stand."""
+    x = np.linspace(-9.0, 14.0, 200_001)
+    return x, _two_normals(x)
+
+
+def _of_one_input(u: Floats) -> Floats:
+    x, below = _table()
+    return np.asarray(np.interp(u[0], below, x))
+
+
+def _switched(u: Floats) -> Floats:
+    return np.asarray(ndtri(u[0]) + np.where(u[1] < 0.4, 0.0, 5.0))
 
 
 def _kink() -> Problem:
@@ -129,16 +146,22 @@ def _filtered() -> Problem:
     )
 
 
+def _yes_or_no(x: float) -> float:
+    return 0.0 if x < 0.0 else 0.693 if x < 1.0 else 1.0
+
+
 PROBLEMS: dict[str, Problem] = {
     "normal": Problem(lambda u: ndtri(u[0]), lambda x: float(ndtr(x)), 0.0, 1.0, 0.4),
     "uniform": Problem(lambda u: u[0], lambda x: float(np.clip(x, 0.0, 1.0)), 0.5, 12.0**-0.5, 0.64),
-    "bimodal": _bimodal(),
+    "bimodal": _bimodal(_of_one_input),
     "kink": _kink(),
     "lognormal, σ .5": _lognormal(0.5),
     "lognormal, σ 1": _lognormal(1.0),
     "lognormal, σ 1.5": _lognormal(1.5),
     "exponential": Problem(lambda u: -np.log1p(-u[0]), lambda x: float(-special.expm1(-max(x, 0.0))), 1.0, 1.0, 1.1),
     "Gumbel + uniform": _gumbel_and_uniform(),
+    "switch": _bimodal(_switched),
     "discrete": _discrete(),
+    "yes or no": Problem(lambda u: (u[0] < 0.307).astype(np.float64), _yes_or_no, 0.307, (0.307 * 0.693) ** 0.5, 0.5),
     "filtered": _filtered(),
 }

@@ -47,6 +47,38 @@ def test_the_committed_table_meets_the_bar(coverage):
     assert page_table(coverage.PAGE, "coverage") == coverage.table(found)
 
 
+@pytest.fixture(scope="module")
+def tails():
+    return script("tail_coverage")
+
+
+def test_the_committed_table_of_tails_meets_its_bar(tails):
+    found = [tails.Cell(*each) for each in json.loads(tails.RESULTS.read_text(encoding="utf-8"))["cells"]]
+    assert {(cell.problem, cell.method) for cell in found} == {(p, m) for p in tails.PROBLEMS for m in tails.SAMPLING}
+    assert len(found) == len(tails.PROBLEMS) * len(tails.SAMPLING) * len(tails.TRIALS)
+    assert tails.faults(found) == []
+    assert page_table(tails.PAGE, "tail-coverage") == tails.tables(found)
+
+
+def test_the_bar_of_tails_can_be_missed(tails):
+    ordinary = tails.Cell("kink", "mc", 10_000, 4_000, [3_600] * 6, [0, 300, 0, 0, 0, 0], [1.0] * 5 + [1.5])
+    missed = tails.faults([ordinary])
+    assert missed[0] == "kink, mc, 10,000 trials, mean: held in 90.0%, told in 0.0%"
+    assert missed[2] == "kink, mc, 10,000 trials, SD: told in 7.5%"
+    assert missed[-1] == "kink, mc, 10,000 trials, share: 1.50 times as long as need be"
+    told = tails.Cell("lognormal, σ 1.5", "mc", 1_000, 4_000, [3_600] * 6, [3_900] * 6, [3.0] * 6)
+    assert tails.faults([told]) == []
+
+
+@pytest.mark.parametrize("method", ["mc", "lhs", "sobol"])
+def test_many_runs_at_once_have_the_numbers_of_each_alone(tails, method):
+    """`measure` compares the first run with xlmc's own functions, and ends with an error where they differ."""
+    found = tails.measure(method, 1_000, range(40, 43))
+    assert found.shape == (len(tails.PROBLEMS), 3, 6, 4)
+    for cell in tails.cells(method, 1_000, found):
+        assert cell.runs == 3
+
+
 def test_the_bar_can_be_missed(coverage):
     cell = coverage.Cell("speed", "mc", (3_700, 3_800, 3_760, 3_941, 3_939), 1, None, 0, 1)
     assert coverage.faults([cell], 4_000) == ["speed, mc, mean: 92.50%", "speed, mc, 24.5 %: 98.52%"]

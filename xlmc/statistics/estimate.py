@@ -33,7 +33,7 @@ class Estimate:
     n: int = 0
 
 
-LENGTHENED = 0.25
+LENGTHENED = 0.15
 """A sample shows too little of its skewness: intervals are longer by so much of it."""
 
 

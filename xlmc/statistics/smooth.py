@@ -23,6 +23,7 @@ from xlmc.statistics.pulls import (
     beyond_reach,
     few_decide,
     replicate_skewness,
+    step_error,
     trial_error,
     trial_skewness,
     wider,
@@ -194,6 +195,9 @@ def _estimate(
     if sample.group is None:
         return made(value, size * error, sample.dof, confidence, sample.n, of_trials)
     found = made(value, size * error, sample.dof, confidence, sample.n, replicate_skewness(m, pull))
+    if sample.n > sample.groups:  # there is more than one trial in a replicate
+        step = step_error(sample.x, m, pull, sample.groups, n, confidence)
+        found = wider(found, made(value, size * step, sample.dof, confidence, sample.n))
     if not few_decide(of_trials, n):
         return found
     return wider(found, made(value, size * trial_error(m, pull, n), n - 1.0, confidence, sample.n, of_trials))

@@ -1,0 +1,57 @@
+"""How rare_regions.py judges runs, and that its books ask what their exact answers are of."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from xlmc.rare.landscape import Landscape
+from xlmc.rare.tempered import widened
+
+
+@pytest.fixture(scope="module")
+def bench():
+    import rare_regions
+
+    return rare_regions
+
+
+@pytest.fixture
+def random():
+    return np.random.default_rng(17)
+
+
+def test_a_run_is_wrong_in_silence_where_it_misses_by_three_half_widths(bench):
+    near, far = bench.Run(1.0, 0.9, 1.1, False, 100), bench.Run(0.5, 0.49, 0.51, False, 300)
+    warned = far._replace(warned=True)
+    found = bench.judged([near, far, warned], 1.0)
+    assert found == bench.Judged(runs=3, warned=1, held=1, wrong=1, width=pytest.approx(0.02), work=300.0)
+    assert found.silent == 2
+
+
+def test_the_bar_names_what_misses_it(bench):
+    good = bench.Judged(200, 0, 190, 0, 0.01, 1e6)
+    before = {"sum": good}
+    assert list(bench.faults(dict.fromkeys(bench.BOOKS, good), before)) == []
+    bad = {
+        "switch": good._replace(wrong=1),
+        "sum": good._replace(warned=7, width=0.016, work=2.1e6),
+    }
+    faults = list(bench.faults({**dict.fromkeys(bench.BOOKS, good), **bad}, before))
+    assert len(faults) == 4
+    assert "switch" in faults[0]
+
+
+@pytest.mark.parametrize(
+    "name", ["speeds or weights", "larger of two", "1:10 uneven", "curved", "switch", "branch", "corner"]
+)
+def test_the_exact_answers_are_those_of_the_books(bench, random, name):
+    """Against draws from widened assumptions, weighted: 4.5 standard errors, which are below a third."""
+    book = bench.BOOKS[name]
+    landscape = Landscape(book.model, random)
+    spread = widened(landscape.dimensions)
+    points = spread.draw(400_000, random)
+    weights = np.exp(spread.log_weights(points)) * landscape.accepts(points)
+    error = weights.std() / np.sqrt(weights.size)
+    assert error < book.truth / 3
+    assert abs(weights.mean() - book.truth) < 4.5 * error

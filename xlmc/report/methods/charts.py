@@ -43,6 +43,7 @@ _SCALE: Final = 62
 _WIDE: Final = 17
 """The last column that the main chart covers."""
 
+_SIGNS: Final = "bars: 95 % intervals of the errors; dotted: not run, but carried on by the law that the runs follow"
 _GREY: Final = "#6B7785"
 _ASKED: Final = "#B00020"
 _APART: Final = 0.052
@@ -122,7 +123,7 @@ def _main(made: Workbook, data: _Data, picture: Picture) -> ChartScatter:
         _add(chart, data, each.brief, way, style.colour, width=0.5)
         _words(chart, data, each.brief, way[-1], style.colour, style.marker, bold=each.line is None)
     axis = {"log_base": 10, "name_font": {**FONT, "bold": False}, "num_font": FONT, "num_format": "General"}
-    chart.set_x_axis({**axis, "name": picture.across, "min": start, "max": end, "crossing": start})
+    chart.set_x_axis({**axis, "name": f"{picture.across} ({_SIGNS})", "min": start, "max": end, "crossing": start})
     up = {"name": picture.upwards, "min": bottom, "max": top, "crossing": bottom, "major_gridlines": _GRIDLINES}
     chart.set_y_axis({**axis, **up})
     return _finished(chart, _MAIN)

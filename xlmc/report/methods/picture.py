@@ -25,7 +25,7 @@ Work = Literal["seconds", "evaluations"]
 
 HOW_TO_READ: Final = (
     "Each line is one method: to the right its runs take longer, and further down its answer is nearer to the truth, "
-    "so the best method at an accuracy is the one whose line meets that accuracy's red line farthest to the left.",
+    "so the best method at an accuracy is the one whose line meets that accuracy's level line farthest to the left.",
     "The texts at the line ends say what each method needs for both marked accuracies; a method that says “never” "
     "stays above them however long it runs.",
 )

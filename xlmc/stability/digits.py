@@ -198,7 +198,7 @@ def _explained(
     most = cancellation(case, cell, worst[0])
     if most is not None and most.left < _SMALL:
         return _of_near_equals(case, cell, most), _better(case, cell, most.tree, worst), ()
-    if guilty is not None:
+    if guilty is not None and not isinstance(guilty, ir.Let | ir.Lambda | ir.Invoke):
         return ("rounding", f"{case.trees.text(guilty, cell)} loses digits"), _better(case, cell, guilty, worst), ()
     return None, None, ()
 

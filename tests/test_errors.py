@@ -13,6 +13,9 @@ from xlmc.errors import DefinitionError, XlmcError
         (XlmcError("no such function", where="Sheet1!A1"), "Sheet1!A1: no such function."),
         (XlmcError("did you mean A?", hint="Rename it A"), "did you mean A? Rename it A."),
         (XlmcError("it holds '#REF!'.", hint="Type a number!"), "it holds '#REF!'. Type a number!"),
+        (XlmcError("there is no Nrmal", hint="did you mean Normal?"), "there is no Nrmal. Did you mean Normal?"),
+        (XlmcError("it is not there", hint="xlmc new lists them"), "it is not there. xlmc new lists them."),
+        (XlmcError("it is not there", hint="--all names them"), "it is not there. --all names them."),
         (DefinitionError("there is no Nrmal", hint="Did you mean Normal?"), "there is no Nrmal. Did you mean Normal?"),
     ],
 )

@@ -74,6 +74,15 @@ def sentence(text: str) -> str:
     return text if text.endswith(("?", "!", ".")) else f"{text}."
 
 
+_COMMANDS = ("xlmc", "pip")
+
+
+def _begun(text: str) -> str:
+    """The text with a capital, as a sentence begins; what is typed stays as it is typed."""
+    first = text.split(maxsplit=1)[0]
+    return text if first in _COMMANDS or not first.rstrip(",:;").isalpha() else f"{text[0].upper()}{text[1:]}"
+
+
 class XlmcError(Exception):
     """A message for the person at the keyboard: where it is, what is wrong, what to do.
 
@@ -92,7 +101,7 @@ class XlmcError(Exception):
     def __str__(self) -> str:
         place = f"{self.where}: " if self.where else ""
         said = sentence(f"{place}{self.message}")
-        return sentence(f"{said} {self.hint}") if self.hint else said
+        return sentence(f"{said} {_begun(self.hint)}") if self.hint else said
 
 
 class WorkbookError(XlmcError):

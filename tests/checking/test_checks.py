@@ -121,7 +121,7 @@ def test_an_assumption_that_only_a_check_needs_is_held_at_its_base_value(checked
 def test_a_check_of_a_blank_assumption_cell_is_refused(checked):
     cells = {**CELLS, "A3": None, "C1": "=AND(A1<2,A3<0.6)"}
     inputs = {**INPUTS, "extra": {"cell": "A3", "low": 0, "high": 1}}
-    with pytest.raises(DefinitionError, match=r"S!A3: the checks need 'extra'.*type its base value into the cell"):
+    with pytest.raises(DefinitionError, match=r"S!A3: the checks need 'extra'.*Type its base value into the cell"):
         checked(cells, {"both": "C1"}, inputs)
 
 

@@ -45,7 +45,7 @@ def test_lists_every_problem_with_its_cell(xlmc, case_study, tmp_path):
 @pytest.mark.parametrize(
     ("formula", "message"),
     [
-        ("=SQRTT(Inputs!D6)", "did you mean SQRT?"),
+        ("=SQRTT(Inputs!D6)", "Did you mean SQRT?"),
         ("=SQRT(Inputs!D6", "cannot be read"),
         ("=Inptus!D6", "there is no sheet 'Inptus'"),
         ("=weihgt_1", "there is no name 'weihgt_1'"),

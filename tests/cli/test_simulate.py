@@ -178,7 +178,7 @@ def test_too_coarse_an_arithmetic_writes_nothing(xlmc, book, tmp_path, monkeypat
     monkeypatch.setattr("xlmc.rounding.MOST_DIFFERENCE", 1e-12)
     outcome = xlmc("simulate", book, "-n", 20_000, "--engine", "jit", "--arithmetic", "float32")
     assert outcome.code == 1
-    assert "use --arithmetic float64" in outcome.err
+    assert "Use --arithmetic float64" in outcome.err
     assert not (tmp_path / "case-results.xlsx").exists()
 
 

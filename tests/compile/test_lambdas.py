@@ -384,6 +384,6 @@ def test_too_many_calls_are_refused_before_the_first(drawn, formula, monkeypatch
     made = []
     monkeypatch.setattr("xlmc.functions.budget.MOST_CALLS", 1_000)
     monkeypatch.setattr("xlmc.functions.budget.CallCount.add", lambda _: made.append(1))
-    with pytest.raises(XlmcError, match=r"S!H9: .*more than 1,000 times\. make its arrays smaller"):
+    with pytest.raises(XlmcError, match=r"S!H9: .*more than 1,000 times\. Make its arrays smaller"):
         drawn(f"=SUM({formula})+A1", {"A1": [1.5, 2.5]})
     assert not made

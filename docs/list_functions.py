@@ -105,8 +105,9 @@ DIFFERENCES = """## What differs from Excel on purpose
   drawn anew in each trial. `CELL("filename")` has no folder.
 - Formulas that read other workbooks get the values that Excel stored in this one, with a notice. Where Excel computes
   with precision as displayed, xlmc computes with full precision, with a notice.
-- `OFFSET`, `INDIRECT` and `INDEX(…):INDEX(…)` that lead elsewhere in each trial are refused, and so are formulas that
-  need iteration.
+- `OFFSET`, `INDIRECT` and `INDEX(…):INDEX(…)` that lead elsewhere in each trial are refused (`TAKE` and `DROP` do the
+  same with numbers that vary), and so are `MAKEARRAY` of a size that varies (`SEQUENCE` takes one), a `LAMBDA` that
+  calls itself with ranges or arrays that change, where it is more than 60 calls deep, and formulas that need iteration.
 - Sums from the last row up are rounded in another order where 64 or more of them end at one cell (below).
 - `AND("",…)`, `XLOOKUP` of the nearest across numbers and texts, and which of several equal keys a binary search gives,
   are not documented by Microsoft: Excel may do otherwise. So are `ACCRINT` with FALSE for its method after the first

@@ -236,6 +236,7 @@ def test_a_cell_that_shows_calc_is_read_as_such(workbook):
         ("Nowhere!Twice(2)", "there is no sheet 'Nowhere'"),
         ("Other!Nothing(2)", "there is no name 'Nothing'"),
         ("SUM(MAKEARRAY(A1,1,LAMBDA(r,c,r)))", "the size of an array must be a fixed number"),
+        ("SUM(B1:INDEX(B1:B3,A1))", "an end of a range must lie at one place"),
     ],
 )
 def test_what_is_refused_with_its_cell(book, formula, message):

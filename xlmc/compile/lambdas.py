@@ -265,7 +265,8 @@ def _known_size(lowering: Lowering, tree: ir.Expression, scope: Scope) -> float 
     """A number of rows or columns; below 1 it is `#VALUE!`."""
     known: Value | None = lowering.known_single(lowering.call("TRUNC", (lowering.lower(tree, scope),)))
     if known is None:
-        raise FormulaError("the size of an array must be a fixed number from 1 up")
+        hint = "SEQUENCE and TAKE take a size that varies"
+        raise FormulaError("the size of an array must be a fixed number from 1 up", hint=hint)
     if not known.plain:
         return ErrorCode(int(known.errors[0]))
     return float(known.numbers[0]) if known.numbers[0] >= 1 else ErrorCode.VALUE

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of
@@ -72,7 +73,10 @@ def _union(lowering: Lowering, tree: ir.Binary, scope: Scope) -> list[Area] | No
 def _combined(
     lowering: Lowering, operator: str, left: ir.Expression, right: ir.Expression, scope: Scope
 ) -> list[Area] | None:
-    found = areas_of(lowering, left, scope), areas_of(lowering, right, scope)
+    found = _end(lowering, left, scope), _end(lowering, right, scope)
+    if operator == ":" and any(_may_vary(part, areas) for part, areas in zip((left, right), found, strict=True)):
+        hint = "TAKE and DROP give as much of a range as a value that varies says"
+        raise FormulaError("an end of a range must lie at one place, which no value that varies changes", hint=hint)
     a, b = ([area.whole for area in areas] if areas else [] for areas in found)
     if len(a) != 1 or len(b) != 1 or a[0].sheet != b[0].sheet:
         raise FormulaError(f"the two sides of {operator!r} are not areas of one sheet")
@@ -81,6 +85,20 @@ def _combined(
     if operator == " ":
         return [cut(lowering, _shared(Area(a[0].sheet, max(tops), max(lefts), min(bottoms), min(rights))))]
     return [cut(lowering, Area(a[0].sheet, min(tops), min(lefts), max(bottoms), max(rights)))]
+
+
+def _end(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
+    """The areas that one side refers to; INDEX of single numbers refers to a cell in array formulas, too."""
+    if scope.array and isinstance(tree, ir.Call) and tree.name == "INDEX":
+        numbers = [number for number in tree.arguments[1:] if not isinstance(number, ir.Missing)]
+        if all(lowering.dag.sizes[lowering.lower(number, scope.inside())] is None for number in numbers):
+            scope = replace(scope, of_array=False, around=False)
+    return areas_of(lowering, tree, scope)
+
+
+def _may_vary(end: ir.Expression, areas: list[Area] | None) -> bool:
+    """Whether an end of a range is picked by a function, and does not lie at one place that is known."""
+    return areas is None and isinstance(end, ir.Call) and end.name in REFERENCES
 
 
 def _shared(area: Area) -> Area:

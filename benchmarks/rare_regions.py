@@ -173,7 +173,8 @@ def main() -> None:
     if given.table:
         PAGE.write_text(placed(PAGE.read_text(encoding="utf-8"), "rare-regions", text), encoding="utf-8")
     missed = list(faults(*versions))
-    print("\n".join(missed) or "the bar is met")
+    fewest = min((each.runs for each in versions[0].values()), default=0)
+    print("\n".join(missed) or f"nothing misses the bar so far, with {fewest} runs of each book or more")
     raise SystemExit(1 if missed else 0)
 
 

@@ -65,6 +65,8 @@ _REFUSED: Final = (
     *("FORECAST.ETS", "FORECAST.ETS.CONFINT", "FORECAST.ETS.SEASONALITY", "FORECAST.ETS.STAT"),
 )
 
+_ANY: Final = re.compile("=")
+
 RULES: Final = (
     *(
         Rule("0.2.0", said, met)
@@ -97,13 +99,11 @@ RULES: Final = (
             ("CONVERT keeps the digits of small absolute temperatures", _calls("CONVERT")),
             ("YEARFRAC counts 1900 as a leap year, as Excel's calendar does", _calls("YEARFRAC")),
             ("CUMIPMT and CUMPRINC truncate the type of payment", _calls("CUMIPMT", "CUMPRINC")),
-            ("numbers below 2.2250738585072014E-308 in size are 0", _TINY),
             ("FORMULATEXT shows the formula of its own cell, as Excel does", _calls("FORMULATEXT")),
             ("PERCENTOF and ASC give what Excel gives", _calls("PERCENTOF", "ASC")),
             ("functions that xlmc has no body for, such as FORECAST.ETS and REGEXTEST, are refused", _calls(*_REFUSED)),
             ("OFFSET that leads to several places at once is refused", _calls("OFFSET")),
             ("ISREF of a choice that varies between cells is refused", _calls("ISREF")),
-            ("a LAMBDA that is named like a function of Excel is not called by that name", _SMALL_LETTERS),
             ("CB.GetCertaintyFN gives percent", _calls("CB.GetCertaintyFN")),
             (
                 "RiskMean and kin of another simulation than the first are not available",
@@ -111,8 +111,13 @@ RULES: Final = (
             ),
         )
     ),
+    Rule("0.3.0", "numbers below 2.2250738585072014E-308 in size are 0", _TINY),
+    Rule("0.3.0", "a LAMBDA that is named like a function of Excel is not called by that name", _SMALL_LETTERS),
+    Rule("0.3.0", "INDEX of several errors gives the first", _calls("INDEX")),
+    Rule("0.3.0", "intervals of means and standard deviations allow for the skewness of the forecast", _ANY),
+    Rule("0.3.0", "a search for rare trials looks into every branch, and draws other trials", _ANY),
     Rule(
-        "0.2.0",
+        "0.3.0",
         "assumptions that take few values have the rank correlation asked for, ties counted, or the most they can have",
         _FEW_VALUES,
         _CORRELATED,
@@ -120,7 +125,10 @@ RULES: Final = (
 )
 """In the order of versions."""
 
-_COMMITS: Final = {"0.1.0": "46fd152e6dd49dcf68dc416c020a215c696d0a3d"}
+_COMMITS: Final = {
+    "0.1.0": "46fd152e6dd49dcf68dc416c020a215c696d0a3d",
+    "0.2.0": "bb61f93b6f64bf49b751e73e09eb58a162bfd9ba",
+}
 """The last commit of each version before this one."""
 
 

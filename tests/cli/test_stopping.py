@@ -21,14 +21,19 @@ def book(case_study, tmp_path):
 
 
 def record_of(path):
-    sheet = next(sheet for sheet in openpyxl.load_workbook(path) if sheet.title.startswith("Record"))
-    return {row[0].value: row[2].value for row in sheet.iter_rows() if row[0].value}
+    book = openpyxl.load_workbook(path, read_only=True)
+    sheet = next(sheet for sheet in book if sheet.title.startswith("Record"))
+    rows = sheet.iter_rows(max_col=3, values_only=True)
+    return {row[0]: row[2] for row in rows if len(row) > 2 and row[0]}
 
 
 def texts_of_results(path):
-    sheets = openpyxl.load_workbook(path).worksheets
-    (sheet,) = (sheet for sheet in sheets if sheet["A1"].value == "Results of the simulation")
-    return [cell.value for row in sheet.iter_rows() for cell in row if isinstance(cell.value, str)]
+    sheets = openpyxl.load_workbook(path, read_only=True).worksheets
+    titles = (next(sheet.iter_rows(max_row=1, max_col=1, values_only=True), (None,)) for sheet in sheets)
+    (sheet,) = (
+        sheet for sheet, (title, *_) in zip(sheets, titles, strict=True) if title == "Results of the simulation"
+    )
+    return [value for row in sheet.iter_rows(values_only=True) for value in row if isinstance(value, str)]
 
 
 @pytest.mark.parametrize(

@@ -60,8 +60,8 @@ def test_what_cannot_be_written_is_refused_before_anything_is_run(xlmc, command,
         assert outcome.code == 2
         assert said in outcome.err
     theirs = tmp_path / "theirs.html"
-    theirs.write_text("mine")
+    theirs.write_text("mine", encoding="utf-8")
     assert xlmc(*command, "--html", theirs).code == 2
-    assert theirs.read_text() == "mine"
+    assert theirs.read_text(encoding="utf-8") == "mine"
     assert xlmc(*command, "--html", theirs, "--overwrite").code == 0
     assert book.read_bytes() == before

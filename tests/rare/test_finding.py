@@ -17,7 +17,7 @@ from xlmc.rare.mixture import Mixture
 from xlmc.rare.proposal import Proposal
 from xlmc.rare.shear import Shear
 
-RUNS = 6
+RUNS = 3
 BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 
 
@@ -30,7 +30,7 @@ def bench():
 
 @pytest.mark.parametrize("name", ["correlated", "two tails", "corner"])
 def test_intervals_hold_the_truth(bench, name):
-    """6 runs of 6 intervals: fewer hits than 95 % coverage has once in 1,000 times, were all independent, fail."""
+    """3 runs of 6 intervals: fewer hits than 95 % coverage has once in 1,000 times, were all independent, fail."""
     problem = bench.PROBLEMS[name]
     hits, evaluations = 0, []
     for seed in range(RUNS):

@@ -25,7 +25,7 @@ NOT_TO_BE_USED = 1
     default="1%",
     show_default=True,
     help="What is asked of mean, standard deviation and both ends of the central range, in 95 of 100 runs: 1% of each"
-    " forecast's 5–95 % range, or 0.1 in the forecasts' units.",
+    " forecast's range from 5 % to 95 %, or 0.1 in the forecasts' units.",
 )
 @click.option(
     "--reference-trials",

@@ -40,7 +40,7 @@ NOT_TO_BE_USED = 1
     " many as the shortest runs, or what takes two seconds]",
 )
 @click.option("--replicates", type=WholeNumber(2), help="Runs of each length.  [default: 24]")
-@click.option("--quick", is_flag=True, help="Few and short runs: a first look, in about twenty seconds.")
+@click.option("--quick", is_flag=True, help="Few and short runs: a first look, in about half a minute.")
 @click.option("--seed", type=WholeNumber(0), help="Seed of the reference; runs follow it.  [default: the book's]")
 @click.option(
     "-o",

@@ -86,12 +86,9 @@ def _count(findings: Sequence[Finding]) -> str:
 
 
 def _show_finding(number: int, finding: Finding) -> None:
-    name = f" {finding.name}" if finding.name else ""
-    say(f"{number}. {_LEVELS[finding.level.name]}: {finding.cell}{name}   {_cut(finding.formula)}")
-    for text in (finding.what, finding.effect):
-        say(paragraph(f"{text[0].upper()}{text[1:]}.", indent="   "))
-    if finding.where:
-        say(paragraph(f"Where: {'; '.join(map(str, finding.where))}", indent="   "))
+    say(_headed(number, finding, _cut(finding.formula)))
+    for text in _said(finding):
+        say(paragraph(text, indent="   "))
     if finding.instead:
         say(f"   Instead: {finding.instead}")
     say()
@@ -120,13 +117,21 @@ def _told(found: Stability, all_cells: bool) -> Told:
 
 
 def _finding_texts(number: int, finding: Finding) -> Iterator[str]:
+    yield _headed(number, finding, finding.formula)
+    yield from _said(finding)
+    if finding.instead:
+        yield f"Instead: {finding.instead}"
+
+
+def _headed(number: int, finding: Finding, formula: str) -> str:
     name = f" {finding.name}" if finding.name else ""
-    yield f"{number}. {_LEVELS[finding.level.name]}: {finding.cell}{name}   {finding.formula}"
+    return f"{number}. {_LEVELS[finding.level.name]}: {finding.cell}{name}   {formula}"
+
+
+def _said(finding: Finding) -> Iterator[str]:
     yield from (f"{text[0].upper()}{text[1:]}." for text in (finding.what, finding.effect))
     if finding.where:
         yield f"Where: {'; '.join(map(str, finding.where))}"
-    if finding.instead:
-        yield f"Instead: {finding.instead}"
 
 
 def _cells(found: Stability, all_cells: bool) -> Table:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import io
-from datetime import datetime
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from xlmc.record import make_record
 from xlmc.report import (
@@ -22,15 +21,12 @@ from xlmc.report.curves import Curves
 from xlmc.report.dependence_sheets import write_dependence
 from xlmc.report.figure import figures_of
 from xlmc.report.page import Page
-from xlmc.report.styles import Styles
+from xlmc.report.styles import CREATED, Styles
 
 if TYPE_CHECKING:
     from xlmc.simulation import Simulation
 
 __all__ = ["build_sheets"]
-
-_CREATED: Final = datetime(2000, 1, 1)
-"""No clock: XlsxWriter would write today's date."""
 
 
 def build_sheets(simulation: Simulation, *, command: str | None = None, rows: int = trials.TRIAL_ROWS) -> bytes:
@@ -48,7 +44,7 @@ def build_sheets(simulation: Simulation, *, command: str | None = None, rows: in
 
     packed = io.BytesIO()
     with Workbook(packed, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as book:
-        book.set_properties({"created": _CREATED})
+        book.set_properties({"created": CREATED})
         styles = Styles(book)
 
         def page(name: str, widths: tuple[float, ...]) -> Page:

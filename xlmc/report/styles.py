@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from xlsxwriter.format import Format
     from xlsxwriter.workbook import Workbook
 
-__all__ = ["DARK", "GRID", "INK", "LIGHT", "Styles"]
+__all__ = ["CREATED", "DARK", "GRID", "INK", "LIGHT", "Styles"]
+
+CREATED = datetime(2000, 1, 1)
+"""Of every workbook: no clock. XlsxWriter would write today's date."""
 
 INK = "#1F3044"
 GRID = "#D5DBE3"

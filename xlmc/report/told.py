@@ -5,19 +5,15 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime
 from html import escape
 from typing import Final
 
 from xlmc.report import cells
 from xlmc.report.cells import Shown
 from xlmc.report.page import Page
-from xlmc.report.styles import Styles
+from xlmc.report.styles import CREATED, Styles
 
 __all__ = ["Block", "Table", "Told", "book", "page"]
-
-_CREATED: Final = datetime(2000, 1, 1)
-"""No clock: XlsxWriter would write today's date."""
 
 _WIDTHS: Final = (44.0, *[17.0] * 7)
 _LAST: Final = 5
@@ -111,7 +107,7 @@ def book(told: Told, sheet: str) -> bytes:
 
     packed = io.BytesIO()
     with Workbook(packed, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as made:
-        made.set_properties({"created": _CREATED})
+        made.set_properties({"created": CREATED})
         written = Page(made.add_worksheet(sheet), Styles(made), _WIDTHS)
         written.title(told.title, told.below)
         written.row += 1

@@ -134,7 +134,8 @@ def _totals(z: Slices, n: int, w: Floats | None, group: NDArray[np.intp], groups
     totals = np.zeros((4, groups))
     for powers, share, ids in _blocks(z, n, w, group):
         pulls = (powers - means[:4, None]) * share
-        totals += [np.bincount(ids, weights=row, minlength=groups) for row in pulls]  # type: ignore[arg-type]
+        assert ids is not None, "the blocks are of trials with replicates"
+        totals += [np.bincount(ids, weights=row, minlength=groups) for row in pulls]
     return totals
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from datetime import datetime
 from typing import Final
 
 import numpy as np
@@ -15,12 +14,9 @@ from xlmc.report.methods import tables
 from xlmc.report.methods.charts import DATA, write_charts
 from xlmc.report.methods.page import ENDS
 from xlmc.report.page import Page
-from xlmc.report.styles import Styles
+from xlmc.report.styles import CREATED, Styles
 
 __all__ = ["book"]
-
-_CREATED: Final = datetime(2000, 1, 1)
-"""No clock: XlsxWriter would write today's date."""
 
 _WORDS: Final = (34.0, *[19.0] * 10, 30.0)
 _RUNS: Final = (34.0, 12.0, 8.0, 13.0, 14.0, *[14.0] * 5, 13.0, 10.0, 9.0, 11.0)
@@ -46,7 +42,7 @@ def book(study: Study) -> bytes:
 
     packed = io.BytesIO()
     with Workbook(packed, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as made:
-        made.set_properties({"created": _CREATED})
+        made.set_properties({"created": CREATED})
         styles = Styles(made)
         words = Page(made.add_worksheet("Methods"), styles, _WORDS)
         charts = Page(made.add_worksheet("Charts"), styles, ())

@@ -18,6 +18,7 @@ from xlmc.methods.choice import Choice, choice
 from xlmc.methods.law import law
 from xlmc.methods.need import Need, reach_of, seconds_of, shortfall
 from xlmc.methods.number_words import seconds_text, trials_text
+from xlmc.report.methods.tables import near_text
 
 __all__ = ["HOW_TO_READ", "Label", "Line", "Mark", "Picture", "Point", "Work", "column_of", "guides_of", "picture_of"]
 
@@ -273,8 +274,7 @@ def _needs(study: Study, curve: Curve, found: Choice, finer: Choice) -> str:
 def _briefly(study: Study, curve: Curve, found: Choice, finer: Choice) -> str:
     """`0.35 s, 35 s`, or `never`."""
     if curve in study.once:
-        near = shortfall(study, curve)
-        return {"yes": "near enough", "no": "never", "unknown": "cannot tell"}[near.reaches]
+        return near_text(study, curve)
     needs = [each.needs[curve] for each in (found, finer)]
     if needs[0].reaches == "no":
         return "never"

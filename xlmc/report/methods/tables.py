@@ -24,6 +24,7 @@ __all__ = [
     "error_table",
     "floor_of",
     "forecast_table",
+    "near_text",
     "reference_table",
     "rung_table",
 ]
@@ -94,10 +95,10 @@ def _cells(study: Study, curve: Curve) -> Iterator[str]:
     yield _NONE if rung.acceptance is None else percent_text(rung.acceptance.value / study.reference.acceptance.value)
     yield _NONE if rung.effective is None else f"{rung.effective:,.0f}"
     yield slope_text(curve.slope("mean", "budget"))
-    yield _need_text(study, curve) if drawn else _near_text(study, curve)
+    yield _need_text(study, curve) if drawn else near_text(study, curve)
 
 
-def _near_text(study: Study, curve: Curve) -> str:
+def near_text(study: Study, curve: Curve) -> str:
     """Of an answer that was given once: whether it is near enough."""
     if not study.varying:
         return _NONE

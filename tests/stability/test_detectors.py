@@ -68,6 +68,11 @@ def test_a_quadrant_lost_in_some_trials(look):
     assert one.level is Level.WRONG
 
 
+def test_what_is_the_same_a_whole_turn_on_is_not_lost_though_rounding_moves_it(look):
+    """Near 0, what rounding leaves of a whole turn is a large share of the sine."""
+    assert "quadrant" not in kinds(look({"B1": "=SIN(2*ATAN(A2/A1))"}, trials=2000, x=(-1, 1), y=(-1, 1)))
+
+
 @pytest.mark.parametrize("formula", ["=ATAN(A2/A1)", "=ATAN2(A1,A2)"])
 def test_no_quadrant_is_lost(look, formula):
     assert "quadrant" not in kinds(look({"B1": formula}))

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
-import pytest
+from itertools import zip_longest
 
+import openpyxl
+import pytest
+from openpyxl.worksheet.table import Table
+
+from xlmc.model import load
 from xlmc.stability import Level, stability
 
 TINY, SMALL, DATA = (1e-9, 1e-8), (1e-6, 1e-5), (1e6, 1e6 + 2)
@@ -49,6 +54,24 @@ FORMS = [
     ("=A1*A1+POWER(A2,2)-2*COS(A3)*A1*A2", [(100, 100.001)] * 2 + [SMALL], "=(A1-A2)^2+4*A1*A2*SIN(A3/2)^2"),
     ("=1/A2-1/(A2+A1)", [TINY, (1, 2)], "=A1/(A2*(A2+A1))"),
     ("=(A2+A1)^2-A2^2", [TINY, (1, 2)], "=2*A1*A2+A1^2"),
+    ("=A2/(A2-A1)-1", [TINY, (2, 3)], "=A1/(A2-A1)"),
+    ("=A2^-1-(A2+A1)^-1", [TINY, (1, 2)], "=A1/(A2*(A2+A1))"),
+    ("=$A2-$A$2*COS(A1)", [SMALL, (1, 2)], "=2*$A2*SIN(A1/2)^2"),
+    ("=LET(x,1-COS(A1),x/A1^2)", [SMALL], "=2*SIN(A1/2)^2/A1^2"),
+    ("=LOG(1+A1)", [TINY], "=IF(1+A1=1,A1/LN(10),A1*LOG10(1+A1)/(1+A1-1))"),
+    ("=LOG(1+A1,2)", [TINY], "=IF(1+A1=1,A1,A1*LN(1+A1)/(1+A1-1))/LN(2)"),
+    ("=A2*(COSH(A1/A2)-1)", [(1, 2), (1e4, 1e5)], "=A2*(2*SINH(A1/A2/2)^2)"),
+    (
+        "=A2^2/2*(A1-SIN(A1))",
+        [(1e-4, 1e-3), (1, 2)],
+        "=A2^2/2*IF(ABS(A1)<0.5,A1^3/6*(1-A1^2/20*(1-A1^2/42*(1-A1^2/72*(1-A1^2/110*(1-A1^2/156*(1-A1^2/210"
+        "*(1-A1^2/272))))))),A1-SIN(A1))",
+    ),
+    (
+        "=SQRT(A1+A2)-SQRT(A2)",
+        [(0, 1), (0, 1e8)],
+        "=IF(-SQRT(A2)<0,A1/(SQRT(A2)+SQRT(A1+A2)),SQRT(A1+A2)-SQRT(A2))",
+    ),
 ]
 
 
@@ -85,9 +108,86 @@ def test_a_form_that_is_another_formula_is_not_proposed(looked_at):
     assert all("DEVSQ" not in (one.instead or "") for one in found.findings)
 
 
+ARCCOSINES = [
+    ("=ACOS(1-A1)", [TINY], "=2*ASIN(MIN(1,SQRT(A1/2)))"),
+    ("=ACOS(COS(A1))", [SMALL], "=2*ASIN(MIN(1,SQRT(2*SIN(A1/2)^2/2)))"),
+    (
+        "=ACOS(SIN(A1)*SIN(A2)+COS(A1)*COS(A2)*COS(A3-A4))*6371000",
+        [(0.7, 0.70001)] * 4,
+        "=2*ASIN(MIN(1,SQRT(SIN((A1-A2)/2)^2+COS(A1)*COS(A2)*SIN((A3-A4)/2)^2)))*6371000",
+    ),
+    (
+        "=ACOS(MIN(1,COS(A1)*COS(A2)+SIN(A1)*SIN(A2)*COS(A3)))",
+        [(0.7, 0.70001), (0.7, 0.70001), SMALL],
+        "=2*ASIN(MIN(1,SQRT(SIN((A1-A2)/2)^2+SIN(A1)*SIN(A2)*SIN(A3/2)^2)))",
+    ),
+]
+
+
+@pytest.mark.parametrize(("formula", "given", "better"), ARCCOSINES)
+def test_another_form_of_an_angle_between_directions(looked_at, formula, given, better):
+    """The exact difference of two longitudes in it is not to blame."""
+    (one,) = [each for each in looked_at(formula, given).findings if each.kind == "rounding"]
+    assert "is rounded to 16 digits, and near 1 and -1 ACOS is so steep that this shows" in one.what
+    assert one.instead == better
+
+
+def test_growth_of_little_a_time(looked_at):
+    (one,) = [each for each in looked_at("=(1+A1)^12-1", [TINY]).findings if each.kind == "cancellation"]
+    grown = "12*IF(1+A1=1,A1,A1*LN(1+A1)/(1+A1-1))"
+    assert one.instead == (
+        f"=IF(ABS({grown})<1,IF(EXP({grown})=1,{grown},(EXP({grown})-1)*({grown})/LN(EXP({grown}))),EXP({grown})-1)"
+    )
+
+
+def test_what_is_proposed_can_be_typed_into_the_cell(book):
+    """A name of another sheet is not known there; one of the book may be hidden by the sheet's own."""
+    cells = {"A1": 5e-6, "Z1": "=1-COS(A1)", "Data!A1": 2.0}
+    for names, better in [
+        ({"Data!x": "S!$A$1"}, "=2*SIN(A1/2)^2"),
+        ({"S!x": "S!$A$1"}, "=2*SIN(x/2)^2"),
+        ({"x": "S!$A$1"}, "=2*SIN(x/2)^2"),
+        ({"x": "S!$A$1", "S!X": "Data!$A$1"}, "=2*SIN(A1/2)^2"),
+        ({"_xlnm.Print_Area": "S!$A$1"}, "=2*SIN(A1/2)^2"),
+    ]:
+        ranges = {"angle": {"cell": "A1", "low": 1e-6, "high": 1e-5}}
+        found = stability(book(cells, ranges, {"f": "Z1"}, names=names), trials=500, seed=5)
+        assert [each.instead for each in found.findings if each.kind == "cancellation"] == [better]
+
+
+def test_a_form_is_found_for_every_cell_of_a_filled_down_column(tmp_path):
+    """And none where it would have to name the draw of RAND(), which has no address."""
+    book = openpyxl.Workbook()
+    book.active.title = "S"
+    rows = [["Name", "Value", "Low", "High"], *([f"x{row}", 5e-6, 1e-6, 1e-5] for row in (2, 3, 4))]
+    cells = [["Name", "Value"], *([f"f{row}", f"=1-COS(B{row})"] for row in (2, 3, 4)), ["r", "=1-COS(RAND()*0.00001)"]]
+    for row, (left, right) in enumerate(zip_longest(rows, cells, fillvalue=[None] * 4), start=1):
+        for column, value in enumerate([*left, None, *right], start=1):
+            book.active.cell(row, column, value)
+    book.active.add_table(Table(displayName="xlmc_assumptions", ref="A1:D4"))
+    book.active.add_table(Table(displayName="xlmc_forecasts", ref="F1:G5"))
+    book.save(tmp_path / "filled.xlsx")
+    found = stability(load(tmp_path / "filled.xlsx"), trials=500, seed=5)
+    offered = {each.name: each.instead for each in found.findings if each.kind == "cancellation"}
+    assert offered == {**{f"f{row}": f"=2*SIN(B{row}/2)^2" for row in (2, 3, 4)}, "r": None}
+
+
+def test_a_form_that_is_worse_in_other_trials_stands_only_where_it_is_better(looked_at):
+    """Above 0 it would be the other form that loses the digits; where A2 may be 0 it would have no number."""
+    (one,) = [
+        each
+        for each in looked_at("=A2*A1+A2*SQRT(A1^2+A3)", [(-1e6, 1e3), (1, 2), (1, 2)]).findings
+        if each.kind == "cancellation"
+    ]
+    old = "A2*A1+A2*SQRT(A1^2+A3)"
+    assert one.instead == f"=IF(A1<0,-(A2^2)*A3/(A1*A2-A2*SQRT(A1^2+A3)),{old})"
+    found = looked_at("=A2*A1+A2*SQRT(A1^2+A3)", [(-1e6, 1e3), (-1, 2), (1, 2)])
+    assert [each.instead for each in found.findings if each.kind == "cancellation"] == [None]
+
+
 def test_where_none_is_known_the_culprit_is_named_alone(looked_at):
-    (one,) = [each for each in looked_at("=(A1-SIN(A1))/A1^3", [(1e-5, 1e-4)]).findings if each.kind == "cancellation"]
-    assert one.what.startswith("A1-SIN(A1) is a difference of near equals")
+    (one,) = [each for each in looked_at("=(A1-TAN(A1))/A1^3", [(1e-5, 1e-4)]).findings if each.kind == "cancellation"]
+    assert one.what.startswith("A1-TAN(A1) is a difference of near equals")
     assert one.instead is None
 
 

@@ -23,7 +23,7 @@ def rounded_angles(case: Case) -> Iterator[Finding]:
     """The cells that subtract angles so, and in which little is left of them in some trials."""
     for cell in case.cells:
         left = min((_left(case, cell, part) for part in case.trees.parts(cell)), default=1.0)
-        better = angles_in_degrees(case.lowering.graph.formulas[cell]) if left < _LEFT else None
+        better = angles_in_degrees(case.trees.formula(cell)) if left < _LEFT else None
         if better is not None:
             yield Finding(
                 Level.NOTE,
@@ -34,7 +34,7 @@ def rounded_angles(case: Case) -> Iterator[Finding]:
                 "it subtracts angles after RADIANS, which rounds them; in degrees the difference is exact",
                 f"down to {left:.1g} of the angles is left: so many of their digits are lost in the difference",
                 (),
-                f"={case.trees.text(better, cell)}",
+                case.trees.offered(better, cell),
                 1 / max(left, 1e-16),
             )
 

@@ -237,7 +237,7 @@ class Case:
         count, drawn = int(among.sum()), self.n - self.special
         if count < _FEWEST or count == drawn:
             return ()
-        needed = self._inputs_of(place)
+        needed = self.inputs_of(place)
         shares = []
         for number, (assumption, key) in enumerate(zip(self.model.live, self.names, strict=True)):
             draws = self.draws[key][self.special :]
@@ -254,7 +254,7 @@ class Case:
             for _, _, assumption, here in named
         )
 
-    def _inputs_of(self, place: int) -> set[str]:
+    def inputs_of(self, place: int) -> set[str]:
         """The keys of the assumptions that a node depends on."""
         nodes = (formula_of(self.dag, part) for part in closure(self.dag, [place]))
         return {node.name for node in nodes if isinstance(node, Input)}

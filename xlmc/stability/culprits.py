@@ -80,9 +80,15 @@ def cancellation(case: Case, cell: Cell, trial: int) -> Cancellation | None:
     found = [
         Cancellation(tree, left_of(case, cell, tree, trial))
         for tree in case.trees.parts(cell)
-        if isinstance(tree, ir.Binary) and tree.operator in "+-"
+        if isinstance(tree, ir.Binary) and tree.operator in "+-" and not _is_given(case, tree)
     ]
     return min(found, key=lambda one: one.left, default=None)
+
+
+def _is_given(case: Case, tree: ir.Expression) -> bool:
+    """Whether all terms are assumptions and typed numbers, so that none of them has an error to hand on."""
+    inputs = case.lowering.inputs
+    return all(isinstance(term, ir.Number) or (isinstance(term, Cell) and term in inputs) for _, term in terms(tree))
 
 
 def left_of(case: Case, cell: Cell, tree: ir.Expression, trial: int) -> float:

@@ -184,7 +184,7 @@ def _explained(
     better = without_cosine(case, cell, small[0].factor) if small else None
     if better is not None and same(case, cell, better):
         sentence, ranges = _division(case, cell, small[0])
-        return ("division", sentence), _formula(case, cell, better), ranges
+        return ("division", sentence), case.trees.offered(better, cell), ranges
     guilty = culprit(case, cell, worst)
     if isinstance(guilty, ir.Call) and guilty.name in LOGARITHMS:
         return _of_logarithm(case, cell, guilty, worst), _better(case, cell, guilty, worst), ()
@@ -192,6 +192,8 @@ def _explained(
         lost = Cancellation(guilty, min(left_of(case, cell, guilty, trial) for trial in worst))
         if lost.left < _SMALL:
             return _of_near_equals(case, cell, lost), _better(case, cell, guilty, worst), ()
+    if isinstance(guilty, ir.Call) and guilty.name in _STEEP:
+        return _of_steep(case, cell, guilty), _better(case, cell, guilty, worst), ()
     if small:
         sentence, ranges = _division(case, cell, small[0])
         return ("division", sentence), None, ranges
@@ -220,16 +222,20 @@ def _of_logarithm(case: Case, cell: Cell, part: ir.Call, worst: Sequence[int]) -
     )
 
 
+def _of_steep(case: Case, cell: Cell, part: ir.Call) -> tuple[str, str]:
+    argument = case.trees.text(part.arguments[0], cell)
+    return "rounding", f"{argument} is rounded to 16 digits, and near 1 and -1 {part.name} is so steep that this shows"
+
+
+_STEEP: Final = frozenset({"ACOS", "ASIN"})
+
+
 def _better(case: Case, cell: Cell, part: ir.Expression, worst: Sequence[int]) -> str | None:
     known = of_small_changes(case, cell)
-    return _formula(case, cell, steadied(case, cell, part, worst) if known is None else known)
+    return case.trees.offered(steadied(case, cell, part, worst) if known is None else known, cell)
 
 
 _SMALL: Final = 0.2
-
-
-def _formula(case: Case, cell: Cell, tree: object) -> str | None:
-    return None if tree is None else f"={case.trees.text(tree, cell)}"  # type: ignore[arg-type]  # an expression
 
 
 def _division(case: Case, cell: Cell, division: Division) -> tuple[str, tuple[Where, ...]]:

@@ -157,5 +157,11 @@ def _same(one: Value, other: Value, turn: float) -> bool:
     off = other.numbers - one.numbers
     if turn:
         off = off - turn * np.rint(off / turn)
-    size = np.maximum(np.abs(one.numbers), turn)
+    size = np.maximum(np.maximum(np.abs(one.numbers), turn), _usual(one.numbers))
     return bool((np.abs(off) <= _ALIKE * size).all())
+
+
+def _usual(found: Floats) -> float:
+    """The size of most of a node's numbers: beside it, what is left of a 0 by rounding is nothing."""
+    sizes = np.abs(found[np.isfinite(found)])
+    return float(np.median(sizes)) if sizes.size else 0.0

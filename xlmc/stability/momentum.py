@@ -74,7 +74,7 @@ class Momentum:
 def known_momentum(case: Case) -> Iterator[Momentum]:
     """Every cell that is (15), either vehicle first."""
     for cell in case.cells:
-        found = _momentum(case.lowering.graph.formulas[cell])
+        found = _momentum(case.trees.formula(cell))
         if found is not None:
             yield found
             mass, speed = found.masses[1], found.speeds[1]  # which of two factors is which, nothing says

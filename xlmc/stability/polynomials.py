@@ -63,6 +63,8 @@ class Polynomials:
                 return self.product(self.of(left), self._inverse(right))
             case ir.Binary("^", base, ir.Number(power)) if power in range(_MOST_POWER + 1):
                 return self.power(self.of(base), int(power))
+            case ir.Binary("^", base, ir.Unary("-", ir.Number(1.0)) | ir.Number(-1.0)):
+                return self._inverse(base)
             case ir.Call("POWER", (base, power)):
                 return self.of(ir.Binary("^", base, power))
             case ir.Binary("^", base, ir.Number(0.5) | ir.Binary("/", ir.Number(1.0), ir.Number(2.0))):

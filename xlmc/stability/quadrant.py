@@ -56,7 +56,7 @@ def _quotient(case: Case, tree: ir.Expression) -> tuple[ir.Expression, ir.Expres
     while isinstance(tree, Cell) and tree not in case.lowering.inputs:
         if tree not in case.lowering.graph.formulas:
             return None
-        tree = case.lowering.graph.formulas[tree]
+        tree = case.trees.formula(tree)
     if isinstance(tree, ir.Binary) and tree.operator == "/":
         return tree.left, tree.right
     above, below = factors(tree)
@@ -80,7 +80,7 @@ def _finding(case: Case, cell: Cell, found: Arctangent, negative: Bools) -> Find
     accepted = negative[case.first_accepted :]
     among = accepted if accepted.any() else negative
     share = float(among.mean())
-    tree = case.lowering.graph.formulas[cell]
+    tree = case.trees.formula(cell)
     divisor = case.trees.text(found.below, cell)
     trials = "accepted trials" if accepted.any() else "trials drawn, none of them accepted"
     how_many = f"in every one of the {trials}" if share == 1.0 else f"in {share:.1%} of the {trials}"
@@ -96,6 +96,6 @@ def _finding(case: Case, cell: Cell, found: Arctangent, negative: Bools) -> Find
         f"wherever {divisor} is negative",
         f"{how_many} {divisor} is negative: there the direction is wrong by {half}, and no error is shown",
         () if share == 1.0 else case.where(negative, found.divisor),
-        f"={case.trees.text(better, cell)}",
+        case.trees.offered(better, cell),
         (180.0 if half == "180°" else np.pi) * share / case.scale(cell),
     )

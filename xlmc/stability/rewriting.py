@@ -58,7 +58,7 @@ def without_cosine(case: Case, cell: Cell, cosine: ir.Expression) -> ir.Expressi
 
     The whole cell must be `(m1·V1f·COS(β1) + m2·V2f·COS(β2) - m1·V1·COS(α1)) / (m2·COS(α2))`, its parts in any order.
     """
-    above, below = factors(case.lowering.graph.formulas[cell])
+    above, below = factors(case.trees.formula(cell))
     above = [part for part in above if part != ir.Number(1.0)]
     own = angle_of(cosine, "COS")
     if cosine not in below or own is None or len(above) != 1:
@@ -93,7 +93,7 @@ def _difference(left: ir.Expression, right: ir.Expression) -> ir.Expression | No
 
 def of_small_changes(case: Case, cell: Cell) -> ir.Expression | None:
     """(17′) or (20′) in place of (17) or (20), differences of near equals where a change of speed is small."""
-    tree = case.lowering.graph.formulas[cell]
+    tree = case.trees.formula(cell)
     turned = spin(tree)
     candidates = [*([] if turned is None else [turned]), *components(case, tree)]
     return next((one for one in candidates if same(case, cell, one)), None)

@@ -5,11 +5,12 @@
     R·(1-SIN(a))          2R·SIN(PI()/4-a/2)^2
     COS(a)-COS(b)         2·SIN((a+b)/2)·SIN((b-a)/2), and those of SIN and TAN
     EXP(a)-1              (u-1)·a/LN(u) with u = EXP(a)       (W. Kahan; a where u is 1)
-    LN(1+x)               x·LN(u)/(u-1) with u = 1+x          (W. Kahan; x where u is 1); LN(a/b), LN(a)-LN(b)
+    LN(1+x)               x·LN(u)/(u-1) with u = 1+x          (W. Kahan; x where u is 1); LN(a/b), LN(a)-LN(b), LOG
     R + K·SQRT(a)         (R²-K²·a)/(R-K·SQRT(a))             (differences of roots, the root of a quadratic)
     SUMSQ - SUM^2/n       DEVSQ                               (variance), and COVARIANCE.P
     1/a - 1/b             (b-a)/(a·b)
     what cancels          the polynomial that is left
+    x-SIN(x), (1+x)^n-1, COSH(x)-1, ACOS near 1           see `rarer_forms`
 
 These are proposals: `steadying` offers one only after it was computed again. See N. J. Higham, Accuracy and Stability
 of Numerical Algorithms, 2nd ed., 2002, chapters 1 and 14.
@@ -17,40 +18,33 @@ of Numerical Algorithms, 2nd ed., 2002, chapters 1 and 14.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from typing import Final
 
 from xlmc.address import Area
 from xlmc.formula import ir
+from xlmc.stability.form_parts import (
+    TWO,
+    UNIT,
+    Form,
+    Tree,
+    calls,
+    combined,
+    half,
+    less_one,
+    of_one_and,
+    scaled,
+    squared,
+)
 from xlmc.stability.momentum import times
 from xlmc.stability.polynomials import ONE, Polynomial, Polynomials
+from xlmc.stability.rarer_forms import of_arccosine, of_growth, of_hyperbolic_cosine, of_small_angle
 from xlmc.stability.trees import terms
 
 __all__ = ["LOGARITHMS", "Form", "forms"]
 
-Tree = ir.Expression
-
-LOGARITHMS: Final = frozenset({"LN", "LOG10"})
-
-_TWO: Final = ir.Number(2.0)
-_UNIT: Final = ir.Number(1.0)
-
-
-@dataclass(frozen=True, slots=True)
-class Form:
-    """Another form of a part of a formula: `above`, divided by `below` if there is one.
-
-    Attributes:
-        above: a formula, or a polynomial, which a factor beside the part may be drawn into.
-        below: a formula.
-        only_if: it keeps the digits only where this is true; the old form does where it is not.
-    """
-
-    above: Tree | Polynomial
-    below: Tree | None = None
-    only_if: Tree | None = None
+LOGARITHMS: Final = frozenset({"LN", "LOG10", "LOG"})
 
 
 def forms(part: Tree, algebra: Polynomials) -> Iterator[Form]:
@@ -58,6 +52,13 @@ def forms(part: Tree, algebra: Polynomials) -> Iterator[Form]:
     if isinstance(part, ir.Call) and part.name in LOGARITHMS:
         yield from _of_logarithm(part, algebra)
         return
+    if isinstance(part, ir.Call) and part.name == "ACOS":
+        yield from of_arccosine(part, algebra, _of_sum)
+        return
+    yield from _of_sum(part, algebra)
+
+
+def _of_sum(part: Tree, algebra: Polynomials) -> Iterator[Form]:
     try:
         found = algebra.of(part)
     except OverflowError:
@@ -66,74 +67,36 @@ def forms(part: Tree, algebra: Polynomials) -> Iterator[Form]:
         yield from rule(part, found, algebra)
 
 
-def _calls(found: Polynomial, algebra: Polynomials, name: str) -> list[tuple[str, Tree]]:
-    """The atoms of a polynomial that call a function: their keys and arguments."""
-    keys = {key: algebra.atoms[key] for monomial in found for key, _ in monomial}
-    return [
-        (key, atom.arguments[0])
-        for key, atom in keys.items()
-        if isinstance(atom, ir.Call) and atom.name == name and len(atom.arguments) == 1
-    ]
-
-
-def _squared(tree: Tree) -> Tree:
-    return ir.Binary("^", tree, _TWO)
-
-
-def _half(angle: Tree) -> Tree:
-    return ir.Binary("/", angle, _TWO)
-
-
-def _combined(first: Tree, second: Tree, sign: int, algebra: Polynomials) -> Tree:
-    """A sum or difference of angles, without what cancels; in degrees where both are."""
-    match first, second:
-        case ir.Call("RADIANS", (a,)), ir.Call("RADIANS", (b,)):
-            return ir.Call("RADIANS", (_combined(a, b, sign, algebra),))
-        case _:
-            other = algebra.scaled(algebra.of(second), Fraction(sign))
-            return algebra.tree(algebra.sum(algebra.of(first), other))
-
-
-def _scaled(algebra: Polynomials, factor: Polynomial, tree: Tree, by: int = 1) -> Tree:
-    """A polynomial times a number times a formula."""
-    scaled = algebra.scaled(factor, Fraction(by))
-    if scaled == {ONE: Fraction(1)}:
-        return tree
-    if scaled == {ONE: Fraction(-1)}:
-        return ir.Unary("-", tree)
-    return times(algebra.tree(scaled), tree)
-
-
 def _of_cosine(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    for key, angle in _calls(found, algebra, "COS"):
+    for key, angle in calls(found, algebra, "COS"):
         split = algebra.split(found, key, 1)
         if split is None:
             continue
         of, rest = split
-        sine = _squared(ir.Call("SIN", (_half(angle),)))
+        sine = squared(ir.Call("SIN", (half(angle),)))
         left = algebra.sum(rest, of)
         if not left:
-            yield Form(_scaled(algebra, of, sine, -2))
+            yield Form(scaled(algebra, of, sine, -2))
         elif (root := algebra.square_root(left)) is not None:
-            grown = _scaled(algebra, algebra.scaled(of, Fraction(-1)), sine, 2)
-            yield Form(ir.Binary("+", _squared(algebra.tree(root)), grown))
+            grown = scaled(algebra, algebra.scaled(of, Fraction(-1)), sine, 2)
+            yield Form(ir.Binary("+", squared(algebra.tree(root)), grown))
         if not algebra.sum(rest, algebra.scaled(of, Fraction(-1))):
-            yield Form(_scaled(algebra, of, _squared(ir.Call("SIN", (_half(_short_of(angle, 180.0)),))), 2))
+            yield Form(scaled(algebra, of, squared(ir.Call("SIN", (half(_short_of(angle, 180.0)),))), 2))
 
 
 def _of_squares(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
     for name, other in (("SIN", "COS"), ("COS", "SIN")):
-        for key, angle in _calls(found, algebra, name):
+        for key, angle in calls(found, algebra, name):
             split = algebra.split(found, key, 2)
             if split is not None and not algebra.sum(*split):
-                yield Form(_scaled(algebra, split[1], _squared(ir.Call(other, (angle,)))))
+                yield Form(scaled(algebra, split[1], squared(ir.Call(other, (angle,)))))
 
 
 def _of_sine(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    for key, angle in _calls(found, algebra, "SIN"):
+    for key, angle in calls(found, algebra, "SIN"):
         split = algebra.split(found, key, 1)
         if split is not None and not algebra.sum(*split):
-            yield Form(_scaled(algebra, split[1], _squared(ir.Call("SIN", (_half(_short_of(angle, 90.0)),))), 2))
+            yield Form(scaled(algebra, split[1], squared(ir.Call("SIN", (half(_short_of(angle, 90.0)),))), 2))
 
 
 def _short_of(angle: Tree, degrees: float) -> Tree:
@@ -149,9 +112,9 @@ def _short_of(angle: Tree, degrees: float) -> Tree:
 
 def _opposite(found: Polynomial, algebra: Polynomials, name: str) -> Iterator[tuple[Polynomial, Tree, Tree]]:
     """`K`, a and b of `K·f(a) - K·f(b)`."""
-    calls = _calls(found, algebra, name)
-    for key, first in calls:
-        for other, second in calls:
+    called = calls(found, algebra, name)
+    for key, first in called:
+        for other, second in called:
             one = algebra.split(found, key, 1) if key != other else None
             two = algebra.split(one[1], other, 1) if one is not None else None
             if one is not None and two is not None and not two[1] and not algebra.sum(one[0], two[0]):
@@ -159,80 +122,73 @@ def _opposite(found: Polynomial, algebra: Polynomials, name: str) -> Iterator[tu
 
 
 def _of_angles(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    def of_half(name: str, a: Tree, b: Tree, sign: int) -> Tree:
-        return ir.Call(name, (_half(_combined(a, b, sign, algebra)),))
+    def ofhalf(name: str, a: Tree, b: Tree, sign: int) -> Tree:
+        return ir.Call(name, (half(combined(a, b, sign, algebra)),))
 
     for factor, a, b in _opposite(found, algebra, "COS"):
-        yield Form(_scaled(algebra, factor, times(of_half("SIN", a, b, 1), of_half("SIN", b, a, -1)), 2))
+        yield Form(scaled(algebra, factor, times(ofhalf("SIN", a, b, 1), ofhalf("SIN", b, a, -1)), 2))
     for factor, a, b in _opposite(found, algebra, "SIN"):
-        yield Form(_scaled(algebra, factor, times(of_half("COS", a, b, 1), of_half("SIN", a, b, -1)), 2))
+        yield Form(scaled(algebra, factor, times(ofhalf("COS", a, b, 1), ofhalf("SIN", a, b, -1)), 2))
     for factor, a, b in _opposite(found, algebra, "TAN"):
         below = times(ir.Call("COS", (a,)), ir.Call("COS", (b,)))
-        yield Form(_scaled(algebra, factor, ir.Call("SIN", (_combined(a, b, -1, algebra),))), below)
+        yield Form(scaled(algebra, factor, ir.Call("SIN", (combined(a, b, -1, algebra),))), below)
 
 
 def _of_exponential(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    for key, x in _calls(found, algebra, "EXP"):
+    for key, x in calls(found, algebra, "EXP"):
         split = algebra.split(found, key, 1)
         if split is not None and not algebra.sum(*split):
             if split[0] == {ONE: Fraction(-1)}:
-                yield Form(_less_one(x, negative=True))
+                yield Form(less_one(x, negative=True))
             else:
-                yield Form(_scaled(algebra, split[0], _less_one(x)))
+                yield Form(scaled(algebra, split[0], less_one(x)))
     for factor, a, b in _opposite(found, algebra, "EXP"):
         change = algebra.tree(algebra.sum(algebra.of(a), algebra.scaled(algebra.of(b), Fraction(-1))))
-        yield Form(_scaled(algebra, factor, times(ir.Call("EXP", (b,)), _less_one(change))))
-    for key, x in _calls(found, algebra, "TANH"):
+        yield Form(scaled(algebra, factor, times(ir.Call("EXP", (b,)), less_one(change))))
+    for key, x in calls(found, algebra, "TANH"):
         split = algebra.split(found, key, 1)
         if split is not None and not algebra.sum(*split):
-            below = ir.Binary("+", ir.Call("EXP", (times(_TWO, x),)), _UNIT)
+            below = ir.Binary("+", ir.Call("EXP", (times(TWO, x),)), UNIT)
             yield Form(algebra.scaled(split[1], Fraction(2)), below)
 
 
-def _less_one(x: Tree, *, negative: bool = False) -> Tree:
-    """`EXP(x)-1`, or `1-EXP(x)`. Far from 0 the old form serves, and the logarithm might be one of 0."""
-    u = ir.Call("EXP", (x,))
-    change = ir.Binary("-", _UNIT, u) if negative else ir.Binary("-", u, _UNIT)
-    quotient = ir.Binary("/", times(change, x), ir.Call("LN", (u,)))
-    near = ir.Call("IF", (ir.Binary("=", u, _UNIT), ir.Unary("-", x) if negative else x, quotient))
-    return ir.Call("IF", (ir.Binary("<", ir.Call("ABS", (x,)), _UNIT), near, change))
-
-
 def _of_logarithm(part: ir.Call, algebra: Polynomials) -> Iterator[Form]:
-    (u,) = part.arguments
+    u, *base = part.arguments
     try:
         found = algebra.of(u)
     except OverflowError:
         return
     if len(found) > 1 and found.get(ONE) == 1:
         x = algebra.tree({monomial: coefficient for monomial, coefficient in found.items() if monomial != ONE})
-        yield Form(_of_one_and(part.name, u, x))
+        yield Form(*_to_base(part.name, base, lambda name: of_one_and(name, u, x)))
     if isinstance(u, ir.Binary) and u.operator == "/":
-        yield _of_ratio(part.name, u.left, u.right, algebra)
+        change = _change(u.left, u.right, algebra)
+        yield Form(*_to_base(part.name, base, lambda name: of_one_and(name, u, ir.Binary("/", change, u.right))))
 
 
-def _of_ratio(name: str, a: Tree, b: Tree, algebra: Polynomials) -> Form:
-    change = algebra.tree(algebra.sum(algebra.of(a), algebra.scaled(algebra.of(b), Fraction(-1))))
-    return Form(_of_one_and(name, ir.Binary("/", a, b), ir.Binary("/", change, b)))
+def _to_base(name: str, base: Sequence[Tree], made: Callable[[str], Tree]) -> tuple[Tree, Tree | None]:
+    """A logarithm, and what it is divided by where it has a base of its own."""
+    if name != "LOG":
+        return made(name), None
+    return (made("LN"), ir.Call("LN", (base[0],))) if base else (made("LOG10"), None)
 
 
-def _of_one_and(name: str, u: Tree, x: Tree) -> Tree:
-    """The logarithm of `u`, which is `1+x`."""
-    near = ir.Binary("/", times(x, ir.Call(name, (u,))), ir.Binary("-", u, _UNIT))
-    at_one = x if name == "LN" else ir.Binary("/", x, ir.Call("LN", (ir.Number(10.0),)))
-    return ir.Call("IF", (ir.Binary("=", u, _UNIT), at_one, near))
+def _change(a: Tree, b: Tree, algebra: Polynomials) -> Tree:
+    return algebra.tree(algebra.sum(algebra.of(a), algebra.scaled(algebra.of(b), Fraction(-1))))
+
+
+def _of_ratio(name: str, a: Tree, b: Tree, algebra: Polynomials) -> Tree:
+    return of_one_and(name, ir.Binary("/", a, b), ir.Binary("/", _change(a, b, algebra), b))
 
 
 def _of_logarithms(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    for name in sorted(LOGARITHMS):
+    for name in ("LN", "LOG10"):
         for factor, a, b in _opposite(found, algebra, name):
-            ratio = _of_ratio(name, a, b, algebra)
-            assert not isinstance(ratio.above, dict)
-            yield Form(_scaled(algebra, factor, ratio.above))  # type: ignore[arg-type]  # a tree, by `_of_ratio`
+            yield Form(scaled(algebra, factor, _of_ratio(name, a, b, algebra)))
 
 
 def _of_root(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    for key, inside in _calls(found, algebra, "SQRT"):
+    for key, inside in calls(found, algebra, "SQRT"):
         split = algebra.split(found, key, 1)
         if split is None or not split[1]:
             continue
@@ -251,6 +207,11 @@ def _of_root(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]
         if all(not monomial for monomial in of):
             side = "<" if of[ONE] > 0 else ">"
             yield Form(above, algebra.tree(below), ir.Binary(side, algebra.tree(rest), ir.Number(0.0)))
+        elif len(of) == 1:
+            ((monomial, size),) = of.items()
+            share = algebra.product(rest, {tuple((one, -power) for one, power in monomial): 1 / size})
+            yield Form(above, algebra.tree(below), ir.Binary("<", algebra.tree(share), ir.Number(0.0)))
+        yield Form(above, algebra.tree(below), ir.Binary("<>", algebra.tree(below), ir.Number(0.0)))
 
 
 def _areas(tree: Tree) -> list[Area]:
@@ -283,7 +244,7 @@ def _of_variance(part: Tree, found: Polynomial, algebra: Polynomials) -> Iterato
         count = ir.Call("COUNT", (areas[0],))
         yield Form(mean)
         yield Form(times(count, mean))
-        yield Form(times(_squared(count), mean))
+        yield Form(times(squared(count), mean))
     squares = [monomial[0][0] for monomial in found if len(monomial) == 1 and monomial[0][1] == 2]
     if len(squares) > 1 and not areas:
         single = ir.Call("DEVSQ", tuple(algebra.atoms[key] for key in squares))
@@ -291,7 +252,7 @@ def _of_variance(part: Tree, found: Polynomial, algebra: Polynomials) -> Iterato
 
 
 def _times_counts(tree: Tree, count: Tree) -> Iterator[Form]:
-    less = ir.Binary("-", count, _UNIT)
+    less = ir.Binary("-", count, UNIT)
     yield Form(tree)
     yield Form(tree, count)
     yield Form(times(count, tree))
@@ -300,7 +261,7 @@ def _times_counts(tree: Tree, count: Tree) -> Iterator[Form]:
 
 def _of_fractions(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
     divisors = sorted({key for monomial in found for key, power in monomial if power == -1})
-    if len(divisors) == 2:
+    if divisors and len(found) > 1:
         above = found
         for key in divisors:
             above = algebra.product(above, algebra.atom(algebra.atoms[key]))
@@ -335,5 +296,8 @@ _RULES: Final[tuple[Callable[[Tree, Polynomial, Polynomials], Iterator[Form]], .
     _of_root,
     _of_variance,
     _of_fractions,
+    of_small_angle,
+    of_growth,
+    of_hyperbolic_cosine,
     _of_what_is_left,
 )

@@ -46,9 +46,10 @@ def _statistic(index: float, error: float) -> str:
 
 def _quotient_of(case: Case, cell: Cell) -> ir.Expression | None:
     """The formula behind a cell that may only refer to it."""
-    tree: ir.Expression | None = case.lowering.graph.formulas.get(cell)
+    formulas = case.lowering.graph.formulas
+    tree: ir.Expression | None = case.trees.formula(cell) if cell in formulas else None
     while isinstance(tree, Cell):
-        tree = case.lowering.graph.formulas.get(tree)
+        tree = case.trees.formula(tree) if tree in formulas else None
     return tree
 
 
@@ -65,6 +66,6 @@ def _finding(
         "goes through 0",
         effect,
         (),
-        None if better is None else f"={case.trees.text(better, cell)}",
+        case.trees.offered(better, cell),
         1 / index,
     )

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from functools import cached_property
 from typing import Final
 
-from xlmc.address import Area, Cell, host_of, parse_address
+from xlmc.address import Area, Cell, host_of
 from xlmc.compile.references import NotYetNeeded
 from xlmc.compile.scope import Scope
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
+from xlmc.formula.resolve import Resolver
 from xlmc.formula.substitute import substituted
 from xlmc.formula.text import formula_text
+from xlmc.formula.unfold import unfolded
 from xlmc.model import Model
+from xlmc.stability.naming import Naming
+from xlmc.workbook.model import Formula
 
 __all__ = ["Trees", "factors", "replaced", "terms"]
 
@@ -35,26 +39,21 @@ class Trees:
     def __init__(self, model: Model) -> None:
         self._model = model
         self.lowering, self._graph = model.lowering, model.lowering.graph
+        self._formulas: dict[Cell, ir.Expression] = {}
+        self._naming = Naming(self._graph.workbook)
 
-    @cached_property
-    def names(self) -> dict[Cell, str]:
-        """Cell -> the defined name of it."""
-        found: dict[Cell, str] = {}
-        for defined in self._graph.workbook.names:
-            try:
-                place = parse_address(defined.text.replace("$", ""), "")
-            except ValueError:
-                continue
-            if isinstance(place, Cell):
-                found.setdefault(place, defined.name)
-        return found
+    def formula(self, cell: Cell) -> ir.Expression:
+        """The formula of a cell, the same object whenever it is asked for; variables of LET are written out."""
+        if cell not in self._formulas:
+            self._formulas[cell] = unfolded(self._graph.formulas[cell])
+        return self._formulas[cell]
 
     def title(self, cell: Cell) -> str:
         """What people call a cell: a forecast, a filter, an assumption, or its defined name."""
         rows = [(row.cell, row.name) for row in self._model.forecasts]
         rows += [(row.cell, row.name) for row in self._model.filters]
         rows += [(row.cell, row.name) for row in self._model.assumptions]
-        return next((name for place, name in rows if place == cell), self.names.get(cell, ""))
+        return next((name for place, name in rows if place == cell), self._naming.anywhere(cell))
 
     def written(self, cell: Cell) -> str:
         """The formula of a cell as in the file, with `=`; empty where it has none."""
@@ -71,8 +70,8 @@ class Trees:
             return None
 
     def parts(self, cell: Cell) -> Iterator[ir.Expression]:
-        """The parts of a cell's formula, outer ones first, but for those inside LET and LAMBDA."""
-        open_: list[ir.Expression] = [self._graph.formulas[cell]]
+        """The parts of a cell's formula, outer ones first, but for those inside LAMBDA."""
+        open_ = [self.formula(cell)]
         while open_:
             tree = open_.pop()
             if isinstance(tree, Cell | Area):
@@ -96,7 +95,7 @@ class Trees:
             if not isinstance(part, Cell) or part in self.lowering.inputs or part not in graph.formulas:
                 return None
             formula = graph.workbook.content(part).formula
-            return None if formula is None or formula.array is not None or formula.dynamic else graph.formulas[part]
+            return None if formula is None or formula.array is not None or formula.dynamic else self.formula(part)
 
         return substituted(tree, change)
 
@@ -104,11 +103,33 @@ class Trees:
         """A formula, without `=`, with defined names, and brackets only where they are needed."""
         return self._text(tree, host)[0]
 
+    def read_back(self, tree: ir.Expression, cell: Cell) -> ir.Expression | None:
+        """What a formula is once its text is typed into a cell; None where it cannot be typed."""
+        resolver = Resolver(self._graph.workbook, self.lowering.inputs)
+        try:
+            return resolver.formula(cell, Formula(self.text(tree, cell), cell.row, cell.column))
+        except FormulaError:
+            return None
+
+    def offered(self, tree: ir.Expression | None, cell: Cell) -> str | None:
+        """A formula with `=` that may be typed into a cell.
+
+        None where its text does not say it: a number has more digits than Excel reads, or what it names has no address,
+        as the draw of `RAND()`.
+        """
+        typed = None if tree is None else self.read_back(tree, cell)
+        if tree is None or typed is None or formula_text(typed) != formula_text(tree):
+            return None
+        return f"={self.text(tree, cell)}"
+
     def _reference(self, place: Cell | Area, host: Cell) -> str:
-        if isinstance(place, Cell) and place in self.names:
-            return self.names[place]
+        named = self._naming.of(place, host.sheet) if isinstance(place, Cell) else None
+        if named is not None:
+            return named
         text = str(place)
-        return text.rpartition("!")[2] if place.sheet == host.sheet else text
+        sheet, mark, corners = text.rpartition("!")
+        corners = _as_typed(self._graph.text(host)).get(corners, corners)
+        return corners if place.sheet == host.sheet else f"{sheet}{mark}{corners}"
 
     def _text(self, tree: ir.Expression, host: Cell) -> tuple[str, int]:
         """The text, and how tightly it holds together."""
@@ -130,6 +151,18 @@ class Trees:
     def _within(self, tree: ir.Expression, host: Cell, rank: int) -> str:
         text, own = self._text(tree, host)
         return text if own >= rank else f"({text})"
+
+
+_CORNERS: Final = re.compile(r"(?<![\w.])\$?[A-Za-z]{1,3}\$?\d+(?::\$?[A-Za-z]{1,3}\$?\d+)?(?![\w.(])")
+
+
+def _as_typed(text: str) -> dict[str, str]:
+    """References of a formula as they would be without `$` -> as they stand there."""
+    found: dict[str, str] = {}
+    for typed in _CORNERS.findall(text):
+        if "$" in typed:
+            found.setdefault(typed.replace("$", "").upper(), typed.upper())
+    return found
 
 
 def replaced(tree: ir.Expression, part: ir.Expression, other: ir.Expression) -> ir.Expression:

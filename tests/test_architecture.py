@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -38,12 +39,23 @@ FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 MODULES = sorted(path for path in PACKAGE.rglob("*.py") if "templates" not in path.relative_to(PACKAGE).parts)
 
 
+@cache
+def tree_of(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def trees_are_kept_for_this_file_alone():
+    yield
+    tree_of.cache_clear()
+
+
+@cache
 def imported(path: Path, *, at_run_time_only: bool = True) -> set[str]:
     """Full names of the modules a file imports at its top level, those for type checkers left out."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    nodes = tree.body if at_run_time_only else list(ast.walk(tree))
+    tree = tree_of(path)
     names: set[str] = set()
-    for node in nodes:
+    for node in tree.body if at_run_time_only else ast.walk(tree):
         if isinstance(node, ast.Import):
             names.update(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module:
@@ -59,16 +71,16 @@ def test_every_room_has_a_floor():
     assert {room_of(path) for path in MODULES} - {"__init__"} == set(FLOOR)
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_imports_run_downwards(path):
-    own = room_of(path)
-    if own == "__init__":
-        return
-    for name in imported(path):
-        first, _, rest = name.partition(".")
-        room = rest.partition(".")[0]
-        if first == "xlmc" and room in FLOOR and room != own:
-            assert FLOOR[room] < FLOOR[own], f"{path.name} imports {name}"
+def test_imports_run_downwards():
+    upwards = []
+    for path in MODULES:
+        own = room_of(path)
+        for name in imported(path) if own != "__init__" else ():
+            first, _, rest = name.partition(".")
+            room = rest.partition(".")[0]
+            if first == "xlmc" and room in FLOOR and room != own and FLOOR[room] >= FLOOR[own]:
+                upwards.append(f"{path.relative_to(PACKAGE)} imports {name}")
+    assert upwards == []
 
 
 def importers(*modules: str) -> set[str]:
@@ -100,7 +112,7 @@ def test_only_doors_for_people_reach_upwards():
     """`Model.simulate`, `Simulation.save…`, `.keep` and the like are doors; they import what they open when called."""
     reached = set()
     for path in MODULES:
-        tree, own = ast.parse(path.read_text(encoding="utf-8")), room_of(path)
+        tree, own = tree_of(path), room_of(path)
         skipped = for_type_checkers(tree)
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and node.module and node not in skipped:
@@ -115,9 +127,12 @@ def test_scipy_stats_is_never_imported():
     assert importers("scipy.stats") == set()
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_no_text_is_run_as_code_and_only_the_command_line_prints(path):
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
-            assert node.func.id not in ("eval", "exec", "compile", "__import__"), f"{path}:{node.lineno}"
-            assert node.func.id != "print", f"{path}:{node.lineno}"
+def test_no_text_is_run_as_code_and_only_the_command_line_prints():
+    forbidden = ("eval", "exec", "compile", "__import__", "print")
+    called = [
+        f"{path.relative_to(PACKAGE)}:{node.lineno}: {node.func.id}"
+        for path in MODULES
+        for node in ast.walk(tree_of(path))
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in forbidden
+    ]
+    assert called == []

@@ -13,10 +13,11 @@ import xlsxwriter
 
 import xlmc
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.result_cells import result_values
+from xlmc.result_cells import filled_sheets, result_values
 from xlmc.workbook import read_workbook
 from xlmc.workbook.inject import original_hash
 from xlmc.workbook.package import read_parts
+from xlmc.workbook.writer import package_bytes
 
 FORMULAS = {
     "A1": ("=_xll.RiskNormal(5,1)", 5.25),
@@ -229,8 +230,11 @@ def run_of(path, cells, **more):
 
 
 def shown(run, path):
-    """What the result workbook shows: address on the sheet S -> value; others as `Other!A1`."""
-    run.save(path)
+    """What the result workbook shows: address on the sheet S -> value; others as `Other!A1`.
+
+    Written without the result sheets, which say nothing of these; `filled` has them.
+    """
+    path.write_bytes(package_bytes({**run.model.workbook.parts, **filled_sheets(run)}))
     book = openpyxl.load_workbook(path, data_only=True)
     found = {cell.coordinate: cell.value for row in book["S"].iter_rows() for cell in row}
     return found | {f"Other!{c.coordinate}": c.value for row in book["Other"].iter_rows() for c in row}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,6 +17,9 @@ BESIDE = ROOT / "xlmc" / "functions"
 SOURCES = sorted(path for folder in FOLDERS for path in (ROOT / folder).rglob("*.py") if BESIDE not in path.parents)
 _ENCODING_AT = {"read_text": 0, "write_text": 1}
 """Where a method of paths takes the encoding as an argument without a name."""
+
+OPENS = re.compile(r"open\b|read_text|write_text")
+"""A source without these words has no call that could be found; the others are parsed."""
 
 
 def silent_calls(tree: ast.Module) -> Iterator[ast.Call]:
@@ -45,10 +49,15 @@ def _opens_text(call: ast.Call) -> bool:
     return not (isinstance(mode, ast.Constant) and "b" in str(mode.value))
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
-def test_text_files_are_opened_as_utf_8(path):
-    calls = silent_calls(ast.parse(path.read_text(encoding="utf-8")))
-    assert [f"{path.relative_to(ROOT)}:{call.lineno}: {ast.unparse(call)}" for call in calls] == []
+def test_text_files_are_opened_as_utf_8():
+    assert len(SOURCES) > 1000
+    found = []
+    for path in SOURCES:
+        text = path.read_text(encoding="utf-8")
+        if OPENS.search(text):
+            calls = silent_calls(ast.parse(text))
+            found += [f"{path.relative_to(ROOT)}:{call.lineno}: {ast.unparse(call)}" for call in calls]
+    assert found == []
 
 
 @pytest.mark.parametrize(
@@ -70,4 +79,5 @@ def test_text_files_are_opened_as_utf_8(path):
     ],
 )
 def test_which_calls_are_found(code, silent):
+    assert OPENS.search(code)
     assert bool(list(silent_calls(ast.parse(code)))) == silent

@@ -59,10 +59,10 @@ def typed(monkeypatch, tmp_path):
 
 
 COMMANDS = [
-    ("simulate", "case.xlsx", "-n", "20000"),
+    ("simulate", "case.xlsx", "-n", "4000"),
     ("check", "case.xlsx"),
     ("verify", "case.xlsx"),
-    ("compare", "case.xlsx", "case.xlsx", "-n", "2000", "--no-causes", "--quiet"),
+    ("compare", "case.xlsx", "case.xlsx", "-n", "1000", "--no-causes", "--quiet"),
     ("fit", "case.xlsx", "Inputs!D6:D9"),
     ("new",),
     ("simulate", "ΔV中.xlsx"),
@@ -88,7 +88,7 @@ def test_no_encoding_stops_a_command(greek, tmp_path, typed, arguments, encoding
 def test_a_closed_pipe_is_quiet_and_the_files_are_written(greek, tmp_path):
     shutil.copy(greek, tmp_path / "case.xlsx")
     where = {**os.environ, "PYTHONPATH": str(ROOT)}
-    command = [sys.executable, "-m", "xlmc", "simulate", "case.xlsx", "-n", "20000", "--json", "case.json"]
+    command = [sys.executable, "-m", "xlmc", "simulate", "case.xlsx", "-n", "4000", "--json", "case.json"]
     reading, writing = os.pipe()
     os.close(reading)
     done = subprocess.run(command, cwd=tmp_path, env=where, stdout=writing, stderr=subprocess.PIPE, check=False)
@@ -104,7 +104,7 @@ def test_output_into_a_full_file_is_one_line_and_the_files_are_written(greek, tm
     shutil.copy(greek, tmp_path / "case.xlsx")
     with open("/dev/full", "wb") as full:
         where = {**os.environ, "PYTHONPATH": str(ROOT)}
-        command = [sys.executable, "-m", "xlmc", "simulate", "case.xlsx", "-n", "20000"]
+        command = [sys.executable, "-m", "xlmc", "simulate", "case.xlsx", "-n", "4000"]
         done = subprocess.run(
             command, cwd=tmp_path, env=where, stdout=full, stderr=subprocess.PIPE, check=False, text=True
         )
@@ -209,7 +209,7 @@ def on_a_terminal(xlmc, monkeypatch):
 
 
 @pytest.mark.parametrize("columns", [60, 80])
-@pytest.mark.parametrize("arguments", [("simulate", "case.xlsx", "-n", "20000"), ("check", "case.xlsx"), ("new",)])
+@pytest.mark.parametrize("arguments", [("simulate", "case.xlsx", "-n", "4000"), ("check", "case.xlsx"), ("new",)])
 def test_nothing_is_wider_than_the_terminal(case_study, tmp_path, on_a_terminal, arguments, columns):
     shutil.copy(case_study, tmp_path / "case.xlsx")
     shown = on_a_terminal(arguments, columns)
@@ -252,7 +252,7 @@ def test_the_progress_bar_is_drawn_in_every_encoding(greek, tmp_path, encoding):
     shutil.copy(greek, tmp_path / "case.xlsx")
     master, slave = pty.openpty()
     where = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": encoding, "TERM": "xterm", "COLUMNS": "100"}
-    command = [sys.executable, "-m", "xlmc", "simulate", "case.xlsx", "-n", "400000", "-j", "1"]
+    command = [sys.executable, "-m", "xlmc", "simulate", "case.xlsx", "-n", "20000", "-j", "1"]
     running = subprocess.Popen(command, cwd=tmp_path, env=where, stdout=subprocess.PIPE, stderr=slave)
     os.close(slave)
     drawn = b""

@@ -162,7 +162,7 @@ def _with_search(plain: Simulation, found: Search, most_inputs: int) -> Simulati
     assert found.account is not None
     model, block = plain.model, plain.model.program("numpy").largest_block
     gathered = _Gathered(model, block, most_inputs)
-    for each in accepted_blocks(model, found.points, block, lambda: gathered.wants_inputs):
+    for each in accepted_blocks(model, found.uniforms, block, lambda: gathered.wants_inputs):
         gathered.add(each)
     drawn = gathered.simulation(plain.settings, plain.plan, plain.stopped, None)
     return replace(

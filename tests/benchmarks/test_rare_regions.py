@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from xlmc.rare.landscape import Landscape
+from xlmc.rare.layered import ground_of
 from xlmc.rare.tempered import widened
 
 
@@ -55,3 +56,10 @@ def test_the_exact_answers_are_those_of_the_books(bench, random, name):
     error = weights.std() / np.sqrt(weights.size)
     assert error < book.truth / 3
     assert abs(weights.mean() - book.truth) < 4.5 * error
+
+
+def test_no_book_has_a_thin_layer_that_is_solved(bench, random):
+    """What the search does well stays as it is."""
+    for book in bench.BOOKS.values():
+        landscape = Landscape(book.model, random)
+        assert ground_of(book.model, landscape, random) is landscape

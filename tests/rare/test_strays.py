@@ -10,7 +10,8 @@ from scipy.special import ndtr
 
 from xlmc.rare.account import RareAccount, probability_text
 from xlmc.rare.finding import find
-from xlmc.rare.plain import plain_points
+from xlmc.rare.landscape import points_of
+from xlmc.rare.plain import plain_uniforms
 from xlmc.rare.splitting import explore
 from xlmc.rare.strays import Evidence, pooled, strays
 from xlmc.rare.tempered import Tempered, as_they_are, widened
@@ -47,7 +48,7 @@ def test_plain_trials_are_found_again_by_their_numbers(book):
     filters = {"f": {"cell": "A1", "above": 3.99}, "g": {"cell": "A2", "above": 0}, "h": {"cell": "A3", "above": 0}}
     model = book(cells, given, {"x": "A2"}, filters, {("b", "c"): 0.6})
     run = model.simulate(20_000, seed=3)
-    points = plain_points(model, 3, run.trial_index)
+    points = points_of(plain_uniforms(model, 3, run.trial_index))
     places = [a.name for group in model.groups for a in model.live if a.name in group.names] or ["b", "c"]
     order = [*places, "a"]
     assert 2 + 2 * ndtr(points[:, order.index("a")]) == pytest.approx(run.inputs["a"], abs=1e-9)

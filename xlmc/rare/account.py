@@ -51,6 +51,7 @@ class RareAccount:
             hardly ever come to.
         ways: parts of all trials, by branches and discrete assumptions, that were searched apart.
         explored: the probability of parts that splitting did not find, and that other accepted trials led to.
+        solved: the assumptions that thin layers were solved for.
     """
 
     evaluations: int
@@ -75,6 +76,7 @@ class RareAccount:
     missed: float = 0.0
     ways: int = 1
     explored: float = 0.0
+    solved: tuple[str, ...] = ()
 
     @property
     def at_least(self) -> bool:
@@ -104,8 +106,8 @@ class RareAccount:
         return (
             f"Plain trials, as they come, would have taken about {_about(self.plain_trials)} "
             f"for these. Where the accepted ones lie was learned from {self.learning:,} trials (splitting, in "
-            f"{self.levels} levels{self._apart}; then a mixture of {self.components} normal distributions "
-            f"in {directions}). "
+            f"{self.levels} levels{self._apart}{self._solved_for}; then a mixture of {self.components} normal "
+            f"distributions in {directions}). "
             f"{self.proposals:,} further trials were drawn there; {self.proposals_accepted:,} of them pass all "
             f"filters, and of these each was kept with a chance that gives all kept ones equal weight. The "
             f"{self.kept:,} kept ones are independent, and spread as those that plain trials would have left "
@@ -116,6 +118,11 @@ class RareAccount:
     @property
     def _apart(self) -> str:
         return f", in {self.ways} ways by branches and discrete assumptions" if self.ways > 1 else ""
+
+    @property
+    def _solved_for(self) -> str:
+        """The filters say what these must be, all others given."""
+        return f", with the filters solved for {' and '.join(map(repr, self.solved))}" if self.solved else ""
 
     @property
     def _of_acceptance(self) -> str:

@@ -41,6 +41,9 @@ _FRESH: Final = 32 * BATCH
 _FEWEST: Final = 100
 """Accepted ones among them, at least, as far as that many proposals have so many."""
 
+_PATIENCE: Final = 1 << 23
+"""Proposals after which it counts whether there will ever be enough."""
+
 _SURPRISE: Final = math.log(30.0)
 """By how much the envelope may grow, as a logarithm, before the proposal is to be learnt anew."""
 
@@ -106,8 +109,10 @@ def equalised(
         say(until_enough.proposals + fresh.proposals)
         return True
 
-    while not drawing.enough and more(until_enough):
+    while not drawing.enough and not drawing.hopeless(until_enough.proposals, most) and more(until_enough):
         pass
+    if not drawing.enough and drawing.surprise is None:
+        most = until_enough.proposals  # there will not be enough, and more would not change that
     planned = min(until_enough.for_accepted(_FEWEST), _FRESH)
     if planned > most - until_enough.proposals:
         planned = 0
@@ -160,6 +165,11 @@ class _Drawing:
     def enough(self) -> bool:
         """Whether as many are kept as are wanted."""
         return bool(self._kept.copies(self._envelope).sum() >= self._wanted)
+
+    def hopeless(self, proposals: int, most: int) -> bool:
+        """Whether so many proposals say that not half of what is wanted will be kept of the most there may be."""
+        kept = float(self._kept.copies(self._envelope).sum())
+        return proposals >= _PATIENCE and 2.0 * kept * most < self._wanted * proposals
 
     def batch(self) -> Floats:
         """(m,) logarithms of the weights of the accepted ones among another batch."""

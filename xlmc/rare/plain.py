@@ -1,4 +1,4 @@
-"""The plain trials of a run as points of the search: those that were accepted are evidence of where acceptance lies."""
+"""The plain trials of a run, for the search: those that were accepted are evidence of where acceptance lies."""
 
 from __future__ import annotations
 
@@ -12,30 +12,26 @@ if TYPE_CHECKING:
     from xlmc.model import Model
     from xlmc.sampling.streams import Stream
 
-__all__ = ["MOST_PLAIN", "plain_points"]
+__all__ = ["MOST_PLAIN", "plain_uniforms"]
 
 Floats = NDArray[np.float64]
 
 MOST_PLAIN: Final = 4_096
 """Accepted plain trials that are looked at: the first of them."""
 
-_LEAST: Final = 2.0**-54
 
-
-def plain_points(model: Model, seed: int, accepted: NDArray[np.int64]) -> Floats:
-    """(k, d) the standard normals of plain trials with these numbers, (k,): those of their uniforms."""
-    from scipy.special import ndtri
-
+def plain_uniforms(model: Model, seed: int, accepted: NDArray[np.int64]) -> Floats:
+    """(k, d) the uniforms of plain trials with these numbers, (k,)."""
     streams = _streams(model, seed)
     uniforms = np.empty((len(streams), accepted.size))
     for row, stream in zip(uniforms, streams, strict=True):
         for place, trial in enumerate(accepted.tolist()):
             stream.uniforms(trial, row[place : place + 1])
-    return np.asarray(ndtri(np.maximum(uniforms, _LEAST)).T)
+    return uniforms.T
 
 
 def _streams(model: Model, seed: int) -> Sequence[Stream]:
-    """In the order of the points' coordinates."""
+    """In the order of the coordinates."""
     found: list[Stream] = []
 
     def filler(streams: Sequence[Stream], _maps: object, _rows: Floats) -> Callable[[int], None]:

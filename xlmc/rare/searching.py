@@ -15,8 +15,9 @@ from xlmc.blocks import Block, Task, Worker
 from xlmc.rare.account import RareAccount
 from xlmc.rare.equalising import Equalised
 from xlmc.rare.finding import Found, find
-from xlmc.rare.landscape import Given, Landscape, uniforms_of
-from xlmc.rare.plain import MOST_PLAIN, plain_points
+from xlmc.rare.landscape import Given, Landscape
+from xlmc.rare.layered import Ground, Layered, ground_of
+from xlmc.rare.plain import MOST_PLAIN, plain_uniforms
 from xlmc.rare.strays import Evidence
 from xlmc.rare.tempered import as_they_are
 from xlmc.statistics.estimate import Estimate, with_relative_error
@@ -31,19 +32,24 @@ Floats = NDArray[np.float64]
 
 _PURPOSE: Final = "rare acceptance: "
 
+_PART: Final = 16
+_LEAST_PART: Final = 1 << 25
+"""Of the limit of trials, a search takes one part of so many, or so many trials where that is more: what is described
+well needs far less, and what is not is known by then."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Search:
     """What came of a search.
 
     Attributes:
-        points: (m, d) accepted trials of equal weight, as standard normals; none where it failed.
+        uniforms: (m, d) of accepted trials of equal weight; none where it failed.
         account: None likewise.
         failure: why there are none, in words without a full stop.
         evaluations: trials that it took.
     """
 
-    points: Floats
+    uniforms: Floats
     account: RareAccount | None
     failure: str
     evaluations: int
@@ -62,8 +68,8 @@ def search(
         say: told of the evaluations so far.
     """
     learning, drawing = _random(settings.seed, "learning"), _random(settings.seed, "drawing")
-    landscape = Landscape(model, learning)
-    wanted, most = settings.stopping.accepted or 0, settings.trials - plain
+    landscape = ground_of(model, Landscape(model, learning), _random(settings.seed, "layers"))
+    wanted, most = settings.stopping.accepted or 0, _most(settings.trials, plain)
     evidence = [] if settings.sampling != "mc" else [_plain(model, settings, plain, accepted, landscape)]
     found = find(
         landscape.distance,
@@ -79,7 +85,7 @@ def search(
     )
     drawn = found.equalised
     if drawn is None or found.used is None or len(drawn.points) < wanted:
-        failure = _failure(model, landscape, found, wanted, most)
+        failure = _failure(model, landscape, found, wanted, settings.trials - plain - most)
         return Search(np.empty((0, landscape.dimensions)), None, failure, landscape.evaluations)
     proposal = found.used.proposal
     account = RareAccount(
@@ -104,17 +110,21 @@ def search(
         checked=found.checked,
         ways=len(landscape.ways),
         missed=0.0 if found.strays is None else found.strays.mass,
+        solved=tuple(layer.name for layer in landscape.layers) if isinstance(landscape, Layered) else (),
     )
-    return Search(drawn.points, account, "", landscape.evaluations)
+    return Search(landscape.uniforms(drawn.points), account, "", landscape.evaluations)
 
 
-def _plain(
-    model: Model, settings: Settings, trials: int, accepted: NDArray[np.int64], landscape: Landscape
-) -> Evidence:
+def _most(limit: int, plain: int) -> int:
+    """Trials that a search may take."""
+    return min(limit - plain, max(limit // _PART, _LEAST_PART))
+
+
+def _plain(model: Model, settings: Settings, trials: int, accepted: NDArray[np.int64], landscape: Ground) -> Evidence:
     """The plain trials, or the first of them where many were accepted."""
     few = accepted[:MOST_PLAIN]
     counted = int(few[-1]) + 1 if few.size < accepted.size else trials
-    points = plain_points(model, settings.seed, few)
+    points = landscape.points(plain_uniforms(model, settings.seed, few))
     return Evidence.of(as_they_are(landscape.dimensions), counted, points[landscape.accepts(points)])
 
 
@@ -133,8 +143,8 @@ def _random(seed: int, purpose: str) -> np.random.Generator:
     return np.random.Generator(np.random.PCG64DXSM(np.random.SeedSequence(seed, spawn_key=words)))
 
 
-def _failure(model: Model, landscape: Landscape, found: Found, wanted: int, most: int) -> str:
-    """Why there are no trials, in words."""
+def _failure(model: Model, landscape: Ground, found: Found, wanted: int, left: int) -> str:
+    """Why there are no trials, in words; so many of the limit of trials were none of a search's."""
     reached = [each for each in found.learned.descents if each.reached]
     if not reached:
         nearest = np.stack([each.nearest for each in found.learned.descents])
@@ -149,19 +159,20 @@ def _failure(model: Model, landscape: Landscape, found: Found, wanted: int, most
     share = f"about {found.learned.probability:.1g} of all trials are accepted"
     if found.used is None and found.learned.best is None:
         return f"a search of {found.evaluations:,} trials found that {share}, but could not describe where they lie"
+    more = f"the part of the limit (-n) that a search may take, one in {_PART}" if left else "the limit (-n)"
     return (
-        f"a search of {found.evaluations:,} trials found that {share}, and {wanted:,} of them would take more than "
-        f"the {most:,} trials that are left"
+        f"a search of {found.evaluations:,} trials found that {share}, described badly where they lie, and gave up, "
+        f"as {wanted:,} of them would take more than {more},"
     )
 
 
-def accepted_blocks(model: Model, points: Floats, block: int, wants_inputs: Callable[[], bool]) -> Iterator[Block]:
-    """The trials at accepted points, evaluated and filtered like any others: no filter is taken for granted."""
+def accepted_blocks(model: Model, uniforms: Floats, block: int, wants_inputs: Callable[[], bool]) -> Iterator[Block]:
+    """The trials at accepted uniforms, evaluated and filtered like any others: no filter is taken for granted."""
     given = Given()
-    given.uniforms = uniforms_of(points)
+    given.uniforms = uniforms
     sampler = model.sampler(0, block, filler=given.filler)
     evaluator = model.program("numpy").evaluator(block)
     worker = Worker(sampler, evaluator, block, len(model.forecasts), model.fallible)
-    for start in range(0, len(points), block):
-        count = min(block, len(points) - start)
+    for start in range(0, len(uniforms), block):
+        count = min(block, len(uniforms) - start)
         yield worker.run(Task(start, count, prior=False, inputs=wants_inputs()))

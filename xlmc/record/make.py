@@ -209,6 +209,11 @@ def _rare(found: RareAccount) -> Section:
         Entry("components", "Normal distributions in the mixture", found.components),
         Entry("directions", "Directions that it was learned in", found.directions),
         Entry("dimensions", "Of the assumptions that are drawn", found.dimensions),
+        *(
+            (Entry("solved", "Assumptions that the filters were solved for", ", ".join(found.solved)),)
+            if found.solved
+            else ()
+        ),
         Entry("engine", "Engine of the search and of its trials", "numpy"),
         Entry("lost", "Trials of the search with errors in cells", found.lost),
         Entry("faulty", "Accepted trials with an error in a forecast", found.faulty),

@@ -56,6 +56,12 @@ class Draw:
         if not u.min(initial=np.inf) >= TINIEST:
             flush(u)
 
+    def reached(self, x: Floats) -> Floats:
+        """The uniforms, `(n,)`, of draws that are at most x, `(n,)`: the other way round than `fill`, where `fixed`."""
+        if self.cutoffs is None:
+            return self.family.cdf(x, *self.parameters)  # type: ignore[arg-type]  # numbers, where they are fixed
+        return Truncated(self.family).cdf(x, *self.cutoffs, *self.parameters)  # type: ignore[arg-type]  # likewise
+
     @property
     def fixed(self) -> bool:
         """Whether no parameter and no cutoff varies by trial."""
@@ -173,6 +179,11 @@ class Sampler:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Sampler, self._made_of
+
+    @property
+    def places(self) -> Mapping[str, int]:
+        """Key of an assumption -> its place among the uniforms that a filler fills in."""
+        return self._places
 
     @property
     def linear(self) -> Linear | None:

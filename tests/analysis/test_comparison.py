@@ -172,6 +172,13 @@ def test_nothing_accepted_is_undecided(linear):
     assert "too few are accepted" in verdict_text(found)[0]
 
 
+def test_a_forecast_without_numbers_is_not_called_a_want_of_accepted_trials(book):
+    model = book({"A1": 0.5, "B1": "=SQRT(-1-A1)"}, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"y": "B1"})
+    found = compare(model, model, "1", **SIZE)
+    assert "it is a number in none of the 20,000 trials that" in verdict_text(found)[0]
+    assert inputs_text(found) == ["1 assumption is drawn alike in both books."]
+
+
 def test_books_of_one_file_name_go_by_their_paths(linear):
     found = compare(linear(name="one/x.xlsx"), linear(name="two/x.xlsx"), "1", **SIZE)
     assert book_names(found) == (str(Path("one/x.xlsx")), str(Path("two/x.xlsx")))

@@ -11,6 +11,7 @@ from dataclasses import replace
 import pytest
 
 from xlmc.analysis import Verdict, compare, screen
+from xlmc.analysis.wording import undecided_text
 from xlmc.errors import SimulationError
 from xlmc.model import Model
 
@@ -249,3 +250,28 @@ def test_the_range_of_each_forecast_is_its_own(book):
 def test_a_tolerance_of_the_probability_out_of_its_range(weighted, chance):
     with pytest.raises(SimulationError, match="percentage points"):
         screen(weighted({"a": 1.0}), chance=chance, **SIZE)
+
+
+def test_a_forecast_without_numbers_judges_nothing(book):
+    """It is named; the others are judged without it. Where none has numbers there is nothing to say."""
+    cells = {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2/100", "B2": "=SQRT(-1-A1)"}
+    given = {name: {"cell": cell, "low": 0, "high": 1} for name, cell in (("a", "A1"), ("b", "A2"))}
+    found = screen(book(cells, given, {"y": "B1", "error": "B2"}), **SIZE)
+    assert found.valueless == ("error",)
+    assert [*found.tolerances] == ["y"]
+    assert found.joint.names == ("b",)
+    assert cost_of(found, "b").size < 1
+    with pytest.raises(SimulationError, match="no forecast is a number in two accepted trials"):
+        screen(book(cells, given, {"error": "B2"}), **SIZE)
+
+
+def test_why_a_change_is_undecided(book):
+    """Held at its base value it is an error; two trials tell no error: neither is as large as the tolerance."""
+    cells = {"A1": 0.5, "A2": 0.5, "B1": "=IF(A1=0.5,NA(),A1)+A2"}
+    given = {name: {"cell": cell, "low": 0, "high": 1} for name, cell in (("a", "A1"), ("b", "A2"))}
+    model = book(cells, given, {"y": "B1"})
+    assert undecided_text(cost_of(screen(model, **SIZE), "a"), 20_000) == "a ('y' is then hardly ever a number)"
+    few = screen(model, trials=2, seed=1).undecided
+    assert {undecided_text(cost, 2).partition(" (")[2] for cost in few if not cost.lost} == {
+        "too few trials are accepted)"
+    }

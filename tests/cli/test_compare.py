@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import openpyxl
@@ -44,6 +45,20 @@ def test_within(xlmc, books):
     assert "The simpler model, plain.xlsx, is enough for Speed to 0.5 mph." in outcome.out
     assert "rich.xlsx alone 0" in outcome.out
     assert "Wasserstein-1" in outcome.out
+
+
+def test_a_comparison_fits_80_columns_as_a_table(xlmc, books, monkeypatch):
+    """No number is cut, and none goes to a list, where a narrower space between the columns is enough."""
+    from xlmc.cli import printing, terminal
+
+    monkeypatch.setattr(terminal, "PIPE_WIDTH", 80)
+    monkeypatch.setattr(printing, "_PIPE_WIDTH", 80)
+    outcome = xlmc("compare", *books, "--tolerance", "0.5 mph", *QUICK)
+    lines = outcome.out.split("\n")
+    assert max(map(len, lines)) <= 80
+    (row,) = [line for line in lines if line.startswith(" mean ")]
+    assert re.fullmatch(r" mean {3,}\S+ ± \S+ +\S+ ± \S+ +\S+ ± \S+ +0\.5", row)
+    assert " Wasserstein-1 " in outcome.out
 
 
 def test_beyond_is_a_verdict_with_its_cause(xlmc, books):

@@ -55,6 +55,7 @@ def test_what_cannot_be_written_is_refused_before_anything_is_run(xlmc, command,
         (["-o", tmp_path / "found.html"], "must end in .xlsx"),
         (["--html", tmp_path / "found.xlsx"], "must end in .html"),
         (["--html", tmp_path / "nowhere" / "found.html"], "nowhere"),
+        (["-o", tmp_path / "both.html", "--html", tmp_path / "both.html"], "two outputs would be written to this file"),
     ):
         outcome = xlmc(*command, *given)
         assert outcome.code == 2

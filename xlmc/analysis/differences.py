@@ -62,7 +62,7 @@ class Difference:
         yield "lower end", self.low
         yield "upper end", self.high
         if self.above is not None:
-            yield f"P(> {self.threshold:g})", self.above
+            yield f"P(> {self.threshold:.15g})", self.above
 
     def tolerances(self, tolerance: float, chance: float | None) -> Mapping[str, float]:
         """Number -> its tolerance.
@@ -73,7 +73,9 @@ class Difference:
         """
         found = dict.fromkeys((name for name, _ in self.changes), tolerance)
         if self.above is not None:
-            found[f"P(> {self.threshold:g})"] = chance_tolerance(self.above.first.value) if chance is None else chance
+            found[f"P(> {self.threshold:.15g})"] = (
+                chance_tolerance(self.above.first.value) if chance is None else chance
+            )
         return found
 
 

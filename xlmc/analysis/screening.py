@@ -51,6 +51,9 @@ ACCEPTANCE_TOLERANCE: Final = 0.1
 SLICE: Final = 0.2
 """Of the prior, about the base value: wide enough to hold trials, narrow enough to stand for the value."""
 
+_FEWEST: Final = 2
+"""Values of a forecast: a standard deviation takes so many."""
+
 Floats = NDArray[np.float64]
 Told = Callable[[str], None]
 
@@ -73,6 +76,15 @@ class Cost:
     judgement: Judgement
     size: float
 
+    @property
+    def lost(self) -> tuple[str, ...]:
+        """The forecasts that are then a number in too few accepted trials."""
+        return tuple(
+            name
+            for name, each in self.forecasts.items()
+            if any(np.isnan(change.difference.value) for _, change in each.changes)
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Expected:
@@ -93,6 +105,7 @@ class Screening:
         acceptance_tolerance: relative.
         idle: assumptions that no forecast or filter needs.
         baseless: assumptions without a base value, which cannot be held.
+        valueless: forecasts that are a number in fewer than two accepted trials, which judge nothing.
         expected: the cheap ranking, the cheapest first.
         single: each assumption held alone, in that order.
         joint: those that may be held together, in one run; None where there are none.
@@ -112,6 +125,7 @@ class Screening:
     acceptance_tolerance: float
     idle: tuple[str, ...]
     baseless: tuple[str, ...]
+    valueless: tuple[str, ...]
     expected: tuple[Expected, ...]
     single: tuple[Cost, ...]
     joint: Cost | None
@@ -170,7 +184,8 @@ def screen(
         told: called before every run with what it is for.
 
     Raises:
-        SimulationError: an argument is out of its range, no name fits a set, or fewer than two trials are accepted.
+        SimulationError: an argument is out of its range, no name fits a set, or fewer than two trials are accepted, or
+            give a number for any forecast.
     """
     if not acceptance_tolerance > 0.0:
         message = f"the tolerance of the acceptance is {acceptance_tolerance:g}"
@@ -202,8 +217,12 @@ class _Screen:
         self._run, self._chance, self._acceptance_tolerance = run, chance, acceptance_tolerance
         self._engine, self._jobs, self._tell = engine, jobs, tell
         self._accepted = {f.name: Accepted.of(run.trial_index, run.forecasts[f.name]) for f in run.model.forecasts}
-        deviations = {name: _deviation(held) for name, held in self._accepted.items()}
-        self._tolerances = {f.name: stated.of(f, deviations[f.name]) for f in run.model.forecasts}
+        self._judged = [f for f in run.model.forecasts if self._accepted[f.name].m >= _FEWEST]
+        self._valueless = tuple(f.name for f in run.model.forecasts if f not in self._judged)
+        if not self._judged:
+            message = "no forecast is a number in two accepted trials or more"
+            raise SimulationError(message, hint="xlmc simulate tells in which cells the trials are lost to errors")
+        self._tolerances = {f.name: stated.of(f, _deviation(self._accepted[f.name])) for f in self._judged}
         self._runs = 1
 
     def screening(self, sets: Sequence[tuple[str, ...]]) -> Screening:
@@ -228,6 +247,7 @@ class _Screen:
             chance=self._chance,
             acceptance_tolerance=self._acceptance_tolerance,
             idle=tuple(a.name for a in model.scene.idle),
+            valueless=self._valueless,
             baseless=tuple(a.name for a in model.live if a.base is None),
             expected=tuple(expected),
             single=single,
@@ -260,7 +280,7 @@ class _Screen:
             f.name: difference(
                 self._accepted[f.name], Accepted.of(run.trial_index, run.forecasts[f.name]), f.central, f.threshold
             )
-            for f in self._run.model.forecasts
+            for f in self._judged
         }
         limits = {name: each.tolerances(self._tolerances[name][0], self._chance) for name, each in found.items()}
         sizes = {
@@ -306,7 +326,7 @@ class _Screen:
             return float("inf")
         share = float(near.mean() / np.mean(np.abs(prior - base) <= width))
         sizes = [abs(share - 1.0) / self._acceptance_tolerance]
-        for forecast in self._run.model.forecasts:
+        for forecast in self._judged:
             values, tolerance = self._run.forecasts[forecast.name][: drawn.size], self._tolerances[forecast.name][0]
             sizes.append(_moved(values, near, forecast, tolerance, self._chance))
         return max(sizes)

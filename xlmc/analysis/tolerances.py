@@ -58,11 +58,13 @@ class Judgement:
         largest: of the numbers that make the verdict, the one that is farthest off, measured in its tolerance.
         times: how many times the trials would decide, about, and at most 9, for the difference itself is a guess as
             yet; 1 where they have, infinite where the difference is as large as the tolerance.
+        blind: whether too few trials are there to know the error of a number that makes the verdict.
     """
 
     verdict: Verdict
     largest: str
     times: float = 1.0
+    blind: bool = False
 
 
 def judge(differences: Mapping[str, tuple[Estimate, float]]) -> Judgement:
@@ -79,13 +81,15 @@ def judge(differences: Mapping[str, tuple[Estimate, float]]) -> Judgement:
         names = [name for name, (found, _) in single.items() if found is verdict]
         if names:
             largest = max(names, key=lambda name: in_tolerances(*differences[name]))
-            return Judgement(verdict, largest, max(single[name][1] for name in names))
+            blind = any(_is_blind(differences[name][0]) for name in names)
+            return Judgement(verdict, largest, max(single[name][1] for name in names), blind)
     raise ValueError("there is no difference to judge")
 
 
 def _judge(difference: Estimate, tolerance: float) -> tuple[Verdict, float]:
-    if math.isnan(difference.value) or difference.error is None:
+    if _is_blind(difference):
         return Verdict.UNDECIDED, math.inf
+    assert difference.error is not None
     size, margin = abs(difference.value), CERTAINTY * difference.error
     if size + margin <= tolerance:
         return Verdict.WITHIN, 1.0
@@ -95,6 +99,10 @@ def _judge(difference: Estimate, tolerance: float) -> tuple[Verdict, float]:
         return Verdict.UNDECIDED, math.inf
     # How near it is to the tolerance is known to an error only: nearer than that may be chance.
     return Verdict.UNDECIDED, (margin / max(abs(tolerance - size), difference.error)) ** 2
+
+
+def _is_blind(difference: Estimate) -> bool:
+    return math.isnan(difference.value) or difference.error is None
 
 
 def in_tolerances(difference: Estimate, tolerance: float) -> float:

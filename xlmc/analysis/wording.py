@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
 
 from xlmc.analysis.comparison import Cause, Comparison, ForecastComparison
 from xlmc.analysis.screening import Cost
@@ -89,11 +92,25 @@ def _undecided(comparison: Comparison) -> Iterator[str]:
         change = dict(each.difference.changes)[each.judgement.largest]
         start = f"Undecided for {_name(each)} at {comparison.first.trials:,} trials"
         if math.isnan(change.difference.value) or change.difference.error is None:
-            yield f"{start}: too few are accepted."
+            yield f"{start}: {_too_few(comparison, each)}."
             continue
         number = _differs(each, each.judgement.largest, change.difference)
         more = _more(each.judgement, comparison)
         yield f"{start}: {number}, too near to the tolerance of {_tolerance(each)}; {more}."
+
+
+def _too_few(comparison: Comparison, each: ForecastComparison) -> str:
+    runs = ((comparison.first, each.first.name), (comparison.second, each.second.name))
+    for book, (run, name) in zip(book_names(comparison), runs, strict=True):
+        numbers = int(np.count_nonzero(~np.isnan(run.forecasts[name])))
+        if numbers < run.accepted and numbers < _ENOUGH:
+            count = "none" if not numbers else f"only {numbers}"
+            return f"it is a number in {count} of the {run.accepted:,} trials that {book} accepts"
+    return "too few are accepted"
+
+
+_ENOUGH: Final = 100
+"""Numbers from which on it is not for want of them that an error is not known."""
 
 
 def _more(judgement: Judgement, comparison: Comparison) -> str:
@@ -111,7 +128,8 @@ def _two_digits(trials: float) -> str:
 def inputs_text(comparison: Comparison) -> list[str]:
     """Which assumptions and filters the books share, and which they do not."""
     inputs, books = comparison.inputs, book_names(comparison)
-    lines = [f"{len(inputs.alike)} assumptions are drawn alike in both books."]
+    alike = len(inputs.alike)
+    lines = [f"{alike} assumption{' is' if alike == 1 else 's are'} drawn alike in both books."]
     lines += [f"{u.name!r} is not the same: {u.first} | {u.second}." for u in (*inputs.unlike, *inputs.held)]
     for book, drawn, filters, unpaired in zip(books, inputs.drawn, inputs.filters, comparison.unpaired, strict=True):
         for what, names in (("Drawn", drawn), ("Filters", filters), ("Forecasts", unpaired)):
@@ -123,6 +141,10 @@ def inputs_text(comparison: Comparison) -> list[str]:
 def undecided_text(cost: Cost, trials: int) -> str:
     """A change that is undecided, and what would decide it: `Weight (about 260,000 trials would decide)`."""
     names = ", ".join(cost.names)
+    if cost.lost:
+        return f"{names} ({_listed([repr(name) for name in cost.lost])} is then hardly ever a number)"
+    if cost.judgement.blind:
+        return f"{names} (too few trials are accepted)"
     if math.isinf(cost.judgement.times):
         return f"{names} (as large as the tolerance)"
     return f"{names} (about {_two_digits(cost.judgement.times * trials)} trials would decide)"
@@ -154,6 +176,8 @@ def points(share: float) -> str:
 
 def amount(number: str, estimate: Estimate, units: str) -> str:
     """A number, or a difference of it, with its error: of a probability in percentage points."""
+    if math.isnan(estimate.value):
+        return "no number"
     if is_chance(number):
         scaled = None if estimate.error is None else 100 * estimate.error
         return f"{format_estimate(100 * estimate.value, scaled)} points"

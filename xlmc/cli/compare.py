@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -66,6 +67,7 @@ def compare(
 ) -> None:
     """Run FIRST and SECOND over the same trials, and say whether the simpler one is enough."""
     from xlmc import analysis
+    from xlmc.analysis.wording import book_names
     from xlmc.cli.printing import telling, warnings
     from xlmc.model import load
     from xlmc.report.told_files import Files
@@ -94,7 +96,8 @@ def compare(
         show([told_of.below, *told_of.blocks])
         for path in written:
             say(f"Written: {path}")
-    doubts = [f"{run.model.path.name}: {warning}" for run in (found.first, found.second) for warning in run.warnings]
+    runs = zip(book_names(found), (found.first, found.second), strict=True)
+    doubts = [f"{name}: {warning}" for name, run in runs for warning in run.warnings]
     warnings(doubts)
     if doubts or found.of(analysis.Verdict.UNDECIDED):
         raise click.exceptions.Exit(UNDECIDED)
@@ -155,7 +158,7 @@ def _title(each: ForecastComparison) -> str:
 
 
 def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
-    from xlmc.analysis.wording import amount, is_chance, points
+    from xlmc.analysis.wording import amount, is_chance
     from xlmc.report.summary import estimate_text, percent
 
     found = each.difference
@@ -165,10 +168,10 @@ def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
         if is_chance(number):
             shares = [amount(number, one, "") for one in (change.first, change.second, change.difference)]
             values = [share.removesuffix(" points") for share in shares]
-            rows.append((f"{label}, %", *values, points(each.limits[number])))
+            rows.append((f"{label}, %", *values, f"{100 * each.limits[number]:.3g}"))
         else:
             values = [estimate_text(estimate) for estimate in (change.first, change.second, change.difference)]
-            rows.append((label, *values, f"{each.tolerance:.4g}"))
+            rows.append((label, *values, "" if isnan(each.tolerance) else f"{each.tolerance:.4g}"))
     rows.append(("Wasserstein-1", "", "", estimate_text(found.wasserstein), ""))
     rows.append(("Kolmogorov", "", "", estimate_text(found.kolmogorov), ""))
     return rows

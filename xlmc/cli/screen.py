@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -116,7 +117,7 @@ def _told(found: Screening) -> Told:
 
 
 def _tables(found: Screening) -> Iterator[Block]:
-    expected = [f"{each.size:.2g}" for each in found.expected]
+    expected = [_size(each.size) for each in found.expected]
     title = "Each assumption held at its base value, the least expected cost first"
     yield _table(title, found.single, ("Held", _names(found.single)), ("Expected", expected))
     if found.sets:
@@ -136,13 +137,18 @@ def _table(title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]])
     rows = tuple(
         (
             *(column[place] for _, column in first),
-            f"{cost.size:.2g}",
+            "no number" if cost.lost else _size(cost.size),
             _percent(cost),
             cost.judgement.verdict.value,
         )
         for place, cost in enumerate(costs)
     )
     return Table(title, (*headings, "Verdict"), rows, tuple(range(1, len(headings))))
+
+
+def _size(tolerances: float) -> str:
+    """A move in tolerances: infinite beside the tolerance of a forecast that does not vary."""
+    return f"{tolerances:.2g}" if isfinite(tolerances) else "infinite"
 
 
 def _of_forecast(found: Screening, name: str) -> Table:
@@ -155,7 +161,14 @@ def _of_forecast(found: Screening, name: str) -> Table:
     for cost in (*found.single, *found.sets, *found.filters):
         number, size = _most_moved(found, cost, name)
         change = dict(cost.forecasts[name].changes)[number]
-        rows.append((", ".join(cost.names), number, amount(number, change.difference, ""), f"{size:.2g}"))
+        rows.append(
+            (
+                ", ".join(cost.names),
+                number,
+                amount(number, change.difference, ""),
+                "" if name in cost.lost else _size(size),
+            )
+        )
     title = f"{name}{f', {units}' if units else ''}: what each moves most"
     return Table(title, ("Held or left out", "Number", "Moves by", "Tolerances"), tuple(rows), (2, 3))
 
@@ -208,6 +221,11 @@ def _verdicts(found: Screening) -> Iterable[str]:
         yield f"Within the tolerance alone, but not surely together with those: {'; '.join(found.only_alone)}."
     if found.idle:
         yield f"No forecast or filter needs {'; '.join(found.idle)}."
+    if found.valueless:
+        yield (
+            f"Not judged, with a number in fewer than two accepted trials: {'; '.join(found.valueless)}. What these "
+            "forecasts need is not known."
+        )
     if found.baseless:
         yield f"Not screened, for their cells are blank: {'; '.join(found.baseless)}."
     if found.reduced:
@@ -252,6 +270,7 @@ def _as_json(found: Screening) -> dict[str, object]:
         "acceptance_tolerance": found.acceptance_tolerance,
         "not_needed_by_any_cell": found.idle,
         "without_base_value": found.baseless,
+        "forecasts_without_numbers": found.valueless,
         "held_alone": [_entry(cost, found) for cost in found.single],
         "held_together": None if found.joint is None else _entry(found.joint, found),
         "held_as_asked": [_entry(cost, found) for cost in found.sets],

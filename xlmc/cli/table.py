@@ -9,8 +9,10 @@ from typing import Final
 
 __all__ = ["laid_out"]
 
-_GAP: Final = "   "
-_LEAST: Final = 12
+_GAPS: Final = ("   ", "  ")
+"""Between columns: the narrower one where the wider one would cut something."""
+
+_LEAST: Final = 13
 """Columns of text are not made narrower than this to make room."""
 
 
@@ -52,20 +54,21 @@ def laid_out(
         _Column(_words(heading), [_pieces(row[place], place in right) for row in rows], place in right)
         for place, heading in enumerate(headings)
     ]
-    widths = _widths(columns, width)
-    if widths is None:
-        yield from _listed(headings, rows, width)
-        return
-    yield from _lines([column.heading for column in columns], columns, widths)
-    yield " " + rule * (sum(widths) + len(_GAP) * (len(widths) - 1))
-    for place in range(len(rows)):
-        yield from _lines([column.cells[place] for column in columns], columns, widths)
+    for gap in _GAPS:
+        widths = _widths(columns, width, gap)
+        if widths is not None:
+            yield from _lines([column.heading for column in columns], columns, widths, gap)
+            yield " " + rule * (sum(widths) + len(gap) * (len(widths) - 1))
+            for place in range(len(rows)):
+                yield from _lines([column.cells[place] for column in columns], columns, widths, gap)
+            return
+    yield from _listed(headings, rows, width)
 
 
-def _widths(columns: Sequence[_Column], width: int) -> list[int] | None:
+def _widths(columns: Sequence[_Column], width: int, gap: str) -> list[int] | None:
     """Of each column; None where they cannot be made narrow enough."""
     widths = [column.natural for column in columns]
-    room = width - 2 - len(_GAP) * (len(columns) - 1)
+    room = width - 2 - len(gap) * (len(columns) - 1)
     least = [column.least for column in columns]
     if sum(least) > room:
         return None
@@ -75,11 +78,11 @@ def _widths(columns: Sequence[_Column], width: int) -> list[int] | None:
     return widths
 
 
-def _lines(cells: Sequence[list[str]], columns: Sequence[_Column], widths: Sequence[int]) -> Iterator[str]:
+def _lines(cells: Sequence[list[str]], columns: Sequence[_Column], widths: Sequence[int], gap: str) -> Iterator[str]:
     wrapped = [_wrapped(pieces, width) for pieces, width in zip(cells, widths, strict=True)]
     for parts in zip_longest(*wrapped, fillvalue=""):
         filled = (_filled(part, width, column) for part, width, column in zip(parts, widths, columns, strict=True))
-        yield f" {_GAP.join(filled)}".rstrip()
+        yield f" {gap.join(filled)}".rstrip()
 
 
 def _filled(text: str, width: int, column: _Column) -> str:

@@ -93,6 +93,7 @@ table { border-collapse: collapse; font-size: 13px; }
 th { background: #1F3044; color: #fff; font-weight: 600; text-align: right; padding: .35em .6em; }
 td { border-bottom: 1px solid #D5DBE3; padding: .3em .6em; text-align: right; font-variant-numeric: tabular-nums; }
 th.left, td.left { text-align: left; }
+td:not(.left) { white-space: nowrap; }
 @media print {
   body { margin: 0; max-width: none; font-size: 11px; }
   table { font-size: 9px; }

@@ -26,7 +26,7 @@ class Files:
     """
 
     def __init__(self, output: Path | None, html: Path | None, sources: Sequence[Path], *, overwrite: bool) -> None:
-        self._endings = {path: ending for path, ending in ((output, ".xlsx"), (html, ".html")) if path is not None}
+        self._endings = [(path, ending) for path, ending in ((output, ".xlsx"), (html, ".html")) if path is not None]
         self._sources, self._overwrite = sources, overwrite
 
     def check(self) -> None:
@@ -37,8 +37,8 @@ class Files:
             WorkbookError: an ending is another, a folder is not there, a file is a workbook that is studied, or is
                 named twice.
         """
-        refuse_same_file(list(self._endings))
-        for path, ending in self._endings.items():
+        refuse_same_file([path for path, _ in self._endings])
+        for path, ending in self._endings:
             if path.suffix.casefold() != ending:
                 kind = "the sheet" if ending == ".xlsx" else "the page"
                 raise WorkbookError(
@@ -59,11 +59,11 @@ class Files:
             WorkbookError: it cannot be written.
         """
         name = self._sources[0].name
-        for path, ending in self._endings.items():
+        for path, ending in self._endings:
             if ending == ".html":
                 content = sealed_text(page(told).encode(), ending, name)
             else:
                 parts = read_parts(book(told, sheet))
                 content = package_bytes(sealed_parts(parts, "xl/worksheets/sheet1.xml", name))
             write_workbook(path, content, self._target(path).check)
-        return list(self._endings)
+        return [path for path, _ in self._endings]

@@ -136,6 +136,25 @@ def test_a_correlation_out_of_reach_is_named_with_what_is_attainable(book):
     assert met.accepted.value == pytest.approx(0.52, abs=0.01)
 
 
+def test_a_rare_yes_no_is_named_too(book):
+    given = {**MIXED, "A2": {"cell": "A2", "distribution": "Yes-No", "probability": 0.0001}}
+    model = book({"A1": 1.0, "A2": 1.0, "B1": "=A1+A2"}, given, {"x": "B1"}, correlations={("A1", "A2"): 0.9})
+    [notice] = [each for each in model.notices if "rank correlation" in each.message]
+    assert "0.0173 is the most that any two can have; they are drawn with that" in notice.message
+
+
+def test_what_is_drawn_beside_other_correlations_is_said_and_why(book):
+    """Both alone are attainable; it is the copula that cannot join them to two that have none between them."""
+    given = {**MIXED, "A3": {"cell": "A3", **UNIT}}
+    asked = {("A1", "A2"): 0.9, ("A2", "A3"): 0.5}
+    model = book({"A1": 1.0, "A2": 1.0, "A3": 1.0, "B1": "=A1+A2+A3"}, given, {"x": "B1"}, correlations=asked)
+    first, second = [each.message for each in model.notices if "orrelation" in each.message]
+    drawn = used(model.groups, "A1", "A2")
+    assert drawn < 0.5
+    assert f"they are drawn with {drawn:.3g}, for the other correlations leave no more" in first
+    assert "cannot all be drawn at once in the one way that xlmc has, a Gaussian copula" in second
+
+
 def test_what_varying_parameters_leave_open_is_said(book):
     given = {**MIXED, "A2": {"cell": "A2", "distribution": "Yes-No", "probability": "A3"}, "A3": {"cell": "A3", **UNIT}}
     cells = {"A1": 1.0, "A2": 1.0, "A3": 0.5, "B1": "=A1+A2"}

@@ -16,6 +16,9 @@ from xlmc.sampling.ties import ties_of
 
 __all__ = ["CHANGED", "correlated_groups", "repair_notices", "tie_notices", "used"]
 
+_ROUNDING = 1e-9
+"""An eigenvalue so little below 0 is one of 0."""
+
 CHANGED = 5e-4
 """A correlation that moved by less is the one that was asked for: three decimals say all there is to say."""
 
@@ -79,7 +82,7 @@ def tie_notices(
         i, j = (group.names.index(name) for name in pair)
         wanted = float(group.copula.wanted[i, j])
         if abs(wanted - row.value) >= CHANGED:
-            yield _out_of_reach(row, wanted)
+            yield _out_of_reach(row, wanted, float(group.copula.spearman[i, j]))
         vary = [each for name, each in zip(pair, (row.first, row.second), strict=True) if _takes_few(how[name])]
         if vary:
             message = (
@@ -94,11 +97,12 @@ def _takes_few(draw: Draw) -> bool:
     return isinstance(draw.family, WholeNumbers) and not draw.fixed
 
 
-def _out_of_reach(row: Correlation, wanted: float) -> Notice:
+def _out_of_reach(row: Correlation, wanted: float, drawn: float) -> Notice:
+    used = "that" if abs(drawn - wanted) < CHANGED else f"{drawn:.3g}, for the other correlations leave no more"
     message = (
         f"{row.first!r} and {row.second!r} cannot have the rank correlation {row.value:g}: equal draws share ranks, "
-        f"and with the few values that one of them takes, {wanted:.2f} is the {'most' if row.value > 0 else 'least'} "
-        "that any two can have; they are drawn with that"
+        f"and with the few values that one of them takes, {wanted:.3g} is the {'most' if row.value > 0 else 'least'} "
+        f"that any two can have; they are drawn with {used}"
     )
     return Notice(message, row.row)
 
@@ -131,10 +135,14 @@ def _repair(group: CorrelatedGroup, asked: dict[frozenset[str], Correlation], sp
     changes.sort()
     told = [text for change, text in changes if -change >= CHANGED] or [changes[0][1]]
     rows = [row.row for pair, row in asked.items() if pair <= set(group.names)]
-    message = (
-        "no assumptions can have all of these correlations at once, so the nearest ones that they can have are used; "
-        f"the largest change is {-changes[0][0]:.2g}: {'; '.join(told)}"
+    never = np.linalg.eigvalsh(group.copula.wanted)[0] < -_ROUNDING
+    why = (
+        "no assumptions can have all of these correlations at once, so the nearest ones that they can have are used"
+        if never
+        else "these correlations cannot all be drawn at once in the one way that xlmc has, a Gaussian copula, so the "
+        "nearest ones that can are used"
     )
+    message = f"{why}; the largest change is {-changes[0][0]:.2g}: {'; '.join(told)}"
     return Notice(message, rows[0])
 
 

@@ -86,6 +86,8 @@ def test_solved_parameters_that_contradict_each_other_are_repaired():
         ("Yes-No", (0.1,), [0.9]),
         ("Binomial", (0.5, 2.0), [0.25, 0.75]),
         ("Discrete Uniform", (1.0, 4.0), [0.25, 0.5, 0.75]),
+        ("Yes-No", (0.0001,), [0.9999]),
+        ("Yes-No", (1 - 1e-9,), [1e-9]),
     ],
 )
 def test_the_values_of_a_draw(name, parameters, cuts):

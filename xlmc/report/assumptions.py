@@ -46,9 +46,9 @@ STRATIFIED = (
 )
 
 _CORRELATIONS = (
-    "Asked for and drawn with: before filtering. They differ where no assumptions can have all the correlations that "
-    "were asked for, or where one takes so few values that ties allow less. Filters change correlations as they change "
-    "assumptions: beside them stand those of the accepted trials."
+    "Asked for and drawn with: before filtering. They differ where the correlations that were asked for cannot all "
+    "be drawn at once, or where one takes so few values that ties allow less. Filters change correlations as they "
+    "change assumptions: beside them stand those of the accepted trials."
 )
 
 

@@ -27,7 +27,13 @@ __all__ = ["Ties", "bounds", "parameter", "spearman", "ties_of"]
 Floats = NDArray[np.float64]
 
 _GRID: Final = 4096
-"""Places at which a draw is looked at: a value less probable than 1/4096 is none that matters."""
+"""Places at which a draw is looked at."""
+
+_FEW: Final = 512
+"""Changes of value at these places: with no more of them the ends are looked at as well, where rare values lie."""
+
+_ENDS: Final = 0.5 ** np.arange(13, 50)
+"""Probabilities beyond the first and the last of these places."""
 
 _NEGLIGIBLE: Final = 1e-4
 """Of the variance of ranks, that ties take away: the correlation differs by less than half of that."""
@@ -83,7 +89,11 @@ def ties_of(draw: Draw) -> Ties | None:
     u = (np.arange(_GRID) + 0.5) / _GRID
     found = _filled(draw, u)
     new = np.flatnonzero(found[1:] != found[:-1])
-    if new.size in (0, _GRID - 1):
+    if new.size <= _FEW:
+        u = np.concatenate([_ENDS[::-1], u, 1 - _ENDS])
+        found = _filled(draw, u)
+        new = np.flatnonzero(found[1:] != found[:-1])
+    if new.size in (0, u.size - 1):
         return None
     ties = Ties(_coarse(_cuts(draw, u, found, new)))
     return ties if np.sum(ties.chances**3) > _NEGLIGIBLE else None

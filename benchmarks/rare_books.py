@@ -1,13 +1,13 @@
-"""Twenty small books with rare acceptance whose probability is known exactly, for rare_regions.py.
+"""Small books with rare acceptance whose probability is known exactly, for rare_regions.py and rare_thin.py.
 
 Twelve have their accepted trials in several regions: branches of other scales, two curved layers, a switch. Eight are
-ordinary: one region. The probabilities lie between 10⁻⁷ and 10⁻⁵.
+ordinary: one region. The probabilities lie between 10⁻⁷ and 10⁻⁵. Eleven more ask for a thin bent layer.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ from xlmc.definitions import Assumption, Correlation, Definitions, Filter, Forec
 from xlmc.model import Model
 from xlmc.workbook.model import CellContent, Formula, Sheet, Workbook
 
-__all__ = ["ORDINARY", "SEVERAL", "RareBook"]
+__all__ = ["ORDINARY", "SEVERAL", "THIN", "RareBook"]
 
 SHEET = "Model"
 
@@ -36,6 +36,7 @@ class RareBook:
         limits: of the filter; none where B1 must be TRUE.
         truth: the probability that a trial is accepted.
         correlation: of every pair of assumptions.
+        further: filters beside it, in B2 and so on: a formula and limits each.
     """
 
     words: str
@@ -44,6 +45,7 @@ class RareBook:
     limits: Mapping[str, float]
     truth: float
     correlation: float = field(default=0.0)
+    further: tuple[tuple[str, Mapping[str, float]], ...] = field(default=())
 
     @property
     def model(self) -> Model:
@@ -51,7 +53,11 @@ class RareBook:
         names = [f"A{place}" for place in range(1, len(self.drawn) + 1)]
         cells = {parse_address(name, SHEET): CellContent(1.0) for name in names}
         judged = parse_address("B1", SHEET)
-        cells[judged] = CellContent(None, Formula(self.formula, judged.row, judged.column))
+        filters = [
+            (parse_address(f"B{row}", SHEET), *each)
+            for row, each in enumerate([(self.formula, self.limits), *self.further], 1)
+        ]
+        cells |= {cell: CellContent(None, Formula(text, cell.row, cell.column)) for cell, text, _ in filters}
         sheet = Sheet(SHEET, "xl/worksheets/sheet1.xml", {(c.row, c.column): held for c, held in cells.items()})
         book = Workbook("book.xlsx", {SHEET: sheet}, (), ())
         places = [parse_address(name, SHEET) for name in names]
@@ -68,10 +74,12 @@ class RareBook:
         )
         pairs = [(a.name, b.name) for i, a in enumerate(assumptions) for b in assumptions[i + 1 :]]
         asked = tuple(Correlation(*pair, self.correlation, judged) for pair in pairs if self.correlation)
-        kept = Filter("judged", judged, judged, **dict(self.limits))
-        return Model(
-            book, Definitions(assumptions, (Forecast("x", places[0], places[0]),), (kept,), asked), Path("b.xlsx")
+        kept = tuple(
+            Filter("judged" if cell == judged else f"judged {cell.a1}", cell, cell, **dict(limits))
+            for cell, _, limits in filters
         )
+        forecasts = (Forecast("x", places[0], places[0]),)
+        return Model(book, Definitions(assumptions, forecasts, kept, asked), Path("b.xlsx"))
 
 
 def normal(mean: float = 0.0, spread: float = 1.0) -> dict[str, Any]:
@@ -242,3 +250,108 @@ ORDINARY: dict[str, RareBook] = {
     ),
 }
 """One region."""
+
+
+def density(x: float) -> float:
+    """Of a standard normal."""
+    return math.exp(-0.5 * x * x) / math.sqrt(2.0 * math.pi)
+
+
+def integral(of: Callable[[float], float], low: float, high: float) -> float:
+    """To ten digits."""
+    return float(integrate.quad(of, low, high, epsabs=0.0, epsrel=1e-10, limit=400)[0])
+
+
+def parabola(half: float) -> float:
+    """P(|x - y²/4| ≤ half) of standard normals, for a half below 10⁻³: exact but for terms of the order of half³."""
+    return 2.0 * half * integral(lambda y: density(y) * density(y * y / 4.0), -9.0, 9.0)
+
+
+def within(half: float) -> dict[str, float]:
+    """Limits either side of 0."""
+    return {"at_least": -half, "at_most": half}
+
+
+def flat(low: float, high: float) -> dict[str, Any]:
+    """A uniform."""
+    return {"distribution": "Uniform", "low": low, "high": high}
+
+
+def momentum(half: float) -> float:
+    """P(|1500 a + 1200 b - 2700 c| ≤ half): a and b normal, means of 20 and 15, spreads of 2, c from 10 to 25."""
+    mean, spread = (1500 * 20 + 1200 * 15) / 2700, math.hypot(1500 * 2, 1200 * 2) / 2700
+    return 2.0 * half / 2700 / 15 * float(ndtr((25 - mean) / spread) - ndtr((10 - mean) / spread))
+
+
+def two_layers(half: float) -> float:
+    """P(|x + y·z - 1| ≤ half, |x - 2z| ≤ half), x and y standard normals, z from 0.5 to 2."""
+    return 4.0 * half**2 * integral(lambda z: density(2 * z) * density((1 - 2 * z) / z) / z / 1.5, 0.5, 2.0)
+
+
+PARABOLA = "A1-A2^2/4"
+
+THIN: dict[str, RareBook] = {
+    "1e-3": RareBook(
+        "a bent layer of 10⁻³ beside an ordinary rare filter",
+        PARABOLA,
+        (normal(),) * 3,
+        within(5e-4),
+        parabola(5e-4) * tail(2.9),
+        further=(("A3", {"at_least": 2.9}),),
+    ),
+    "1e-5": RareBook("a bent layer of 10⁻⁵", PARABOLA, (normal(),) * 2, within(5e-6), parabola(5e-6)),
+    "1e-8": RareBook("a bent layer of 10⁻⁸", PARABOLA, (normal(),) * 2, within(5e-9), parabola(5e-9)),
+    "product": RareBook(
+        "a product and a third one",
+        "A1*A2-A3",
+        (normal(),) * 3,
+        within(1e-6),
+        2e-6 * density(0.0) * integral(lambda y: density(y) / math.hypot(1.0, y), -9.0, 9.0),
+    ),
+    "momentum": RareBook(
+        "a balance of momentum",
+        "1500*A1+1200*A2-2700*A3",
+        (normal(20.0, 2.0), normal(15.0, 2.0), flat(10.0, 25.0)),
+        within(0.01),
+        momentum(0.01),
+    ),
+    "rows": RareBook(
+        "a layer between two rows",
+        PARABOLA,
+        (normal(),) * 2,
+        NON_NEGATIVE,
+        parabola(5e-6),
+        further=((PARABOLA, {"at_most": 1e-5}),),
+    ),
+    "branch": RareBook(
+        "a layer in a branch of IF",
+        "IF(A3=1,ABS(A1-A2^2/4)<=0.000002,A1>=4.9)",
+        (normal(), normal(), coin()),
+        {},
+        0.5 * parabola(2e-6) + 0.5 * tail(4.9),
+    ),
+    "bound": RareBook(
+        "a layer across the bound of a uniform",
+        "A1-1+0.000002*A2",
+        (UNIT, normal()),
+        within(2e-6),
+        2e-6,
+    ),
+    "sheets": RareBook(
+        "two disjoint sheets",
+        "A1^2-A2",
+        (normal(), flat(1.0, 4.0)),
+        within(1e-6),
+        2e-6 / 3.0 * integral(lambda y: density(math.sqrt(y)) / math.sqrt(y), 1.0, 4.0),
+    ),
+    "two layers": RareBook(
+        "two layers at once",
+        "A1+A2*A3-1",
+        (normal(), normal(), flat(0.5, 2.0)),
+        within(5e-4),
+        two_layers(5e-4),
+        further=(("A1-2*A3", within(5e-4)),),
+    ),
+    "ring": RareBook("a ring", "SQRT(A1^2+A2^2)-5", (normal(),) * 2, within(1e-7), 10.0 * 1e-7 * math.exp(-12.5)),
+}
+"""Thin bent layers."""

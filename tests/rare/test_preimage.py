@@ -82,6 +82,16 @@ def test_powers(power, ends):
     check(preimage.powered(Spans.between(np.array([low]), np.array([high])), power), values, low, high)
 
 
+@given(ends=st.tuples(ENDS, ENDS), of=st.tuples(*[st.sampled_from([-2.5, -1.0, 0.0, 0.5, 1.0, 3.0])] * 4))
+def test_ratios_of_lines(ends, of):
+    low, high = min(ends), max(ends)
+    a, b, c, d = of
+    with np.errstate(all="ignore"):
+        values = (a + b * ARGUMENTS) / (c + d * ARGUMENTS)
+    spans = Spans.between(np.array([low]), np.array([high]))
+    check(preimage.ratio(spans, *(np.array([each]) for each in of)), values, low, high)
+
+
 def test_pieces_are_in_order_and_apart():
     ends = [([4.0], [5.0]), ([1.0], [2.0]), ([1.5], [3.0]), ([9.0], [8.0]), ([math.nan], [1.0])]
     found = pieces([(np.array(low), np.array(high)) for low, high in ends])

@@ -3,5 +3,6 @@
 `switches` divides the trials into ways, `splitting` finds the accepted region in each, `learning` describes it by a
 mixture of normal distributions, `equalising` draws from that and keeps independent trials of equal weight: the same
 sample as plain rejection, from fewer trials. These know of a distance in standard normals only; `landscape` makes that
-of a model, `deciding` says when, `searching` joins both. docs/rare-acceptance.md says why so, and how it was tested.
+of a model, `layered` turns thin bent layers in it into tails, `deciding` says when, `searching` joins all.
+docs/rare-acceptance.md says why so, and how it was tested.
 """

@@ -1,8 +1,9 @@
 """Formulas walked back to one assumption: what it must be, all others given, for the filters to hold.
 
 The assumption occurs once on the way from a comparison, below operations that can be undone; or the value is
-a + b·assumption, however often it occurs. The parts that do not depend on it are computed as any formula is. Where a
-comparison cannot be undone, it is left out: what is found then holds more than the accepted values, never less.
+a + b·assumption, or a ratio of two such, however often it occurs. The parts that do not depend on it are computed as
+any formula is. Where a comparison cannot be undone, it is left out: what is found then holds more than the accepted
+values, never less.
 """
 
 from __future__ import annotations
@@ -165,6 +166,8 @@ class Inverting:
 
     def _of_two(self, operator: str, left: ir.Expression, right: ir.Expression, cell: Cell) -> Undo | None:
         if self._depends(left) and self._depends(right):
+            if operator == "/":
+                return self._ratio(left, right, cell)
             return self._straight(ir.Binary(operator, left, right), cell)
         if operator == "^" and isinstance(right, ir.Number):
             return self._power(left, right.value, cell)
@@ -237,6 +240,15 @@ class Inverting:
             return preimage.factor(preimage.term(value, known[start]), known[slope])
 
         return undo
+
+    def _ratio(self, left: ir.Expression, right: ir.Expression, cell: Cell) -> Undo | None:
+        """Of (a + b·assumption) / (c + d·assumption)."""
+        lines = [self._line(each, _DEEPEST) for each in (left, right)]
+        known = [each for each in lines if each is not None]
+        if len(known) < len(lines):
+            return None
+        places = [self._known(each, cell) for line in known for each in line]
+        return lambda value, given: preimage.ratio(value, *(given[place] for place in places))
 
     def _line(self, tree: ir.Expression, deepest: int) -> tuple[ir.Expression, ir.Expression] | None:
         """A and b, as formulas; None where the tree is no such line."""

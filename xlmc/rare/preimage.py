@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.rare.spans import Spans, chosen, pieces
+from xlmc.rare.spans import Spans, chosen, common, joined, pieces
 
 __all__ = [
     "FUNCTIONS",
@@ -24,6 +24,7 @@ __all__ = [
     "negated",
     "numerator",
     "powered",
+    "ratio",
     "smallest",
     "term",
 ]
@@ -62,6 +63,31 @@ def divisor(value: Spans, o: Floats) -> Spans:
     above = _reciprocal(value.low, value.high, o)
     below = _reciprocal(-value.high, -value.low, o)
     return chosen(o == 0.0, _anything(value), pieces([above, (-below[1], -below[0])]))
+
+
+def ratio(value: Spans, a: Floats, b: Floats, c: Floats, d: Floats) -> Spans:
+    """Of (a + b·s) / (c + d·s)."""
+    above, below = _not_negative(c, d), _not_negative(-c, -d)
+    found = []
+    for low, high in zip(value.low, value.high, strict=True):
+        some = (low <= high) & (low < np.inf) & (high > -np.inf)
+        full, low, high = Spans.where(some), np.where(some, low, 0.0), np.where(some, high, 0.0)
+        over, under = _beyond(a, b, c, d, low), _beyond(-a, -b, -c, -d, high)
+        reversed_ = _beyond(-a, -b, -c, -d, low), _beyond(a, b, c, d, high)
+        found += [common([full, above, over, under]), common([full, below, *reversed_])]
+    return joined(found)
+
+
+def _beyond(a: Floats, b: Floats, c: Floats, d: Floats, end: Floats) -> Spans:
+    """Where a + b·s ≥ end·(c + d·s); everywhere if the end is infinite."""
+    finite = np.isfinite(end)
+    held = np.where(finite, end, 0.0)
+    return chosen(finite, _not_negative(a - held * c, b - held * d), Spans.whole(end.size))
+
+
+def _not_negative(start: Floats, slope: Floats) -> Spans:
+    """Where start + slope·s is not negative."""
+    return factor(Spans.between(-start, np.full(start.size, np.inf)), slope)
 
 
 def _reciprocal(low: Floats, high: Floats, o: Floats) -> tuple[Floats, Floats]:

@@ -67,6 +67,14 @@ def test_what_is_solved(ground, formulas, limits, names):
     assert sorted(solved(ground({"f": {"cell": "B4", **limits}}, formulas=formulas))) == names
 
 
+def test_a_cell_that_all_depends_through_is_solved_for_and_undone(ground):
+    """A2 and A1 are correlated, and A3 stands in several places, but below the root alone."""
+    formulas = ["=(B5+A1)/(B5*A2-3)+0.5", "=2*SQRT(A3)"]
+    assert solved(ground({"f": {"cell": "B4", **THIN}}, {("a", "b"): 0.5}, formulas=formulas)) == ["c"]
+    beside = ["=(B5+A1)/(B5*A2-A3)+0.5", "=2*SQRT(A3)"]
+    assert solved(ground({"f": {"cell": "B4", **THIN}}, {("a", "b"): 0.5}, formulas=beside)) == []
+
+
 def test_two_rows_make_a_layer(ground):
     rows = {"low": {"cell": "B3", "at_least": 0}, "high": {"cell": "B3", "at_most": 1e-5}}
     assert solved(ground(rows)) == ["a"]
@@ -83,7 +91,9 @@ def test_correlated_assumptions_and_those_with_parameters_that_vary_are_not_solv
 
 
 def test_points_stand_for_the_trials_they_are_made_of(ground):
-    found = ground({"f": {"cell": "B4", **THIN}}, {("b", "c"): 0.5}, formulas=["=A1-A2^2/4+A3"])
+    varying = {**GIVEN, "b": {"cell": "A2", "distribution": "Normal", "mean": "A3", "std_dev": 1}}
+    filters = {"f": {"cell": "B4", **THIN}, "g": {"cell": "A4", "at_least": 0}}
+    found = ground(filters, {("d", "c"): 0.5}, formulas=["=A1-A2^2/4+A3"], given=varying)
     uniforms = np.random.default_rng(5).random((20_000, found.dimensions))
     points = found.points(uniforms)
     assert found.uniforms(points) == pytest.approx(uniforms, abs=1e-12)

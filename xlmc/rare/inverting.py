@@ -1,8 +1,9 @@
 """Formulas walked back to one assumption: what it must be, all others given, for the filters to hold.
 
 The assumption occurs once on the way from a comparison, below operations that can be undone; or the value is
-a + b·assumption, or a ratio of two such, however often it occurs. The parts that do not depend on it are computed as
-any formula is. Where a comparison cannot be undone, it is left out: what is found then holds more than the accepted
+a + b·x, or a ratio of two such, however often x occurs: x is the assumption, or a cell that all that depends on the
+assumption depends on it through (a gate), and is undone in turn. The parts that do not depend on it are computed as any
+formula is. Where a comparison cannot be undone, it is left out: what is found then holds more than the accepted
 values, never less.
 """
 
@@ -10,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
+from itertools import count
 from typing import Final
 
 import numpy as np
@@ -35,8 +37,13 @@ Region = Callable[[Known], Spans]
 Undo = Callable[[Spans, Known], Spans]
 """The same for a formula to have a value within bounds."""
 
+_Pair = tuple[ir.Expression, ir.Expression]
+
 _DEEPEST: Final = 150
 """Operations from a filter to the assumption."""
+
+_MOST_STEPS: Final = 2_000
+"""Parts of a formula that is written out as a line."""
 
 _MOST_CELLS: Final = 200
 """Of an area that is written out."""
@@ -58,6 +65,7 @@ class Inverting:
         assumption: its cell.
         formulas: the resolved formulas of the cells that may lead to it.
         depends: whether a tree depends on the assumption.
+        gates: cells that all that depends on the assumption depends on it through, one after the other.
 
     Attributes:
         targets: what must be known in each trial.
@@ -69,8 +77,10 @@ class Inverting:
         assumption: Cell,
         formulas: Mapping[Cell, ir.Expression],
         depends: Callable[[ir.Expression], bool],
+        gates: Sequence[Cell] = (),
     ) -> None:
         self._assumption, self._formulas, self._depends = assumption, formulas, depends
+        self._gates = (assumption, *gates)
         self._depth = 0
         self.targets: list[Target] = []
         self.turned: list[int] = []
@@ -166,9 +176,8 @@ class Inverting:
 
     def _of_two(self, operator: str, left: ir.Expression, right: ir.Expression, cell: Cell) -> Undo | None:
         if self._depends(left) and self._depends(right):
-            if operator == "/":
-                return self._ratio(left, right, cell)
-            return self._straight(ir.Binary(operator, left, right), cell)
+            both = (left, right) if operator == "/" else (ir.Binary(operator, left, right),)
+            return self._straight(both, cell)
         if operator == "^" and isinstance(right, ir.Number):
             return self._power(left, right.value, cell)
         if self._depends(left):
@@ -218,7 +227,7 @@ class Inverting:
         varying = [part for part in parts if self._depends(part)]
         rest = tuple(part for part in parts if not self._depends(part))
         if tree.name in ("SUM", "SUMSQ") and len(varying) > 1:
-            return self._straight(tree, cell) if tree.name == "SUM" else None
+            return self._straight((tree,), cell) if tree.name == "SUM" else None
         if len(varying) != 1 or (tree.name == "PRODUCT" and len(parts) > len(tree.arguments)):
             return None
         one: ir.Expression = ir.Binary("^", varying[0], ir.Number(2.0)) if tree.name == "SUMSQ" else varying[0]
@@ -229,36 +238,35 @@ class Inverting:
         )
         return self._beside(step, one, ir.Call(tree.name, rest), cell)
 
-    def _straight(self, tree: ir.Expression, cell: Cell) -> Undo | None:
-        """Of a + b·assumption."""
-        found = self._line(tree, _DEEPEST)
-        if found is None:
-            return None
-        start, slope = (self._known(each, cell) for each in found)
+    def _straight(self, trees: Sequence[ir.Expression], cell: Cell) -> Undo | None:
+        """Of a + b·x, or of (a + b·x) / (c + d·x) where there are two trees; x is the assumption or a gate."""
+        for gate in self._gates:
+            lines = [self._line(each, gate) for each in trees]
+            known = [each for each in lines if each is not None]
+            undo = self._undo(gate, cell) if len(known) == len(lines) else None
+            if undo is not None:
+                return self._after(undo, known, cell)
+        return None
 
-        def undo(value: Spans, known: Known) -> Spans:
-            return preimage.factor(preimage.term(value, known[start]), known[slope])
+    def _after(self, undo: Undo, lines: Sequence[_Pair], cell: Cell) -> Undo:
+        places = [self._known(each, cell) for line in lines for each in line]
+        step = preimage.ratio if len(lines) > 1 else preimage.line
+        return lambda value, given: undo(step(value, *(given[place] for place in places)), given)
 
-        return undo
+    def _line(self, tree: ir.Expression, x: Cell) -> _Pair | None:
+        """The formulas a and b of a + b·x; None where the tree is no such line, or a long one."""
+        steps = count()
+        found = self._line_of(tree, x, steps)
+        return found if next(steps) <= _MOST_STEPS else None
 
-    def _ratio(self, left: ir.Expression, right: ir.Expression, cell: Cell) -> Undo | None:
-        """Of (a + b·assumption) / (c + d·assumption)."""
-        lines = [self._line(each, _DEEPEST) for each in (left, right)]
-        known = [each for each in lines if each is not None]
-        if len(known) < len(lines):
-            return None
-        places = [self._known(each, cell) for line in known for each in line]
-        return lambda value, given: preimage.ratio(value, *(given[place] for place in places))
-
-    def _line(self, tree: ir.Expression, deepest: int) -> tuple[ir.Expression, ir.Expression] | None:
-        """A and b, as formulas; None where the tree is no such line."""
-        line = partial(self._line, deepest=deepest - 1)
-        if not deepest:
+    def _line_of(self, tree: ir.Expression, x: Cell, steps: Iterator[int]) -> _Pair | None:
+        line = partial(self._line_of, x=x, steps=steps)
+        if next(steps) >= _MOST_STEPS:
             return None
         if not self._depends(tree):
             return tree, ir.Number(0.0)
         match tree:
-            case Cell() if tree == self._assumption:
+            case Cell() if tree == x:
                 return ir.Number(0.0), ir.Number(1.0)
             case Cell() if tree in self._formulas:
                 return line(self._formulas[tree])
@@ -287,9 +295,7 @@ def _minus(value: Spans, o: Floats) -> Spans:
     return preimage.term(value, -o)
 
 
-def _both(
-    line: tuple[ir.Expression, ir.Expression] | None, made: Callable[[ir.Expression], ir.Expression]
-) -> tuple[ir.Expression, ir.Expression] | None:
+def _both(line: _Pair | None, made: Callable[[ir.Expression], ir.Expression]) -> _Pair | None:
     return None if line is None else (made(line[0]), made(line[1]))
 
 

@@ -43,7 +43,7 @@ describes well as they are."""
 _OFTEN: Final = 0.01
 """Of the trials in which it can be accepted at all: the share in which the intervals must be thin."""
 
-_SOME: Final = 100
+_SOME: Final = 30
 """Trials, of those that are looked at, in which an assumption can be accepted."""
 
 _LEAST: Final = 1e-12
@@ -55,6 +55,9 @@ _EXACT: Final = 1e-6
 _MOST: Final = 1e300
 _MOST_LAYERS: Final = 4
 _MOST_CANDIDATES: Final = 64
+_MOST_LOOKS: Final = 2_000_000
+"""At cells, to see which vary with an assumption."""
+
 _MOST_CONJUNCTS: Final = 8
 """Of those that depend on one assumption: so many are tried in pairs."""
 
@@ -122,9 +125,13 @@ class _Looking:
         self._draws = {name: values.copy() for name, values in draws.items()}
         self._parts = list(conjuncts(filters))
         grouped = {name for group in model.groups for name in group.names}
-        asked = upstream(model.scene.graph, {cell for each in self._parts for cell in _cells(each)}, self._led_to)
+        graph = model.scene.graph
+        asked = upstream(graph, {cell for each in self._parts for cell in _cells(each)}, self._led_to)
+        varied = upstream(graph, [cell for each in model.live for cell in parameter_cells(each)], self._led_to)
+        self._formulas = [cell for cell in graph.formulas if cell in asked or cell in varied]
         candidates = [each for each in model.live if each.cell in asked and name_key(each.name) not in grouped]
-        self._candidates = [each for each in candidates if self._is_smooth(each)][:_MOST_CANDIDATES]
+        most = min(_MOST_CANDIDATES, _MOST_LOOKS // max(1, len(self._formulas)))
+        self._candidates = [each for each in candidates if self._is_smooth(each)][:most]
         self._places = drawing.places
         self._moved = {each.cell: self._downstream(each.cell) for each in self._candidates}
 
@@ -147,7 +154,8 @@ class _Looking:
     def _layers(self, assumption: Assumption, parts: Sequence[Shortfall]) -> Iterator[tuple[float, Layer]]:
         """The layers that some of the parts leave an assumption, and how even their chances are."""
         moved = self._moved[assumption.cell]
-        undoing = Inverting(assumption.cell, self._model.scene.graph.formulas, lambda tree: _meets(tree, moved))
+        formulas, gates = self._model.scene.graph.formulas, self._gates(assumption.cell)
+        undoing = Inverting(assumption.cell, formulas, lambda tree: _meets(tree, moved), gates)
         varying = [part for part in parts if any(_meets(tree, moved) for tree in _trees(part))]
         regions = [region for part in varying if (region := undoing.region(part)) is not None]
         if not regions:
@@ -182,6 +190,22 @@ class _Looking:
         even = float(np.sum(chance)) ** 2 / (chance.size * float(np.sum(chance**2)))
         return even, max(float(np.median(-np.log(chance[here]))), 1e-3)
 
+    def _gates(self, cell: Cell) -> list[Cell]:
+        """Cells, each of which is all that reads the one before, the first all that reads an assumption."""
+        found = [cell]
+        asked = {cell for part in self._parts for cell in _cells(part)}
+        formulas = self._model.scene.graph.formulas
+        while found[-1] not in asked:
+            readers = [each for each in self._moved[cell] if each in formulas and found[-1] in self._read(each)]
+            if len(readers) != 1:
+                break
+            found += readers
+        return found[1:]
+
+    def _read(self, cell: Cell) -> set[Cell]:
+        """What a formula cell reads of formula cells and inputs."""
+        return {*self._model.scene.graph.needs.get(cell, ()), *self._led_to.get(cell, ())}
+
     def _is_smooth(self, assumption: Assumption) -> bool:
         """Whether uniforms and draws go with each other one by one, with parameters that do not vary."""
         draw = self._model.draws[assumption.name]
@@ -195,11 +219,11 @@ class _Looking:
 
     def _downstream(self, cell: Cell) -> set[Cell]:
         """What varies with an assumption, it and other assumptions among them."""
-        graph, found, size = self._model.scene.graph, {cell}, 0
+        found, size = {cell}, 0
         while len(found) > size:
             size = len(found)
-            for each in graph.formulas:
-                if not found.isdisjoint((*graph.needs.get(each, ()), *self._led_to.get(each, ()))):
+            for each in self._formulas:
+                if not found.isdisjoint(self._read(each)):
                     found.add(each)
             found |= {a.cell for a in self._model.live if not found.isdisjoint(parameter_cells(a))}
         return found

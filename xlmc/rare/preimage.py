@@ -21,6 +21,7 @@ __all__ = [
     "exponent",
     "factor",
     "largest",
+    "line",
     "negated",
     "numerator",
     "powered",
@@ -63,6 +64,11 @@ def divisor(value: Spans, o: Floats) -> Spans:
     above = _reciprocal(value.low, value.high, o)
     below = _reciprocal(-value.high, -value.low, o)
     return chosen(o == 0.0, _anything(value), pieces([above, (-below[1], -below[0])]))
+
+
+def line(value: Spans, start: Floats, slope: Floats) -> Spans:
+    """Of start + slope·s."""
+    return factor(term(value, start), slope)
 
 
 def ratio(value: Spans, a: Floats, b: Floats, c: Floats, d: Floats) -> Spans:

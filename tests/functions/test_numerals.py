@@ -1,11 +1,15 @@
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.families import function_named
+from xlmc.functions.values import Value, constant, from_objects
 
+EVERY = np.arange(1.0, 4000.0)
 NUM, VALUE, NA = ErrorCode.NUM, ErrorCode.VALUE, ErrorCode.NA
 
 TABLE = [
@@ -92,19 +96,21 @@ def test_table(check, name, arguments, expected):
     check(name, arguments, expected, rel=1e-15)
 
 
+def numerals(form):
+    """Those of 1 to 3999, in one call of the function."""
+    return function_named("ROMAN")([Value.of_numbers(EVERY), constant(form)]).objects()
+
+
 @pytest.mark.parametrize("form", range(5))
-def test_every_numeral_reads_as_its_number(evaluate, form):
-    longest = 16
-    for number in range(1, 4000):
-        numeral = evaluate("ROMAN", number, form)
-        assert evaluate("ARABIC", numeral) == number
-        assert len(numeral) < longest
-        assert form == 0 or len(numeral) <= len(evaluate("ROMAN", number, form - 1))
+def test_every_numeral_reads_as_its_number(form):
+    found = numerals(form)
+    assert function_named("ARABIC")([from_objects(found)]).objects().tolist() == EVERY.tolist()
+    assert max(map(len, found)) < 16
+    assert form == 0 or all(len(new) <= len(old) for new, old in zip(found, numerals(form - 1), strict=True))
 
 
-def test_the_classic_form_repeats_no_letter_four_times(evaluate):
-    for number in range(1, 4000):
-        numeral = evaluate("ROMAN", number)
+def test_the_classic_form_repeats_no_letter_four_times():
+    for numeral in numerals(0):
         assert not any(letter * 4 in numeral for letter in "IXCM")
         assert not any(letter * 2 in numeral for letter in "VLD")
 

@@ -26,6 +26,12 @@ def ends(result, name):
     return result.answers[name].least, result.answers[name].most
 
 
+@pytest.fixture(scope="module")
+def searched(case_study):
+    """What the search finds for the case study."""
+    return Optimised().run(case_study, 0, 1)
+
+
 def test_corners_of_the_case_study(case_study):
     result = Corners().run(case_study, 0, 1)
     assert result.evaluations == 1024
@@ -33,10 +39,9 @@ def test_corners_of_the_case_study(case_study):
         assert ends(result, name) == pytest.approx(expected, abs=0.02)
 
 
-def test_optimised_bounds_of_the_case_study(case_study):
-    result = Optimised().run(case_study, 0, 1)
+def test_optimised_bounds_of_the_case_study(searched):
     for name, (_, expected) in DOMAIN.items():
-        assert ends(result, name) == pytest.approx(expected, abs=0.02)
+        assert ends(searched, name) == pytest.approx(expected, abs=0.02)
 
 
 def test_corners_of_a_monotone_function_are_exact(book):
@@ -160,13 +165,12 @@ def accepted_forecast(model, name, point):
     return found.forecasts[0, [f.name for f in model.forecasts].index(name)], found.accepted[0]
 
 
-def test_every_optimised_end_names_a_point_that_the_workbook_accepts(case_study):
-    result = Optimised().run(case_study, 0, 1)
-    assert len(result.ends) == 2 * len(case_study.forecasts)
-    for (name, end), point in result.ends.items():
+def test_every_optimised_end_names_a_point_that_the_workbook_accepts(case_study, searched):
+    assert len(searched.ends) == 2 * len(case_study.forecasts)
+    for (name, end), point in searched.ends.items():
         value, accepted = accepted_forecast(case_study, name, point)
         assert accepted
-        assert value == getattr(result.answers[name], end)
+        assert value == getattr(searched.answers[name], end)
 
 
 def test_no_drawn_trial_lies_outside_the_optimised_bounds(small):

@@ -4,13 +4,20 @@ import openpyxl
 import pytest
 
 import xlmc
+from xlmc.report import book as result_sheets
+
+_WHOLE = result_sheets.charts.write_charts
 
 
 @pytest.fixture(scope="module", autouse=True)
 def _short_books():
-    """The sheets on sensitivity take longest to write, and no test here looks at them."""
+    """Charts, and the sheets on sensitivity, take longest to write and to read, and no test here looks at them.
+
+    `tests/cli/test_replay.py` has whole books.
+    """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("xlmc.report.book.write_dependence", lambda *_: None)
+        for name in ("write_dependence", "charts.write_charts", "pairs_sheet.write_pairs"):
+            patch.setattr(f"xlmc.report.book.{name}", lambda *_: None)
         yield
 
 
@@ -20,6 +27,13 @@ def results(small_book, tmp_path_factory):
     path = tmp_path_factory.mktemp("results") / "small-results.xlsx"
     xlmc.load(small_book).simulate().save(path)
     return path
+
+
+@pytest.fixture
+def drawn(small_book, tmp_path, monkeypatch):
+    """As `results`, with its charts."""
+    monkeypatch.setattr(result_sheets.charts, "write_charts", _WHOLE)
+    return xlmc.load(small_book).simulate().save(tmp_path / "small-results.xlsx")
 
 
 @pytest.fixture

@@ -27,12 +27,18 @@ def tail_notices(samples: Mapping[str, Sample], method: str) -> list[Notice]:
             f"the interval of {short} may be too short: a few trials far out in the tail decide such a number, and "
             "more of their kind may be missing. More trials help; percentiles and shares have intervals that hold"
         )
-    if plain := _named(samples, errors_from_trials):
+    if plain := _named(samples, _only_from_trials):
         found.append(
             f"the error of {plain} is that of independent trials: a few trials far out in the tail decide such a "
             f"number, and the replicates are too few to show its error. By {method} it may vary less than that"
         )
     return [Notice(message) for message in found]
+
+
+def _only_from_trials(sample: Sample) -> list[str]:
+    """Of a number whose interval may be too short it is not said that it may vary less."""
+    short = too_short(sample)
+    return [number for number in errors_from_trials(sample) if number not in short]
 
 
 def _named(samples: Mapping[str, Sample], concerned: Callable[[Sample], list[str]]) -> str:

@@ -58,7 +58,8 @@ def _corners(k: int, seed: int) -> tuple[NDArray[np.bool_], tuple[str, ...]]:
     """Which end each assumption is at, (corners, k), and what to say of it."""
     if 1 << k <= MOST_CORNERS:
         numbers = np.arange(1 << k)
-        said = f"all 2^{k} = {1 << k:,} corners of the {k} assumptions that the forecasts depend on"
+        plural = "s" * (k != 1)
+        said = f"all 2^{k} = {1 << k:,} corners of the {k} assumption{plural} that the forecasts depend on"
         return (numbers[:, None] >> np.arange(k)) & 1 == 1, (said,)
     count = min(MOST_CORNERS, _MOST_NUMBERS // k)
     said = f"{count:,} random corners of 2^{k}: the true bounds may be wider"

@@ -75,9 +75,9 @@ def _range(study: Study, name: str) -> str:
 def _heavy(study: Study) -> list[str]:
     """What no method comes near to."""
     return [
-        f"The {' and '.join(map(spelt, lost))} of {name} {'do' if len(lost) > 1 else 'does'} not converge, for its "
-        f"tail is too heavy, and no method brings {'them' if len(lost) > 1 else 'it'} nearer. Left out in what "
-        "follows; report percentiles."
+        f"The {' and '.join(map(spelt, lost))} of {name} {'do' if len(lost) > 1 else 'does'} not converge as far as "
+        "these trials show, for its tail is too heavy: more of them bring no method nearer. Left out in what follows; "
+        "report percentiles."
         for name, lost in study.reference.heavy.items()
         if name in study.varying
     ]

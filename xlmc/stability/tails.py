@@ -26,7 +26,7 @@ def heavy_tails(case: Case) -> Iterator[Finding]:
         x = np.asarray(case.run[forecast.name].values)
         if (found := heavy_tail(x)) is not None:
             index, _ = found
-            effect = f"{_statistic(*found)}: more trials do not bring it nearer; report percentiles"
+            effect = f"{_statistic(*found)} as far as these trials show: more of them do not help; report percentiles"
             yield _finding(case, Level.DOUBTFUL, forecast.cell, forecast.name, index, effect, None)
     for filter_ in case.model.filters:
         x = case.number(case.node[filter_.cell])[case.special : case.first_accepted]

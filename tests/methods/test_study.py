@@ -240,6 +240,8 @@ def test_a_mean_that_does_not_converge_is_asked_of_no_method(book):
     assert "more of them bring no method nearer" in said[1]
     plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
     assert need(found, plain).statistic in ("low", "high")
+    assert np.isnan(plain.rungs[-1].shares["mean"])  # its error is no share of anything, and no slope is drawn of it
+    assert plain.rungs[-1].shares["low"] < 1.0
 
 
 def test_no_forecast(book):

@@ -31,7 +31,7 @@ class Rung:
         evaluations: that a run spent, the median.
         errors: (forecast, attribute of `Answer`) -> in the forecast's units.
         shares: attribute of `Answer` -> the same over the forecasts' 5–95 % ranges, root mean square over the
-            forecasts: one number without units.
+            forecasts in which it converges: one number without units.
         acceptance: of the share of accepted trials; None where the method gives none.
         effective: accepted trials that count fully, the median; None where all weigh alike.
         failed: runs without any number.
@@ -137,7 +137,11 @@ def rung_of(budget: int, results: Sequence[MethodResult], reference: Reference) 
 def _shares(errors: Mapping[tuple[str, str], Rms], reference: Reference) -> dict[str, float]:
     found = {}
     for statistic in STATISTICS:
-        parts = [errors[name, statistic].value / width for name, width in reference.widths.items() if width > 0.0]
+        parts = [
+            errors[name, statistic].value / width
+            for name, width in reference.widths.items()
+            if width > 0.0 and statistic not in reference.heavy.get(name, ())
+        ]
         known = [part for part in parts if np.isfinite(part)]
         found[statistic] = float(np.sqrt(np.mean(np.square(known)))) if known else np.nan
     return found

@@ -174,7 +174,8 @@ def _numbers(study: Study) -> dict[str, Callable[[Rung], tuple[float, float, flo
 
     def of(statistic: str) -> Callable[[Rung], tuple[float, float, float]]:
         return lambda rung: _with_interval(
-            100.0 * rung.shares[statistic], [rung.errors[name, statistic] for name in study.varying]
+            100.0 * rung.shares[statistic],
+            [rung.errors[name, statistic] for name in study.varying if study.converges(name, statistic)],
         )
 
     def accepted(rung: Rung) -> tuple[float, float, float]:

@@ -48,7 +48,7 @@ def floor_of(study: Study, statistic: str) -> float:
     parts = [
         float(getattr(reference.errors[name], statistic)) / width
         for name, width in reference.widths.items()
-        if width > 0.0
+        if study.converges(name, statistic)
     ]
     known = [part for part in parts if np.isfinite(part)]
     return float(np.sqrt(np.mean(np.square(known)))) if known else np.nan

@@ -39,3 +39,16 @@ def xlmc(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tm
 @pytest.fixture
 def case_study() -> Path:
     return ROOT / "examples" / "intersection.xlsx"
+
+
+@pytest.fixture
+def whole_book() -> None:
+    """What a test takes that wants the charts and the sheets on sensitivity, too."""
+
+
+@pytest.fixture
+def short_books(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Results without charts and the sheets on sensitivity, which take longest, unless the test takes `whole_book`."""
+    if "whole_book" not in request.fixturenames:
+        for name in ("write_dependence", "charts.write_charts", "pairs_sheet.write_pairs"):
+            monkeypatch.setattr(f"xlmc.report.book.{name}", lambda *_: None)

@@ -15,6 +15,8 @@ from xlmc.workbook.package import read_parts
 from xlmc.workbook.seal import read_seal
 from xlmc.workbook.writer import package_bytes
 
+pytestmark = pytest.mark.usefixtures("short_books")
+
 ALL = ("--html", "a.html", "--json", "a.json", "--save-run", "a.xlmcrun", "--extract", "a.csv", "-o", "a.xlsx")
 NAMED = ALL[1::2]
 

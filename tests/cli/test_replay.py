@@ -20,23 +20,11 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
 @pytest.fixture
-def results(xlmc, case_study, tmp_path, request):
-    """The case study's results, in the folder that commands run in.
-
-    Without charts and the sheets on sensitivity, which take longest, unless the test takes `whole_book`.
-    """
-    if "whole_book" not in request.fixturenames:
-        patch = request.getfixturevalue("monkeypatch")
-        for name in ("write_dependence", "charts.write_charts", "pairs_sheet.write_pairs"):
-            patch.setattr(f"xlmc.report.book.{name}", lambda *_: None)
+def results(xlmc, short_books, case_study, tmp_path):
+    """The case study's results, in the folder that commands run in."""
     book = shutil.copy(case_study, tmp_path / "case.xlsx")
     assert xlmc("simulate", book, "-n", 20_000, "--seed", 5, "--save-run", "case.xlmcrun").code == 0
     return tmp_path / "case-results.xlsx"
-
-
-@pytest.fixture
-def whole_book():
-    """What a test takes that wants the charts and the sheets on sensitivity, too, which take longest."""
 
 
 def edit(path, sheet, address, value):

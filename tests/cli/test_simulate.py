@@ -11,6 +11,8 @@ import pytest
 from xlmc.compile.jit import REPAYS_FROM
 from xlmc.errors import SimulationError
 
+pytestmark = pytest.mark.usefixtures("short_books")
+
 EDITED = {
     "[Content_Types].xml",
     "docProps/app.xml",
@@ -30,7 +32,7 @@ def parts(path):
         return {name: package.read(name) for name in package.namelist()}
 
 
-def test_prints_the_papers_table_and_writes_a_copy(xlmc, book, tmp_path):
+def test_prints_the_papers_table_and_writes_a_copy(xlmc, whole_book, book, tmp_path):
     outcome = xlmc("simulate", book, "--trials", 20_000)
     assert outcome.code == 0
     for words in ("Chevrolet delta-V", "51 % range", "of 20,000 trials", "seed 999", "Restitution, tangential"):
@@ -83,7 +85,7 @@ def test_a_full_disk_is_a_message_and_nothing_is_lost(xlmc, book, tmp_path, monk
     assert results.read_bytes() == before
 
 
-def test_in_place_replaces_its_own_sheets_and_nothing_else(xlmc, book):
+def test_in_place_replaces_its_own_sheets_and_nothing_else(xlmc, whole_book, book):
     before = parts(book)
     assert xlmc("simulate", book, "-n", 20_000, "--in-place").code == 0
     once = parts(book)

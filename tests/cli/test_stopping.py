@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
 
 import openpyxl
@@ -14,6 +15,8 @@ from xlmc.cli.progress import errors_line, trials_line
 from xlmc.statistics import Estimate
 from xlmc.stopping import Standing
 
+pytestmark = pytest.mark.usefixtures("short_books")
+
 
 @pytest.fixture
 def book(case_study, tmp_path):
@@ -21,19 +24,20 @@ def book(case_study, tmp_path):
 
 
 def record_of(path):
-    book = openpyxl.load_workbook(path, read_only=True)
-    sheet = next(sheet for sheet in book if sheet.title.startswith("Record"))
-    rows = sheet.iter_rows(max_col=3, values_only=True)
-    return {row[0]: row[2] for row in rows if len(row) > 2 and row[0]}
+    with closing(openpyxl.load_workbook(path, read_only=True)) as book:
+        sheet = next(sheet for sheet in book if sheet.title.startswith("Record"))
+        rows = sheet.iter_rows(max_col=3, values_only=True)
+        return {row[0]: row[2] for row in rows if len(row) > 2 and row[0]}
 
 
 def texts_of_results(path):
-    sheets = openpyxl.load_workbook(path, read_only=True).worksheets
-    titles = (next(sheet.iter_rows(max_row=1, max_col=1, values_only=True), (None,)) for sheet in sheets)
-    (sheet,) = (
-        sheet for sheet, (title, *_) in zip(sheets, titles, strict=True) if title == "Results of the simulation"
-    )
-    return [value for row in sheet.iter_rows(values_only=True) for value in row if isinstance(value, str)]
+    with closing(openpyxl.load_workbook(path, read_only=True)) as book:
+        sheets = book.worksheets
+        titles = [next(sheet.iter_rows(max_row=1, max_col=1, values_only=True), (None,)) for sheet in sheets]
+        (sheet,) = (
+            sheet for sheet, (title, *_) in zip(sheets, titles, strict=True) if title == "Results of the simulation"
+        )
+        return [value for row in sheet.iter_rows(values_only=True) for value in row if isinstance(value, str)]
 
 
 @pytest.mark.parametrize(

@@ -22,6 +22,8 @@ from xlmc.cli import main, terminal
 from xlmc.cli.table import laid_out
 from xlmc.printable import printable
 
+pytestmark = pytest.mark.usefixtures("short_books")
+
 ROOT = Path(__file__).resolve().parents[2]
 RAW = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
 ENCODINGS = ["cp1252", "cp437", "ascii", "utf-8"]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+pytestmark = pytest.mark.usefixtures("short_books")
+
 BOOK = "case.xlsx"
 
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 import math
 import re
 import zipfile
+from functools import cache
 
 import openpyxl
 import pytest
@@ -49,6 +50,12 @@ TABLES = {
 }
 
 
+@cache
+def opened(path, *, data_only=False):
+    """The workbook, to look at and not to change."""
+    return openpyxl.load_workbook(path, data_only=data_only)
+
+
 def formula_cells(book):
     return {
         (sheet.title, cell.coordinate): cell.value
@@ -67,9 +74,9 @@ def rows(book, table):
 
 @pytest.mark.parametrize("name", BOOKS)
 def test_cached_values_are_what_libreoffice_computes(name, book_path, recalculated):
-    cached = openpyxl.load_workbook(book_path[name], data_only=True)
-    computed = openpyxl.load_workbook(recalculated[name], data_only=True)
-    cells = formula_cells(openpyxl.load_workbook(book_path[name]))
+    cached = opened(book_path[name], data_only=True)
+    computed = opened(recalculated[name], data_only=True)
+    cells = formula_cells(opened(book_path[name]))
     assert len(cells) > 30
     for sheet, place in cells:
         shown, truth = cached[sheet][place].value, computed[sheet][place].value
@@ -83,14 +90,14 @@ def test_cached_values_are_what_libreoffice_computes(name, book_path, recalculat
 @pytest.mark.parametrize("table", TABLES)
 def test_tables_stand_where_they_belong(name, table, book_path):
     sheet, headers = TABLES[table]
-    book = openpyxl.load_workbook(book_path[name])
+    book = opened(book_path[name])
     assert [column.name for column in book[sheet].tables[table].tableColumns] == headers
     assert list(rows(book, table)[0]) == headers
 
 
 @pytest.mark.parametrize("name", BOOKS)
 def test_every_quantity_is_a_named_cell(name, book_path, described):
-    book = openpyxl.load_workbook(book_path[name])
+    book = opened(book_path[name])
     template = described[name]
     assert set(book.defined_names) == {quantity.symbol for quantity in (*template.inputs, *template.equations)}
     for given in template.inputs:
@@ -103,7 +110,7 @@ def test_every_quantity_is_a_named_cell(name, book_path, described):
 
 @pytest.mark.parametrize("name", BOOKS)
 def test_forecasts_and_filters_point_at_their_cells(name, book_path, described):
-    book, template = openpyxl.load_workbook(book_path[name]), described[name]
+    book, template = opened(book_path[name]), described[name]
     for table, described_rows in (("xlmc_forecasts", template.forecasts), ("xlmc_filters", template.filters)):
         for row, wanted in zip(rows(book, table), described_rows, strict=True):
             assert row["Name"].value == wanted.name
@@ -113,7 +120,7 @@ def test_forecasts_and_filters_point_at_their_cells(name, book_path, described):
 
 
 def test_the_case_study_says_what_the_paper_says(book_path):
-    book = openpyxl.load_workbook(book_path["intersection"])
+    book = opened(book_path["intersection"])
     assumptions = rows(book, "xlmc_assumptions")
     assert len(assumptions) == 17
     assert {row["Distribution"].value for row in assumptions} == {"Uniform"}
@@ -135,7 +142,7 @@ def test_the_case_study_says_what_the_paper_says(book_path):
 
 @pytest.mark.parametrize("name", BOOKS)
 def test_assumption_cells_are_green_and_forecast_cells_blue(name, book_path, described):
-    book = openpyxl.load_workbook(book_path[name])
+    book = opened(book_path[name])
     colours = {}
     for kind, symbols in (
         ("green", [given.symbol for given in described[name].assumptions]),
@@ -158,7 +165,7 @@ def test_xlmc_agrees_with_libreoffice_in_every_cell(name, recalculated):
 @pytest.mark.parametrize("name", BOOKS)
 def test_formulas_are_guarded_and_inputs_are_open(name, book_path, described):
     """A formula is locked, or Excel asks before it is typed over; no input is locked; there is no password."""
-    book = openpyxl.load_workbook(book_path[name])
+    book = opened(book_path[name])
     asked = {
         (sheet.title, cell)
         for sheet in book

@@ -100,6 +100,8 @@ def test_the_guide_leads_from_an_empty_folder_to_the_result(typed, fill, variant
     added = books["my-case-results"].sheetnames[len(own) :]
     assert books["my-case-results"].sheetnames[: len(own)] == own
     assert [name for name in added if f"**{name}**" not in GUIDE] == []
+    for book in books.values():
+        book.close()
 
 
 def test_the_guide_tells_the_papers_ranges_and_filters(tables):

@@ -157,7 +157,7 @@ _PARTS: dict[str, Callable[[_Measured], dict[str, Any]]] = {
 
 
 def _engines() -> list[str]:
-    from xlmc.compile.engines import ENGINES
+    from xlmc.evaluation.engines import ENGINES
 
     return list(ENGINES)
 

@@ -23,7 +23,7 @@ sys.path.insert(0, str(ROOT))
 
 from xlmc.errors import WorkbookError
 from xlmc.formula.shape import shape_of
-from xlmc.verify import CellCheck, Status, verify
+from xlmc.studies.verify import CellCheck, Status, verify
 from xlmc.workbook import read_workbook
 
 ENDINGS = (".xlsx", ".xlsm")

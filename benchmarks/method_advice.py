@@ -22,8 +22,8 @@ from typing import Any
 from tables import placed
 
 import xlmc
-from xlmc.methods import study
-from xlmc.methods.choice import choice
+from xlmc.studies.methods import study
+from xlmc.studies.methods.choice import choice
 
 __all__ = ["BOOKS", "PAGE", "RESULTS", "SEEDS", "advice", "faults", "table"]
 

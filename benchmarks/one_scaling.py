@@ -16,8 +16,8 @@ from typing import IO, Any
 from contest import measured
 
 import xlmc
-from xlmc.scheduling import standby
-from xlmc.simulate import BLOCK
+from xlmc.run.scheduling import standby
+from xlmc.run.simulate import BLOCK
 
 ONE, TWO, ANEW, APART = "1", "2", "2 anew", "two programs"
 TURNS = 5

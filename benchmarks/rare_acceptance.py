@@ -31,8 +31,8 @@ from scipy.special import bdtr
 from tables import placed
 
 import xlmc.statistics as xs
-from xlmc.rare.finding import Found
-from xlmc.rare.landscape import Landscape
+from xlmc.run.rare.finding import Found
+from xlmc.run.rare.landscape import Landscape
 from xlmc.statistics import Estimate
 
 __all__ = ["covered", "estimates", "faults"]

@@ -17,7 +17,7 @@ from scipy.special import ndtr, ndtri
 
 from xlmc.address import parse_address
 from xlmc.definitions import Assumption, Correlation, Definitions, Filter, Forecast
-from xlmc.model import Model
+from xlmc.run.model import Model
 from xlmc.workbook.model import CellContent, Formula, Sheet, Workbook
 
 __all__ = ["ORDINARY", "SEVERAL", "THIN", "RareBook"]

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri
 
-from xlmc.rare.finding import Found, find
-from xlmc.rare.splitting import descend
+from xlmc.run.rare.finding import Found, find
+from xlmc.run.rare.splitting import descend
 
 __all__ = ["Distance", "Floats", "compared", "one_run"]
 

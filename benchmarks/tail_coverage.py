@@ -31,8 +31,8 @@ from tables import placed
 from tail_problems import ORDINARY, PROBLEMS, RANKS, STATISTICS, Problem
 
 import xlmc.statistics as xs
+from xlmc.run.simulation import FARTHEST_PART, FEW, LEAST_ACCEPTED, TELLING
 from xlmc.sampling import METHODS, Plan
-from xlmc.simulation import FARTHEST_PART, FEW, LEAST_ACCEPTED, TELLING
 from xlmc.statistics.sample import MOST_GROUPS
 
 __all__ = ["Cell", "faults", "measure", "one_run", "tables"]

@@ -20,10 +20,10 @@ from tables import placed
 
 import xlmc
 from xlmc.cli.methods_json import study_json
-from xlmc.methods import STATISTICS, Rung, Study, recommendation, study
-from xlmc.methods.curve import rung_of
-from xlmc.methods.sampled import MONTE_CARLO
 from xlmc.report.methods import save_methods, tables
+from xlmc.studies.methods import STATISTICS, Rung, Study, recommendation, study
+from xlmc.studies.methods.curve import rung_of
+from xlmc.studies.methods.sampled import MONTE_CARLO
 
 __all__ = ["PAGE", "filled", "theory_rows", "theory_rungs", "write"]
 

@@ -88,7 +88,7 @@ def record(path: Path, trials: int = TRIALS) -> int:
     import xlsxwriter
 
     import xlmc
-    from xlmc.report.book import build_sheets
+    from xlmc.report.sheets.book import build_sheets
 
     run = xlmc.load(CASE_STUDY).simulate(trials)
     calls: list[Call] = []

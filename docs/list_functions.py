@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from xlmc.compile.choices import CHOICES
-from xlmc.compile.lambdas import LAMBDAS
-from xlmc.compile.places import PLACES
-from xlmc.compile.written_out import WRITTEN_OUT
+from xlmc.evaluation.graph.choices import CHOICES
+from xlmc.evaluation.graph.lambdas import LAMBDAS
+from xlmc.evaluation.graph.places import PLACES
+from xlmc.evaluation.graph.written_out import WRITTEN_OUT
 from xlmc.functions.families import REGISTRY
 
 PAGE = Path(__file__).with_name("functions.md")

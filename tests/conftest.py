@@ -15,7 +15,7 @@ from openpyxl.worksheet.table import Table as WrittenTable
 
 from xlmc.address import Area, parse_address
 from xlmc.definitions import Assumption, Correlation, Definitions, Filter, Forecast
-from xlmc.model import Model
+from xlmc.run.model import Model
 from xlmc.workbook.model import CellContent, DefinedName, Formula, Sheet, Table, Workbook
 
 

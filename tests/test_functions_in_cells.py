@@ -19,7 +19,7 @@ import xlmc
 from xlmc.address import Area
 from xlmc.definitions import read_definitions
 from xlmc.errors import XlmcError
-from xlmc.model import Model
+from xlmc.run.model import Model
 from xlmc.workbook.model import CellContent, Formula
 
 TRIALS = 100_000

@@ -12,11 +12,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from xlmc.analysis import compare, screen
-    from xlmc.model import Model, load
-    from xlmc.saved import open_run
-    from xlmc.sensitivity import sensitivities
-    from xlmc.simulation import ForecastResult, Simulation
+    from xlmc.results.saved import open_run
+    from xlmc.run.model import Model, load
+    from xlmc.run.simulation import ForecastResult, Simulation
+    from xlmc.studies.comparison import compare
+    from xlmc.studies.screening import screen
+    from xlmc.studies.sensitivity import sensitivities
 
 __all__ = [
     "ForecastResult",
@@ -33,14 +34,14 @@ __all__ = [
 __version__ = "0.3.0"
 
 _HOMES = {
-    "ForecastResult": "simulation",
-    "Model": "model",
-    "Simulation": "simulation",
-    "compare": "analysis",
-    "load": "model",
-    "open_run": "saved",
-    "screen": "analysis",
-    "sensitivities": "sensitivity",
+    "ForecastResult": "run.simulation",
+    "Model": "run.model",
+    "Simulation": "run.simulation",
+    "compare": "studies.comparison",
+    "load": "run.model",
+    "open_run": "results.saved",
+    "screen": "studies.screening",
+    "sensitivities": "studies.sensitivity",
 }
 
 

@@ -15,7 +15,7 @@ class Xlmc:
         import numpy
 
         import xlmc
-        from xlmc.simulate import BLOCK
+        from xlmc.run.simulate import BLOCK
 
         self.engine = task.options["engine"]
         self._model = xlmc.load(task.path)

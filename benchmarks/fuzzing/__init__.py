@@ -34,12 +34,12 @@ _WANTED: Final = (
     "scipy.optimize",
     "scipy.special",
     "xlmc.cli",
-    "xlmc.compile.formulas_engine",
-    "xlmc.compile.jit",
+    "xlmc.evaluation.reference.formulas_engine",
+    "xlmc.evaluation.llvm",
     "xlmc.functions.families",
-    "xlmc.report.html",
+    "xlmc.report.page",
     "xlmc.replay",
-    "xlmc.verify",
+    "xlmc.studies.verify",
     "xlsxwriter",
 )
 
@@ -48,4 +48,4 @@ def warm_up() -> None:
     """Import what xlmc imports when it needs it, so that children begin with it, and make blocks small."""
     for module in _WANTED:
         import_module(module)
-    setattr(import_module("xlmc.simulate"), "BLOCK", BLOCK)  # noqa: B010 - it is final to all others
+    setattr(import_module("xlmc.run.simulate"), "BLOCK", BLOCK)  # noqa: B010 - it is final to all others

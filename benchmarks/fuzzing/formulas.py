@@ -17,9 +17,9 @@ from fuzzing.inputs import Disagreement, Input, Reached, steps_of
 from fuzzing.splicing import spliced
 from xlmc.address import Area
 from xlmc.definitions import Definitions, read_definitions
-from xlmc.model import Model, understood
 from xlmc.report.summary import summarise, summary_text
-from xlmc.simulation import Simulation
+from xlmc.run.model import Model, understood
+from xlmc.run.simulation import Simulation
 from xlmc.workbook import Workbook, read_workbook
 from xlmc.workbook.model import CellContent, Formula
 

@@ -10,7 +10,7 @@ from xml.parsers import expat
 
 from fuzzing.inputs import Disagreement
 from xlmc.report.summary import summarise, summary_text
-from xlmc.simulation import Simulation
+from xlmc.run.simulation import Simulation
 
 __all__ = ["examined"]
 

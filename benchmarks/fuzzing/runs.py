@@ -23,9 +23,9 @@ from fuzzing.inputs import Input, Reached, steps_of
 from fuzzing.outputs import examined
 from fuzzing.xml_changes import changed
 from xlmc.errors import XlmcError
-from xlmc.model import load
 from xlmc.replay import replay
-from xlmc.saved import open_run
+from xlmc.results.saved import open_run
+from xlmc.run.model import load
 
 __all__ = ["make", "run"]
 

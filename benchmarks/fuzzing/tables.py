@@ -12,7 +12,7 @@ from fuzzing.commands import commanded
 from fuzzing.inputs import Input, Reached, steps_of
 from fuzzing.outputs import examined
 from xlmc.distributions import FAMILIES
-from xlmc.model import load
+from xlmc.run.model import load
 
 __all__ = ["make", "run"]
 

@@ -21,7 +21,7 @@ from fuzzing.outputs import examined
 from fuzzing.xml_changes import changed
 from xlmc.definitions import read_definitions
 from xlmc.errors import XlmcError
-from xlmc.model import Model
+from xlmc.run.model import Model
 from xlmc.workbook import read_workbook
 
 __all__ = ["make", "run"]
@@ -85,7 +85,7 @@ def run(given: Input, folder: Path) -> Reached:
         raise problems[0]
     definitions = read_definitions(workbook)
     if "verify" in given.steps:
-        from xlmc.verify import verify
+        from xlmc.studies.verify import verify
 
         verify(workbook, definitions)
     if definitions.problems:

@@ -9,8 +9,8 @@ from typing import Any, Final
 import numpy as np
 
 from stressing.charts import COLOURS, binomial_error, coverage_axis, figure, save
+from xlmc.run.simulation import FARTHEST_PART, FEW, LEAST_ACCEPTED, TELLING
 from xlmc.sampling import METHODS
-from xlmc.simulation import FARTHEST_PART, FEW, LEAST_ACCEPTED, TELLING
 
 __all__ = ["correlations", "counts", "few", "samplers", "shares", "stops", "tails"]
 

@@ -17,9 +17,9 @@ from scipy.special import ndtri
 
 import xlmc.statistics as xs
 from xlmc.definitions.stopping import Precision
-from xlmc.stopping import adaptive
-from xlmc.stopping.adaptive import UntilStable
-from xlmc.stopping.precision import UntilPrecise
+from xlmc.run.stopping import adaptive
+from xlmc.run.stopping.adaptive import UntilStable
+from xlmc.run.stopping.precision import UntilPrecise
 
 __all__ = ["FORECASTS", "Forecast", "fixed_runs", "least_sequences", "precise_runs", "stable_runs"]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from stressing.forms import CONSTANTS, FORMS, INPUTS, PRINTED, REWRITTEN
 from xlmc.definitions.model import name_key
-from xlmc.model import Model, load
+from xlmc.run.model import Model, load
 
 __all__ = ["ARITHMETICS", "book_of", "forms_book", "values_of"]
 

@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from xlmc.address import Cell
-from xlmc.compile.lower import Lowering
-from xlmc.compile.widening import widened
 from xlmc.errors import ErrorCode
+from xlmc.evaluation.graph.lower import Lowering
+from xlmc.evaluation.graph.widening import widened
 from xlmc.formula import Resolver, build_graph
 from xlmc.workbook import read_workbook
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.rare.landscape import Landscape
-from xlmc.rare.layered import ground_of
-from xlmc.rare.tempered import widened
+from xlmc.run.rare.landscape import Landscape
+from xlmc.run.rare.layered import ground_of
+from xlmc.run.rare.tempered import widened
 
 
 @pytest.fixture(scope="module")

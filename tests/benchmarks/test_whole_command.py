@@ -7,7 +7,7 @@ import pytest
 import whole_command
 
 import xlmc
-from xlmc.report.book import build_sheets
+from xlmc.report.sheets.book import build_sheets
 
 TRIALS = 3_000
 

@@ -51,4 +51,4 @@ def short_books(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch)
     """Results without charts and the sheets on sensitivity, which take longest, unless the test takes `whole_book`."""
     if "whole_book" not in request.fixturenames:
         for name in ("write_dependence", "charts.write_charts", "pairs_sheet.write_pairs"):
-            monkeypatch.setattr(f"xlmc.report.book.{name}", lambda *_: None)
+            monkeypatch.setattr(f"xlmc.report.sheets.book.{name}", lambda *_: None)

@@ -163,7 +163,7 @@ def test_edited_results_are_named_and_counted(xlmc, results):
 
 
 def test_another_processor(xlmc, results, monkeypatch):
-    monkeypatch.setattr("xlmc.record.make.processor", lambda: {"machine": "arm64", "system": "Darwin"})
+    monkeypatch.setattr("xlmc.results.record.make.processor", lambda: {"machine": "arm64", "system": "Darwin"})
     outcome = xlmc("replay", results)
     assert outcome.code == 0
     assert "identical: the same" in outcome.out

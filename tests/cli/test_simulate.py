@@ -8,8 +8,8 @@ import zipfile
 import openpyxl
 import pytest
 
-from xlmc.compile.jit import REPAYS_FROM
 from xlmc.errors import SimulationError
+from xlmc.evaluation.llvm import REPAYS_FROM
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -76,7 +76,7 @@ def test_a_full_disk_is_a_message_and_nothing_is_lost(xlmc, book, tmp_path, monk
     results = tmp_path / "case-results.xlsx"
     xlmc("simulate", book, "-n", 5_000)
     before = results.read_bytes()
-    monkeypatch.setattr("xlmc.scratch.columns.IN_MEMORY", 0)
+    monkeypatch.setattr("xlmc.columns.columns.IN_MEMORY", 0)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "none"))
     outcome = xlmc("simulate", book, "-n", 10_000)
     assert outcome.code == 2
@@ -156,7 +156,7 @@ def test_help_imports_no_numerical_library():
 
 
 def test_without_llvmlite_the_engine_jit_says_what_to_install(xlmc, book, tmp_path, monkeypatch):
-    monkeypatch.setattr("xlmc.compile.jit.find_spec", lambda name: None)
+    monkeypatch.setattr("xlmc.evaluation.llvm.find_spec", lambda name: None)
     outcome = xlmc("simulate", book, "-n", 1_000, "--engine", "jit")
     assert outcome.code == 2
     assert 'pip install "xlmc[jit]"' in outcome.err
@@ -177,7 +177,7 @@ def test_float32_is_said(xlmc, book):
 
 def test_too_coarse_an_arithmetic_writes_nothing(xlmc, book, tmp_path, monkeypatch):
     pytest.importorskip("llvmlite")
-    monkeypatch.setattr("xlmc.rounding.MOST_DIFFERENCE", 1e-12)
+    monkeypatch.setattr("xlmc.run.rounding.MOST_DIFFERENCE", 1e-12)
     outcome = xlmc("simulate", book, "-n", 20_000, "--engine", "jit", "--arithmetic", "float32")
     assert outcome.code == 1
     assert "Use --arithmetic float64" in outcome.err
@@ -204,8 +204,8 @@ def test_a_long_run_is_told_of_the_engine_jit(xlmc, book, monkeypatch, trials, o
     def stopped(*arguments, **named):
         raise SimulationError("stopped by the test")
 
-    monkeypatch.setattr("xlmc.model.Model.simulate", stopped)
-    monkeypatch.setattr("xlmc.compile.jit.find_spec", lambda name: object() if installed else None)
+    monkeypatch.setattr("xlmc.run.model.Model.simulate", stopped)
+    monkeypatch.setattr("xlmc.evaluation.llvm.find_spec", lambda name: object() if installed else None)
     assert ("--engine jit" in xlmc("simulate", book, "-n", trials, *options).err) is hinted
 
 

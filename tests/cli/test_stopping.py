@@ -12,8 +12,8 @@ import openpyxl
 import pytest
 
 from xlmc.cli.progress import errors_line, trials_line
+from xlmc.run.stopping import Standing
 from xlmc.statistics import Estimate
-from xlmc.stopping import Standing
 
 pytestmark = pytest.mark.usefixtures("short_books")
 

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 from xlmc.cli import main, terminal
 from xlmc.cli.table import laid_out
-from xlmc.printable import printable
+from xlmc.workbook.printable import printable
 
 pytestmark = pytest.mark.usefixtures("short_books")
 

@@ -25,11 +25,11 @@ import numpy as np
 import pytest
 
 from xlmc.address import Area, Cell, column_letters, parse_address
-from xlmc.compile.engine import TEXT_RESULT, Column, Target
-from xlmc.compile.engines import ENGINES
-from xlmc.compile.lower import Lowering
-from xlmc.compile.widening import widened
 from xlmc.errors import ErrorCode
+from xlmc.evaluation.engine import TEXT_RESULT, Column, Target
+from xlmc.evaluation.engines import ENGINES
+from xlmc.evaluation.graph.lower import Lowering
+from xlmc.evaluation.graph.widening import widened
 from xlmc.formula import Resolver, build_graph
 from xlmc.workbook.model import CellContent, Formula, Sheet, Workbook
 

@@ -120,7 +120,7 @@ def test_two_writers_that_both_begin_a_new_file(tmp_path):
 
 SCRIPT = """
 import sys
-from xlmc.scratch import columns
+from xlmc.columns import columns
 columns.IN_MEMORY = columns.WRITTEN = 0
 from xlmc.cli import main
 sys.argv = ["xlmc", *sys.argv[1:]]

@@ -51,7 +51,7 @@ def test_braces_are_those_of_ctrl_shift_enter():
     ],
 )
 def test_formulatext_and_verify_show_it(workbook, formula, text):
-    from xlmc.verify import verify
+    from xlmc.studies.verify import verify
 
     book = workbook({"A3": 5.0, "B3": CellContent(1.0, formula), "C1": ("=FORMULATEXT(B3)", text)})
     found = {str(check.cell): check for check in verify(book).cells}

@@ -16,8 +16,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from xlmc.compile.settings import as_set
 from xlmc.errors import ErrorCode, FormulaError
+from xlmc.evaluation.graph.settings import as_set
 from xlmc.functions import Function, Kind
 from xlmc.functions.denormals import flushed
 from xlmc.functions.families import REGISTRY, function_named

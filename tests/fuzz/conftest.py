@@ -14,6 +14,6 @@ def small_blocks(monkeypatch):
     """As in a campaign: as many trials at once as are asked for, and not 32,768."""
     from fuzzing import BLOCK
 
-    from xlmc import simulate
+    from xlmc.run import simulate
 
     monkeypatch.setattr(simulate, "BLOCK", BLOCK)

@@ -4,7 +4,7 @@ import openpyxl
 import pytest
 
 import xlmc
-from xlmc.report import book as result_sheets
+from xlmc.report.sheets import book as result_sheets
 
 _WHOLE = result_sheets.charts.write_charts
 
@@ -17,7 +17,7 @@ def _short_books():
     """
     with pytest.MonkeyPatch.context() as patch:
         for name in ("write_dependence", "charts.write_charts", "pairs_sheet.write_pairs"):
-            patch.setattr(f"xlmc.report.book.{name}", lambda *_: None)
+            patch.setattr(f"xlmc.report.sheets.book.{name}", lambda *_: None)
         yield
 
 

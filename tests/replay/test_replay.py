@@ -10,10 +10,10 @@ import pytest
 
 import xlmc
 from xlmc.errors import WorkbookError, XlmcError
-from xlmc.record import Entry, Record, RecordTable, make_record
-from xlmc.record.read import read_record
 from xlmc.replay import Change, replay
 from xlmc.replay import repeat as repeating
+from xlmc.results.record import Entry, Record, RecordTable, make_record
+from xlmc.results.record.read import read_record
 from xlmc.workbook import read_workbook
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/intersection.xlsx"
@@ -83,7 +83,7 @@ def test_nothing_was_accepted_in_the_run_that_should_have_accepted_nothing(model
 
 
 def test_an_interrupted_run_is_repeated(model, tmp_path):
-    from xlmc.stopping import Stopped
+    from xlmc.run.stopping import Stopped
 
     run = replace(model.simulate(500), stopped=Stopped("interruption", "it was interrupted"))
     run.save(tmp_path / "r.xlsx")

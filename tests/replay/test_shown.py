@@ -17,7 +17,7 @@ from needed_programs import missing
 import xlmc
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.replay import replay
-from xlmc.report.save import save
+from xlmc.report.sheets.save import save
 from xlmc.workbook.package import read_parts
 
 

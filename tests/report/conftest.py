@@ -9,8 +9,8 @@ import pytest
 
 from xlmc.address import parse_address
 from xlmc.definitions import Assumption, Definitions, Filter, Forecast, Settings
-from xlmc.model import Model
-from xlmc.report.book import build_sheets
+from xlmc.report.sheets.book import build_sheets
+from xlmc.run.model import Model
 from xlmc.workbook import CellContent, Formula, Sheet, Workbook
 
 

@@ -132,7 +132,7 @@ def test_charts_show_their_titles_and_axes(pages, case):
 
 
 def test_the_sentences_are_printed_whole(pages, case):
-    from xlmc.statements import statements
+    from xlmc.results.statements import statements
 
     printed = " ".join(page.text for page in pages if page.sheet == "Certainty")
     for statement in statements(case):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from xlmc.scratch import PART
+from xlmc.columns import PART
 from xlmc.statistics import Sample, kurtosis, mean, skewness, variance
 
 

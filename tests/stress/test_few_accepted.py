@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 import xlmc.statistics as xs
 from xlmc.cli import xlmc as command
-from xlmc.model import load
+from xlmc.run.model import load
 
 RUNS = 800
 NOISE = 4 * math.sqrt(0.95 * 0.05 / RUNS)

@@ -40,7 +40,7 @@ def test_precision_does_not_take_for_known_what_has_not_varied_yet():
 @pytest.fixture
 def short_sequences(monkeypatch):
     """Of 500 rather than 10,000: as many of them are needed, with 1/√20 of the scale."""
-    from xlmc.stopping import adaptive
+    from xlmc.run.stopping import adaptive
 
     monkeypatch.setattr(adaptive, "sequence_length", lambda share: 500)
 
@@ -88,7 +88,7 @@ def test_whole_runs_until_so_many_are_accepted(model):
 
 def test_whole_runs_until_the_mean_is_known(model, monkeypatch):
     """60 runs in small blocks, which give the rule as many chances to stop by luck as it can have."""
-    monkeypatch.setattr("xlmc.simulate.BLOCK", 2_048)
+    monkeypatch.setattr("xlmc.run.simulate.BLOCK", 2_048)
     runs = [model.simulate(seed=seed, precision=0.012, precision_of="mean", keep_inputs=0) for seed in range(60)]
     assert {run.stopped.by for run in runs} == {"precision"}
     held = sum(run["x"].mean.interval[0] <= 10.5 <= run["x"].mean.interval[1] for run in runs)

@@ -14,10 +14,10 @@ from committed_books import BOOKS
 from needed_programs import missing
 
 from xlmc.address import parse_address
-from xlmc.compile import Target
-from xlmc.compile.engines import ENGINES
-from xlmc.compile.lower import Lowering
-from xlmc.compile.widening import widened
+from xlmc.evaluation import Target
+from xlmc.evaluation.engines import ENGINES
+from xlmc.evaluation.graph.lower import Lowering
+from xlmc.evaluation.graph.widening import widened
 from xlmc.formula import Resolver, build_graph
 from xlmc.workbook import read_workbook
 

@@ -10,7 +10,7 @@ import pytest
 from committed_books import BOOKS, TEMPLATES
 
 import xlmc
-from xlmc.verify import Status, verify
+from xlmc.studies.verify import Status, verify
 from xlmc.workbook import read_workbook
 
 REFERENCE = re.compile(r"=Model!D\d+")

@@ -6,7 +6,7 @@ import openpyxl
 import pytest
 
 import xlmc
-from xlmc.checking import base_checks
+from xlmc.run.checking import base_checks
 
 EDITIONS = ["", "-si"]
 FRICTION = {

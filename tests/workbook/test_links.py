@@ -12,7 +12,7 @@ import xlmc
 from xlmc.address import Cell
 from xlmc.errors import ErrorCode, FormulaError, WorkbookError
 from xlmc.replay import Change, replay
-from xlmc.verify import Status, verify
+from xlmc.studies.verify import Status, verify
 from xlmc.workbook.model import CellContent
 
 MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"

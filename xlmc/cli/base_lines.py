@@ -9,8 +9,8 @@ from xlmc.cli.terminal import paragraph, say
 from xlmc.errors import sentence
 
 if TYPE_CHECKING:
-    from xlmc.cell_errors import BaseErrors
-    from xlmc.model import Model
+    from xlmc.run.cell_errors import BaseErrors
+    from xlmc.run.model import Model
 
 __all__ = ["show_base_case"]
 
@@ -20,8 +20,8 @@ _MOST = 12
 
 def show_base_case(model: Model) -> list[str]:
     """Print the checks that fail and the cells in error; return why the answer must not be used as it stands."""
-    from xlmc.cell_errors import errors_at_base
-    from xlmc.checking import base_checks
+    from xlmc.run.cell_errors import errors_at_base
+    from xlmc.run.checking import base_checks
 
     failing = [check.fault for check in base_checks(model) if check.holds is False]
     errors = errors_at_base(model)
@@ -41,7 +41,7 @@ def show_base_case(model: Model) -> list[str]:
 
 def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
     """The cells that errors come from with their formulas, then the cells that have theirs from these."""
-    from xlmc.record.contents import content_text
+    from xlmc.results.record.contents import content_text
 
     handled = "" if errors.answers else " (handled: no forecast, filter or check is an error)"
     for cell, code in list(errors.roots.items())[:_MOST]:

@@ -11,7 +11,7 @@ from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
     from xlmc.definitions import Correlation, Definitions
-    from xlmc.model import Model
+    from xlmc.run.model import Model
     from xlmc.workbook import Workbook
 
 __all__ = ["check"]
@@ -28,8 +28,8 @@ def check(book: Path) -> None:
     from xlmc.cli.printing import notices
     from xlmc.definitions import read_definitions
     from xlmc.errors import XlmcError
-    from xlmc.filter_values import filter_faults
-    from xlmc.model import Model
+    from xlmc.run.filter_values import filter_faults
+    from xlmc.run.model import Model
     from xlmc.workbook import read_workbook
 
     workbook = read_workbook(book)
@@ -63,8 +63,8 @@ def check(book: Path) -> None:
 
 def _show_definitions(definitions: Definitions, model: Model | None) -> None:
     from xlmc.cli.printing import table
-    from xlmc.record.wording import distribution_text, limits_text
     from xlmc.report.summary import percent
+    from xlmc.results.record.wording import distribution_text, limits_text
 
     table(
         "Assumptions",
@@ -87,7 +87,7 @@ def _show_definitions(definitions: Definitions, model: Model | None) -> None:
 
 
 def _drawn_with(model: Model | None, correlation: Correlation) -> str:
-    from xlmc.correlating import used
+    from xlmc.run.correlating import used
 
     found = None if model is None else used(model.groups, correlation.first, correlation.second)
     return "-" if found is None else f"{found:.3g}"

@@ -9,8 +9,8 @@ from xlmc.cli.terminal import paragraph, say
 from xlmc.errors import sentence
 
 if TYPE_CHECKING:
-    from xlmc.checking import CheckResult
-    from xlmc.simulation import Simulation
+    from xlmc.run.checking import CheckResult
+    from xlmc.run.simulation import Simulation
 
 __all__ = ["check_table", "failing_lines", "show_first"]
 
@@ -22,7 +22,7 @@ def failing_lines(run: Simulation) -> list[str]:
 
 def show_first(run: Simulation) -> None:
     """Print the checks that fail, then the cells that trials were lost in."""
-    from xlmc.record.errors_met import lost_sentences
+    from xlmc.results.record.errors_met import lost_sentences
 
     name = run.model.workbook.name
     _show(f"{name}: checks that fail", failing_lines(run))
@@ -40,8 +40,8 @@ def _show(title: str, lines: Sequence[str]) -> None:
 
 def check_table(run: Simulation) -> None:
     """Print how many accepted trials fail each check; only how many checks there are where no trial fails one."""
-    from xlmc.checking import checks_sentence
     from xlmc.cli.printing import table
+    from xlmc.run.checking import checks_sentence
 
     if not run.checks:
         return

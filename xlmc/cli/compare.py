@@ -15,9 +15,9 @@ from xlmc.cli.terminal import say, say_json
 from xlmc.cli.told_options import show, told_options
 
 if TYPE_CHECKING:
-    from xlmc.analysis import Comparison, ForecastComparison
-    from xlmc.analysis.causes import Step
     from xlmc.report.told import Block, Told
+    from xlmc.studies.comparison import Comparison, ForecastComparison
+    from xlmc.studies.comparison.causes import Step
 
 __all__ = ["compare"]
 
@@ -66,11 +66,11 @@ def compare(
     quiet: bool,
 ) -> None:
     """Run FIRST and SECOND over the same trials, and say whether the simpler one is enough."""
-    from xlmc import analysis
-    from xlmc.analysis.wording import book_names
     from xlmc.cli.printing import telling, warnings
-    from xlmc.model import load
     from xlmc.report.told_files import Files
+    from xlmc.run.model import load
+    from xlmc.studies import comparison as analysis
+    from xlmc.studies.comparison.wording import book_names
 
     books = load(first), load(second)
     files = Files(output, html, [first, second], overwrite=overwrite)
@@ -121,8 +121,8 @@ def _pairs(given: tuple[str, ...]) -> dict[str, str]:
 
 
 def _told(found: Comparison) -> Told:
-    from xlmc.analysis.wording import book_names, verdict_text
     from xlmc.report.told import Table, Told
+    from xlmc.studies.comparison.wording import book_names, verdict_text
 
     books = book_names(found)
     headings = ("", "First", "Second", "Difference", "Tolerance")
@@ -132,8 +132,8 @@ def _told(found: Comparison) -> Told:
 
 
 def _sentences(found: Comparison) -> Iterator[str]:
-    from xlmc.analysis.wording import book_names, inputs_text
     from xlmc.report.summary import estimate_text
+    from xlmc.studies.comparison.wording import book_names, inputs_text
 
     books, accepted, trials = book_names(found), found.acceptance, found.first.trials
     yield (
@@ -158,8 +158,8 @@ def _title(each: ForecastComparison) -> str:
 
 
 def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
-    from xlmc.analysis.wording import amount, is_chance
     from xlmc.report.summary import estimate_text, percent
+    from xlmc.studies.comparison.wording import amount, is_chance
 
     found = each.difference
     rows = []
@@ -178,8 +178,8 @@ def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
 
 
 def _as_json(found: Comparison) -> dict[str, object]:
-    from xlmc.analysis.wording import book_names, verdict_text
     from xlmc.cli.plain import acceptance_json
+    from xlmc.studies.comparison.wording import book_names, verdict_text
 
     books, inputs = book_names(found), found.inputs
     return {

@@ -13,7 +13,7 @@ from xlmc.cli.parameter_types import OneOf
 from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
-    from xlmc.fitting import Fitted, Fitting
+    from xlmc.studies.fitting import Fitted, Fitting
 
 __all__ = ["fit"]
 
@@ -38,7 +38,7 @@ def fit(source: str, cells: str | None, kind: str | None, by: str, name: str, as
     RANGE is a range of cells, with its sheet where the workbook has several (data.xlsx!Sheet1!A2:A50), a defined name,
     or a column of a table (Tests[Friction]).
     """
-    from xlmc import fitting
+    from xlmc.studies import fitting
 
     book, reference = _place(source, cells)
     values, where, blank = _values(book, reference)
@@ -79,10 +79,10 @@ def _values(book: Path, reference: str) -> tuple[list[float], str, int]:
     Raises:
         DefinitionError: there is no such range, or a cell in it holds something else.
     """
-    from xlmc.definitions.area_reference import area_of_reference
     from xlmc.definitions.computed import Computed
-    from xlmc.definitions.data import area_values
-    from xlmc.definitions.fields import number_in
+    from xlmc.definitions.tables.area_reference import area_of_reference
+    from xlmc.definitions.tables.data import area_values
+    from xlmc.definitions.tables.fields import number_in
     from xlmc.workbook import read_workbook
 
     workbook = read_workbook(book)

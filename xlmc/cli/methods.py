@@ -11,7 +11,7 @@ from xlmc.cli.parameter_types import WholeNumber
 from xlmc.cli.terminal import paragraph, say, say_json
 
 if TYPE_CHECKING:
-    from xlmc.methods import Study
+    from xlmc.studies.methods import Study
 
 __all__ = ["methods"]
 
@@ -68,9 +68,9 @@ def methods(
     """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
     from xlmc.cli.methods_json import study_json
     from xlmc.cli.printing import telling
-    from xlmc.methods import quick_settings, study
-    from xlmc.model import load
     from xlmc.report.methods import check_targets, save_methods
+    from xlmc.run.model import load
+    from xlmc.studies.methods import quick_settings, study
 
     model = load(book)
     check_targets(output, book, overwrite=overwrite)
@@ -94,8 +94,8 @@ def methods(
 
 def _show(found: Study) -> None:
     from xlmc.cli.printing import table
-    from xlmc.methods import recommendation
     from xlmc.report.methods import tables
+    from xlmc.studies.methods import recommendation
 
     shown = tables.reference_table(found), tables.error_table(found), tables.bounds_table(found)
     for each in shown:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from xlmc.cli.plain import estimate_json, finite
-from xlmc.methods import STATISTICS, Curve, Rung, Study, need, recommendation
-from xlmc.methods.choice import choice
-from xlmc.methods.need import shortfall
 from xlmc.report.methods.tables import cannot
+from xlmc.studies.methods import STATISTICS, Curve, Rung, Study, need, recommendation
+from xlmc.studies.methods.choice import choice
+from xlmc.studies.methods.need import shortfall
 
 __all__ = ["study_json"]
 

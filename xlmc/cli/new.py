@@ -14,7 +14,7 @@ from xlmc.cli.terminal import paragraph, say
 from xlmc.errors import WorkbookError
 
 if TYPE_CHECKING:
-    from xlmc.templates_folder import Template
+    from xlmc.cli.templates_folder import Template
 
 __all__ = ["new"]
 
@@ -26,7 +26,7 @@ __all__ = ["new"]
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
 def new(template: str | None, book: Path | None, units: str, overwrite: bool) -> None:
     """List the templates, or copy TEMPLATE to BOOK (by default TEMPLATE.xlsx here)."""
-    from xlmc.templates_folder import templates
+    from xlmc.cli.templates_folder import templates
 
     known = templates()
     if template is None:

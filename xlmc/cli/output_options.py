@@ -14,7 +14,7 @@ from xlmc.cli.terminal import say
 from xlmc.errors import WorkbookError, XlmcError
 
 if TYPE_CHECKING:
-    from xlmc.simulation import Simulation
+    from xlmc.run.simulation import Simulation
 
 __all__ = ["NOT_WRITTEN", "Outputs", "output_options", "results_beside"]
 
@@ -109,23 +109,23 @@ class Outputs:
             if path is not None and os.path.isdir(path) and (self.named or path != self.book):
                 raise WorkbookError("this is a folder, not a file", where=path, hint="Name a file")
         if self.book is not None:
-            from xlmc.report.save import check_ending
+            from xlmc.report.sheets.save import check_ending
 
             check_ending(self.book, like)
         if self.run is not None:
-            from xlmc.saved.keeping import check_run_path
+            from xlmc.results.saved.keeping import check_run_path
 
             check_run_path(self.run)
         if self.html is not None:
-            from xlmc.report.html import check_page_path
+            from xlmc.report.page import check_page_path
 
             check_page_path(self.html)
         if self.json is not None:
-            from xlmc.report.document import check_json_path
+            from xlmc.report.data.document import check_json_path
 
             check_json_path(self.json)
         for path in self.extract:
-            from xlmc.report.extract import check_extract_path
+            from xlmc.report.data.extract import check_extract_path
 
             check_extract_path(path)
 

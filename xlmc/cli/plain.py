@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from xlmc.analysis import Acceptance, Change, Difference
     from xlmc.statistics import Estimate
+    from xlmc.studies.comparison import Acceptance, Change, Difference
 
 __all__ = ["acceptance_json", "difference_json", "estimate_json", "finite"]
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.cli.table import laid_out
 from xlmc.cli.terminal import degraded, on_terminal, paragraph, put, say, width
-from xlmc.printable import printable
+from xlmc.workbook.printable import printable
 
 if TYPE_CHECKING:
     from xlmc.errors import Notice

@@ -7,11 +7,11 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from xlmc.cli.terminal import degraded, on_terminal
-from xlmc.printable import printable
+from xlmc.workbook.printable import printable
 
 if TYPE_CHECKING:
-    from xlmc.simulate import Progress
-    from xlmc.stopping import Standing
+    from xlmc.run.simulate import Progress
+    from xlmc.run.stopping import Standing
 
 __all__ = ["errors_line", "progress_bar", "trials_line"]
 

@@ -36,7 +36,7 @@ def report(
     """Write the results of a saved run again, without simulating: the same as when it was run."""
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.simulate import show_run
-    from xlmc.saved import open_run
+    from xlmc.results.saved import open_run
 
     found = open_run(run)
     if not quiet:

@@ -15,8 +15,8 @@ from xlmc.cli.terminal import say, say_json
 from xlmc.cli.told_options import show, told_options
 
 if TYPE_CHECKING:
-    from xlmc.analysis import Cost, Screening
     from xlmc.report.told import Block, Table, Told
+    from xlmc.studies.screening import Cost, Screening
 
 __all__ = ["screen"]
 
@@ -74,16 +74,16 @@ def screen(
     quiet: bool,
 ) -> None:
     """Find which assumptions of BOOK may be held, and which filters left out, without moving its answers."""
-    from xlmc import analysis
     from xlmc.cli.printing import telling, warnings
-    from xlmc.model import load
     from xlmc.report.told_files import Files
+    from xlmc.run.model import load
+    from xlmc.studies import screening
 
     model = load(book)
     files = Files(output, html, [book], overwrite=overwrite)
     files.check()
     with telling(quiet) as told:
-        found = analysis.screen(
+        found = screening.screen(
             model,
             tolerance,
             chance=chance,
@@ -153,8 +153,8 @@ def _size(tolerances: float) -> str:
 
 def _of_forecast(found: Screening, name: str) -> Table:
     """Of every change, the number of a forecast that it moves most, measured in its tolerance."""
-    from xlmc.analysis.wording import amount
     from xlmc.report.told import Table
+    from xlmc.studies.comparison.wording import amount
 
     units = found.run[name].definition.units
     rows = []
@@ -175,7 +175,7 @@ def _of_forecast(found: Screening, name: str) -> Table:
 
 def _most_moved(found: Screening, cost: Cost, name: str) -> tuple[str, float]:
     """The number of a forecast that moves most, and by how many tolerances."""
-    from xlmc.analysis.tolerances import in_tolerances
+    from xlmc.studies.comparison.tolerances import in_tolerances
 
     each = cost.forecasts[name]
     limits = each.tolerances(found.tolerances[name][0], found.chance)
@@ -186,7 +186,7 @@ def _most_moved(found: Screening, cost: Cost, name: str) -> tuple[str, float]:
 
 def _tolerance(found: Screening, name: str) -> str:
     """In words: `1 mph, and P(> 18) 1.2 points`."""
-    from xlmc.analysis.wording import is_chance, points
+    from xlmc.studies.comparison.wording import is_chance, points
 
     value, stated = found.tolerances[name]
     text = f"{value:.3g} {found.run[name].definition.units}".rstrip() + ("" if stated else " (a tenth of the SD)")
@@ -208,7 +208,7 @@ def _percent(cost: Cost) -> str:
 
 
 def _verdicts(found: Screening) -> Iterable[str]:
-    from xlmc.analysis.wording import undecided_text
+    from xlmc.studies.comparison.wording import undecided_text
 
     if found.joint:
         yield (

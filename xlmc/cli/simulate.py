@@ -15,8 +15,8 @@ from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
     from xlmc.errors import Notice
-    from xlmc.model import Model
-    from xlmc.simulation import Simulation
+    from xlmc.run.model import Model
+    from xlmc.run.simulation import Simulation
 
 __all__ = ["show_run", "simulate"]
 
@@ -90,8 +90,8 @@ def simulate(
     """Run BOOK, print the summary, and write result sheets and charts into a copy of it."""
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.progress import progress_bar
-    from xlmc.model import load
-    from xlmc.simulation import KEPT_INPUTS
+    from xlmc.run.model import load
+    from xlmc.run.simulation import KEPT_INPUTS
 
     if in_place and output is not None:
         raise click.UsageError("--in-place and --output exclude each other.")
@@ -138,8 +138,8 @@ def simulate(
 
 def _hints(model: Model, trials: int | None, engine: str | None) -> list[Notice]:
     """What could make the run shorter."""
-    from xlmc.compile.jit import REPAYS_FROM, available
     from xlmc.errors import Notice
+    from xlmc.evaluation.llvm import REPAYS_FROM, available
 
     settings = model.definitions.settings
     if (engine or settings.engine) != "numpy" or (trials or settings.trials) < REPAYS_FROM or not available():
@@ -151,9 +151,9 @@ def show_run(run: Simulation) -> None:
     """Print the paper's table, the acceptance and what each filter rejected."""
     from xlmc.cli.check_lines import check_table, show_first
     from xlmc.cli.printing import table
-    from xlmc.record.sampling_words import sampling_sentence
     from xlmc.report.summary import ERROR_SENTENCE, summarise, summary_text
-    from xlmc.stopping.stopped import ALL_TRIALS
+    from xlmc.results.record.sampling_words import sampling_sentence
+    from xlmc.run.stopping.stopped import ALL_TRIALS
 
     show_first(run)
     headings, rows = summary_text(summarise(run))
@@ -171,12 +171,12 @@ def show_run(run: Simulation) -> None:
 
 
 def _accepted(run: Simulation) -> str:
-    from xlmc.record.errors_met import rest_sentences
+    from xlmc.results.record.errors_met import rest_sentences
     from xlmc.statistics import format_estimate
 
     share = run.acceptance
     if run.rare is not None:
-        from xlmc.rare.account import probability_text
+        from xlmc.run.rare.account import probability_text
 
         return f"{run.accepted:,} accepted trials; one is accepted with probability {probability_text(run.rare)}"
     percent = format_estimate(100 * share.value, 100 * (share.error or 0))
@@ -187,7 +187,7 @@ def _accepted(run: Simulation) -> str:
 
 
 def _rejections(run: Simulation) -> list[tuple[str, ...]]:
-    from xlmc.record.wording import limits_text
+    from xlmc.results.record.wording import limits_text
 
     counts = zip(run.model.filters, run.tally.rejected, run.tally.only, strict=True)
     return [(f.name, limits_text(f), f"{rejected:,}", f"{only:,}") for f, rejected, only in counts]

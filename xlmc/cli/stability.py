@@ -15,7 +15,7 @@ from xlmc.cli.told_options import show, told_options
 
 if TYPE_CHECKING:
     from xlmc.report.told import Block, Table, Told
-    from xlmc.stability import CellDigits, Finding, Stability
+    from xlmc.studies.stability import CellDigits, Finding, Stability
 
 __all__ = ["stability"]
 
@@ -44,10 +44,10 @@ def stability(
     quiet: bool,
 ) -> None:
     """Find where BOOK loses digits, or its numbers are not what they seem, within the ranges of its assumptions."""
-    from xlmc import stability as room
     from xlmc.cli.printing import telling, warnings
-    from xlmc.model import load
     from xlmc.report.told_files import Files
+    from xlmc.run.model import load
+    from xlmc.studies import stability as room
 
     model = load(book)
     files = Files(output, html, [book], overwrite=overwrite)

@@ -14,7 +14,7 @@ from textwrap import fill
 from typing import Final, TextIO
 
 from xlmc.errors import WorkbookError
-from xlmc.printable import printable
+from xlmc.workbook.printable import printable
 
 __all__ = ["degraded", "on_terminal", "paragraph", "prepare", "put", "say", "say_json", "width"]
 

@@ -10,7 +10,7 @@ import click
 from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
-    from xlmc.verify import CellCheck, Verification
+    from xlmc.studies.verify import CellCheck, Verification
 
 __all__ = ["verify"]
 
@@ -25,8 +25,8 @@ _SHOWN = 50
 def verify(book: Path, everything: bool, as_json: bool) -> None:
     """Recompute the formulas of BOOK at their base values and compare with the values Excel saved."""
     from xlmc.definitions import read_definitions
-    from xlmc.verify import Status
-    from xlmc.verify import verify as check
+    from xlmc.studies.verify import Status
+    from xlmc.studies.verify import verify as check
     from xlmc.workbook import read_workbook
 
     workbook = read_workbook(book)
@@ -43,7 +43,7 @@ def verify(book: Path, everything: bool, as_json: bool) -> None:
 
 
 def _as_json(found: Verification) -> dict[str, object]:
-    from xlmc.verify import Status
+    from xlmc.studies.verify import Status
 
     counts = {status.value.replace(" ", "_"): found.count(status) for status in Status}
     listed = [_entry(cell) for cell in found.cells if cell.status is not Status.MATCHED]
@@ -71,7 +71,7 @@ def _plain(value: object) -> object:
 
 def _show(found: Verification) -> None:
     from xlmc.cli.printing import table
-    from xlmc.verify import Status, groups
+    from xlmc.studies.verify import Status, groups
 
     counts = [f"{found.count(status):,} {status.value}" for status in Status if found.count(status)]
     say(f"{len(found.cells):,} formula cells: {', '.join(counts) or 'nothing to check'}.")

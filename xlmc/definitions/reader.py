@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from xlmc.definitions.assumptions import read_assumptions
-from xlmc.definitions.checks import read_checks
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.correlations import read_correlations
-from xlmc.definitions.data_tables import TABLE_REASON, TablesOfRun
-from xlmc.definitions.filters import read_filters
 from xlmc.definitions.findings import Findings
-from xlmc.definitions.forecasts import read_forecasts
-from xlmc.definitions.identity import Claims
-from xlmc.definitions.in_cell_correlations import in_cell_correlations
-from xlmc.definitions.in_cell_forecasts import in_cell_forecasts
-from xlmc.definitions.in_cells import InCells, read_in_cells
+from xlmc.definitions.in_cells.calls import InCells, read_in_cells
+from xlmc.definitions.in_cells.correlations import in_cell_correlations
+from xlmc.definitions.in_cells.forecasts import in_cell_forecasts
 from xlmc.definitions.model import Definitions, Settings, name_key
-from xlmc.definitions.settings import read_settings
-from xlmc.definitions.tables import DefinitionTable, definition_tables, holds_rows
+from xlmc.definitions.tables.assumptions import read_assumptions
+from xlmc.definitions.tables.checks import read_checks
+from xlmc.definitions.tables.correlations import read_correlations
+from xlmc.definitions.tables.data_tables import TABLE_REASON, TablesOfRun
+from xlmc.definitions.tables.filters import read_filters
+from xlmc.definitions.tables.forecasts import read_forecasts
+from xlmc.definitions.tables.identity import Claims
+from xlmc.definitions.tables.settings import read_settings
+from xlmc.definitions.tables.tables import DefinitionTable, definition_tables, holds_rows
 from xlmc.definitions.unavailable import faults_of, remark_on_tables, remark_on_unavailable, tables_met
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import Workbook

@@ -7,10 +7,10 @@ from itertools import groupby
 from typing import Final
 
 from xlmc.address import Area, Cell
-from xlmc.definitions.data_tables import TABLE_REASON, TablesOfRun, cells_of, tables_of_run
 from xlmc.definitions.findings import Findings
-from xlmc.definitions.in_cells import InCells
+from xlmc.definitions.in_cells.calls import InCells
 from xlmc.definitions.model import Assumption
+from xlmc.definitions.tables.data_tables import TABLE_REASON, TablesOfRun, cells_of, tables_of_run
 from xlmc.errors import FormulaError
 from xlmc.workbook.model import DataTable, Workbook
 

@@ -24,7 +24,7 @@ from xlmc.functions.arguments import if_blank
 from xlmc.functions.logical import choose
 from xlmc.functions.number_text import parse_number
 from xlmc.functions.ordering import Ordered, ordered
-from xlmc.functions.patterns import is_pattern, pattern_of
+from xlmc.functions.text.patterns import is_pattern, pattern_of
 from xlmc.functions.values import BLANK, ERROR, NUMBER, TEXT, Bools, Floats, Objects, Value, from_objects
 
 __all__ = ["met"]

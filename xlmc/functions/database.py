@@ -12,13 +12,13 @@ from collections.abc import Callable
 import numpy as np
 
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.functions import aggregate
 from xlmc.functions.arguments import direct_errors, earliest, refused, where_wrong, with_errors
-from xlmc.functions.conditional import Reduce, numbers_held
 from xlmc.functions.criteria import met
 from xlmc.functions.logical import choose
+from xlmc.functions.lookup.picking import Places, cell_of, each_part, picked, side_by_side
+from xlmc.functions.math import aggregate
+from xlmc.functions.math.conditional import Reduce, numbers_held
 from xlmc.functions.ordering import ordered
-from xlmc.functions.picking import Places, cell_of, each_part, picked, side_by_side
 from xlmc.functions.portions import by_portions
 from xlmc.functions.registry import Anything, Cells, Kind, excel
 from xlmc.functions.values import BLANK, NUMBER, TEXT, Bools, Value, constant

@@ -7,7 +7,7 @@ import re
 from decimal import ROUND_HALF_UP, Context, Decimal
 from typing import Final
 
-from xlmc.functions.date_text import parse_moment
+from xlmc.functions.dates.date_text import parse_moment
 from xlmc.functions.denormals import TINIEST
 
 __all__ = ["SPACES", "general_text", "parse_number", "parse_plain_number", "shown"]

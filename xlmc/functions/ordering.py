@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from xlmc.functions.collation import order_key
-from xlmc.functions.picking import Places, flattened
+from xlmc.functions.lookup.picking import Places, flattened
 from xlmc.functions.values import ERROR, TEXT, Codes, Floats, Objects, Value
 
 __all__ = ["Ordered", "ordered", "searched"]

@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.functions.picking import each_part, joined
+from xlmc.functions.lookup.picking import each_part, joined
 from xlmc.functions.values import ShapeVaries, Value
 
 __all__ = ["by_portions", "width_of"]

@@ -13,7 +13,7 @@ from functools import wraps
 import numpy as np
 
 from xlmc.functions.arguments import direct_errors, earliest, first_errors, leveled
-from xlmc.functions.picking import flattened
+from xlmc.functions.lookup.picking import flattened
 from xlmc.functions.values import NA, NUMBER, Bools, Codes, Floats, Value
 
 __all__ = [

@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.functions import aggregate
+from xlmc.functions.math import aggregate
 from xlmc.functions.registry import Cells, Function, Kind, row_of
 from xlmc.functions.values import BLANK, ERROR, NUMBER, Value
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, leveled
-from xlmc.functions.picking import flattened as in_rows
+from xlmc.functions.lookup.picking import flattened as in_rows
 from xlmc.functions.registry import Anything, Ranges
 from xlmc.functions.values import LOGICAL, Codes, Floats, Value, from_objects, parse_number
 

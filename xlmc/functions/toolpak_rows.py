@@ -14,7 +14,7 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import leveled
-from xlmc.functions.calendar import in_calendar
+from xlmc.functions.dates.calendar import in_calendar
 from xlmc.functions.registry import Kind, Parameter, Ranges, excel
 from xlmc.functions.toolpak import strict_numbers
 from xlmc.functions.values import NUM, Bools, Floats, Value

@@ -6,9 +6,9 @@ from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeVar
 
-from xlmc.record import Record, Value
-from xlmc.record.contents import SAVED, content_text, definition_cells
 from xlmc.replay.closeness import Closeness
+from xlmc.results.record import Record, Value
+from xlmc.results.record.contents import SAVED, content_text, definition_cells
 
 if TYPE_CHECKING:
     from xlmc.address import Cell

@@ -8,11 +8,11 @@ from xlmc.address import Cell
 from xlmc.errors import ErrorCode
 from xlmc.replay.closeness import Closeness
 from xlmc.replay.sheets import CellDifference, SheetComparison
-from xlmc.result_cells import result_values
+from xlmc.run.result_cells import result_values
 from xlmc.workbook.model import CellContent
 
 if TYPE_CHECKING:
-    from xlmc.simulation import Simulation
+    from xlmc.run.simulation import Simulation
     from xlmc.workbook import Workbook
 
 __all__ = ["compare_own_cells"]

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Cell
-from xlmc.compile.lower import Lowering
+from xlmc.evaluation.graph.lower import Lowering
 from xlmc.formula import Resolver, build_graph
 from xlmc.workbook.model import CellContent
 

@@ -8,12 +8,6 @@ from typing import TYPE_CHECKING, Final
 
 import xlmc
 from xlmc.errors import WorkbookError, XlmcError
-from xlmc.model import understood
-from xlmc.record import Record, make_record
-from xlmc.record.cell_table import recorded_cells
-from xlmc.record.contents import needed_contents
-from xlmc.record.read import read_record
-from xlmc.record.settings_table import recorded_settings
 from xlmc.replay.changes import (
     Change,
     NumberChange,
@@ -30,8 +24,14 @@ from xlmc.replay.restored import restored
 from xlmc.replay.sheets import SheetComparison
 from xlmc.replay.shown import compare_shown
 from xlmc.replay.versions import Rule, recorded_version, rules_since
-from xlmc.saved import SUFFIX, is_saved_run, open_run
-from xlmc.simulation import KEPT_INPUTS
+from xlmc.results.record import Record, make_record
+from xlmc.results.record.cell_table import recorded_cells
+from xlmc.results.record.contents import needed_contents
+from xlmc.results.record.read import read_record
+from xlmc.results.record.settings_table import recorded_settings
+from xlmc.results.saved import SUFFIX, is_saved_run, open_run
+from xlmc.run.model import understood
+from xlmc.run.simulation import KEPT_INPUTS
 from xlmc.workbook import read_workbook
 from xlmc.workbook.blame import told_of
 from xlmc.workbook.seal import read_seal
@@ -39,9 +39,9 @@ from xlmc.workbook.seal import read_seal
 if TYPE_CHECKING:
     from xlmc.address import Cell
     from xlmc.definitions import Settings
-    from xlmc.model import Model
-    from xlmc.simulate import Progress
-    from xlmc.simulation import Simulation
+    from xlmc.run.model import Model
+    from xlmc.run.simulate import Progress
+    from xlmc.run.simulation import Simulation
     from xlmc.workbook import Workbook
 
 __all__ = ["Replayed", "replay"]

@@ -6,13 +6,13 @@ import copy
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from xlmc.stopping.stopped import Stopped
+from xlmc.run.stopping.stopped import Stopped
 
 if TYPE_CHECKING:
     from xlmc.definitions import Settings
-    from xlmc.model import Model
-    from xlmc.record import Record, Value
-    from xlmc.simulation import Simulation
+    from xlmc.results.record import Record, Value
+    from xlmc.run.model import Model
+    from xlmc.run.simulation import Simulation
 
 __all__ = ["entry", "restored"]
 

@@ -16,13 +16,13 @@ from xlmc.formula.mentions import mentioned
 from xlmc.replay.closeness import Closeness, is_number
 from xlmc.replay.matching import matched
 from xlmc.replay.own_ranges import counted
-from xlmc.report.book import build_sheets
-from xlmc.report.trials import HEADER, TRIAL_ROWS
+from xlmc.report.sheets.book import build_sheets
+from xlmc.report.sheets.trials import HEADER, TRIAL_ROWS
 from xlmc.workbook import read_workbook
 from xlmc.workbook.model import CellContent, CellValue
 
 if TYPE_CHECKING:
-    from xlmc.simulation import Simulation
+    from xlmc.run.simulation import Simulation
     from xlmc.workbook import Sheet, Workbook
 
 __all__ = ["CellDifference", "SheetComparison", "compare_sheets"]

@@ -13,9 +13,9 @@ from xlmc.replay.sheets import SheetComparison, compare_sheets
 from xlmc.replay.versions import recorded_version
 
 if TYPE_CHECKING:
-    from xlmc.record import Record
     from xlmc.replay.closeness import Closeness
-    from xlmc.simulation import Simulation
+    from xlmc.results.record import Record
+    from xlmc.run.simulation import Simulation
     from xlmc.workbook import Workbook
 
 __all__ = ["compare_shown"]

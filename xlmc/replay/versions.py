@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import xlmc
 
 if TYPE_CHECKING:
-    from xlmc.record import Record
+    from xlmc.results.record import Record
 
 __all__ = ["RULES", "Rule", "install", "recorded_version", "rules_since"]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from xlmc.report.save import save
+from xlmc.report.sheets.save import save
 from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, summarise, summary_text
 
 __all__ = ["ERROR_SENTENCE", "SummaryRow", "save", "summarise", "summary_text"]

@@ -11,8 +11,8 @@ import numpy as np
 from xlmc.definitions.model import name_key
 
 if TYPE_CHECKING:
-    from xlmc.compile import Column
-    from xlmc.simulation import Simulation
+    from xlmc.evaluation import Column
+    from xlmc.run.simulation import Simulation
 
 __all__ = ["BaseCase", "base_case"]
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc import statistics
-from xlmc.scratch import numbers
+from xlmc.columns import numbers
 from xlmc.statistics import Estimate
 
 __all__ = ["PERCENTS", "Conditioning", "Marginal", "conditioning", "marginal"]

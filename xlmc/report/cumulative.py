@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.columns import release
 from xlmc.report.histogram import Histogram, multiples
-from xlmc.scratch import release
 from xlmc.statistics.sample import Sample
 
 __all__ = ["Cumulative", "cumulative"]

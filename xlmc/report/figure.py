@@ -10,7 +10,7 @@ from xlmc.report.histogram import Histogram, histogram
 from xlmc.report.summary import SummaryRow, estimate_text, percent, summarise
 
 if TYPE_CHECKING:
-    from xlmc.simulation import Simulation
+    from xlmc.run.simulation import Simulation
 
 __all__ = ["Figure", "figures_of", "varying"]
 

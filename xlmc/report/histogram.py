@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.scratch import parts, release
+from xlmc.columns import parts, release
 from xlmc.statistics.sample import Sample, Values
 
 __all__ = ["Histogram", "histogram", "multiples"]

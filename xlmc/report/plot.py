@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from xlmc.errors import SimulationError
 from xlmc.report.figure import Figure as Drawn
 from xlmc.report.figure import figures_of
-from xlmc.report.styles import DARK, GRID, INK, LIGHT
+from xlmc.report.sheets.styles import DARK, GRID, INK, LIGHT
 from xlmc.report.summary import estimate_text, percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from xlmc.simulation import Simulation
+    from xlmc.run.simulation import Simulation
 
 __all__ = ["plot"]
 

@@ -11,7 +11,7 @@ from xlmc.report.base_case import base_case
 from xlmc.statistics import Estimate, format_estimate
 
 if TYPE_CHECKING:
-    from xlmc.simulation import Simulation
+    from xlmc.run.simulation import Simulation
 
 __all__ = [
     "ERROR_SENTENCE",

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from html import escape
 from typing import Final
 
-from xlmc.report import cells
-from xlmc.report.cells import Shown
-from xlmc.report.page import Page
-from xlmc.report.styles import CREATED, Styles
+from xlmc.report.sheets import cells
+from xlmc.report.sheets.cells import Shown
+from xlmc.report.sheets.page import Page
+from xlmc.report.sheets.styles import CREATED, Styles
 
 __all__ = ["Block", "Table", "Told", "book", "page"]
 

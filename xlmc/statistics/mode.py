@@ -21,7 +21,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from xlmc.scratch import PART, release
+from xlmc.columns import PART, release
 from xlmc.statistics.estimate import Estimate, with_error
 from xlmc.statistics.sample import Sample, Values
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.scratch import PART, on_disk, pairwise_sum, release
+from xlmc.columns import PART, on_disk, pairwise_sum, release
 
 __all__ = ["Moments", "moments_of"]
 

@@ -21,7 +21,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from xlmc.scratch import release
+from xlmc.columns import release
 from xlmc.statistics.estimate import LEAST_DOF, Estimate, one_tail, t_quantile
 from xlmc.statistics.sample import Sample, Values
 

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from xlmc.scratch import ascending, parts, picked
+from xlmc.columns import ascending, parts, picked
 from xlmc.statistics.moments import Moments, moments_of
 
 __all__ = ["Sample", "Values"]

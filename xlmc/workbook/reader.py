@@ -6,13 +6,13 @@ import hashlib
 from pathlib import Path
 
 from xlmc.errors import WorkbookError
-from xlmc.printable import label
 from xlmc.workbook.blame import told_of
 from xlmc.workbook.lazy_sheets import LazySheets
 from xlmc.workbook.links import Links
 from xlmc.workbook.model import Workbook
 from xlmc.workbook.notices import workbook_notices
 from xlmc.workbook.package import LIMITS, SMALLER, read_parts
+from xlmc.workbook.printable import label
 from xlmc.workbook.structure import read_structure
 from xlmc.workbook.tables import tables_of
 

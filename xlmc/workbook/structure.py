@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from xlmc.errors import Notice, WorkbookError
-from xlmc.printable import printable
 from xlmc.workbook.model import DefinedName
 from xlmc.workbook.package import SAVE_AS, Relationship, relationships
+from xlmc.workbook.printable import printable
 from xlmc.workbook.safe_xml import REPAIR, attribute, is_true, tree, whole_number
 from xlmc.workbook.strings import decode
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from xlmc.errors import WorkbookError
-from xlmc.printable import label
+from xlmc.workbook.printable import label
 from xlmc.workbook.seal import ENDINGS, read_seal
 from xlmc.workbook.writer import TakenError, check_folder, refuse_if_open
 

@@ -14,8 +14,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
+from xlmc.columns.owners import new_file_name, owned, remove_stray_files
 from xlmc.errors import WorkbookError
-from xlmc.scratch.owners import new_file_name, owned, remove_stray_files
 from xlmc.workbook.long_paths import openable
 
 __all__ = ["TakenError", "check_folder", "package_bytes", "refuse_if_open", "whole_file", "write_workbook"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from xlmc.functions.calendar import SECONDS_A_DAY, parts_of, weekday_of
-from xlmc.functions.date_text import MONTHS
+from xlmc.functions.dates.calendar import SECONDS_A_DAY, parts_of, weekday_of
+from xlmc.functions.dates.date_text import MONTHS
 from xlmc.functions.number_format.tokens import Mark, Token
 
 __all__ = ["Clock"]

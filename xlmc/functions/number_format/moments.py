@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
-from xlmc.functions.calendar import last_serial
+from xlmc.functions.dates.calendar import last_serial
 from xlmc.functions.number_format.clock import Clock
 from xlmc.functions.number_format.plain import Written
 from xlmc.functions.number_format.tokens import FormatError, Mark, Token, UnknownFormat, literal, tokenise

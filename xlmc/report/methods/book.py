@@ -7,14 +7,14 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.methods import STATISTICS, Curve, Rung, Study, recommendation
-from xlmc.report import cells
-from xlmc.report.cells import Shown
 from xlmc.report.methods import tables
 from xlmc.report.methods.charts import DATA, write_charts
 from xlmc.report.methods.page import ENDS
-from xlmc.report.page import Page
-from xlmc.report.styles import CREATED, Styles
+from xlmc.report.sheets import cells
+from xlmc.report.sheets.cells import Shown
+from xlmc.report.sheets.page import Page
+from xlmc.report.sheets.styles import CREATED, Styles
+from xlmc.studies.methods import STATISTICS, Curve, Rung, Study, recommendation
 
 __all__ = ["book"]
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
-from xlmc.methods import STATISTICS, Curve, Rung, Study
-from xlmc.methods.rms import Rms
 from xlmc.report.methods.labels import spread
 from xlmc.report.methods.picture import HOW_TO_READ, Line, Picture, Work, column_of, guides_of, picture_of
+from xlmc.studies.methods import STATISTICS, Curve, Rung, Study
+from xlmc.studies.methods.rms import Rms
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING, Final
 
-from xlmc.methods import Study, recommendation
 from xlmc.report.methods import tables
 from xlmc.report.methods.figure import draw
 from xlmc.report.methods.picture import HOW_TO_READ, Work
+from xlmc.studies.methods import Study, recommendation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -13,12 +13,12 @@ from typing import Final, Literal
 
 import numpy as np
 
-from xlmc.methods import Curve, Study
-from xlmc.methods.choice import Choice, choice
-from xlmc.methods.law import law
-from xlmc.methods.need import Need, reach_of, seconds_of, shortfall
-from xlmc.methods.number_words import seconds_text, trials_text
 from xlmc.report.methods.tables import near_text
+from xlmc.studies.methods import Curve, Study
+from xlmc.studies.methods.choice import Choice, choice
+from xlmc.studies.methods.law import law
+from xlmc.studies.methods.need import Need, reach_of, seconds_of, shortfall
+from xlmc.studies.methods.number_words import seconds_text, trials_text
 
 __all__ = ["HOW_TO_READ", "Label", "Line", "Mark", "Picture", "Point", "Work", "column_of", "guides_of", "picture_of"]
 

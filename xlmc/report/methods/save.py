@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from xlmc.errors import WorkbookError
-from xlmc.methods import Study
+from xlmc.studies.methods import Study
 from xlmc.workbook.package import read_parts
 from xlmc.workbook.seal import sealed_parts, sealed_text
 from xlmc.workbook.target import Target, is_same_file, refuse_same_file

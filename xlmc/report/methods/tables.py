@@ -8,11 +8,11 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.methods import STATISTICS, Curve, Method, Rung, Study, need
-from xlmc.methods.need import shortfall
-from xlmc.methods.number_words import seconds_text, trials_text
 from xlmc.report.summary import estimate_text
 from xlmc.statistics import Estimate, format_estimate
+from xlmc.studies.methods import STATISTICS, Curve, Method, Rung, Study, need
+from xlmc.studies.methods.need import shortfall
+from xlmc.studies.methods.number_words import seconds_text, trials_text
 
 __all__ = [
     "Table",

@@ -1,0 +1,111 @@
+from __future__ import annotations
+
+import gc
+import os
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from xlmc.columns import Folder, on_disk, release
+from xlmc.errors import SimulationError
+
+REAL = np.dtype(np.float64)
+
+
+def test_files_grow_at_their_end():
+    folder = Folder()
+    folder.append("a", [np.arange(3.0), np.arange(2.0)])
+    folder.append("b", [np.arange(5)])
+    folder.append("a", [np.array([7.0])])
+    assert folder.array("a", REAL).tolist() == [0, 1, 2, 0, 1, 7]
+    assert folder.array("b", np.dtype(np.int64)).tolist() == [0, 1, 2, 3, 4]
+
+
+def test_nothing_written_is_an_empty_column():
+    folder = Folder()
+    folder.append("a", [])
+    assert folder.array("a", REAL).size == 0
+
+
+def test_a_column_cannot_be_changed(stored):
+    with pytest.raises(ValueError, match="read-only"):
+        stored(np.arange(3.0))[0] = 1.0
+
+
+def test_the_folder_goes_with_its_last_use_and_the_numbers_stay():
+    folder = Folder()
+    folder.append("a", [np.arange(4.0)])
+    path, column = folder.path, folder.array("a", REAL)
+    del folder
+    gc.collect()
+    assert not path.exists()
+    assert column.tolist() == [0, 1, 2, 3]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+def test_a_forked_child_leaves_the_folder():
+    folder = Folder()
+    child = os.fork()
+    if child == 0:
+        folder._end()
+        os._exit(0)
+    os.waitpid(child, 0)
+    assert folder.path.exists()
+
+
+def test_a_file_can_be_removed_while_it_is_mapped():
+    folder = Folder()
+    folder.append("a", [np.arange(4.0)])
+    column = folder.array("a", REAL)
+    folder.remove("a")
+    folder.remove("never written")
+    assert column.sum() == 6.0
+
+
+def test_what_is_on_disk(stored):
+    column = stored(np.arange(9.0))
+    assert on_disk(column)
+    assert on_disk(column[2:5])
+    assert on_disk(column[::2].reshape(5, 1))
+    assert not on_disk(column + 1)
+    assert not on_disk(np.arange(3.0)[1:])
+
+
+def test_released_numbers_are_read_again(stored):
+    column = stored(np.arange(100_000.0))
+    release(column[5:])
+    assert column.sum() == np.arange(100_000.0).sum()
+
+
+def test_the_memory_of_others_is_not_released(tmp_path):
+    """A copy-on-write map would lose what was written to it."""
+    np.arange(100.0).tofile(tmp_path / "theirs")
+    theirs = np.memmap(tmp_path / "theirs", mode="c")
+    theirs[:] = 1
+    release(theirs)
+    assert not on_disk(theirs)
+    assert (theirs == 1).all()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
+def test_a_full_disk_is_told():
+    folder = Folder()
+    (folder.path / "a").symlink_to("/dev/full")
+    with pytest.raises(SimulationError, match="no room left on the disk") as caught:
+        folder.append("a", [np.zeros(100_000)])
+    assert caught.value.where == str(folder.path)
+    assert "TMPDIR" in caught.value.hint
+
+
+def test_a_folder_that_cannot_be_made_is_told(monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", "/there/is/none")
+    with pytest.raises(SimulationError, match=r"temporary folder: .*No such file"):
+        Folder()
+
+
+def test_a_column_that_is_gone_is_told():
+    with pytest.raises(SimulationError, match="No such file"):
+        Folder().array("never written", REAL)

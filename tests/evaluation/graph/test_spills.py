@@ -1,0 +1,72 @@
+"""`A1#`: the range that a dynamic array fills. It is `#REF!` where nothing spills."""
+
+from __future__ import annotations
+
+import pytest
+
+from xlmc.address import Area
+from xlmc.errors import ErrorCode
+from xlmc.studies.verify import verify
+from xlmc.workbook.model import CellContent, Formula
+
+CELLS = {"A1": 1.0, "A2": 2.0, "A3": 3.0}
+
+
+def spilling(text, area, *values, dynamic=True):
+    """Cells that an array formula in H1 fills, with the values that Excel saved."""
+    cells = {f"H{1 + i}": CellContent(value) for i, value in enumerate(values)}
+    return cells | {"H1": CellContent(values[0], Formula(text, 1, 8, array=Area("S", *area), dynamic=dynamic))}
+
+
+@pytest.fixture
+def got(workbook):
+    def compute(cells, *formulas):
+        book = workbook({**CELLS, **cells, **{f"Z{50 + i}": f"={text}" for i, text in enumerate(formulas)}})
+        found = {str(check.cell): check.got for check in verify(book).cells}
+        return [found[f"S!Z{50 + i}"] for i in range(len(formulas))]
+
+    return compute
+
+
+def test_a_spill_is_a_reference(got):
+    cells = spilling("A1:A3*2", (1, 8, 3, 8), 2.0, 4.0, 6.0)
+    formulas = ["SUM(H1#)", "ROWS(H1#)", "ROW(H1#)", 'SUMIF(H1#,">2",A1:A3)', "INDEX(H1#,2)", "SUM(OFFSET(H1#,1,0))"]
+    assert got(cells, *formulas) == [12.0, 3.0, 1.0, 5.0, 4.0, 10.0]
+
+
+def test_the_declared_range_is_taken_where_saved_values_stand_in(got):
+    cells = spilling("_xlfn.RANDARRAY(3,1)", (1, 8, 3, 8), 0.25, 0.5, 0.125)
+    assert got(cells, "SUM(H1#)", "ROWS(H1#)", "MAX(H1#)") == [0.875, 3.0, 0.5]
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [
+        {"H1": 5.0},
+        {"H1": "=A1*2"},
+        {},
+        spilling("A1:A3*2", (1, 8, 3, 8), 2.0, 4.0, 6.0, dynamic=False),
+    ],
+    ids=["a value", "a plain formula", "an empty cell", "an array formula of fixed size"],
+)
+def test_where_nothing_spills_it_is_an_error(got, cells):
+    assert got(cells, "SUM(H1#)", "H1#", "IFERROR(SUM(H1#),7)") == [ErrorCode.REF, ErrorCode.REF, 7.0]
+
+
+def test_a_cell_that_the_spill_fills_spills_nothing(got):
+    cells = spilling("A1:A3*2", (1, 8, 3, 8), 2.0, 4.0, 6.0)
+    assert got(cells, "SUM(H2#)") == [ErrorCode.REF]
+
+
+def test_a_spill_of_drawn_values(book):
+    cells = {**CELLS, **spilling("A1:A3*2", (1, 8, 3, 8), 2.0, 4.0, 6.0), "J1": "=SUM(H1#)", "J2": "=ROWS(H1#)"}
+    model = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1", "rows": "J2"})
+    found = model.function({"a": [1.0, 5.0]})
+    assert found["sum"].tolist() == [12.0, 20.0]
+    assert found["rows"].tolist() == [3.0, 3.0]
+
+
+def test_a_spill_whose_size_varies_is_what_each_trial_gives(book):
+    cells = {**CELLS, **spilling("_xlfn._xlws.FILTER(A1:A3,A1:A3>1)", (1, 8, 2, 8), 2.0, 3.0), "J1": "=SUM(H1#)"}
+    model = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1"})
+    assert model.function({"a": [1.0, 5.0]})["sum"].tolist() == [5.0, 10.0]

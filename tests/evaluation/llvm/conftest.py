@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+
+
+@pytest.fixture(scope="module", params=["as it is", "without fused multiplication"])
+def compiled(request, lower):
+    """`compiled(cells, inputs)`: what takes arrays of the inputs and gives the cells by the compiled loop."""
+    from xlmc.evaluation.llvm import machine as machines
+    from xlmc.evaluation.llvm import program as programs
+
+    def make(cells, inputs=("A1",)):
+        with pytest.MonkeyPatch.context() as patch:
+            if request.param != "as it is":
+                plain = machines.this_machine()
+                plain.fused = False
+                patch.setattr(programs, "machine", lambda: plain)
+            lowering, targets = lower(cells, [*inputs], [*cells])
+            program = programs.JitProgram(lowering, targets, [], frozenset())
+
+        def evaluate(*arrays):
+            draws, n = dict(zip(inputs, arrays, strict=True)), arrays[0].size
+            columns = program.evaluator(n).filters(draws, n)
+            assert all(column.codes is None for column in columns)
+            return [column.values for column in columns]
+
+        return evaluate
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def distance():
+    """`distance(computed, exact)`: how many last places of the exact value lie between, at most.
+
+    Of a subnormal the places are those of all subnormals.
+    """
+
+    def found(computed, exact):
+        worst = 0.0
+        for value, truth in zip(computed, exact, strict=True):
+            place = mpmath.mpf(float(np.spacing(abs(float(truth)))))
+            worst = max(worst, float(abs(mpmath.mpf(float(value)) - truth) / place))
+        return worst
+
+    return found

@@ -1,0 +1,103 @@
+from __future__ import annotations
+
+import io
+import math
+import re
+import subprocess
+import sys
+import zipfile
+
+import pytest
+
+from xlmc.columns import columns, on_disk
+from xlmc.report.sheets.book import build_sheets
+
+SHEETS = [
+    *("Results", "Charts", "Statistics", "Certainty", "Pairs", "Assumptions", "Sensitivity", "Filter limits"),
+    *("Trials", "Bins", "Curves", "Record"),
+]
+RUNS = ["run", "none_accepted", "one_accepted"]
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_the_answer_comes_first_and_every_sheet_is_there(request, opened, name):
+    expected = SHEETS if name == "run" else [sheet for sheet in SHEETS if sheet != "Filter limits"]  # none to move
+    assert opened(request.getfixturevalue(name)).sheetnames == expected
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_the_same_run_gives_the_same_bytes(request, name):
+    run = request.getfixturevalue(name)
+    assert build_sheets(run, command="c") == build_sheets(run, command="c")
+
+
+def test_threads_do_not_change_a_byte(run):
+    again = run.model.simulate(jobs=2)
+    assert build_sheets(again) == build_sheets(run)
+
+
+def test_results_on_disk_do_not_change_a_byte(run, monkeypatch):
+    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    again = run.model.simulate()
+    assert on_disk(again.trial_index)
+    assert build_sheets(again) == build_sheets(run)
+
+
+def test_draws_that_were_not_kept_are_told(run, opened, rows_of):
+    again = run.model.simulate(keep_inputs=100)
+    book = opened(again)
+    told = [str(row[0]) for row in rows_of(book["Assumptions"]) if row]
+    assert f"Accepted: the first 100 of {again.accepted:,} accepted trials." in told
+    assert f"Only the first 100 of {again.accepted:,} accepted trials stand here." in str(rows_of(book["Trials"]))
+    assert ["counts.inputs_kept", "Accepted trials whose draws are kept", 100] in rows_of(book["Record"])
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_only_certainty_has_formulas_and_every_number_is_finite(request, opened, name):
+    book = opened(request.getfixturevalue(name))
+    for sheet in book:
+        for row in sheet.iter_rows():
+            for cell in row:
+                assert cell.data_type in ("s", "n") or (cell.data_type == "f" and sheet.title == "Certainty")
+                if cell.data_type == "n" and cell.value is not None:
+                    assert math.isfinite(cell.value)
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_parts_hold_no_clock_and_nothing_that_cannot_be_injected(request, name):
+    with zipfile.ZipFile(io.BytesIO(build_sheets(request.getfixturevalue(name)))) as package:
+        workbook = package.read("xl/workbook.xml").decode()
+        core = package.read("docProps/core.xml").decode()
+    assert "2000-01-01T00:00:00Z" in core
+    assert re.findall("<definedName (?!.*localSheetId)", workbook) == []
+
+
+def test_every_sheet_is_set_up_for_printing(book):
+    for sheet in book:
+        assert sheet.page_setup.orientation == "landscape"
+        assert sheet.oddFooter.left.text == "book.xlsx"
+        assert "Page" in sheet.oddFooter.right.text
+        assert not sheet.sheet_view.showGridLines
+
+
+def test_odd_names_do_no_harm(make, opened):
+    odd = ["=1+1", "a'b\"c<d>&[e]:/\\?*", "ü" * 400, "x_x000D_y", "\n\ttab"]
+    cells = {f"A{n}": 0.5 for n in range(1, 6)} | {f"B{n}": f"=A{n}*2" for n in range(1, 6)}
+    cells |= {f"C{n}": f"=A{n}" for n in range(1, 6)}
+    numbered = list(enumerate(odd, 1))
+    run = make.simulate(
+        cells,
+        [make.uniform(name, f"A{n}", 0.0, 1.0, base=0.5, units=name[:9], source=name) for n, name in numbered],
+        [make.forecast(name, f"B{n}", units=name[:9], threshold=1.0) for n, name in numbered],
+        [make.filter(name, f"C{n}", at_most=0.9, because=name) for n, name in numbered],
+        trials=200,
+    )
+    book = opened(run)
+    assert book.sheetnames == SHEETS
+    names = {cell.value for cell in book["Results"]["A"]}
+    assert {"=1+1", "a'b\"c<d>&[e]:/\\?*", "ü" * 400} <= names
+
+
+def test_the_library_that_writes_is_imported_only_when_something_is_written():
+    code = "import sys, xlmc.report.summary; sys.exit('xlsxwriter' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,0 +1,92 @@
+from __future__ import annotations
+
+import io
+import math
+
+import openpyxl
+import pytest
+from xlsxwriter import Workbook
+
+from xlmc.report.sheets.cells import Shown
+from xlmc.report.sheets.exact_sheet import ExactSheet
+from xlmc.report.sheets.page import LONGEST_TEXT, ROW, Page, cut
+from xlmc.report.sheets.styles import Styles
+
+
+@pytest.fixture
+def written():
+    """What openpyxl reads of a sheet that a function wrote with a page of three columns."""
+
+    def write(act):
+        packed = io.BytesIO()
+        with Workbook(packed, {"in_memory": True}) as book:
+            act(Page(book.add_worksheet("P", ExactSheet), Styles(book), (10, 20, 30)))
+        return openpyxl.load_workbook(packed)["P"]
+
+    return write
+
+
+@pytest.mark.parametrize("text", ["=1+1", "=cmd|' /C calc'!A0", "+1", "@SUM(A1)", "{=1}", "http://x.org", "12", " a "])
+def test_texts_stay_texts(written, text):
+    cell = written(lambda page: page.put(0, 0, Shown(text, look="text")))["A1"]
+    assert (cell.value, cell.data_type) == (text, "s")
+
+
+@pytest.mark.parametrize("text", ["=1+1", "{=1}"])
+def test_texts_in_merged_cells_stay_texts(written, text):
+    cell = written(lambda page: page.wide(text, "paragraph", 2))["A1"]
+    assert (cell.value, cell.data_type) == (text, "s")
+
+
+@pytest.mark.parametrize(("number", "text"), [(math.nan, "–"), (math.inf, "∞"), (-math.inf, "−∞")])
+def test_what_is_no_number_is_written_in_words(written, number, text):
+    cell = written(lambda page: page.put(0, 0, Shown(number, "0.00")))["A1"]
+    assert (cell.value, cell.data_type) == (text, "s")
+
+
+@pytest.mark.parametrize("number", [0.1 + 0.2, 1 / 3, -1e-300, 1.7976931348623157e308, 2.0**53, 200_000])
+def test_numbers_keep_every_bit_and_show_what_the_format_says(written, number):
+    cell = written(lambda page: page.put(0, 0, Shown(number, "0.00")))["A1"]
+    assert (cell.value, cell.number_format) == (number, "0.00")
+
+
+def test_an_empty_cell_has_its_look(written):
+    cell = written(lambda page: page.put(0, 0, Shown(None, look="moved")))["A1"]
+    assert cell.value is None
+    assert cell.fill.fgColor.rgb == "FFFCE4B6"
+
+
+def test_a_text_too_long_for_a_cell_is_cut_with_a_mark(written):
+    text = "x" * (LONGEST_TEXT + 1)
+    value = written(lambda page: page.put(0, 0, Shown(text, look="text")))["A1"].value
+    assert len(value) == LONGEST_TEXT
+    assert value.endswith(" [cut]")
+    assert cut("x" * LONGEST_TEXT) == "x" * LONGEST_TEXT
+
+
+def test_rows_are_as_high_as_their_longest_text(written):
+    def act(page):
+        page.line([Shown("short", look="text"), Shown("word " * 20, look="text")])
+        page.line([Shown("short", look="text")])
+
+    sheet = written(act)
+    assert sheet.row_dimensions[1].height > 4 * 15
+    assert sheet.row_dimensions[2].height == ROW
+
+
+def test_spread_merges_up_to_the_next_start(written):
+    sheet = written(lambda page: page.spread([Shown("a", look="text"), Shown(1.0)], [0, 2], 2))
+    assert [str(area) for area in sheet.merged_cells.ranges] == ["A1:B1"]
+    assert sheet["C1"].value == 1.0
+
+
+def test_pages_print_fitted_to_their_width_or_at_a_scale_with_breaks(written):
+    fitted = written(lambda page: page.printed("a & b.xlsx", repeat=3))
+    assert fitted.sheet_properties.pageSetUpPr.fitToPage
+    assert (fitted.page_setup.fitToWidth or 1, fitted.page_setup.fitToHeight) == (1, 0)
+    assert fitted.page_setup.orientation == "landscape"
+    assert fitted.print_title_rows == "$4:$4"
+    assert fitted.oddFooter.left.text == "a && b.xlsx"
+    broken = written(lambda page: page.printed("b.xlsx", scale=70, breaks=[5, 9]))
+    assert broken.page_setup.scale == 70
+    assert [brk.id for brk in broken.row_breaks.brk] == [5, 9]

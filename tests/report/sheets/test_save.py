@@ -1,0 +1,120 @@
+from __future__ import annotations
+
+import hashlib
+import shutil
+from pathlib import Path
+
+import openpyxl
+import pytest
+
+import xlmc
+from xlmc.errors import WorkbookError
+from xlmc.report import save
+from xlmc.workbook.package import read_parts
+
+EXAMPLE = Path(__file__).resolve().parents[3] / "examples/intersection.xlsx"
+SHEETS = [
+    *("Results", "Charts", "Statistics", "Certainty", "Pairs", "Assumptions", "Sensitivity", "Filter limits"),
+    *("Trials", "Bins", "Curves", "Record"),
+]
+MAY_CHANGE = {
+    "[Content_Types].xml",
+    "xl/workbook.xml",
+    "xl/_rels/workbook.xml.rels",
+    "xl/styles.xml",
+    "docProps/app.xml",
+}
+
+
+@pytest.fixture
+def book(tmp_path):
+    return Path(shutil.copy(EXAMPLE, tmp_path / "scene.xlsx"))
+
+
+@pytest.fixture
+def case(book):
+    return xlmc.load(book).simulate(trials=20_000)
+
+
+def test_results_stand_behind_the_users_sheets(case, book, tmp_path):
+    before = book.read_bytes()
+    path = save(case, tmp_path / "out.xlsx", command="xlmc simulate scene.xlsx")
+    names = openpyxl.load_workbook(path).sheetnames
+    own = openpyxl.load_workbook(book).sheetnames
+    assert names == [*own, *SHEETS]
+    assert book.read_bytes() == before
+
+
+def test_all_other_parts_stay_byte_for_byte(case, book, tmp_path):
+    own = read_parts(book.read_bytes())
+    saved = read_parts(save(case, tmp_path / "out.xlsx").read_bytes())
+    assert {name for name in own if saved[name] != own[name]} <= MAY_CHANGE
+
+
+def test_the_sheets_show_what_the_simulation_says(case, tmp_path):
+    sheet = openpyxl.load_workbook(save(case, tmp_path / "out.xlsx"))["Results"]
+    rows = {row[0]: row for row in sheet.iter_rows(values_only=True) if row[0] in case.forecasts}
+    for name, result in case.results.items():
+        low, high = result.central()
+        shown = (result.mean, result.standard_deviation, low, high)
+        assert list(rows[name][3:11]) == [number for each in shown for number in (each.value, each.error)]
+
+
+def test_saving_twice_gives_the_same_file(case, tmp_path):
+    first = save(case, tmp_path / "out.xlsx").read_bytes()
+    assert save(case, tmp_path / "out.xlsx").read_bytes() == first
+
+
+def test_a_run_of_a_result_workbook_replaces_its_sheets(case, tmp_path):
+    path = save(case, tmp_path / "out.xlsx")
+    again = xlmc.load(path).simulate(trials=20_000)
+    names = openpyxl.load_workbook(save(again, tmp_path / "again.xlsx")).sheetnames
+    assert names == openpyxl.load_workbook(path).sheetnames
+
+
+def test_writing_into_the_workbook_itself_must_be_asked_for(case, book):
+    before = book.read_bytes()
+    with pytest.raises(WorkbookError, match=r"the workbook itself\. .*--in-place"):
+        save(case, book)
+    assert book.read_bytes() == before
+    save(case, book, overwrite=True)
+    assert "Results" in openpyxl.load_workbook(book).sheetnames
+
+
+def test_a_workbook_that_has_changed_since_is_not_overwritten(case, book):
+    changed = book.read_bytes() + b"\0"
+    book.write_bytes(changed)
+    with pytest.raises(WorkbookError, match=r"changed since it was read\. Run again"):
+        save(case, book, overwrite=True)
+    assert book.read_bytes() == changed
+
+
+def test_a_workbook_that_is_gone_does_not_matter(case, book, tmp_path):
+    book.unlink()
+    assert save(case, tmp_path / "out.xlsx").stat().st_size > 1000
+
+
+def test_the_ending_must_be_the_workbooks_own(case, tmp_path):
+    with pytest.raises(WorkbookError, match=r"must end in \.xlsx\. Name it 'out\.xlsx'"):
+        save(case, tmp_path / "out.xlsm")
+    assert not (tmp_path / "out.xlsm").exists()
+
+
+def test_a_file_that_is_open_is_refused(case, tmp_path):
+    (tmp_path / "out.xlsx").write_bytes(b"old")
+    (tmp_path / "~$out.xlsx").write_bytes(b"")
+    with pytest.raises(WorkbookError, match="holds the workbook open"):
+        save(case, tmp_path / "out.xlsx")
+
+
+def test_the_record_names_the_file_the_run_came_from(case, book, tmp_path):
+    sheet = openpyxl.load_workbook(save(case, tmp_path / "out.xlsx", command="xlmc simulate scene.xlsx"))["Record"]
+    found = {row[0]: row[2] for row in sheet.iter_rows(values_only=True) if row[0]}
+    assert found["file.sha256"] == hashlib.sha256(book.read_bytes()).hexdigest()
+    assert found["run.command"] == "xlmc simulate scene.xlsx"
+    assert found["run.repeat"] == "xlmc simulate scene.xlsx --trials 20000 --seed 999"
+
+
+def test_a_simulation_saves_itself(case, tmp_path):
+    case.save(tmp_path / "out.xlsx")
+    assert "Record" in openpyxl.load_workbook(tmp_path / "out.xlsx").sheetnames

@@ -1,0 +1,139 @@
+from __future__ import annotations
+
+import builtins
+import gc
+import os
+import signal
+
+import pytest
+from distributed import Client, LocalCluster
+
+from xlmc.errors import SimulationError
+from xlmc.run import simulate as module
+from xlmc.run.scheduling import cluster as scheduling
+
+# What Dask itself leaves open when it closes is not ours to warn of.
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::ResourceWarning"),
+    pytest.mark.filterwarnings("ignore::DeprecationWarning"),
+    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
+]
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """Two workers in processes of their own."""
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50) as found:
+        yield found
+
+
+def in_one_process(workers, threads=1):
+    return LocalCluster(n_workers=workers, threads_per_worker=threads, processes=False, dashboard_address=":0")
+
+
+@pytest.mark.parametrize(("workers", "threads"), [(1, 1), (2, 1), (4, 1), (1, 3)])
+def test_workers_change_no_bit(model, bits, workers, threads):
+    with in_one_process(workers, threads) as found:
+        run = model.simulate(3050, scheduler=found.scheduler_address)
+    assert bits(run) == bits(model.simulate(3050))
+
+
+def test_processes_change_no_bit(model, bits, cluster):
+    seen = []
+    run = model.simulate(3050, scheduler=cluster.scheduler_address, progress=seen.append)
+    assert bits(run) == bits(model.simulate(3050))
+    assert [standing.trials for standing in seen] == [*range(100, 3001, 100), 3050]
+
+
+def test_a_local_cluster(model, bits):
+    assert bits(model.simulate(1000, scheduler="local", workers=1)) == bits(model.simulate(1000))
+
+
+def test_a_worker_that_is_killed_costs_only_time(model, bits, cluster):
+    with Client(cluster, set_as_default=False) as client:
+        pids = list(client.run(os.getpid).values())
+    killed = []
+
+    def kill(standing):
+        if standing.trials > 300 and not killed:
+            killed.append(pids[0])
+            os.kill(pids[0], signal.SIGKILL)
+
+    run = model.simulate(8000, scheduler=cluster.scheduler_address, progress=kill)
+    assert killed
+    assert bits(run) == bits(model.simulate(8000))
+
+
+def test_few_tasks_are_under_way_at_once(model, monkeypatch):
+    """They are taken as results come in: of an endless run only so many are ever made."""
+    with in_one_process(2) as found:
+        seen, made = [], []
+        task = module.Task
+        monkeypatch.setattr(module, "Task", lambda *given: made.append(given) or task(*given))
+        model.simulate(10_000, scheduler=found.scheduler_address, progress=lambda *_: seen.append(len(made)))
+    ahead = [there - done for done, there in enumerate(seen, 1)]
+    assert max(ahead) <= 8 * scheduling.MOST_BLOCKS
+    assert len(made) == 100
+
+
+def test_the_workbook_is_understood_once_a_worker(model, monkeypatch):
+    made = []
+    workers = scheduling._Workers
+    monkeypatch.setattr(scheduling, "_Workers", lambda packed: made.append(packed) or workers(packed))
+    scheduling._workers.cache_clear()
+    with in_one_process(1) as found:
+        model.simulate(3000, seed=4, scheduler=found.scheduler_address)
+        model.simulate(2000, seed=4, scheduler=found.scheduler_address)
+    assert len(made) == 1
+
+
+@pytest.mark.parametrize("name", ["numpy", "xlmc"])
+def test_workers_with_other_software_are_refused(model, monkeypatch, name):
+    own = scheduling.software()
+    monkeypatch.setattr(scheduling, "software", lambda: own | {name: "0.0.1"})
+    with in_one_process(1) as found, pytest.raises(SimulationError, match=f"worker .*{name} is .* and 0.0.1 here"):
+        model.simulate(1000, scheduler=found.scheduler_address)
+
+
+def test_a_worker_that_joins_later_is_asked_too(model, monkeypatch):
+    """The recipe says what it was packed with."""
+    monkeypatch.setattr(scheduling, "_check_workers", lambda *_: None)
+    packed = scheduling.Recipe.packed
+    own = scheduling.software()
+    with monkeypatch.context() as patch:
+        patch.setattr("xlmc.run.scheduling.recipe.software", lambda: own | {"numpy": "0.0.1"})
+        other = packed(scheduling.Recipe.of(model, "numpy", 999, 100))
+    monkeypatch.setattr(scheduling.Recipe, "packed", lambda _: other)
+    with in_one_process(1) as found, pytest.raises(SimulationError, match=r"numpy is .* there and 0\.0\.1 here"):
+        model.simulate(1000, scheduler=found.scheduler_address)
+
+
+@pytest.mark.parametrize("scheme", ["tcp", "tls", "http"])
+def test_no_scheduler(model, monkeypatch, scheme):
+    monkeypatch.setattr(scheduling, "PATIENCE", 0.5)
+    with pytest.raises(SimulationError, match=rf"{scheme}://127\.0\.0\.1:9: no scheduler answers") as caught:
+        model.simulate(1000, scheduler=f"{scheme}://127.0.0.1:9")
+    assert "dask scheduler" in caught.value.hint
+    clients = [thing for thing in gc.get_objects() if type(thing).__name__ == "Closing"]
+    assert all(client.status in ("closed", "newly-created") for client in clients)
+
+
+def test_no_workers(model, monkeypatch):
+    monkeypatch.setattr(scheduling, "PATIENCE", 0.5)
+    with in_one_process(0) as found, pytest.raises(SimulationError, match="the scheduler has no workers") as caught:
+        model.simulate(1000, scheduler=found.scheduler_address)
+    assert f"dask worker {found.scheduler_address}" in caught.value.hint
+
+
+def test_without_dask(model, monkeypatch):
+    real = builtins.__import__
+
+    def without(name, *rest):
+        if name == "distributed":
+            raise ImportError(name)
+        return real(name, *rest)
+
+    monkeypatch.setattr(builtins, "__import__", without)
+    with pytest.raises(SimulationError, match="Dask is not installed") as caught:
+        model.simulate(1000, scheduler="local", workers=1)
+    assert "xlmc[distributed]" in caught.value.hint

@@ -1,0 +1,206 @@
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from xlmc.errors import SimulationError
+from xlmc.run.blocks import Task
+from xlmc.run.scheduling import child, crew, standby
+from xlmc.run.scheduling.child import Child
+from xlmc.run.scheduling.processes import by_processes
+from xlmc.run.scheduling.recipe import Recipe, worker_of
+from xlmc.run.scheduling.sharing import Answers
+
+
+@pytest.fixture(autouse=True)
+def none_wait():
+    """Each test starts its own processes."""
+    standby.end()
+    yield
+    standby.end()
+
+
+@pytest.fixture
+def children(monkeypatch):
+    """Every process that is started."""
+    started = []
+    popen = subprocess.Popen
+
+    def start(*arguments, **named):
+        started.append(popen(*arguments, **named))
+        return started[-1]
+
+    monkeypatch.setattr(child.subprocess, "Popen", start)
+    return started
+
+
+@pytest.mark.parametrize("jobs", [1, 2, 3])
+def test_processes_change_no_bit(model, bits, children, jobs):
+    run = model.simulate(950, jobs=jobs, scheduler="processes")
+    assert bits(run) == bits(model.simulate(950))
+    assert len(children) == jobs - 1  # this process is one of them
+
+
+@pytest.mark.parametrize(("trials", "started"), [(900, 0), (1000, 1)])
+def test_a_long_run_with_jobs_starts_processes(model, monkeypatch, children, trials, started):
+    monkeypatch.setattr(crew, "PROCESS_BLOCKS", {"numpy": 10})
+    assert model.simulate(trials).trials == trials
+    assert model.simulate(trials, jobs=2).trials == trials
+    assert len(children) == started
+
+
+def test_an_interruption_ends_the_processes(model, children):
+    def stop(standing):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        model.simulate(10**6, jobs=2, scheduler="processes", progress=stop)
+    assert len(children) == 1
+    assert all(one.returncode is not None for one in children)
+
+
+def answers_of(portable, lots):
+    """What a process answers that is given these lots of tasks."""
+    answers, one = Answers(), Child()
+    one.begin(pickle.dumps(portable), answers)
+    found = []
+    for number in range(len(lots) + 1):
+        of, answer = answers.get()
+        assert of is one
+        found += one.answered(answer)[1]
+        if number < len(lots):
+            one.ask(number, lots[number])
+    one.end()
+    return found
+
+
+@pytest.mark.parametrize("engine", ["numpy", "jit", "formulas"])
+def test_blocks_of_another_process_are_the_same(model, engine):
+    """Whether it is sent a worker or a recipe; of a run its share is left to chance, here it runs all blocks."""
+    tasks = [Task(start, 100, start < 300, start < 600) for start in range(0, 1000, 100)]
+    worker = worker_of(model, model.program(engine), engine, 1, 100)
+    portable = worker if engine == "numpy" else Recipe.of(model, engine, 1, 100)
+    found = answers_of(portable, [tasks[:3], tasks[3:4], tasks[4:]])
+    assert [pickle.dumps(block) for block in found] == [pickle.dumps(worker.run(task)) for task in tasks]
+
+
+def test_processes_wait_for_the_next_run(model, bits, children):
+    """Another model, and other settings, get what they asked for."""
+    expected = [bits(model.simulate(950, seed=seed)) for seed in (1, 2)]
+    for seed in (1, 2, 1):
+        run = model.simulate(950, seed=seed, jobs=2, scheduler="processes")
+        assert bits(run) == expected[seed - 1]
+    assert len(children) <= 3  # one that had no time to start before the run was over is ended
+    assert all(one.returncode is not None for one in children[:-1])
+
+
+def rested(model):
+    """A process that has had part in a run."""
+    standby.end()
+    (one,) = standby.children(1)
+    answers = Answers()
+    one.begin(pickle.dumps(worker_of(model, model.program("numpy"), "numpy", 1, 100)), answers)
+    one.answered(answers.get()[1])
+    standby.give_back([one])
+    return one
+
+
+def test_one_that_waits_is_taken_again(model):
+    one = rested(model)
+    assert standby.children(1) == [one]
+    one.end()
+
+
+def test_one_that_died_while_it_waited_is_not(model, children):
+    one = rested(model)
+    children[-1].kill()
+    children[-1].wait()
+    (other,) = standby.children(1)
+    assert other is not one
+    other.end()
+
+
+def test_nobody_waits_for_ever(model, monkeypatch, children):
+    monkeypatch.setattr(standby, "_PATIENCE", 0.01)
+    rested(model)
+    assert children[-1].wait(timeout=30) is not None
+
+
+def test_one_that_is_not_needed_is_ended_though_others_are(model, monkeypatch, children):
+    """A run with many processes is over; those that follow, every few moments, need one of them."""
+    monkeypatch.setattr(standby, "_PATIENCE", 1.0)
+    started = standby.children(2)
+    answers = Answers()
+    for one in started:
+        one.begin(pickle.dumps(worker_of(model, model.program("numpy"), "numpy", 1, 100)), answers)
+    for _ in started:
+        one, answer = answers.get()
+        one.answered(answer)
+    standby.give_back(started)
+    deadline = time.monotonic() + 30
+    while children[0].poll() is None and time.monotonic() < deadline:
+        standby.give_back(standby.children(1))
+        time.sleep(0.1)
+    assert [one.poll() is None for one in children] == [False, True]
+
+
+def test_one_that_dies_as_its_run_begins_is_told(model, children):
+    one = rested(model)
+    (again,) = standby.children(1)
+    children[-1].kill()
+    children[-1].wait()
+    answers = Answers()
+    again.begin(b"", answers)
+    assert again is one
+    with pytest.raises(SimulationError, match="ended before its time"):
+        again.answered(answers.get(timeout=30)[1])
+    again.end()
+
+
+def test_a_process_that_dies_is_told(model, children):
+    worker = worker_of(model, model.program("numpy"), "numpy", 1, 100)
+    tasks = (Task(start, 100, False) for start in range(0, 10**9, 100))
+    blocks = by_processes(worker, worker, 1, 10**7, tasks)
+    next(blocks)
+    os.kill(children[0].pid, signal.SIGTERM)
+    with pytest.raises(SimulationError, match="a process ended before its time"):
+        for _ in blocks:
+            pass
+    assert all(one.returncode is not None for one in children)
+
+
+def test_a_process_that_cannot_be_started_is_told(model, monkeypatch):
+    monkeypatch.setattr(sys, "executable", "/there/is/no/python")
+    with pytest.raises(SimulationError, match="no process can be started: No such file") as caught:
+        model.simulate(1000, jobs=2, scheduler="processes")
+    assert "--scheduler threads" in caught.value.hint
+
+
+def test_an_error_in_a_process_comes_after_the_blocks_before_it(model):
+    worker = worker_of(model, model.program("numpy"), "numpy", 1, 100)
+    (block, error) = answers_of(worker, [[Task(0, 100, False), Task(100, "trials", False), Task(200, 100, False)]])
+    assert block.trials == 100
+    assert isinstance(error, TypeError)
+    assert "integers" in str(error)
+
+
+def test_a_script_needs_no_guard(tmp_path, case_study):
+    """What a process starts does not run the caller's main module again."""
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import xlmc\n"
+        f"run = xlmc.load({str(case_study)!r}).simulate(70_000, jobs=2, scheduler='processes')\n"
+        "print('once', run.accepted)\n",
+        encoding="utf-8",
+    )
+    where = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    found = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True, env=where)
+    assert found.stdout.startswith("once ")
+    assert found.stdout.count("once") == 1
+    assert found.stderr == ""

@@ -1,0 +1,229 @@
+from __future__ import annotations
+
+import gc
+import itertools
+import threading
+import time
+import weakref
+
+import pytest
+
+from xlmc.errors import SimulationError
+from xlmc.run.blocks import Task
+from xlmc.run.scheduling import sharing, standby
+from xlmc.run.scheduling.processes import by_processes
+from xlmc.run.scheduling.sharing import Answers, Helper, Sharing
+from xlmc.run.scheduling.threads import by_threads
+
+
+@pytest.fixture(autouse=True)
+def none_wait():
+    """Processes that other tests have started are not for these."""
+    standby.end()
+    yield
+    standby.end()
+
+
+class Numbers:
+    """Blocks as numbers, in the order that they were run in."""
+
+    def __init__(self):
+        self.run_here = []
+
+    def runner(self):
+        return Numbers()
+
+    def run(self, task):
+        self.run_here.append(task.start)
+        return task.start
+
+
+class FailingLate:
+    """Blocks as numbers, until one fails; made in another process by its name."""
+
+    def __init__(self, first, kind, *words):
+        self.first, self.kind, self.words = first, kind, words
+
+    def runner(self):
+        return self
+
+    def run(self, task):
+        if task.start >= self.first:
+            raise self.kind(*self.words)
+        return task.start
+
+
+class TwoWordsError(Exception):
+    """Its copy cannot be made from its message."""
+
+    def __init__(self, first, second):
+        super().__init__(f"{first} {second}")
+
+
+class Slow:
+    """So that the other has its part."""
+
+    def __init__(self, runner):
+        self.runner = runner
+
+    def run(self, task):
+        time.sleep(0.002)
+        return self.runner.run(task)
+
+
+def with_a_process(runner, tasks):
+    return by_processes(runner, Slow(runner), 1, 1000, tasks)
+
+
+def with_a_thread(runner, tasks):
+    return by_threads([Slow(runner), runner], 1000, tasks)
+
+
+def numbered():
+    return (Task(start, 1, False) for start in range(1000))
+
+
+@pytest.mark.parametrize("shared", [with_a_process, with_a_thread])
+@pytest.mark.parametrize(
+    "failing", [FailingLate(300, ValueError, "no such"), FailingLate(300, TwoWordsError, "no", "such")]
+)
+def test_what_goes_wrong_in_a_block_is_told_in_its_turn(shared, failing):
+    """Though the other has met it long before: a run that ends earlier does not meet it at all."""
+    found = []
+    with pytest.raises((ValueError, RuntimeError, TwoWordsError), match="no such"):
+        found.extend(shared(failing, numbered()))
+    assert found == list(range(300))
+
+
+def test_a_thread_has_its_part():
+    own, other = Numbers(), Numbers()
+    assert list(by_threads([Slow(own), other], 1000, numbered())) == list(range(1000))
+    assert sorted([*own.run_here, *other.run_here]) == list(range(1000))
+    assert own.run_here
+    assert len(other.run_here) > len(own.run_here)  # it is the faster one
+
+
+def test_tasks_are_taken_as_they_are_needed():
+    """Else a run that ends early has computed what nobody wants."""
+    taken = []
+    tasks = (taken.append(task.start) or task for task in numbered())
+    blocks = by_threads([Numbers(), Numbers(), Numbers()], 1000, tasks)
+    for turn in range(500):
+        assert next(blocks) == turn
+        assert len(taken) <= turn + 3 * 12 + 1
+    blocks.close()
+
+
+def test_the_first_block_comes_soon():
+    """However slow blocks are: before it a thread has not run a whole lot of many."""
+    other = Numbers()
+    blocks = by_threads([Slow(Numbers()), Slow(other)], 10**6, numbered())
+    next(blocks)
+    assert len(other.run_here) <= 3
+    blocks.close()
+
+
+class Recording(Helper):
+    """Answers at once, and knows how large its lots were."""
+
+    def __init__(self, answers):
+        super().__init__()
+        self.answers, self.lots = answers, []
+        self._ready = True
+
+    def _take(self, tasks):
+        self.lots.append(len(tasks))
+        self.answers.put((self, [task.start for task in tasks]))
+
+
+@pytest.mark.parametrize(("seconds", "most"), [(0.001, 4), (0.025, 4), (0.03, 3), (0.06, 1), (5.0, 1)])
+def test_lots_are_small_where_blocks_are_slow(monkeypatch, seconds, most):
+    """Else a time limit, and whoever looks at the progress, would wait for a whole lot of them."""
+    answers, clock = Answers(), itertools.count()
+    monkeypatch.setattr(sharing, "perf_counter", lambda: seconds * next(clock))
+    helper = Recording(answers)
+    assert list(Sharing(Numbers(), [helper], answers, 1000, numbered()).in_order()) == list(range(1000))
+    assert helper.lots[0] == helper.lots[-1] == 1
+    assert max(helper.lots) == most
+
+
+class Ends(Numbers):
+    def __init__(self, error):
+        super().__init__()
+        self.error = error
+
+    def run(self, task):
+        raise self.error
+
+
+@pytest.mark.parametrize(
+    ("error", "told"), [(SystemExit(3), SystemExit), (StopIteration(), RuntimeError), (MemoryError(), MemoryError)]
+)
+def test_whatever_ends_a_block_ends_the_run(error, told):
+    """It does not wait for ever, nor pass for the end."""
+    with pytest.raises(told):
+        list(by_threads([Slow(Numbers()), Ends(error)], 1000, numbered()))
+    with pytest.raises(told):
+        list(by_threads([Ends(error)], 1000, numbered()))
+
+
+def test_a_thread_that_cannot_be_started_is_told(monkeypatch):
+    """And those that were are ended."""
+    before, start, started = threading.active_count(), threading.Thread.start, []
+
+    def failing(thread):
+        if started:
+            raise RuntimeError("can't start new thread")
+        started.append(thread)
+        start(thread)
+
+    monkeypatch.setattr(threading.Thread, "start", failing)
+    with pytest.raises(SimulationError, match="no thread can be started") as caught:
+        list(by_threads([Numbers() for _ in range(4)], 1000, numbered()))
+    assert "-j" in caught.value.hint
+    assert threading.active_count() == before
+
+
+def test_a_run_that_is_left_keeps_no_runner():
+    """Its arrays are large: they do not wait for the collector of cycles."""
+    gc.disable()
+    try:
+        other = Numbers()
+        alive = weakref.ref(other)
+        blocks = by_threads([Numbers(), other], 1000, numbered())
+        del other
+        for _ in range(100):
+            next(blocks)
+        blocks.close()
+        assert alive() is None
+    finally:
+        gc.enable()
+
+
+class Held(Numbers):
+    """Runs its first block until it is let go."""
+
+    def __init__(self):
+        super().__init__()
+        self.begun, self.go = threading.Event(), threading.Event()
+
+    def run(self, task):
+        self.begun.set()
+        assert self.go.wait(30)
+        return super().run(task)
+
+
+def test_a_run_that_is_left_ends_its_threads():
+    """After the block they are at: a thread runs no more of what it was given."""
+    before, other = threading.active_count(), Held()
+
+    def tasks():
+        yield from (Task(start, 1, False) for start in range(10))
+        assert other.begun.wait(30)
+        threading.Timer(0.3, other.go.set).start()
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        list(by_threads([Numbers(), other], 10**6, tasks()))
+    assert other.run_here == [0]
+    assert threading.active_count() <= before + 1  # the timer may not have ended yet

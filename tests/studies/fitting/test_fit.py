@@ -1,0 +1,145 @@
+"""The true family of a large seeded sample comes first, with parameters within four standard errors."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from xlmc.distributions import FAMILIES
+from xlmc.distributions.naming import plain
+from xlmc.errors import SimulationError
+from xlmc.studies.fitting import CRITERIA, KINDS, fit
+
+N = 4000
+TRUTHS = {
+    "Normal": (stats.norm(5, 2), {"Mean": 5, "Std dev": 2}),
+    "Uniform": (stats.uniform(2, 4), {"Low": 2, "High": 6}),
+    "Triangular": (stats.triang(0.25, 0, 4), {"Low": 0, "Likeliest": 1, "High": 4}),
+    "Lognormal": (
+        stats.lognorm(0.5, scale=np.e),
+        {"Location": 0, "Mean": np.exp(1.125), "Std dev": np.exp(1.125) * np.sqrt(np.expm1(0.25))},
+    ),
+    "Exponential": (stats.expon(scale=2), {"Rate": 0.5}),
+    "Gamma": (stats.gamma(3, scale=2), {"Location": 0, "Scale": 2, "Shape": 3}),
+    "Weibull": (stats.weibull_min(1.7, scale=2), {"Location": 0, "Scale": 2, "Shape": 1.7}),
+    "Logistic": (stats.logistic(3, 2), {"Mean": 3, "Scale": 2}),
+    "Beta": (stats.beta(2, 5), {"Low": 0, "High": 1, "Alpha": 2, "Beta": 5}),
+    "Maximum Extreme": (stats.gumbel_r(5, 2), {"Likeliest": 5, "Scale": 2}),
+    "Minimum Extreme": (stats.gumbel_l(-5, 2), {"Likeliest": -5, "Scale": 2}),
+    "Student's t": (stats.t(4, 3, 2), {"Midpoint": 3, "Scale": 2, "Degrees of freedom": 4}),
+    "Pareto": (stats.pareto(3, scale=2), {"Location": 2, "Shape": 3}),
+    "Poisson": (stats.poisson(4), {"Rate": 4}),
+    "Binomial": (stats.binom(12, 0.3), {"Probability": 0.3, "Trials": 12}),
+    "Geometric": (stats.geom(0.3), {"Probability": 0.3}),
+    "Geomet": (stats.geom(0.3, loc=-1), {"Probability": 0.3}),
+    "Negative Binomial": (stats.nbinom(4, 0.3, loc=4), {"Probability": 0.3, "Shape": 4}),
+    "Negbin": (stats.nbinom(4, 0.3), {"Probability": 0.3, "Shape": 4}),
+    "Discrete Uniform": (stats.randint(3, 12), {"Low": 3, "High": 11}),
+}
+
+
+def test_every_family_is_tried():
+    assert {candidate.name for kind in KINDS.values() for candidate in kind} == set(TRUTHS)
+
+
+@pytest.mark.parametrize("name", TRUTHS)
+def test_a_large_sample_finds_its_family(name):
+    """By BIC, which also tells a family from a wider one that contains it."""
+    oracle, truth = TRUTHS[name]
+    found = fit(oracle.rvs(N, random_state=np.random.default_rng(999)), by="bic")
+    best = found.fits[0]
+    assert best.name == name, [each.name for each in found.fits[:3]]
+    assert best.parameters.keys() == truth.keys()
+    for heading, value in truth.items():
+        error = best.errors[heading]
+        if error is None:
+            assert best.parameters[heading] == value, heading
+        else:
+            assert abs(best.parameters[heading] - value) < 4 * error, heading
+            assert 0 < error < 0.3 * (abs(value) + 1)
+
+
+@pytest.mark.parametrize("by", CRITERIA)
+def test_ranking(by):
+    found = fit(stats.gamma(3).rvs(500, random_state=np.random.default_rng(2)), by=by)
+    figures = [getattr(each, by) for each in found.fits]
+    assert figures == sorted(figures)
+    assert found.by == by
+    assert found.fits[0].name in ("Gamma", "Weibull", "Lognormal", "Maximum Extreme")
+
+
+def test_criteria_are_what_they_are_called():
+    x = stats.norm(5, 2).rvs(300, random_state=np.random.default_rng(3))
+    normal = next(each for each in fit(x).fits if each.name == "Normal")
+    top = stats.norm(x.mean(), x.std()).logpdf(x).sum()
+    assert normal.log_likelihood == pytest.approx(top, rel=1e-12)
+    assert normal.aic == pytest.approx(4 - 2 * top, rel=1e-12)
+    assert normal.bic == pytest.approx(2 * np.log(300) - 2 * top, rel=1e-12)
+
+
+def test_whole_numbers_are_counts_unless_told_otherwise():
+    x = [3, 5, 4, 2, 6, 3, 4, 7, 1, 0]
+    assert fit(x).kind == "counts"
+    assert fit(x, kind="continuous").kind == "continuous"
+    assert fit([*x, 2.5]).kind == "continuous"
+    assert fit([*x, -1]).kind == "continuous"
+
+
+def test_what_cannot_be_fitted_says_why():
+    unfit = fit([-1.5, 2, 3, 5]).unfit
+    assert unfit["Lognormal"] == "it takes values above 0 only"
+    assert unfit["Exponential"] == "it takes values from 0 up only"
+    assert unfit["Beta"] == "it is fitted to values between 0 and 1 only"
+    assert fit([0, 2, 9, 5]).unfit["Geometric"] == "it counts trials, which are 1 or more"
+    assert fit([0, 2, 9, 5]).unfit["Binomial"] == "the variance of the values is not below their mean"
+    assert fit([4, 4, 5, 5]).unfit["Negbin"] == "the variance of the values is not above their mean"
+
+
+@pytest.mark.parametrize(
+    ("values", "kind", "message", "hint"),
+    [
+        ([], None, "there is no value to fit", "One measurement justifies a uniform range only"),
+        ([0.7], None, "there is one value to fit", "One measurement justifies a uniform range only"),
+        ([0.7, 0.7, 0.7], None, "all 3 values are equal", "say nothing of the spread"),
+        ([0.7, np.nan], None, "a value is no finite number", "Correct it"),
+        ([0.7, 0.8], "counts", "not every value is a whole number from 0 up", "continuous"),
+    ],
+)
+def test_values_that_cannot_be_fitted(values, kind, message, hint):
+    with pytest.raises(SimulationError) as caught:
+        fit(values, kind=kind)
+    assert caught.value.message == message
+    assert hint in caught.value.hint
+
+
+def test_the_order_and_the_scale_of_the_values_do_not_matter():
+    x = stats.gamma(3).rvs(60, random_state=np.random.default_rng(5))
+    plain_, backwards, large = fit(x), fit(x[::-1]), fit(x * 1e6)
+    assert backwards == plain_
+    assert [each.name for each in large.fits] == [each.name for each in plain_.fits]
+    for one, other in zip(plain_.fits, large.fits, strict=True):
+        assert other.aic - large.fits[0].aic == pytest.approx(one.aic - plain_.fits[0].aic, abs=1e-4)
+
+
+@pytest.mark.parametrize("n", [2, 3, 5, 16])
+def test_small_samples_are_fitted_without_a_fault(n):
+    found = fit(np.random.default_rng(n).normal(0.75, 0.05, n))
+    assert found.n == n
+    assert len(found.fits) >= 5
+    assert all(np.isfinite(each.aic) for each in found.fits)
+
+
+def test_ties_and_rounded_values_are_fitted_without_a_fault():
+    assert len(fit([0.7, 0.7, 0.7, 0.8, 0.8, 0.9]).fits) >= 8
+
+
+def test_headings_are_those_of_the_families():
+    """So that the row to paste can be read."""
+    checked = set()
+    for candidate in (candidate for kind in KINDS.values() for candidate in kind):
+        if candidate.name in FAMILIES:
+            known = {plain(heading) for spec in FAMILIES[candidate.name].parameters for heading in spec.headings}
+            assert {plain(heading) for heading in candidate.headings} <= known, candidate.name
+            checked.add(candidate.name)
+    assert checked >= {"Normal", "Uniform", "Triangular", *(candidate.name for candidate in KINDS["counts"])}

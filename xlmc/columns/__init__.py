@@ -1,0 +1,26 @@
+"""Columns too long for memory: flat files in the temporary folder, read through the page cache.
+
+Flat files rather than Parquet: they need no further library, any rank of a column can be read where it stands, and a
+column is an ordinary array to whoever reads it. Parquet is a format to hand results on in, not to work in.
+"""
+
+from xlmc.columns.columns import Columns, Keeper
+from xlmc.columns.folder import Folder
+from xlmc.columns.mapped import on_disk, release
+from xlmc.columns.passes import PART, pairwise_sum, parts, picked
+from xlmc.columns.sift import numbers
+from xlmc.columns.sort import ascending
+
+__all__ = [
+    "PART",
+    "Columns",
+    "Folder",
+    "Keeper",
+    "ascending",
+    "numbers",
+    "on_disk",
+    "pairwise_sum",
+    "parts",
+    "picked",
+    "release",
+]

@@ -1,0 +1,1 @@
+"""Definitions in the formulas of cells, in the words of @RISK, Crystal Ball and Excel."""

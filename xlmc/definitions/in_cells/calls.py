@@ -1,0 +1,182 @@
+"""Calls in cells that stand for assumptions: `=10+RiskNormal(5,1)*2`, `=CB.Uniform(0,1)`, `=NORM.INV(RAND(),5,1)`.
+
+Each call is an assumption of its own, named `Sheet!Cell#k` for the k-th call of the cell, from the left and from 1, or
+as it names itself. In the formula a cell of its own stands in its place; an argument that is an expression becomes
+such a cell, too. So the rest of a run sees nothing but assumptions and formulas.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from xlmc.address import Cell
+from xlmc.definitions.computed import Computed
+from xlmc.definitions.findings import Findings
+from xlmc.definitions.in_cells.draws import MatrixPlace
+from xlmc.definitions.in_cells.reading import CellReading, Output
+from xlmc.definitions.in_cells.result_functions import Asked, mentions_result
+from xlmc.definitions.model import Assumption, name_key
+from xlmc.definitions.tables.identity import Claims
+from xlmc.errors import DefinitionError, FormulaError
+from xlmc.formula import Resolver, ir
+from xlmc.workbook.lazy_sheets import LazySheets
+from xlmc.workbook.model import Formula, Workbook
+
+__all__ = ["InCells", "holds_call", "read_in_cells"]
+
+_CALL: Final = re.compile(r"(?<![\w.])(?:_xl\w+\.)*(?:RAND|RANDBETWEEN|RANDARRAY|Risk\w+|CB\.\w+)\s*\(", re.IGNORECASE)
+_OUTPUT: Final = re.compile(r"RiskOutput\s*\(", re.IGNORECASE)
+_TEXTS: Final = re.compile(r'"(?:[^"]|"")*"')
+_MARKS: Final = (b"rand", b"risk", b"cb.")
+
+
+def holds_call(text: str) -> bool:
+    """Whether a formula holds a call that draws, shows results, or belongs to Crystal Ball or @RISK."""
+    return _CALL.search(_without_texts(text)) is not None
+
+
+def _without_texts(text: str) -> str:
+    return _TEXTS.sub('""', text)
+
+
+@dataclass(slots=True)
+class InCells:
+    """What the calls in cells say.
+
+    Attributes:
+        assumptions: in the order of sheets, rows and columns.
+        outputs: the cells that are marked as outputs, by their cell.
+        rewritten: the formulas with assumptions in place of calls; or why a cell cannot be computed.
+        matrices: name of an assumption -> its row in a matrix of correlations.
+        results: the cells that show results -> what they ask for.
+        unavailable: the cells that should show results and cannot -> why.
+        idle: property functions without an effect -> the first cell that has one.
+        lognorms: the cells with `RiskLognorm`.
+    """
+
+    assumptions: list[Assumption] = field(default_factory=list)
+    outputs: dict[Cell, Output] = field(default_factory=dict)
+    rewritten: dict[Cell, ir.Expression | FormulaError] = field(default_factory=dict)
+    matrices: dict[str, MatrixPlace] = field(default_factory=dict)
+    results: dict[Cell, list[Asked]] = field(default_factory=dict)
+    unavailable: dict[Cell, str] = field(default_factory=dict)
+    idle: dict[str, Cell] = field(default_factory=dict)
+    lognorms: list[Cell] = field(default_factory=list)
+
+    def __bool__(self) -> bool:
+        return bool(self.rewritten)
+
+    @property
+    def refused(self) -> Iterator[FormulaError]:
+        """Why cells cannot be computed that show no results."""
+        for cell, found in self.rewritten.items():
+            if isinstance(found, FormulaError) and cell not in self.results and cell not in self.unavailable:
+                yield found
+
+
+def read_in_cells(workbook: Workbook, computed: Computed, lognorm: str, claims: Claims, findings: Findings) -> InCells:
+    """Every call in the formulas of a workbook.
+
+    Args:
+        workbook: to look through.
+        computed: which cells something gives a value.
+        lognorm: whose `RiskLognorm` is meant, `@RISK` or `XLRisk`.
+        claims: takes the names of assumptions; those of the tables are taken.
+        findings: takes remarks.
+    """
+    found = InCells()
+    resolver = Resolver(workbook, claims.cells)
+    bases: dict[Cell, float | None] = {}
+    for cell, formula in _suspects(workbook):
+        reading = CellReading(workbook, computed, lognorm, bases, cell)
+        try:
+            found.rewritten[cell] = reading.rewritten(resolver.formula(cell, formula))
+            _take(reading, found, claims, findings)
+        except (FormulaError, DefinitionError) as error:
+            found.rewritten[cell] = refused = _about(error, cell, formula)
+            if _OUTPUT.search(formula.text) and not reading.asked:  # others are told of if anything needs the cell
+                findings.problems.append(DefinitionError(refused.message, where=cell, hint=refused.hint))
+            if reading.unavailable or (not reading.asked and mentions_result(_without_texts(formula.text))):
+                found.unavailable[cell] = reading.unavailable or refused.message
+        if reading.asked:
+            found.results[cell] = reading.asked
+    return found
+
+
+def _take(reading: CellReading, found: InCells, claims: Claims, findings: Findings) -> None:
+    """Add what one cell says."""
+    host = reading.host
+    found.rewritten |= reading.trees
+    for place in sorted(reading.draws):
+        draw = reading.draws[place]
+        assumption = replace(draw.assumption, name=_free_name(draw.assumption, claims, findings))
+        found.assumptions.append(assumption)
+        if draw.matrix is not None:
+            found.matrices[assumption.name] = draw.matrix
+    for name in reading.idle:
+        found.idle.setdefault(name, host)
+    if reading.output is not None:
+        found.outputs[host] = reading.output
+    if reading.has_lognorm:
+        found.lognorms.append(host)
+
+
+def _free_name(assumption: Assumption, claims: Claims, findings: Findings) -> str:
+    """Its own name; with its place behind it where another has that name."""
+    name = assumption.name
+    if name_key(name) in claims.names:
+        name = f"{name} ({assumption.cell})"
+        message = f"another assumption is called {assumption.name!r}; this one is called {name!r}"
+        findings.notice(message, assumption.row)
+    return claims.take_name(name, assumption.row)
+
+
+def _about(error: FormulaError | DefinitionError, cell: Cell, formula: Formula) -> FormulaError:
+    """The error, told of the cell; one about a cell that its formula names says so."""
+    if isinstance(error, FormulaError):
+        text = formula.text if error.text is None else error.text
+        return FormulaError(error.message, where=cell, hint=error.hint, text=text, span=error.span)
+    return FormulaError(f"{error.message} ({error.where})", where=cell, hint=error.hint, text=formula.text)
+
+
+def _suspects(workbook: Workbook) -> Iterator[tuple[Cell, Formula]]:
+    """The formula cells that hold calls, sheet by sheet, row by row; sheets that cannot hold one are not parsed.
+
+    A cell also holds a call by a defined name that stands for one.
+    """
+    sheets, named = workbook.sheets, _names_of_calls(workbook)
+    words = [*_MARKS, *(name.encode() for name in named)]
+    names: Iterable[str] = sheets
+    if isinstance(sheets, LazySheets) and all(word.isascii() for word in words):
+        names = sheets.mentioning(words)
+    any_name = _any_of(named)
+    for name in names:
+        for (row, column), content in sorted(sheets[name].cells.items(), key=lambda item: item[0]):
+            formula = content.formula
+            if formula is not None and (holds_call(formula.text) or (any_name and any_name.search(formula.text))):
+                yield Cell(name, row, column), formula
+
+
+def _names_of_calls(workbook: Workbook) -> set[str]:
+    """The defined names, in small letters, that stand for calls, also by other names."""
+    found: set[str] = set()
+    while True:
+        any_name = _any_of(found)
+        more = {
+            name.name.lower()
+            for name in workbook.names
+            if holds_call(name.text) or (any_name and any_name.search(name.text))
+        }
+        if more <= found:
+            return found
+        found |= more
+
+
+def _any_of(names: Collection[str]) -> re.Pattern[str] | None:
+    """Finds any of these names in a formula."""
+    if not names:
+        return None
+    return re.compile(rf"(?<![\w.\\])(?:{'|'.join(map(re.escape, sorted(names)))})(?![\w.])", re.IGNORECASE)

@@ -1,0 +1,131 @@
+"""What a call in a cell draws, whichever program it was written for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from xlmc.address import Area
+from xlmc.definitions.in_cells.trees import elements, is_left_out, rows_of_trees
+from xlmc.distributions import FAMILIES, Family
+from xlmc.errors import FormulaError
+from xlmc.formula import ir
+
+__all__ = ["Arguments", "Drawn", "MatrixPlace", "Properties", "Signature", "listed"]
+
+Arguments = Mapping[str, ir.Expression]
+"""The arguments of a call by what they are called."""
+
+
+@dataclass(frozen=True, slots=True)
+class MatrixPlace:
+    """The row of a rank correlation matrix that a draw belongs to, counted from 1; `instance` tells copies apart."""
+
+    area: Area
+    position: int
+    instance: str
+
+
+@dataclass(frozen=True, slots=True)
+class Properties:
+    """What a call says of its draw beside the distribution.
+
+    Attributes:
+        lower, upper: cutoffs of the distribution before it is shifted.
+        shifted_cutoffs: they are cutoffs after it.
+        percents: cutoffs as the probabilities below them.
+        shift: is added to each draw.
+        name: by which the draw is known.
+        static: the base case.
+        locked: the draw is held at the base case.
+        units: for the report.
+        matrix: its correlations.
+        idle: property functions without an effect here.
+    """
+
+    lower: ir.Expression | None = None
+    upper: ir.Expression | None = None
+    shifted_cutoffs: bool = False
+    percents: tuple[float, float] | None = None
+    shift: ir.Expression | None = None
+    name: ir.Expression | None = None
+    static: ir.Expression | None = None
+    locked: bool = False
+    units: ir.Expression | None = None
+    matrix: MatrixPlace | None = None
+    idle: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """What a call draws.
+
+    Attributes:
+        function: its name as its program spells it.
+        family: of the draw.
+        parameters: the family's parameter key -> tree.
+        data: what the family is built from, row by row; empty for one that has parameters alone.
+        sources: the arguments that hold the data.
+        grid: how many rows and columns of independent draws the call gives.
+        text: the call as written, every operation in brackets.
+    """
+
+    function: str
+    family: Family
+    parameters: Arguments
+    data: tuple[tuple[ir.Expression, ...], ...] = ()
+    sources: tuple[ir.Expression, ...] = ()
+    properties: Properties = field(default_factory=Properties)
+    grid: tuple[int, int] | None = None
+    text: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """How a function's arguments make a distribution.
+
+    Attributes:
+        family: its name.
+        takes: what the arguments are, in order: keys of the family's parameters; `x`, `p` or `data` for lists that it
+            is built from; other names for `computed` to use.
+        fixed: parameters that the function does not have.
+        computed: parameters that follow from the arguments.
+    """
+
+    family: str
+    takes: tuple[str, ...]
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    computed: Mapping[str, Callable[[Arguments], ir.Expression]] = field(default_factory=dict)
+
+    def drawn(self, function: str, arguments: tuple[ir.Expression, ...], properties: Properties) -> Drawn:
+        """The draw that these arguments, one for each of `takes`, describe.
+
+        Raises:
+            FormulaError: one is left out, or lists differ in length.
+        """
+        for name, argument in zip(self.takes, arguments, strict=True):
+            if is_left_out(argument):
+                raise FormulaError(f"{function} leaves out its argument {name!r}", hint="fill it in")
+        given = dict(zip(self.takes, arguments, strict=True))
+        family = FAMILIES[self.family]
+        parameters: dict[str, ir.Expression] = {key: ir.Number(value) for key, value in self.fixed.items()}
+        parameters |= {key: made(given) for key, made in self.computed.items()}
+        parameters |= {key: given[key] for key in family.keys if key in given}
+        if "data" in given:
+            source = given["data"]
+            return Drawn(function, family, parameters, tuple(rows_of_trees(source)), (source,), properties)
+        sources = tuple(given[name] for name in ("x", "p") if name in given)
+        return Drawn(function, family, parameters, listed(function, sources), sources, properties)
+
+
+def listed(function: str, sources: tuple[ir.Expression, ...]) -> tuple[tuple[ir.Expression, ...], ...]:
+    """Lists side by side as rows.
+
+    Raises:
+        FormulaError: they differ in length.
+    """
+    columns = [tuple(elements(source)) for source in sources]
+    if len({len(column) for column in columns}) > 1:
+        lengths = " and ".join(str(len(column)) for column in columns)
+        raise FormulaError(f"the lists of {function} have {lengths} elements", hint="give lists of the same length")
+    return tuple(zip(*columns, strict=True))

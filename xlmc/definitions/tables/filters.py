@@ -1,0 +1,108 @@
+"""The rows of `xlmc_filters`: what makes a trial physically possible."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from xlmc.address import Cell
+from xlmc.definitions.computed import Computed
+from xlmc.definitions.findings import Findings
+from xlmc.definitions.model import Filter, Parameter
+from xlmc.definitions.tables.fields import optional_text, parameter, static_value
+from xlmc.definitions.tables.identity import Claims, identify
+from xlmc.definitions.tables.tables import DefinitionTable, Row, as_text, is_blank, rows_of
+from xlmc.distributions.base import show
+from xlmc.errors import DefinitionError, ErrorCode
+from xlmc.workbook.model import Workbook
+
+__all__ = ["LIMITS", "LIMIT_HINT", "read_filters"]
+
+LIMITS = {"at_least": "At least", "at_most": "At most", "above": "Above", "below": "Below"}
+"""Limits of a filter and their headings."""
+_KNOWN = ("Name", "Value", "Cell", *LIMITS.values(), "Because")
+LIMIT_HINT = "Fill in At least, At most, Above or Below, or make the cell a test such as =B7>0"
+"""What to do where the cell of a filter is no test."""
+
+
+def read_filters(
+    workbook: Workbook,
+    tables: Iterable[DefinitionTable],
+    computed: Computed,
+    claims: Claims,
+    findings: Findings,
+) -> tuple[Filter, ...]:
+    """The filters without a mistake, in the order of the rows.
+
+    Args:
+        workbook: where they are read.
+        tables: the tables that hold them.
+        computed: which cells something gives a value; a filter should be on one.
+        claims: takes their names and cells.
+        findings: takes mistakes and remarks.
+    """
+    rows = rows_of(workbook, tables, ("Name",), _KNOWN, findings)
+    found = [_filter(row, computed, claims, findings) for row in rows]
+    return tuple(each for each in found if each is not None)
+
+
+def _filter(row: Row, computed: Computed, claims: Claims, findings: Findings) -> Filter | None:
+    before = len(findings.problems)
+    identity = identify(row, claims, findings)
+    limits = {key: findings.attempt(parameter, row, heading) for key, heading in LIMITS.items()}
+    because = findings.attempt(optional_text, row, "Because") or ""
+    if len(findings.problems) > before or not identity:
+        return None
+    name, cell = identity
+    findings.attempt(_refuse_contradiction, row, limits)
+    findings.attempt(
+        _look_at, row.workbook, cell, not any(map(row.filled, LIMITS.values())), computed.at_all(cell), findings
+    )
+    if len(findings.problems) > before:
+        return None
+    if not because:
+        where = row.cell("Because") if row.has("Because") else row.where
+        findings.notice(
+            f"The filter {name!r} gives no evidence under Because, the first thing an opponent asks for", where
+        )
+    return Filter(name=name, cell=cell, row=row.where, **limits, because=because, notes=row.notes(_KNOWN))
+
+
+def _refuse_contradiction(row: Row, limits: Mapping[str, Parameter | None]) -> None:
+    """Check the limits on their numbers, typed in or as Excel cached them.
+
+    Raises:
+        DefinitionError: no number can satisfy two of them.
+    """
+    for floor, ceiling in (("at_least", "at_most"), ("at_least", "below"), ("above", "at_most"), ("above", "below")):
+        low, high = static_value(limits[floor], row.workbook), static_value(limits[ceiling], row.workbook)
+        if low is None or high is None or low < high:
+            continue
+        if low > high or (floor, ceiling) != ("at_least", "at_most"):
+            pair = f"{LIMITS[floor]} ({show(low)}) and {LIMITS[ceiling]} ({show(high)})"
+            message = f"{pair} contradict each other: no trial could pass"
+            raise DefinitionError(message, where=row.cell(LIMITS[floor]), hint="Correct one of them")
+
+
+def _look_at(workbook: Workbook, cell: Cell, must_be_true: bool, computed: bool, findings: Findings) -> None:
+    """Remark on a filter whose cell no formula computes. What a formula gives is looked at when it can be computed.
+
+    Raises:
+        DefinitionError: the cell is blank or text, or, without limits, holds a number other than 0 and 1.
+    """
+    if computed:
+        return
+    content = workbook.content(cell)
+    if is_blank(content):
+        raise DefinitionError("The filter cell is blank", where=cell, hint="Point to the cell to be tested")
+    if isinstance(content.value, str) and content.value.strip():
+        message = f"The filter cell holds the text {as_text(content.value)!r}"
+        raise DefinitionError(message, where=cell, hint=LIMIT_HINT)
+    if must_be_true and _is_a_quantity(content.value):
+        message = f"The filter has no limit, and its cell holds {as_text(content.value)}, neither TRUE nor FALSE"
+        raise DefinitionError(message, where=cell, hint=LIMIT_HINT)
+    findings.notice("The filter is a constant: it does not depend on anything", cell)
+
+
+def _is_a_quantity(value: object) -> bool:
+    """A number that does not stand for TRUE or FALSE."""
+    return isinstance(value, int | float) and not isinstance(value, bool | ErrorCode) and value not in (0, 1)

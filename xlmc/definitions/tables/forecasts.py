@@ -1,0 +1,83 @@
+"""The rows of `xlmc_forecasts`: the answers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from xlmc.address import Cell
+from xlmc.definitions.computed import Computed
+from xlmc.definitions.findings import Findings
+from xlmc.definitions.model import Forecast
+from xlmc.definitions.tables.fields import central_share, number, number_in, optional_text
+from xlmc.definitions.tables.identity import Claims, identify
+from xlmc.definitions.tables.tables import DefinitionTable, Row, is_blank, rows_of
+from xlmc.errors import DefinitionError
+from xlmc.workbook.model import Workbook
+
+__all__ = ["read_forecasts"]
+
+_KNOWN = ("Name", "Value", "Cell", "Units", "Range %", "Threshold")
+
+
+def read_forecasts(
+    workbook: Workbook,
+    tables: Iterable[DefinitionTable],
+    computed: Computed,
+    central: float,
+    claims: Claims,
+    findings: Findings,
+) -> tuple[Forecast, ...]:
+    """The forecasts without a mistake, in the order of the rows.
+
+    Args:
+        workbook: where they are read.
+        tables: the tables that hold them.
+        computed: which cells something gives a value; a forecast should be one.
+        central: the share of the central range where a row gives none.
+        claims: takes their names and cells.
+        findings: takes mistakes and remarks.
+    """
+    rows = rows_of(workbook, tables, ("Name",), _KNOWN, findings)
+    found = [_forecast(row, computed, central, claims, findings) for row in rows]
+    return tuple(each for each in found if each is not None)
+
+
+def _forecast(row: Row, computed: Computed, central: float, claims: Claims, findings: Findings) -> Forecast | None:
+    before = len(findings.problems)
+    identity = identify(row, claims, findings)
+    if identity and not computed.at_all(identity[1]):
+        findings.attempt(_remark_on_constant, row.workbook, identity[1], findings)
+    share = findings.attempt(_central, row, findings)
+    threshold = findings.attempt(number, row, "Threshold")
+    units = findings.attempt(optional_text, row, "Units") or ""
+    if len(findings.problems) > before or not identity:
+        return None
+    name, cell = identity
+    return Forecast(
+        name=name,
+        cell=cell,
+        row=row.where,
+        units=units,
+        central=central if share is None else share,
+        threshold=threshold,
+        notes=row.notes(_KNOWN),
+    )
+
+
+def _central(row: Row, findings: Findings) -> float | None:
+    value = number(row, "Range %")
+    return None if value is None else central_share(row.heading("Range %"), value, row.cell("Range %"), findings)
+
+
+def _remark_on_constant(workbook: Workbook, cell: Cell, findings: Findings) -> None:
+    """Remark on a forecast that no formula computes.
+
+    Raises:
+        DefinitionError: its cell is blank, or holds text or an error.
+    """
+    content = workbook.content(cell)
+    if is_blank(content):
+        raise DefinitionError("The forecast cell is blank", where=cell, hint="Point to the cell with the result")
+    if not isinstance(content.value, bool):
+        number_in("The forecast cell", content, cell)
+    findings.notice("The forecast is a constant: it does not depend on anything", cell)

@@ -1,0 +1,133 @@
+"""The rows of `xlmc_settings`: trials, seed and the like."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from xlmc.definitions.findings import Findings
+from xlmc.definitions.model import Settings
+from xlmc.definitions.stopping import LIMIT, MOST_TRIALS
+from xlmc.definitions.tables.fields import central_share, required_text
+from xlmc.definitions.tables.setting_values import number_of, whole_number
+from xlmc.definitions.tables.stopping_settings import STOPPING_SETTINGS, read_stopping
+from xlmc.definitions.tables.tables import DefinitionTable, Row, rows_of
+from xlmc.distributions.naming import did_you_mean, plain
+from xlmc.errors import DefinitionError
+from xlmc.workbook.model import Workbook
+
+__all__ = ["DEFAULT_CENTRAL", "read_settings"]
+
+DEFAULT_CENTRAL = 0.51
+"""The share of the central range where neither the forecast nor the settings give one: the paper's 51 %."""
+
+_LARGEST_SEED = 10**15  # a worksheet holds no more digits
+_KNOWN = ("Setting", "Value")
+_SAMPLINGS = {
+    "mc": "mc",
+    "montecarlo": "mc",
+    "lhs": "lhs",
+    "latinhypercube": "lhs",
+    "lhs500": "lhs500",
+    "sobol": "sobol",
+    "scrambledsobol": "sobol",
+}
+_ENGINES = ("numpy", "jit", "formulas")
+_LOGNORMS = ("@RISK", "XLRisk")
+_ARITHMETICS = ("float64", "float32")
+
+
+def read_settings(workbook: Workbook, tables: list[DefinitionTable], findings: Findings) -> tuple[Settings, float]:
+    """The settings, and the share of the central range for forecasts that give none; mistakes leave the default."""
+    for extra in tables[1:]:
+        message = f"{tables[0].table.name} and {extra.table.name} both hold settings"
+        findings.problem(message, extra.where, "Keep one table, and delete the one that came with a copied sheet")
+    values: dict[str, Any] = {}
+    for row in rows_of(workbook, tables[:1], _KNOWN, _KNOWN, findings):
+        findings.attempt(_take, row, values, findings)
+    central = values.pop("range%", None)
+    ends = read_stopping(tables, values, findings)
+    if ends.has_goal:
+        values.setdefault("trials", LIMIT)
+    return (
+        Settings(**{key: value for key, value in values.items() if value is not None}, stopping=ends),
+        DEFAULT_CENTRAL if central is None else central,
+    )
+
+
+def _take(row: Row, values: dict[str, Any], findings: Findings) -> None:
+    """Add the row's setting to `values`, by its plain name.
+
+    Raises:
+        DefinitionError: there is no such setting, it is set twice or its value is wrong.
+    """
+    typed = required_text(row, "Setting")
+    key, where = plain(typed), row.cell("Setting")
+    if key not in _READERS:
+        hint = did_you_mean(typed, _SETTINGS)
+        raise DefinitionError(f"There is no setting {typed!r}", where=where, hint=hint)
+    if key in values:
+        raise DefinitionError(f"{typed} is set twice", where=where, hint="Keep one of the two rows")
+    values[key] = None  # a setting whose value is wrong is set all the same
+    if not row.filled("Value"):
+        message = f"{typed} has no value"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Fill in Value, or delete the row")
+    values[key] = _READERS[key](row, findings)
+
+
+def _trials(row: Row, _findings: Findings) -> int:
+    return whole_number(row, "Trials", 1, MOST_TRIALS)
+
+
+def _seed(row: Row, _findings: Findings) -> int:
+    return whole_number(row, "Seed", 0, _LARGEST_SEED)
+
+
+def _sampling(row: Row, _findings: Findings) -> str:
+    typed = required_text(row, "Value")
+    if plain(typed) not in _SAMPLINGS:
+        message = f"There is no sampling method {typed!r}"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Use mc, lhs, lhs500 or sobol")
+    return _SAMPLINGS[plain(typed)]
+
+
+def _engine(row: Row, _findings: Findings) -> str:
+    typed = required_text(row, "Value")
+    if plain(typed) not in _ENGINES:
+        message = f"There is no engine {typed!r}"
+        raise DefinitionError(message, where=row.cell("Value"), hint=did_you_mean(typed, _ENGINES))
+    return plain(typed)
+
+
+def _lognorm(row: Row, _findings: Findings) -> str:
+    typed = required_text(row, "Value")
+    found = {plain(name): name for name in _LOGNORMS}.get(plain(typed))
+    if found is None:
+        hint = "Use @RISK (mean and std dev of the draw) or XLRisk (of its logarithm)"
+        raise DefinitionError(f"There is no RiskLognorm of {typed!r}", where=row.cell("Value"), hint=hint)
+    return found
+
+
+def _arithmetic(row: Row, _findings: Findings) -> str:
+    typed = required_text(row, "Value")
+    if plain(typed) not in _ARITHMETICS:
+        message = f"There is no arithmetic {typed!r}"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Use float64 or float32")
+    return plain(typed)
+
+
+def _range(row: Row, findings: Findings) -> float:
+    return central_share("Range %", number_of(row, "Range %"), row.cell("Value"), findings)
+
+
+_SETTINGS: Mapping[str, Callable[[Row, Findings], Any]] = {
+    "Trials": _trials,
+    "Seed": _seed,
+    "Sampling": _sampling,
+    "Engine": _engine,
+    "Arithmetic": _arithmetic,
+    "Range %": _range,
+    **STOPPING_SETTINGS,
+    "Lognorm": _lognorm,
+}
+_READERS = {plain(name): reader for name, reader in _SETTINGS.items()}

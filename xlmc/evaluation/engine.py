@@ -1,0 +1,128 @@
+"""What every engine does: evaluate blocks of trials, filters first, forecasts on the survivors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.address import Cell
+from xlmc.evaluation.graph.alignment import corner
+from xlmc.functions.values import BLANK, ERROR, TEXT, Bools, Codes, Floats, Value
+
+if TYPE_CHECKING:
+    from xlmc.formula import ir
+    from xlmc.sampling.draws import Linear
+
+__all__ = [
+    "BLANK_RESULT",
+    "TEXT_RESULT",
+    "Column",
+    "Evaluator",
+    "Kept",
+    "Program",
+    "Sweeper",
+    "Sweeping",
+    "Target",
+    "column_of",
+]
+
+TEXT_RESULT: Final = 200
+BLANK_RESULT: Final = 201
+"""Codes, beside those of `ErrorCode`, of a result that is no number."""
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """What to compute: a resolved tree, and the cell it speaks for in messages."""
+
+    tree: ir.Expression
+    cell: Cell
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Column:
+    """One target over a block: `(n,)` numbers (logicals as 1 and 0) and codes, 0 where the number counts.
+
+    `codes` is None when every trial counts.
+    """
+
+    values: Floats | Bools
+    codes: Codes | None = None
+
+    def as_floats(self) -> Floats:
+        """The numbers, `(n,)`, in memory of their own; NaN where the trial does not count."""
+        floats = self.values.astype(np.float64)
+        return floats if self.codes is None else np.where(self.codes > 0, np.nan, floats)
+
+
+class Evaluator(Protocol):
+    """Evaluates one block after another; it may reuse its memory, so take what you keep before the next block."""
+
+    def filters(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:
+        """The filters of `n` trials, `(n,)` each. An input's errors are NaNs."""
+
+    def forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
+        """The forecasts of the surviving trials of the block that `filters` saw, `(m,)` each."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Kept:
+    """A whole block without errors, evaluated and filtered.
+
+    Attributes:
+        survivors: `(m,)` the accepted trials, counted from the block's first; overwritten by the next block.
+        draws: assumption -> `(m,)`; empty when not asked for.
+        forecasts: one a forecast, `(m,)`.
+        together: `(f, f)` trials that both of two filters reject.
+        only: `(f,)` trials that one filter alone rejects.
+    """
+
+    survivors: NDArray[np.int64]
+    draws: dict[str, Floats]
+    forecasts: list[Floats]
+    together: NDArray[np.int64]
+    only: NDArray[np.int64]
+
+
+Sweeper = Callable[[int, bool], Kept | None]
+"""Takes a block's first trial and whether to keep draws; None where a trial needs care, and nothing is known then."""
+
+
+@runtime_checkable
+class Sweeping(Protocol):
+    """What an evaluator may do besides: run a whole block in one piece, which spares memory, calls and locks."""
+
+    def sweeper(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> Sweeper | None:
+        """What runs whole blocks to the same numbers; None where the model is not of the kind.
+
+        Args:
+            draw: makes the draws of a block from its first trial on, `(block,)` each.
+            linear: makes them too, where they are so simple.
+        """
+
+
+class Program(Protocol):
+    """A compiled workbook. Evaluators are for one thread each.
+
+    Attributes:
+        largest_block: more trials than these at once bring nothing.
+    """
+
+    largest_block: int
+
+    def evaluator(self, block: int) -> Evaluator:
+        """An evaluator for blocks of up to `block` trials."""
+
+
+def column_of(value: Value, n: int) -> Column:
+    """A value as the numbers of `n` trials; of an array its upper left one."""
+    value = corner(value)
+    codes = np.where(value.kinds >= ERROR, value.kinds - np.uint8(ERROR), np.uint8(0)).astype(np.uint8)
+    codes = np.where(value.kinds == TEXT, np.uint8(TEXT_RESULT), codes)
+    codes = np.where(value.kinds == BLANK, np.uint8(BLANK_RESULT), codes)
+    values = np.broadcast_to(value.numbers, (n,))
+    return Column(values, np.broadcast_to(codes, (n,)) if codes.any() else None)

@@ -1,0 +1,1 @@
+"""Formulas become one directed graph of nodes, each computed once: what every engine evaluates."""

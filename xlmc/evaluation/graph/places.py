@@ -1,0 +1,395 @@
+"""Functions that ask where their arguments are, or that take them by their place: ROW, CELL, SUBTOTAL, SUMIF."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of, quote_sheet
+from xlmc.errors import ErrorCode, FormulaError
+from xlmc.evaluation.graph.arrays import beside, grid
+from xlmc.evaluation.graph.dag import Range
+from xlmc.evaluation.graph.empty_cells import refused
+from xlmc.evaluation.graph.extents import beyond, leveled
+from xlmc.evaluation.graph.references import REFERENCES, NoReference, NotYetNeeded, areas_of, cut, many_numbers, needed
+from xlmc.evaluation.graph.scope import Scope
+from xlmc.formula import ir
+from xlmc.formula.shown import shown_formula
+from xlmc.functions.budget import ask_for_reading
+from xlmc.functions.families import function_named
+from xlmc.functions.math.subtotal import Skips, aggregate_skips, subtotal_skips
+from xlmc.functions.values import constant
+
+if TYPE_CHECKING:
+    from xlmc.evaluation.graph.lower import Lowering
+
+__all__ = ["PLACES"]
+
+Arguments = tuple[ir.Expression, ...]
+
+
+def _value_of(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
+    def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+        areas = REFERENCES[name](lowering, arguments, scope)
+        if areas is None:
+            return None
+        if len(areas) != 1:
+            return lowering.error(ErrorCode.VALUE)
+        return lowering.lower(areas[0], scope)
+
+    return lower
+
+
+def _index(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+    """INDEX; where row or column 0 makes it a whole column or row, a plain formula takes the cell beside it."""
+    if REFERENCES["INDEX"](lowering, arguments, scope) is not None:
+        return _value_of("INDEX")(lowering, arguments, scope)
+    areas = areas_of(lowering, arguments[0], scope.inside())
+    if areas is None:
+        return None
+    if len(areas) > 1:
+        return lowering.lower(_by_area(arguments, areas), scope)
+    if scope.array or scope.whole or many_numbers(lowering, arguments[1:], scope):
+        return None
+    place = lowering.applied("INDEX", arguments, scope)
+    return beside(lowering.dag, place, scope.cell.row - areas[0].top, scope.cell.column - areas[0].left)
+
+
+def _by_area(arguments: Arguments, areas: Sequence[Area]) -> ir.Expression:
+    """INDEX of several areas as that of the one which its fourth argument counts, which may vary.
+
+    Of several errors among the numbers it is the first, as where all are known.
+    """
+    parts = [ir.Call("INDEX", (area, *arguments[1:3])) for area in areas]
+    if len(arguments) < 4 or isinstance(arguments[3], ir.Missing):
+        return parts[0]
+    tree: ir.Expression = ir.ErrorLiteral(ErrorCode.REF)
+    for count in range(len(parts), 0, -1):
+        below = ir.Binary("<", arguments[3], ir.Number(count + 1.0))
+        tree = ir.Call("IF", (below, parts[count - 1], tree))
+    tree = ir.Call("IF", (ir.Binary("<", arguments[3], ir.Number(1.0)), ir.ErrorLiteral(ErrorCode.VALUE), tree))
+    wrong = ir.Call("INDEX", (areas[0], *arguments[1:]))
+    return ir.Call("IF", (ir.Call("ISERROR", (arguments[3],)), wrong, tree))
+
+
+def _row_or_column(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
+    def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+        place = _referred(lowering, arguments, scope)
+        whole = place.whole
+        if not scope.array or whole.rows == whole.columns == 1:
+            return lowering.number(float(place.top if name == "ROW" else place.left))
+        ask_for_reading(place.rows if name == "ROW" else 1, place.columns if name == "COLUMN" else 1)
+        if place.further_rows if name == "ROW" else place.further_columns:
+            raise refused(name)
+        if name == "ROW":
+            return grid(lowering.dag, place.rows, 1, lambda r, _: lowering.number(float(place.top + r)))
+        return grid(lowering.dag, 1, place.columns, lambda _, c: lowering.number(float(place.left + c)))
+
+    return lower
+
+
+def _referred(lowering: Lowering, arguments: Arguments, scope: Scope) -> Area:
+    """The first argument's area; the formula's own cell where there is none."""
+    if not arguments or isinstance(arguments[0], ir.Missing):
+        cell = host_of(scope.cell)
+        return Area(cell.sheet, cell.row, cell.column, cell.row, cell.column)
+    areas = areas_of(lowering, arguments[0], scope)
+    if areas is None:
+        raise FormulaError("a reference is needed here")
+    return areas[0]
+
+
+def _count(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
+    def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+        areas = areas_of(lowering, arguments[0], scope) if len(arguments) == 1 else None
+        if areas is None:
+            return None
+        counted = {"ROWS": areas[0].whole.rows, "COLUMNS": areas[0].whole.columns, "AREAS": len(areas)}
+        return lowering.number(float(counted[name]))
+
+    return lower
+
+
+def _is_reference(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
+    try:
+        found = areas_of(lowering, arguments[0], scope) is not None
+    except NoReference:
+        return lowering.dag.constant(constant(False))
+    if not found and _may_be_reference(lowering, arguments[0], scope):
+        raise FormulaError("what ISREF is asked about depends on a value that varies", hint="make that value fixed")
+    return lowering.dag.constant(constant(found))
+
+
+def _may_be_reference(lowering: Lowering, tree: ir.Expression, scope: Scope) -> bool:
+    """Whether it picks a cell or a range out of others; asked where `areas_of` finds none."""
+    match tree:
+        case ir.Call("INDEX", arguments):
+            return isinstance(arguments[0], Cell | Area)
+        case ir.Call("IF" | "CHOOSE", arguments):
+            known = lowering.known_single(lowering.single(lowering.lower(arguments[0], scope)))
+            return known is None and any(
+                isinstance(part, Cell | Area) or _may_be_reference(lowering, part, scope) for part in arguments[1:]
+            )
+        case _:
+            return False
+
+
+def _of_first_cell(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
+    """N and T of a reference take its first cell; of an array they take all."""
+
+    def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+        areas = areas_of(lowering, arguments[0], scope)
+        if areas is None:
+            return lowering.call(name, (lowering.whole(arguments[0], scope)[0],))
+        first = areas[0]
+        return lowering.call(name, (lowering.cell(Cell(first.sheet, first.top, first.left)),))
+
+    return lower
+
+
+def _formula(lowering: Lowering, arguments: Arguments, scope: Scope, of: Callable[[str | None], object]) -> int:
+    """What `of` makes of the formula of the first cell, as Excel shows it."""
+    area = _referred(lowering, arguments, scope)
+    cell = Cell(area.sheet, area.top, area.left)
+    formula = lowering.graph.workbook.content(cell).formula
+    return lowering.dag.constant(constant(of(None if formula is None else shown_formula(formula, cell))))
+
+
+def _is_formula(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
+    return _formula(lowering, arguments, scope, lambda text: text is not None)
+
+
+def _formula_text(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
+    return _formula(lowering, arguments, scope, lambda text: ErrorCode.NA if text is None else text)
+
+
+def _sheet(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
+    """SHEET of a reference, or of a sheet's name."""
+    tabs = [name.casefold() for name in lowering.graph.workbook.sheets]
+    name = _sheet_name(lowering, arguments, scope).casefold()
+    return lowering.number(float(tabs.index(name) + 1)) if name in tabs else lowering.error(ErrorCode.NA)
+
+
+def _sheet_name(lowering: Lowering, arguments: Arguments, scope: Scope) -> str:
+    if arguments and areas_of(lowering, arguments[0], scope) is None:
+        known = lowering.known_single(lowering.lower(arguments[0], scope))
+        if known is None:
+            raise FormulaError("SHEET needs a reference, or the name of a sheet that does not vary")
+        return str(known.to_texts()[0][0])
+    return _referred(lowering, arguments, scope).sheet
+
+
+def _sheets(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+    if arguments:
+        areas = areas_of(lowering, arguments[0], scope)
+        return None if areas is None else lowering.number(float(len({area.sheet for area in areas})))
+    return lowering.number(float(len(lowering.graph.workbook.sheets)))
+
+
+def _cell(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
+    known = lowering.known_single(lowering.lower(arguments[0], scope))
+    if known is None:
+        raise FormulaError("the first argument of CELL must not vary")
+    what = str(known.to_texts()[0][0]).casefold()
+    area = _referred(lowering, arguments[1:], scope)
+    cell = Cell(area.sheet, area.top, area.left)
+    if what in ("contents", "type"):
+        if lowering.awaits(cell):
+            raise NotYetNeeded([cell])
+        return lowering.zero_if_blank(lowering.cell(cell)) if what == "contents" else _kind(lowering, cell, scope)
+    if what not in _OF_PLACE:
+        told = ", ".join(("contents", "type", *_OF_PLACE))
+        raise FormulaError(f"CELL({what!r}) is not supported", hint=f"xlmc knows {told}")
+    return lowering.dag.constant(constant(_OF_PLACE[what](cell, lowering, host_of(scope.cell))))
+
+
+def _kind(lowering: Lowering, cell: Cell, scope: Scope) -> int:
+    """`b` of a blank cell, `l` of a text, `v` of anything else."""
+    otherwise = ir.Call("IF", (ir.Call("ISTEXT", (cell,)), ir.Text("l"), ir.Text("v")))
+    return lowering.lower(ir.Call("IF", (ir.Call("ISBLANK", (cell,)), ir.Text("b"), otherwise)), scope)
+
+
+def _absolute(cell: Cell, lowering: Lowering, host: Cell) -> str:
+    column, row = re.fullmatch(r"([A-Z]+)(\d+)", cell.a1).groups()  # type: ignore[union-attr]  # it is an address
+    address = f"${column}${row}"
+    if cell.sheet == host.sheet:
+        return address
+    book = "" if cell.sheet.startswith("[") else f"[{lowering.graph.workbook.name}]"
+    return f"{quote_sheet(book + cell.sheet)}!{address}"
+
+
+def _file_name(cell: Cell, lowering: Lowering, host: Cell) -> str:
+    """As of a workbook without a folder, so that a run does not depend on where it is made."""
+    return f"[{lowering.graph.workbook.name}]{cell.sheet}"
+
+
+_OF_PLACE: Mapping[str, Callable[[Cell, Lowering, Cell], float | str]] = {
+    "row": lambda cell, lowering, host: float(cell.row),
+    "col": lambda cell, lowering, host: float(cell.column),
+    "address": _absolute,
+    "filename": _file_name,
+}
+"""What CELL tells of a cell's place, without a look at what it holds."""
+
+
+def _spilled(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
+    """`A1#`: the cells that the dynamic array in A1 fills; where their number varies, all that it gives in a trial."""
+    areas = REFERENCES["ANCHORARRAY"](lowering, arguments, scope)
+    if areas is not None:
+        return lowering.lower(areas[0], scope)
+    area = _referred(lowering, arguments, scope)
+    return lowering.array(Cell(area.sheet, area.top, area.left))
+
+
+def _without_subtotals(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
+    """SUBTOTAL and AGGREGATE leave out cells that are such totals themselves."""
+    first = 1 if name == "SUBTOTAL" else 2
+
+    def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+        function = function_named(name)
+        if function is None or len(arguments) <= first:
+            return None
+        found = [lowering.lower(argument, scope) for argument in arguments[:first]]
+        for argument in arguments[first:]:
+            areas = areas_of(lowering, argument, scope)
+            if areas is None:
+                found.append(lowering.lower(argument, scope.over_arrays()))
+            else:
+                skipped = _skipped(lowering, name, found)
+                found += [_left_in(lowering, area, skipped) for area in areas]
+        return lowering.made(function, tuple(found))
+
+    return lower
+
+
+_TOTAL = re.compile(r"\b(SUBTOTAL|AGGREGATE)\(", re.IGNORECASE)
+
+
+def _skipped(lowering: Lowering, name: str, options: list[int]) -> Skips | None:
+    """What is left out of ranges; None where that varies."""
+    known = [lowering.known_single(option) for option in options]
+    numbers = [int(value.numbers[0]) if value is not None and value.plain else None for value in known]
+    if numbers[-1] is None:
+        return None
+    return subtotal_skips(numbers[-1]) if name == "SUBTOTAL" else aggregate_skips(numbers[-1])
+
+
+def _hidden_rows(lowering: Lowering, area: Area, skips: Skips | None) -> frozenset[int]:
+    """The rows of an area that a total leaves out because they are hidden.
+
+    Raises:
+        FormulaError: some are hidden, and whether they are left out varies.
+    """
+    sheet = lowering.graph.workbook.sheet_of(area)
+    rows = frozenset[int]() if sheet is None else sheet.hidden_rows & frozenset(range(area.top, area.bottom + 1))
+    if sheet is None or not rows:
+        return frozenset()
+    if skips is None:
+        raise FormulaError("rows of the range are hidden, and whether the total leaves them out varies")
+    if skips.hidden:
+        return rows
+    return rows & lowering.graph.workbook.filtered_rows(sheet) if skips.filtered else frozenset()
+
+
+def _left_in(lowering: Lowering, area: Area, skips: Skips | None) -> int:
+    ask_for_reading(area.rows, area.columns)  # further cells of a whole column are empty
+    hidden_rows, totals = _hidden_rows(lowering, area, skips), skips is None or skips.nested
+
+    def node(cell: Cell) -> int:
+        if cell.row in hidden_rows or (totals and _TOTAL.search(lowering.graph.text(cell))):
+            return lowering.dag.constant(constant(None))
+        return lowering.cell(cell)
+
+    rows, columns = range(area.top, area.bottom + 1), range(area.left, area.right + 1)
+    return lowering.dag.add(Range(tuple(tuple(node(Cell(area.sheet, r, c)) for c in columns) for r in rows)))
+
+
+def _summed_beside(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
+    """SUMIF and AVERAGEIF take as much of the third argument as the first has rows and columns."""
+
+    def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+        if len(arguments) != 3:
+            return None
+        tested, summed = (areas_of(lowering, arguments[i], scope) for i in (0, 2))
+        if tested is None or summed is None or len(tested) != 1 or len(summed) != 1:
+            return None
+        a, size = summed[0].whole, tested[0].whole
+        if not tested[0].is_cut and a.rows == size.rows and a.columns == size.columns:
+            return None
+        bottom, right = min(MAX_ROW, a.top + size.rows - 1), min(MAX_COLUMN, a.left + size.columns - 1)
+        beside = cut(lowering, Area(a.sheet, a.top, a.left, bottom, right))
+        rows, columns = max(tested[0].rows, beside.rows), max(tested[0].columns, beside.columns)
+        parts = [
+            needed(lowering, Area(b.sheet, b.top, b.left, b.top + rows - 1, b.left + columns - 1))
+            for b in (tested[0], beside)
+        ]
+        return lowering.lower(ir.Call(name, (parts[0], arguments[1], parts[1])), scope)
+
+    return lower
+
+
+def _counted_if(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
+    """Of a whole column, the cells up to the last filled one, and as many times one of the others as there are."""
+
+    def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+        found = {i: areas_of(lowering, arguments[i], scope) for i in range(0, len(arguments), 2)}
+        areas = {i: parts for i, parts in found.items() if parts is not None and len(parts) == 1}
+        if len(areas) < len(found) or not any(area.is_cut for (area,) in areas.values()):
+            return None
+        even = {i: area for i, (area,) in leveled(areas).items()}
+        place = _with(lowering, name, arguments, {i: area.filled for i, area in even.items()}, scope)
+        first = even[0]
+        further = first.whole.rows * first.whole.columns - first.rows * first.columns
+        same = {(area.whole.rows, area.whole.columns) for area in even.values()}
+        if len(same) > 1 or not further:
+            return place
+        one = _with(lowering, name, arguments, {i: beyond(area) for i, area in even.items()}, scope)
+        return lowering.call("+", (place, lowering.call("*", (one, lowering.number(float(further))))))
+
+    return lower
+
+
+def _with(lowering: Lowering, name: str, arguments: Arguments, areas: Mapping[int, Area], scope: Scope) -> int:
+    """The call with other areas in some of its arguments."""
+    parts = [needed(lowering, areas[i]) if i in areas else argument for i, argument in enumerate(arguments)]
+    return lowering.lower(ir.Call(name, tuple(parts)), scope)
+
+
+def _blanks(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+    """COUNTBLANK, also of the cells beyond the last filled one."""
+    areas = areas_of(lowering, arguments[0], scope)
+    if areas is None or len(areas) != 1 or not areas[0].is_cut:
+        return None
+    (area,) = areas
+    place = lowering.lower(ir.Call("COUNTBLANK", (needed(lowering, area.filled),)), scope)
+    further = area.whole.rows * area.whole.columns - area.rows * area.columns
+    return lowering.call("+", (place, lowering.number(float(further))))
+
+
+PLACES: Mapping[str, Callable[[Lowering, Arguments, Scope], int | None]] = {
+    "OFFSET": _value_of("OFFSET"),
+    "INDIRECT": _value_of("INDIRECT"),
+    "INDEX": _index,
+    "ROW": _row_or_column("ROW"),
+    "COLUMN": _row_or_column("COLUMN"),
+    "ROWS": _count("ROWS"),
+    "COLUMNS": _count("COLUMNS"),
+    "AREAS": _count("AREAS"),
+    "COUNTBLANK": _blanks,
+    "COUNTIF": _counted_if("COUNTIF"),
+    "COUNTIFS": _counted_if("COUNTIFS"),
+    "SUMIF": _summed_beside("SUMIF"),
+    "AVERAGEIF": _summed_beside("AVERAGEIF"),
+    "N": _of_first_cell("N"),
+    "T": _of_first_cell("T"),
+    "ISREF": _is_reference,
+    "ISFORMULA": _is_formula,
+    "FORMULATEXT": _formula_text,
+    "SHEET": _sheet,
+    "SHEETS": _sheets,
+    "CELL": _cell,
+    "ANCHORARRAY": _spilled,
+    "SUBTOTAL": _without_subtotals("SUBTOTAL"),
+    "AGGREGATE": _without_subtotals("AGGREGATE"),
+}

@@ -1,0 +1,224 @@
+"""One trial's computation in a loop: values of nodes, and what went wrong so far, by context.
+
+What went wrong is kept in two ways. A number that may be infinite or NaN and is about to vanish (in a comparison, in a
+divisor, in memory) is multiplied by 0 and added to a running sum, which is NaN from then on: one fused instruction.
+What Excel minds and arithmetic does not is a flag.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from llvmlite import ir
+
+from xlmc.errors import SimulationError
+from xlmc.evaluation.graph.dag import Constant, Dag, Select
+from xlmc.evaluation.llvm.arithmetic import Arithmetic, intrinsic
+from xlmc.evaluation.llvm.contexts import ROOT, Context, branch
+from xlmc.evaluation.llvm.machine import Machine
+from xlmc.evaluation.llvm.recipes import Literal, Operand, Recipe, literal
+from xlmc.evaluation.llvm.sine import sine_and_cosine
+from xlmc.evaluation.llvm.single_sine import LARGEST_ANGLE, single_sine_and_cosine
+from xlmc.functions import Kind
+from xlmc.functions.denormals import TINIEST
+
+__all__ = ["Body", "Loaded"]
+
+_BIT = ir.IntType(1)
+
+_EXCELS_LARGEST_ANGLE = 2.0**27
+_LARGEST, _SMALLEST = (2 - 2.0**-23) * 2.0**127, 2.0**-126
+"""Of float32, but for zero and numbers of fewer digits."""
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """A value that the loop reads from memory, a double or a truth value, and whether it may be infinite or NaN."""
+
+    value: Any
+    fallible: bool
+
+
+class Body:
+    """Emits nodes one after another.
+
+    Args:
+        loaded: the nodes from outside the loop, each as its own kind or, where that is none of the loop's, as wanted.
+        contexts: of the nodes of the loop.
+        machine: the processor.
+        single: compute in float32.
+
+    Attributes:
+        builder: where instructions go.
+        real: the type of numbers.
+        single: whether they are float32.
+    """
+
+    def __init__(
+        self,
+        dag: Dag,
+        builder: Any,
+        loaded: Mapping[Operand, Loaded],
+        contexts: Mapping[int, Context],
+        machine: Machine,
+        single: bool = False,
+    ) -> None:
+        self.builder: Any = builder
+        self.real: Any = ir.FloatType() if single else ir.DoubleType()
+        self.single = single
+        self._dag, self._contexts, self._fused = dag, contexts, machine.fused
+        self._flushes = machine.flushes or single
+        self._known = dict(loaded)
+        self._checked: set[tuple[Operand, Context]] = set()
+        self._sums: dict[Context, Any] = {}
+        self._flags: dict[Context, Any] = {}
+        self._turns: dict[int, tuple[Any, tuple[Any, Any]]] = {}
+        self._context = ROOT
+
+    def number(self, value: float) -> Any:
+        """A constant.
+
+        Raises:
+            SimulationError: it is out of the range of float32.
+        """
+        if self.single and value and not _SMALLEST <= abs(value) <= _LARGEST:
+            hint = "use float64"
+            raise SimulationError(f"the number {value:g} in a formula is out of the range of float32", hint=hint)
+        return ir.Constant(self.real, value)
+
+    def truth(self, value: bool) -> Any:
+        """A constant truth value."""
+        return ir.Constant(_BIT, int(value))
+
+    def intrinsic(self, name: str, *arguments: Any) -> Any:
+        """A call of one of LLVM's own functions of numbers."""
+        return intrinsic(self.builder, self.real, name, *arguments)
+
+    def of_doubles(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """A function that is made of arithmetic on doubles; with float32 its result is rounded."""
+        do = Arithmetic(self.builder, self._fused)
+        if not self.single:
+            return function(do, *arguments)
+        wide = [self.builder.fpext(argument, ir.DoubleType()) for argument in arguments]
+        return self.builder.fptrunc(function(do, *wide), self.real)
+
+    @property
+    def largest_angle(self) -> float:
+        """Above it a sine is computed again: Excel refuses it, or it has too few digits in float32."""
+        return LARGEST_ANGLE if self.single else _EXCELS_LARGEST_ANGLE
+
+    def sine_and_cosine(self, angle: Any) -> tuple[Any, Any]:
+        """Both, computed once for each angle."""
+        if id(angle) not in self._turns:
+            both = single_sine_and_cosine if self.single else sine_and_cosine
+            self._turns[id(angle)] = angle, both(self.builder, angle, self._fused)
+        return self._turns[id(angle)][1]
+
+    def flag(self, wrong: Any) -> None:
+        """The trial must be computed again where `wrong` holds, if it needs the node at hand."""
+        so_far = self._flags.get(self._context)
+        self._flags[self._context] = wrong if so_far is None else self.builder.or_(so_far, wrong)
+
+    def compute(self, place: int, recipe: Recipe) -> None:
+        """Emit a node whose operands were emitted or loaded."""
+        self._context = self._contexts.get(place, ROOT)
+        values, fallible = [], recipe.makes
+        for position, part in enumerate(recipe.operands):
+            if isinstance(part, Operand) and not self._is_constant(part):
+                if position in recipe.absorbs or self._is_truth_of_number(part):
+                    self._check(part)
+                else:
+                    fallible = fallible or self._source(part)[1].fallible
+            values.append(self._value(part))
+        value = self.flushed(recipe.emit(self, values))
+        own = Operand(place, self._dag.types[place])
+        self._known[own] = Loaded(value, fallible and own.kind is Kind.NUMBER)
+        if isinstance(self._dag.nodes[place], Select):
+            self._join(place, values[0])
+
+    def flushed(self, value: Any) -> Any:
+        """0 in place of a number too small for Excel, where the processor does not see to it."""
+        if self._flushes or value.type != self.real:
+            return value
+        tiny = self.builder.fcmp_ordered("<", self.intrinsic("llvm.fabs", value), self.number(TINIEST))
+        return self.builder.select(tiny, self.number(0.0), value)
+
+    def result(self, place: int) -> Any:
+        """A node's value as it leaves the loop."""
+        self._context = ROOT
+        own = Operand(place, self._dag.types[place])
+        self._check(own)
+        return self._value(own)
+
+    def wrong(self) -> Any:
+        """Whether the trial must be computed again; None where none ever needs to be."""
+        total, flag = self._sums.get(ROOT), self._flags.get(ROOT)
+        if total is None:
+            return flag
+        lost = self.builder.fcmp_unordered("uno", total, total)
+        return lost if flag is None else self.builder.or_(lost, flag)
+
+    def _is_constant(self, part: Operand) -> bool:
+        return isinstance(self._dag.nodes[part.place], Constant)
+
+    def _source(self, part: Operand) -> tuple[Operand, Loaded]:
+        """Where the operand's value is, and the kind that it has there."""
+        if part not in self._known:
+            part = Operand(part.place, self._dag.types[part.place])
+        return part, self._known[part]
+
+    def _value(self, part: Operand | Literal) -> Any:
+        if isinstance(part, Operand) and self._is_constant(part):
+            known = literal(self._dag, part)
+            assert known is not None
+            part = known
+        if isinstance(part, Literal):
+            return self.truth(part.value) if isinstance(part.value, bool) else self.number(part.value)
+        value = self._source(part)[1].value
+        is_number = value.type == self.real
+        if part.kind is Kind.NUMBER:
+            return value if is_number else self.builder.uitofp(value, self.real)
+        return self.builder.fcmp_unordered("!=", value, self.number(0.0)) if is_number else value
+
+    def _is_truth_of_number(self, part: Operand) -> bool:
+        """Whether taking a number as a truth value hides that it is infinite or NaN."""
+        return part.kind is Kind.LOGICAL and bool(self._source(part)[1].value.type == self.real)
+
+    def _check(self, part: Operand) -> None:
+        """See the module."""
+        place, found = self._source(part)
+        if not found.fallible or any((place, context) in self._checked for context in _outwards(self._context)):
+            return
+        self._checked.add((place, self._context))
+        self._add(found.value)
+
+    def _add(self, value: Any) -> None:
+        zero, so_far = self.number(0.0), self._sums.get(self._context)
+        if so_far is None:
+            self._sums[self._context] = self.builder.fmul(value, zero)
+        elif self._fused:
+            self._sums[self._context] = self.intrinsic("llvm.fma", value, zero, so_far)
+        else:
+            self._sums[self._context] = self.builder.fadd(self.builder.fmul(value, zero), so_far)
+
+    def _join(self, place: int, condition: Any) -> None:
+        """What went wrong in a branch goes wrong in the context around it where the branch is taken."""
+        yes, no = (branch(self._context, place, taken) for taken in (1, 0))
+        if yes == self._context:
+            return
+        if yes in self._sums or no in self._sums:
+            fine = self.number(0.0)
+            self._add(self.builder.select(condition, self._sums.get(yes, fine), self._sums.get(no, fine)))
+        if yes in self._flags or no in self._flags:
+            none = self.truth(False)
+            self.flag(self.builder.select(condition, self._flags.get(yes, none), self._flags.get(no, none)))
+
+
+def _outwards(context: Context | None) -> list[Context]:
+    found = []
+    while context is not None:
+        found.append(context)
+        context = context.parent
+    return found

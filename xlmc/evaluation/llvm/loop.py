@@ -1,0 +1,148 @@
+"""A loop over trials: nodes computed one after another for each trial, from arrays and into arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from llvmlite import ir
+
+from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.llvm.body import Body, Loaded
+from xlmc.evaluation.llvm.contexts import contexts
+from xlmc.evaluation.llvm.flushing import while_flushing
+from xlmc.evaluation.llvm.machine import Machine, NativeLoop
+from xlmc.evaluation.llvm.recipes import Operand, Recipe
+from xlmc.functions import Kind
+
+__all__ = ["Load", "compiled"]
+
+_NAME = "over_trials"
+_BYTE, _BIT, _LONG = ir.IntType(8), ir.IntType(1), ir.IntType(64)
+_DOUBLE, _SINGLE = ir.DoubleType(), ir.FloatType()
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """An array that a loop reads.
+
+    Attributes:
+        operand: the node, and the kind it is read as.
+        stored: the kind of the array: doubles or truth values.
+        picked: whether trial i of the loop is trial `survivors[i]` of the array.
+        fallible: whether its numbers may be infinite or NaN.
+    """
+
+    operand: Operand
+    stored: Kind
+    picked: bool
+    fallible: bool
+
+
+def compiled(
+    dag: Dag,
+    machine: Machine,
+    recipes: Mapping[int, Recipe],
+    loads: Sequence[Load],
+    stores: Sequence[int],
+    single: bool,
+) -> NativeLoop:
+    """The loop that computes the nodes of `recipes`, as native code.
+
+    It takes the addresses of: the loads, the stores, the survivors (int64; not read where no load is picked), and one
+    byte a trial, which it sets to 1 where the trial must be computed again. With `single` it computes in float32; its
+    arrays are doubles all the same.
+    """
+    module = ir.Module()
+    inner = _inner(dag, module, machine, recipes, loads, stores, single)
+    _entry(module, inner, None if single else machine)
+    return machine.native(module, _NAME)
+
+
+def _pointer_type(kind: Kind) -> ir.Type:
+    return (_DOUBLE if kind is Kind.NUMBER else _BYTE).as_pointer()
+
+
+def _inner(
+    dag: Dag,
+    module: ir.Module,
+    machine: Machine,
+    recipes: Mapping[int, Recipe],
+    loads: Sequence[Load],
+    stores: Sequence[int],
+    single: bool,
+) -> ir.Function:
+    """The loop itself; its arrays do not overlap, which is what lets it run several trials at once."""
+    arrays = [*(load.stored for load in loads), *(dag.types[place] for place in stores)]
+    types = [*map(_pointer_type, arrays), _LONG.as_pointer(), _BYTE.as_pointer(), _LONG]
+    function = ir.Function(module, ir.FunctionType(_LONG, types), "loop")
+    function.linkage = "internal"
+    function.attributes.add("noinline")  # put in its caller, each access would list all the arrays it does not overlap
+    for argument in function.args[:-1]:
+        argument.add_attribute("noalias")
+    *pointers, survivors, wrongs, n = function.args
+    builder = ir.IRBuilder(function.append_basic_block("entry"))
+    before, body_block, after = builder.block, *(function.append_basic_block(name) for name in ("body", "after"))
+    builder.cbranch(builder.icmp_signed("<", _LONG(0), n), body_block, after)
+
+    builder.position_at_end(body_block)
+    i, count = builder.phi(_LONG), builder.phi(_LONG)
+    picked = builder.load(builder.gep(survivors, [i])) if any(load.picked for load in loads) else i
+    loaded = {
+        load.operand: Loaded(_loaded(builder, pointer, picked if load.picked else i, single), load.fallible)
+        for load, pointer in zip(loads, pointers, strict=False)
+    }
+    body = Body(dag, builder, loaded, contexts(dag, recipes, stores), machine, single)
+    for place, recipe in recipes.items():
+        body.compute(place, recipe)
+    for place, pointer in zip(stores, pointers[len(loads) :], strict=True):
+        result = body.result(place)
+        stored = builder.zext(result, _BYTE) if result.type == _BIT else result
+        stored = builder.fpext(stored, _DOUBLE) if stored.type == _SINGLE else stored
+        builder.store(stored, builder.gep(pointer, [i]))
+    wrong = body.wrong()
+    counted = count
+    if wrong is not None:
+        place = builder.gep(wrongs, [i])
+        builder.store(builder.or_(builder.load(place), builder.zext(wrong, _BYTE)), place)
+        counted = builder.add(count, builder.zext(wrong, _LONG))
+    following = builder.add(i, _LONG(1), flags=["nuw", "nsw"])
+    i.add_incoming(_LONG(0), before)
+    i.add_incoming(following, body_block)
+    count.add_incoming(_LONG(0), before)
+    count.add_incoming(counted, body_block)
+    builder.cbranch(builder.icmp_signed("<", following, n), body_block, after)
+
+    builder.position_at_end(after)
+    total = builder.phi(_LONG)
+    total.add_incoming(_LONG(0), before)
+    total.add_incoming(counted, body_block)
+    builder.ret(total)
+    return function
+
+
+def _loaded(builder: ir.IRBuilder, pointer: Any, i: Any, single: bool) -> Any:
+    value = builder.load(builder.gep(pointer, [i]))
+    if value.type == _BYTE:
+        return builder.icmp_unsigned("!=", value, _BYTE(0))
+    return builder.fptrunc(value, _SINGLE) if single else value
+
+
+def _entry(module: ir.Module, inner: ir.Function, flushing: Machine | None) -> None:
+    """The function to call: it takes the arrays' addresses as one array.
+
+    float32 has so few powers of ten that its small numbers are not given up.
+    """
+    function = ir.Function(module, ir.FunctionType(_LONG, [_BYTE.as_pointer().as_pointer(), _LONG]), _NAME)
+    builder = ir.IRBuilder(function.append_basic_block("entry"))
+    addresses, n = function.args
+    arguments = []
+    for place, argument in enumerate(inner.args[:-1]):
+        address = builder.load(builder.gep(addresses, [_LONG(place)]))
+        arguments.append(builder.bitcast(address, argument.type))
+
+    def loop() -> Any:
+        return builder.call(inner, [*arguments, n])
+
+    builder.ret(loop() if flushing is None else while_flushing(builder, flushing.triple, loop))

@@ -1,0 +1,174 @@
+"""The graph of nodes as compiled loops, and the evaluator that runs them block by block."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.evaluation.block_size import array_bytes, fitting_block
+from xlmc.evaluation.engine import Column, Evaluator, Sweeper, Target
+from xlmc.evaluation.graph.dag import Dag, Input
+from xlmc.evaluation.graph.lower import Lowering
+from xlmc.evaluation.llvm.machine import machine
+from xlmc.evaluation.llvm.phase import Memory, Phase
+from xlmc.evaluation.llvm.recipes import Recipe, reads, recipe_of
+from xlmc.evaluation.llvm.trials import Trials
+from xlmc.evaluation.llvm.whole import WholeBlocks, sweepable
+from xlmc.evaluation.reference.tracking import TrackingEvaluator
+from xlmc.functions.budget import TooLargeError
+from xlmc.functions.values import Floats
+
+if TYPE_CHECKING:
+    from xlmc.sampling.draws import Linear
+
+__all__ = ["JitProgram"]
+
+_MOST_MEMORY: Final = 2**28
+_LARGEST_BLOCK: Final = 1 << 20
+_SMALLEST_BLOCK: Final = 1 << 10
+
+
+class JitProgram:
+    """The graph of nodes, compiled for this machine.
+
+    Args:
+        may_err: the inputs whose draws may be errors (NaNs).
+        single: compute in float32, but for what is left to NumPy and the careful path.
+
+    Attributes:
+        largest_block: the largest block, a power of two, whose arrays take no more than 256 MB.
+    """
+
+    def __init__(
+        self,
+        lowering: Lowering,
+        filters: Sequence[Target],
+        forecasts: Sequence[Target],
+        may_err: frozenset[str],
+        single: bool = False,
+    ) -> None:
+        self.dag, self.may_err = lowering.dag, may_err
+        self.filter_places = [lowering.target(target) for target in filters]
+        self.forecast_places = [lowering.target(target) for target in forecasts]
+        recipes = _recipes(self.dag)
+
+        def needed(place: int) -> tuple[int, ...]:
+            return reads(self.dag, place, recipes.get(place))
+
+        first = self.dag.upstream(self.filter_places, needed)
+        early = frozenset(first)
+        late = [place for place in self.dag.upstream(self.forecast_places, needed) if place not in early]
+        carried = {used for place in late for used in needed(place)} | set(self.forecast_places)
+        keep = {*self.filter_places, *(carried & early)}
+        self.first = Phase(self.dag, machine(), recipes, first, keep, None, may_err, single)
+        self.late = Phase(self.dag, machine(), recipes, late, set(self.forecast_places), early, may_err, single)
+        self.inputs = _inputs(self.dag, [*first, *late])
+        self.careful_inputs = _inputs(self.dag, self.dag.upstream([*self.filter_places, *self.forecast_places]))
+        self.stores = (*self.first.stores, *self.late.stores)
+        self.largest_block = _LARGEST_BLOCK
+        while self.largest_block > _SMALLEST_BLOCK and self.largest_block * 8 * len(self.stores) > _MOST_MEMORY:
+            self.largest_block //= 2
+        in_arrays = array_bytes(lowering, self.filter_places, self.forecast_places)
+        self.largest_block = fitting_block(self.largest_block, in_arrays, 8 * len(self.stores))
+
+    def evaluator(self, block: int) -> Evaluator:
+        """See `Program`."""
+        return _JitEvaluator(self, block)
+
+
+def _inputs(dag: Dag, places: Sequence[int]) -> dict[int, str]:
+    """The names of the inputs among the nodes."""
+    return {place: node.name for place in places if isinstance(node := dag.nodes[place], Input)}
+
+
+def _recipes(dag: Dag) -> dict[int, Recipe]:
+    found = ((place, recipe_of(dag, place)) for place in range(len(dag.nodes)))
+    return {place: recipe for place, recipe in found if recipe is not None}
+
+
+class _JitEvaluator:
+    def __init__(self, program: JitProgram, block: int) -> None:
+        self._program, self._block = program, block
+        self._memory = Memory(program.dag, program.stores, block)
+        self._tracking = TrackingEvaluator(program.dag, program.filter_places, program.forecast_places)
+        self._all = np.empty(0, np.intp)
+        self._trials = self._of_block({}, 0)
+        self._draws: Mapping[str, Floats] = {}
+        self._too_large = False
+
+    def _of_block(self, inputs: Mapping[str, Floats], n: int) -> Trials:
+        trials = Trials(self._program.dag, n, np.zeros(n, np.uint8), None, self._all)
+        if n:
+            for place, name in self._program.inputs.items():
+                trials.arrays[place] = np.ascontiguousarray(inputs[name])
+        return trials
+
+    def sweeper(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> Sweeper | None:
+        """See `Sweeping`."""
+        program = self._program
+        parts = sweepable(
+            program.dag, program.first, program.late, program.filter_places, program.forecast_places, self._block
+        )
+        return None if parts is None else WholeBlocks(parts, draw, linear, self._block)
+
+    def filters(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:
+        """See `Evaluator`."""
+        self._draws, self._trials = inputs, self._of_block(inputs, n)
+        program = self._program
+        try:
+            program.first.run(self._trials, self._memory)
+        except TooLargeError:
+            self._too_large = True
+            return self._tracking.filters(inputs, n)
+        self._too_large = False
+        columns = self._columns(self._trials, program.filter_places)
+        again = np.flatnonzero(self._trials.wrong)
+        if again.size:
+            columns = _corrected(columns, again, self._tracking.filters(self._picked(again), again.size))
+        return columns
+
+    def forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
+        """See `Evaluator`."""
+        program, m = self._program, survivors.size
+        survivors = np.ascontiguousarray(survivors, np.intp)
+        if self._too_large:
+            return self._tracking.forecasts(survivors)
+        trials = Trials(program.dag, m, self._trials.wrong[survivors], self._trials, survivors)
+        try:
+            program.late.run(trials, self._memory)
+        except TooLargeError:
+            self._tracking.filters(self._draws, self._trials.wrong.size)
+            return self._tracking.forecasts(survivors)
+        columns = self._columns(trials, program.forecast_places)
+        again = np.flatnonzero(trials.wrong)
+        if again.size:
+            self._tracking.filters(self._picked(survivors[again]), again.size)
+            columns = _corrected(columns, again, self._tracking.forecasts(np.arange(again.size)))
+        return columns
+
+    def _columns(self, trials: Trials, places: Sequence[int]) -> list[Column]:
+        """The results; of draws that may be errors the `Value`, for no loop has looked at them."""
+        columns = []
+        for place in places:
+            node = self._program.dag.nodes[place]
+            fallible = isinstance(node, Input) and node.name in self._program.may_err
+            columns.append(trials.column(place, fallible))
+        return columns
+
+    def _picked(self, trials: NDArray[np.intp]) -> dict[str, Floats]:
+        return {name: self._draws[name][trials] for name in self._program.careful_inputs.values()}
+
+
+def _corrected(columns: Sequence[Column], again: NDArray[np.intp], careful: Sequence[Column]) -> list[Column]:
+    """The columns (n,) with the trials `again` (k,) as the careful path has them (k,)."""
+    corrected = []
+    for column, found in zip(columns, careful, strict=True):
+        values = column.values.copy()
+        codes = np.zeros(values.size, np.uint8) if column.codes is None else np.array(column.codes)
+        values[again] = found.values
+        codes[again] = 0 if found.codes is None else found.codes
+        corrected.append(Column(values, codes if codes.any() else None))
+    return corrected

@@ -1,0 +1,221 @@
+"""Functions of many cells, from left to right as the careful path goes: sums, extremes, means, AND, OR, XOR."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Range
+from xlmc.evaluation.llvm.recipes import Emit, Literal, Operand, Recipe
+from xlmc.functions import Kind
+from xlmc.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value
+
+if TYPE_CHECKING:
+    from xlmc.evaluation.llvm.body import Body
+
+__all__ = ["over_cells"]
+
+Part = Operand | Literal
+Parts = Sequence[Any]
+
+_MOST: Final = 200
+"""Cells of a range that a loop reads one by one; a wider one is summed by NumPy."""
+
+_ALL: Final = range(_MOST)
+
+
+class _NotForTheLoopError(Exception):
+    """A cell of the range is of no kind that is known before the run, or is an error."""
+
+
+@dataclass(slots=True)
+class _Members:
+    """What of the arguments counts, and the nodes that do not but may be errors."""
+
+    counting: list[Part]
+    beside: list[int]
+
+
+def over_cells(dag: Dag, node: Apply) -> Recipe | None:
+    """The recipe of a function of ranges; None where there is none."""
+    try:
+        if node.function.name == "SUMPRODUCT":
+            return _sum_of_products(dag, node)
+        if node.function.name not in _ROWS:
+            return None
+        row = _ROWS[node.function.name]
+        members = _members(dag, node)
+    except _NotForTheLoopError:
+        return None
+    if not row.fewest <= len(members.counting) <= _MOST:
+        return None
+    return Recipe(tuple(members.counting), row.emit, row.absorbs, row.makes, tuple(members.beside))
+
+
+def _members(dag: Dag, node: Apply) -> _Members:
+    members = _Members([], [])
+    kind = node.function.parameters[0].kind
+    for place in node.arguments:
+        cells = _cells(dag, place)
+        if cells is None:
+            members.counting.append(Operand(place, kind))
+            continue
+        for cell in cells:
+            found = _counted(dag, cell, kind)
+            if found is not None:
+                members.counting.append(found)
+            elif isinstance(cell, int):
+                members.beside.append(cell)
+    return members
+
+
+def _cells(dag: Dag, place: int) -> list[int | Value] | None:
+    """The cells of a range: their places, and the values of those that are constant. None for a single value."""
+    node = dag.nodes[place]
+    if isinstance(node, Range):
+        return [_value_or_place(dag, cell) for row in node.rows for cell in row]
+    if isinstance(node, Constant) and dag.sizes[place] is not None:
+        return list(_each(node.value))
+    if dag.sizes[place] is not None:
+        raise _NotForTheLoopError
+    return None
+
+
+def _value_or_place(dag: Dag, cell: int) -> int | Value:
+    node = dag.nodes[cell]
+    return node.value if isinstance(node, Constant) else cell
+
+
+def _each(value: Value) -> Iterator[Value]:
+    """The cells of a constant range, `(1,)` each."""
+    _, rows, columns = value.shape
+    spread = [None if a is None else np.broadcast_to(a, value.shape) for a in value.arrays()]
+    for row in range(rows):
+        for column in range(columns):
+            parts = [None if a is None else a[:, row, column] for a in spread]
+            yield Value(parts[0], parts[1], parts[2])  # type: ignore[arg-type]  # only texts may be None
+
+
+def _counted(dag: Dag, cell: int | Value, kind: Kind) -> Part | None:
+    """A cell of a range where it counts; None where it does not."""
+    if isinstance(cell, Value):
+        return _counted_constant(cell, kind)
+    if dag.sizes[cell] is not None or dag.types[cell] not in (Kind.NUMBER, Kind.LOGICAL):
+        raise _NotForTheLoopError
+    return None if kind is Kind.NUMBER and dag.types[cell] is Kind.LOGICAL else Operand(cell, kind)
+
+
+def _counted_constant(cell: Value, kind: Kind) -> Literal | None:
+    found, number = int(cell.kinds.flat[0]), float(cell.numbers.flat[0])
+    if found in (BLANK, TEXT) or (found == LOGICAL and kind is Kind.NUMBER):
+        return None
+    if found not in (NUMBER, LOGICAL):
+        raise _NotForTheLoopError
+    return Literal(number if kind is Kind.NUMBER else number != 0)
+
+
+def _sum_of_products(dag: Dag, node: Apply) -> Recipe | None:
+    """`SUMPRODUCT`: cells that are no numbers are 0; of ranges of one size only."""
+    columns, beside, shapes = [], [], set()
+    for place in node.arguments:
+        cells = _cells(dag, place)
+        shapes.add(dag.sizes[place])
+        if cells is None or len(shapes) > 1:
+            return None
+        parts: list[Part] = []
+        for cell in cells:
+            if isinstance(cell, Value) and int(cell.kinds.flat[0]) == TEXT and len(cells) == 1:
+                return None  # the careful path knows what Excel makes of it
+            found = _counted(dag, cell, Kind.NUMBER)
+            parts.append(Literal(0.0) if found is None else found)
+            if found is None and isinstance(cell, int):
+                beside.append(cell)
+        columns.append(parts)
+    height = len(columns[0])
+    if height * len(columns) > _MOST:
+        return None
+
+    def emit(body: Body, parts: Parts) -> Any:
+        products = [reduce(body.builder.fmul, parts[cell::height]) for cell in range(height)]
+        return reduce(body.builder.fadd, products)
+
+    return Recipe(tuple(part for column in columns for part in column), emit, beside=tuple(beside))
+
+
+def _fold(instruction: str) -> Emit:
+    def emit(body: Body, parts: Parts) -> Any:
+        return reduce(getattr(body.builder, instruction), parts)
+
+    return emit
+
+
+_sum = _fold("fadd")
+
+
+def _product(body: Body, parts: Parts) -> Any:
+    return reduce(lambda so_far, part: body.flushed(body.builder.fmul(so_far, part)), parts)
+
+
+def _extreme(relation: str) -> Emit:
+    def emit(body: Body, parts: Parts) -> Any:
+        def better(best: Any, part: Any) -> Any:
+            return body.builder.select(body.builder.fcmp_ordered(relation, best, part), best, part)
+
+        return reduce(better, parts)
+
+    return emit
+
+
+def _mean(body: Body, parts: Parts) -> Any:
+    return body.builder.fdiv(_sum(body, parts), body.number(float(len(parts))))
+
+
+def _sum_of_squares(body: Body, parts: Parts) -> Any:
+    return _sum(body, [body.builder.fmul(part, part) for part in parts])
+
+
+def _variance(lost: int) -> Emit:
+    """Mean squared distance from the mean, by k - `lost`."""
+
+    def emit(body: Body, parts: Parts) -> Any:
+        mean = _mean(body, parts)
+        total = _sum_of_squares(body, [body.builder.fsub(part, mean) for part in parts])
+        return body.builder.fdiv(total, body.number(float(len(parts) - lost)))
+
+    return emit
+
+
+def _deviation(lost: int) -> Emit:
+    variance = _variance(lost)
+    return lambda body, parts: body.intrinsic("llvm.sqrt", variance(body, parts))
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """See `Recipe`; of fewer than so many cells the result is an error or another rule holds."""
+
+    emit: Callable[[Body, Parts], Any]
+    fewest: int = 1
+    absorbs: Container[int] = ()
+    makes: bool = True
+
+
+_ROWS: Final[Mapping[str, _Row]] = {
+    "SUM": _Row(_sum),
+    "PRODUCT": _Row(_product),
+    "MIN": _Row(_extreme("<"), absorbs=_ALL, makes=False),
+    "MAX": _Row(_extreme(">"), absorbs=_ALL, makes=False),
+    "AVERAGE": _Row(_mean),
+    "SUMSQ": _Row(_sum_of_squares),
+    "VAR.S": _Row(_variance(1), 2),
+    "VAR.P": _Row(_variance(0)),
+    "STDEV.S": _Row(_deviation(1), 2),
+    "STDEV.P": _Row(_deviation(0)),
+    "AND": _Row(_fold("and_")),
+    "OR": _Row(_fold("or_")),
+    "XOR": _Row(_fold("xor")),
+}

@@ -1,0 +1,1 @@
+"""The engine `numpy`: one step a node, over a block of trials."""

@@ -1,0 +1,340 @@
+"""One node as one step on plain arrays.
+
+A step reads and writes a `Frame`: a list of values by node place. A NUMBER node is a float array (or a float, when
+constant), a LOGICAL node a bool array (or a bool), any other node a `Value`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Range, Rescue, Select, evaluated, uses
+from xlmc.functions import Function, Kind
+from xlmc.functions.budget import ask_for_live
+from xlmc.functions.denormals import Underflow, flush, flushed
+from xlmc.functions.registry import Elementwise
+from xlmc.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value
+
+__all__ = ["Departure", "Frame", "Step", "is_elementwise_ufunc", "make_step", "plain_constant", "reads"]
+
+
+class Departure(Exception):  # noqa: N818 - it is no error: the block leaves the fast path
+    """What this block holds is not for the fast path."""
+
+
+@dataclass(slots=True)
+class Frame:
+    """The values of one set of `n` trials, and the buffers that steps may write to.
+
+    Attributes:
+        underflow: whether a result may be too small a number for Excel; the step that made it sees to that.
+        live: the bytes of `Value`s.
+    """
+
+    values: list[Any]
+    buffers: Sequence[NDArray[Any]]
+    n: int
+    underflow: Underflow
+    live: int = 0
+
+    def flush(self, place: int) -> None:
+        """0 in place of the node's numbers that are too small for Excel."""
+        self.underflow.raised = False
+        flush(self.values[place])
+
+
+Step = Callable[[Frame], None]
+
+
+def plain_constant(value: Value) -> Any:
+    """A constant as steps take it: float, bool, or the `Value` itself."""
+    if value.numbers.ndim == 1 and value.kinds.size == 1:
+        kind = int(value.kinds[0])
+        if kind == NUMBER:
+            return float(value.numbers[0])
+        if kind == LOGICAL:
+            return bool(value.numbers[0])
+    return value
+
+
+def reads(dag: Dag, place: int) -> tuple[int, ...]:
+    """The nodes whose values the step of a node needs.
+
+    Of a range that is folded these are its cells. Of a rescue it is what it rescues: where that turns out to be an
+    error the block departs, so that what stands in instead is never needed here.
+    """
+    node = dag.nodes[place]
+    if isinstance(node, Apply) and not node.function.takes_sets:
+        return node.arguments
+    if isinstance(node, Rescue):
+        return (node.value,)
+    if isinstance(node, Apply) and _folded(dag, node) is not None:
+        return tuple(cell for cell, _ in _cells(dag, node))  # also what does not count: it may turn out an error
+    return uses(node)
+
+
+def make_step(dag: Dag, place: int, buffer: int | None) -> Step:
+    """The step of a node; it writes to that buffer where it is given one, else to fresh memory.
+
+    Whatever has no fast form runs as `Function` does, and departs when an error or a text comes of it.
+    """
+    node = dag.nodes[place]
+    match node:
+        case Apply(function, arguments):
+            return _apply(dag, place, function, arguments, buffer)
+        case Select(condition, yes, no) if dag.types[place] is not Kind.ANY:
+            return _select(dag, place, (condition, yes, no), buffer)
+        case Rescue(value, _, _):
+            return _rescue(dag, place, value)
+        case Select() | Range():
+            return _valued(dag, place)
+        case _:
+            raise TypeError(f"{node} is no step")
+
+
+def is_elementwise_ufunc(dag: Dag, place: int) -> bool:
+    """Whether the step may write over its own arguments."""
+    node = dag.nodes[place]
+    return isinstance(node, Apply) and not node.function.takes_sets and _fast_ufunc(dag, node)
+
+
+def _apply(dag: Dag, place: int, function: Function, arguments: tuple[int, ...], buffer: int | None) -> Step:
+    node = Apply(function, arguments)
+    if function.takes_sets:
+        folded = _folded(dag, node)
+        if folded is None:
+            return _valued(dag, place)
+        return _fold(function, place, _readers(dag, folded, function.parameters[0].kind), buffer)
+    readers = [_reader(dag, argument, _wanted(dag, function, p)) for p, argument in enumerate(arguments)]
+    if any(reader is None for reader in readers):
+        return _valued(dag, place)
+    found = [reader for reader in readers if reader is not None]
+    if _fast_ufunc(dag, node) and function.ufunc is not None:
+        return _ufunc(function.ufunc, function.guard, place, found, buffer)
+    return _valued(dag, place) if function.takes_values else _body(function, place, found)
+
+
+def _on_numbers(dag: Dag, function: Function, arguments: tuple[int, ...]) -> bool:
+    """Whether all arguments are plain numbers for a ufunc: the case of nearly every node, told at sight."""
+    if not function.on_numbers or function.ufunc is None or len(arguments) != function.ufunc.nin:
+        return False
+    return all(dag.types[argument] is Kind.NUMBER for argument in arguments)
+
+
+def _fast_ufunc(dag: Dag, node: Apply) -> bool:
+    function = node.function
+    if _on_numbers(dag, function, node.arguments):
+        return True
+    if function.ufunc is None or len(node.arguments) != function.ufunc.nin or _compares_unlike_kinds(dag, node):
+        return False
+    wanted = [_reader(dag, a, _wanted(dag, function, p)) for p, a in enumerate(node.arguments)]
+    return all(reader is not None for reader in wanted)
+
+
+def _wanted(dag: Dag, function: Function, position: int) -> Kind:
+    """What an argument is read as; comparisons take numbers here, for that is what their ufunc orders."""
+    kind = function.parameter(position).kind
+    return Kind.NUMBER if kind is Kind.ANY and function.ufunc is not None else kind
+
+
+Reader = Callable[[list[Any]], Any]
+
+
+def _reader(dag: Dag, place: int, kind: Kind) -> Reader | None:
+    """How a step gets an argument as plain numbers or logicals; None where that takes more than a look."""
+    node, found = dag.nodes[place], dag.types[place]
+    if isinstance(node, Constant):
+        return _constant_reader(node.value, kind)
+    if found is kind and kind in (Kind.NUMBER, Kind.LOGICAL):
+        return lambda values: values[place]
+    if found is Kind.LOGICAL and kind is Kind.NUMBER:
+        return lambda values: values[place].astype(np.float64)
+    if found is Kind.NUMBER and kind is Kind.LOGICAL:
+        return lambda values: values[place] != 0
+    return None
+
+
+def _constant_reader(value: Value, kind: Kind) -> Reader | None:
+    if value.numbers.ndim != 1 or value.kinds.size != 1 or kind not in (Kind.NUMBER, Kind.LOGICAL):
+        return None
+    if int(value.kinds[0]) not in (NUMBER, LOGICAL, BLANK):
+        return None
+    plain = float(value.numbers[0]) if kind is Kind.NUMBER else bool(value.numbers[0])
+    return lambda values: plain
+
+
+def _compares_unlike_kinds(dag: Dag, node: Apply) -> bool:
+    """Beside a logical or a text Excel orders by kind, not by size."""
+    return node.function.takes_values and any(dag.types[argument] is not Kind.NUMBER for argument in node.arguments)
+
+
+def _ufunc(
+    ufunc: Elementwise, guard: Callable[..., bool] | None, place: int, readers: list[Reader], buffer: int | None
+) -> Step:
+    def step(frame: Frame) -> None:
+        arguments = [read(frame.values) for read in readers]
+        if guard is not None and not guard(*arguments):
+            raise Departure
+        out = None if buffer is None else frame.buffers[buffer]
+        frame.values[place] = ufunc(*arguments, out=out)
+        if frame.underflow.raised:
+            frame.flush(place)
+
+    return step
+
+
+def _body(function: Function, place: int, readers: list[Reader]) -> Step:
+    defaults = [p.default for p in function.parameters[len(readers) :] if not p.repeat]
+    logical = function.returns is Kind.LOGICAL
+
+    def step(frame: Frame) -> None:
+        result = function.body(*(read(frame.values) for read in readers), *defaults)
+        if isinstance(result, Value):
+            result = _plain(result, function.returns)
+        elif not logical and not np.isfinite(result).all():
+            raise Departure
+        frame.values[place] = np.broadcast_to(result if logical else flushed(result), (frame.n,))
+
+    return step
+
+
+def _folded(dag: Dag, node: Apply) -> list[int] | None:
+    """What a set function folds, ranges flattened and what does not count left out; None for the careful way."""
+    function = node.function
+    if not function.takes_sets or function.ufunc is None:
+        return None
+    kind = function.parameters[0].kind
+    folded = [cell for cell, in_range in _cells(dag, node) if not in_range or _counts(dag, cell, kind)]
+    return folded if folded and all(_foldable(dag, cell, kind) for cell in folded) else None
+
+
+def _cells(dag: Dag, node: Apply) -> Iterator[tuple[int, bool]]:
+    """The arguments, ranges cell by cell, and whether each is a range's."""
+    for argument in node.arguments:
+        part = dag.nodes[argument]
+        if isinstance(part, Range):
+            for row in part.rows:
+                for cell in row:
+                    yield cell, True
+        else:
+            yield argument, False
+
+
+def _foldable(dag: Dag, place: int, kind: Kind) -> bool:
+    if kind not in (Kind.NUMBER, Kind.LOGICAL) or dag.sizes[place] is not None:
+        return False
+    return dag.types[place] is kind or _reader(dag, place, kind) is not None
+
+
+def _readers(dag: Dag, places: Sequence[int], kind: Kind) -> list[Reader]:
+    return [reader for place in places if (reader := _reader(dag, place, kind)) is not None]
+
+
+def _counts(dag: Dag, cell: int, kind: Kind) -> bool:
+    """Whether a range's cell may count; one whose kind is not known until the run may, and has no reader.
+
+    Nor has a text that varies: it never counts, but may be an error.
+    """
+    found = dag.types[cell]
+    if found is kind:
+        return True
+    node = dag.nodes[cell]
+    if isinstance(node, Constant) and int(node.value.kinds.flat[0]) in (BLANK, TEXT):
+        return False
+    return not (kind is Kind.NUMBER and found is Kind.LOGICAL)
+
+
+def _fold(function: Function, place: int, operands: list[Reader], buffer: int | None) -> Step:
+    ufunc = function.ufunc
+    assert ufunc is not None
+    dtype = np.bool_ if function.returns is Kind.LOGICAL else np.float64
+
+    def step(frame: Frame) -> None:
+        out = np.empty(frame.n, dtype) if buffer is None else frame.buffers[buffer]
+        first, *rest = (read(frame.values) for read in operands)
+        np.copyto(out, first)
+        for operand in rest:
+            ufunc(out, operand, out=out)
+            if frame.underflow.raised:
+                frame.underflow.raised = False
+                flush(out)
+        frame.values[place] = out
+
+    return step
+
+
+def _select(dag: Dag, place: int, parts: tuple[int, int, int], buffer: int | None) -> Step:
+    kind = dag.types[place]
+    read = [_reader(dag, part, want) for part, want in zip(parts, (Kind.LOGICAL, kind, kind), strict=True)]
+    if any(reader is None for reader in read):
+        return _valued(dag, place)
+    condition, yes, no = (reader for reader in read if reader is not None)
+    dtype = np.bool_ if kind is Kind.LOGICAL else np.float64
+
+    def step(frame: Frame) -> None:
+        out = np.empty(frame.n, dtype) if buffer is None else frame.buffers[buffer]
+        np.copyto(out, no(frame.values))
+        np.copyto(out, yes(frame.values), where=condition(frame.values))
+        frame.values[place] = out
+
+    return step
+
+
+def _rescue(dag: Dag, place: int, value: int) -> Step:
+    """On the fast path nothing needs rescue."""
+
+    def step(frame: Frame) -> None:
+        found = frame.values[value]
+        if isinstance(found, Value) and found.has_errors:
+            raise Departure
+        frame.values[place] = found if dag.types[place] is dag.types[value] else as_value(found, dag.types[value])
+
+    return step
+
+
+def _valued(dag: Dag, place: int) -> Step:
+    node = dag.nodes[place]
+    assert isinstance(node, Apply | Select | Range)
+    kind = dag.types[place]
+
+    def step(frame: Frame) -> None:
+        arguments = {p: as_value(frame.values[p], dag.types[p]) for p in uses(node)}
+        with np.errstate(all="ignore"):
+            result = evaluated(node, arguments)
+        if isinstance(node, Apply):
+            result = _in_own_memory(result, arguments.values())
+        if kind in (Kind.NUMBER, Kind.LOGICAL):
+            frame.values[place] = np.broadcast_to(_plain(result, kind), (frame.n,))
+        else:
+            frame.values[place] = result
+            frame.live += result.nbytes
+            ask_for_live(frame.live)
+
+    return step
+
+
+def _in_own_memory(result: Value, arguments: Iterable[Value]) -> Value:
+    """What a function gives, apart from its arguments: the buffers that these lie in are soon written to again."""
+    if any(np.may_share_memory(result.numbers, argument.numbers) for argument in arguments):
+        return Value(result.numbers.copy(), result.kinds, result.texts)
+    return result
+
+
+def _plain(value: Value, kind: Kind) -> NDArray[Any]:
+    if not value.plain:
+        raise Departure
+    return value.numbers != 0 if kind is Kind.LOGICAL else value.numbers
+
+
+def as_value(found: Any, kind: Kind) -> Value:
+    """A step's plain array or constant as a `Value`."""
+    if isinstance(found, Value):
+        return found
+    array = np.atleast_1d(np.asarray(found))
+    code = LOGICAL if kind is Kind.LOGICAL else NUMBER
+    return Value(array.astype(np.float64, copy=False), np.full(1, code, np.uint8))

@@ -1,0 +1,90 @@
+"""Between which numbers a node's values lie, as far as sums, products and choices tell."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from typing import Final
+
+from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Input, Select
+from xlmc.functions.last_sum import SETTLED
+from xlmc.functions.values import NUMBER
+
+__all__ = ["Bounds", "bounds", "of_constant"]
+
+Bounds = tuple[float, float]
+"""The least and the largest number, but for the rounding of the operations that led to them."""
+
+_ANY: Final[Bounds] = (-math.inf, math.inf)
+
+
+def bounds(dag: Dag, places: Iterable[int], inputs: Mapping[str, Bounds]) -> dict[int, Bounds]:
+    """The finite bounds among the nodes at `places`, which come in order.
+
+    Args:
+        dag: of the nodes.
+        places: those that vary.
+        inputs: name of an input -> its bounds, where it has any.
+    """
+    found: dict[int, Bounds] = {}
+    for place in places:
+        between = _of(dag, place, inputs, found)
+        if math.isfinite(between[0]) and math.isfinite(between[1]):
+            found[place] = between
+    return found
+
+
+def _of(dag: Dag, place: int, inputs: Mapping[str, Bounds], found: Mapping[int, Bounds]) -> Bounds:
+    def part(used: int) -> Bounds:
+        return found[used] if used in found else of_constant(dag, used) or _ANY
+
+    match dag.nodes[place]:
+        case Input(name):
+            return inputs.get(name, _ANY)
+        case Select(_, yes, no):
+            return _around((*part(yes), *part(no)))
+        case Apply(function, (first, second)) if function.name in ("+", "-", "*"):
+            return _combined(function.name, part(first), part(second))
+        case Apply(function, (first, second)) if function.name == "/":
+            low, high = part(second)
+            away = low > 0.0 or high < 0.0
+            return _combined("*", part(first), _around((1.0 / low, 1.0 / high))) if away else _ANY
+        case Apply(function, (result, _)) if function.name == SETTLED.name:
+            return part(result)
+        case Apply(function, (only,)) if function.name in _OF_ONE:
+            return _OF_ONE[function.name](*part(only))
+        case _:
+            return _ANY
+
+
+_OF_ONE: Final[Mapping[str, Callable[[float, float], Bounds]]] = {
+    "u-": lambda low, high: (-high, -low),
+    "SIN": lambda low, high: (-1.0, 1.0),
+    "COS": lambda low, high: (-1.0, 1.0),
+    "SQRT": lambda low, high: (0.0, max(1.0, high)),  # wide, as the root of a number near 0 makes its rounding large
+    "ABS": lambda low, high: (max(low, -high, 0.0), max(-low, high)),
+}
+"""Function of one number -> its bounds, from those of the number."""
+
+
+def of_constant(dag: Dag, place: int) -> Bounds | None:
+    """A number that is known, twice; None of all else."""
+    node = dag.nodes[place]
+    if isinstance(node, Constant) and dag.sizes[place] is None and int(node.value.kinds[0]) == NUMBER:
+        number = float(node.value.numbers[0])
+        return number, number
+    return None
+
+
+def _combined(operator: str, left: Bounds, right: Bounds) -> Bounds:
+    if operator == "+":
+        return left[0] + right[0], left[1] + right[1]
+    if operator == "-":
+        return left[0] - right[1], left[1] - right[0]
+    return _around([a * b for a in left for b in right])
+
+
+def _around(numbers: Iterable[float]) -> Bounds:
+    """What holds all the numbers; where one is none, nothing is known."""
+    numbers = tuple(numbers)
+    return _ANY if any(math.isnan(number) for number in numbers) else (min(numbers), max(numbers))

@@ -1,0 +1,141 @@
+"""Lookups: the derivatives of the cell found, and 0 in the key; and functions that only move cells about."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from xlmc.evaluation.passes.derivatives.jet import Jet
+from xlmc.evaluation.passes.derivatives.picking import Drawer
+from xlmc.evaluation.passes.derivatives.rounding import standing
+from xlmc.evaluation.passes.derivatives.rules import RULES, Operand, Outcome, Rule, leveled, rule
+from xlmc.functions import Function
+from xlmc.functions.lookup.picking import each_part, joined, transposed
+from xlmc.functions.values import ERROR, Bools, Value
+
+__all__ = ["moved"]
+
+_AT_A_STEP: Final = "the key lies where the lookup goes from one cell to the next"
+
+_NEAR: Final = 1e-14
+
+Values = list[Value]
+
+
+@rule("MATCH", "XMATCH", why=_AT_A_STEP, jumps=True)
+def match(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
+    """A place, which stands still."""
+    step = _steps(function, result, [operand.value for operand in operands])
+    return Outcome(standing(result, leveled([operands[0]]), step), result.numbers)
+
+
+def _steps(call: Callable[[Values], Value], found: Value, values: Values) -> Bools:
+    """Where another cell is found with a key that differs in the 15th digit; none at all is found by labels only."""
+    step = np.zeros(1, bool)
+    for nudge in (1 - _NEAR, 1 + _NEAR):
+        key = replace(values[0], numbers=values[0].numbers * nudge)
+        other = call([key, *values[1:]])
+        step = step | ((other.numbers != found.numbers) & (other.kinds < ERROR))
+    return step
+
+
+def _looked_up(call: Callable[[Values], Value], result: Value, operands: Sequence[Operand], drawer: Drawer) -> Outcome:
+    """The cell that a call finds among tags, by the first operand as a key."""
+    values = [operand.value for operand in operands]
+    found = call(values)
+    jet = drawer.drawn(found, result)
+    key = operands[0].jet
+    if key.active:
+        level = key.as_range() if jet.x.ndim == 3 else key
+        jet = replace(jet + standing(result, [level], _steps(call, found, values)), x=result.numbers)
+    return Outcome(_without(jet, operands[2:]), found.numbers)
+
+
+def _without(jet: Jet, operands: Sequence[Operand]) -> Jet:
+    """No derivatives where what decides on the place has none."""
+    for operand in operands:
+        first = operand.jet.first
+        if not np.isfinite(first).all():
+            axes = tuple(axis for axis in range(first.ndim) if axis != 1)
+            lost = ~np.isfinite(first).all(axis=axes)
+            jet = jet.lost(lost.reshape(-1, *(1,) * (jet.x.ndim - 1)))
+    return jet
+
+
+@rule("VLOOKUP", "HLOOKUP", why=_AT_A_STEP, jumps=True)
+def table_lookup(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
+    """The table gets its own tags beside it (below it), and the column (row) is that of the tags."""
+    drawer = Drawer.of([operands[1]])
+    axis = 2 if function.name == "VLOOKUP" else 1
+    width = operands[1].value.as_range().shape[axis]
+
+    def call(values: Values) -> Value:
+        key, table, column, *near = values
+        shifted = replace(column, numbers=column.numbers + width)
+        return function([key, _beside(table, drawer.tags[0], axis), shifted, *near])
+
+    return _looked_up(call, result, operands, drawer)
+
+
+def _beside(table: Value, tags: Value, axis: int) -> Value:
+    left, right = table.as_range(), tags.as_range()
+    n = max(left.shape[0], right.shape[0])
+    tall = [each_part(v, lambda part: np.broadcast_to(part, (n, *part.shape[1:]))) for v in (left, right)]
+    return joined(tall, axis)
+
+
+@rule("LOOKUP", why=_AT_A_STEP, jumps=True)
+def lookup(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
+    """The results are tagged; without them, the last row or column of the array."""
+    if len(operands) > 2:
+        drawer = Drawer.of([operands[2]])
+        return _looked_up(lambda values: function([*values[:2], *drawer.tags]), result, operands, drawer)
+    drawer = Drawer.of([operands[1]])
+
+    def call(values: Values) -> Value:
+        grid, tags = values[1].as_range(), drawer.tags[0].as_range()
+        if grid.shape[2] > grid.shape[1]:
+            grid, tags = transposed(grid), transposed(tags)
+        first = each_part(grid, lambda part: part[:, :, :1])
+        return function([values[0], first, each_part(tags, lambda part: part[:, :, -1:])])
+
+    return _looked_up(call, result, operands, drawer)
+
+
+@rule("XLOOKUP", why=_AT_A_STEP, jumps=True)
+def xlookup(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
+    """The results, and what stands in for them, are tagged."""
+    drawer = Drawer.of(operands[2:4])
+
+    def call(values: Values) -> Value:
+        return function([*values[:2], *drawer.tags, *values[2:]])
+
+    return _looked_up(call, result, [*operands[:2], *operands[4:]], drawer)
+
+
+def moved(data: Callable[[int], Sequence[int]], *names: str, why: str = "", jumps: bool = False) -> None:
+    """Register functions that move cells about: the operands at `data(how many there are)` are the cells."""
+
+    def apply(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
+        places = [place for place in data(len(operands)) if place < len(operands)]
+        drawer = Drawer.of([operands[place] for place in places])
+        values = [operand.value for operand in operands]
+        for place, tags in zip(places, drawer.tags, strict=True):
+            values[place] = tags
+        found = function(values)
+        rest = [operand for place, operand in enumerate(operands) if place not in places]
+        single = found.numbers.ndim == 1
+        return Outcome(_without(drawer.drawn(found, result), rest), found.numbers if single else None)
+
+    for name in names:
+        RULES[name] = Rule(apply, why, jumps)
+
+
+moved(lambda _: (0,), "INDEX", why="the place has no derivative there", jumps=True)
+moved(lambda _: (0,), "TRANSPOSE", "TAKE", "DROP", "CHOOSEROWS", "CHOOSECOLS", "TOCOL", "TOROW", "SORTBY")
+moved(lambda _: (0, 2), "FILTER", "WRAPROWS", "WRAPCOLS")
+moved(lambda _: (0, 3), "EXPAND")
+moved(range, "VSTACK", "HSTACK")

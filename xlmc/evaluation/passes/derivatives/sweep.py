@@ -1,0 +1,229 @@
+"""One sweep over the graph of nodes, forwards: every value, and its derivatives beside it.
+
+The values are those of the path that minds everything (`compile.tracking`), so that errors, texts and blanks are what
+they are in a run. A node's value is let go as soon as nothing reads it any more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import Final
+
+import numpy as np
+
+from xlmc.errors import ErrorCode
+from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Input, Range, Rescue, Select, evaluated, uses
+from xlmc.evaluation.graph.ragged import Ragged
+from xlmc.evaluation.passes.derivatives import arithmetic, elementary, lookup, rounding, sums  # noqa: F401 - they register their rules
+from xlmc.evaluation.passes.derivatives.jet import Jet, aligned
+from xlmc.evaluation.passes.derivatives.logical import rescued, selected
+from xlmc.evaluation.passes.derivatives.notes import Notes
+from xlmc.evaluation.passes.derivatives.numerical import by_differences
+from xlmc.evaluation.passes.derivatives.picking import Drawer
+from xlmc.evaluation.passes.derivatives.rules import RULES, Operand, Outcome
+from xlmc.functions import Kind
+from xlmc.functions.values import ERROR, TEXT, Bools, Floats, ShapeVaries, Value
+
+__all__ = ["Unequal", "swept"]
+
+_NO_DERIVATIVE: Final = "the function has none there"
+_CONDITIONS: Final = frozenset({"<", "<=", ">", ">=", "=", "<>", "AND", "OR", "XOR", "NOT"})
+
+
+class Unequal(Exception):  # noqa: N818 - it asks for another way
+    """An array differs in size between trials: take them one by one."""
+
+
+def swept(
+    dag: Dag, wanted: Collection[int], draws: Mapping[str, Floats], order: int, notes: Notes, start: int = 0
+) -> Iterator[tuple[int, Value, Jet]]:
+    """The value and the derivatives of the nodes wanted, in their order.
+
+    Args:
+        dag: the nodes.
+        wanted: which of them.
+        draws: of every input, `(n,)` each; derivatives count them in this order.
+        order: 1 or 2.
+        notes: takes what is noted.
+        start: the number of the first trial, for the notes.
+
+    Raises:
+        Unequal: see the class; not with a single trial.
+    """
+    numbers = {name: number for number, name in enumerate(draws)}
+    places = dag.upstream(sorted(wanted))
+    last = {used: place for place in places for used in uses(dag.nodes[place])}
+    valued = _read_as_values(dag, places)
+    values: dict[int, Value] = {}
+    jets: dict[int, Jet] = {}
+    for place in sorted({*wanted} - {*places}):
+        node = dag.nodes[place]
+        assert isinstance(node, Constant)
+        yield place, node.value, Jet.still(node.value.numbers)
+    for place in places:
+        node = dag.nodes[place]
+        if isinstance(node, Input):
+            values[place] = Value.of_numbers(draws[node.name])
+            jets[place] = Jet.of_input(draws[node.name], numbers[node.name], order)
+        else:
+            operands = [_operand(dag, used, values, jets) for used in uses(node)]
+            known = dict(zip(uses(node), (operand.value for operand in operands), strict=True))
+            values[place] = result = evaluated(node, known)  # type: ignore[arg-type]  # a constant is not upstream
+            if isinstance(result, Ragged):
+                raise Unequal
+            if any(operand.jet.active for operand in operands):
+                jets[place] = _passed(dag, place, result, operands, notes, start, place in valued)
+            else:
+                jets[place] = Jet.still(result.numbers)
+        if place in wanted:
+            yield place, values[place], jets[place]
+        for used in {*uses(node)}:
+            if last[used] == place:
+                values.pop(used, None)
+                jets.pop(used, None)
+
+
+def _read_as_values(dag: Dag, places: Sequence[int]) -> set[int]:
+    """The nodes that a function reads as values; conditions are mostly read by choices and other conditions."""
+    found: set[int] = set()
+    for place in places:
+        node = dag.nodes[place]
+        if isinstance(node, Apply) and node.function.returns is not Kind.LOGICAL:
+            found.update(node.arguments)
+    return found
+
+
+def _operand(dag: Dag, place: int, values: Mapping[int, Value], jets: Mapping[int, Jet]) -> Operand:
+    node = dag.nodes[place]
+    value = node.value if isinstance(node, Constant) else values[place]
+    jet = jets.get(place)
+    if jet is None or not jet.active:
+        jet = Jet.still(value.to_numbers()[0])
+    return Operand(value, jet)
+
+
+def _passed(
+    dag: Dag, place: int, result: Value, operands: Sequence[Operand], notes: Notes, start: int, valued: bool
+) -> Jet:
+    """The derivatives of a node, with notes taken."""
+    name, why, jumps = _described(dag, place)
+    with np.errstate(all="ignore"):
+        try:
+            outcome = _outcome(dag, place, result, operands)
+        except ShapeVaries:
+            raise Unequal from None
+        jet = _defined(outcome.jet, result)
+    if outcome.ways is not None and (valued or name not in _CONDITIONS):
+        notes.took(place, name, outcome.ways, jumps)
+    if outcome.numerical:
+        notes.differed(place, name, jet.first, jet.error)
+    _note_losses(place, name, why, result, jet, operands, notes, start)
+    return jet
+
+
+def _described(dag: Dag, place: int) -> tuple[str, str, bool]:
+    """What the node is called, why it may have no derivative, and whether it jumps between its ways."""
+    node = dag.nodes[place]
+    if isinstance(node, Apply):
+        rule = RULES.get(node.function.name)
+        why = (rule.why if rule else "") or _NO_DERIVATIVE
+        return node.function.name, why, rule is not None and rule.jumps
+    if isinstance(node, Select):
+        return "IF", "the condition is at its limit there", True
+    return ("IFERROR" if isinstance(node, Rescue) else "a range"), _NO_DERIVATIVE, True
+
+
+def _outcome(dag: Dag, place: int, result: Value, operands: Sequence[Operand]) -> Outcome:
+    node = dag.nodes[place]
+    if isinstance(node, Range):
+        return Outcome(_stacked(node, result, operands))
+    if isinstance(node, Select):
+        return selected(result, operands)
+    if isinstance(node, Rescue):
+        return rescued(result, operands, node.only_na)
+    assert isinstance(node, Apply)
+    function = node.function
+    if function.name.startswith("cell "):
+        drawer = Drawer.of(operands)
+        return Outcome(drawer.drawn(function(drawer.tags), result))
+    if function.name in RULES:
+        return RULES[function.name].apply(function, result, operands)
+    if function.returns is Kind.LOGICAL:
+        return Outcome(Jet.still(result.numbers), result.numbers if result.numbers.ndim == 1 else None)
+    return by_differences(function, result, operands)
+
+
+def _stacked(node: Range, result: Value, operands: Sequence[Operand]) -> Jet:
+    """Cells `(n,)` side by side, `(n, r, c)`."""
+    jets = aligned([operand.jet for operand in operands])
+    n, rows, columns = result.shape
+    order = min(jet.order for jet in jets)
+
+    def grid(name: str, axes: int) -> Floats | None:
+        parts = [getattr(jet, name) for jet in jets]
+        if all(part is None for part in parts):
+            return None
+        lead = (len(jets[0].active),) * axes
+        out = np.zeros((*lead, n, rows * columns))
+        for cell, part in enumerate(parts):
+            if part is not None:
+                out[..., cell] = part
+        return out.reshape(*lead, n, rows, columns)
+
+    first = grid("first", 1)
+    assert first is not None
+    second = grid("second", 2) if order > 1 else None
+    errors = grid("error", 1), grid("second_error", 2)
+    return Jet(result.numbers, jets[0].active, first, second, *errors)
+
+
+def _defined(jet: Jet, result: Value) -> Jet:
+    """Derivatives that are not finite, and those of errors and texts, are NaN."""
+    errors = np.asarray(result.kinds >= ERROR)
+    first = np.where(errors | ~np.isfinite(jet.first), np.nan, jet.first)
+    lost = np.isnan(first)
+    second = jet.second
+    if second is not None:
+        gone = lost[:, None] | lost[None, :]
+        second = np.where(gone | ~np.isfinite(second), np.nan, second)
+    return Jet(result.numbers, jet.active, first, second, jet.error, jet.second_error)
+
+
+def _note_losses(
+    place: int,
+    name: str,
+    why: str,
+    result: Value,
+    jet: Jet,
+    operands: Sequence[Operand],
+    notes: Notes,
+    start: int,
+) -> None:
+    """The trials in which this very function lost derivatives, or made an error."""
+    n = max(result.shape[0], jet.first.shape[1])
+    lost = _any_of_trial(np.isnan(jet.first), n, 1)
+    if not lost.any():
+        return
+    before = np.zeros(n, bool)
+    wrong = np.zeros(n, bool)
+    for operand in operands:
+        before |= _any_of_trial(np.isnan(operand.jet.first), n, 1)
+        wrong |= _any_of_trial(np.asarray(operand.value.kinds >= ERROR), n, 0)
+    errors = np.broadcast_to(np.asarray(result.kinds >= ERROR), result.shape)
+    failed = _any_of_trial(errors, n, 0)
+    for code in np.unique(result.kinds[result.kinds >= ERROR]):
+        here = _any_of_trial(np.asarray(result.kinds == code), n, 0) & ~wrong
+        if here.any():
+            notes.lose(place, name, f"it is {ErrorCode(int(code) - ERROR).text}", here, start)
+    if (result.kinds == TEXT).any():
+        why = "its digits pass through a text"
+    own = lost & ~before & ~failed
+    if own.any():
+        notes.lose(place, name, why, own, start)
+
+
+def _any_of_trial(part: Bools, n: int, axes: int) -> Bools:
+    """Whether any assumption, any cell is so, `(n,)`."""
+    whole: Bools = np.logical_or.reduce(part, axis=0) if axes else part
+    rows: Bools = np.logical_or.reduce(whole.reshape(whole.shape[0], -1), axis=1)
+    return np.array(np.broadcast_to(rows, (n,)))

@@ -1,0 +1,238 @@
+"""A model evaluated with its roundings made at random: what then differs are digits that are not there.
+
+Every result of a function is a little off, by up to half a unit of its last place; which way is chance. Here every
+other one, at random, is moved up or down by a unit (Vignes 1978, Parker 1997), and so are constants that were computed
+while the formulas were compiled. The replicas differ from the plain evaluation about as much as that differs from the
+exact one. Functions that round, compare or choose give what they give; that Excel makes 0 of the last bits of the sum
+that a formula ends with is left out, for they are what is looked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import Final
+
+import numpy as np
+
+from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Input, Node, Range, Rescue, Select, evaluated, uses
+from xlmc.evaluation.graph.ragged import Ragged
+from xlmc.functions import Kind
+from xlmc.functions.last_sum import SETTLED
+from xlmc.functions.values import ERROR, LOGICAL, Floats, Value
+
+__all__ = [
+    "DOUBLE",
+    "SINGLE",
+    "Jitter",
+    "closure",
+    "evaluation",
+    "follow",
+    "formula_of",
+    "numbers",
+    "term_sizes",
+]
+
+DOUBLE: Final = 2.0**-53
+SINGLE: Final = 2.0**-24
+"""Half a unit of the last place, as a share of the number."""
+
+_EXACT: Final = frozenset(
+    {"u-", "u+", "shown", "ABS", "SIGN", "MIN", "MAX", "LARGE", "SMALL", "INT", "TRUNC", "IF"}
+) | {
+    "MIN so far",
+    "MAX so far",
+}
+
+
+_ADDS: Final = frozenset({"+", "-", "SUM"})
+_CALCULATES: Final = (
+    _ADDS
+    | {"*", "/", "SQRT", "EXP", "LN", "SIN", "COS", "TAN", "SUMSQ", "SUMPRODUCT", "PRODUCT", "AVERAGE"}
+    | {"DEVSQ", "VAR.S", "VAR.P", "STDEV.S", "STDEV.P", "^"}
+)
+
+_POOL: Final = 1 << 16
+
+_ALL_WHOLE: Final = 2.0**52
+"""From here on all doubles are whole, and it says nothing of them."""
+
+_SURELY: Final = 1.001
+"""Times half a unit of the last place: added to a number it makes it the next one."""
+
+
+class Jitter:
+    """Moves every other number up or down at random.
+
+    Args:
+        seed: of which way.
+        unit: by how much, as a share of the number.
+    """
+
+    def __init__(self, seed: int | Sequence[int], unit: float = DOUBLE) -> None:
+        ways = np.array([-1.0, 0.0, 1.0, 0.0])[np.random.default_rng(seed).integers(0, 4, _POOL, np.int8)]
+        self._steps = ways * (_SURELY * unit)
+        self._next = 0
+
+    def moved(self, value: Value, n: int, *, whole_too: bool = False) -> Value:
+        """Numbers up or down; a constant, too, differs from trial to trial.
+
+        Args:
+            value: of numbers; another is left as it is.
+            n: how many trials there are.
+            whole_too: whole numbers as well, which otherwise are taken to be exact.
+        """
+        if value.kinds.any():
+            return value
+        shape = (max(n, value.shape[0]), *value.shape[1:])
+        size = int(np.prod(shape))
+        if self._next + size > _POOL:
+            self._next = self._next % 1009  # another start than the last time
+        steps = self._steps[self._next : self._next + size] if size <= _POOL // 2 else np.resize(self._steps, size)
+        self._next += size
+        numbers_ = value.numbers
+        moved = numbers_ + numbers_ * steps.reshape(shape)
+        if whole_too:
+            return Value(moved, value.kinds)
+        whole = (numbers_ == np.rint(numbers_)) & (np.abs(numbers_) < _ALL_WHOLE)
+        return Value(np.where(whole, numbers_, moved) if whole.any() else moved, value.kinds)
+
+
+def closure(dag: Dag, targets: Collection[int]) -> list[int]:
+    """The nodes that the targets need, constants that were computed and their parts among them, parts first."""
+    order: list[int] = []
+    seen: set[int] = set()
+    open_: list[tuple[int, bool]] = [(place, False) for place in targets]
+    while open_:
+        place, done = open_.pop()
+        if done:
+            order.append(place)
+        elif place not in seen:
+            seen.add(place)
+            open_.append((place, True))
+            open_ += [(part, False) for part in uses(formula_of(dag, place))]
+    return order
+
+
+def formula_of(dag: Dag, place: int) -> Node:
+    """The node; of a computed constant, what computed it."""
+    node = dag.nodes[place]
+    return dag.origins.get(place, node) if isinstance(node, Constant) else node
+
+
+def evaluation(
+    dag: Dag,
+    places: Sequence[int],
+    draws: Mapping[str, Floats],
+    jitter: Jitter | None = None,
+    of_inputs: Jitter | None = None,
+) -> dict[int, Value]:
+    """The values of nodes.
+
+    Args:
+        dag: the nodes.
+        places: which of them, each after those that it needs; see `closure`.
+        draws: of every input, `(n,)` each.
+        jitter: moves every result; None for plain evaluation.
+        of_inputs: moves the draws, and numbers that were typed in where they are calculated with.
+    """
+    values: dict[int, Value] = {}
+    n = next((draw.size for draw in draws.values()), 1)
+    typed: dict[int, Value] = {}
+    if of_inputs is not None:
+        known = {place: node.value for place in _typed(dag, places) if isinstance(node := dag.nodes[place], Constant)}
+        typed = {place: of_inputs.moved(value, n, whole_too=True) for place, value in known.items()}
+    for place in places:
+        node = formula_of(dag, place)
+        if isinstance(node, Input):
+            drawn = Value.of_numbers(draws[node.name])
+            values[place] = drawn if of_inputs is None else of_inputs.moved(drawn, n, whole_too=True)
+        elif isinstance(node, Constant):
+            values[place] = node.value
+        elif isinstance(node, Apply) and node.function.name == SETTLED.name:
+            values[place] = values[node.arguments[0]]
+        else:
+            assert isinstance(node, Apply | Select | Rescue | Range)
+            known = {part: typed[part] for part in _typed_of(node) if part in typed} if typed else {}
+            found = evaluated(node, {part: known.get(part, values[part]) for part in uses(node)} if known else values)
+            moves = isinstance(node, Apply) and _rounds(node) and not isinstance(found, Ragged)
+            values[place] = jitter.moved(found, n) if jitter is not None and moves else found
+    return values
+
+
+def follow(
+    dag: Dag, places: Sequence[int], values: Mapping[int, Value], given: Mapping[int, Value]
+) -> dict[int, Value]:
+    """What becomes of nodes when some get other values: these, and all that follow from them.
+
+    Args:
+        dag: the nodes.
+        places: which of them, each after those that it needs; see `closure`.
+        values: of all of them, as they are.
+        given: node -> another value of it.
+    """
+    found = dict(given)
+    for place in places:
+        node = formula_of(dag, place)
+        if place in given or isinstance(node, Input | Constant) or not any(part in found for part in uses(node)):
+            continue
+        if isinstance(node, Apply) and node.function.name == SETTLED.name:
+            found[place] = found.get(node.arguments[0], values[node.arguments[0]])
+        else:
+            found[place] = evaluated(node, {part: found.get(part, values[part]) for part in uses(node)})
+    return found
+
+
+def _typed(dag: Dag, places: Sequence[int]) -> set[int]:
+    """Numbers that were typed in and are calculated with; not π or a small whole number, which nobody measures."""
+    found: set[int] = set()
+    for place in places:
+        found.update(part for part in _typed_of(formula_of(dag, place)) if isinstance(formula_of(dag, part), Constant))
+    return {place for place in found if not _is_exact(dag.nodes[place])}
+
+
+def _typed_of(node: Node) -> tuple[int, ...]:
+    """The arguments that are calculated with; of a power the base, for an exponent is exact."""
+    if not isinstance(node, Apply) or node.function.name not in _CALCULATES:
+        return ()
+    return node.arguments[:1] if node.function.name == "^" else node.arguments
+
+
+def _is_exact(node: Node) -> bool:
+    """Whether it is π, or a count or an exponent, and no measurement."""
+    if not isinstance(node, Constant):
+        return False
+    x = float(node.value.numbers.flat[0])
+    return x in (np.pi, np.pi / 180, 180 / np.pi) or (node.value.numbers.size == 1 and abs(x) < _COUNTS and x == int(x))
+
+
+_COUNTS: Final = 100
+
+
+def term_sizes(dag: Dag, places: Sequence[int], values: Mapping[int, Value]) -> dict[int, float]:
+    """Node -> the largest number that was added or subtracted on the way to it, in any trial.
+
+    What is smaller than that by many digits, and should be 0, is dust.
+    """
+    found: dict[int, float] = {}
+    for place in places:
+        node = formula_of(dag, place)
+        parts = uses(node)
+        size = max((found[part] for part in parts), default=0.0)
+        if isinstance(node, Apply) and node.function.name in _ADDS:
+            sizes = [float(np.abs(values[part].numbers).max(initial=0.0)) for part in parts]
+            size = max([size, *(one for one in sizes if np.isfinite(one))])
+        found[place] = size
+    return found
+
+
+def _rounds(node: Apply) -> bool:
+    return node.function.returns is not Kind.LOGICAL and node.function.name not in _EXACT
+
+
+def numbers(value: Value, n: int) -> Floats:
+    """A single value's numbers, `(n,)`, logicals as 1 and 0, of many cells the first; NaN where there is none."""
+    if not value.numbers.size:
+        return np.full(n, np.nan)
+    found = np.where(value.kinds <= LOGICAL, value.numbers, np.nan)
+    found = np.where(value.kinds >= ERROR, np.nan, found)
+    return np.broadcast_to(found.reshape(found.shape[0], -1)[:, 0], (n,))

@@ -1,0 +1,97 @@
+"""BIN2DEC and its like: ten digits at most; the larger half of what they can count stands for negative numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from xlmc.errors import ErrorCode
+from xlmc.functions.math.numerals import digits_of, read_digits
+from xlmc.functions.registry import Kind, excel
+from xlmc.functions.toolpak import OneCell, number_of, per_object
+from xlmc.functions.values import general_text
+
+__all__: list[str] = []
+
+_PLACES: Final = 10
+_ANY_LENGTH: Final = object()
+_BASES: Final = {"BIN": ("binary", 2), "OCT": ("octal", 8), "HEX": ("hexadecimal", 16)}
+
+
+def _read(item: object, base: int) -> int | ErrorCode:
+    """The number of up to ten digits, or of a number that looks like them; "" and a blank are 0."""
+    if isinstance(item, bool):
+        return ErrorCode.VALUE
+    text = general_text(item) if isinstance(item, float) else str(item or "")
+    number = read_digits(text, base) if len(text) <= _PLACES else None
+    if number is None:
+        return ErrorCode.NUM
+    return number if number < base**_PLACES // 2 else number - int(base**_PLACES)
+
+
+def _whole(item: object) -> int | ErrorCode:
+    number = number_of(item)
+    return number if isinstance(number, ErrorCode) else int(number)
+
+
+def _length(places: object) -> int | ErrorCode | None:
+    """How many digits are asked for; None if none are; `#NUM!` for fewer than 1 or more than 10."""
+    if places is _ANY_LENGTH:
+        return None
+    length = _whole(places)
+    if isinstance(length, ErrorCode) or 1 <= length <= _PLACES:
+        return length
+    return ErrorCode.NUM
+
+
+def _written(number: int | ErrorCode, base: int, places: object) -> str | ErrorCode:
+    """The digits, up to the length asked for; a negative number always has ten. The length is looked at first."""
+    length = _length(places)
+    if isinstance(length, ErrorCode) or isinstance(number, ErrorCode):
+        return length if isinstance(length, ErrorCode) else ErrorCode(number)
+    most = base**_PLACES // 2
+    if not -most <= number < most:
+        return ErrorCode.NUM
+    if number < 0:
+        return digits_of(2 * most + number, base)
+    digits = digits_of(number, base) or "0"
+    if length is None:
+        return digits
+    return digits.zfill(length) if len(digits) <= length else ErrorCode.NUM
+
+
+def _between(source: int, target: int) -> Callable[..., str | ErrorCode]:
+    def convert(digits: object, places: object = _ANY_LENGTH) -> str | ErrorCode:
+        return _written(_read(digits, source), target, places)
+
+    return convert
+
+
+def _to_decimal(source: int) -> Callable[..., float | ErrorCode]:
+    def convert(digits: object) -> float | ErrorCode:
+        number = _read(digits, source)
+        return number if isinstance(number, ErrorCode) else float(number)
+
+    return convert
+
+
+def _from_decimal(target: int) -> Callable[..., str | ErrorCode]:
+    def convert(number: object, places: object = _ANY_LENGTH) -> str | ErrorCode:
+        return _written(_whole(number), target, places)
+
+    return convert
+
+
+def _register(name: str, meaning: str, function: Callable[..., object], *, text: bool) -> None:
+    function.__doc__ = meaning
+    parameters = (OneCell, OneCell(default=None)) if text else (OneCell,)
+    excel(name, *parameters, returns=Kind.TEXT if text else Kind.NUMBER)(per_object(function))
+
+
+for _name, (_word, _base) in _BASES.items():
+    _register(f"{_name}2DEC", f"Number of {_word} digits.", _to_decimal(_base), text=False)
+    _register(f"DEC2{_name}", f"The {_word} digits of a number.", _from_decimal(_base), text=True)
+    for _other, (_new_word, _new_base) in _BASES.items():
+        if _other != _name:
+            _meaning = f"The {_new_word} digits of a number in {_word} digits."
+            _register(f"{_name}2{_other}", _meaning, _between(_base, _new_base), text=True)

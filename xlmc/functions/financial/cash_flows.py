@@ -1,0 +1,136 @@
+"""What uneven payments are worth, and the rates at which they are worth nothing.
+
+Letters: n trials, k payments of a trial. Of ranges only the numbers count, in their order, rows first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.errors import ErrorCode
+from xlmc.functions.arguments import earliest, first_errors, where_wrong
+from xlmc.functions.financial.annuities import growth
+from xlmc.functions.financial.roots import growth_root
+from xlmc.functions.registry import Anything, Arrays, Cells, excel
+from xlmc.functions.values import NUMBER, Bools, Codes, Floats, Value
+
+__all__ = ["guess_of", "has_both_signs", "rows"]
+
+
+def rows(array: NDArray[Any], value: Value) -> NDArray[Any]:
+    """One row per trial: (n,) or (n, r, c) -> (n, k)."""
+    return np.broadcast_to(array, value.shape).reshape(value.shape[0], -1)
+
+
+def _single(value: Value) -> tuple[Floats, Codes]:
+    """A number per trial, and its error: (n,) each."""
+    x, errors = value.to_numbers()
+    return rows(x, value)[:, 0], rows(errors, value)[:, 0]
+
+
+def _flows(values: Sequence[Value]) -> tuple[Floats, Bools, Codes]:
+    """The payments, which of them count, and the first error: (n, k), (n, k), (n,)."""
+    parts = []
+    for value in values:
+        in_range = value.numbers.ndim == 3
+        x, errors = (value.numbers, value.errors) if in_range else value.to_numbers()
+        counts = (value.kinds == NUMBER) if in_range else (errors == 0)
+        parts.append((rows(x, value), rows(counts, value), rows(errors, value)))
+    n = max(x.shape[0] for x, _, _ in parts)
+    x, counts, errors = (
+        np.concatenate([np.broadcast_to(part[i], (n, part[i].shape[1])) for part in parts], axis=1) for i in range(3)
+    )
+    return x, counts, first_errors(errors)
+
+
+def _discounted(rate: Floats, flows: Floats, counts: Bools) -> Floats:
+    """Present value, the first payment one period from now: (n,), (n, k) -> (n,)."""
+    total = np.zeros(1)
+    factor = np.ones(1)
+    for column in range(flows.shape[1]):
+        factor = np.where(counts[:, column], factor / (1 + rate), factor)
+        total = total + np.where(counts[:, column], flows[:, column] * factor, 0.0)
+    return total
+
+
+@excel("NPV", Anything, Cells(repeat=True))
+def net_present_value(rate: Value, *values: Value) -> Value:
+    """Present value of payments at the ends of the periods to come; `#DIV/0!` at a rate of -100 %."""
+    r, r_errors = rate.to_numbers()
+    flows, counts, errors = _flows(values)
+    if r.ndim == 3:
+        cells = [_discounted(r[:, i, j], flows, counts) for i, j in np.ndindex(*r.shape[1:])]
+        result = np.stack(np.broadcast_arrays(*cells), axis=1).reshape(-1, *r.shape[1:])
+        errors = errors.reshape(-1, 1, 1)
+    else:
+        result = _discounted(r, flows, counts)
+    return Value.of_numbers(result, earliest(r_errors, errors, where_wrong(r == -1, ErrorCode.DIV0)))
+
+
+def _packed(flows: Floats, counts: Bools) -> tuple[Floats, NDArray[np.intp]]:
+    """Each trial's payments from the first to the last that is not zero, at the left, and how many these are."""
+    alive = counts & (flows != 0)
+    begun = np.logical_or.accumulate(alive, axis=1)
+    to_come = np.logical_or.accumulate(alive[:, ::-1], axis=1)[:, ::-1]
+    kept = counts & begun & to_come
+    order = np.argsort(~kept, axis=1, kind="stable")
+    return np.take_along_axis(np.where(kept, flows, 0.0), order, axis=1), kept.sum(axis=1)
+
+
+def has_both_signs(flows: Floats, counts: Bools) -> Bools:
+    """Whether there are payments and receipts: (n, k), (n, k) -> (n,)."""
+    return np.asarray((counts & (flows > 0)).any(axis=1) & (counts & (flows < 0)).any(axis=1))
+
+
+@excel("IRR", Arrays, Anything(default=None))
+def internal_rate(values: Value, guess: Value | None = None) -> Value:
+    """Rate at which the payments are worth nothing; of several, the one nearest to the guess (10 %).
+
+    `#NUM!` where there is none or the payments are all of one sign.
+    """
+    flows, counts, errors = _flows([values.as_range()])
+    start, start_errors = guess_of(guess)
+    n = max(flows.shape[0], start.shape[0])
+    packed, how_many = _packed(flows, counts)
+    k = packed.shape[1]
+
+    def worth(x: Floats) -> Floats:
+        """At the first payment for positive rates, at the last for negative ones, so that nothing grows."""
+        step = np.exp(-np.abs(x))
+        at_first = at_last = np.zeros(1)
+        for column in range(k):
+            at_last = np.where(column < how_many, at_last * step + packed[:, column], at_last)
+            at_first = at_first * step + packed[:, k - 1 - column]
+        return np.where(x >= 0, at_first, at_last)
+
+    rate = growth_root(worth, np.broadcast_to(start, (n,)))
+    rate = np.where(has_both_signs(flows, counts), rate, np.nan)
+    return Value.of_numbers(rate, earliest(np.broadcast_to(errors, (n,)), start_errors))
+
+
+def guess_of(guess: Value | None) -> tuple[Floats, Codes]:
+    """Where to look for a rate, (n,), and errors: at 10 % unless told."""
+    return (np.full(1, 0.1), np.zeros(1, np.uint8)) if guess is None else _single(guess)
+
+
+@excel("MIRR", Arrays, Anything, Anything)
+def modified_rate(values: Value, finance: Value, reinvest: Value) -> Value:
+    """Rate when what is paid is borrowed at one rate and what is received is invested at another.
+
+    `#DIV/0!` unless something is paid, and at a rate of -100 %; where nothing is received, Excel gives -100 %.
+    """
+    flows, counts, errors = _flows([values.as_range()])
+    (borrowed, borrowed_errors), (invested, invested_errors) = _single(finance), _single(reinvest)
+    paid = _discounted(borrowed, np.minimum(flows, 0.0), counts) * (1 + borrowed)
+    k = counts.sum(axis=1)
+    received = _discounted(invested, np.maximum(flows, 0.0), counts) * growth(invested, k)
+    pays = (counts & (flows < 0)).any(axis=1)
+    receives = (counts & (flows > 0)).any(axis=1)
+    ratio = np.where(pays, -received / np.where(paid == 0, np.nan, paid), 1.0)
+    rate = np.where(receives, np.expm1(np.log(np.where(receives, ratio, 1.0)) / np.where(k > 1, k - 1, 1)), -1.0)
+    divided = where_wrong(~pays | (k < 2) | (borrowed == -1) | (invested == -1), ErrorCode.DIV0)
+    return Value.of_numbers(rate, earliest(errors, borrowed_errors, invested_errors, divided))

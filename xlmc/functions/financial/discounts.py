@@ -1,0 +1,103 @@
+"""Securities that pay once, at maturity. Dates are serials of the 1900 system, time is in years by the day count."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from xlmc.functions.dates.day_count import days_between, days_in_year, is_basis
+from xlmc.functions.registry import Number
+from xlmc.functions.toolpak_rows import Date, toolpak
+from xlmc.functions.values import NUM, Bools, Floats
+
+__all__: list[str] = []
+
+
+def _years(start: Any, end: Any, basis: Any) -> tuple[Floats, Bools]:
+    """Years between two dates and where there are none: `end` not after `start`, or no such basis."""
+    wrong = ~is_basis(basis) | np.less_equal(end, start)
+    days = days_between(start, end, basis)
+    return np.where(wrong | (days == 0), np.nan, days / days_in_year(start, end, basis)), wrong
+
+
+def _some(*amounts: Any) -> Bools:
+    """Where all are above 0."""
+    result = np.ones(1, bool)
+    for amount in amounts:
+        result = result & (np.asarray(amount) > 0)
+    return result
+
+
+@toolpak("DISC", Date, Date, Number, Number, Number(default=0.0))
+def discount_rate(settlement: Any, maturity: Any, pr: Any, redemption: Any, basis: Any) -> Floats:
+    """Discount a year, as a share of the redemption value."""
+    years, wrong = _years(settlement, maturity, basis)
+    wrong = wrong | ~_some(pr, redemption)
+    return np.where(wrong, NUM, (redemption - pr) / np.where(wrong, 1.0, redemption) / years)
+
+
+@toolpak("INTRATE", Date, Date, Number, Number, Number(default=0.0))
+def interest_rate(settlement: Any, maturity: Any, investment: Any, redemption: Any, basis: Any) -> Floats:
+    """Simple interest a year, as a share of the investment."""
+    years, wrong = _years(settlement, maturity, basis)
+    wrong = wrong | ~_some(investment, redemption)
+    return np.where(wrong, NUM, (redemption - investment) / np.where(wrong, 1.0, investment) / years)
+
+
+@toolpak("PRICEDISC", Date, Date, Number, Number, Number(default=0.0))
+def discounted_price(settlement: Any, maturity: Any, discount: Any, redemption: Any, basis: Any) -> Floats:
+    """Price at a discount a year."""
+    years, wrong = _years(settlement, maturity, basis)
+    return np.where(wrong | ~_some(discount, redemption), NUM, redemption * (1 - discount * years))
+
+
+@toolpak("RECEIVED", Date, Date, Number, Number, Number(default=0.0))
+def amount_received(settlement: Any, maturity: Any, investment: Any, discount: Any, basis: Any) -> Floats:
+    """What is paid back at maturity; `#NUM!` where the discount takes all."""
+    years, wrong = _years(settlement, maturity, basis)
+    left = 1 - discount * years
+    return np.where(wrong | ~_some(investment, discount, left), NUM, investment / np.where(left == 0, np.nan, left))
+
+
+@toolpak("YIELDDISC", Date, Date, Number, Number, Number(default=0.0))
+def discounted_yield(settlement: Any, maturity: Any, pr: Any, redemption: Any, basis: Any) -> Floats:
+    """Yield a year of a discounted security."""
+    return interest_rate(settlement, maturity, pr, redemption, basis)
+
+
+@toolpak("ACCRINTM", Date, Date, Number, Number(default=1000.0), Number(default=0.0))
+def interest_at_maturity(issue: Any, settlement: Any, rate: Any, par: Any, basis: Any) -> Floats:
+    """Interest from issue to maturity, all of it paid then."""
+    years, wrong = _years(issue, settlement, basis)
+    return np.where(wrong | ~_some(rate, par), NUM, par * rate * years)
+
+
+def _times(settlement: Any, maturity: Any, issue: Any, basis: Any) -> tuple[Floats, Floats, Bools]:
+    """Years from issue to maturity and to settlement, both by the year of the latter; and where the dates are wrong."""
+    wrong = ~is_basis(basis) | np.less_equal(maturity, settlement) | np.less(settlement, issue)
+    year = days_in_year(issue, settlement, basis)
+    return days_between(issue, maturity, basis) / year, days_between(issue, settlement, basis) / year, wrong
+
+
+@toolpak("PRICEMAT", Date, Date, Date, Number, Number, Number(default=0.0))
+def price_with_interest_at_maturity(
+    settlement: Any, maturity: Any, issue: Any, rate: Any, yield_: Any, basis: Any
+) -> Floats:
+    """Price per 100 of a security that pays its interest at maturity; `#NUM!` for negative rates."""
+    to_maturity, to_settlement, wrong = _times(settlement, maturity, issue, basis)
+    wrong = wrong | (np.asarray(rate) < 0) | (np.asarray(yield_) < 0)
+    paid_back = 100 * (1 + to_maturity * rate)
+    return np.where(wrong, NUM, paid_back / (1 + (to_maturity - to_settlement) * yield_) - 100 * to_settlement * rate)
+
+
+@toolpak("YIELDMAT", Date, Date, Date, Number, Number, Number(default=0.0))
+def yield_with_interest_at_maturity(
+    settlement: Any, maturity: Any, issue: Any, rate: Any, pr: Any, basis: Any
+) -> Floats:
+    """Yield a year of a security that pays its interest at maturity."""
+    to_maturity, to_settlement, wrong = _times(settlement, maturity, issue, basis)
+    wrong = wrong | (np.asarray(rate) < 0) | ~_some(pr)
+    paid = np.where(wrong, 1.0, np.asarray(pr) / 100 + to_settlement * rate)
+    ahead = to_maturity - to_settlement
+    return np.where(wrong, NUM, ((1 + to_maturity * rate) / paid - 1) / np.where(ahead == 0, np.nan, ahead))

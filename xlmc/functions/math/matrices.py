@@ -1,0 +1,119 @@
+"""Matrices, one of each trial: (n, r, c). A cell that is no number, a blank too, makes the result `#VALUE!`."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from xlmc.errors import ErrorCode
+from xlmc.functions.arguments import (
+    direct_errors,
+    earliest,
+    first_errors,
+    same_in_all_trials,
+    where_wrong,
+    whole_numbers,
+    with_errors,
+)
+from xlmc.functions.budget import ask_for_cells, ask_for_work
+from xlmc.functions.lookup.picking import cell_of, flattened, transposed
+from xlmc.functions.registry import Anything, Arrays, Cells, Kind, Ranges, excel
+from xlmc.functions.values import ERROR, NUM, NUMBER, Codes, Floats, Value, constant
+
+__all__: list[str] = []
+
+_WIDEST: Final = 16384
+"""The columns of a worksheet."""
+
+
+def _matrix(value: Value) -> tuple[Floats, Codes]:
+    """The numbers, and the first error of each trial, as it is spread over a matrix: (n, r, c), (n, 1, 1)."""
+    cells = value.as_range()
+    other = np.where(cells.kinds >= ERROR, cells.kinds - np.uint8(ERROR), np.uint8(ErrorCode.VALUE))
+    codes = np.where(cells.kinds == NUMBER, np.uint8(0), other).astype(np.uint8)
+    return np.broadcast_to(cells.numbers, cells.shape), first_errors(flattened(codes, cells))[:, None, None]
+
+
+@excel("MMULT", Arrays, Arrays, returns=Kind.ANY)
+def product(left: Value, right: Value) -> Value:
+    """Matrix product, (n, r, k) by (n, k, c); `#VALUE!` where the sizes do not go together.
+
+    Products are added from left to right, each trial by itself, so that no bit depends on the other trials.
+    """
+    (a, a_errors), (b, b_errors) = _matrix(left), _matrix(right)
+    if a.shape[2] != b.shape[1]:
+        return with_errors(constant(ErrorCode.VALUE), earliest(direct_errors(left), direct_errors(right)))
+    n, rows, columns = max(a.shape[0], b.shape[0]), a.shape[1], b.shape[2]
+    ask_for_cells(n, rows, columns)
+    ask_for_work(n * rows * a.shape[2] * columns)
+    total = a[:, :, :1] * b[:, :1, :]
+    for i in range(1, a.shape[2]):
+        total = total + a[:, :, i : i + 1] * b[:, i : i + 1, :]
+    return Value.of_numbers(total, np.where(a_errors > 0, a_errors, b_errors).astype(np.uint8))
+
+
+@excel("MDETERM", Arrays)
+def determinant(matrix: Value) -> Value:
+    """Determinant; `#VALUE!` unless the matrix is square."""
+    a, errors = _matrix(matrix)
+    if a.shape[1] != a.shape[2]:
+        return constant(ErrorCode.VALUE)
+    work, sign = _eliminated(a)
+    pivots = np.diagonal(work, axis1=1, axis2=2)
+    return Value.of_numbers(sign * np.multiply.accumulate(pivots, axis=1)[:, -1], errors[:, 0, 0])
+
+
+@excel("MINVERSE", Arrays, returns=Kind.ANY)
+def inverse(matrix: Value) -> Value:
+    """Inverse; `#VALUE!` unless the matrix is square, `#NUM!` where it is singular."""
+    a, errors = _matrix(matrix)
+    size = a.shape[1]
+    if size != a.shape[2]:
+        return constant(ErrorCode.VALUE)
+    work, _ = _eliminated(np.concatenate([a, np.broadcast_to(np.eye(size), a.shape)], axis=2))
+    pivots = np.diagonal(work, axis1=1, axis2=2)[:, :, None]
+    regular = (pivots != 0).all(axis=1, keepdims=True)
+    return Value.of_numbers(np.where(regular, work[:, :, size:] / pivots, NUM), errors)
+
+
+def _eliminated(matrix: Floats) -> tuple[Floats, Floats]:
+    """The matrix with its first columns made a diagonal, and the sign that exchanging rows brought: (n, r, c), (n,).
+
+    Gauss and Jordan's elimination; the pivot is the largest of its column, as in LAPACK.
+    """
+    ask_for_work(matrix.size * matrix.shape[1])
+    work, sign = matrix.copy(), np.ones(matrix.shape[0])
+    trials = np.arange(matrix.shape[0])
+    for i in range(matrix.shape[1]):
+        best = i + np.abs(work[:, i:, i]).argmax(axis=1)
+        work[trials, i], work[trials, best] = work[trials, best], work[trials, i]
+        pivot = work[:, i, i]
+        factors = work[:, :, i] / np.where(pivot == 0, 1.0, pivot)[:, None]
+        factors[:, i] = 0.0
+        work = work - factors[:, :, None] * work[:, i : i + 1, :]
+        sign = np.where(best == i, sign, -sign)
+    return work, sign
+
+
+@excel("MUNIT", Anything, returns=Kind.ANY)
+def unit_matrix(dimension: Value) -> Value:
+    """Unit matrix; `#VALUE!` of no rows, or of more than a sheet has columns.
+
+    Raises:
+        ShapeVaries: the size is not the same in every trial.
+    """
+    size, errors = whole_numbers(cell_of(dimension, 0, 0))
+    outside = where_wrong((size < 1) | (size > _WIDEST), ErrorCode.VALUE)
+    refused = earliest(errors, outside)
+    common = int(same_in_all_trials(np.where(refused > 0, 0.0, size)))
+    if not common:
+        return Value.of_numbers(np.zeros(refused.shape), refused)
+    ask_for_cells(1, common, common)
+    return Value.of_numbers(np.eye(common)[None])
+
+
+@excel("TRANSPOSE", Cells(ranges=Ranges.SINGLE), returns=Kind.ANY)
+def transpose(cells: Value) -> Value:
+    """Rows as columns: (n, r, c) -> (n, c, r)."""
+    return transposed(cells.as_range())

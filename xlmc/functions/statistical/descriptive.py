@@ -1,0 +1,96 @@
+"""Means other than the arithmetic one, and the shape of a sample. Letters: n trials, k numbers of a trial."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from xlmc.functions.math.rounding import int_
+from xlmc.functions.registry import Cells, Number, Numbers, excel
+from xlmc.functions.samples import Sample, at_each, mean_of, row_sums, spread_of
+from xlmc.functions.values import DIV0, NUM, Bools, Floats
+
+__all__: list[str] = []
+
+
+@excel("AVEDEV", Numbers)
+def average_deviation(x: Floats, counts: Bools) -> Floats:
+    """Mean distance from the mean; `#NUM!` of nothing."""
+    _, distance, k = mean_of(x, counts)
+    return np.where(k > 0, row_sums(np.abs(distance)) / np.maximum(k, 1.0), NUM)
+
+
+@excel("DEVSQ", Numbers)
+def squared_deviations(x: Floats, counts: Bools) -> Floats:
+    """Sum of the squared distances from the mean; `#NUM!` of nothing."""
+    total, k = spread_of(x, counts)
+    return np.where(k > 0, total, NUM)
+
+
+def _all_positive(x: Floats, counts: Bools) -> Bools:
+    return np.asarray(counts.any(axis=1) & ((x > 0) | ~counts).all(axis=1))
+
+
+@excel("GEOMEAN", Numbers)
+def geometric_mean(x: Floats, counts: Bools) -> Floats:
+    """Geometric mean; `#NUM!` unless all numbers are above 0."""
+    logarithms = np.log(np.where(counts & (x > 0), x, 1.0))
+    mean = row_sums(logarithms) / np.maximum(counts.sum(axis=1), 1)
+    return np.where(_all_positive(x, counts), np.exp(mean), NUM)
+
+
+@excel("HARMEAN", Numbers)
+def harmonic_mean(x: Floats, counts: Bools) -> Floats:
+    """Harmonic mean; `#NUM!` unless all numbers are above 0."""
+    inverses = np.where(counts & (x > 0), 1 / np.where(x > 0, x, 1.0), 0.0)
+    total = row_sums(inverses)
+    return np.where(_all_positive(x, counts), counts.sum(axis=1) / np.where(total > 0, total, 1.0), NUM)
+
+
+def _standardized(x: Floats, counts: Bools, lost: int) -> tuple[Floats, Floats, Bools]:
+    """Distances from the mean in standard deviations, how many numbers, and whether they differ: (n, k), (n,), (n,)."""
+    _, distance, k = mean_of(x, counts)
+    variance = row_sums(distance * distance) / np.maximum(k - lost, 1.0)
+    differ = variance > 0
+    return distance / np.sqrt(np.where(differ, variance, 1.0))[:, None], k, differ
+
+
+@excel("SKEW", Numbers)
+def skewness(x: Floats, counts: Bools) -> Floats:
+    """Skewness, estimated from a sample; `#DIV/0!` of fewer than three numbers, or of equal ones."""
+    z, k, differ = _standardized(x, counts, 1)
+    enough = (k > 2) & differ
+    k = np.where(enough, k, 3.0)
+    return np.where(enough, row_sums(z * z * z) * k / ((k - 1) * (k - 2)), DIV0)
+
+
+@excel("SKEW.P", Numbers)
+def population_skewness(x: Floats, counts: Bools) -> Floats:
+    """Skewness of the numbers themselves; `#DIV/0!` of fewer than three, or of equal ones."""
+    z, k, differ = _standardized(x, counts, 0)
+    return np.where((k > 2) & differ, row_sums(z * z * z) / np.maximum(k, 1.0), DIV0)
+
+
+@excel("KURT", Numbers)
+def kurtosis(x: Floats, counts: Bools) -> Floats:
+    """Excess kurtosis, estimated from a sample; `#DIV/0!` of fewer than four numbers, or of equal ones."""
+    z, k, differ = _standardized(x, counts, 1)
+    enough = (k > 3) & differ
+    k = np.where(enough, k, 4.0)
+    fourth = row_sums(z * z * z * z) * k * (k + 1) / ((k - 1) * (k - 2) * (k - 3))
+    return np.where(enough, fourth - 3 * (k - 1) * (k - 1) / ((k - 2) * (k - 3)), DIV0)
+
+
+@excel("TRIMMEAN", Cells, Number)
+@at_each()
+def trimmed_mean(sample: Sample, share: Floats) -> Floats:
+    """Mean without a share of the numbers, half of it at either end, whole numbers of them; `#NUM!` of nothing."""
+    inside = (share >= 0) & (share < 1) & (sample.size > 0)
+    cut = int_(sample.size * np.where(inside, share, 0.0) / 2)
+    ordered, place = sample.ordered(), np.arange(float(sample.x.shape[1]))
+    columns = [_mean_between(ordered, place, gone[:, None], sample.size) for gone in cut.T]
+    return np.where(inside, np.stack(columns, axis=1), NUM)
+
+
+def _mean_between(ordered: Floats, place: Floats, cut: Floats, size: Floats) -> Floats:
+    kept = (place >= cut) & (place < size - cut)
+    return row_sums(np.where(kept, ordered, 0.0)) / np.maximum(row_sums(kept.astype(np.float64)), 1.0)

@@ -1,0 +1,131 @@
+"""How often numbers occur. Letters: n trials, k numbers of a trial, b bins, m places that a function is asked at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from xlmc.errors import ErrorCode
+from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong
+from xlmc.functions.lookup.picking import Places, flattened
+from xlmc.functions.registry import Arrays, Kind, Number, excel
+from xlmc.functions.samples import laid_out, pairs_of, places_of, row_sums, sample_of
+from xlmc.functions.values import ERROR, NA, NUM, NUMBER, Bools, Codes, Floats, Value
+
+__all__: list[str] = []
+
+_WHOLE: Final = 1e-9
+"""Probabilities that add up to 1 to within this add up to 1."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Modes:
+    """The most frequent numbers of each trial.
+
+    Attributes:
+        x: all numbers, (n, k).
+        places: where the modes first stand in it, in that order, and k behind them: (n, k).
+        how_many: modes of each trial, (n,).
+        errors: (n,).
+    """
+
+    x: Floats
+    places: Places
+    how_many: Places
+    errors: Codes
+
+
+def _modes_of(values: tuple[Value, ...]) -> _Modes:
+    parts = [_listed(value) for value in values]
+    n = max(x.shape[0] for x, _, _ in parts)
+    x = np.concatenate([np.broadcast_to(x, (n, x.shape[1])) for x, _, _ in parts], axis=1)
+    counts = np.concatenate([np.broadcast_to(counts, (n, counts.shape[1])) for _, counts, _ in parts], axis=1)
+    places = _places_of_modes(x, counts)
+    errors = earliest(*(first_errors(codes) for _, _, codes in parts))
+    return _Modes(x, places, (places < x.shape[1]).sum(axis=1), np.broadcast_to(errors, (n,)))
+
+
+def _listed(value: Value) -> tuple[Floats, Bools, Codes]:
+    """Numbers, which cells hold one, and errors: (n, k) each. A value or cell by itself must be a number."""
+    alone = value.shape[1:] in ((), (1, 1))
+    kinds = flattened(value.kinds, value)
+    wrong = where_wrong(alone & (kinds != NUMBER) & (kinds < ERROR), ErrorCode.VALUE)
+    return flattened(value.numbers, value), kinds == NUMBER, earliest(flattened(value.errors, value), wrong)
+
+
+def _places_of_modes(x: Floats, counts: Bools) -> Places:
+    """See `_Modes`: equal numbers side by side form runs, the longest of which, if of two at least, are the modes."""
+    k = x.shape[1]
+    order = np.argsort(np.where(counts, x, np.inf), axis=1, kind="stable")
+    ordered, valid = np.take_along_axis(x, order, axis=1), np.take_along_axis(counts, order, axis=1)
+    begins = np.concatenate([np.ones((x.shape[0], 1), bool), ordered[:, 1:] != ordered[:, :-1]], axis=1)
+    start = np.maximum.accumulate(np.where(begins, np.arange(k), 0), axis=1)
+    length = np.where(valid, np.arange(k) - start + 1, 0)
+    longest = np.maximum(length.max(axis=1, keepdims=True), 2)
+    return np.sort(np.where(length == longest, np.take_along_axis(order, start, axis=1), k), axis=1)
+
+
+@excel("MODE.SNGL", Arrays(repeat=True), aliases=("MODE",))
+def mode(*values: Value) -> Value:
+    """The most frequent number, the first of several; `#N/A` where none occurs twice."""
+    modes = _modes_of(values)
+    first = np.minimum(modes.places[:, :1], modes.x.shape[1] - 1)
+    found = np.take_along_axis(modes.x, first, axis=1)[:, 0]
+    return Value.of_numbers(np.where(modes.how_many > 0, found, NA), modes.errors)
+
+
+@excel("MODE.MULT", Arrays(repeat=True), returns=Kind.ANY)
+def modes_in_a_column(*values: Value) -> Value:
+    """All of the most frequent numbers, in the order they appear in: (n, modes, 1); `#N/A` where none occurs twice.
+
+    Raises:
+        ShapeVaries: not all trials have as many.
+    """
+    modes = _modes_of(values)
+    rows = int(same_in_all_trials(np.where(modes.errors > 0, 1, np.maximum(modes.how_many, 1))))
+    found = np.take_along_axis(modes.x, np.minimum(modes.places[:, :rows], modes.x.shape[1] - 1), axis=1)
+    found = np.where(modes.how_many[:, None] > 0, found, NA)
+    return Value.of_numbers(found[:, :, None], modes.errors.reshape(-1, 1, 1))
+
+
+@excel("FREQUENCY", Arrays, Arrays, returns=Kind.ANY)
+def frequency(values: Value, bins: Value) -> Value:
+    """How many numbers are at most each bin, and above the bin below it, and how many above all: (n, b + 1, 1).
+
+    Bins need no order; of equal ones the first counts, the others are 0. What is no number is no bin.
+
+    Raises:
+        ShapeVaries: not all trials have the same cells for bins.
+    """
+    sample, given = sample_of(values), sample_of(bins)
+    limits = given.x[:, same_in_all_trials(given.counts | (given.codes > 0))]
+    order = np.argsort(limits, axis=1, kind="stable")
+    rising = np.concatenate([np.take_along_axis(limits, order, axis=1), np.full((limits.shape[0], 1), np.inf)], axis=1)
+    up_to = sample.how_many(np.less_equal, rising)
+    each = np.diff(up_to, axis=1, prepend=0.0)
+    back = np.argsort(order, axis=1, kind="stable")
+    back = np.concatenate([back, np.full((back.shape[0], 1), back.shape[1])], axis=1)
+    result = np.take_along_axis(each, np.broadcast_to(back, each.shape), axis=1)
+    errors = earliest(sample.errors, given.errors)
+    return Value.of_numbers(result[:, :, None], errors[:, None, None])
+
+
+@excel("PROB", Arrays, Arrays, Number, Number(default=None))
+def probability_between(values: Value, shares: Value, low: Value, high: Value | None = None) -> Value:
+    """Sum of the probabilities of the values from `low` to `high`, or of those that equal `low`.
+
+    `#NUM!` for probabilities that are not above 0 and at most 1, or do not add up to 1; `#N/A` for unequal sizes.
+    """
+    pairs = pairs_of(values, shares)
+    places, codes, shape = places_of(low, low if high is None else high)
+    if pairs is None:
+        return laid_out(np.full((1, 1), NA), earliest(*codes), shape)
+    x, p, counts, errors = pairs
+    p = np.where(counts, p, 0.0)
+    proper = ((p > 0) & (p <= 1) | ~counts).all(axis=1) & (np.abs(row_sums(p) - 1) < _WHOLE)
+    columns = zip(*(place.T for place in places), strict=True)
+    sums = [row_sums(np.where((x >= a[:, None]) & (x <= b[:, None]), p, 0.0)) for a, b in columns]
+    result = np.where(proper[:, None], np.stack(sums, axis=1), NUM)
+    return laid_out(result, earliest(errors[:, None], *codes), shape)

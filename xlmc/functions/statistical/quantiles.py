@@ -1,0 +1,135 @@
+"""Quantiles and ranks. Letters: n trials, m places that are asked for.
+
+The numbers of a sample in rising order stand at whole places; between them Excel goes straight.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from xlmc.functions.math.rounding import int_
+from xlmc.functions.registry import Cells, Number, excel
+from xlmc.functions.samples import Sample, at_each
+from xlmc.functions.values import NA, NUM, Bools, Floats
+
+__all__: list[str] = []
+
+_TENS: Final = np.array([float(f"1e{digits}") for digits in range(16)])
+_THREE: Final = np.full((1, 1), 3.0)
+_FALLING: Final = np.zeros((1, 1))
+
+
+def _between(sample: Sample, places: Floats) -> Floats:
+    """What stands at places (n, m), counted from 0; any number where they lie outside."""
+    last = np.maximum(sample.size - 1, 0.0)
+    low = np.floor(np.clip(places, 0.0, last))
+    ordered = np.where(np.isinf(ordered := sample.ordered()), 0.0, ordered)
+    start, end = (_taken(ordered, np.minimum(place, last)) for place in (low, low + 1))
+    return start + (np.clip(places, 0.0, last) - low) * (end - start)
+
+
+def _taken(ordered: Floats, places: Floats) -> Floats:
+    return np.asarray(np.take_along_axis(ordered, places.astype(np.intp), axis=1))
+
+
+def _inclusive(sample: Sample, share: Floats) -> Floats:
+    inside = (share >= 0) & (share <= 1) & (sample.size > 0)
+    return np.where(inside, _between(sample, np.where(inside, share, 0.0) * (sample.size - 1)), NUM)
+
+
+def _exclusive(sample: Sample, share: Floats) -> Floats:
+    """Excel counts the places from 1, of n numbers, and gives 0 and n + 1 to the ends that no sample reaches."""
+    place = share * (sample.size + 1)
+    inside = (place >= 1) & (place <= sample.size)
+    return np.where(inside, _between(sample, np.where(inside, place, 1.0) - 1), NUM)
+
+
+@excel("PERCENTILE.INC", Cells, Number, aliases=("PERCENTILE",))
+@at_each()
+def percentile(sample: Sample, share: Floats) -> Floats:
+    """The number that a share, 0 to 1, of the sample lies below."""
+    return _inclusive(sample, share)
+
+
+@excel("PERCENTILE.EXC", Cells, Number)
+@at_each()
+def percentile_exclusive(sample: Sample, share: Floats) -> Floats:
+    """The number that a share lies below, ends excluded: `#NUM!` for shares nearer to 0 or 1 than 1/(n + 1)."""
+    return _exclusive(sample, share)
+
+
+@excel("QUARTILE.INC", Cells, Number, aliases=("QUARTILE",))
+@at_each()
+def quartile(sample: Sample, quarters: Floats) -> Floats:
+    """The number that so many quarters, 0 to 4, of the sample lie below."""
+    return _inclusive(sample, np.floor(quarters) / 4)
+
+
+@excel("QUARTILE.EXC", Cells, Number)
+@at_each()
+def quartile_exclusive(sample: Sample, quarters: Floats) -> Floats:
+    """The number that so many quarters, 1 to 3, of the sample lie below, ends excluded."""
+    return _exclusive(sample, np.floor(quarters) / 4)
+
+
+def _place_of(sample: Sample, x: Floats) -> tuple[Floats, Bools]:
+    """The place of numbers (n, m) in the sample, counted from 0, and whether they lie inside it."""
+    below, equal = sample.how_many(np.less, x), sample.how_many(np.equal, x)
+    inside = (equal > 0) | ((below > 0) & (below < sample.size))
+    ordered = np.where(np.isinf(ordered := sample.ordered()), 0.0, ordered)
+    after = np.clip(below, 0.0, np.maximum(sample.size - 1, 0.0))
+    start, end = _taken(ordered, np.maximum(after - 1, 0.0)), _taken(ordered, after)
+    passed = (x - start) / np.where(end > start, end - start, 1.0)
+    return np.where(equal > 0, below, below - 1 + passed), inside
+
+
+def _cut(share: Floats, digits: Floats) -> Floats:
+    """A share cut to so many digits."""
+    tens = _TENS[np.clip(np.floor(digits), 0, 15).astype(np.intp)]
+    return np.asarray(int_(share * tens) / tens)
+
+
+def _rank_errors(sample: Sample, inside: Bools, digits: Floats, share: Floats) -> Floats:
+    share = np.where(inside, _cut(share, digits), NA)
+    return np.where((sample.size > 0) & (digits >= 1), share, NUM)
+
+
+@excel("PERCENTRANK.INC", Cells, Number, Number(default=3.0), aliases=("PERCENTRANK",))
+@at_each()
+def percent_rank(sample: Sample, x: Floats, digits: Floats = _THREE) -> Floats:
+    """The share of the sample below a number, 0 to 1, cut to so many digits; `#N/A` outside the sample."""
+    place, inside = _place_of(sample, x)
+    share = np.where(sample.size > 1, place / np.maximum(sample.size - 1, 1.0), 1.0)
+    return _rank_errors(sample, inside, digits, np.where(inside, share, 0.0))
+
+
+@excel("PERCENTRANK.EXC", Cells, Number, Number(default=3.0))
+@at_each()
+def percent_rank_exclusive(sample: Sample, x: Floats, digits: Floats = _THREE) -> Floats:
+    """The share of the sample below a number, ends excluded, cut to so many digits; `#N/A` outside the sample."""
+    place, inside = _place_of(sample, x)
+    return _rank_errors(sample, inside, digits, np.where(inside, (place + 1) / (sample.size + 1), 0.0))
+
+
+def _rank(x: Floats, sample: Sample, rising: Floats) -> tuple[Floats, Floats]:
+    """One more than how many stand before each number, and how many equal it; `rising` 0 for the largest first."""
+    ahead = np.where(rising == 0, sample.how_many(np.greater, x), sample.how_many(np.less, x))
+    return ahead + 1, sample.how_many(np.equal, x)
+
+
+@excel("RANK.EQ", Number, Cells, Number(default=0.0), aliases=("RANK",))
+@at_each(1)
+def rank(sample: Sample, x: Floats, rising: Floats = _FALLING) -> Floats:
+    """Rank of a number in a sample, equal numbers all with the best of theirs; `#N/A` if it is not there."""
+    first, equal = _rank(x, sample, rising)
+    return np.where(equal > 0, first, NA)
+
+
+@excel("RANK.AVG", Number, Cells, Number(default=0.0))
+@at_each(1)
+def average_rank(sample: Sample, x: Floats, rising: Floats = _FALLING) -> Floats:
+    """Rank of a number in a sample, equal numbers all with the mean of theirs; `#N/A` if it is not there."""
+    first, equal = _rank(x, sample, rising)
+    return np.where(equal > 0, first + (equal - 1) / 2, NA)

@@ -1,0 +1,211 @@
+"""LINEST and its kin: planes of least squares, in logarithms for exponential curves.
+
+Letters: n trials, m observations, p variables. Known y in a column go with known x whose columns are the variables,
+in a row with rows of them; of one variable, known x are of the same size as known y.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from xlmc.errors import ErrorCode
+from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong
+from xlmc.functions.lookup.picking import flattened
+from xlmc.functions.registry import Anything, Arrays, Kind, Ranges, excel
+from xlmc.functions.statistical.least_squares import Fit, fit
+from xlmc.functions.values import BLANK, ERROR, NA, NUM, NUMBER, Bools, Codes, Floats, Value, constant
+
+__all__: list[str] = []
+
+_SETTING = Anything(default=None, ranges=Ranges.SINGLE)
+_OPTIONS = (Arrays(default=None), _SETTING, _SETTING)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Known:
+    """Observations.
+
+    Attributes:
+        y: (n, m).
+        x: (n, m, p).
+        errors: the first error, or `#VALUE!` for what is not a number: (n,).
+        in_row: whether the observations stand in a row.
+        shape: rows and columns of known y.
+    """
+
+    y: Floats
+    x: Floats
+    errors: Codes
+    in_row: bool
+    shape: tuple[int, ...]
+
+    @property
+    def several(self) -> bool:
+        return bool(self.x.shape[2] > 1)
+
+
+def _given(value: Value | None) -> Value | None:
+    """An argument, None for one left empty between commas."""
+    if value is None or value.numbers.ndim == 3:
+        return value
+    return None if same_in_all_trials(value.kinds == BLANK) else value
+
+
+def _numbers(value: Value) -> tuple[Floats, Codes]:
+    """A range all of numbers (n, r, c), and its first error: (n,)."""
+    cells = value.as_range()
+    kinds = flattened(cells.kinds, cells)
+    wrong = where_wrong((kinds != NUMBER) & (kinds < ERROR), ErrorCode.VALUE)
+    return np.broadcast_to(cells.numbers, cells.shape), first_errors(earliest(flattened(cells.errors, cells), wrong))
+
+
+def _known(ys: Value, xs: Value | None) -> _Known | None:
+    """The observations; None where the sizes of y and x do not go together. Without x it is 1, 2, 3, …"""
+    y, wrong_y = _numbers(ys)
+    shape = y.shape[1:]
+    if (given := _given(xs)) is None:
+        count = np.arange(1.0, y[0].size + 1).reshape(1, *shape)
+        x, wrong_x = count, np.zeros(1, np.uint8)
+    else:
+        x, wrong_x = _numbers(given)
+    in_row = shape[0] == 1 and shape[1] > 1
+    variables = _variables(x, in_row, shape)
+    if variables is None:
+        return None
+    return _Known(y.reshape(y.shape[0], -1), variables, earliest(wrong_y, wrong_x), in_row, shape)
+
+
+def _variables(x: Floats, in_row: bool, shape: tuple[int, ...]) -> Floats | None:
+    """Known x as (n, m, p)."""
+    if x.shape[1:] == shape:
+        return x.reshape(x.shape[0], -1, 1)
+    turned = x.swapaxes(1, 2) if in_row else x
+    fits = 1 in shape and turned.shape[1] == max(shape)
+    return turned if fits else None
+
+
+def _switch(value: Value | None, otherwise: bool) -> tuple[Bools, Codes]:
+    """A condition that may be left out: (n,) each."""
+    if value is None:
+        return np.full(1, otherwise), np.zeros(1, np.uint8)
+    truth, errors = value.to_logicals()
+    truth = np.where((value.kinds == BLANK) & (value.numbers.ndim == 1), otherwise, truth)
+    return flattened(truth, value)[:, 0], flattened(errors, value)[:, 0]
+
+
+def _logarithms(known: _Known) -> _Known:
+    """The observations of ln y; `#NUM!` where some y is not above 0."""
+    positive = np.asarray(known.y > 0)
+    errors = earliest(known.errors, where_wrong(np.asarray((known.y <= 0).any(axis=1)), ErrorCode.NUM))
+    return _Known(np.log(np.where(positive, known.y, 1.0)), known.x, errors, known.in_row, known.shape)
+
+
+def _ratio(above: Floats, below: Floats) -> Floats:
+    return np.where(below > 0, above / np.where(below > 0, below, 1.0), NUM)
+
+
+def _coefficients(found: Fit, *, exponential: bool) -> Floats:
+    """The last variable's first, the intercept behind: (n, p + 1)."""
+    result = np.concatenate([found.slopes[:, ::-1], found.intercept[:, None]], axis=1)
+    return np.exp(result) if exponential else result
+
+
+def _table(found: Fit, free: Bools, first: Floats) -> Floats:
+    """The five rows of LINEST under the first: (n, 5, p + 1)."""
+    n = max(first.shape[0], free.shape[0])
+    table = np.full((n, 5, first.shape[1]), NA)
+    left = found.freedom > 0
+    variance = np.where(left, found.residual / np.where(left, found.freedom, 1.0), 0.0)
+    error = np.sqrt(variance)
+    table[:, 0] = first
+    table[:, 1, :-1] = (found.slope_spread * error[:, None])[:, ::-1]
+    table[:, 1, -1] = np.where(free, found.intercept_spread * error, NA)
+    table[:, 2, 0], table[:, 2, 1] = _ratio(found.regression, found.regression + found.residual), error
+    table[:, 3, 0] = _ratio(found.regression, np.where(left, found.used * variance, 0.0))
+    table[:, 3, 1] = np.maximum(found.freedom, 0.0)
+    table[:, 4, 0], table[:, 4, 1] = found.regression, found.residual
+    return table
+
+
+def _estimate(known: _Known | None, const: Value | None, stats: Value | None, *, exponential: bool) -> Value:
+    if known is None:
+        return constant(ErrorCode.REF)
+    known = _logarithms(known) if exponential else known
+    (free, wrong), (whole, wrong_too) = _switch(const, True), _switch(stats, False)
+    found = fit(known.y, known.x, free)
+    first = _coefficients(found, exponential=exponential)
+    in_full = bool(same_in_all_trials(whole))
+    result = _table(found, free, first) if in_full else first[:, None, :]
+    return Value.of_numbers(result, earliest(known.errors, wrong, wrong_too)[:, None, None])
+
+
+@excel("LINEST", Arrays, *_OPTIONS, returns=Kind.ANY)
+def linest(ys: Value, xs: Value | None = None, const: Value | None = None, stats: Value | None = None) -> Value:
+    """Coefficients of the plane of least squares, the last variable's first: (n, 1, p + 1), with `stats` (n, 5, p + 1).
+
+    The rows: coefficients; their standard errors; r² and the standard error of y; F and the degrees of freedom; the
+    sums of squares explained and left. A variable that is a sum of others gets 0. `#REF!` for sizes that do not go
+    together.
+
+    Raises:
+        ShapeVaries: `stats` differs between trials.
+    """
+    return _estimate(_known(ys, xs), const, stats, exponential=False)
+
+
+@excel("LOGEST", Arrays, *_OPTIONS, returns=Kind.ANY)
+def logest(ys: Value, xs: Value | None = None, const: Value | None = None, stats: Value | None = None) -> Value:
+    """Bases of the exponential curve b·m₁^x₁·m₂^x₂…, as LINEST of ln y gives it; the statistics are those of ln y.
+
+    Raises:
+        ShapeVaries: `stats` differs between trials.
+    """
+    return _estimate(_known(ys, xs), const, stats, exponential=True)
+
+
+def _new(known: _Known, xs: Value | None, new: Value | None) -> tuple[Floats, Codes, tuple[int, ...]] | None:
+    """New observations (n, m, p), their errors, and rows and columns of the result; None where they do not fit."""
+    given = _given(new)
+    if given is None:
+        return known.x, np.zeros(1, np.uint8), known.shape
+    x, errors = _numbers(given)
+    if not known.several:
+        return x.reshape(x.shape[0], -1, 1), errors, x.shape[1:]
+    turned = x.swapaxes(1, 2) if known.in_row else x
+    if turned.shape[2] != known.x.shape[2]:
+        return None
+    m = turned.shape[1]
+    return turned, errors, (1, m) if known.in_row else (m, 1)
+
+
+def _predict(ys: Value, xs: Value | None, new: Value | None, const: Value | None, *, exponential: bool) -> Value:
+    known = _known(ys, xs)
+    found = None if known is None else _new(known, xs, new)
+    if known is None or found is None:
+        return constant(ErrorCode.REF)
+    known = _logarithms(known) if exponential else known
+    x, wrong_x, shape = found
+    free, wrong = _switch(const, True)
+    y = fit(known.y, known.x, free).at(x)
+    y = np.exp(y) if exponential else y
+    return Value.of_numbers(y.reshape(y.shape[0], *shape), earliest(known.errors, wrong_x, wrong)[:, None, None])
+
+
+_NEW = (Arrays(default=None), Arrays(default=None), _SETTING)
+
+
+@excel("TREND", Arrays, *_NEW, returns=Kind.ANY)
+def trend(ys: Value, xs: Value | None = None, new: Value | None = None, const: Value | None = None) -> Value:
+    """The plane of least squares at new x, or at the known ones: (n, rows, columns of these).
+
+    `#REF!` for sizes that do not go together.
+    """
+    return _predict(ys, xs, new, const, exponential=False)
+
+
+@excel("GROWTH", Arrays, *_NEW, returns=Kind.ANY)
+def growth(ys: Value, xs: Value | None = None, new: Value | None = None, const: Value | None = None) -> Value:
+    """The exponential curve of LOGEST at new x, or at the known ones; `#NUM!` where some y is not above 0."""
+    return _predict(ys, xs, new, const, exponential=True)

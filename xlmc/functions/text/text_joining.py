@@ -1,0 +1,137 @@
+"""Many values as one text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from xlmc.errors import ErrorCode
+from xlmc.functions.arguments import earliest, first_errors, with_errors
+from xlmc.functions.budget import ask_for_texts, counted
+from xlmc.functions.per_element import per_element
+from xlmc.functions.per_object import object_text, per_object
+from xlmc.functions.registry import Anything, Cells, Kind, Logical, Text, excel
+from xlmc.functions.text.utf16 import LONGEST, fits_in_a_cell
+from xlmc.functions.values import Codes, Objects, Value, constant, from_objects
+
+__all__: list[str] = []
+
+
+@excel("CONCATENATE", Text(repeat=True), returns=Kind.TEXT, aliases=("&",))
+@per_element
+def concatenate(*texts: str) -> object:
+    """The texts, one after the other; `a & b & c` is one such joining, for each step would copy all before it."""
+    joined = "".join(texts)
+    return joined if fits_in_a_cell(joined) else ErrorCode.VALUE
+
+
+@excel("CONCAT", Cells(repeat=True), returns=Kind.TEXT)
+def concat(*values: Value) -> Value:
+    """The texts of all cells, row by row."""
+    texts, errors = _side_by_side(values)
+    return with_errors(_of_trials(_written(row) for row in texts.tolist()), errors)
+
+
+def _written(texts: list[str]) -> str:
+    """The texts as one; of those that are too long together only as much as tells that."""
+    return "".join(texts) if sum(map(len, texts)) <= 2 * LONGEST else "x" * (LONGEST + 1)
+
+
+@excel("TEXTJOIN", Cells, Logical, Cells(repeat=True), returns=Kind.TEXT)
+def text_join(delimiters: Value, ignore_empty: Value, *values: Value) -> Value:
+    """The texts of all cells with a delimiter between each two, or several delimiters in turn; empty ones left out."""
+    between, wrong = _side_by_side([delimiters])
+    ignore, unclear = ignore_empty.to_logicals()
+    texts, errors = _side_by_side(values)
+    n = max(len(between), len(texts), ignore.shape[0])
+    marks, words = _tall(between, n), _tall(texts, n)
+    skip = np.broadcast_to(ignore, (n, *ignore.shape[1:]))
+    out = np.empty(skip.shape, object)
+    trials = np.broadcast_to(np.arange(n).reshape(n, *(1,) * (skip.ndim - 1)), skip.shape).ravel().tolist()
+    rows = zip(trials, skip.ravel().tolist(), strict=True)
+    out.reshape(-1)[:] = list(counted(_joined(marks[i].tolist(), words[i].tolist(), flag) for i, flag in rows))
+    inner = (-1, *(1,) * (ignore.ndim - 1))
+    return with_errors(from_objects(out), earliest(wrong.reshape(inner), unclear, errors.reshape(inner)))
+
+
+def _joined(delimiters: list[str], texts: list[str], ignore_empty: bool) -> object:
+    kept = [text for text in texts if text] if ignore_empty else texts
+    whole, rest = divmod(max(len(kept) - 1, 0), len(delimiters))
+    lengths = [len(delimiter) for delimiter in delimiters]
+    if sum(map(len, kept)) + whole * sum(lengths) + sum(lengths[:rest]) > LONGEST:
+        return ErrorCode.VALUE
+    turns = [*delimiters * whole, *delimiters[:rest], ""]
+    joined = "".join(text + delimiter for text, delimiter in zip(kept, turns, strict=False))
+    return joined if fits_in_a_cell(joined) else ErrorCode.VALUE
+
+
+def _side_by_side(values: Iterable[Value]) -> tuple[Objects, Codes]:
+    """The texts of all cells, (n, k), and the first error of each trial."""
+    columns, codes = [], []
+    for value in values:
+        texts, errors = value.to_texts()
+        columns.append(texts.reshape(texts.shape[0], -1))
+        codes.append(np.broadcast_to(errors, texts.shape).reshape(texts.shape[0], -1))
+    n = max(column.shape[0] for column in columns)
+    ask_for_texts(n * sum(column.shape[1] for column in columns))
+    texts, errors = (np.concatenate([_tall(part, n) for part in parts], axis=1) for parts in (columns, codes))
+    return texts, first_errors(errors)
+
+
+def _tall(rows: Objects, n: int) -> Objects:
+    return np.broadcast_to(rows, (n, rows.shape[1]))
+
+
+def _of_trials(texts: Iterable[str]) -> Value:
+    joined = list(texts)
+    box = np.empty(len(joined), object)
+    box[:] = joined
+    return _cut_off(box)
+
+
+def _cut_off(texts: Objects) -> Value:
+    """`#VALUE!` for texts longer than a cell holds."""
+    flat = texts.ravel().tolist()
+    codes = [0 if fits_in_a_cell(text) else ErrorCode.VALUE for text in flat]
+    kept = ["" if code else text for text, code in zip(flat, codes, strict=True)]
+    box: Objects = np.empty(texts.shape, object)
+    box.reshape(-1)[:] = list(counted(kept))
+    return Value.of_texts(box, np.array(codes, np.uint8).reshape(texts.shape))
+
+
+def _quoted(item: object) -> str:
+    """A value as a formula would have it: texts in quotes."""
+    return '"{}"'.format(item.replace('"', '""')) if isinstance(item, str) else object_text(item)
+
+
+@excel("VALUETOTEXT", Anything, Anything(default=0.0), returns=Kind.ANY)
+def value_to_text(value: Value, style: Value | None = None) -> Value:
+    """Any value as a text, errors too; in style 1 as a formula would have it."""
+    concise, strict = (np.asarray(np.frompyfunc(write, 1, 1)(value.objects())) for write in (object_text, _quoted))
+    return _styled(from_objects(concise), from_objects(strict), style)
+
+
+def _styled(concise: Value, strict: Value, style: Value | None) -> Value:
+    """One text or the other; `#VALUE!` for another style."""
+    return _in_style(concise, strict, constant(0.0) if style is None else style)
+
+
+@per_object
+def _in_style(concise: str, strict: str, style: float | bool | str | None) -> object:
+    if isinstance(style, str) or not 0 <= (style or 0) < 2:
+        return ErrorCode.VALUE
+    return strict if (style or 0) >= 1 else concise
+
+
+@excel("ARRAYTOTEXT", Cells, Anything(default=0.0), returns=Kind.TEXT)
+def array_to_text(cells: Value, style: Value | None = None) -> Value:
+    """All cells as one text, errors too; in style 1 as a formula would have it, in braces."""
+    tables = cells.as_range().objects()
+    concise = _of_trials(", ".join(map(object_text, table.ravel())) for table in tables)
+    strict = _of_trials(_braced(table) for table in tables)
+    return _styled(concise, strict, style)
+
+
+def _braced(table: Objects) -> str:
+    return "{{{}}}".format(";".join(",".join(map(_quoted, row)) for row in table))

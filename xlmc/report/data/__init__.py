@@ -1,0 +1,1 @@
+"""Results for programs to read: JSON, CSV and Parquet."""

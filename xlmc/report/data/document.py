@@ -1,0 +1,233 @@
+"""All results of a run as one JSON document; docs/json.md describes it, `document.schema.json` defines it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from xlmc.errors import WorkbookError
+from xlmc.report.base_case import BaseCase, base_case
+from xlmc.report.conditioning import Marginal, conditioning
+from xlmc.report.data.dependence_json import certainties_json, pairs_json, sensitivity_json, statements_json
+from xlmc.report.data.estimate_json import estimate_json, number_json
+from xlmc.results.record import make_record
+from xlmc.results.record.correlations_met import correlations_met
+from xlmc.results.record.errors_met import errors_met, lost_sentences
+from xlmc.results.record.wording import cutoffs_text, limits_text, parameters_text, status
+from xlmc.statistics import proportion
+from xlmc.workbook.seal import sealed_text
+from xlmc.workbook.target import Target
+from xlmc.workbook.writer import write_workbook
+
+if TYPE_CHECKING:
+    from xlmc.definitions import Assumption, Filter
+    from xlmc.results.record.correlations_met import CorrelationMet
+    from xlmc.run.checking import CheckResult
+    from xlmc.run.simulation import ForecastResult, Simulation
+
+__all__ = ["FORMAT", "SCHEMA", "STATISTICS", "VERSION", "check_json_path", "document", "save_json"]
+
+FORMAT: Final = "xlmc results"
+VERSION: Final = 1
+SCHEMA: Final = Path(__file__).with_name("document.schema.json")
+
+STATISTICS: Final = (
+    "mean",
+    "median",
+    "mode",
+    "standard_deviation",
+    "variance",
+    "skewness",
+    "kurtosis",
+    "coefficient_of_variation",
+    "minimum",
+    "maximum",
+    "range_width",
+    "mean_standard_error",
+)
+
+Json = dict[str, Any]
+
+
+def document(simulation: Simulation, *, command: str | None = None) -> Json:
+    """The results of a run, every number as it is in Python and on the sheets.
+
+    Args:
+        simulation: the finished run.
+        command: what the person typed, for the record.
+    """
+    base = base_case(simulation)
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "warnings": simulation.warnings,
+        "checks": [_check(each) for each in simulation.checks],
+        "record": make_record(simulation, command).as_dict(),
+        "trials": _trials(simulation),
+        "forecasts": [_forecast(result, base) for result in simulation.results.values()],
+        "filters": [_filter(simulation, place, each) for place, each in enumerate(simulation.model.filters)],
+        "assumptions": [_assumption(simulation, each) for each in simulation.model.assumptions],
+        "statements": statements_json(simulation),
+        "pairs": pairs_json(simulation),
+        "sensitivity": sensitivity_json(simulation),
+        "correlations": [_correlation(met) for met in correlations_met(simulation)],
+        "errors": [
+            {"in": met.kind, "name": met.name, "cell": str(met.cell), "error": met.error, "trials": met.trials}
+            | {"from": None if met.root is None else f"{met.root[0]} {met.root[1].text}"}
+            for met in errors_met(simulation)
+        ],
+        "base_case": None if base is None else {"rejected_by": list(base.rejected_by)},
+        "notices": [
+            {"message": notice.message, "where": None if notice.where is None else str(notice.where)}
+            for notice in simulation.notices
+        ],
+    }
+
+
+def save_json(simulation: Simulation, path: Path, *, command: str | None = None, overwrite: bool = False) -> Path:
+    """Write the document, and behind it the seal by which xlmc knows it again.
+
+    Args:
+        simulation: the finished run.
+        path: where to; untouched results of the same workbook are replaced.
+        command: what the person typed, for the record.
+        overwrite: replace any other file too.
+
+    Returns:
+        The path.
+
+    Raises:
+        TakenError: the file is not ours to replace.
+        WorkbookError: the file cannot be written, or does not end in `.json`.
+    """
+    check_json_path(path)
+    target = Target(path, simulation.model.workbook.name, overwrite)
+    target.check()
+    text = json.dumps(document(simulation, command=command), ensure_ascii=False, allow_nan=False, indent=2)
+    write_workbook(path, sealed_text(text.removesuffix("\n}").encode(), ".json", target.book), target.check)
+    return path
+
+
+def check_json_path(path: Path) -> None:
+    """Refuse to write JSON over what is none.
+
+    Raises:
+        WorkbookError: the name does not end in `.json`.
+    """
+    if path.suffix.casefold() != ".json":
+        raise WorkbookError("JSON is written to a .json file", where=path, hint=f"Name it {path.stem + '.json'!r}")
+
+
+def _trials(simulation: Simulation) -> Json:
+    return {
+        "run": simulation.trials,
+        "accepted": simulation.accepted,
+        "acceptance": estimate_json(simulation.acceptance),
+        "lost_to_errors": simulation.error_trials,
+        "undecided": simulation.tally.by_error,
+        "losses": lost_sentences(simulation),
+        "ended_by": simulation.stopped.by,
+        "ended_when": simulation.stopped.sentence,
+    }
+
+
+def _forecast(result: ForecastResult, base: BaseCase | None) -> Json:
+    definition, found = result.definition, result.statistics
+    low, high = found.central
+    above = found.probability_above
+    return {
+        "name": definition.name,
+        "cell": str(definition.cell),
+        "units": definition.units,
+        "trials": found.trials,
+        "statistics": {name: estimate_json(getattr(found, name)) for name in STATISTICS},
+        "percentiles": [{"percent": percent, **estimate_json(each)} for percent, each in found.percentiles.items()],
+        "central_range": {"share": definition.central, "low": estimate_json(low), "high": estimate_json(high)},
+        "certainty": None
+        if above is None
+        else {"threshold": definition.threshold, "probability_above": estimate_json(above)},
+        "certainties": certainties_json(result),
+        "base_case": None if base is None else number_json(base.forecasts[definition.name]),
+        "without_number": {error: count for error, count in sorted(result.faults.items()) if count},
+    }
+
+
+def _filter(simulation: Simulation, place: int, each: Filter) -> Json:
+    tally, filters = simulation.tally, simulation.model.filters
+    rejected, only = int(tally.rejected[place]), int(tally.only[place])
+    together = zip(filters, tally.together[place].tolist(), strict=True)
+    return {
+        "name": each.name,
+        "cell": str(each.cell),
+        "limits": limits_text(each),
+        "because": each.because,
+        "rejected": rejected,
+        "share": estimate_json(proportion(rejected, simulation.trials)),
+        "only": only,
+        "share_only": estimate_json(proportion(only, simulation.trials)),
+        "also_by": {other.name: count for other, count in together if other is not each},
+        "errors": sum(tally.errors[place].values()),
+    }
+
+
+def _check(each: CheckResult) -> Json:
+    return {
+        "name": each.name,
+        "cell": str(each.cell),
+        "because": each.because,
+        "base": each.base.found,
+        "holds": each.holds,
+        "trials": each.trials,
+        "failed": each.failed,
+        "share": estimate_json(each.share),
+    }
+
+
+def _assumption(simulation: Simulation, each: Assumption) -> Json:
+    told: Json = {
+        "name": each.name,
+        "cell": str(each.cell),
+        "units": each.units,
+        "status": status(simulation.model, each),
+        "distribution": each.distribution,
+        "parameters": parameters_text(each),
+        "cutoffs": cutoffs_text(each),
+        "base": each.base,
+        "source": each.source,
+        "prior": None,
+        "accepted": None,
+        "shift": None,
+        "narrowing": None,
+    }
+    if each.name not in simulation.inputs:
+        return told
+    accepted, replicate = simulation.inputs[each.name], simulation.replicate
+    kept = None if replicate is None else replicate[: accepted.size]
+    found = conditioning(simulation.prior[each.name], accepted, kept)
+    return told | {
+        "prior": _marginal(found.prior),
+        "accepted": _marginal(found.accepted),
+        "shift": estimate_json(found.shift),
+        "narrowing": estimate_json(found.narrowing),
+    }
+
+
+def _marginal(found: Marginal) -> Json:
+    return {
+        "trials": found.trials,
+        "mean": estimate_json(found.mean),
+        "standard_deviation": estimate_json(found.standard_deviation),
+        "percentiles": [{"percent": percent, **estimate_json(each)} for percent, each in found.percentiles.items()],
+    }
+
+
+def _correlation(met: CorrelationMet) -> Json:
+    return {
+        "first": met.first,
+        "second": met.second,
+        "asked": met.asked,
+        "used": None if met.used is None else number_json(met.used),
+        "accepted": None if met.accepted is None else estimate_json(met.accepted),
+        "row": None if met.row is None else str(met.row),
+    }

@@ -1,0 +1,122 @@
+"""The page's first part, which can be read alone: what was asked, the answers, and what they mean."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from xlmc.report.page.element import EMPTY, Html, element
+from xlmc.report.page.shown import estimate_html, number, share_html
+from xlmc.report.sheets.results import base_sentences, opening_sentences, range_sentences
+from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, range_heading, share_text, summarise
+from xlmc.results.record.sampling_words import sampling_sentence
+from xlmc.results.record.wording import limits_text
+from xlmc.results.statements import MEANING, statements
+from xlmc.run.rare.account import probability_text
+from xlmc.run.stopping.stopped import ALL_TRIALS
+
+if TYPE_CHECKING:
+    from xlmc.results.statements import Statement
+    from xlmc.run.simulation import Simulation
+
+__all__ = ["answers"]
+
+
+def answers(simulation: Simulation) -> Html:
+    """Warnings, the question, the answers in words and as the paper's table, and the meaning of ±."""
+    rows = summarise(simulation)
+    return element(
+        "section",
+        element("h2", "The answer"),
+        *map(_warning, opening_sentences(simulation)),
+        element("p", *_question(simulation)),
+        element("ul", *(element("li", *_said(each)) for each in statements(simulation)), class_="statements"),
+        element("p", MEANING, class_="remark"),
+        _table(rows),
+        element("p", ERROR_SENTENCE, class_="meaning"),
+        *(element("p", sentence, class_="remark") for sentence in _remarks(simulation, rows)),
+        id="answer",
+    )
+
+
+def _warning(sentence: str) -> Html:
+    return element("p", sentence, class_="warning", role="alert")
+
+
+def _question(simulation: Simulation) -> Iterator[Html | str]:
+    model = simulation.model
+    yield (
+        f"The workbook computes {_counted(len(model.forecasts), 'answer (forecast)', 'answers (forecasts)')} from "
+        f"{_counted(len(model.live), 'quantity', 'quantities')} known only within ranges (assumptions). "
+        f"{simulation.evaluated:,} combinations of values from these ranges were tried. "
+    )
+    if not model.filters:
+        yield "The workbook has no filters: every trial is accepted."
+        return
+    if simulation.rare is None:
+        yield f"{simulation.accepted:,} of them ({share_text(simulation.acceptance)}) agree with the evidence, which "
+    else:
+        yield f"{simulation.accepted:,} that agree with the evidence were kept; one as they come agrees with "
+        yield f"probability {probability_text(simulation.rare)}. The evidence "
+    yield "asks: "
+    for place, filter_ in enumerate(model.filters):
+        yield "; " if place else ""
+        yield element("bdi", filter_.name)
+        yield f" {limits_text(filter_)}"
+    yield ". The answers are those of these accepted trials."
+
+
+def _counted(count: int, one: str, several: str) -> str:
+    return f"{count} {one if count == 1 else several}"
+
+
+def _said(statement: Statement) -> Iterator[Html | str]:
+    """The sentence, with the name before its colon in bold."""
+    name = f"{statement.forecast}: "
+    if statement.text.startswith(name):
+        yield element("b", element("bdi", statement.forecast))
+        yield f": {statement.text.removeprefix(name)}."
+    else:
+        yield element("bdi", f"{statement.text}.")
+
+
+def _table(rows: Sequence[SummaryRow]) -> Html:
+    thresholds = any(row.threshold is not None for row in rows)
+    mixed = len({row.share for row in rows}) > 1
+    heads = ["Forecast", "Units", "Mean", "Standard deviation", f"{range_heading(rows)} from", "to", "Base case"]
+    heads += ["Range holds"] * mixed + ["Threshold", "P(above)"] * thresholds
+    return element(
+        "div",
+        element(
+            "table",
+            element("thead", element("tr", *(_head(head, place > 1) for place, head in enumerate(heads)))),
+            element("tbody", *(_line(row, mixed, thresholds) for row in rows)),
+        ),
+        class_="wide-table answers",
+    )
+
+
+def _head(text: str, numbers: bool) -> Html:
+    return element("th", text, scope="col", class_="number" if numbers else None)
+
+
+def _line(row: SummaryRow, mixed: bool, thresholds: bool) -> Html:
+    cells = [estimate_html(each) for each in (row.mean, row.standard_deviation, row.low, row.high)]
+    cells.append(EMPTY if row.base is None else number(row.base, f"{row.base:.6g}"))
+    if mixed:
+        cells.append(element("span", percent(row.share)))
+    if thresholds:
+        cells.append(EMPTY if row.threshold is None else number(row.threshold, f"{row.threshold:g}"))
+        cells.append(EMPTY if row.above is None else share_html(row.above))
+    found = (element("td", cell, class_="number") for cell in cells)
+    return element("tr", element("th", row.name, scope="row"), element("td", row.units), *found)
+
+
+def _remarks(simulation: Simulation, rows: Sequence[SummaryRow]) -> Iterator[str]:
+    yield sampling_sentence(simulation)
+    yield from range_sentences(rows)
+    yield from base_sentences(simulation)
+    if simulation.stopped != ALL_TRIALS:
+        yield f"The run ended when {simulation.stopped.sentence}."
+    if simulation.rounding is not None:
+        yield f"{simulation.rounding.notice}."

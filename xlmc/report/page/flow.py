@@ -1,0 +1,103 @@
+"""What the result sheets say, on the page: their writers write onto a `Flow` as they do onto a sheet.
+
+Places, widths and heights mean nothing here: sections, tables and paragraphs follow each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from xlmc.report.page.element import Html, element, joined
+from xlmc.report.page.shown import shown_html
+from xlmc.report.sheets.cells import Shown
+from xlmc.report.sheets.page import Page
+
+__all__ = ["Flow"]
+
+_HEADER = "header"
+_NUMBERS = frozenset({"number", "answer", "error", "second number", "second error", "moved", "trial"})
+
+
+class Flow(Page):
+    """A result sheet's writing as HTML, from the top down."""
+
+    def __init__(self) -> None:
+        self.row, self.sheet = 0, _Nothing()
+        self._found: list[Html] = []
+        self._open: list[Sequence[Shown]] = []
+
+    @property
+    def html(self) -> Html:
+        """All that was written so far."""
+        self._close()
+        return joined(self._found)
+
+    def put(self, row: int, column: int, shown: Shown) -> None:
+        """A single cell is a paragraph."""
+        self.wide(str(shown.value or ""), shown.look, column, column)
+
+    def spread(self, cells: Sequence[Shown], starts: Sequence[int], last: int) -> None:
+        """A row of the table that is being written, or the first of another."""
+        if self._open and (len(self._open[-1]) != len(cells) or _heads(cells)):
+            self._close()
+        self._open.append(list(cells))
+        self.row += 1
+
+    def wide(self, value: str, look: str, last: int, first: int = 0) -> None:
+        """A paragraph."""
+        self._add(element("p", value, class_=look))
+
+    def title(self, value: str, below: str, column: int = 0) -> None:
+        """The heading of the whole, and the line below it."""
+        self._add(element("h2", value))
+        self._add(element("p", below, class_="subtitle"))
+
+    def heading(self, value: str, column: int = 0) -> None:
+        """The heading of a section."""
+        self._add(element("h3", value))
+
+    def printed(self, name: str, **options: Any) -> None:
+        """Nothing: the page has a print style of its own."""
+
+    def _add(self, found: Html) -> None:
+        self._close()
+        self._found.append(found)
+        self.row += 1
+
+    def _close(self) -> None:
+        if self._open:
+            rows, self._open = self._open, []
+            headers = [str(shown.value or "") for shown in rows[0]] if _heads(rows[0]) else []
+            self._found.append(_table(headers, rows[1:] if headers else rows))
+
+
+def _heads(cells: Sequence[Shown]) -> bool:
+    return cells[0].look.startswith(_HEADER)
+
+
+def _table(headers: Sequence[str], rows: Sequence[Sequence[Shown]]) -> Html:
+    """A table of a sheet's cells, which can be pushed aside where it is wider than the page."""
+    numbers = {place for row in rows for place, shown in enumerate(row) if shown.look in _NUMBERS}
+    heads = (_head(text, place in numbers) for place, text in enumerate(headers))
+    body = [element("tr", *(_cell(shown, place) for place, shown in enumerate(row))) for row in rows]
+    parts = [element("thead", element("tr", *heads))] if headers else []
+    return element("div", element("table", *parts, element("tbody", *body)), class_="wide-table")
+
+
+def _head(text: str, right: bool) -> Html:
+    return element("th", text, scope="col", class_="number" if right else None)
+
+
+def _cell(shown: Shown, place: int) -> Html:
+    if place == 0 and isinstance(shown.value, str):
+        return element("th", shown.value, scope="row")
+    is_number = shown.look in _NUMBERS
+    return element("td", shown_html(shown), class_=shown.look if is_number else None)
+
+
+class _Nothing:
+    """What is asked of a sheet alone: widths, heights, panes."""
+
+    def __getattr__(self, name: str) -> Any:
+        return lambda *args, **options: None

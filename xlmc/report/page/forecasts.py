@@ -1,0 +1,141 @@
+"""The charts of the page: one a forecast with its grabbers and boxes, and one for forecasts to be laid over each other.
+
+What is written here is the frame; `panel.js` draws into it and counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from xlmc.report.figure import Figure
+from xlmc.report.page.element import EMPTY, Html, element, joined, void
+from xlmc.report.page.payload import overlays_of
+from xlmc.report.page.ranks import most_values
+from xlmc.report.summary import percent
+
+if TYPE_CHECKING:
+    from xlmc.run.simulation import Simulation
+
+__all__ = ["charts", "overlays"]
+
+_VIEWS = (("frequency", "Frequency"), ("cumulative", "Cumulative"), ("reverse", "Reverse cumulative"))
+
+_HOW = (
+    "Drag the two grabbers below a chart, or move them with the arrow keys: the certainty is the share of the accepted "
+    "trials between them, both ends included. Or type the ends, or a certainty: as many trials then lie below the "
+    "grabbers as above. Shaded: the central range of the answer above."
+)
+
+_PLAIN_SHARE = (
+    "± of the certainty is that of as many independent trials; the samples of this run are more even, so it is rather "
+    "too large."
+)
+
+_NOTHING = "No forecast has a number in an accepted trial: nothing to draw."
+
+
+def charts(simulation: Simulation, figures: Sequence[Figure]) -> Html:
+    """The section with a chart for every forecast."""
+    return element(
+        "section",
+        element("h2", "Forecasts"),
+        *(_explained(simulation, figures) if figures else [element("p", _NOTHING, class_="alarm")]),
+        element("noscript", element("p", "The charts need JavaScript; every number below is here without it.")),
+        *(_chart(figure) for figure in figures),
+        id="forecasts",
+    )
+
+
+def _explained(simulation: Simulation, figures: Sequence[Figure]) -> Iterator[Html]:
+    yield element("p", _HOW, class_="how")
+    if simulation.plan.size:
+        yield element("p", _PLAIN_SHARE, class_="remark")
+    most = most_values(len(figures))
+    if max(figure.answer.trials for figure in figures) > most:
+        yield element(
+            "p",
+            f"Of a forecast with more than {most:,} trials the page holds {most:,} values at equal distances of rank, "
+            f"and how many trials lie between them. The count at an end may be off by {100 / (most - 1):.2g} % of the "
+            "trials at most, as the certainty says; it is exact at the ends of the central range.",
+            class_="remark",
+        )
+
+
+def _chart(figure: Figure) -> Html:
+    answer, number = figure.answer, figure.number
+    about = f"chart-{number}"
+    panel = element(
+        "div",
+        _views(about),
+        element("p", class_="certainty", role="status"),
+        element(
+            "div",
+            _box("Lower end", "low", answer.units),
+            _box("Upper end", "high", answer.units),
+            _box("Certainty", "share", "%"),
+            class_="boxes",
+        ),
+        element("p", class_="fault", role="alert"),
+        element("button", f"Central {percent(answer.share)} range", type="button", class_="reset"),
+        class_="panel",
+    )
+    drawing = element(
+        "div",
+        element("div", class_="chart", role="group", aria_label=f"Chart of {answer.name}, with two grabbers"),
+        element("p", class_="readout"),
+        element("p", figure.caption, class_="caption"),
+        class_="drawing",
+    )
+    return element(
+        "article",
+        element("h3", figure.name),
+        element("div", drawing, panel, class_="figure"),
+        id=about,
+        class_="forecast",
+        data_forecast=str(number - 1),
+    )
+
+
+def _views(about: str) -> Html:
+    buttons = [
+        element(
+            "label",
+            void("input", type="radio", name=f"{about}-view", value=key, checked="" if key == "frequency" else None),
+            label,
+        )
+        for key, label in _VIEWS
+    ]
+    return element("fieldset", element("legend", "Chart"), *buttons, class_="views")
+
+
+def _box(label: str, key: str, units: str) -> Html:
+    box = void("input", type="text", inputmode="text", autocomplete="off", spellcheck="false", class_=key)
+    return element("label", element("span", label), box, element("span", units, class_="unit"))
+
+
+def overlays(figures: Sequence[Figure]) -> Html:
+    """The section with forecasts of one unit in one chart; nothing where no two have the same."""
+    groups = overlays_of(figures)
+    if not groups:
+        return EMPTY
+    return element("section", element("h2", "Overlay"), joined(_overlays(figures, groups)), id="overlay")
+
+
+def _overlays(figures: Sequence[Figure], groups: Sequence[Sequence[int]]) -> list[Html]:
+    return [
+        element(
+            "article",
+            _views(f"overlay-{number}"),
+            element(
+                "div",
+                class_="chart",
+                role="img",
+                aria_label=f"Chart of {', '.join(figures[place].name for place in places)}",
+            ),
+            element("ul", class_="legend"),
+            class_="overlay",
+            data_overlay=str(number),
+        )
+        for number, places in enumerate(groups)
+    ]

@@ -1,0 +1,107 @@
+"""What the page's charts are drawn and counted from, as JSON inside the page.
+
+`forecasts`: for each its trials (`xlmc.report.page.ranks`; `counts` null where all are 1, `gaps` null where all are 0),
+its own central range, its bins as the sheet Bins has them, and the values to be marked. `overlays`: the numbers of
+forecasts in one unit. `z`: the quantile of the normal distribution that 95 % intervals are made with.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.report.figure import Figure
+from xlmc.report.page.ranks import most_values, rank_table
+from xlmc.report.summary import percent
+from xlmc.statistics import Estimate, format_estimate
+from xlmc.statistics.estimate import t_quantile
+
+if TYPE_CHECKING:
+    from xlmc.run.simulation import Simulation
+
+__all__ = ["overlays_of", "payload", "payload_text"]
+
+CONFIDENCE = 0.95
+
+
+def payload_text(simulation: Simulation, figures: Sequence[Figure]) -> str:
+    """The JSON, which holds no character that could end the element it stands in."""
+    text = json.dumps(payload(simulation, figures), allow_nan=False, separators=(",", ":"))
+    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
+
+
+def payload(simulation: Simulation, figures: Sequence[Figure]) -> dict[str, Any]:
+    """The same as plain values."""
+    most = most_values(len(figures))
+    return {
+        "z": t_quantile(math.inf, CONFIDENCE),
+        "forecasts": [_forecast(simulation, figure, most) for figure in figures],
+        "overlays": overlays_of(figures),
+    }
+
+
+def overlays_of(figures: Sequence[Figure]) -> list[list[int]]:
+    """The figures, counted from 0, that one overlay can show: two or more in one unit."""
+    by_units: dict[str, list[int]] = {}
+    for place, figure in enumerate(figures):
+        by_units.setdefault(figure.answer.units, []).append(place)
+    return [places for places in by_units.values() if len(places) > 1]
+
+
+def _forecast(simulation: Simulation, figure: Figure, most: int) -> dict[str, Any]:
+    answer = figure.answer
+    low, high = answer.low.value, answer.high.value
+    marks = [low, high] if answer.threshold is None else [low, high, answer.threshold]
+    table = rank_table(simulation.results[answer.name].sample.x, most, marks)
+    return {
+        "name": answer.name,
+        "units": answer.units,
+        "trials": answer.trials,
+        "values": table.values.tolist(),
+        "counts": _unless_all(1, table.counts),
+        "gaps": _unless_all(0, table.gaps),
+        "range": {
+            "share": answer.share,
+            "said": percent(answer.share),
+            "low": low,
+            "high": high,
+            "lowText": _alone(answer.low),
+            "highText": _alone(answer.high),
+        },
+        "bins": _bins(figure),
+        "marks": [{"label": label, "value": value, "text": text} for label, value, text in _marks(figure)],
+    }
+
+
+def _unless_all(usual: int, numbers: NDArray[np.int64]) -> list[int] | None:
+    return None if bool(np.all(numbers == usual)) else numbers.tolist()
+
+
+def _alone(found: Estimate) -> str:
+    """The value in the digits that its error supports, without the error."""
+    return format_estimate(found.value, found.error).partition(" ± ")[0]
+
+
+def _bins(figure: Figure) -> dict[str, Any]:
+    bins = figure.bins
+    return {
+        "edges": [*bins.edges.tolist(), float(bins.upper_edges[-1])],
+        "counts": (bins.inside + bins.outside).tolist(),
+        "below": bins.below,
+        "above": bins.above,
+        "width": bins.width,
+        "decimals": bins.decimals,
+    }
+
+
+def _marks(figure: Figure) -> Iterator[tuple[str, float, str]]:
+    answer = figure.answer
+    yield "Mean", answer.mean.value, _alone(answer.mean)
+    for label, value in (("Base case", answer.base), ("Threshold", answer.threshold)):
+        if value is not None:
+            yield label, value, f"{value:.6g}"

@@ -1,0 +1,1 @@
+"""Result sheets in the workbook, with native charts."""

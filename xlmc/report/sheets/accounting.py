@@ -1,0 +1,105 @@
+"""The part of Results that says what each filter asks, why, and which trials it rejected; and the errors met."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from xlmc.report.sheets import cells
+from xlmc.report.sheets.cells import Shown
+from xlmc.results.record.errors_met import ErrorMet, errors_met
+from xlmc.results.record.sampling_words import REJECTED_SENTENCE
+from xlmc.results.record.wording import limits_text
+from xlmc.statistics import proportion
+
+if TYPE_CHECKING:
+    from xlmc.report.sheets.page import Page
+    from xlmc.run.simulation import Simulation
+
+__all__ = ["write_accounting"]
+
+_STARTS = (0, 1, 3, 5)
+"""The columns that a filter, its cell, its limits and its reason begin in."""
+
+
+def write_accounting(page: Page, simulation: Simulation, last: int) -> None:
+    """Write the filters, what they rejected, and the errors.
+
+    Args:
+        page: the sheet.
+        simulation: the run.
+        last: the column that wide texts reach to.
+    """
+    page.heading("Filters: a trial is accepted when all hold")
+    if not simulation.model.filters:
+        page.wide("The workbook has no filters: every trial is accepted.", "paragraph", last)
+    else:
+        _write_filters(page, simulation, last)
+        page.heading("Trials rejected by the filters")
+        _write_rejections(page, simulation)
+        if simulation.rare is not None:
+            said = f"Counted among the first {simulation.trials:,} trials, which were drawn plainly, before the search."
+            page.wide(said, "remark", last)
+        if simulation.plan.size:
+            page.wide(REJECTED_SENTENCE, "remark", last)
+    _write_errors(page, simulation)
+
+
+def _write_filters(page: Page, simulation: Simulation, last: int) -> None:
+    headers = ("Filter", "Cell", "Must be", "Because")
+    page.spread([cells.text(header, "header left") for header in headers], _STARTS, last)
+    for number, filter_ in enumerate(simulation.model.filters, 1):
+        texts = (str(filter_.cell), limits_text(filter_), filter_.because or cells.NONE)
+        name = cells.text(f"{number}. {filter_.name}", "name")
+        page.spread([name, *(cells.text(text) for text in texts)], _STARTS, last)
+
+
+def _write_rejections(page: Page, simulation: Simulation) -> None:
+    tally, filters = simulation.tally, simulation.model.filters
+    pairs = len(filters) if len(filters) > 1 else 0
+    headers = ["Filter", "Error in it", "Rejected", "Share", "±", "Only by it", "Share", "±"]
+    page.table(
+        [*headers, *(f"Also by {other}" for other in range(1, pairs + 1))],
+        [
+            [
+                cells.text(f"{place + 1}. {filter_.name}", "name"),
+                cells.count(sum(tally.errors[place].values())),
+                *_counted(int(tally.rejected[place]), simulation.trials),
+                *_counted(int(tally.only[place]), simulation.trials),
+                *(_pair(simulation, place, other) for other in range(pairs)),
+            ]
+            for place, filter_ in enumerate(filters)
+        ],
+    )
+
+
+def _pair(simulation: Simulation, place: int, other: int) -> Shown:
+    return cells.text("") if place == other else cells.count(int(simulation.tally.together[place, other]))
+
+
+def _counted(trials: int, of: int) -> list[Shown]:
+    return [cells.count(trials), *cells.share(proportion(trials, of))]
+
+
+def _write_errors(page: Page, simulation: Simulation) -> None:
+    found = errors_met(simulation)
+    if not found:
+        return
+    page.heading("Errors in cells")
+    page.table(
+        ["Name", "In a", "Cell", "Error", "Trials", "Share", "±"],
+        [
+            [
+                cells.text(met.name, "name"),
+                cells.text(met.kind),
+                cells.text(str(met.cell)),
+                cells.text(met.error),
+                *_counted(met.trials, _among(simulation, met)),
+            ]
+            for met in found
+        ],
+    )
+
+
+def _among(simulation: Simulation, met: ErrorMet) -> int:
+    """The trials that an error was counted in: those of forecasts, where accepted ones were searched for, in these."""
+    return simulation.accepted if simulation.rare is not None and met.kind == "forecast" else simulation.trials

@@ -1,0 +1,141 @@
+"""The sheet Assumptions: what each one is and why, and beside it how the filters changed it.
+
+Two lines each: name, cell, distribution and the draws before filtering; below them units, base case, source and the
+accepted draws.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from xlmc.report.conditioning import Conditioning, Marginal, conditioning
+from xlmc.report.sheets import cells
+from xlmc.report.sheets.cells import Shown
+from xlmc.results.record.correlations_met import correlations_met
+from xlmc.results.record.wording import distribution_text, status
+from xlmc.statistics import Estimate
+
+if TYPE_CHECKING:
+    from xlmc.definitions import Assumption
+    from xlmc.report.sheets.page import Page
+    from xlmc.run.simulation import Simulation
+
+__all__ = ["HEADER", "MEANING", "MOVED", "NARROWED", "STRATIFIED", "WIDTHS", "write_assumptions", "write_correlations"]
+
+HEADER = 3
+"""The row of the headings, counted from 0."""
+
+_STATISTICS = 14
+WIDTHS = (36, 12, 44, 10, 8, *[9] * _STATISTICS)
+_READABLE = 10
+"""The column that paragraphs reach to, so that they can be read without scrolling."""
+
+MOVED, NARROWED = 0.5, 0.8
+
+MEANING = (
+    "Filters keep only the combinations that agree with the evidence. That is conditioning: an assumption that the "
+    "evidence speaks about is distributed differently among the accepted trials, although its range is the same. "
+    f"Marked: a mean that moved by {MOVED:g} standard deviations or more; a standard deviation that shrank to "
+    f"{NARROWED:g} of what it was or less."
+)
+
+STRATIFIED = (
+    "Before filtering ± is that of independent trials: the draws of these samples are more even than that. Of the "
+    "accepted draws it comes from the differences between replicates."
+)
+
+_CORRELATIONS = (
+    "Asked for and drawn with: before filtering. They differ where the correlations that were asked for cannot all "
+    "be drawn at once, or where one takes so few values that ties allow less. Filters change correlations as they "
+    "change assumptions: beside them stand those of the accepted trials."
+)
+
+
+def write_assumptions(page: Page, simulation: Simulation) -> None:
+    """Write the sheet."""
+    name = simulation.model.workbook.name
+    of = f" of {simulation.trials:,}" if simulation.rare is None else ""
+    page.title("Assumptions", f"{name}: {simulation.accepted:,}{of} trials accepted")
+    page.row = HEADER
+    page.table(_headers(), [line for a in simulation.model.assumptions for line in _lines(simulation, a)])
+    page.sheet.freeze_panes(HEADER + 1, 1)
+    write_correlations(page, simulation)
+    page.heading("What this shows")
+    page.wide(MEANING, "paragraph", _READABLE)
+    early = max((values.size for values in simulation.prior.values()), default=0)
+    page.wide(f"Before filtering: the first {early:,} trials. ± is the standard error.", "paragraph", _READABLE)
+    if simulation.plan.size:
+        page.wide(STRATIFIED, "paragraph", _READABLE)
+    if simulation.kept_inputs < simulation.accepted:
+        kept = f"Accepted: the first {simulation.kept_inputs:,} of {simulation.accepted:,} accepted trials."
+        page.wide(kept, "paragraph", _READABLE)
+    page.printed(name, repeat=HEADER)
+
+
+def _headers() -> list[str]:
+    heads = ["Assumption and its units", "Cell and base case", "Distribution and source", "Draws", "Trials"]
+    heads += ["Mean", "±", "Standard deviation", "±", "5 %", "±", "50 %", "±", "95 %", "±"]
+    return [*heads, "Shift of mean in SDs", "±", "SD accepted / before", "±"]
+
+
+def _lines(simulation: Simulation, assumption: Assumption) -> list[list[Shown]]:
+    base = cells.NONE if assumption.base is None else assumption.base
+    first = [cells.text(assumption.name, "name"), cells.text(str(assumption.cell))]
+    second = [cells.text(assumption.units, "second"), Shown(base, look="second number")]
+    first.append(cells.text(distribution_text(assumption)))
+    second.append(cells.text(assumption.source or cells.NONE, "second"))
+    if assumption.name not in simulation.inputs:
+        why = cells.text(status(simulation.model, assumption))
+        return [[*first, why, *_blank(_STATISTICS + 1)], [*second, *_blank(_STATISTICS + 2, "second")]]
+    accepted, replicate = simulation.inputs[assumption.name], simulation.replicate
+    kept = None if replicate is None else replicate[: accepted.size]
+    found = conditioning(simulation.prior[assumption.name], accepted, kept)
+    return [[*first, *_before(found)], [*second, *_accepted(found)]]
+
+
+def _before(found: Conditioning) -> list[Shown]:
+    return [cells.text("before"), cells.count(found.prior.trials), *_marginal(found.prior), *_blank(4)]
+
+
+def _accepted(found: Conditioning) -> list[Shown]:
+    return [
+        cells.text("accepted", "second"),
+        Shown(found.accepted.trials, cells.count(0).format, "second number"),
+        *_marginal(found.accepted, "second number", "second error"),
+        *_change(found.shift, abs(found.shift.value) >= MOVED),
+        *_change(found.narrowing, found.narrowing.value <= NARROWED),
+    ]
+
+
+def _marginal(found: Marginal, look: str = "number", error_look: str = "error") -> list[Shown]:
+    estimates = (found.mean, found.standard_deviation, *found.percentiles.values())
+    return [shown for estimate in estimates for shown in cells.estimate(estimate, look, error_look)]
+
+
+def _change(found: Estimate, marked: bool) -> list[Shown]:
+    return cells.estimate(found, "moved" if marked else "second number", "second error")
+
+
+def _blank(columns: int, look: str = "number") -> list[Shown]:
+    return [Shown(None, look=look)] * columns
+
+
+def write_correlations(page: Page, simulation: Simulation) -> None:
+    """Write the rank correlations, where there are any."""
+    met = correlations_met(simulation)
+    if not met:
+        return
+    page.heading("Rank correlations")
+    starts, last = (0, 1, 3, 4, 5, 6), 6
+    headers = ("First", "Second", "Asked for", "Drawn with", "Accepted", "±")
+    page.spread([cells.text(header, "header left") for header in headers], starts, last)
+    for pair in met:
+        found = pair.accepted or Estimate(math.nan)
+        line = [cells.text(pair.first), cells.text(pair.second), cells.exact(pair.asked)]
+        line += [
+            cells.text(cells.NONE) if pair.used is None else cells.exact(round(pair.used, 6)),
+            *cells.estimate(found),
+        ]
+        page.spread(line, starts, last)
+    page.wide(_CORRELATIONS, "paragraph", _READABLE)

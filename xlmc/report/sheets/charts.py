@@ -1,0 +1,120 @@
+"""The sheet Charts: forecast charts (frequency, cumulative, reverse cumulative), overlay and trend charts.
+
+Frequency comes first, like the paper's Figures 12 to 15; then what compares forecasts; then the cumulative charts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from xlmc.report.figure import Figure, varying
+from xlmc.report.sheets import cells
+from xlmc.report.sheets.cumulative_charts import cumulative_charts
+from xlmc.report.sheets.curves import Curves
+from xlmc.report.sheets.histogram_chart import BinsAt, histogram_chart
+from xlmc.report.sheets.overlay_chart import MOST, alike, overlay_chart, trend_chart
+from xlmc.report.summary import percent
+
+if TYPE_CHECKING:
+    from xlsxwriter.chart import Chart
+    from xlsxwriter.workbook import Workbook
+
+    from xlmc.report.sheets.page import Page
+    from xlmc.run.simulation import Simulation
+
+__all__ = ["ACROSS", "WIDTHS", "Drawing", "place_drawings", "write_charts"]
+
+ACROSS = 2
+_COLUMNS = 9
+"""Drawings side by side, and the columns of the sheet that each takes."""
+
+_ON_A_PAGE, _SCALE = 2, 60
+"""Rows of drawings, and the percentage at which so many fit."""
+
+_CHART_ROWS = 16
+_OFFSET = 3
+"""In pixels, so that no chart's frame is drawn on the page before."""
+
+_FIRST = 3
+WIDTHS = (8.43,) * (ACROSS * _COLUMNS)
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A chart and what it shows in words."""
+
+    chart: Chart
+    caption: str
+
+
+def write_charts(
+    page: Page,
+    book: Workbook,
+    simulation: Simulation,
+    figures: Sequence[Figure],
+    places: Sequence[BinsAt],
+    curves: Curves,
+) -> None:
+    """Write the sheet with the charts; `places` are those of the figures' bins, `curves` takes the other numbers."""
+    name = simulation.model.workbook.name
+    page.title("Forecast charts of the accepted trials", f"{name}: {simulation.accepted:,} accepted trials")
+    page.row = _FIRST
+    if not figures:
+        page.put(page.row, 0, cells.text("No forecast has a number in an accepted trial: nothing to draw.", "alarm"))
+    drawings = [
+        Drawing(histogram_chart(book, place, figure.bins), figure.caption)
+        for figure, place in zip(figures, places, strict=True)
+    ]
+    breaks = place_drawings(page, drawings)
+    others = [*_compared(book, curves, simulation, figures), *_cumulative(book, curves, simulation, figures)]
+    if others:
+        breaks += [page.row, *place_drawings(page, others)]
+    page.printed(name, scale=_SCALE, breaks=breaks)
+
+
+def place_drawings(page: Page, drawings: Sequence[Drawing]) -> list[int]:
+    """Put charts with their captions on the sheet, two side by side; the rows that begin further pages."""
+    breaks = []
+    for number, start in enumerate(range(0, len(drawings), ACROSS)):
+        if number and number % _ON_A_PAGE == 0:
+            breaks.append(page.row)
+        _place_row(page, drawings[start : start + ACROSS])
+    return breaks
+
+
+def _place_row(page: Page, drawings: Sequence[Drawing]) -> None:
+    starts, captions = [], []
+    for column, drawing in enumerate(drawings):
+        left = column * _COLUMNS
+        options = {"object_position": 1, "y_offset": _OFFSET, "description": drawing.caption}
+        page.sheet.insert_chart(page.row, left, drawing.chart, options)
+        starts += [left, left + _COLUMNS - 1]
+        captions += [cells.text(drawing.caption, "caption"), cells.text("", "caption")]
+    page.row += _CHART_ROWS
+    page.spread(captions, starts, starts[-1])
+    page.row += 1
+
+
+def _compared(book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]) -> Iterator[Drawing]:
+    number = len(figures)
+    for group in alike(varying(figures)):
+        units, few = group[0].answer.units, f" (at most {MOST} in a chart)" if len(group) == MOST else ""
+        caption = f"Figure {number + 1}. Overlay chart: the forecasts in {units} as frequency curves{few}."
+        yield Drawing(overlay_chart(book, curves, group), caption)
+        ranges = "a box for the central range, a line from the 5th to the 95th percentile"
+        caption = f"Figure {number + 2}. Trend chart of the same forecasts: {ranges}."
+        yield Drawing(trend_chart(book, curves, simulation, group), caption)
+        number += 2
+
+
+def _cumulative(book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]) -> Iterator[Drawing]:
+    varied = varying(figures)
+    first = len(figures) + 2 * len(alike(varied))
+    for place, figure in enumerate(varied):
+        charts = cumulative_charts(book, curves, simulation, figure)
+        share, number = percent(figure.answer.share), first + 2 * place
+        for offset, (chart, words) in enumerate(zip(charts, ("at most", "above"), strict=True), 1):
+            caption = f"Figure {number + offset}. {figure.name}: share of the accepted trials {words} each value; "
+            yield Drawing(chart, f"{caption}the central {share} range is dark.")

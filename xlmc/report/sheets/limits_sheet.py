@@ -1,0 +1,195 @@
+"""The sheet Filter limits: how the answers move as each limit of each filter moves, a page a limit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from xlmc.report.sheets import cells
+from xlmc.report.sheets.bar_charts import ROWS as CHART_ROWS
+from xlmc.report.sheets.cells import Shown
+from xlmc.report.sheets.chart_style import bounds
+from xlmc.report.sheets.line_charts import limit_chart
+from xlmc.report.sheets.ranges import TableAt
+from xlmc.results.record.wording import number_text
+
+if TYPE_CHECKING:
+    from xlsxwriter.workbook import Workbook
+
+    from xlmc.report.sheets.page import Page
+    from xlmc.statistics import Estimate
+    from xlmc.studies.sensitivity import FilterLimit, LimitAnswer, LimitPoint, Sensitivities
+
+__all__ = ["WIDTHS", "limit_sentences", "moved_caption", "write_acceptance", "write_answers", "write_limits"]
+
+WIDTHS = (38, 10, 10, 9, 9, 11, 9, 9, 11, 9, 13, *[9] * 5)
+_LAST: Final = len(WIDTHS) - 1
+_RIGHT: Final = 6
+_SCALE: Final = 49
+_LIMIT, _CHANGE, _OF_RANGE = 1, 4, 10
+"""Columns of the long table."""
+
+
+def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) -> None:
+    """Write the sheet."""
+    page.title("Filter limits: how the answers move as each limit moves", name)
+    for sentence in limit_sentences(found):
+        page.wide(sentence, "remark", _LAST)
+    breaks = []
+    for number, limit in enumerate(found.filter_limits):
+        if number:
+            breaks.append(page.row)
+        _write_limit(page, book, limit, {f.forecast: f.units for f in found.forecasts})
+    page.printed(name, breaks=breaks, scale=_SCALE)
+
+
+def limit_sentences(found: Sensitivities) -> list[str]:
+    """What moving a limit means."""
+    told = [
+        "One limit is moved, all others stay. Tightened, it keeps some of the accepted trials. Loosened, it lets in "
+        "trials that nothing else rejects, found among the run's first ones, so their errors are larger. The errors of "
+        "changes and slopes are those of differences between runs with common trials. A limit is evidence: what is "
+        "shown is how much its exact value matters, not which value is right."
+    ]
+    if found.varying_limits:
+        told.append(f"Not moved, because the limit varies with the assumptions: {', '.join(found.varying_limits)}.")
+    if found.omitted_limits:
+        told.append(
+            f"{found.omitted_limits:,} further limits were left out: of very many the last, and all of them where "
+            "accepted trials are rare, for those near a limit are not among the plain trials."
+        )
+    return told
+
+
+def _write_limit(page: Page, book: Workbook, limit: FilterLimit, units: dict[str, str]) -> None:
+    stated = f"{limit.relation} {number_text(limit.limit)}"
+    page.heading(f"{limit.filter}: {stated} ({limit.cell})")
+    if not limit.points:
+        page.wide("The accepted trials do not say by how much it could be moved.", "paragraph", _LAST)
+        return
+    top = page.row
+    page.row += CHART_ROWS + 1
+    acceptance = write_acceptance(page, limit)
+    page.row += 1
+    tables = write_answers(page, limit)
+    bottom, page.row = page.row, top
+    _write_charts(page, book, limit, (acceptance, tables), units)
+    page.row = bottom
+
+
+def write_acceptance(page: Page, limit: FilterLimit) -> TableAt:
+    """Write the shares accepted, and the slopes beside them; where the shares stand is returned."""
+    header = page.row
+    page.table(["Limit", "Value", "Trials", "Share", "±"], [_acceptance(point, limit) for point in limit.points])
+    bottom, page.row = page.row, header
+    starts, last = (_RIGHT, 12, 13), 13
+    headers = ("Slope: the mean of …, per unit of the limit", "Slope", "±")
+    page.spread([cells.text(header, "header left") for header in headers], starts, last)
+    for slope in limit.slopes:
+        page.spread([cells.text(slope.forecast, "name"), *cells.estimate(slope.mean)], starts, last)
+    page.row = max(bottom, page.row)
+    return TableAt(page.sheet.get_name(), header, header + 1, header + len(limit.points))
+
+
+def _acceptance(point: LimitPoint, limit: FilterLimit) -> list[Shown]:
+    return [
+        cells.text(_place(point.limit, limit), "name"),
+        cells.exact(point.limit),
+        cells.count(point.trials),
+        *cells.share(point.acceptance),
+    ]
+
+
+def _place(value: float, limit: FilterLimit) -> str:
+    if value == limit.limit:
+        return "as it is"
+    looser = (value < limit.limit) == (limit.relation in ("at least", "above"))
+    return "looser" if looser else "tighter"
+
+
+def write_answers(page: Page, limit: FilterLimit) -> list[TableAt]:
+    """Write every forecast at every value of the limit; where each forecast's rows stand is returned."""
+    header = page.row
+    headers = [
+        "Forecast",
+        "Limit",
+        "Mean",
+        "±",
+        "Change of mean",
+        "±",
+        "Range from",
+        "±",
+        "to",
+        "±",
+        "Change / range",
+        "±",
+    ]
+    page.table(headers, [])
+    tables = []
+    for place, slope in enumerate(limit.slopes):
+        first = page.row
+        now = next(point.answers[place] for point in limit.points if point.limit == limit.limit)
+        for point in limit.points:
+            page.line(_answer(slope.forecast, point.limit, point.answers[place], now))
+        tables.append(TableAt(page.sheet.get_name(), header, first, page.row - 1))
+    return tables
+
+
+def _answer(name: str, limit: float, answer: LimitAnswer, now: LimitAnswer) -> list[Shown]:
+    width = now.high.value - now.low.value
+    estimates: tuple[Estimate, ...] = (answer.mean, answer.change, answer.low, answer.high)
+    looks = ("second number", "second error") if answer is now else ("number", "error")
+    shown = [each for estimate in estimates for each in cells.estimate(estimate, *looks, like=now.mean)]
+    part = [
+        Shown(None if each is None or width <= 0.0 else each / width, "0.0%", look)
+        for each, look in zip((answer.change.value, answer.change.error), looks, strict=True)
+    ]
+    return [cells.text(name, "name"), Shown(limit, look=looks[0]), *shown, *part]
+
+
+def _write_charts(
+    page: Page, book: Workbook, limit: FilterLimit, at: tuple[TableAt, list[TableAt]], units: dict[str, str]
+) -> None:
+    acceptance, tables = at
+    across = f"Limit: {limit.filter} {limit.relation} …"
+    found = {units[slope.forecast] for slope in limit.slopes}
+    unit = found.pop() if len(found) == 1 else None
+    axis = "Change of the mean" + (", of the central range" if unit is None else f" ({unit})" if unit else "")
+    value, error, number = (_CHANGE, _CHANGE + 1, "General") if unit is not None else (_OF_RANGE, _OF_RANGE + 1, "0%")
+    moved = limit_chart(book, tables, "Change of each mean", across, axis, (0, _LIMIT, value, error), number)
+    title = "Share of trials accepted"
+    share = limit_chart(book, [acceptance], title, across, "Share", (0, 1, 3, 4), "0.0%", ends=_share_axis(limit))
+    captions = (moved_caption(limit), _share_caption(limit))
+    for chart, column, caption in zip((moved, share), (0, _RIGHT), captions, strict=True):
+        page.sheet.insert_chart(page.row, column, chart, {"object_position": 1, "description": caption})
+    page.row += CHART_ROWS
+    gap = cells.text("", "caption")
+    texts = [cells.text(caption, "caption") for caption in captions]
+    page.spread([texts[0], gap, texts[1], gap], [0, _RIGHT - 1, _RIGHT, _LAST], _LAST)
+
+
+def _share_axis(limit: FilterLimit) -> dict[str, float]:
+    """From 0 to above the whiskers, and never beyond 100 %."""
+    tops = [each.acceptance.value + (each.acceptance.error or 0.0) for each in limit.points]
+    return bounds(0.0, min(1.0, max(tops, default=0.0)))
+
+
+def moved_caption(limit: FilterLimit) -> str:
+    """What the chart of the changes shows."""
+    return (
+        f"How far each forecast's mean moves from that with the limit as it is ({number_text(limit.limit)}); whiskers "
+        f"are standard errors of the change. Other filters and limits stay.{_unmoved(limit)}"
+    )
+
+
+def _unmoved(limit: FilterLimit) -> str:
+    """What changes of 0 ± 0 mean."""
+    if len({point.trials for point in limit.points}) > 1:
+        return ""
+    return " No trial that all else keeps lies between these limits, so nothing moves; of more trials some may."
+
+
+def _share_caption(limit: FilterLimit) -> str:
+    return (
+        f"The share of all trials that are accepted then, from {limit.trials:,} trials; where the limit is loosened, "
+        f"the further ones from {limit.loosened_trials:,}."
+    )

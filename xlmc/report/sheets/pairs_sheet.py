@@ -1,0 +1,180 @@
+"""The sheet Pairs: forecasts two at a time, their joint probabilities, their correlation, and scatter charts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from xlmc.report import number_format
+from xlmc.report.sheets import cells
+from xlmc.report.sheets.cells import BLANK, Shown
+from xlmc.report.sheets.chart_style import Reference, across, axis_format, bounds, finish, straight, upwards
+from xlmc.report.sheets.charts import Drawing, place_drawings
+from xlmc.report.sheets.curves import Curves, TableAt
+from xlmc.report.sheets.styles import DARK
+from xlmc.results.statements import PAIRS, Pair, pairs_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from xlsxwriter.chart_scatter import ChartScatter
+    from xlsxwriter.workbook import Workbook
+
+    from xlmc.definitions import Forecast
+    from xlmc.report.sheets.page import Page
+    from xlmc.report.sheets.trials import TrialsAt
+    from xlmc.run.simulation import Simulation
+
+__all__ = ["POINTS", "WIDTHS", "pair_sentences", "write_pair_table", "write_pairs"]
+
+POINTS: Final = 1_000
+"""In a scatter chart: more hide each other and make the file slow to open."""
+
+WIDTHS = (*[8.43] * 14, 11.5, *[8.43] * 3)
+_LAST = 17
+_STARTS = (0, 3, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17)
+_SCALE = 60
+_FORECASTS = 6
+"""More have more pairs than are looked at."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Points:
+    """A forecast's points: where its name and its values stand, and the limits of an axis for them."""
+
+    axis: Reference
+    values: Reference
+    limits: dict[str, float]
+
+
+def write_pairs(page: Page, book: Workbook, simulation: Simulation, curves: Curves, trials: TrialsAt) -> None:
+    """Write the sheet; its charts draw the trials where `trials` says, or points that `curves` takes."""
+    name = simulation.model.workbook.name
+    page.title("Forecasts two at a time", f"{name}: {simulation.accepted:,} accepted trials")
+    pairs = pairs_of(simulation)
+    if not pairs:
+        page.row += 1
+        page.wide(
+            "There are no two forecasts that vary and have numbers in the same accepted trials.", "paragraph", _LAST
+        )
+        page.printed(name, scale=_SCALE)
+        return
+    page.heading("Joint probability and rank correlation")
+    write_pair_table(page, pairs)
+    for sentence in pair_sentences(simulation, pairs):
+        page.wide(sentence, "remark", _LAST)
+    page.row += 1
+    breaks = [page.row] if len(pairs) > 2 else []
+    breaks += place_drawings(page, _drawings(book, curves, simulation, pairs, trials))
+    page.printed(name, scale=_SCALE, breaks=breaks)
+
+
+def write_pair_table(page: Page, pairs: Sequence[Pair]) -> None:
+    """Write the table."""
+    heads = ["First (A) and its limit a", "Second (B) and its limit b", "A > a and B > b", "±", "95 % from", "to"]
+    heads += ["A > a or B > b", "±", "A > B", "±", "Rank correlation", "±", "95 % from", "to"]
+    looks = ["header left", "header left", *["header"] * 12]
+    page.spread([Shown(head, look=look) for head, look in zip(heads, looks, strict=True)], _STARTS, _LAST)
+    for pair in pairs:
+        page.spread(_line(pair), _STARTS, _LAST)
+
+
+def _line(pair: Pair) -> list[Shown]:
+    greater = [cells.text(cells.NONE), BLANK] if pair.first_greater is None else cells.share(pair.first_greater)
+    return [
+        *(cells.text(_limited(pair, place), "name") for place in (0, 1)),
+        *cells.share(pair.both_above),
+        *cells.interval(pair.both_above, percent=True),
+        *cells.share(pair.either_above),
+        *greater,
+        *cells.estimate(pair.correlation),
+        *cells.interval(pair.correlation),
+    ]
+
+
+def _limited(pair: Pair, place: int) -> str:
+    forecast, limit = (pair.first, pair.second)[place], pair.limits[place]
+    units = f" {forecast.units}" if forecast.units else ""
+    what = "threshold" if pair.thresholds[place] else "median"
+    return f"{forecast.name}, {what} {limit:.6g}{units}"
+
+
+def pair_sentences(simulation: Simulation, pairs: Sequence[Pair]) -> list[str]:
+    """What the table is of."""
+    trials, ranked = {pair.trials for pair in pairs}, {pair.ranked for pair in pairs}
+    said = "A limit is the forecast's threshold, or where it has none its median, taken as the number that stands here."
+    said += " Probabilities are shares of the accepted trials in which both forecasts are numbers"
+    said += f" ({min(trials):,})." if len(trials) == 1 else f" ({min(trials):,} to {max(trials):,})."
+    if max(ranked) < max(trials):
+        said += f" Rank correlations come from the first {max(ranked):,} of them."
+    said += " A > B is given where both have the same units."
+    found = [said]
+    if len(pairs) == PAIRS and len(simulation.model.forecasts) > _FORECASTS:
+        found.append(f"At most {PAIRS} pairs of forecasts are here, the first ones of the workbook.")
+    return found
+
+
+def _drawings(
+    book: Workbook, curves: Curves, simulation: Simulation, pairs: Sequence[Pair], trials: TrialsAt
+) -> list[Drawing]:
+    """A scatter chart a pair, from the first trials in which all forecasts of these pairs are numbers."""
+    names = {forecast.name for pair in pairs for forecast in (pair.first, pair.second)}
+    forecasts = [forecast for forecast in simulation.model.forecasts if forecast.name in names]
+    known = _known([simulation.forecasts[each.name] for each in forecasts])
+    if not known.size:
+        return []
+    found = {each.name: _points(curves, simulation, trials, each, known) for each in forecasts}
+    titles = [f"{pair.first.name} and {pair.second.name}" for pair in pairs]
+    titled = curves.write(["Titles of the scatter charts"], "", ["Title"], [[cells.text(each)] for each in titles], 60)
+    points = f"the first {known.size:,} accepted trials in which all of these forecasts are numbers"
+    return [
+        Drawing(
+            _scatter(book, found[pair.first.name], found[pair.second.name], titled, place),
+            f"Scatter chart {place + 1}. {titles[place]}: {points}.",
+        )
+        for place, pair in enumerate(pairs)
+    ]
+
+
+def _known(columns: Sequence[NDArray[np.float64]]) -> NDArray[np.intp]:
+    """The first trials in which all are numbers: a text among the points would turn a chart's axis into 1, 2, 3."""
+    early = [column[: 20 * POINTS] for column in columns]
+    return np.flatnonzero(~np.any([np.isnan(column) for column in early], axis=0))[:POINTS]
+
+
+def _points(
+    curves: Curves, simulation: Simulation, trials: TrialsAt, forecast: Forecast, known: NDArray[np.intp]
+) -> _Points:
+    """A forecast's values in these trials: where they stand on the sheet Trials, or else in a table of their own."""
+    values = simulation.forecasts[forecast.name][known]
+    limits = bounds(float(values.min()), float(values.max()))
+    if known[-1] < min(known.size, trials.shown):
+        place = simulation.model.forecasts.index(forecast)
+        return _Points(trials.heading(place), trials.column(place, known.size), limits)
+    digits = number_format.exact(float(values.max()) - float(values.min()))
+    axis = f"{forecast.name} ({forecast.units})" if forecast.units else forecast.name
+    rows = [[Shown(value, digits)] for value in values.tolist()]
+    table = curves.write(["Points of a scatter chart"], axis, [forecast.name], rows)
+    return _Points(table.axis, table.column(0), limits)
+
+
+def _scatter(book: Workbook, first: _Points, second: _Points, titles: TableAt, place: int) -> ChartScatter:
+    chart = straight(book.add_chart({"type": "scatter"}))
+    chart.add_series(
+        {
+            "categories": first.values,
+            "values": second.values,
+            "marker": {
+                "type": "circle",
+                "size": 3,
+                "fill": {"color": DARK, "transparency": 50},
+                "border": {"none": True},
+            },
+        }
+    )
+    chart.set_x_axis(across(first.axis, num_format=axis_format("General"), **first.limits))
+    chart.set_y_axis(upwards(second.axis, "General", **second.limits))
+    finish(chart, titles.cell(place), legend=False)
+    return chart

@@ -1,0 +1,104 @@
+"""The sheet Record: what the run was a function of, for people to read and programs to read back.
+
+Column A, folded away, holds the keys of `Record`: `file.sha256` beside an entry, `forecasts` beside a section's title,
+`forecasts[0]` beside the first row of its table. The hidden row above a table's headings holds the columns' keys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from xlmc.report.sheets.cells import NONE, Shown
+from xlmc.results.record import Entry, Record, RecordTable, Section, Value
+
+if TYPE_CHECKING:
+    from xlmc.report.sheets.page import Page
+
+__all__ = ["WIDTHS", "write_record"]
+
+_UNIT = 12.0
+_UNITS = 13
+WIDTHS = (24, 34, *[_UNIT] * _UNITS)
+_FIRST, _LAST = 1, len(WIDTHS) - 1
+_SPANS = {"limits": 2, "because": 5, "parameters": 2, "source": 3, "notes": 2, "error": 3, "message": 14, "first": 3}
+"""How many columns of the sheet a column of a table takes; all others take one."""
+
+_CODE = frozenset({"repeat", "command", "fingerprint", "sha256", "original_sha256"})
+
+_LISTED = frozenset({"structure", "cells"})
+"""Sections whose tables are as long as the model, at the end: one line a row, however long its text, not printed."""
+
+
+def write_record(page: Page, record: Record, name: str) -> None:
+    """Write the sheet."""
+    page.sheet.set_column(0, 0, WIDTHS[0], None, {"level": 1, "hidden": True})
+    page.sheet.set_column(1, 1, WIDTHS[1], None, {"collapsed": True})
+    page.title("Record of the run", f"{name}: what the numbers depend on, and how to repeat them", _FIRST)
+    printed = 0
+    for section in record.sections:
+        _write_section(page, section)
+        printed = printed if section.key in _LISTED else page.row
+    page.sheet.print_area(0, _FIRST, printed, _LAST)
+    page.printed(name)
+
+
+def _write_section(page: Page, section: Section) -> None:
+    page.heading(section.title, _FIRST)
+    _write_key(page, page.row - 1, section.key)
+    for entry in section.entries:
+        _write_entry(page, section.key, entry)
+    if section.table is not None and section.table.rows:
+        _write_table(page, section.key, section.table)
+    elif section.table is not None:
+        page.wide("None", "text", _LAST, _FIRST)
+
+
+def _write_entry(page: Page, section: str, entry: Entry) -> None:
+    _write_key(page, page.row, f"{section}.{entry.key}")
+    if entry.key.startswith("packed_"):
+        _write_listed(page, (entry.label, entry.value))
+        return
+    look = "code" if entry.key in _CODE else "text"
+    page.spread([Shown(entry.label, look="label"), _shown(entry.value, look)], (_FIRST, _FIRST + 1), _LAST)
+
+
+def _write_table(page: Page, section: str, table: RecordTable) -> None:
+    listed = section in _LISTED
+    starts, last = _placed([key for key, _ in table.columns])
+    if listed:
+        starts, last = list(range(_FIRST, _FIRST + len(table.columns))), _LAST
+    page.spread([Shown(key, look="key") for key, _ in table.columns], starts, last)
+    page.sheet.set_row(page.row - 1, None, None, {"hidden": True})
+    page.spread([Shown(label, look="header left") for _, label in table.columns], starts, last)
+    for number, row in enumerate(table.rows):
+        _write_key(page, page.row, f"{section}[{number}]")
+        if listed:
+            _write_listed(page, row)
+            continue
+        page.spread([_shown(value, "text") for value in row], starts, last)
+
+
+def _write_listed(page: Page, values: Sequence[Value]) -> None:
+    for column, value in enumerate(values, _FIRST):
+        page.put(page.row, column, _shown(value, "listed"))
+    page.row += 1
+
+
+def _placed(keys: Sequence[str]) -> tuple[list[int], int]:
+    """Where each column of a table starts, and where the last one ends."""
+    starts, place = [], _FIRST
+    for key in keys:
+        starts.append(place)
+        place += _SPANS.get(key, 1)
+    return starts, place - 1
+
+
+def _write_key(page: Page, row: int, key: str) -> None:
+    page.put(row, 0, Shown(key, look="key"))
+
+
+def _shown(value: Value, look: str) -> Shown:
+    if value is None or value == "":
+        return Shown(NONE, look=look)
+    return Shown(value, look=look)

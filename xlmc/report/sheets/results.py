@@ -1,0 +1,167 @@
+"""The sheet Results: the answer first, then how many trials it rests on and what the filters did."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from xlmc.report.base_case import base_case
+from xlmc.report.sheets import cells
+from xlmc.report.sheets.accounting import write_accounting
+from xlmc.report.sheets.cells import Shown
+from xlmc.report.sheets.checks_table import write_checks
+from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, range_heading, summarise
+from xlmc.results.record.errors_met import lost_sentences
+from xlmc.results.record.sampling_words import sampling_sentence
+from xlmc.run.stopping.stopped import ALL_TRIALS
+from xlmc.statistics import Estimate, proportion
+
+if TYPE_CHECKING:
+    from xlmc.report.sheets.page import Page
+    from xlmc.run.simulation import Simulation
+
+__all__ = ["LAST", "WIDTHS", "base_sentences", "opening_sentences", "range_sentences", "write_counts", "write_results"]
+
+WIDTHS = (30, 9, *[10] * 16)
+LAST = 11
+
+_SCALE, _SCALE_WITH_THRESHOLDS = 60, 45
+"""In percent: as wide as a page."""
+
+
+def write_results(page: Page, simulation: Simulation) -> None:
+    """Write the sheet."""
+    book = simulation.model.workbook.name
+    settings = simulation.settings
+    page.title("Results of the simulation", f"{book}, seed {settings.seed}, {simulation.evaluated:,} trials")
+    for sentence in opening_sentences(simulation):
+        page.wide(sentence, "warning", LAST)
+    _write_answers(page, simulation)
+    write_counts(page, simulation)
+    checks_from = page.row
+    write_checks(page, simulation, LAST)
+    write_accounting(page, simulation, LAST)
+    _write_notices(page, simulation)
+    if simulation.checks:  # so that no table is cut in two
+        wide = any(forecast.threshold is not None for forecast in simulation.model.forecasts)
+        page.printed(book, scale=_SCALE_WITH_THRESHOLDS if wide else _SCALE, breaks=[checks_from])
+    else:
+        page.printed(book)
+
+
+def opening_sentences(simulation: Simulation) -> list[str]:
+    """What stands before the answers: why not to use them, checks that fail first; then the trials lost to errors."""
+    ended = simulation.stopped
+    return [
+        *(f"Do not use these results as they stand: {warning}" for warning in simulation.warnings),
+        *lost_sentences(simulation),
+        *([f"Fewer trials than were asked for: {ended.sentence}"] if ended.interrupted else []),
+    ]
+
+
+def _write_answers(page: Page, simulation: Simulation) -> None:
+    rows = summarise(simulation)
+    page.heading("Answers, from the accepted trials")
+    page.table(_headers(rows), [_answer(row, rows) for row in rows])
+    page.row += 1
+    for sentence in (
+        sampling_sentence(simulation),
+        ERROR_SENTENCE,
+        *range_sentences(rows),
+        *base_sentences(simulation),
+    ):
+        page.wide(sentence, "remark", LAST)
+
+
+def _headers(rows: Sequence[SummaryRow]) -> list[str]:
+    heads = ["Forecast", "Units", "Accepted trials", "Mean", "±", "Standard deviation", "±"]
+    heads += [f"{range_heading(rows)} from", "±", "to", "±", "Base case"]
+    if any(row.threshold is not None for row in rows):
+        heads += ["Threshold", "P(above threshold)", "±", "95 % from", "to"]
+    return heads if len({row.share for row in rows}) < 2 else [*heads, "Range holds"]
+
+
+def _answer(row: SummaryRow, rows: Sequence[SummaryRow]) -> list[Shown]:
+    shown = [
+        cells.text(row.name, "name"),
+        cells.text(row.units),
+        cells.count(row.trials),
+        *cells.estimate(row.mean, "answer"),
+        *cells.estimate(row.standard_deviation, "answer"),
+        *cells.estimate(row.low, "answer"),
+        *cells.estimate(row.high, "answer"),
+        cells.exact(row.base, cells.digits_of(row.mean)),
+    ]
+    if any(other.threshold is not None for other in rows):
+        shown += _above(row)
+    return shown if len({other.share for other in rows}) < 2 else [*shown, cells.text(percent(row.share))]
+
+
+def _above(row: SummaryRow) -> list[Shown]:
+    if row.above is None:
+        return [cells.BLANK] * 5
+    return [cells.exact(row.threshold), *_share(row.above)]
+
+
+def range_sentences(rows: Sequence[SummaryRow]) -> list[str]:
+    """What a central range is."""
+    shares = {row.share for row in rows}
+    if len(shares) != 1:
+        return ["Central ranges leave out as many accepted trials below as above."]
+    share = shares.pop()
+    outside = percent((1 - share) / 2)
+    return [f"The {percent(share)} range is central: {outside} of the accepted trials lie below it, {outside} above."]
+
+
+def base_sentences(simulation: Simulation) -> list[str]:
+    """What the base case is, and which filters it would not pass."""
+    found = base_case(simulation)
+    if found is None:
+        return ["There is no base case: the cell of an assumption is blank."]
+    meaning = "The base case has every assumption at the value in its cell"
+    if not found.rejected_by:
+        return [f"{meaning}."]
+    return [f"{meaning}. As a trial it would be rejected by: {', '.join(found.rejected_by)}."]
+
+
+def write_counts(page: Page, simulation: Simulation) -> None:
+    """Write how many trials were run, accepted and lost."""
+    page.heading("Trials")
+    total, rare = simulation.trials, simulation.rare
+    lost = proportion(min(simulation.error_trials, total), total)
+    headers = ("", "Trials", "Share", "±", "95 % from", "to")
+    starts = (0, 2, 3, 4, 5, 6)
+    page.spread([cells.text(header, "header") for header in headers], starts, 6)
+    for line in (
+        *_searched(simulation),
+        [cells.text("Run" if rare is None else "Drawn plainly", "name"), cells.count(total), *[cells.BLANK] * 4],
+        [
+            cells.text("Accepted" if rare is None or not rare.at_least else "Accepted, at least", "name"),
+            cells.count(simulation.accepted),
+            *_share(simulation.acceptance),
+        ],
+        [cells.text("Lost to errors in cells", "name"), cells.count(simulation.error_trials), *_share(lost)],
+    ):
+        page.spread(line, starts, 6)
+    if simulation.stopped != ALL_TRIALS:
+        page.row += 1
+        page.wide(f"The run ended when {simulation.stopped.sentence}.", "remark", LAST)
+
+
+def _searched(simulation: Simulation) -> list[list[Shown]]:
+    """What was evaluated where accepted trials are rare."""
+    if simulation.rare is None:
+        return []
+    return [[cells.text("Evaluated in all", "name"), cells.count(simulation.rare.evaluations), *[cells.BLANK] * 4]]
+
+
+def _share(found: Estimate) -> list[Shown]:
+    return [*cells.share(found), *cells.interval(found, percent=True)]
+
+
+def _write_notices(page: Page, simulation: Simulation) -> None:
+    if not simulation.notices:
+        return
+    page.heading("Notices")
+    for notice in simulation.notices:
+        page.wide(str(notice), "notice", LAST)

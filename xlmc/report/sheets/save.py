@@ -1,0 +1,93 @@
+"""Write a run's result sheets into a copy of its workbook, or into the workbook itself."""
+
+from __future__ import annotations
+
+import hashlib
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from xlmc.errors import WorkbookError
+from xlmc.report.sheets.book import build_sheets
+from xlmc.report.sheets.trials import TRIAL_ROWS
+from xlmc.run.result_cells import filled_sheets
+from xlmc.workbook.inject import inject, result_sheets
+from xlmc.workbook.seal import sealed_parts
+from xlmc.workbook.target import Target, is_same_file
+from xlmc.workbook.writer import TakenError, package_bytes, refuse_if_open, write_workbook
+
+if TYPE_CHECKING:
+    from xlmc.run.simulation import Simulation
+
+__all__ = ["check_ending", "save"]
+
+
+def save(
+    simulation: Simulation,
+    path: Path,
+    *,
+    command: str | None = None,
+    rows: int = TRIAL_ROWS,
+    overwrite: bool = False,
+) -> Path:
+    """Write the workbook with result sheets behind its own; those of an earlier run are replaced.
+
+    Cells that show results of a run, such as `RiskMean(B9)`, show this one's.
+
+    Args:
+        simulation: the finished run.
+        path: where to; an untouched result of the same workbook is replaced.
+        command: what the person typed, for the record.
+        rows: the most accepted trials to write out.
+        overwrite: replace any other file too, and write into the workbook itself where the path is its own.
+
+    Returns:
+        The path.
+
+    Raises:
+        TakenError: the file is not ours to replace, is open in a program, or is the workbook itself and has changed
+            since it was read.
+        WorkbookError: the file cannot be written, or has another ending than the workbook.
+    """
+    check = partial(_check, simulation, path, overwrite=overwrite)
+    check_ending(path, simulation.model.path)
+    check()
+    sheets = build_sheets(simulation, command=command, rows=rows)
+    parts = inject({**simulation.model.workbook.parts, **filled_sheets(simulation)}, sheets)
+    if not _is_source(simulation, path):  # the person's own file, which is never ours to replace
+        parts = sealed_parts(parts, result_sheets(parts)[-1], simulation.model.workbook.name)
+    write_workbook(path, package_bytes(parts), check)
+    return path
+
+
+def check_ending(path: Path, source: Path) -> None:
+    """Refuse another ending than the workbook's, and results of a workbook without one.
+
+    Raises:
+        WorkbookError: so it is.
+    """
+    if not source.suffix:
+        hint = f"Rename it, such as {source.name.strip('.') + '.xlsx'!r}: Excel opens no result without an ending"
+        raise WorkbookError("the name of the workbook has no ending", where=source, hint=hint)
+    # Excel opens no file whose ending says that it has macros when it has none, or the other way round.
+    if path.suffix.casefold() != source.suffix.casefold():
+        hint = f"Name it {path.with_suffix(source.suffix).name!r}"
+        raise WorkbookError(f"results of a {source.suffix} workbook must end in {source.suffix}", where=path, hint=hint)
+
+
+def _check(simulation: Simulation, path: Path, *, overwrite: bool) -> None:
+    """Refuse what must not be replaced: somebody's file, or the workbook as it was read by one changed meanwhile."""
+    if not _is_source(simulation, path):
+        Target(path, simulation.model.workbook.name, overwrite).check()
+        return
+    if not overwrite:
+        hint = "Name another file, or write the result sheets into it with --in-place (in Python: overwrite=True)"
+        raise TakenError("this is the workbook itself", where=path, hint=hint)
+    refuse_if_open(path)
+    if hashlib.sha256(path.read_bytes()).hexdigest() != simulation.model.workbook.sha256:
+        hint = "Run again, or write to another file"
+        raise TakenError("the workbook has changed since it was read", where=path, hint=hint)
+
+
+def _is_source(simulation: Simulation, path: Path) -> bool:
+    return is_same_file(path, simulation.model.path)

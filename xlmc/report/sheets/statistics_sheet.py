@@ -1,0 +1,93 @@
+"""The sheet Statistics: everything about each forecast's accepted trials, every number with its error."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from xlmc.report.sheets import cells
+from xlmc.report.sheets.cells import Shown
+from xlmc.report.summary import ERROR_SENTENCE, percent
+
+if TYPE_CHECKING:
+    from xlmc.report.sheets.page import Page
+    from xlmc.run.simulation import ForecastResult, Simulation
+    from xlmc.statistics import Estimate
+
+__all__ = ["WIDTHS", "write_forecast", "write_statistics"]
+
+_BLOCK = (26, 9, 11, 10, 10, 10)
+WIDTHS = (*_BLOCK, 2, 18, 11, 10, 10, 10)
+_RIGHT = len(_BLOCK) + 1
+_LAST = len(WIDTHS) - 1
+_SCALE = 68
+"""The percentage at which one forecast fits on a page, of A4 too, and with a font that is wider than Excel's own."""
+
+_ENDS = ["Value", "±", "95 % from", "to"]
+
+
+def write_statistics(page: Page, simulation: Simulation) -> None:
+    """Write the sheet."""
+    name = simulation.model.workbook.name
+    page.title("Statistics of the accepted trials", f"{name}: {simulation.accepted:,} accepted trials")
+    page.row += 1
+    page.wide(ERROR_SENTENCE, "remark", _LAST)
+    breaks = []
+    for number, result in enumerate(simulation.results.values()):
+        if number:
+            breaks.append(page.row)
+        write_forecast(page, result)
+    page.printed(name, breaks=breaks, scale=_SCALE)
+
+
+def write_forecast(page: Page, result: ForecastResult) -> None:
+    """Write everything about one forecast: its statistics, and its percentiles beside them."""
+    page.heading(result.definition.name)
+    top = page.row
+    page.table(["Statistic", "Units", *_ENDS], _statistics(result))
+    bottom, page.row = page.row, top
+    page.table(["Percentile", *_ENDS], _percentiles(result), _RIGHT)
+    page.row = max(bottom, page.row)
+
+
+def _statistics(result: ForecastResult) -> list[list[Shown]]:
+    found, units = result.statistics, result.definition.units
+    rows = [[cells.text("Trials"), cells.text(""), cells.count(found.trials), *[cells.BLANK] * 3]]
+    for label, unit, estimate in (
+        ("Mean", units, found.mean),
+        ("Median", units, found.median),
+        ("Mode", units, found.mode),
+        ("Standard deviation", units, found.standard_deviation),
+        ("Variance", _squared(units), found.variance),
+        ("Skewness", "", found.skewness),
+        ("Kurtosis (normal 3)", "", found.kurtosis),
+        ("Coefficient of variation", "", found.coefficient_of_variation),
+        ("Minimum", units, found.minimum),
+        ("Maximum", units, found.maximum),
+        ("Range width", units, found.range_width),
+        ("Mean standard error", units, found.mean_standard_error),
+    ):
+        rows.append([cells.text(label), cells.text(unit), *_with_interval(estimate, found.mean)])
+    return rows
+
+
+def _percentiles(result: ForecastResult) -> list[list[Shown]]:
+    found, definition = result.statistics, result.definition
+    labels = [cells.text(f"{percentile:g} %") for percentile in found.percentiles]
+    labels += [cells.text(f"{percent(definition.central)} range {end}", "name") for end in ("from", "to")]
+    estimates = (*found.percentiles.values(), *found.central)
+    rows = [[label, *_with_interval(each, found.mean)] for label, each in zip(labels, estimates, strict=True)]
+    if found.probability_above is not None:
+        above = found.probability_above
+        shown = [*cells.share(above), *cells.interval(above, percent=True)]
+        rows.append([cells.text(f"P(> {definition.threshold:g})", "name"), *shown])
+    return rows
+
+
+def _with_interval(estimate: Estimate, like: Estimate) -> list[Shown]:
+    return [*cells.estimate(estimate, like=like), *cells.interval(estimate)]
+
+
+def _squared(units: str) -> str:
+    if not units:
+        return ""
+    return f"{units}²" if units.isalpha() else f"({units})²"

@@ -1,0 +1,8 @@
+"""The record of a run: what it was a function of, with versions, definitions, counts, and how to repeat it."""
+
+from __future__ import annotations
+
+from xlmc.results.record.make import make_record
+from xlmc.results.record.model import Entry, Record, RecordTable, Section, Value
+
+__all__ = ["Entry", "Record", "RecordTable", "Section", "Value", "make_record"]

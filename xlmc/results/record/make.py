@@ -1,0 +1,261 @@
+"""Make the record of a finished run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
+from xlmc.results.record.cell_table import cell_section
+from xlmc.results.record.contents import needed_contents
+from xlmc.results.record.definition_tables import (
+    assumption_section,
+    check_section,
+    correlation_section,
+    filter_section,
+    forecast_section,
+    plain,
+)
+from xlmc.results.record.environment import processor, versions
+from xlmc.results.record.errors_met import errors_met
+from xlmc.results.record.fingerprint import fingerprint
+from xlmc.results.record.model import Entry, Record, RecordTable, Section
+from xlmc.results.record.repeat import repeat_command
+from xlmc.results.record.sampling_words import errors_text, generator_text, method_text
+from xlmc.results.record.settings_table import settings_section
+from xlmc.results.record.structure_table import structure_section
+from xlmc.workbook.inject import original_hash
+
+if TYPE_CHECKING:
+    from xlmc.run.rare.account import RareAccount
+    from xlmc.run.rounding import Rounding
+    from xlmc.run.simulation import Simulation
+
+__all__ = ["make_record"]
+
+FORMAT: Final = 2
+"""Of the record: from 2 on it holds the settings and the cells that a run can be repeated and checked by."""
+
+_SHARES = {
+    "trials": "accepted of all trials; its interval is Wilson's, 95 %",
+    "accepted": "(N − 1)/(n − 1) for n trials until the N-th was accepted; its interval is exact, 95 %",
+}
+"""How the share of accepted trials is estimated, by what ended the run."""
+
+_RARE_SHARE = "the mean weight of the trials drawn where accepted ones lie; its interval is that of its logarithm, 95 %"
+
+_CONVENTIONS = (
+    ("percentiles", "Percentiles", "linear between trials, as Excel's PERCENTILE.INC"),
+    ("central_range", "Central range", "as many trials lie below it as above it; it is not the shortest such range"),
+    ("kurtosis", "Kurtosis", "3 for the normal distribution"),
+    ("mode", "Mode", "half-sample mode; of counts the most frequent value"),
+    ("errors", "Standard errors (±)", "Monte Carlo error alone"),
+    ("shares", "Intervals of shares", "Wilson, 95 %; longer where a share rests on a few trials"),
+    ("trial_numbers", "Trial numbers", "counted from 0"),
+    ("logicals", "Logicals", "TRUE counts as 1, FALSE as 0"),
+)
+
+
+def make_record(simulation: Simulation, command: str | None = None) -> Record:
+    """The record of a run; the same run on the same machine has the same record.
+
+    Args:
+        simulation: the finished run.
+        command: what the person typed; None for a run from Python.
+    """
+    contents = needed_contents(simulation.model)
+    software, machine = _environment(simulation)
+    return Record(
+        (
+            _run(simulation, command),
+            _file(simulation),
+            _counts(simulation),
+            _end(simulation),
+            _sampling(simulation),
+            settings_section(simulation),
+            *([] if simulation.rare is None else [_rare(simulation.rare)]),
+            forecast_section(simulation),
+            filter_section(simulation),
+            *([check_section(simulation)] if simulation.checks else []),
+            assumption_section(simulation),
+            correlation_section(simulation),
+            _messages("warnings", "Warnings", simulation.warnings),
+            _messages("notices", "Notices", [str(notice) for notice in simulation.notices]),
+            _errors(simulation),
+            _conventions(simulation),
+            Section("software", "Software", _entries(software)),
+            Section("processor", "Processor", _entries(machine)),
+            structure_section(simulation.model, contents.values()),
+            cell_section(contents),
+        )
+    )
+
+
+def _environment(simulation: Simulation) -> tuple[Mapping[str, str], Mapping[str, str]]:
+    """The software and the processor of the run: those it was saved with, or those here."""
+    origin = simulation.origin
+    if origin is not None:
+        return origin.software, origin.processor
+    return versions(simulation.settings.engine), processor()
+
+
+def _run(simulation: Simulation, command: str | None) -> Section:
+    given = () if command is None else (Entry("command", "Command that was given", command),)
+    entries = (
+        Entry("repeat", "Command that repeats it", repeat_command(simulation)),
+        *given,
+        Entry("fingerprint", "SHA-256 of the accepted trials", fingerprint(simulation)),
+        Entry("format", "Format of this record", FORMAT),
+    )
+    return Section("run", "This run", entries)
+
+
+def _file(simulation: Simulation) -> Section:
+    book = simulation.model.workbook
+    entries = (
+        Entry("name", "Name", book.name),
+        Entry("sha256", "SHA-256 of the file", book.sha256 or None),
+        # Result sheets do not change this one, so a result workbook can be checked against the book it came from.
+        Entry(
+            "original_sha256",
+            "SHA-256 of its parts without result sheets",
+            original_hash(book.parts) if book.parts else None,
+        ),
+    )
+    return Section("file", "Workbook", entries)
+
+
+def _counts(simulation: Simulation) -> Section:
+    entries = (
+        Entry("trials", "Trials", simulation.trials),
+        Entry("accepted", "Accepted", simulation.accepted),
+        Entry("inputs_kept", "Accepted trials whose draws are kept", simulation.kept_inputs),
+        Entry("acceptance", "Share accepted", plain(simulation.acceptance.value)),
+        Entry("acceptance_error", "Its standard error", plain(simulation.acceptance.error)),
+        Entry("error_trials", "Lost to errors", simulation.error_trials),
+        Entry("undecided", "Not decided by a filter", simulation.tally.by_error),
+        Entry("invalid", "Draws whose parameters are no distribution", sum(simulation.invalid.values())),
+    )
+    return Section("counts", "Trials", entries)
+
+
+def _end(simulation: Simulation) -> Section:
+    stopped, asked = simulation.stopped, simulation.settings.stopping
+    entries = (
+        Entry("by", "Ended by", stopped.by),
+        Entry("in_words", "In words", stopped.sentence),
+        Entry("goal", "Was to go on until", stopped.goal),
+        Entry("reached", "Came to it", stopped.reached),
+        Entry("most_trials", "Trials at most", simulation.settings.trials),
+        Entry("time_limit", "Seconds at most", asked.seconds),
+        Entry("blocks", "Blocks of trials", -(-simulation.trials // simulation.block)),
+        Entry("share_accepted", "The share accepted is", _share_words(simulation)),
+    )
+    return Section("end", "What ended the run", entries)
+
+
+def _share_words(simulation: Simulation) -> str:
+    if simulation.rare is not None:
+        return _RARE_SHARE
+    return _SHARES.get(simulation.stopped.by, _SHARES["trials"])
+
+
+def _sampling(simulation: Simulation) -> Section:
+    settings, plan = simulation.settings, simulation.plan
+    replicates = (
+        Entry("asked", "Trials that were asked for", settings.trials),
+        Entry("replicates", "Independent replicates", plan.replicates),
+        Entry("replicate", "Trials in a replicate", plan.size),
+    )
+    entries = (
+        Entry("trials", "Trials", simulation.trials),
+        Entry("seed", "Seed", settings.seed),
+        Entry("method", "Method", settings.sampling),
+        Entry("method_in_words", "In words", method_text(simulation)),
+        *(replicates if plan.size else ()),
+        Entry("errors", "Errors come", errors_text(simulation)),
+        Entry("generator", "Generator", generator_text(simulation)),
+        *([Entry("dimensions", "Sobol dimensions", ", ".join(plan.order))] if plan.order else []),
+        Entry("engine", "Engine", settings.engine),
+        Entry("arithmetic", "Arithmetic", settings.arithmetic),
+        Entry("block", "Trials in a block", simulation.block),
+        *(() if simulation.rounding is None else _rounding(simulation.rounding)),
+    )
+    return Section("sampling", "Sampling", entries)
+
+
+def _rare(found: RareAccount) -> Section:
+    low, high = found.acceptance.interval or (None, None)
+    entries = (
+        Entry("in_words", "In words", found.sentence),
+        Entry("evaluations", "Trials evaluated in all", found.evaluations),
+        Entry("learning", "Of them, to learn where accepted ones lie", found.learning),
+        Entry("proposals", "Of them, drawn there", found.proposals),
+        Entry("proposals_accepted", "Of those, accepted by the filters", found.proposals_accepted),
+        Entry("kept", "Of those, kept with equal weight", found.kept),
+        Entry("effective", "Effective sample size of the kept ones", plain(found.size)),
+        Entry("fresh", "Drawn after there were enough, for the probability", found.fresh),
+        Entry("acceptance", "Probability that a trial is accepted", plain(found.acceptance.value)),
+        Entry("acceptance_low", "Its 95 % interval, of its logarithm, from", plain(low)),
+        Entry("acceptance_high", "to", plain(high)),
+        Entry("acceptance_effective", "Effective sample size that it comes from", plain(found.effective)),
+        Entry("searched", "The same probability by splitting, for comparison", plain(found.searched)),
+        Entry("ways", "Ways that were searched apart", found.ways),
+        Entry("explored", "Probability of parts that other accepted trials led to", plain(found.explored)),
+        Entry("at_least", "Known from below only", found.at_least),
+        Entry("plain_accepted", "Plain trials before the search that were accepted", found.plain_accepted),
+        Entry("checked", "Trials from widened assumptions after the search", found.checked),
+        Entry("missed", "Probability of accepted trials met there but not found", plain(found.missed)),
+        Entry("levels", "Levels of the splitting", found.levels),
+        Entry("components", "Normal distributions in the mixture", found.components),
+        Entry("directions", "Directions that it was learned in", found.directions),
+        Entry("dimensions", "Of the assumptions that are drawn", found.dimensions),
+        *(
+            (Entry("solved", "Assumptions that the filters were solved for", ", ".join(found.solved)),)
+            if found.solved
+            else ()
+        ),
+        Entry("engine", "Engine of the search and of its trials", "numpy"),
+        Entry("lost", "Trials of the search with errors in cells", found.lost),
+        Entry("faulty", "Accepted trials with an error in a forecast", found.faulty),
+    )
+    return Section("rare", "Search for rare accepted trials", entries)
+
+
+def _rounding(found: Rounding) -> Iterator[Entry]:
+    yield Entry("rounding_trials", "First trials that were also computed in float64", found.trials)
+    yield Entry("rounding_decisions", "Of them accepted by one and rejected by the other", found.decisions)
+    for number, (name, difference) in enumerate(found.differences.items(), 1):
+        yield Entry(f"rounding_{number}", f"Largest relative difference of {name}", plain(difference))
+
+
+def _errors(simulation: Simulation) -> Section:
+    columns = (("kind", "In a"), ("name", "Name"), ("cell", "Cell"), ("error", "Error"), ("trials", "Trials"))
+    rows = tuple((met.kind, met.name, str(met.cell), met.error, met.trials) for met in errors_met(simulation))
+    return Section("errors", "Errors in cells", table=RecordTable(columns, rows))
+
+
+def _conventions(simulation: Simulation) -> Section:
+    replicates = "of a sample: the mean square about the mean, and the squared error of the mean"
+    variance = replicates if simulation.plan.size else "of a sample: divided by n − 1, as Excel's VAR.S"
+    entries = [Entry(*convention) for convention in _CONVENTIONS]
+    entries.insert(2, Entry("variance", "Variance", variance))
+    return Section("conventions", "Conventions", tuple(entries))
+
+
+def _messages(key: str, title: str, messages: Sequence[str]) -> Section:
+    rows = tuple((message,) for message in messages)
+    return Section(key, title, table=RecordTable((("message", "Message"),), rows))
+
+
+def _entries(found: Mapping[str, str]) -> tuple[Entry, ...]:
+    return tuple(Entry(key, _LABELS.get(key, key), text) for key, text in found.items())
+
+
+_LABELS = {
+    "python": "Python",
+    "numpy": "NumPy",
+    "scipy": "SciPy",
+    "machine": "Machine",
+    "system": "System",
+    "vector_instructions": "Vector instructions",
+}

@@ -1,0 +1,159 @@
+"""What a saved run says beside its columns, as JSON holds it, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any, Final
+
+import numpy as np
+
+from xlmc.definitions.model import Settings
+from xlmc.definitions.stopping import MOST_DIGITS, MOST_TRIALS, RARE, Stopping, as_numbers
+from xlmc.evaluation.engines import ENGINES
+from xlmc.results.saved.typed import counts, made, texts, told, whole
+from xlmc.run.blocks import FilterTally
+from xlmc.run.rare.account import RareAccount
+from xlmc.run.rounding import Rounding
+from xlmc.run.simulation import Origin
+from xlmc.run.stopping import Stopped
+from xlmc.sampling import METHODS, Plan
+
+__all__ = [
+    "FORMAT",
+    "VERSION",
+    "origin_of",
+    "plan_of",
+    "rare_of",
+    "rounding_of",
+    "settings_of",
+    "stopped_of",
+    "tally_document",
+    "tally_of",
+]
+
+FORMAT: Final = "xlmc saved run"
+VERSION: Final = 1
+
+_ENDS: Final = frozenset({"trials", "accepted", "precision", "adaptive", "time", "interruption", "search"})
+
+
+def settings_of(found: object) -> Settings:
+    """The settings again.
+
+    Raises:
+        ValueError, SimulationError: they are none.
+    """
+    settings = made(Settings, found, "its settings")
+    told(1 <= settings.trials <= MOST_TRIALS, "its number of trials")
+    told(settings.seed >= 0, "its seed")
+    told(settings.sampling in METHODS, "its sampling")
+    told(settings.engine in ENGINES and settings.arithmetic in ("float64", "float32"), "its engine")
+    told(settings.lognorm in ("", "@RISK", "XLRisk"), "its RiskLognorm")
+    _check(settings.stopping)
+    return settings
+
+
+def _check(stopping: Stopping) -> None:
+    """Refuse what no run may be asked to go on until."""
+    told(stopping.accepted is None or 2 <= stopping.accepted <= MOST_TRIALS, "its number of accepted trials")
+    told(stopping.digits is None or 1 <= stopping.digits <= MOST_DIGITS, "its significant digits")
+    told(stopping.seconds is None or stopping.seconds > 0, "its time limit")
+    told(stopping.rare is None or stopping.rare in RARE, "what is done where accepted trials are rare")
+    if stopping.precision is not None:
+        told(stopping.precision.tolerance > 0 and 0 < stopping.precision.confidence < 1, "its precision")
+        as_numbers(stopping.precision.numbers)
+
+
+def plan_of(settings: Settings, order: object) -> Plan:
+    """The plan again: a function of the settings, but for the order of the dimensions.
+
+    Raises:
+        ValueError: the order is none.
+    """
+    return replace(Plan.of(settings.sampling, settings.trials), order=texts(order, "its order of dimensions"))
+
+
+def tally_document(tally: FilterTally) -> dict[str, Any]:
+    """The counts of the filters as lists."""
+    return {
+        "rejected": tally.rejected.tolist(),
+        "only": tally.only.tolist(),
+        "together": tally.together.tolist(),
+        "errors": [dict(sorted(errors.items())) for errors in tally.errors],
+        "by_error": tally.by_error,
+    }
+
+
+def tally_of(found: object, filters: int, trials: int) -> FilterTally:
+    """The counts of so many filters over so many trials again.
+
+    Raises:
+        ValueError: they are none.
+    """
+    given = made(_Counts, found, "its filters")
+    rows = (given.rejected, given.only, *given.together)
+    told(len(given.together) == len(given.errors) == filters, "its filters")
+    told(all(len(row) == filters and all(0 <= count <= trials for count in row) for row in rows), "its filters")
+    return FilterTally(
+        rejected=np.array(given.rejected, np.int64),
+        only=np.array(given.only, np.int64),
+        together=np.array(given.together, np.int64).reshape(filters, filters),
+        errors=[counts(errors, "the errors of its filters") for errors in given.errors],
+        by_error=whole(given.by_error, "its filters"),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Counts:
+    """What `tally_document` gives."""
+
+    rejected: tuple[int, ...]
+    only: tuple[int, ...]
+    together: tuple[tuple[int, ...], ...]
+    errors: tuple[Mapping[str, int], ...]
+    by_error: int
+
+
+def stopped_of(found: object) -> Stopped:
+    """What ended the run.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    stopped = made(Stopped, found, "its end")
+    told(stopped.by in _ENDS, "its end")
+    return stopped
+
+
+def rounding_of(found: object) -> Rounding | None:
+    """What float32 changed.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    return None if found is None else made(Rounding, found, "its rounding")
+
+
+def rare_of(found: object) -> RareAccount | None:
+    """Where the accepted trials come from, if they are rare.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    if found is None:
+        return None
+    account = made(RareAccount, found, "its account of rare trials")
+    told(0 < account.acceptance.value <= 1, "its probability of acceptance")
+    numbers = [each.name for each in fields(account) if each.name not in ("acceptance", "solved")]
+    told(all(0 <= getattr(account, name) < 2**63 for name in numbers), "its search")
+    return account
+
+
+def origin_of(found: object) -> Origin:
+    """Where the run was made.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    return made(Origin, found, "its origin")

@@ -1,0 +1,231 @@
+"""Open a saved run: the same `Simulation` again, without simulating."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import zipfile
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.columns import Keeper, parts
+from xlmc.definitions.model import name_key
+from xlmc.errors import SimulationError, WorkbookError, XlmcError
+from xlmc.results.saved.archive import AGAIN, DAMAGE, RUN, WORKBOOK, Package, opened
+from xlmc.results.saved.columns import read_column
+from xlmc.results.saved.document import (
+    FORMAT,
+    VERSION,
+    origin_of,
+    plan_of,
+    rare_of,
+    rounding_of,
+    settings_of,
+    stopped_of,
+    tally_of,
+)
+from xlmc.results.saved.typed import counts, made, mapping, told, whole
+from xlmc.run.model import Model, understood
+from xlmc.run.simulation import Simulation
+from xlmc.workbook import read_workbook
+from xlmc.workbook.package import LIMITS
+
+__all__ = ["is_saved_run", "open_run"]
+
+_LARGEST_DOCUMENT: Final = 64 << 20
+_KINDS: Final = {"trial": "<i8", "input": "<f8", "prior": "<f8", "forecast": "<f8"}
+
+Document = Mapping[str, Any]
+Column = NDArray[Any]
+
+
+def is_saved_run(path: Path) -> bool:
+    """Whether the file looks like a saved run, whatever its name."""
+    if not path.is_file() or not zipfile.is_zipfile(path):
+        return False
+    try:
+        with zipfile.ZipFile(path) as package:
+            return RUN in package.namelist()
+    except DAMAGE:
+        return False
+
+
+def open_run(path: str | Path) -> Simulation:
+    """The run that was saved in a file, with the model of its workbook: every statistic is the same to the last bit.
+
+    Columns go into memory, or, where they are large together, into temporary files.
+
+    Raises:
+        WorkbookError: the file cannot be read, is no saved run, or is damaged.
+        XlmcError: its workbook cannot be understood any more.
+    """
+    path = Path(path)
+    with opened(path) as package:
+        found = _document(package, path)
+        model = _model(package, found, path)
+        try:
+            columns = _Columns(found["columns"], model, path)
+            columns.read(package)
+            return _simulation(found, model, columns)
+        except (KeyError, ValueError, SimulationError) as error:
+            raise _damaged(path, error) from error
+
+
+def _document(package: Package, path: Path) -> Document:
+    if package.size(RUN) > _LARGEST_DOCUMENT:
+        raise WorkbookError(f"{RUN} in the saved run is larger than any that xlmc writes", where=path, hint=AGAIN)
+    with package.reading(RUN) as entry:
+        data = entry.read()
+    try:
+        found = mapping(json.loads(data), "its format")
+        told(found.get("format") == FORMAT, "its format")
+        whole(found.get("version"), "its version")
+    except (ValueError, RecursionError) as error:
+        raise _damaged(path, error) from error
+    if found.get("version") != VERSION:
+        message = f"the saved run is of version {found.get('version')}, and this xlmc reads version {VERSION}"
+        raise WorkbookError(message, where=path, hint="Install the xlmc that it was saved with")
+    return dict(found)
+
+
+def _model(package: Package, found: Document, path: Path) -> Model:
+    try:
+        about = made(_Book, found["workbook"], "its workbook")
+    except (KeyError, ValueError) as error:
+        raise _damaged(path, error) from error
+    name = Path(about.name).name
+    if package.size(WORKBOOK) > LIMITS.total:
+        raise WorkbookError(f"its workbook is larger than {LIMITS.total >> 20} MB", where=path, hint=AGAIN)
+    with package.reading(WORKBOOK) as entry:
+        data = entry.read()
+    if hashlib.sha256(data).hexdigest() != about.sha256:
+        raise WorkbookError("the workbook in the saved run is not the one that was run", where=path, hint=AGAIN)
+    return understood(read_workbook(data, name), Path(name))
+
+
+@dataclass(frozen=True, slots=True)
+class _Book:
+    """What the document says of the workbook."""
+
+    name: str
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """What the document says of a column."""
+
+    kind: str
+    name: str
+    type: str
+    count: int
+    entry: str
+    sha256: str
+
+
+class _Columns:
+    """The columns of a saved run, as the document lists them.
+
+    Raises:
+        ValueError: they are not those of the model.
+    """
+
+    def __init__(self, found: object, model: Model, path: Path) -> None:
+        told(isinstance(found, list), "its columns")
+        assert isinstance(found, list)
+        listed = [made(_Column, each, "a column") for each in found]
+        self._listed, self._path = listed, path
+        self._names = {kind: [each.name for each in listed if each.kind == kind] for kind in _KINDS}
+        live = [a.name for a in model.live]
+        told(self._names["trial"] == [""], "its list of trials")
+        told(self._names["input"] == self._names["prior"] == live, "its assumptions, which this xlmc reads otherwise")
+        told(self._names["forecast"] == [f.name for f in model.forecasts], "its forecasts, which are read otherwise")
+        told(len(listed) == sum(map(len, self._names.values())), "a column of a kind that there is not")
+        types: dict[Hashable, np.dtype[Any]] = {
+            self._key(each): np.dtype(_KINDS[each.kind]).newbyteorder("=") for each in listed
+        }
+        self._keeper = Keeper(types)
+
+    @staticmethod
+    def _key(about: _Column) -> tuple[str, str]:
+        return about.kind, about.name
+
+    def read(self, package: Package) -> None:
+        """Copy every column out of the package, and check it."""
+        lengths: dict[str, set[int]] = {kind: set() for kind in _KINDS}
+        for about in self._listed:
+            lengths[about.kind].add(whole(about.count, "the length of a column"))
+            digest = hashlib.sha256()
+            with package.reading(about.entry) as entry:
+                for part in read_column(entry, _KINDS[about.kind], about.count, about.entry, digest):
+                    self._keeper.add(self._key(about), part)
+                    self._keeper.settle()
+            told(digest.hexdigest() == about.sha256, f"the column {about.entry}: its SHA-256 is another")
+        accepted = lengths["trial"]
+        told(all(len(found) <= 1 for found in lengths.values()), "columns of different lengths")
+        told(lengths["forecast"] <= accepted and max(lengths["input"], default=0) <= max(accepted), "too long columns")
+
+    def of(self, kind: str) -> Mapping[str, Column]:
+        """The columns of a kind by name, in their order."""
+        return self._keeper.columns({name: (kind, name) for name in self._names[kind]})
+
+
+def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
+    settings = settings_of(found["settings"])
+    plan, trials = plan_of(settings, found["order"]), whole(found["trials"], "its number of trials")
+    told(1 <= trials <= plan.trials, "its number of trials")
+    live = {name_key(a.name) for a in model.live}
+    told(set(plan.order) <= live, "its order of dimensions")
+    invalid = counts(found["invalid"], "its invalid draws")
+    told(set(invalid) <= live, "its invalid draws")
+    index = columns.of("trial")[""]
+    rare = rare_of(found["rare"])
+    _check_index(index, trials if rare is None else rare.kept)
+    forecasts, faults = columns.of("forecast"), mapping(found["faults"], "its faults")
+    for name in forecasts:
+        told(not _holds_infinity(forecasts[name]), f"the forecast {name!r}")
+    inputs, prior = columns.of("input"), columns.of("prior")
+    for name in inputs:
+        told(not _holds_infinity(inputs[name]) and not _holds_infinity(prior[name]), f"the draws of {name!r}")
+    return Simulation(
+        model=model,
+        settings=settings,
+        plan=plan,
+        block=max(1, whole(found["block"], "the size of its blocks")),
+        trials=trials,
+        trial_index=index,
+        inputs=inputs,
+        prior=prior,
+        forecasts=forecasts,
+        faults={name: counts(faults[name], f"the faults of {name!r}") for name in forecasts},
+        tally=tally_of(found["tally"], len(model.filters), trials),
+        invalid=invalid,
+        error_trials=whole(found["error_trials"], "its number of trials with errors"),
+        stopped=stopped_of(found["stopped"]),
+        rounding=rounding_of(found["rounding"]),
+        rare=rare,
+        origin=origin_of(found["origin"]),
+    )
+
+
+def _holds_infinity(column: Column) -> bool:
+    return any(bool(np.isinf(part).any()) for part in parts(column))
+
+
+def _check_index(index: Column, trials: int) -> None:
+    """Refuse trial numbers that do not ascend, or are none of the run's."""
+    last = -1
+    for part in parts(index):
+        told(bool(part[0] > last) and bool(np.all(np.diff(part) > 0)), "its trial numbers")
+        last = int(part[-1])
+    told(last < trials, "its trial numbers")
+
+
+def _damaged(path: Path, error: Exception) -> XlmcError:
+    reason = f"it lacks {error.args[0]!r}" if isinstance(error, KeyError) else str(error)
+    return WorkbookError(f"the saved run is damaged: {reason}", where=path, hint=AGAIN)

@@ -1,0 +1,1 @@
+"""A run: a model of the workbook, trials in, accepted trials out."""

@@ -1,0 +1,75 @@
+"""What a person should hear of a model before any run: answers that cannot vary, sources that are still examples."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
+from xlmc.errors import Notice
+
+if TYPE_CHECKING:
+    from xlmc.address import Cell
+    from xlmc.definitions import Definitions, Forecast
+    from xlmc.formula import Graph
+    from xlmc.run.scene import Scene
+    from xlmc.sampling import Draw
+
+__all__ = ["example_notices", "still_notices"]
+
+_EXAMPLE: Final = re.compile(r"example\b", re.IGNORECASE)
+_MOST_NAMED: Final = 4
+
+
+def example_notices(definitions: Definitions, scene: Scene) -> list[Notice]:
+    """The sources and reasons that still begin with the word "Example", as those of a template do."""
+    idle = {a.cell for a in scene.idle}
+    found = [(f"{a.name!r}", a.row) for a in definitions.assumptions if _is_example(a.source) and a.cell not in idle]
+    found += [(f"{f.name!r} (a filter)", f.row) for f in definitions.filters if _is_example(f.because)]
+    if not found:
+        return []
+    named = ", ".join(name for name, _ in found[:_MOST_NAMED])
+    more = f" and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
+    begins = "source still says" if len(found) == 1 else f"{len(found)} sources still say"
+    message = f'{begins} "Example": {named}{more}. Write there what each number of this case rests on'
+    return [Notice(message[0].upper() + message[1:], found[0][1])]
+
+
+def _is_example(text: str) -> bool:
+    return _EXAMPLE.match(text.strip()) is not None
+
+
+def still_notices(scene: Scene, draws: Mapping[str, Draw], forecasts: Sequence[Forecast]) -> list[Notice]:
+    """The forecasts that are the same in every trial.
+
+    Args:
+        scene: what they need.
+        draws: name of a live assumption -> how it is drawn.
+        forecasts: all of them.
+    """
+    moving = {a.cell for a in scene.live if _moves(draws[a.name])}
+    reached = scene.graph.varying if len(moving) == len(scene.live) else _reached(scene.graph, moving)
+    still = [forecast for forecast in forecasts if forecast.cell not in reached]
+    if forecasts and len(still) == len(forecasts):
+        why = "no assumption is drawn" if not scene.live else "no assumption that is drawn reaches a forecast"
+        if scene.live and not moving:
+            why = "the range of every assumption that is drawn has a single value"
+        return [Notice(f"nothing varies: {why}, so every trial gives the base case again", still[0].cell)]
+    return [
+        Notice(f"the forecast {forecast.name!r} does not vary: no assumption with a range reaches it", forecast.cell)
+        for forecast in still
+    ]
+
+
+def _moves(draw: Draw) -> bool:
+    ends = draw.support()
+    return ends is None or ends[0] < ends[1]
+
+
+def _reached(graph: Graph, moving: set[Cell]) -> set[Cell]:
+    """The cells that depend on a moving one."""
+    found = set(moving)
+    for cell in graph.formulas:  # each after the cells it needs
+        if not found.isdisjoint(graph.needs[cell]):
+            found.add(cell)
+    return found

@@ -1,0 +1,312 @@
+"""Cells that show results of a run, `=CB.GetForeStatFN(B9,2)`, and the cells that depend on them: their values.
+
+A draw cell and all else keeps the value that Excel saved: the base case. A cell that should show a result and cannot,
+and all that depends on it, shows #N/A: what Excel happened to hold there belongs to another run.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from xlmc.address import Cell
+from xlmc.definitions.in_cells.result_functions import CRYSTAL_BALL_STATISTICS, Asked, asked_for, is_result
+from xlmc.definitions.in_cells.trees import number_of
+from xlmc.definitions.model import name_key
+from xlmc.definitions.unavailable import areas_text
+from xlmc.errors import ErrorCode, FormulaError
+from xlmc.evaluation.graph.arrays import size_of
+from xlmc.evaluation.graph.lower import Lowering
+from xlmc.evaluation.graph.widening import widened
+from xlmc.formula import Graph, Resolver, build_graph, ir
+from xlmc.formula.mentions import mentioned
+from xlmc.formula.substitute import substituted
+from xlmc.workbook import CellValue, Workbook
+from xlmc.workbook.injection.cached_values import with_values
+
+if TYPE_CHECKING:
+    from xlmc.run.simulation import ForecastResult, Simulation
+
+__all__ = ["ShownResults", "filled_sheets", "result_values", "shown_results", "unavailable_warning"]
+
+_ANYWHERE: Final = re.compile(r"\b(?:OFFSET|INDIRECT|CELL)\s*\(", re.IGNORECASE)
+"""Functions that look for their cells while they are computed."""
+
+_DEPENDS: Final = "depends on such a cell"
+
+
+@dataclass(frozen=True, slots=True)
+class ShownResults:
+    """What the workbook's own cells show of a run.
+
+    Attributes:
+        values: of the cells that could be computed.
+        missing: those that could not be, each with the reason; they show #N/A.
+    """
+
+    values: Mapping[Cell, CellValue] = field(default_factory=dict)
+    missing: Mapping[Cell, str] = field(default_factory=dict)
+
+
+def filled_sheets(simulation: Simulation) -> dict[str, bytes]:
+    """The parts of the sheets that show results, with the run's values: name -> bytes.
+
+    Args:
+        simulation: the finished run.
+    """
+    workbook = simulation.model.workbook
+    by_sheet: dict[str, dict[tuple[int, int], CellValue]] = {}
+    for cell, value in result_values(simulation).items():
+        by_sheet.setdefault(cell.sheet, {})[cell.row, cell.column] = value
+    parts = {name: workbook.sheets[name].part for name in by_sheet}
+    return {parts[name]: with_values(workbook.parts[parts[name]], parts[name], by_sheet[name]) for name in by_sheet}
+
+
+def result_values(simulation: Simulation) -> dict[Cell, CellValue]:
+    """The values of the cells that show results, and of those that depend on them; #N/A where there is none."""
+    shown = simulation.shown_results
+    return {**shown.values, **dict.fromkeys(shown.missing, ErrorCode.NA)}
+
+
+def unavailable_warning(shown: ShownResults) -> str:
+    """Which cells show #N/A, in one sentence; empty where none does."""
+    if not shown.missing:
+        return ""
+    reasons = dict.fromkeys(shown.missing.values())
+    told = [f"{areas_text(c for c, why in shown.missing.items() if why == reason)} ({reason})" for reason in reasons]
+    count = len(shown.missing)
+    cells = "1 cell of the workbook depends" if count == 1 else f"{count:,} cells of the workbook depend"
+    them = "it shows" if count == 1 else "they show"
+    return f"{cells} on the run and cannot be computed, so that {them} #N/A in the result workbook: {'; '.join(told)}"
+
+
+def shown_results(simulation: Simulation) -> ShownResults:
+    """The values of the cells that show results, and of those that depend on them.
+
+    Args:
+        simulation: the finished run.
+    """
+    definitions = simulation.model.definitions
+    if not (definitions.results or definitions.unavailable):
+        return ShownResults()
+    shown = [cell for cell in definitions.results if cell not in definitions.unavailable]
+    trees = {cell: _with_numbers(cell, simulation) for cell in shown}
+    return _Showing(simulation.model.workbook, trees, definitions.unavailable).found()
+
+
+class _Showing:
+    """The workbook's formulas, those that show results with numbers in place of the calls that ask for them."""
+
+    def __init__(
+        self, workbook: Workbook, trees: Mapping[Cell, ir.Expression], unavailable: Mapping[Cell, str]
+    ) -> None:
+        self._workbook, self._trees = workbook, trees
+        self._missing = dict(unavailable)
+        self._formulas = frozenset(_formulas(workbook))
+        inputs = frozenset(trees) | unavailable.keys()
+        whole = build_graph(Resolver(workbook, strict=False), self._formulas, inputs, strict=False)
+        self._needs: dict[Cell, set[Cell]] = {cell: set(needs) for cell, needs in whole.needs.items()}
+        for cell in whole.faults:
+            self._needs.setdefault(cell, set()).update(self._mentioned(cell))
+        looking = [cell for cell in whole.formulas if cell in self._formulas and _ANYWHERE.search(self._text(cell))]
+        for cell, found in self._looked_at(frozenset(looking)).items():
+            self._needs.setdefault(cell, set()).update(found)
+
+    def found(self) -> ShownResults:
+        """Compute until no further cell turns out to depend on a result, or to be one that cannot be computed."""
+        while True:
+            missing = self._downstream(self._missing)
+            changed = self._downstream(self._trees) - missing
+            lowering, faults = self._lowered(changed)
+            for cell, needs in lowering.graph.needs.items():
+                self._needs.setdefault(cell, set()).update(needs)
+            self._missing |= {cell: reason for cell, reason in faults.items() if cell in changed}
+            if self._downstream(self._missing) == missing and self._downstream(self._trees) - missing == changed:
+                break
+        values = {cell: _value(lowering, cell) for cell in sorted(changed & lowering.graph.formulas.keys())}
+        reasons = {cell: self._missing.get(cell, _DEPENDS) for cell in sorted(missing)}
+        return ShownResults({cell: value for cell, value in values.items() if value is not None}, reasons)
+
+    def _text(self, cell: Cell) -> str:
+        formula = self._workbook.content(cell).formula
+        return "" if formula is None else formula.text
+
+    def _mentioned(self, cell: Cell) -> Iterator[Cell]:
+        """The cells that a formula mentions that cannot be read."""
+        formula = self._workbook.content(cell).formula
+        for area in () if formula is None else mentioned(formula, cell, self._workbook):
+            if area.rows * area.columns <= len(self._formulas):
+                yield from area.cells()
+            else:
+                yield from (each for each in self._formulas | self._missing.keys() if each in area)
+
+    def _looked_at(self, cells: frozenset[Cell]) -> dict[Cell, set[Cell]]:
+        """Where OFFSET and INDIRECT lead in these formulas, which see what Excel saved in all cells."""
+        if not cells:
+            return {}
+        resolver = Resolver(self._workbook, strict=False)
+
+        def lower(more: Mapping[Cell, set[Cell]]) -> _Watching:
+            graph = build_graph(resolver, cells, frozenset(), self._formulas - cells, more=more, strict=False)
+            return _Watching(graph, self._saved(graph))
+
+        return widened(lower).looked_at
+
+    def _saved(self, graph: Graph) -> dict[Cell, float]:
+        """What Excel saved in the formula cells that a graph takes as given; any value, whatever the type says."""
+        return {cell: self._workbook.content(cell).value for cell in graph.reached}  # type: ignore[misc]
+
+    def _downstream(self, start: Iterable[Cell]) -> frozenset[Cell]:
+        """These cells, what array formulas in them fill, and all that depends on either."""
+        users: dict[Cell, list[Cell]] = {}
+        for cell, needs in self._needs.items():
+            for need in needs:
+                users.setdefault(need, []).append(cell)
+        seen: set[Cell] = set()
+        open_ = list(start)
+        while open_:
+            cell = open_.pop()
+            if cell not in seen:
+                seen.add(cell)
+                open_ += users.get(cell, ())
+                open_ += self._filled(cell)
+        return frozenset(seen)
+
+    def _filled(self, cell: Cell) -> Iterable[Cell]:
+        formula = self._workbook.content(cell).formula
+        return () if formula is None or formula.array is None else formula.array.cells()
+
+    def _lowered(self, targets: frozenset[Cell]) -> tuple[Lowering, dict[Cell, str]]:
+        """The cells, computed from the results and from what Excel saved in all others; and why some cannot be."""
+        stuck: dict[Cell, str] = {}
+        resolver = Resolver(self._workbook, strict=False, rewritten=self._trees)
+
+        def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
+            given = (self._formulas - targets) | stuck.keys()
+            graph = build_graph(resolver, targets - stuck.keys(), frozenset(), given, more=more, strict=False)
+            return Lowering(graph, {}, self._saved(graph))
+
+        while True:
+            try:
+                lowering = widened(lower)
+            except FormulaError as error:  # Excel has saved no value that could stand in for it
+                found = [cell for cell in targets - stuck.keys() if str(cell) == error.where]
+                if not found:
+                    raise
+                stuck |= dict.fromkeys(found, error.message)
+            else:
+                return lowering, stuck | _faults(lowering)
+
+
+class _Watching(Lowering):
+    """A lowering that remembers which cells each formula asked for while it was lowered."""
+
+    def __init__(self, graph: Graph, held: Mapping[Cell, float]) -> None:
+        self.looked_at: dict[Cell, set[Cell]] = {}
+        self._asking: set[Cell] = set()
+        super().__init__(graph, {}, held, audit=True)
+
+    def awaits(self, cell: Cell) -> bool:
+        self._asking.add(cell)
+        return super().awaits(cell)
+
+    def _resolved_cell(self, cell: Cell, tree: ir.Expression) -> int:
+        self._asking = self.looked_at.setdefault(cell, set())
+        return super()._resolved_cell(cell, tree)
+
+
+def _faults(lowering: Lowering) -> dict[Cell, str]:
+    """The cells that have no value of their own, each with the reason."""
+    found = {cell: error.message for cell, error in lowering.faults.items()}
+    for cell in lowering.graph.formulas:
+        formula = lowering.graph.workbook.content(cell).formula
+        if cell not in found and lowering.value(cell) is None:
+            found[cell] = "cannot be computed from the results"
+        elif formula is not None and formula.dynamic and formula.array is not None and cell not in found:
+            size = size_of(lowering.dag, lowering.array(cell)) or (1, 1)
+            if size != (formula.array.rows, formula.array.columns):
+                found[cell] = "spills into another area than when Excel saved it"
+    return found
+
+
+def _with_numbers(cell: Cell, simulation: Simulation) -> ir.Expression:
+    """The formula of a cell with the results in place of the calls that ask for them."""
+    workbook = simulation.model.workbook
+    formula = workbook.content(cell).formula
+    assert formula is not None  # a call was found in it
+    return substituted(
+        Resolver(workbook).formula(cell, formula),
+        lambda part: _answer(asked_for(part), simulation) if isinstance(part, ir.Call) and is_result(part) else None,
+    )
+
+
+def _answer(asked: Asked, simulation: Simulation) -> ir.Expression:
+    """What a call shows: a number, or an error where there is none."""
+    result = _result(asked.place, simulation)
+    if result is None or result.values.size == 0:
+        return ir.ErrorLiteral(ErrorCode.NA)
+    number = None
+    if asked.number is not None:
+        number = number_of(asked.number, lambda cell: _saved_number(simulation.model.workbook, cell))
+        if number is None:
+            return ir.ErrorLiteral(ErrorCode.VALUE)
+    value = _statistic(result, asked.what, number)
+    return ir.ErrorLiteral(ErrorCode.NUM) if value is None or not np.isfinite(value) else ir.Number(value)
+
+
+def _result(place: Cell | str, simulation: Simulation) -> ForecastResult | None:
+    for result in simulation.results.values():
+        definition = result.definition
+        if definition.cell == place or (isinstance(place, str) and name_key(definition.name) == name_key(place)):
+            return result
+    return None
+
+
+def _statistic(result: ForecastResult, what: str, number: float | None) -> float | None:
+    """One number of a result; None where there is no such percentile, trial or statistic."""
+    if number is None:
+        return _by_name(result, what)
+    match what:
+        case "statistic":
+            known = number.is_integer() and 1 <= number <= len(CRYSTAL_BALL_STATISTICS)
+            return _by_name(result, CRYSTAL_BALL_STATISTICS[int(number) - 1]) if known else None
+        case "percent" | "share" | "share from above":
+            percent = number if what == "percent" else 100 * (number if what == "share" else 1 - number)
+            return result.percentile(percent).value if 0 <= percent <= 100 else None
+        case "certainty":
+            return 1 - result.probability_above(number).value
+        case "certainty in percent":
+            return 100 * (1 - result.probability_above(number).value)
+        case "certainty from above":
+            return result.probability_above(number).value
+        case "trial":
+            held = number.is_integer() and 1 <= number <= result.values.size
+            return float(result.values[int(number) - 1]) if held else None
+        case _:
+            raise ValueError(what)
+
+
+def _by_name(result: ForecastResult, what: str) -> float:
+    found = getattr(result.statistics, what)
+    return float(found) if what == "trials" else float(found.value)
+
+
+def _saved_number(workbook: Workbook, cell: Cell) -> float | None:
+    value = workbook.content(cell).value
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool | ErrorCode) else None
+
+
+def _formulas(workbook: Workbook) -> Iterator[Cell]:
+    for sheet in workbook.sheets.values():
+        for (row, column), content in sheet.cells.items():
+            if content.formula is not None:
+                yield Cell(sheet.name, row, column)
+
+
+def _value(lowering: Lowering, cell: Cell) -> CellValue:
+    value = lowering.value(cell)
+    return None if value is None else value.objects().ravel()[0]

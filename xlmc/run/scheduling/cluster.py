@@ -1,0 +1,167 @@
+"""Blocks on a Dask cluster: an existing one, or one of this machine.
+
+The recipe is a task of its own, so Dask sends it to each worker once and makes it again where it was lost with one. A
+task is a few blocks; a worker that dies costs those it had, and Dask gives them to another. Only as many tasks are
+under way as keep the workers busy, and results are taken in order, so memory stays flat here and there.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+from collections import deque
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from functools import lru_cache
+from itertools import islice
+from queue import Empty, SimpleQueue
+from typing import TYPE_CHECKING, Any
+
+from xlmc.errors import SimulationError
+from xlmc.run.blocks import Block, Task, Worker
+from xlmc.run.scheduling.recipe import LIBRARIES, Recipe, check_software, software, unpacked
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+__all__ = ["by_cluster"]
+
+MOST_BLOCKS = 8
+"""In a task: the scheduler's milliseconds must not count beside them."""
+
+PATIENCE = 30.0
+"""Seconds to wait for a scheduler, and for its first worker."""
+
+_DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
+"""What a worker of a local cluster starts with: Ctrl-C is for us, and we end it."""
+
+MODELS = 4
+"""That a worker has at hand: a cluster may serve several people."""
+
+
+def by_cluster(
+    recipe: Recipe, scheduler: str, workers: int | None, blocks: int, tasks: Iterable[Task]
+) -> Iterator[Block]:
+    """The blocks in the order of their tasks.
+
+    Args:
+        recipe: what to run.
+        scheduler: `local`, or the address of a scheduler.
+        workers: how many a local cluster has; by default one a processor.
+        blocks: how many there will be.
+        tasks: taken as they are needed.
+
+    Raises:
+        SimulationError: Dask is not installed, the cluster cannot be reached, has no workers or other software, or
+            lost the same block again and again.
+    """
+    with _client(scheduler, workers) as client:
+        _check_workers(client, scheduler)
+        yield from _blocks(client, recipe.packed(), blocks, iter(tasks))
+
+
+@contextmanager
+def _client(scheduler: str, workers: int | None) -> Iterator[Client]:
+    try:
+        from distributed import Client, LocalCluster
+    except ImportError as error:
+        hint = "pip install 'xlmc[distributed]', or leave out --scheduler"
+        raise SimulationError("Dask is not installed", hint=hint) from error
+    if scheduler == "local":
+        settings = {"threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": logging.ERROR, "preload": _DEAF}
+        with LocalCluster(n_workers=workers, **settings) as cluster, Client(cluster, set_as_default=False) as client:
+            yield client
+        return
+
+    class Closing(Client):  # type: ignore[misc]  # Dask tells mypy nothing of its types
+        """Closes itself where it cannot start: one that is deleted open may wait for a lock that the next one holds."""
+
+        def start(self, **options: Any) -> None:
+            try:
+                super().start(**options)
+            except BaseException:
+                self.close()
+                raise
+
+    try:
+        client = Closing(scheduler, timeout=PATIENCE, set_as_default=False)
+    except (OSError, TimeoutError, ValueError, TypeError) as error:  # TypeError: no certificates for tls
+        hint = "Start one with `dask scheduler`, and give the address it prints"
+        raise SimulationError(f"no scheduler answers: {error}", where=scheduler, hint=hint) from error
+    with client:
+        yield client
+
+
+def _check_workers(client: Client, scheduler: str) -> None:
+    """Wait for the first worker, and refuse workers with other software before anything is sent to them."""
+    try:
+        client.wait_for_workers(1, timeout=PATIENCE)
+    except TimeoutError as error:
+        hint = f"Start some: dask worker {scheduler}"
+        raise SimulationError("the scheduler has no workers", where=scheduler, hint=hint) from error
+    ours = {name: software()[name] for name in ("xlmc", *LIBRARIES)}
+    found = client.get_versions(packages=["xlmc", *LIBRARIES])["workers"]
+    for address, of_worker in found.items():
+        theirs = {name: version for name, version in of_worker["packages"].items() if version}
+        check_software(ours, theirs, f"worker {address}")
+
+
+def _blocks(client: Client, packed: bytes, blocks: int, tasks: Iterator[Task]) -> Iterator[Block]:
+    from distributed import CancelledError, KilledWorker
+
+    threads = sum(client.nthreads().values())
+    size = max(1, min(MOST_BLOCKS, blocks // (4 * threads)))
+    recipe = client.submit(_recipe, packed, key=f"xlmc-{hashlib.sha256(packed).hexdigest()}")
+    waiting: deque[Future[list[Block]]] = deque()
+    try:
+        while some := list(islice(tasks, size)):
+            waiting.append(client.submit(_run, recipe, some, pure=False))
+            if len(waiting) > 2 * threads + 2:
+                yield from waiting.popleft().result()
+        while waiting:
+            yield from waiting.popleft().result()
+    except KilledWorker as error:
+        hint = "They may have run out of memory: see their logs"
+        raise SimulationError("every worker that was given one of the blocks died", hint=hint) from error
+    except CancelledError as error:
+        raise SimulationError("the cluster was closed while it ran", hint="Run again") from error
+    finally:
+        client.cancel(list(waiting))
+
+
+def _recipe(packed: bytes) -> bytes:
+    return packed
+
+
+def _run(packed: bytes, tasks: list[Task]) -> list[Block]:
+    """On a worker: blocks in their order."""
+    idle = _workers(packed)
+    worker = idle.take()
+    try:
+        return [worker.run(task) for task in tasks]
+    finally:
+        idle.give(worker)
+
+
+class _Workers:
+    """Those of one recipe, as many as there are threads at work."""
+
+    def __init__(self, packed: bytes) -> None:
+        self._recipe = unpacked(packed)
+        self._model = self._recipe.model()
+        self._program = self._model.program(self._recipe.engine, self._recipe.arithmetic)
+        self._idle: SimpleQueue[Worker] = SimpleQueue()
+
+    def take(self) -> Worker:
+        try:
+            return self._idle.get_nowait()
+        except Empty:
+            return self._recipe.worker(self._model, self._program)
+
+    def give(self, worker: Worker) -> None:
+        self._idle.put(worker)
+
+
+@lru_cache(MODELS)
+def _workers(packed: bytes) -> _Workers:
+    return _Workers(packed)

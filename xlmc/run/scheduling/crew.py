@@ -1,0 +1,89 @@
+"""Who was asked to run the blocks, and who does where nobody was named."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from xlmc.errors import SimulationError
+from xlmc.run.blocks import Block, Task, Worker
+from xlmc.run.scheduling.cluster import by_cluster
+from xlmc.run.scheduling.processes import by_processes
+from xlmc.run.scheduling.recipe import Recipe, worker_of
+from xlmc.run.scheduling.threads import by_threads
+
+if TYPE_CHECKING:
+    from xlmc.definitions import Settings
+    from xlmc.evaluation import Program
+    from xlmc.run.model import Model
+    from xlmc.sampling import Plan
+
+__all__ = ["PROCESS_BLOCKS", "Crew"]
+
+PROCESS_BLOCKS: Final[Mapping[str, int]] = {"numpy": 128, "formulas": 4}
+"""Engine -> blocks that take longer than a process to start: a quarter of a second, or with a recipe half of one."""
+
+_PORTABLE: Final = frozenset({"numpy"})
+"""Engines whose workers can be pickled: to unpickle one takes a fraction of the imports that a recipe needs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Crew:
+    """Threads, processes or the workers of a cluster.
+
+    Attributes:
+        jobs: threads or processes.
+        scheduler: `threads`, `processes`, `local`, or the address of a Dask scheduler; None to leave it open.
+        workers: of a local cluster.
+
+    Raises:
+        SimulationError: there is no such crew.
+    """
+
+    jobs: int = 1
+    scheduler: str | None = None
+    workers: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.jobs < 1:
+            raise SimulationError(f"{self.jobs} jobs were asked for", hint="give 1 or more")
+        if self.workers is not None and self.workers < 1:
+            raise SimulationError(f"{self.workers} workers were asked for", hint="give 1 or more")
+        if self.workers is not None and self.scheduler != "local":
+            message = "only a local cluster is told how many workers to have"
+            raise SimulationError(message, hint="use --scheduler local")
+        if self.scheduler not in (None, "threads", "processes", "local") and "://" not in self.scheduler:
+            hint = "choose threads, processes or local, or give an address such as tcp://10.0.0.5:8786"
+            raise SimulationError(f"there is no scheduler {self.scheduler!r}", hint=hint)
+
+    def blocks(
+        self, model: Model, program: Program, settings: Settings, plan: Plan, block: int, tasks: Iterator[Task]
+    ) -> Generator[Block, None, None]:
+        """The blocks of a run, of `block` trials each, in the order of their tasks.
+
+        Raises:
+            SimulationError: the crew cannot be had, or did not finish.
+        """
+        blocks = -(-plan.trials // block)
+        jobs = min(self.jobs, blocks)
+        scheduler = self.scheduler or _usual(settings.engine, jobs, blocks)
+
+        def worker() -> Worker:
+            return worker_of(model, program, settings.engine, settings.seed, block, plan)
+
+        if scheduler == "threads":
+            yield from by_threads([worker() for _ in range(jobs)], blocks, tasks)
+            return
+        recipe = Recipe.of(model, settings.engine, settings.seed, block, settings.arithmetic, plan)
+        if scheduler == "processes":
+            own = worker()
+            portable = own if settings.engine in _PORTABLE else recipe
+            yield from by_processes(portable, own, jobs - 1, blocks, tasks)
+        else:
+            yield from by_cluster(recipe, scheduler, self.workers, blocks, tasks)
+
+
+def _usual(engine: str, jobs: int, blocks: int) -> str:
+    return "processes" if jobs > 1 and blocks >= PROCESS_BLOCKS.get(engine, math.inf) else "threads"

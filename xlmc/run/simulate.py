@@ -1,0 +1,275 @@
+"""Runs a model: its blocks over threads, processes or a cluster, put together in block order."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.columns import Keeper
+from xlmc.definitions.model import name_key
+from xlmc.definitions.stopping import LIMIT, NO_GOAL, Stopping
+from xlmc.errors import SimulationError
+from xlmc.run.blocks import Block, FilterTally, Task
+from xlmc.run.checking import LEAST_CHECKED
+from xlmc.run.pilot import planned
+from xlmc.run.rare.deciding import looks_of
+from xlmc.run.rounding import Rounding, checked_rounding
+from xlmc.run.scheduling.crew import Crew
+from xlmc.run.scheduling.recipe import worker_of
+from xlmc.run.simulation import KEPT_INPUTS, Simulation
+from xlmc.run.stopping import (
+    Interruption,
+    Standing,
+    Stopped,
+    Teller,
+    Watch,
+    chosen_rule,
+    may_end_early,
+    refuse_other_sampling,
+)
+from xlmc.sampling import METHODS
+
+if TYPE_CHECKING:
+    from xlmc.definitions import Settings
+    from xlmc.run.model import Model
+    from xlmc.run.rare.searching import Search
+    from xlmc.sampling import Plan
+
+__all__ = ["BLOCK", "PRIOR_TRIALS", "Progress", "simulate"]
+
+BLOCK: Final = 32_768
+"""Trials evaluated at once, where the engine does not want fewer: enough that the calls cost little beside the
+arithmetic, few enough for the cache."""
+
+PRIOR_TRIALS: Final = 65_536
+"""Trials whose draws are all kept, accepted or not, to show the prior."""
+
+MOST_TRIALS: Final = 10**12
+
+Progress = Callable[[Standing], None]
+
+
+def simulate(
+    model: Model,
+    *,
+    trials: int | None = None,
+    seed: int | None = None,
+    stopping: Stopping = NO_GOAL,
+    engine: str | None = None,
+    arithmetic: str | None = None,
+    sampling: str | None = None,
+    jobs: int = 1,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    keep_inputs: int | None = KEPT_INPUTS,
+    keep_interrupted: bool = False,
+    progress: Progress | None = None,
+) -> Simulation:
+    """Run a model; see `Model.simulate`."""
+    settings = _settings(model, trials, seed, engine, arithmetic, sampling, stopping)
+    plan = planned(model, settings)
+    rule, looks = chosen_rule(settings.stopping, model.forecasts), looks_of(model, settings)
+    watch = Watch(rule, plan.trials, settings.stopping.seconds, time.monotonic)
+    teller = None if progress is None else Teller([forecast.name for forecast in model.forecasts])
+    crew = Crew(jobs, scheduler, workers)
+    if keep_inputs is not None and keep_inputs < 0:
+        raise SimulationError(
+            f"the draws of {keep_inputs} trials were asked for", hint="give 0 or more, or None for all"
+        )
+    program = model.program(settings.engine, settings.arithmetic)
+    block = min(BLOCK, program.largest_block)
+    rounding = checked_rounding(model, program, settings, block) if settings.arithmetic == "float32" else None
+    most_inputs = plan.trials if keep_inputs is None else keep_inputs
+    if model.checks:
+        most_inputs = max(most_inputs, LEAST_CHECKED)
+    gathered = _Gathered(model, block, most_inputs)
+
+    def task(start: int, trials: int) -> Task:
+        return Task(start, trials, start < PRIOR_TRIALS, gathered.wants_inputs)
+
+    tasks = (task(start, min(block, plan.trials - start)) for start in range(0, plan.trials, block))
+    stopped: Stopped | None = None
+    with Interruption(wanted=keep_interrupted and may_end_early(settings.sampling)) as interruption:
+        with closing(crew.blocks(model, program, settings, plan, block, tasks)) as blocks:
+            while stopped is None and not looks.hopeless(gathered.trials, gathered.accepted):
+                finished = next(blocks)
+                counting = finished.trials if looks.certain else watch.counting(finished)
+                if counting < finished.trials:
+                    finished = worker_of(model, program, settings.engine, settings.seed, block, plan).run(
+                        task(gathered.trials, counting)
+                    )
+                gathered.add(finished)
+                interruption.keeping = True
+                stopped = watch.after(finished, gathered.forecast, interrupted=interruption.asked)
+                if looks.certain and stopped is not None and stopped.by == "accepted":
+                    stopped = None
+                if progress is not None and teller is not None:
+                    progress(teller.after(finished, watch.share))
+        if stopped is not None:
+            return gathered.simulation(settings, plan, stopped, rounding)
+        found = _searched(model, settings, gathered.trials, gathered.accepted_trials, watch, interruption, progress)
+    if isinstance(found, Stopped):
+        return gathered.simulation(settings, plan, found, rounding)
+    return _with_search(gathered.simulation(settings, plan, watch.goal_reached, rounding), found, most_inputs)
+
+
+class _EndedError(Exception):
+    """Somebody, or the time, ended a search."""
+
+    def __init__(self, stopped: Stopped) -> None:
+        super().__init__(stopped.because)
+        self.stopped = stopped
+
+
+def _searched(
+    model: Model,
+    settings: Settings,
+    plain: int,
+    accepted: NDArray[np.int64],
+    watch: Watch,
+    interruption: Interruption,
+    progress: Progress | None,
+) -> Search | Stopped:
+    """Accepted trials from a search, or what ended it before it had any."""
+
+    def say(evaluations: int) -> None:
+        if progress is not None:
+            progress(Standing(plain + evaluations, 0, watch.share, {}, searching=True))
+        ended = watch.meanwhile(interrupted=interruption.asked)
+        if ended is not None:
+            raise _EndedError(ended)
+
+    from xlmc.run.rare.searching import search
+
+    try:
+        found = search(model, settings, plain, accepted, say)
+    except _EndedError as ended:
+        return ended.stopped
+    return found if found.account is not None else Stopped("search", found.failure, watch.goal_reached.goal)
+
+
+def _with_search(plain: Simulation, found: Search, most_inputs: int) -> Simulation:
+    """The run with the trials that were found, in the place of those few that plain trials had left."""
+    from xlmc.run.rare.searching import accepted_blocks
+
+    assert found.account is not None
+    model, block = plain.model, plain.model.program("numpy").largest_block
+    gathered = _Gathered(model, block, most_inputs)
+    for each in accepted_blocks(model, found.uniforms, block, lambda: gathered.wants_inputs):
+        gathered.add(each)
+    drawn = gathered.simulation(plain.settings, plain.plan, plain.stopped, None)
+    return replace(
+        plain,
+        trial_index=drawn.trial_index,
+        inputs=drawn.inputs,
+        forecasts=drawn.forecasts,
+        faults=drawn.faults,
+        rare=replace(found.account, kept=gathered.accepted, faulty=gathered.lost),
+    )
+
+
+def _settings(
+    model: Model,
+    trials: int | None,
+    seed: int | None,
+    engine: str | None,
+    arithmetic: str | None,
+    sampling: str | None,
+    stopping: Stopping,
+) -> Settings:
+    given = {"trials": trials, "seed": seed, "engine": engine, "arithmetic": arithmetic, "sampling": sampling}
+    settings = replace(model.definitions.settings, **{k: v for k, v in given.items() if v is not None})  # type: ignore[arg-type]
+    if trials is not None or stopping.has_goal:
+        settings = replace(settings, trials=LIMIT if trials is None else trials, stopping=stopping)
+    else:
+        own = settings.stopping
+        seconds = own.seconds if stopping.seconds is None else stopping.seconds
+        settings = replace(settings, stopping=replace(own, seconds=seconds, rare=stopping.rare or own.rare))
+    refuse_other_sampling(settings.sampling, settings.stopping)
+    if not 1 <= settings.trials <= MOST_TRIALS:
+        raise SimulationError(f"{settings.trials} trials were asked for", hint=f"give 1 to {MOST_TRIALS:,}")
+    if settings.seed < 0:
+        raise SimulationError(f"the seed {settings.seed} is negative", hint="give a whole number from 0 up")
+    if settings.sampling not in METHODS:
+        message = f"there is no sampling method {settings.sampling!r}"
+        raise SimulationError(message, hint=f"choose one of {', '.join(METHODS)}")
+    return settings
+
+
+class _Gathered:
+    """The blocks so far: the counts of all trials, and the columns of the accepted ones."""
+
+    def __init__(self, model: Model, block: int, keep_inputs: int) -> None:
+        self._model, self._block, self._keep_inputs = model, block, keep_inputs
+        keys = [name_key(a.name) for a in model.live]
+        real, whole = np.dtype(np.float64), np.dtype(np.int64)
+        self._inputs = {a.name: ("input", key) for a, key in zip(model.live, keys, strict=True)}
+        self._prior = {a.name: ("prior", key) for a, key in zip(model.live, keys, strict=True)}
+        self._forecasts = {f.name: ("forecast", place) for place, f in enumerate(model.forecasts)}
+        columns = (*self._inputs.values(), *self._prior.values(), *self._forecasts.values())
+        self._keeper = Keeper({("trial", 0): whole, **dict.fromkeys(columns, real)})
+        self._tally = FilterTally.empty(len(model.filters))
+        self._invalid: Counter[str] = Counter()
+        self._faults: list[Counter[str]] = [Counter() for _ in model.forecasts]
+        self.trials = self.accepted = self.lost = 0
+
+    @property
+    def wants_inputs(self) -> bool:
+        """Whether there are accepted trials still to come whose draws are kept."""
+        return self.accepted < self._keep_inputs
+
+    def add(self, block: Block) -> None:
+        self._keep(block)
+        self._tally.add(block.tally)
+        self._invalid.update(block.invalid)
+        for mine, theirs in zip(self._faults, block.faults, strict=True):
+            mine.update(theirs)
+        self.trials += block.trials
+        self.accepted += block.accepted.size
+        self.lost += block.lost
+
+    def _keep(self, block: Block) -> None:
+        self._keeper.add(("trial", 0), block.accepted)
+        room = max(0, self._keep_inputs - self.accepted)
+        for key, values in block.draws.items():
+            self._keeper.add(("input", key), values[:room])
+        for key, values in (block.prior or {}).items():
+            self._keeper.add(("prior", key), values)
+        for place, values in enumerate(block.forecasts):
+            self._keeper.add(("forecast", place), values)
+        self._keeper.settle()
+
+    @property
+    def accepted_trials(self) -> NDArray[np.int64]:
+        """`(m,)` the numbers of the accepted trials so far."""
+        return self._keeper.columns({"trial": ("trial", 0)})["trial"]
+
+    def forecast(self, place: int) -> NDArray[np.float64]:
+        """A forecast's accepted trials so far, `(m,)`, NaN where it has no number."""
+        return self._keeper.columns({"": ("forecast", place)})[""]
+
+    def simulation(self, settings: Settings, plan: Plan, stopped: Stopped, rounding: Rounding | None) -> Simulation:
+        return Simulation(
+            model=self._model,
+            settings=settings,
+            plan=plan,
+            block=self._block,
+            trials=self.trials,
+            trial_index=self.accepted_trials,
+            inputs=self._keeper.columns(self._inputs),
+            prior=self._keeper.columns(self._prior),
+            forecasts=self._keeper.columns(self._forecasts),
+            faults={f.name: counts for f, counts in zip(self._model.forecasts, self._faults, strict=True)},
+            tally=self._tally,
+            invalid=self._invalid,
+            error_trials=self.lost,
+            stopped=stopped,
+            rounding=rounding,
+        )

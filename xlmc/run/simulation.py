@@ -1,0 +1,459 @@
+"""The result of a run: accepted trials, counts, statistics."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from functools import cached_property, partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc import statistics
+from xlmc.columns import numbers, parts
+from xlmc.definitions import Forecast, Settings
+from xlmc.definitions.model import name_key
+from xlmc.errors import Notice, SimulationError
+from xlmc.run.blocks import FilterTally
+from xlmc.run.cell_errors import Root, error_roots
+from xlmc.run.checking import CheckResult, check_results
+from xlmc.run.digits import lost_digits
+from xlmc.run.result_cells import ShownResults, shown_results, unavailable_warning
+from xlmc.run.stopping import Stopped
+from xlmc.run.stopping.stopped import ALL_TRIALS
+from xlmc.run.tail_notices import tail_notices
+from xlmc.sampling import METHODS, Plan
+from xlmc.statistics import Description, Estimate, Sample
+from xlmc.statistics.sample import MOST_GROUPS
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.figure import Figure
+
+    from xlmc.address import Cell
+    from xlmc.run.model import Model
+    from xlmc.run.rare.account import RareAccount
+    from xlmc.run.rounding import Rounding
+
+__all__ = [
+    "ERROR_SHARE",
+    "KEPT_INPUTS",
+    "TRIAL",
+    "ForecastResult",
+    "Origin",
+    "Simulation",
+    "assumption_heading",
+    "forecast_heading",
+]
+
+ERROR_SHARE: Final = 0.001
+"""Above this share of error trials the answer must not be used as it stands."""
+
+TRIAL: Final = "Trial"
+"""The heading of the trials' numbers in tables of trials."""
+
+KEPT_INPUTS: Final = 1 << 20
+"""Accepted trials whose draws are kept, unless asked otherwise: more than a sheet has rows."""
+
+LEAST_ACCEPTED: Final = 10
+"""Accepted trials for each replicate that errors come from, on average, if they are to be trusted: docs/sampling.md."""
+
+FEW: Final = 100
+"""Accepted trials below which the interval of a standard deviation may be too short: docs/stress.md."""
+
+TELLING: Final = 1_000
+"""Accepted trials from which on a single one can make up little of a variance, if there is one."""
+
+FARTHEST_PART: Final = 0.1
+"""Above this part in the sum of squares mean and standard deviation hang on a single trial."""
+
+Floats = NDArray[np.float64]
+Replicates = NDArray[np.int64]
+
+
+class ForecastResult:
+    """One forecast's accepted trials and their statistics. Estimates carry their standard error.
+
+    Attributes:
+        faults: error, `text` or `blank` -> accepted trials in which it is none.
+    """
+
+    def __init__(
+        self,
+        definition: Forecast,
+        column: Callable[[], Floats],
+        faults: Counter[str],
+        replicate: Callable[[], Replicates | None] = lambda: None,
+    ) -> None:
+        self.definition, self.faults = definition, faults
+        self._column, self._replicate = column, replicate
+
+    @cached_property
+    def values(self) -> Floats:
+        """`(m,)` accepted trials in which it is a number, in their order."""
+        return numbers(self._column())
+
+    @cached_property
+    def sample(self) -> Sample:
+        """The same in ascending order with their replicates, from which the statistics come."""
+        replicate, column = self._replicate(), self._column()
+        return Sample.of(self.values, None, None if replicate is None else replicate[~np.isnan(column)])
+
+    def __repr__(self) -> str:
+        return f"<{self.definition.name}: {self.values.size} accepted trials>"
+
+    @cached_property
+    def statistics(self) -> Description:
+        """Every statistic at once."""
+        d = self.definition
+        return statistics.describe(self.sample, central=d.central, threshold=d.threshold)
+
+    @property
+    def mean(self) -> Estimate:
+        return statistics.mean(self.sample)
+
+    @property
+    def median(self) -> Estimate:
+        return statistics.median(self.sample)
+
+    @property
+    def standard_deviation(self) -> Estimate:
+        return statistics.standard_deviation(self.sample)
+
+    def percentile(self, percent: float) -> Estimate:
+        """The value that `percent` (0 to 100) of the trials do not exceed, as Excel's PERCENTILE.INC."""
+        return statistics.percentile(self.sample, percent)
+
+    def central(self, share: float | None = None) -> tuple[Estimate, Estimate]:
+        """Both ends of the central range that holds `share` of the trials; the forecast's own share by default."""
+        return statistics.central_interval(self.sample, self.definition.central if share is None else share)
+
+    def probability_above(self, threshold: float) -> Estimate:
+        """P(forecast > threshold)."""
+        return statistics.probability_above(self.sample, threshold)
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a saved run was made.
+
+    Attributes:
+        software: name -> version.
+        processor: what it was, for people and for comparing.
+    """
+
+    software: Mapping[str, str]
+    processor: Mapping[str, str]
+
+
+_OF_FEW = (
+    "Intervals of percentiles and of shares hold with few trials too; those of the mean of a skewed forecast, of the "
+    "standard deviation, the skewness, the kurtosis and the coefficient of variation can then be too short: "
+    "--until-accepted 1000, say, goes on until there are more"
+)
+_OF_TAILS = (
+    "Of a ratio whose denominator passes 0 they do not exist, whatever their errors say: use the median and "
+    "percentiles, which do"
+)
+
+
+def _trials(count: int) -> str:
+    return "1 trial was" if count == 1 else f"{count:,} trials were"
+
+
+def _farthest(sample: Sample) -> str:
+    """In words; empty where no trial has too large a part."""
+    part = statistics.farthest_part(sample)
+    return f"which makes up {part:.0%} of the variance of {sample.n:,}" if part > FARTHEST_PART else ""
+
+
+@dataclass(frozen=True, eq=False)
+class Simulation:
+    """A finished run. Of a large one the columns lie in temporary files, as read-only arrays, for as long as it lives.
+
+    Attributes:
+        model, settings, block: what it is a function of.
+        plan: the sampling method, and how it divides the trials into replicates.
+        trials: how many were run; where accepted ones are rare, drawn plainly, which the counts are of.
+        trial_index: `(m,)` the accepted ones, counted from 0; where they are rare, in the order they were drawn in.
+        inputs: assumption -> its accepted draws, `(m,)`, or of the first accepted trials where not all were asked for.
+        prior: assumption -> its draws before filtering, of the first trials.
+        forecasts: forecast -> `(m,)`, NaN where it has no number.
+        faults: forecast -> fault -> accepted trials in which it has no number.
+        tally: what the filters rejected.
+        invalid: assumption key -> trials in which its parameters were no distribution.
+        error_trials: trials lost to errors: undecided by a filter, drawn from no distribution, or accepted without a
+            number in some forecast. Each counts once.
+        stopped: what ended it.
+        rounding: what float32 changed in the first trials; None with float64.
+        origin: where it was made, if it was saved and opened again; None for one that was made here.
+        rare: where the accepted trials come from, where that is a learned proposal; None with plain trials.
+    """
+
+    model: Model
+    settings: Settings
+    plan: Plan
+    block: int
+    trials: int
+    trial_index: NDArray[np.int64]
+    inputs: Mapping[str, Floats]
+    prior: Mapping[str, Floats]
+    forecasts: Mapping[str, Floats]
+    faults: Mapping[str, Counter[str]]
+    tally: FilterTally
+    invalid: Counter[str]
+    error_trials: int
+    stopped: Stopped = ALL_TRIALS
+    rounding: Rounding | None = None
+    origin: Origin | None = None
+    rare: RareAccount | None = None
+
+    def __getitem__(self, name: str) -> ForecastResult:
+        """The result of a forecast, by name whatever its case.
+
+        Raises:
+            KeyError: there is no such forecast.
+        """
+        for definition in self.model.forecasts:
+            if name_key(definition.name) == name_key(name):
+                return self.results[definition.name]
+        raise KeyError(f"there is no forecast {name!r}; there are {', '.join(map(repr, self.forecasts))}")
+
+    def __repr__(self) -> str:
+        if self.rare is not None:
+            return f"<Simulation: {self.accepted} accepted trials, found in {self.rare.evaluations} evaluations>"
+        return f"<Simulation: {self.accepted} of {self.trials} trials accepted>"
+
+    @cached_property
+    def results(self) -> dict[str, ForecastResult]:
+        """Every forecast's result, in the order of the workbook."""
+        return {
+            f.name: ForecastResult(
+                f, partial(self.forecasts.__getitem__, f.name), self.faults[f.name], lambda: self.replicate
+            )
+            for f in self.model.forecasts
+        }
+
+    @property
+    def replicate(self) -> Replicates | None:
+        """`(m,)` the replicate of each accepted trial; None where the trials themselves are independent."""
+        return self.plan.replicate_of(self.trial_index)
+
+    @property
+    def accepted(self) -> int:
+        return int(self.trial_index.size)
+
+    @property
+    def evaluated(self) -> int:
+        """Trials that were computed in all: the plain ones, and those of a search."""
+        return self.trials if self.rare is None else self.rare.evaluations
+
+    @property
+    def acceptance(self) -> Estimate:
+        """The share of accepted trials; the trials may have gone on until there were enough."""
+        if self.rare is not None:
+            return self.rare.acceptance
+        if self.stopped.by == "accepted":
+            return statistics.inverse_proportion(self.accepted, self.trials)
+        if not self.plan.size:
+            return statistics.proportion(self.accepted, self.trials)
+        sizes = np.full(-(-self.trials // self.plan.size), self.plan.size)
+        sizes[-1] -= sizes.sum() - self.trials
+        return statistics.replicated_proportion(self.accepted_by_replicate, sizes)
+
+    @cached_property
+    def accepted_by_replicate(self) -> Replicates:
+        """How many trials each replicate has accepted; of none where the trials themselves are independent."""
+        count = -(-self.trials // self.plan.size) if self.plan.size else 0
+        found = np.zeros(count, np.int64)
+        for part in parts(self.trial_index) if count else ():
+            found += np.bincount(part // self.plan.size, minlength=count)
+        return found
+
+    @property
+    def notices(self) -> tuple[Notice, ...]:
+        """What the person should know of the model and of this run."""
+        return (*self.model.notices, *self.notices_of_run)
+
+    @cached_property
+    def notices_of_run(self) -> tuple[Notice, ...]:
+        """What the person should know of this run alone."""
+        found = [] if self.rounding is None else [self.rounding.notice]
+        if not self.plan.replicates and 0 < self.accepted < FEW:
+            found.append(Notice(f"only {_trials(self.accepted)} accepted. {_OF_FEW}"))
+        samples = {name: result.sample for name, result in self.results.items()}
+        hanging = {
+            name: part for name, sample in samples.items() if sample.n >= TELLING and (part := _farthest(sample))
+        }
+        found += [
+            Notice(f"the mean and the standard deviation of {name!r} hang on a single trial, {part}. {_OF_TAILS}")
+            for name, part in hanging.items()
+        ]
+        rest = {name: sample for name, sample in samples.items() if name not in hanging}
+        return (*found, *tail_notices(rest, METHODS[self.plan.method]))
+
+    @property
+    def warnings(self) -> list[str]:
+        """Why the answer must not be used as it stands; empty when it may be."""
+        found = []
+        if self.accepted == 0 and self.stopped.by != "search":
+            most = self.acceptance.interval
+            fewer = "" if most is None else f", or accept fewer than {most[1]:.2g} of the trials"
+            found.append(f"no trial was accepted: the filters contradict the assumptions{fewer}")
+        if not self.stopped.reached and not self.stopped.interrupted:
+            found.append(self.stopped.sentence)
+        if self.error_trials > ERROR_SHARE * self.trials:
+            share = self.error_trials / self.trials
+            found.append(f"{self.error_trials:,} trials ({share:.2%}) were lost to errors in cells")
+        failing = [warning for check in self.checks for warning in check.warnings]
+        rare = () if self.rare is None else self.rare.warnings
+        missing = unavailable_warning(self.shown_results)
+        return [*failing, *found, *self._sparse(), *self._lost_digits, *rare, *([missing] if missing else [])]
+
+    @cached_property
+    def shown_results(self) -> ShownResults:
+        """What the workbook's own cells show of this run, `=RiskMean(B9)` and all that depends on it."""
+        return shown_results(self)
+
+    @cached_property
+    def error_roots(self) -> dict[Cell, Root]:
+        """Cell of a forecast or filter that was an error in some trials -> the cell it comes from, and its error."""
+        cells = [f.cell for f, errors in zip(self.model.filters, self.tally.errors, strict=True) if errors.total()]
+        cells += [f.cell for f in self.model.forecasts if self.faults[f.name].total()]
+        return error_roots(self.model, cells, (self.prior, self.inputs)) if cells else {}
+
+    @cached_property
+    def checks(self) -> tuple[CheckResult, ...]:
+        """The workbook's checks at the base case and in the accepted trials; evaluated when they are first asked."""
+        return check_results(self.model, self.inputs, self.accepted)
+
+    @cached_property
+    def _lost_digits(self) -> list[str]:
+        """Which forecasts have no digits; looked for when it is first asked."""
+        return lost_digits(self.model, self.inputs)
+
+    def _sparse(self) -> list[str]:
+        """Whether too few trials were accepted in a replicate for the errors to be told from the replicates."""
+        groups = min(self.plan.replicates, MOST_GROUPS)
+        if not 0 < self.accepted < LEAST_ACCEPTED * groups:
+            return []
+        return [
+            f"only {self.accepted:,} trials were accepted in {self.plan.replicates:,} replicates, fewer than "
+            f"{LEAST_ACCEPTED * groups:,}, so errors and intervals are not to be trusted: run more trials, or sample "
+            f"by {METHODS['mc']}"
+        ]
+
+    @property
+    def kept_inputs(self) -> int:
+        """Of how many accepted trials, from the first on, the draws are kept."""
+        return next((int(values.size) for values in self.inputs.values()), self.accepted)
+
+    def frame(self, *, inputs: bool = True) -> pandas.DataFrame:
+        """Accepted trials, one a row, indexed by trial: assumptions, then forecasts.
+
+        An assumption with the name of a forecast is called `name (assumption)`; what is called `Trial`, as the
+        index is, `Trial (assumption)` or `Trial (forecast)`.
+
+        Args:
+            inputs: with the assumptions.
+
+        Raises:
+            SimulationError: not all draws were kept.
+        """
+        import pandas
+
+        if inputs and self.kept_inputs < self.accepted:
+            message = f"the draws of {self.kept_inputs:,} of {self.accepted:,} accepted trials were kept"
+            raise SimulationError(message, hint="use frame(inputs=False), or simulate(…, keep_inputs=None)")
+        columns = {forecast_heading(name): values for name, values in self.forecasts.items()}
+        if inputs:
+            drawn = {assumption_heading(name, self.forecasts): values for name, values in self.inputs.items()}
+            columns = drawn | columns
+        return pandas.DataFrame(columns, index=pandas.Index(self.trial_index, name=TRIAL))
+
+    def save(self, path: str | Path, *, overwrite: bool = False) -> Path:
+        """Write the workbook with result sheets, and give the path back.
+
+        As `save_page`, `keep` and `save_json` do, it replaces a file only where xlmc wrote it for the same workbook and
+        nobody has changed it since; `extract`, whose tables bear no mark, replaces none.
+
+        Args:
+            path: where to.
+            overwrite: replace any other file too, and write into the workbook itself where the path is its own.
+
+        Raises:
+            WorkbookError: the file is not ours to replace, or cannot be written.
+        """
+        from xlmc.report import save
+
+        return save(self, Path(path), overwrite=overwrite)
+
+    def save_page(self, path: str | Path, *, overwrite: bool = False) -> Path:
+        """Write the results as one page for a browser, which needs no network.
+
+        Raises:
+            WorkbookError: the file does not end in `.html`, or cannot be written.
+        """
+        from xlmc.report.page import save_page
+
+        return save_page(self, Path(path), overwrite=overwrite)
+
+    def keep(self, path: str | Path, *, overwrite: bool = False) -> Path:
+        """Save the run in a file that ends in `.xlmcrun`; `xlmc.open_run` gives it back.
+
+        Raises:
+            WorkbookError: the file cannot be written.
+            SimulationError: the workbook was not read from a file.
+        """
+        from xlmc.results.saved import keep
+
+        return keep(self, Path(path), overwrite=overwrite)
+
+    def extract(self, path: str | Path, *, overwrite: bool = False) -> Path:
+        """Write the accepted trials, with assumptions and forecasts, to a `.csv` or a `.parquet` file.
+
+        Raises:
+            WorkbookError: the file has another ending, or cannot be written.
+            SimulationError: Parquet needs pyarrow, which is not installed.
+        """
+        from xlmc.report.data.extract import extract
+
+        return extract(self, Path(path), overwrite=overwrite)
+
+    def save_json(self, path: str | Path, *, overwrite: bool = False) -> Path:
+        """Write all results as JSON; docs/json.md describes it.
+
+        Raises:
+            WorkbookError: the file cannot be written, or does not end in `.json`.
+        """
+        from xlmc.report.data.document import save_json
+
+        return save_json(self, Path(path), overwrite=overwrite)
+
+    def plot(self) -> Figure:
+        """A figure of matplotlib: every forecast's histogram and cumulative share, with the central range shaded.
+
+        Raises:
+            SimulationError: matplotlib is not installed, or there is nothing to draw.
+        """
+        from xlmc.report.plot import plot
+
+        return plot(self)
+
+
+def forecast_heading(name: str) -> str:
+    """What a forecast is called in a table of trials, in which no two columns may have one name."""
+    return f"{name} (forecast)" if name == TRIAL else name
+
+
+def assumption_heading(name: str, forecasts: Collection[str]) -> str:
+    """What an assumption is called there.
+
+    Args:
+        name: of the assumption.
+        forecasts: the names of all forecasts.
+    """
+    return f"{name} (assumption)" if name == TRIAL or name in forecasts else name

@@ -1,0 +1,1 @@
+"""Further questions to a workbook, or to a run."""

@@ -1,0 +1,78 @@
+"""The same workbook with a definition changed: assumptions held, filters left out. The file stays as it is.
+
+Every assumption has a random stream of its own, so a variation draws the same numbers for all that it still draws
+(a correlated group counts as one).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+
+from xlmc.definitions import Assumption
+from xlmc.definitions.model import name_key
+from xlmc.definitions.stopping import NO_GOAL
+from xlmc.errors import SimulationError
+from xlmc.run.model import Model
+
+__all__ = ["plainly_sampled", "varied"]
+
+
+def varied(
+    model: Model,
+    *,
+    frozen: Collection[str] = (),
+    without: Collection[str] = (),
+    drawn_as: Mapping[str, Assumption] | None = None,
+) -> Model:
+    """A model with changed definitions.
+
+    Args:
+        model: stays as it is.
+        frozen: keys (`name_key`) of the assumptions to hold at their base values.
+        without: keys of the filters to leave out.
+        drawn_as: key of an assumption -> the one whose distribution it takes.
+
+    Raises:
+        SimulationError: an assumption to hold has no base value.
+    """
+    definitions = replace(
+        model.definitions,
+        assumptions=tuple(_assumption(a, frozen, drawn_as or {}) for a in model.assumptions),
+        filters=tuple(f for f in model.filters if name_key(f.name) not in without),
+    )
+    return Model(model.workbook, definitions, model.path)
+
+
+def plainly_sampled(model: Model) -> Model:
+    """The model with plain Monte Carlo for its sampling, and runs of a given length.
+
+    Differences are judged from trials that are independent, the same trials of each model.
+    """
+    settings = model.definitions.settings
+    plain = replace(settings, sampling="mc", stopping=NO_GOAL)
+    if settings == plain:
+        return model
+    definitions = replace(model.definitions, settings=plain)
+    return Model(model.workbook, definitions, model.path)
+
+
+def _assumption(assumption: Assumption, frozen: Collection[str], drawn_as: Mapping[str, Assumption]) -> Assumption:
+    key = name_key(assumption.name)
+    if key in frozen:
+        if assumption.base is None:
+            message = f"the assumption {assumption.name!r} has no base value to be held at"
+            raise SimulationError(message, where=assumption.cell, hint="type one into its cell")
+        return replace(assumption, frozen=True)
+    if key in drawn_as:
+        other = drawn_as[key]
+        return replace(
+            assumption,
+            distribution=other.distribution,
+            parameters=other.parameters,
+            lower_cutoff=other.lower_cutoff,
+            upper_cutoff=other.upper_cutoff,
+            own_family=other.own_family,
+            data=other.data,
+        )
+    return assumption

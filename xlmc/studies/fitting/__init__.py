@@ -1,0 +1,10 @@
+"""Fitting: which distributions describe measurements, and how sure that is. Pure functions of arrays `(n,)`."""
+
+from __future__ import annotations
+
+from xlmc.studies.fitting.candidate import Unfit
+from xlmc.studies.fitting.cautions import FEW, cautions
+from xlmc.studies.fitting.fit import CRITERIA, KINDS, Fitted, Fitting, fit
+from xlmc.studies.fitting.paste import row_to_paste
+
+__all__ = ["CRITERIA", "FEW", "KINDS", "Fitted", "Fitting", "Unfit", "cautions", "fit", "row_to_paste"]

@@ -1,0 +1,173 @@
+"""Fit every family to the values by maximum likelihood, and rank them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from xlmc.errors import SimulationError
+from xlmc.studies.fitting.candidate import Candidate, Errors, Floats, Params, Unfit, refuse
+from xlmc.studies.fitting.cautions import cautions
+from xlmc.studies.fitting.closed_forms import CLOSED_FORMS
+from xlmc.studies.fitting.counts import COUNTS
+from xlmc.studies.fitting.goodness import anderson_darling, kolmogorov_smirnov, kolmogorov_smirnov_of_counts
+from xlmc.studies.fitting.information import standard_errors
+from xlmc.studies.fitting.solved_forms import SOLVED_FORMS
+from xlmc.studies.fitting.triangular import TRIANGULAR
+
+__all__ = ["CRITERIA", "KINDS", "Fitted", "Fitting", "fit"]
+
+KINDS: Mapping[str, tuple[Candidate, ...]] = {
+    "continuous": (*CLOSED_FORMS, TRIANGULAR, *SOLVED_FORMS),
+    "counts": COUNTS,
+}
+"""What is fitted: densities and probabilities are not compared with each other."""
+
+CRITERIA = ("aic", "bic", "ad", "ks")
+_LEAST = 2
+_NEAR, _IN_THE_RACE = 2.0, 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Fitted:
+    """A family with its maximum-likelihood parameters.
+
+    Attributes:
+        parameters: by heading.
+        errors: their standard errors; None where there is none.
+        errors_from: what these come from.
+        fixed: headings that were not estimated.
+        aic, bic: Akaike's and the Bayesian information criterion: smaller is better.
+        ad, ks: Anderson-Darling's A² (None for counts) and Kolmogorov-Smirnov's D: smaller is better.
+    """
+
+    name: str
+    parameters: Mapping[str, float]
+    errors: Mapping[str, float | None]
+    errors_from: str
+    fixed: frozenset[str]
+    log_likelihood: float
+    aic: float
+    bic: float
+    ad: float | None
+    ks: float
+
+
+@dataclass(frozen=True, slots=True)
+class Fitting:
+    """All families that could be fitted, the best first.
+
+    Attributes:
+        kind: `continuous` or `counts`.
+        n: how many values there were.
+        by: what they are ranked by.
+        unfit: family -> why it was not fitted.
+        cautions: what a person should know, in words.
+    """
+
+    kind: str
+    n: int
+    by: str
+    fits: tuple[Fitted, ...]
+    unfit: Mapping[str, str]
+    cautions: tuple[str, ...]
+
+
+def fit(values: ArrayLike, *, kind: str | None = None, by: str = "aic") -> Fitting:
+    """Fit the families of a kind.
+
+    Args:
+        values: `(n,)`, two or more, not all equal.
+        kind: `continuous` or `counts`; None: counts where every value is a whole number from 0 up.
+        by: one of `CRITERIA`.
+
+    Raises:
+        SimulationError: there are too few values, all are equal, or they are no counts where counts are asked for.
+    """
+    x = np.sort(np.asarray(values, dtype=float).ravel())
+    _refuse_hopeless(x)
+    whole = bool(np.all((x == np.floor(x)) & (x >= 0)))
+    kind = kind or ("counts" if whole else "continuous")
+    if kind == "counts" and not whole:
+        raise SimulationError("not every value is a whole number from 0 up", hint="Fit them as continuous values")
+    found, unfit = _estimates(kind, x)
+    best = min((_aic(candidate, top) for candidate, _, top in found), default=0.0)
+    fits = [
+        _fitted(candidate, params, top, x, kind, costly=_aic(candidate, top) - best < _IN_THE_RACE)
+        for candidate, params, top in found
+    ]
+    fits.sort(key=lambda each: (_criterion(each, by), each.aic))
+    near = sorted(fits, key=lambda each: each.aic)
+    rivals = [each.name for each in near if each.aic - near[0].aic < _NEAR]
+    return Fitting(kind, x.size, by, tuple(fits), unfit, cautions(x.size, rivals))
+
+
+def _refuse_hopeless(x: Floats) -> None:
+    if x.size < _LEAST:
+        count = "no value" if x.size == 0 else "one value"
+        hint = (
+            "One measurement justifies a uniform range only: choose Low and High so that nothing possible is left out"
+        )
+        raise SimulationError(f"there is {count} to fit", hint=hint)
+    if not np.isfinite(x).all():
+        raise SimulationError("a value is no finite number", hint="Correct it, or leave it out")
+    if x[0] == x[-1]:
+        hint = "Equal measurements say nothing of the spread: choose Low and High from what the measurement resolves"
+        raise SimulationError(f"all {x.size} values are equal", hint=hint)
+
+
+def _estimates(kind: str, x: Floats) -> tuple[list[tuple[Candidate, Params, float]], dict[str, str]]:
+    """The families with their parameters and the height of the likelihood; and why others have none."""
+    found: list[tuple[Candidate, Params, float]] = []
+    unfit: dict[str, str] = {}
+    for candidate in KINDS[kind]:
+        try:
+            params = candidate.estimate(x)
+            top = candidate.log_likelihood(x, params)
+            refuse(not np.isfinite(top), "its likelihood has no highest point")
+            found.append((candidate, params, top))
+        except Unfit as reason:
+            unfit[candidate.name] = str(reason)
+    return found, unfit
+
+
+def _aic(candidate: Candidate, top: float) -> float:
+    return 2 * candidate.free - 2 * top
+
+
+def _fitted(candidate: Candidate, params: Params, top: float, x: Floats, kind: str, *, costly: bool) -> Fitted:
+    errors, errors_from = _errors(candidate, params, x, costly)
+    if kind == "counts":
+        ad, ks = None, kolmogorov_smirnov_of_counts(x, lambda k: np.asarray(candidate.cdf(k, *params)))
+    else:
+        at = np.asarray(candidate.cdf(x, *params))
+        ad, ks = anderson_darling(at), kolmogorov_smirnov(at)
+    return Fitted(
+        name=candidate.name,
+        parameters=dict(zip(candidate.headings, params, strict=True)),
+        errors=dict(zip(candidate.headings, errors, strict=True)),
+        errors_from=errors_from,
+        fixed=candidate.fixed,
+        log_likelihood=top,
+        aic=_aic(candidate, top),
+        bic=candidate.free * float(np.log(x.size)) - 2 * top,
+        ad=ad,
+        ks=ks,
+    )
+
+
+def _errors(candidate: Candidate, params: Params, x: Floats, costly: bool) -> tuple[Errors, str]:
+    if candidate.errors is not None:
+        if candidate.costly and not costly:
+            return (None,) * len(params), f"not worked out: AIC more than {_IN_THE_RACE:g} above the best"
+        return candidate.errors(x, params), candidate.errors_from
+    free = [place for place, heading in enumerate(candidate.headings) if heading not in candidate.fixed]
+    return standard_errors(lambda moved: candidate.log_likelihood(x, moved), params, free), candidate.errors_from
+
+
+def _criterion(fitted: Fitted, by: str) -> float:
+    value = {"aic": fitted.aic, "bic": fitted.bic, "ad": fitted.ad, "ks": fitted.ks}[by]
+    return np.inf if value is None else value

@@ -1,0 +1,150 @@
+"""What every method is asked for: mean, standard deviation, both ends of the central range, and the share accepted."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Final, Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc import statistics
+from xlmc.run.model import Model
+from xlmc.sampling import Plan
+from xlmc.statistics import Sample
+
+__all__ = ["STATISTICS", "Answer", "Errors", "Extreme", "Method", "MethodResult", "answer_of", "extremes_of"]
+
+STATISTICS: Final[Mapping[str, str]] = {
+    "mean": "Mean",
+    "sd": "SD",
+    "low": "Lower end",
+    "high": "Upper end",
+}
+"""Attribute of an `Answer` -> what people call it."""
+
+Errors = Literal["independent", "consistent", "weighted", "floor", "once"]
+"""How a method's errors fall with its trials: as those of independent trials; to zero, at least as fast; likewise, with
+weights; as those of independent trials, down to a floor; or there is one answer, and nothing falls."""
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """One forecast, in its units; NaN where a method has nothing to say.
+
+    Attributes:
+        mean, sd: of the accepted trials, or of all where the method does not see filters.
+        low, high: the ends of the forecast's central range.
+        least, most: bounds, for methods that give them in place of a distribution.
+    """
+
+    mean: float = np.nan
+    sd: float = np.nan
+    low: float = np.nan
+    high: float = np.nan
+    least: float = np.nan
+    most: float = np.nan
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Extreme:
+    """The lowest or highest accepted trial of a forecast in one run.
+
+    Attributes:
+        forecast, end: whose, `least` or `most`.
+        value: of the forecast.
+        seed, plan, trial: what draws it again.
+    """
+
+    forecast: str
+    end: str
+    value: float
+    seed: int
+    plan: Plan
+    trial: int
+
+
+def extremes_of(
+    forecasts: Mapping[str, Floats], trials: NDArray[np.int64], seed: int, plan: Plan
+) -> tuple[Extreme, ...]:
+    """The extremes of every forecast `(m,)` over accepted trials `(m,)`; none of one that is nowhere a number."""
+    found = []
+    for name, values in forecasts.items():
+        if np.isnan(values).all():
+            continue
+        for end, place in (("least", np.nanargmin(values)), ("most", np.nanargmax(values))):
+            found.append(Extreme(name, end, float(values[place]), seed, plan, int(trials[place])))
+    return tuple(found)
+
+
+@dataclass(frozen=True, slots=True)
+class MethodResult:
+    """What one run of a method gave.
+
+    Attributes:
+        seconds: of the whole run, with what it learned from.
+        evaluations: of the workbook.
+        answers: forecast -> answer.
+        acceptance: the share of trials that all filters accept; None where the method does not see filters.
+        effective: how many equally weighted accepted trials carry as much; None where all weigh alike.
+        remarks: what this run has to say for itself: its point, its limits, what it left out.
+        ends: (forecast, `least` or `most`) -> the point that the bound is reached at, by the assumptions' names; of
+            methods whose bounds are forecasts of points that the workbook accepts.
+        extremes: the lowest and highest accepted trials, of methods that draw.
+    """
+
+    seconds: float
+    evaluations: int
+    answers: Mapping[str, Answer]
+    acceptance: float | None = None
+    effective: float | None = None
+    remarks: tuple[str, ...] = field(default=())
+    ends: Mapping[tuple[str, str], Mapping[str, float]] = field(default_factory=dict)
+    extremes: tuple[Extreme, ...] = field(default=())
+
+
+class Method(Protocol):
+    """A way from ranges of the assumptions to what they make of the forecasts.
+
+    Attributes:
+        key: short, for JSON and colours.
+        name: for people.
+        errors: how they fall with its trials.
+        cannot: what it cannot do, in words; empty where there is nothing to say.
+    """
+
+    @property
+    def key(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def errors(self) -> Errors: ...
+    @property
+    def cannot(self) -> str: ...
+
+    def run(self, model: Model, budget: int, seed: int) -> MethodResult:
+        """Run it once.
+
+        Args:
+            model: the workbook.
+            budget: evaluations of the workbook that it may spend, about; methods that know how many they need spend
+                those.
+            seed: of whatever it draws.
+
+        Raises:
+            SimulationError: this method cannot be used on this workbook, and why.
+        """
+
+
+def answer_of(values: Floats, weights: Floats | None, central: float) -> Answer:
+    """The answer that `(m,)` accepted trials give, NaNs left out; all NaN where too few are numbers."""
+    known = ~np.isnan(values)
+    if np.count_nonzero(known) < 2:
+        return Answer()
+    sample = Sample.of(values[known], None if weights is None else weights[known])
+    tails = np.array([(1.0 - central) / 2.0, (1.0 + central) / 2.0])
+    low, high = sample.quantile(tails)
+    return Answer(statistics.mean(sample).value, statistics.standard_deviation(sample).value, float(low), float(high))

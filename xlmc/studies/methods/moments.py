@@ -1,0 +1,103 @@
+"""Means, standard deviations and correlations of the assumptions: all that the differential method knows of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.definitions.model import name_key
+from xlmc.errors import SimulationError
+from xlmc.run.model import Model
+from xlmc.sampling import Draw, Plan
+
+__all__ = ["Moments", "drawn", "moments_of"]
+
+_DRAWN: Final = 65_536
+_STEPS: Final = 1 << 16
+"""Of the midpoint rule over the quantile function of a distribution with cutoffs."""
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Moments:
+    """Of `k` assumptions, in the order of the model's.
+
+    Attributes:
+        mean: `(k,)`.
+        covariance: `(k, k)`.
+        remarks: where they are not exact, in words.
+    """
+
+    mean: Floats
+    covariance: Floats
+    remarks: tuple[str, ...]
+
+
+def moments_of(model: Model, seed: int) -> Moments:
+    """The moments of a model's assumptions.
+
+    Raises:
+        SimulationError: a mean or a standard deviation is infinite.
+    """
+    found = np.array([_of_draw(model.draws[a.name]) for a in model.live]).reshape(-1, 2)
+    varying = [place for place, (mean, _) in enumerate(found) if np.isnan(mean)]
+    for place, assumption in enumerate(model.live):
+        if place not in varying and not np.isfinite(found[place]).all():
+            message = f"{assumption.name} has no finite mean and standard deviation to start from"
+            raise SimulationError(message, hint="give it cutoffs, or use a method that draws")
+    correlations = np.eye(len(model.live))
+    remarks = []
+    if varying or model.groups:
+        draws = np.concatenate([*drawn(model, seed)])
+        for place in varying:
+            found[place] = np.nanmean(draws[:, place]), np.nanvar(draws[:, place])
+        correlations = _correlations(model, draws, varying)
+        remarks.append(f"correlations are those of {len(draws):,} draws")
+        if varying:
+            names = ", ".join(model.live[place].name for place in varying)
+            remarks.append(f"parameters vary, so mean and SD are those of {len(draws):,} draws: {names}")
+    sd = np.sqrt(found[:, 1])
+    return Moments(found[:, 0], correlations * np.outer(sd, sd), tuple(remarks))
+
+
+def drawn(model: Model, seed: int) -> Iterator[Floats]:
+    """65,536 Sobol draws of the assumptions, before any filter, `(n, k)` block by block."""
+    plan = Plan.of("sobol", _DRAWN)
+    made = model.sampler(seed, plan.size, plan=plan)
+    keys = [name_key(a.name) for a in model.live]
+    for start in range(0, plan.trials, plan.size):
+        block = made.draw(start)
+        yield np.column_stack([block[key] for key in keys])
+
+
+def _of_draw(draw: Draw) -> tuple[float, float]:
+    """Mean and variance; NaN where parameters vary."""
+    parameters = [each for each in draw.parameters if isinstance(each, float)]
+    if len(parameters) < len(draw.parameters) or not all(isinstance(c, float) for c in draw.cutoffs or ()):
+        return np.nan, np.nan
+    if draw.cutoffs is None:
+        return float(draw.family.mean(*parameters)), float(draw.family.variance(*parameters))
+    middles = (np.arange(_STEPS) + 0.5) / _STEPS
+    draw.fill(middles, {})
+    return float(np.mean(middles)), float(np.var(middles))
+
+
+def _correlations(model: Model, draws: Floats, varying: list[int]) -> Floats:
+    """Pearson's, where something correlates; 0 elsewhere."""
+    keys = [name_key(a.name) for a in model.live]
+    sound = draws[~np.isnan(draws).any(axis=1)]
+    with np.errstate(invalid="ignore"):
+        every = np.nan_to_num(np.corrcoef(sound, rowvar=False)).reshape(len(keys), len(keys))
+    related = np.eye(len(keys), dtype=bool)
+    for group in model.groups:
+        places = [keys.index(name) for name in group.names]
+        related[np.ix_(places, places)] = True
+    related[varying, :] = related[:, varying] = True
+    found = np.where(related, every, 0.0)
+    np.fill_diagonal(found, 1.0)
+    return found

@@ -1,0 +1,159 @@
+"""How many trials and seconds a method needs for an accuracy, and which answers given once are near enough."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Final, Literal
+
+import numpy as np
+
+from xlmc.studies.methods.answer import STATISTICS
+from xlmc.studies.methods.curve import Curve, Rung
+from xlmc.studies.methods.law import CONFIDENCE, law
+from xlmc.studies.methods.rms import NORMAL_95
+from xlmc.studies.methods.study import Study
+
+__all__ = ["Need", "Shortfall", "Verdict", "asked_kinds", "need", "reach_of", "seconds_of", "shortfall"]
+
+Verdict = Literal["yes", "no", "unknown"]
+
+_LEAST_PART: Final = 0.25
+
+
+@dataclass(frozen=True, slots=True)
+class Need:
+    """What a method needs.
+
+    Attributes:
+        trials: about; infinite where more of them would not do.
+        seconds: likewise.
+        forecast, statistic: whose accuracy needs the most.
+        beyond: how many times as many trials as the longest measured runs had; below 1 where it is between them.
+        reaches: whether the method comes to the accuracy at all, as far as the runs can tell.
+        floor: what 95 of 100 runs of any length are off by, in tolerances; 0 for a method that converges.
+    """
+
+    trials: float
+    seconds: float
+    forecast: str
+    statistic: str
+    beyond: float
+    reaches: Verdict = "yes"
+    floor: float = 0.0
+
+    @property
+    def usable(self) -> bool:
+        """Whether it can be recommended."""
+        return self.reaches == "yes" and bool(np.isfinite(self.seconds))
+
+
+@dataclass(frozen=True, slots=True)
+class Shortfall:
+    """The number that an answer given once misses by the most.
+
+    Attributes:
+        error: in the forecast's units, with its sign.
+        own: the standard error of the reference, likewise.
+        times: the error over what was asked for; infinite where the method gives no number.
+        reaches: whether it is near enough, as far as the reference can tell.
+    """
+
+    forecast: str
+    statistic: str
+    error: float
+    own: float
+    times: float
+    reaches: Verdict
+
+
+def asked_kinds(study: Study) -> list[tuple[str, str]]:
+    """The numbers that there is something to come near to in: forecast and attribute of `Answer`."""
+    return [(name, each) for name in study.varying for each in STATISTICS if study.converges(name, each)]
+
+
+def need(study: Study, curve: Curve) -> Need:
+    """What a method that draws needs, for 95 of 100 runs to keep the accuracy in every number of every forecast."""
+    longest = float(curve.rungs[-1].budget)
+    worst = Need(0.0, 0.0, "", "mean", 0.0)
+    for kind in asked_kinds(study):
+        tolerance = study.tolerance(kind[0])
+        found = law(study, curve, kind)
+        reaches = _verdict(found.floor_low, found.floor_high, tolerance)
+        trials = np.inf if reaches == "no" else found.trials(tolerance)
+        rank = (("yes", "unknown", "no").index(reaches), trials)
+        if rank > (("yes", "unknown", "no").index(worst.reaches), worst.trials) or not worst.forecast:
+            floor = found.floor / tolerance if tolerance > 0.0 else np.inf
+            worst = Need(trials, seconds_of(curve, trials), *kind, trials / longest, reaches, floor)
+    if worst.reaches == "yes" and not np.isfinite(worst.trials):
+        worst = replace(worst, reaches="unknown")
+    return _agreeing(study, curve, worst)
+
+
+def _agreeing(study: Study, curve: Curve, found: Need) -> Need:
+    """An engine's: it is off by what its arithmetic is coarser by, in every run."""
+    for name in study.varying:
+        off = curve.apart * study.reference.answers[name].sd
+        tolerance = study.tolerance(name)
+        if off > tolerance:
+            return Need(np.inf, np.inf, name, "mean", np.inf, "no", off / tolerance)
+    return found
+
+
+def _verdict(low: float, high: float, tolerance: float) -> Verdict:
+    """Whether an error between these bounds is within a tolerance."""
+    return "no" if low > tolerance else "yes" if high <= tolerance else "unknown"
+
+
+def shortfall(study: Study, curve: Curve) -> Shortfall:
+    """Which number of an answer that was given once is worst: one that is surely not good enough comes first."""
+    order = ("yes", "unknown", "no")
+    return max(_shortfalls(study, curve), key=lambda each: (order.index(each.reaches), each.times))
+
+
+def _shortfalls(study: Study, curve: Curve) -> Iterator[Shortfall]:
+    """Every number; the reference's error counts for as many comparisons as there are numbers and such methods."""
+    from scipy.special import ndtri
+
+    kinds = asked_kinds(study)
+    chances = max(len(kinds) * len([each for each in study.once if each.answers]), 1)
+    wide = float(-ndtri((1.0 - CONFIDENCE) / 2.0 / chances))
+    for kind in kinds:
+        error = curve.rungs[-1].errors[kind]
+        tolerance = study.tolerance(kind[0])
+        if not np.isfinite(error.value):
+            yield Shortfall(*kind, np.nan, error.error, np.inf, "no")
+            continue
+        own = wide * float(np.nan_to_num(error.error))
+        reaches = _verdict(error.value - own, error.value + own, tolerance)
+        yield Shortfall(*kind, error.bias, error.error, error.value / tolerance, reaches)
+
+
+def reach_of(study: Study, curve: Curve, rung: Rung, kind: tuple[str, str]) -> tuple[float, float, float]:
+    """What 95 of 100 runs of one length keep within in one number, and the 95 % bounds of that, over the tolerance.
+
+    Of an answer that was given once: its error, and the bounds that the reference's error leaves.
+    """
+    error, tolerance = rung.errors[kind], study.tolerance(kind[0])
+    wide = (1.0 if curve in study.once else NORMAL_95) / tolerance
+    low, high = error.interval
+    return wide * error.value, wide * low, wide * high
+
+
+def seconds_of(curve: Curve, trials: float) -> float:
+    """A run of so many trials: between measured run lengths in proportion, and beyond them as between the last two.
+
+    What a trial costs is not taken for less than a quarter of the longest run's average: runs that are shorter than a
+    block of trials all take the same time, and say nothing of it.
+    """
+    timed = [rung for rung in curve.rungs if np.isfinite(rung.seconds)]
+    if not timed or not np.isfinite(trials):
+        return np.inf
+    budgets = np.array([float(rung.budget) for rung in timed])
+    seconds = np.array([rung.seconds for rung in timed])
+    if trials <= budgets[-1]:
+        return float(np.interp(trials, budgets, seconds))
+    each = float(seconds[-1] / budgets[-1])
+    if budgets.size > 1:
+        each = max(float((seconds[-1] - seconds[-2]) / (budgets[-1] - budgets[-2])), _LEAST_PART * each)
+    return float(seconds[-1]) + each * (trials - float(budgets[-1]))

@@ -1,0 +1,307 @@
+"""The evidence: trials of a run, their values, what rounding does to these, and some of them with 50 digits.
+
+Letters: n trials, the base case and the ends of the ranges first; k assumptions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.address import Cell
+from xlmc.definitions.model import name_key
+from xlmc.evaluation.engine import Target
+from xlmc.evaluation.graph.dag import Apply, Input, uses
+from xlmc.evaluation.passes.derivatives import Derivatives
+from xlmc.evaluation.passes.exact import Exact, exactly
+from xlmc.evaluation.passes.replicas import DOUBLE, Jitter, closure, evaluation, formula_of, numbers, term_sizes
+from xlmc.functions.values import Value
+from xlmc.run.model import Model
+from xlmc.run.scene import condition
+from xlmc.run.simulation import Simulation
+from xlmc.studies.derivatives import derivatives
+from xlmc.studies.stability.findings import Where
+from xlmc.studies.stability.trees import Trees
+
+__all__ = ["RELATIONS", "REPLICAS", "Case"]
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+REPLICAS: Final = 6
+"""Evaluations with random rounding: their root mean square is known to a third of itself."""
+
+RELATIONS: Final = frozenset({"<", "<=", ">", ">=", "=", "<>"})
+
+_PRIOR: Final = 2048
+_ACCEPTED: Final = 1024
+_FEWEST_OF_EITHER: Final = 64
+"""Trials as drawn, and accepted ones; and how few there may be of each in a large book."""
+
+_BYTES: Final = 1 << 29
+"""For the values of all nodes, and the derivatives of all cells: as many trials as fit."""
+
+
+class Case:
+    """What is known of a model from a run of it.
+
+    Args:
+        model: the workbook.
+        run: accepted trials and draws of it.
+        seed: of the random rounding.
+    """
+
+    def __init__(self, model: Model, run: Simulation, seed: int = 0) -> None:
+        self.model, self.run, self._seed = model, run, seed
+        self.trees = Trees(model)
+        self.lowering, self.dag = model.lowering, model.lowering.dag
+        self.cells = [cell for cell in self.lowering.graph.formulas if cell not in self.lowering.inputs]
+        targets = [*(f.cell for f in model.forecasts), *(f.cell for f in model.filters)]
+        self.node = {cell: self.lowering.cell(cell) for cell in (*self.cells, *targets)}
+        self.names = [name_key(a.name) for a in model.live]
+        self.conditions = [self.lowering.target(Target(condition(f), f.cell)) for f in model.filters]
+        self.places = closure(self.dag, [*self.node.values(), *self.conditions])
+        self._exact = Exact(self.dag, self.places)
+        self._known: dict[int, dict[int, Any]] = {}
+
+    @cached_property
+    def draws(self) -> dict[str, Floats]:
+        """Key of the assumption -> `(n,)`."""
+        if not self.names:
+            return {}
+        special = self._special()
+        prior = np.column_stack([self.run.prior[a.name][: self._room(_PRIOR)] for a in self.model.live])
+        accepted = np.column_stack([self.run.inputs[a.name][: self._room(_ACCEPTED)] for a in self.model.live])
+        rows = np.concatenate([special, prior, accepted])
+        rows = rows[np.isfinite(rows).all(axis=1)]
+        return {key: np.ascontiguousarray(column) for key, column in zip(self.names, rows.T, strict=True)}
+
+    def _room(self, trials: int) -> int:
+        """How many trials of so many there is room for."""
+        each = 24 * len(self.places) + 16 * len(self.cells) * len(self.names)
+        share = _BYTES / (each * (_PRIOR + _ACCEPTED))
+        return trials if share >= 1 else max(_FEWEST_OF_EITHER, int(share * trials))
+
+    def _special(self) -> Floats:
+        """The base case, and each assumption at either end of its range with the others at their base."""
+        prior = [self.run.prior[a.name] for a in self.model.live]
+        base = np.array([_base(a.base, draws) for a, draws in zip(self.model.live, prior, strict=True)])
+        rows = [base]
+        for place, assumption in enumerate(self.model.live):
+            ends = [assumption.parameters.get(key) for key in ("low", "high", "minimum", "maximum")]
+            numbers_ = [float(end) for end in ends if isinstance(end, int | float)]
+            for end in {*numbers_, float(np.nanmin(prior[place])), float(np.nanmax(prior[place]))}:
+                row = base.copy()
+                row[place] = end
+                rows.append(row)
+        return np.array(rows)
+
+    @cached_property
+    def special(self) -> int:
+        """How many of the trials are the base case and ends of ranges."""
+        return len(self._special()) if self.names else 0
+
+    @cached_property
+    def first_accepted(self) -> int:
+        """From which trial on they are accepted ones; before it, of all that were drawn."""
+        kept = min(self.run.kept_inputs, self.run.accepted, self._room(_ACCEPTED))
+        return self.n - kept if self.names else self.n
+
+    @property
+    def n(self) -> int:
+        return next((draws.size for draws in self.draws.values()), 1)
+
+    @cached_property
+    def values(self) -> dict[int, Value]:
+        """Node -> its values."""
+        return evaluation(self.dag, self.places, self.draws)
+
+    @cached_property
+    def errors(self) -> dict[int, Floats]:
+        """Node of a cell -> the size of its error by rounding, `(n,)`, in the root mean square of the replicas."""
+        return self._spread(lambda replica: {"jitter": Jitter((self._seed, replica))})
+
+    def _spread(self, how: Callable[[int], dict[str, Jitter]]) -> dict[int, Floats]:
+        """The root mean square of what differs in evaluations that move something."""
+        squares: dict[int, Floats] = {}
+        for replica in range(REPLICAS):
+            found = evaluation(self.dag, self.places, self.draws, **how(replica))
+            for place in {*self.node.values()}:
+                off = numbers(found[place], self.n) - self.number(place)
+                squares[place] = squares.get(place, 0.0) + np.where(np.isnan(off), 0.0, off) ** 2
+        return {place: np.sqrt(square / REPLICAS) for place, square in squares.items()}
+
+    def number(self, place: int) -> Floats:
+        """A node's numbers, `(n,)`; NaN where it has none."""
+        return numbers(self.values[place], self.n)
+
+    @cached_property
+    def users(self) -> dict[int, list[int]]:
+        """Node -> the nodes that use it."""
+        found: dict[int, list[int]] = {}
+        for place in self.places:
+            for part in uses(formula_of(self.dag, place)):
+                found.setdefault(part, []).append(place)
+        return found
+
+    @cached_property
+    def comparisons(self) -> list[int]:
+        """The nodes that compare."""
+        nodes = ((place, formula_of(self.dag, place)) for place in self.places)
+        return [place for place, node in nodes if isinstance(node, Apply) and node.function.name in RELATIONS]
+
+    def after(self, *places: int) -> list[int]:
+        """The nodes that follow from some, each after those that it needs."""
+        found: set[int] = set()
+        open_ = list(places)
+        while open_:
+            new = [user for user in self.users.get(open_.pop(), ()) if user not in found]
+            found.update(new)
+            open_ += new
+        return sorted(found, key=self._order.__getitem__)
+
+    @cached_property
+    def _order(self) -> dict[int, int]:
+        return {place: at for at, place in enumerate(self.places)}
+
+    @cached_property
+    def derivatives(self) -> Derivatives:
+        """Of every needed cell."""
+        inputs = {a.name: self.draws[key] for a, key in zip(self.model.live, self.names, strict=True)}
+        return derivatives(self.model, inputs, cells=self.cells)
+
+    @cached_property
+    def of_inputs(self) -> dict[int, Floats]:
+        """Node of a cell -> by how much it moves with the last place of assumptions and typed numbers, `(n,)`."""
+        found = self._spread(lambda replica: {"of_inputs": Jitter((self._seed, REPLICAS, replica), _MOVE)})
+        return {place: spread * (2 * DOUBLE / _MOVE) for place, spread in found.items()}
+
+    @cached_property
+    def term_sizes(self) -> dict[int, float]:
+        """Node -> the largest number added or subtracted on the way to it."""
+        return term_sizes(self.dag, self.places, self.values)
+
+    def inherent(self, cell: Cell) -> Floats:
+        """The error that rounding the assumptions, and the result, would bring alone, `(n,)`; NaN where unknown."""
+        gradient = self.derivatives.cells[cell].gradient
+        moved: Floats = np.nansum(np.abs(gradient * self.derivatives.points), axis=1)
+        node = self.node[cell]
+        return np.fmax(DOUBLE * (moved + np.abs(self.number(node))), self.of_inputs[node])
+
+    def scale(self, cell: Cell) -> float:
+        """The width of a cell's central range, or its size where it hardly varies; 1 for 0."""
+        found = self.number(self.node[cell])[self.special :]
+        found = found[np.isfinite(found)]
+        if not found.size:
+            return 1.0
+        low, middle, high = np.quantile(found, [0.245, 0.5, 0.755])
+        size = float(high - low)
+        if size <= 1e-9 * abs(middle):
+            size = abs(float(middle))
+        return size or 1.0
+
+    def exact(self, place: int, trial: int) -> Any:
+        """A node's value in a trial with 50 digits."""
+        if trial not in self._known:
+            self._known[trial] = self._exact.trial({key: float(draws[trial]) for key, draws in self.draws.items()})
+        return self._known[trial][place]
+
+    def exact_number(self, place: int, trial: int) -> float:
+        """The same as a double; NaN where it is no number."""
+        return exactly(self.exact(place, trial))
+
+    @property
+    def recomputed(self) -> int:
+        return len(self._known)
+
+    @property
+    def unchecked(self) -> set[int]:
+        """The nodes of functions that were not computed with 50 digits."""
+        return self._exact.unchecked
+
+    def where(self, trials: Bools, place: int, most: int = 2) -> tuple[Where, ...]:
+        """The assumptions whose ranges tell the trials from others: those that they take up least of.
+
+        An assumption is named only where the node depends on it, and where so many trials, drawn by chance, would
+        hardly ever lie so close together in its range.
+
+        Args:
+            trials: which.
+            place: the node that it happens to.
+            most: assumptions to name.
+        """
+        among = trials[self.special :]
+        count, drawn = int(among.sum()), self.n - self.special
+        if count < _FEWEST or count == drawn:
+            return ()
+        needed = self.inputs_of(place)
+        shares = []
+        for number, (assumption, key) in enumerate(zip(self.model.live, self.names, strict=True)):
+            draws = self.draws[key][self.special :]
+            here = draws[among]
+            share = float(np.mean((draws >= here.min()) & (draws <= here.max())))
+            width = float(draws.max() - draws.min())
+            if key in needed and width > 0 and _by_chance(share, count) * len(needed) < _RARELY:
+                told = self.draws[key][trials]
+                shares.append((float(here.max() - here.min()) / width, number, assumption, told))
+        shares.sort(key=lambda each: each[:2])
+        named = [each for each in shares if each[0] < _TELLING][:most]
+        return tuple(
+            Where(assumption.name, float(here.min()), float(here.max()), assumption.units or "")
+            for _, _, assumption, here in named
+        )
+
+    def inputs_of(self, place: int) -> set[str]:
+        """The keys of the assumptions that a node depends on."""
+        nodes = (formula_of(self.dag, part) for part in closure(self.dag, [place]))
+        return {node.name for node in nodes if isinstance(node, Input)}
+
+    def upstream(self, cell: Cell) -> set[Cell]:
+        """The cells that a cell needs, itself among them."""
+        needs = self.lowering.graph.needs
+        found: set[Cell] = set()
+        open_ = [cell]
+        while open_:
+            place = open_.pop()
+            if place not in found:
+                found.add(place)
+                open_ += needs.get(place, ())
+        return found
+
+    def forecasts_of(self, cells: Iterable[Cell]) -> list[str]:
+        """The forecasts and filters that a cell reaches."""
+        wanted = set(cells)
+        found = []
+        rows = [(row.cell, row.name) for row in self.model.forecasts]
+        rows += [(row.cell, row.name) for row in self.model.filters]
+        for cell, name in rows:
+            if wanted & self.upstream(cell) and name not in found:
+                found.append(name)
+        return found
+
+
+_MOVE: Final = 2.0**-30
+"""By how much inputs are moved, as a share: beside it, roundings on the way do not show."""
+
+_FEWEST: Final = 5
+"""Trials that take up little of some range for no reason."""
+
+_TELLING: Final = 0.5
+"""Of an assumption's range: what trials take up more than that of has nothing to do with it."""
+
+
+_RARELY: Final = 1e-3
+
+
+def _by_chance(share: float, count: int) -> float:
+    """The probability that so many trials lie within a share of the range by chance (David and Nagaraja 2003, §2.3)."""
+    return count * share ** (count - 1) - (count - 1) * share**count
+
+
+def _base(base: object, draws: Floats) -> float:
+    known = isinstance(base, int | float) and not isinstance(base, bool)
+    return float(base) if known else float(np.nanmedian(draws))  # type: ignore[arg-type]  # a number, then

@@ -1,0 +1,101 @@
+"""Looks for digits that are not there, and for numbers that mean something else than they seem to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Final
+
+from xlmc.evaluation.graph.dag import Apply
+from xlmc.evaluation.passes.derivatives.owners import owners
+from xlmc.run.simulation import Simulation
+from xlmc.studies.stability.angles import rounded_angles
+from xlmc.studies.stability.case import Case
+from xlmc.studies.stability.conditioning import amplifying_forecasts
+from xlmc.studies.stability.digits import cell_digits, lost_digits
+from xlmc.studies.stability.edges import domain_edges
+from xlmc.studies.stability.filters import narrow_filters
+from xlmc.studies.stability.findings import Finding, Level, Stability
+from xlmc.studies.stability.jumps import jumps
+from xlmc.studies.stability.quadrant import lost_quadrants
+from xlmc.studies.stability.single import single_precision
+from xlmc.studies.stability.tails import heavy_tails
+
+if TYPE_CHECKING:
+    from xlmc.address import Cell
+    from xlmc.run.model import Model
+
+__all__ = ["DETECTORS", "stability"]
+
+Told = Callable[[str], None]
+
+DETECTORS: Final[Mapping[str, Callable[[Case], Iterable[Finding]]]] = {
+    "lost quadrants": lost_quadrants,
+    "lost digits": lost_digits,
+    "heavy tails": heavy_tails,
+    "narrow filters": narrow_filters,
+    "edges of domains": domain_edges,
+    "jumps": jumps,
+    "angles": rounded_angles,
+    "amplification": amplifying_forecasts,
+    "float32": single_precision,
+}
+"""What is looked for -> what finds it."""
+
+
+def stability(
+    model: Model,
+    *,
+    trials: int | None = None,
+    seed: int | None = None,
+    jobs: int = 1,
+    told: Told | None = None,
+) -> Stability:
+    """Look through the cells that a model needs.
+
+    Args:
+        model: the workbook.
+        trials: of the run that is looked at; by default the book's own.
+        seed: of it.
+        jobs: threads or processes.
+        told: told what is being done.
+
+    Raises:
+        SimulationError: an argument is out of its range.
+    """
+    tell = told or (lambda _: None)
+    tell("a run")
+    run: Simulation = model.simulate(trials=trials, seed=seed, jobs=jobs)
+    case = Case(model, run, run.settings.seed)
+    found: list[Finding] = []
+    for name, detector in DETECTORS.items():
+        tell(name)
+        found += detector(case)
+    tell("what every cell amplifies")
+    cells = tuple(cell_digits(case))
+    ranked = sorted(_first_causes(case, found), key=lambda finding: (finding.level, -finding.size))
+    return Stability(run, tuple(ranked), cells, _unchecked(case), case.n, case.recomputed)
+
+
+_OF_DIGITS: Final = frozenset({"division", "cancellation", "rounding"})
+_OF_NUMBERS: Final = frozenset({"tail", "amplification", "float32"})
+
+
+def _first_causes(case: Case, findings: Iterable[Finding]) -> list[Finding]:
+    """Without what is said of numbers whose digits are not there."""
+    found = list(findings)
+    lost = [one.cell for one in found if one.level is Level.WRONG and one.kind in _OF_DIGITS]
+    reached = {cell for cell in (one.cell for one in found) if any(part in case.upstream(cell) for part in lost)}
+    return [one for one in found if one.kind not in _OF_NUMBERS or one.cell not in reached]
+
+
+def _unchecked(case: Case) -> tuple[tuple[Cell, tuple[str, ...]], ...]:
+    """The cells that hold functions which were not computed with 50 digits."""
+    whose = owners(case.lowering)
+    found: dict[Cell, list[str]] = {}
+    for place in sorted(case.unchecked):
+        node = case.dag.nodes[place]
+        if isinstance(node, Apply) and place in whose:
+            names = found.setdefault(whose[place], [])
+            if node.function.name not in names:
+                names.append(node.function.name)
+    return tuple((cell, tuple(names)) for cell, names in found.items())

@@ -1,0 +1,194 @@
+"""A formula in which the part that loses digits stands in another form, offered only after both were computed.
+
+What is computed is what is read from its text. It must be the same to 20 digits, have a number wherever the old one
+has, in all trials and in the corners of the ranges, and be off by a tenth of what the old one is at most, in the trials
+in which that is worst and in others, also when its roundings are made at random. In no trial may it be off much more
+than the old one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+from typing import Final
+
+import numpy as np
+
+from xlmc.address import Cell
+from xlmc.evaluation.passes.replicas import Jitter, closure, evaluation, numbers
+from xlmc.formula import ir
+from xlmc.studies.stability.case import Case, Floats
+from xlmc.studies.stability.polynomials import Polynomial, Polynomials
+from xlmc.studies.stability.rewriting import same
+from xlmc.studies.stability.stable_forms import Form, forms
+from xlmc.studies.stability.trees import factors, replaced
+
+__all__ = ["steadied"]
+
+_STEPS_BACK: Final = 3
+"""Formulas of other cells are looked into as far as that."""
+
+_DIGITS: Final = 20
+_BETTER: Final = 0.1
+_OTHERS: Final = 16
+_MOST_RANGES: Final = 4
+"""Of so many assumptions all corners are tried, of more the two extreme ones."""
+
+_WORSE: Final = 10.0
+_UNLIKE: Final = 30.0
+"""Times what rounding does to the old one: where the two differ by more, 50 digits say which is off."""
+
+_SUSPECTS: Final = 4
+_REPLICAS: Final = 3
+_LONGEST: Final = 1000
+"""Characters: nobody would type more."""
+
+
+def steadied(case: Case, cell: Cell, part: ir.Expression, worst: Sequence[int]) -> ir.Expression | None:
+    """A cell's formula with another form of one part of it; None where none is known to be better.
+
+    Args:
+        case: the evidence.
+        cell: whose formula.
+        part: of it, which loses the digits.
+        worst: trials in which it does.
+    """
+    for tree in _candidates(case, cell, part):
+        typed = case.trees.read_back(tree, cell) if len(case.trees.text(tree, cell)) <= _LONGEST else None
+        if typed is not None and _is_better(case, cell, typed, worst):
+            return typed
+    return None
+
+
+def _candidates(case: Case, cell: Cell, part: ir.Expression) -> Iterator[ir.Expression]:
+    tree = case.trees.formula(cell)
+    algebra = Polynomials(lambda one: case.trees.text(one, cell))
+    opened: ir.Expression | None = part
+    for _ in range(_STEPS_BACK + 1):
+        if opened is None:
+            return
+        for form in forms(opened, algebra):
+            yield from _placed(tree, part, form, algebra)
+        further = case.trees.opened(opened)
+        opened = None if further == opened else further
+
+
+def _placed(tree: ir.Expression, part: ir.Expression, form: Form, algebra: Polynomials) -> Iterator[ir.Expression]:
+    """The whole formula with a form in it, the factors beside it drawn in where that is possible."""
+    if isinstance(form.above, Mapping):
+        whole = _product(tree, part)
+        if whole is not None:
+            try:
+                drawn = _drawn(whole, part, form.above, algebra)
+            except OverflowError:
+                drawn = None
+            if drawn is not None:
+                yield replaced(tree, whole, _chosen(form, algebra.tree(drawn), whole))
+    above = algebra.tree(form.above) if isinstance(form.above, Mapping) else form.above
+    yield replaced(tree, part, _chosen(form, above, part))
+
+
+def _chosen(form: Form, above: ir.Expression, old: ir.Expression) -> ir.Expression:
+    new = above if form.below is None else ir.Binary("/", above, form.below)
+    return new if form.only_if is None else ir.Call("IF", (form.only_if, new, old))
+
+
+def _product(tree: ir.Expression, part: ir.Expression) -> ir.Expression | None:
+    """The outermost product in a formula of which a part is a factor."""
+    open_ = [tree]
+    while open_:
+        one = open_.pop()
+        above, below = factors(one)
+        if len(above) + len(below) > 1 and any(each is part for each in above):
+            return one
+        match one:
+            case ir.Unary(_, operand):
+                open_.append(operand)
+            case ir.Binary(_, left, right):
+                open_ += [right, left]
+            case ir.Call(_, arguments):
+                open_ += reversed(arguments)
+            case _:
+                pass
+    return None
+
+
+def _drawn(whole: ir.Expression, part: ir.Expression, above: Polynomial, algebra: Polynomials) -> Polynomial | None:
+    """What stands above the line, times the other factors; None where these are sums."""
+    found = above
+    others, below = factors(whole)
+    for one in others:
+        if one is not part:
+            found = algebra.product(found, algebra.of(one))
+    for one in below:
+        divisor = algebra.of(one)
+        if len(divisor) != 1:
+            return None
+        found = algebra.product(found, algebra.of(ir.Binary("/", ir.Number(1.0), one)))
+    return found
+
+
+def _is_better(case: Case, cell: Cell, tree: ir.Expression, worst: Sequence[int]) -> bool:
+    place = case.trees.place(tree, cell)
+    if place is None or not same(case, cell, tree, _DIGITS):
+        return False
+    node = case.node[cell]
+    if _loses_numbers(case, node, place, _corners(case, node)):
+        return False
+    trials = sorted({*worst, *_some(case, _OTHERS), *_unlike(case, cell, place)})
+    new = _evaluated(case, place, {key: draw[trials] for key, draw in case.draws.items()})
+    old = case.number(node)[trials]
+    exact = np.array([case.exact_number(node, trial) for trial in trials])
+    with np.errstate(all="ignore"):
+        size = np.fmax(case.inherent(cell)[trials], np.abs(exact) * np.finfo(float).eps)
+        was = np.abs(old - exact) / size
+        is_ = np.abs(new - exact) / size
+    if (is_[0] > _WORSE * np.fmax(was, _WORSE)).any():
+        return False
+    return bool(np.nanmax(is_, initial=0.0) <= _BETTER * np.nanmax(was, initial=0.0))
+
+
+def _loses_numbers(case: Case, node: int, place: int, corners: Mapping[str, Floats]) -> bool:
+    """Whether a node has no number somewhere where another one has."""
+    for draws in (case.draws, corners):
+        old, new = (_evaluated(case, one, draws, replicas=0)[0] for one in (node, place))
+        if (np.isfinite(old) & ~np.isfinite(new)).any():
+            return True
+    return False
+
+
+def _corners(case: Case, node: int) -> dict[str, Floats]:
+    """Draws with the assumptions that a node needs at the ends of their ranges, and at 0, the others as in a trial."""
+    needed = [key for key in case.names if key in case.inputs_of(node)]
+    ends = [sorted({float(case.draws[key].min()), float(case.draws[key].max()), *_zero(case, key)}) for key in needed]
+    rows = list(product(*ends)) if len(needed) <= _MOST_RANGES else [*zip(*((e[0], e[-1]) for e in ends), strict=True)]
+    found = {key: np.full(len(rows), draw[0]) for key, draw in case.draws.items()}
+    return found | {key: np.array([row[at] for row in rows]) for at, key in enumerate(needed)}
+
+
+def _zero(case: Case, key: str) -> tuple[float, ...]:
+    draws = case.draws[key]
+    return (0.0,) if draws.min() < 0 < draws.max() else ()
+
+
+def _unlike(case: Case, cell: Cell, place: int) -> list[int]:
+    """The trials in which another form differs most from the old one, by more than rounding does to that."""
+    node = case.node[cell]
+    with np.errstate(all="ignore"):
+        rounding = np.fmax(case.errors[node], np.nan_to_num(case.inherent(cell)))
+        unlike = np.nan_to_num(
+            np.abs(_evaluated(case, place, case.draws, replicas=0)[0] - case.number(node)) / (_UNLIKE * rounding)
+        )
+    return [int(trial) for trial in np.argsort(unlike)[::-1][:_SUSPECTS] if unlike[trial] > 1]
+
+
+def _some(case: Case, count: int) -> list[int]:
+    return [int(trial) for trial in np.linspace(0, case.n - 1, count)]
+
+
+def _evaluated(case: Case, place: int, draws: Mapping[str, Floats], replicas: int = _REPLICAS) -> Floats:
+    """A node's numbers for some draws, plain and with roundings made at random, `(1 + replicas, m)`."""
+    order = closure(case.dag, [place])
+    count = next((draw.size for draw in draws.values()), 1)
+    jitters = [None, *(Jitter((_OTHERS, replica)) for replica in range(replicas))]
+    return np.array([numbers(evaluation(case.dag, order, draws, one)[place], count) for one in jitters])

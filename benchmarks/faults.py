@@ -34,10 +34,10 @@ sys.path.insert(0, str(ROOT))
 import numpy as np
 
 import xlmc
+from xlmc.api import Simulation
 from xlmc.cli.templates_folder import templates
 from xlmc.columns import columns
 from xlmc.errors import XlmcError
-from xlmc.run.simulation import Simulation
 from xlmc.workbook.writer import write_workbook
 
 TOLD = 7

@@ -71,7 +71,7 @@ def measure(contestant: str, path: str) -> float:
     """Seconds to load, and for xlmc to compile too, imports not counted."""
     if contestant == "xlmc":
         import xlmc
-        from xlmc.run.model import load
+        from xlmc.api import load
 
         start = process_time()
         model = load(path)

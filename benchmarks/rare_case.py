@@ -13,7 +13,7 @@ from rare_problems import STATISTICS
 
 import xlmc
 import xlmc.statistics as xs
-from xlmc.run.model import Model
+from xlmc.api import Model
 from xlmc.statistics import Estimate
 
 __all__ = ["CASE", "LABELS", "WORDS", "held", "model", "narrowed", "plain", "searched"]

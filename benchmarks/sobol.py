@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from tables import placed
 
-from xlmc.run.model import Model, load
+from xlmc.api import Model, load
 from xlmc.sampling import METHODS
 
 __all__ = ["gains", "means", "table"]

@@ -14,8 +14,8 @@ from openpyxl.workbook.defined_name import DefinedName as WrittenName
 from openpyxl.worksheet.table import Table as WrittenTable
 
 from xlmc.address import Area, parse_address
+from xlmc.api import Model
 from xlmc.definitions import Assumption, Correlation, Definitions, Filter, Forecast
-from xlmc.run.model import Model
 from xlmc.workbook.model import CellContent, DefinedName, Formula, Sheet, Table, Workbook
 
 

@@ -17,9 +17,9 @@ from scipy import stats
 
 import xlmc
 from xlmc.address import Area
+from xlmc.api import Model
 from xlmc.definitions import read_definitions
 from xlmc.errors import XlmcError
-from xlmc.run.model import Model
 from xlmc.workbook.model import CellContent, Formula
 
 TRIALS = 100_000

@@ -12,9 +12,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from xlmc.results.saved import open_run
-    from xlmc.run.model import Model, load
-    from xlmc.run.simulation import ForecastResult, Simulation
+    from xlmc.api import Model, Simulation, load, open_run
+    from xlmc.run.simulation import ForecastResult
+    from xlmc.run.version import __version__
     from xlmc.studies.comparison import compare
     from xlmc.studies.screening import screen
     from xlmc.studies.sensitivity import sensitivities
@@ -31,15 +31,14 @@ __all__ = [
     "sensitivities",
 ]
 
-__version__ = "0.3.0"
-
 _HOMES = {
     "ForecastResult": "run.simulation",
-    "Model": "run.model",
-    "Simulation": "run.simulation",
+    "Model": "api",
+    "Simulation": "api",
+    "__version__": "run.version",
     "compare": "studies.comparison",
-    "load": "run.model",
-    "open_run": "results.saved",
+    "load": "api",
+    "open_run": "api",
     "screen": "studies.screening",
     "sensitivities": "studies.sensitivity",
 }

@@ -9,8 +9,8 @@ from pathlib import Path
 from xml.parsers import expat
 
 from fuzzing.inputs import Disagreement
+from xlmc.api import Simulation
 from xlmc.report.summary import summarise, summary_text
-from xlmc.run.simulation import Simulation
 
 __all__ = ["examined"]
 

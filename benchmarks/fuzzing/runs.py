@@ -22,10 +22,9 @@ from fuzzing.featured import featured
 from fuzzing.inputs import Input, Reached, steps_of
 from fuzzing.outputs import examined
 from fuzzing.xml_changes import changed
+from xlmc.api import load, open_run
 from xlmc.errors import XlmcError
 from xlmc.replay import replay
-from xlmc.results.saved import open_run
-from xlmc.run.model import load
 
 __all__ = ["make", "run"]
 

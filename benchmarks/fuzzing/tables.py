@@ -11,8 +11,8 @@ from fuzzing.books import Sheet, Table, book, cell
 from fuzzing.commands import commanded
 from fuzzing.inputs import Input, Reached, steps_of
 from fuzzing.outputs import examined
+from xlmc.api import load
 from xlmc.distributions import FAMILIES
-from xlmc.run.model import load
 
 __all__ = ["make", "run"]
 

@@ -19,9 +19,9 @@ from fuzzing.featured import featured
 from fuzzing.inputs import Input, Reached, steps_of
 from fuzzing.outputs import examined
 from fuzzing.xml_changes import changed
+from xlmc.api import Model
 from xlmc.definitions import read_definitions
 from xlmc.errors import XlmcError
-from xlmc.run.model import Model
 from xlmc.workbook import read_workbook
 
 __all__ = ["make", "run"]

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from stressing.workbook import book_of
-from xlmc.run.model import Model
+from xlmc.api import Model
 from xlmc.statistics import rank_correlation
 
 __all__ = ["MATRICES", "book", "measure"]

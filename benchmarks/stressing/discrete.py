@@ -8,7 +8,7 @@ import numpy as np
 from scipy import stats
 
 from stressing.workbook import book_of
-from xlmc.run.model import Model
+from xlmc.api import Model
 
 __all__ = ["LAWS", "book", "measure"]
 

@@ -14,7 +14,7 @@ from stressing.exact import DIGITS, conditioning, exact
 from stressing.forms import FORMS, INPUTS
 from stressing.sweeps import Point
 from stressing.workbook import values_of
-from xlmc.run.model import Model
+from xlmc.api import Model
 
 __all__ = ["BOUND", "UNITS", "Measured", "measured"]
 

@@ -6,7 +6,7 @@ import math
 from typing import Any, Final
 
 from stressing.workbook import book_of
-from xlmc.run.model import Model
+from xlmc.api import Model
 from xlmc.statistics import farthest_part
 
 __all__ = ["FORECASTS", "QUARTILE", "book", "measure"]

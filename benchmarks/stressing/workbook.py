@@ -11,8 +11,8 @@ import xlsxwriter
 from numpy.typing import NDArray
 
 from stressing.forms import CONSTANTS, FORMS, INPUTS, PRINTED, REWRITTEN
+from xlmc.api import Model, load
 from xlmc.definitions.model import name_key
-from xlmc.run.model import Model, load
 
 __all__ = ["ARITHMETICS", "book_of", "forms_book", "values_of"]
 

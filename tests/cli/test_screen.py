@@ -66,10 +66,10 @@ def test_a_tolerance_that_cannot_be_read(xlmc, case_study):
 
 def test_no_table_is_wider_than_80_columns_where_that_is_all_there_is(case_study, monkeypatch, capsys):
     """No number is cut, and no table becomes a list."""
+    from xlmc.api import load
     from xlmc.cli import printing
     from xlmc.cli.screen import _told
     from xlmc.cli.told_options import show
-    from xlmc.run.model import load
     from xlmc.studies.screening import screen
 
     monkeypatch.setattr(printing, "_PIPE_WIDTH", 80)

@@ -8,9 +8,9 @@ import openpyxl
 import pytest
 
 from xlmc.address import parse_address
+from xlmc.api import Model
 from xlmc.definitions import Assumption, Definitions, Filter, Forecast, Settings
 from xlmc.report.sheets.book import build_sheets
-from xlmc.run.model import Model
 from xlmc.workbook import CellContent, Formula, Sheet, Workbook
 
 

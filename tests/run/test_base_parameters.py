@@ -8,8 +8,8 @@ import pytest
 from openpyxl.workbook.defined_name import DefinedName
 from openpyxl.worksheet.table import Table
 
+from xlmc.api import Model, load
 from xlmc.errors import DefinitionError
-from xlmc.run.model import Model, load
 
 CELLS = {"A1": 100.0, "A2": 2.0, "C1": "=A1*0.97", "C2": "=A1*1.03", "B1": "=A1"}
 MEASURED = {"cell": "A1", "low": "C1", "high": "C2"}

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from xlmc.address import parse_address
+from xlmc.api import Model
 from xlmc.definitions import Check
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.run.checking import LEAST_CHECKED, base_checks, checks_sentence
-from xlmc.run.model import Model
 
 CELLS = {"A1": 0.75, "A2": 3.0, "A3": 0.5, "B1": "=A1*2", "C1": "=A1<0.9", "C2": "=1/(A1-0.75)>0", "C3": "=A1"}
 INPUTS = {"friction": {"cell": "A1", "low": 0.6, "high": 1.0}}

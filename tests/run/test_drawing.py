@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from xlmc.address import Cell
+from xlmc.api import Model
 from xlmc.definitions import Assumption
 from xlmc.distributions import FAMILIES, ByPercentiles
 from xlmc.errors import DefinitionError
-from xlmc.run.model import Model
 
 UNIT = {"low": 0, "high": 1}
 

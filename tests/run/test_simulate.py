@@ -7,11 +7,11 @@ import tempfile
 import numpy as np
 import pytest
 
+from xlmc.api import Model
 from xlmc.columns import columns, on_disk
 from xlmc.errors import FormulaError, SimulationError
 from xlmc.results.record.fingerprint import fingerprint
 from xlmc.run import simulate as module
-from xlmc.run.model import Model
 from xlmc.run.simulation import KEPT_INPUTS
 
 CELLS = {

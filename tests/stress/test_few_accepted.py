@@ -11,8 +11,8 @@ import xlsxwriter
 from click.testing import CliRunner
 
 import xlmc.statistics as xs
+from xlmc.api import load
 from xlmc.cli import xlmc as command
-from xlmc.run.model import load
 
 RUNS = 800
 NOISE = 4 * math.sqrt(0.95 * 0.05 / RUNS)

@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import pytest
 
+from xlmc.api import Model
 from xlmc.errors import SimulationError
-from xlmc.run.model import Model
 from xlmc.studies.comparison import Verdict, compare
 from xlmc.studies.comparison.wording import undecided_text
 from xlmc.studies.screening import screen

@@ -11,7 +11,6 @@ import sys
 
 import click
 
-from xlmc import __version__
 from xlmc.cli.check import check
 from xlmc.cli.commands import Commands
 from xlmc.cli.compare import compare
@@ -28,6 +27,7 @@ from xlmc.cli.stability import stability
 from xlmc.cli.terminal import prepare, say
 from xlmc.cli.verify import verify
 from xlmc.errors import RoundingError, XlmcError
+from xlmc.run.version import __version__
 
 __all__ = ["main", "xlmc"]
 

@@ -14,7 +14,7 @@ from xlmc.cli.terminal import say
 from xlmc.errors import WorkbookError, XlmcError
 
 if TYPE_CHECKING:
-    from xlmc.run.simulation import Simulation
+    from xlmc.api import Simulation
 
 __all__ = ["NOT_WRITTEN", "Outputs", "output_options", "results_beside"]
 

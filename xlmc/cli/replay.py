@@ -69,11 +69,11 @@ def _lines(found: Replayed, path: Path) -> Iterator[str]:
 
 def _other_version(found: Replayed) -> Iterator[str]:
     """Which xlmc made the run, what has changed since, and how to repeat it as it was."""
-    import xlmc
     from xlmc.replay.versions import install
+    from xlmc.run.version import __version__
 
     made = f"xlmc {found.version}" if found.version else "An xlmc that did not record its version"
-    yield f"{made} made this run, and this is xlmc {xlmc.__version__}."
+    yield f"{made} made this run, and this is xlmc {__version__}."
     if found.rules:
         yield "What has changed since, and may concern its formulas:"
         yield from (f"  {rule.said} ({rule.since})" for rule in found.rules)

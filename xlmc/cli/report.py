@@ -34,9 +34,9 @@ def report(
     quiet: bool,
 ) -> None:
     """Write the results of a saved run again, without simulating: the same as when it was run."""
+    from xlmc.api import open_run
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.simulate import show_run
-    from xlmc.results.saved import open_run
 
     found = open_run(run)
     if not quiet:

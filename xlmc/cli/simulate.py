@@ -14,9 +14,9 @@ from xlmc.cli.run_options import jobs_option, stopping_options
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
+    from xlmc.api import Simulation
     from xlmc.errors import Notice
     from xlmc.run.model import Model
-    from xlmc.run.simulation import Simulation
 
 __all__ = ["show_run", "simulate"]
 
@@ -88,9 +88,9 @@ def simulate(
     **length: Any,
 ) -> None:
     """Run BOOK, print the summary, and write result sheets and charts into a copy of it."""
+    from xlmc.api import load
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.progress import progress_bar
-    from xlmc.run.model import load
     from xlmc.run.simulation import KEPT_INPUTS
 
     if in_place and output is not None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-import xlmc
+from xlmc.definitions.stopping import stopping
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.replay.changes import (
     Change,
@@ -31,7 +31,9 @@ from xlmc.results.record.read import read_record
 from xlmc.results.record.settings_table import recorded_settings
 from xlmc.results.saved import SUFFIX, is_saved_run, open_run
 from xlmc.run.model import understood
+from xlmc.run.simulate import simulate
 from xlmc.run.simulation import KEPT_INPUTS
+from xlmc.run.version import __version__
 from xlmc.workbook import read_workbook
 from xlmc.workbook.blame import told_of
 from xlmc.workbook.seal import read_seal
@@ -82,13 +84,13 @@ class Replayed:
     numbers: tuple[NumberChange, ...]
     same_bits: bool
     shown: SheetComparison = field(default_factory=SheetComparison)
-    version: str = xlmc.__version__
+    version: str = __version__
     rules: tuple[Rule, ...] = ()
 
     @property
     def of_this_version(self) -> bool:
         """Whether this xlmc made the run."""
-        return self.version == xlmc.__version__
+        return self.version == __version__
 
     @property
     def to_the_last_bit(self) -> bool:
@@ -143,7 +145,7 @@ def _replayed(
         repeated = _repeated(model, record, settings, jobs, progress)
     except XlmcError as fault:
         changes = tuple(cell_changes(cells, contents_now(workbook, cells)))
-        if not changes and version == xlmc.__version__:
+        if not changes and version == __version__:
             raise
         return Replayed(record, None, fault, changes, (), (), same_bits=False, version=version, rules=rules)
     found = make_record(repeated)
@@ -213,7 +215,7 @@ def _refuse_incomplete(record: Record, version: str, path: Path | None) -> None:
 
 
 def _lacking(key: object, version: str, path: Path | None) -> WorkbookError:
-    edited = "It was edited" if version in ("", xlmc.__version__) else f"xlmc {version} made it"
+    edited = "It was edited" if version in ("", __version__) else f"xlmc {version} made it"
     return WorkbookError(f"the record lacks {key!r}", where=path, hint=f"{edited}: run the workbook again")
 
 
@@ -233,11 +235,11 @@ def _repeated(model: Model, record: Record, settings: Settings, jobs: int, progr
     waited = record["end.by"] in ("accepted", "search")
     goal = settings.stopping.accepted
     whole = waited or settings.sampling != "mc"
-    return model.simulate(
-        settings.trials if whole else trials,
-        settings.seed,
-        until_accepted=goal if waited else None,
-        rare=settings.stopping.rare,
+    return simulate(
+        model,
+        trials=settings.trials if whole else trials,
+        seed=settings.seed,
+        stopping=stopping(goal if waited else None, rare=settings.stopping.rare),
         engine=settings.engine,
         arithmetic=settings.arithmetic,
         sampling=settings.sampling,

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import xlmc
 from xlmc.replay.closeness import is_number
 from xlmc.replay.own_cells import compare_own_cells
 from xlmc.replay.restored import entry
 from xlmc.replay.sheets import SheetComparison, compare_sheets
 from xlmc.replay.versions import recorded_version
+from xlmc.run.version import __version__
 
 if TYPE_CHECKING:
     from xlmc.replay.closeness import Closeness
@@ -50,13 +50,13 @@ def compare_shown(
 
 def _of_version(found: SheetComparison, version: str) -> SheetComparison:
     """The comparison; of sheets that another version of xlmc laid out otherwise, the numbers cannot be compared."""
-    if found.same or version == xlmc.__version__:
+    if found.same or version == __version__:
         return found
     laid_out = {each.where.sheet for each in found.differences if not (is_number(each.says) and is_number(each.gives))}
     otherwise = dict.fromkeys((*found.missing, *(each.where.sheet for each in found.differences)))
     wrote = f"xlmc {version} wrote" if version else "another xlmc wrote"
     said = tuple(
-        f"the sheet {sheet}, which {wrote} otherwise than {xlmc.__version__} does"
+        f"the sheet {sheet}, which {wrote} otherwise than {__version__} does"
         for sheet in otherwise
         if sheet in laid_out or sheet in found.missing
     )

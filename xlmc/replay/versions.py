@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-import xlmc
+from xlmc.run.version import __version__
 
 if TYPE_CHECKING:
     from xlmc.results.record import Record
@@ -151,7 +151,7 @@ def rules_since(version: str, contents: Iterable[str]) -> tuple[Rule, ...]:
     return tuple(
         rule
         for rule in RULES
-        if _parts(version) < _parts(rule.since) <= _parts(xlmc.__version__)
+        if _parts(version) < _parts(rule.since) <= _parts(__version__)
         and all(any(one.search(text) for text in texts) for one in (rule.met, rule.beside) if one is not None)
     )
 

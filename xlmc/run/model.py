@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 from xlmc.address import Cell
 from xlmc.definitions import Assumption, Check, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key
-from xlmc.definitions.stopping import stopping
 from xlmc.errors import DefinitionError, Notice, SimulationError
 from xlmc.evaluation import Evaluator, Program, Target
 from xlmc.evaluation.engines import ENGINES, FILLERS, options_of
@@ -29,10 +27,6 @@ from xlmc.sampling.draws import Filler
 from xlmc.workbook import Workbook, read_workbook
 from xlmc.workbook.collecting import paused_collection
 
-if TYPE_CHECKING:
-    from xlmc.run.simulate import Progress
-    from xlmc.run.simulation import Simulation
-
 __all__ = ["Model", "load", "lowered", "understood"]
 
 
@@ -41,8 +35,7 @@ def load(path: str | Path) -> Model:
 
     Raises:
         WorkbookError: the file cannot be read.
-        DefinitionError: a definition is not what it must be; all faulty ones are listed.
-        FormulaError: a needed cell cannot be computed.
+        DefinitionError, FormulaError: as for `understood`.
     """
     with paused_collection():
         return understood(read_workbook(path), Path(path))
@@ -52,7 +45,8 @@ def understood(workbook: Workbook, path: Path) -> Model:
     """The model of a workbook that was read.
 
     Raises:
-        DefinitionError, FormulaError: as for `load`.
+        DefinitionError: a definition is not what it must be; all faulty ones are listed.
+        FormulaError: a needed cell cannot be computed.
     """
     with paused_collection():
         definitions = read_definitions(workbook)
@@ -173,82 +167,6 @@ class Model:
     def fallible(self) -> frozenset[str]:
         """Keys of the assumptions whose draws may be errors: their parameters vary."""
         return frozenset(name_key(a.name) for stage in self.scene.stages[1:] for a in stage)
-
-    def simulate(
-        self,
-        trials: int | None = None,
-        seed: int | None = None,
-        *,
-        until_accepted: int | None = None,
-        rare: str | None = None,
-        precision: str | float | None = None,
-        precision_of: str | Sequence[str] | None = None,
-        confidence: str | float | None = None,
-        adaptive: int | None = None,
-        forecasts: str | Sequence[str] = (),
-        time_limit: str | float | None = None,
-        engine: str | None = None,
-        arithmetic: str | None = None,
-        sampling: str | None = None,
-        jobs: int = 1,
-        scheduler: str | None = None,
-        workers: int | None = None,
-        keep_inputs: int | None = 1 << 20,
-        keep_interrupted: bool = False,
-        progress: Progress | None = None,
-    ) -> Simulation:
-        """Run the simulation; what is not given comes from the workbook's settings.
-
-        However the work is divided, the result is the same to the last bit. `trials` or a goal (`until_accepted`,
-        `precision`, `adaptive`) takes the place of all that the settings say of the length of the run.
-
-        Args:
-            trials: how many, 1 or more; with a goal the most, by default 10⁹.
-            seed: 0 or more.
-            until_accepted: accepted trials, of which the last ends the run; 2 or more.
-            rare: `auto`, where accepted trials are so rare that plain ones would reach their limit before
-                `until_accepted`, learn where they are and draw there; `never`; or `always`.
-            precision: largest half width of intervals, of the number itself (`"1%"`) or in its units (`0.1`).
-            precision_of: of which numbers: `mean`, `sd`, `range`, percentiles such as `p75.5`; by default `mean,range`.
-            confidence: of these intervals, by default 95 %.
-            adaptive: significant digits that must be stable, as in JCGM 101, 7.9.
-            forecasts: names of those whose precision or stability counts; by default all.
-            time_limit: seconds, or such as `5m`, after which the run ends with the block of trials it is in.
-            engine: `numpy`, `jit`, compiled for long runs, or `formulas`, the slow reference.
-            arithmetic: `float64`, or `float32` with the engine `jit`.
-            sampling: `mc`, Monte Carlo; `lhs`, Latin hypercube; `lhs500`, the same in blocks of 500; or `sobol`,
-                scrambled Sobol. All but the first run whole replicates, and so sometimes a few more trials.
-            jobs: threads or processes.
-            scheduler: `threads`; `processes`; `local`, a Dask cluster of this machine; or the address of a Dask
-                scheduler. By default processes for a long run with several jobs, else threads.
-            workers: of the local cluster; by default one a processor.
-            keep_inputs: of how many accepted trials, from the first on, the draws are kept; None for all.
-            keep_interrupted: end the run with what it has when Ctrl-C is pressed, rather than raise KeyboardInterrupt.
-            progress: called with a `Standing` (trials, accepted, share done, means) after every block.
-
-        Raises:
-            SimulationError: an argument is out of its range, there is no room on the disk for the accepted trials,
-                the workers cannot be used, or float32 is too coarse for the model.
-        """
-        from xlmc.run.simulate import simulate
-
-        return simulate(
-            self,
-            trials=trials,
-            seed=seed,
-            stopping=stopping(
-                until_accepted, precision, precision_of, confidence, adaptive, forecasts, time_limit, rare
-            ),
-            engine=engine,
-            arithmetic=arithmetic,
-            sampling=sampling,
-            jobs=jobs,
-            scheduler=scheduler,
-            workers=workers,
-            keep_inputs=keep_inputs,
-            keep_interrupted=keep_interrupted,
-            progress=progress,
-        )
 
     def function(self, inputs: Mapping[str, ArrayLike]) -> dict[str, NDArray[np.float64]]:
         """The workbook as a function: values of every live assumption in, every forecast out. Filters are not asked.

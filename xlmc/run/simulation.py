@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -31,7 +30,6 @@ from xlmc.statistics.sample import MOST_GROUPS
 
 if TYPE_CHECKING:
     import pandas
-    from matplotlib.figure import Figure
 
     from xlmc.address import Cell
     from xlmc.run.model import Model
@@ -373,75 +371,6 @@ class Simulation:
             drawn = {assumption_heading(name, self.forecasts): values for name, values in self.inputs.items()}
             columns = drawn | columns
         return pandas.DataFrame(columns, index=pandas.Index(self.trial_index, name=TRIAL))
-
-    def save(self, path: str | Path, *, overwrite: bool = False) -> Path:
-        """Write the workbook with result sheets, and give the path back.
-
-        As `save_page`, `keep` and `save_json` do, it replaces a file only where xlmc wrote it for the same workbook and
-        nobody has changed it since; `extract`, whose tables bear no mark, replaces none.
-
-        Args:
-            path: where to.
-            overwrite: replace any other file too, and write into the workbook itself where the path is its own.
-
-        Raises:
-            WorkbookError: the file is not ours to replace, or cannot be written.
-        """
-        from xlmc.report import save
-
-        return save(self, Path(path), overwrite=overwrite)
-
-    def save_page(self, path: str | Path, *, overwrite: bool = False) -> Path:
-        """Write the results as one page for a browser, which needs no network.
-
-        Raises:
-            WorkbookError: the file does not end in `.html`, or cannot be written.
-        """
-        from xlmc.report.page import save_page
-
-        return save_page(self, Path(path), overwrite=overwrite)
-
-    def keep(self, path: str | Path, *, overwrite: bool = False) -> Path:
-        """Save the run in a file that ends in `.xlmcrun`; `xlmc.open_run` gives it back.
-
-        Raises:
-            WorkbookError: the file cannot be written.
-            SimulationError: the workbook was not read from a file.
-        """
-        from xlmc.results.saved import keep
-
-        return keep(self, Path(path), overwrite=overwrite)
-
-    def extract(self, path: str | Path, *, overwrite: bool = False) -> Path:
-        """Write the accepted trials, with assumptions and forecasts, to a `.csv` or a `.parquet` file.
-
-        Raises:
-            WorkbookError: the file has another ending, or cannot be written.
-            SimulationError: Parquet needs pyarrow, which is not installed.
-        """
-        from xlmc.report.data.extract import extract
-
-        return extract(self, Path(path), overwrite=overwrite)
-
-    def save_json(self, path: str | Path, *, overwrite: bool = False) -> Path:
-        """Write all results as JSON; docs/json.md describes it.
-
-        Raises:
-            WorkbookError: the file cannot be written, or does not end in `.json`.
-        """
-        from xlmc.report.data.document import save_json
-
-        return save_json(self, Path(path), overwrite=overwrite)
-
-    def plot(self) -> Figure:
-        """A figure of matplotlib: every forecast's histogram and cumulative share, with the central range shaded.
-
-        Raises:
-            SimulationError: matplotlib is not installed, or there is nothing to draw.
-        """
-        from xlmc.report.plot import plot
-
-        return plot(self)
 
 
 def forecast_heading(name: str) -> str:

@@ -27,6 +27,7 @@ from xlmc.definitions import Assumption, Forecast
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
+from xlmc.run.simulate import simulate
 from xlmc.run.simulation import Simulation
 from xlmc.statistics import Estimate
 from xlmc.studies.comparison.differences import Acceptance, Difference, acceptance, difference
@@ -194,7 +195,7 @@ def screen(
     wanted = [_names_of(pattern, model) for pattern in sets]
     tell = told or (lambda _: None)
     tell("the book as it is")
-    run = plainly_sampled(model).simulate(trials, seed, engine=engine, jobs=jobs)
+    run = simulate(plainly_sampled(model), trials=trials, seed=seed, engine=engine, jobs=jobs)
     if run.accepted < 2:
         message = f"{run.accepted} of {run.trials:,} trials were accepted, too few to compare anything with"
         raise SimulationError(message, hint="run more trials, or see whether the filters contradict the assumptions")
@@ -271,7 +272,9 @@ class _Screen:
         self._runs += 1
         model = varied(self._run.model, frozen=[*map(name_key, frozen)], without=[*map(name_key, without)])
         settings = self._run.settings
-        run = model.simulate(settings.trials, settings.seed, engine=self._engine, jobs=self._jobs, keep_inputs=0)
+        run = simulate(
+            model, trials=settings.trials, seed=settings.seed, engine=self._engine, jobs=self._jobs, keep_inputs=0
+        )
         return self._compared(tuple(names), run)
 
     def _compared(self, names: tuple[str, ...], run: Simulation) -> Cost:

@@ -86,7 +86,7 @@ def test_a_table_part_tells_of_its_filter():
 def test_a_total_that_varies_over_hidden_rows_is_refused(tmp_path, book):
     from dataclasses import replace
 
-    from xlmc.run.model import Model
+    from xlmc.api import Model
 
     model = book(
         {"A1": 9.0, "B1": 1.0, "B2": 2.0, "C1": "=SUBTOTAL(A1,B1:B2)"}, {"a": {"cell": "A1", "low": 9, "high": 9}},

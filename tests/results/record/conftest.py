@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from xlmc.address import parse_address
+from xlmc.api import Model
 from xlmc.definitions import Assumption, Correlation, Definitions, Filter, Forecast, Settings
 from xlmc.errors import Notice
-from xlmc.run.model import Model
 from xlmc.workbook import CellContent, Formula, Sheet, Workbook
 
 CELLS = {

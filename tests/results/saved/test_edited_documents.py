@@ -11,11 +11,11 @@ import zipfile
 import numpy as np
 import pytest
 
+from xlmc.api import load
 from xlmc.errors import XlmcError
 from xlmc.report.summary import summarise, summary_text
 from xlmc.results.saved import keep, open_run
 from xlmc.results.saved.archive import RUN
-from xlmc.run.model import load
 
 OTHERS = [None, True, -1, 0.5, 10**30, "x", [], {}, [None], {"a": 1}, float("nan")]
 OF_PYTHON = re.compile(r"NoneType|None\b|argument|object|subscript|dtype|array|dict|\bint\b|\bstr\b")

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from xlmc.api import Model
 from xlmc.errors import SimulationError
-from xlmc.run.model import Model
 from xlmc.studies.comparison import Verdict, compare
 from xlmc.studies.comparison.wording import book_names, inputs_text, verdict_text
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from xlmc.run.model import load
+from xlmc.api import load
 from xlmc.studies.methods import study
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from xlmc.run.model import Model
+from xlmc.api import Model
 from xlmc.studies.sensitivity import sensitivities
 from xlmc.studies.sensitivity.limit_trials import limit_trials
 from xlmc.studies.sensitivity.moved_limit import grid, moved_limit

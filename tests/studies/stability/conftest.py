@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from xlmc.run.model import load
+from xlmc.api import load
 
 ROOT = Path(__file__).resolve().parents[3]
 

@@ -12,9 +12,9 @@ LIBRARIES = ("numpy", "scipy", "formulas", "XlsxWriter", "openpyxl")
 
 def versions(engine: str = "numpy") -> dict[str, str]:
     """Name -> version of xlmc, of Python and of the libraries a result depends on, those of its engine among them."""
-    import xlmc
+    from xlmc.run.version import __version__
 
-    own = {"xlmc": xlmc.__version__, "python": platform.python_version()}
+    own = {"xlmc": __version__, "python": platform.python_version()}
     return own | {name: version(name) for name in (*LIBRARIES, *(["llvmlite"] if engine == "jit" else []))}
 
 

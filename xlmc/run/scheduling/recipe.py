@@ -10,12 +10,12 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from xlmc import __version__
 from xlmc.definitions import Definitions
 from xlmc.errors import SimulationError
 from xlmc.evaluation import Program
 from xlmc.run.blocks import Worker
 from xlmc.run.model import Model
+from xlmc.run.version import __version__
 from xlmc.sampling import Plan
 from xlmc.workbook import Workbook
 

@@ -11,6 +11,7 @@ from xlmc.definitions import Forecast
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
+from xlmc.run.simulate import simulate
 from xlmc.run.simulation import Simulation
 from xlmc.statistics import Estimate
 from xlmc.studies.comparison.causes import Step, Variations, cause_of, steps_between
@@ -162,7 +163,7 @@ def compare(
         made += 1
         if told is not None:
             told(purpose)
-        return model.simulate(trials, seed, engine=engine, jobs=jobs, keep_inputs=keep_inputs)
+        return simulate(model, trials=trials, seed=seed, engine=engine, jobs=jobs, keep_inputs=keep_inputs)
 
     books = run(first, first.path.name), run(second, second.path.name)
     inputs = inputs_of(*books)

@@ -26,6 +26,7 @@ from xlmc.functions.values import ERROR, TEXT
 from xlmc.run.drawing import parameter_target
 from xlmc.run.model import Model
 from xlmc.run.scene import filter_limits
+from xlmc.run.simulate import simulate
 from xlmc.studies.derivatives import derivatives
 from xlmc.studies.methods.answer import Answer, Errors, Extreme, MethodResult
 from xlmc.studies.methods.box import Box, box_of
@@ -76,7 +77,7 @@ class Optimised:
         if len(model.live) > _MOST:
             message = f"{len(model.live):,} assumptions are drawn, and the search is made for no more than {_MOST}"
             raise SimulationError(message, hint="bounds by corners look at as many as there are")
-        pilot = model.simulate(PILOT, seed, sampling="mc", engine="numpy", keep_inputs=None)
+        pilot = simulate(model, trials=PILOT, seed=seed, sampling="mc", engine="numpy", keep_inputs=None)
         if not pilot.accepted:
             message = f"the filters accept none of {PILOT:,} trials, and the search has nowhere to start from"
             raise SimulationError(message, hint="see whether the filters contradict the assumptions")

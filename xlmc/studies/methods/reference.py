@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -14,6 +15,7 @@ from xlmc import statistics
 from xlmc.definitions import Forecast
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
+from xlmc.run.simulate import simulate
 from xlmc.run.simulation import Simulation
 from xlmc.statistics import Estimate, Sample
 from xlmc.statistics.tail_index import heavy_tail
@@ -98,9 +100,10 @@ def fastest_engine(model: Model) -> str:
 
 def reference_size(model: Model, engine: str, seed: int, seconds: float) -> tuple[int, str]:
     """How many trials take about so many seconds, a power of two, and by which sampling."""
-    model.simulate(_PROBE // 16, seed, sampling="mc", engine=engine, keep_inputs=0)  # compiles what must be compiled
+    run = partial(simulate, model, seed=seed, engine=engine, sampling="mc", keep_inputs=0)
+    run(trials=_PROBE // 16)  # compiles what must be compiled
     started = time.perf_counter()
-    probe = model.simulate(_PROBE, seed, sampling="mc", engine=engine, keep_inputs=0)
+    probe = run(trials=_PROBE)
     rate = _PROBE / (time.perf_counter() - started)
     most = min(MOST_REFERENCE, int(rate * seconds), int(_MOST_ACCEPTED * _PROBE / max(probe.accepted, 1)))
     size = 1 << (max(most, _LEAST).bit_length() - 1)
@@ -114,7 +117,9 @@ def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: in
         SimulationError: fewer than 100 trials are accepted.
     """
     started = time.perf_counter()
-    run = model.simulate(trials, seed, sampling=sampling, engine=engine, arithmetic="float64", keep_inputs=_WATCHED)
+    run = simulate(
+        model, trials=trials, seed=seed, sampling=sampling, engine=engine, arithmetic="float64", keep_inputs=_WATCHED
+    )
     if run.accepted < 100:
         message = f"of {run.trials:,} reference trials the filters accept {run.accepted}, too few to measure methods by"
         raise SimulationError(

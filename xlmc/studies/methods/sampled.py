@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from xlmc.run.model import Model
 from xlmc.run.pilot import PILOT_TRIALS
+from xlmc.run.simulate import simulate
 from xlmc.studies.methods.answer import Errors, MethodResult, answer_of, extremes_of
 
 __all__ = ["ENGINE_VARIANTS", "LATIN", "MONTE_CARLO", "SAMPLERS", "SOBOL", "Sampled"]
@@ -40,8 +41,14 @@ class Sampled:
             SimulationError: there is no such engine here, or its arithmetic is too coarse.
         """
         started = time.perf_counter()
-        run = model.simulate(
-            budget, seed, sampling=self.method, engine=self.engine, arithmetic=self.arithmetic, keep_inputs=0
+        run = simulate(
+            model,
+            trials=budget,
+            seed=seed,
+            sampling=self.method,
+            engine=self.engine,
+            arithmetic=self.arithmetic,
+            keep_inputs=0,
         )
         answers = {f.name: answer_of(run.forecasts[f.name], None, f.central) for f in model.forecasts}
         learned = PILOT_TRIALS if self.method == "sobol" else 0

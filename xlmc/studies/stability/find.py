@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.evaluation.graph.dag import Apply
 from xlmc.evaluation.passes.derivatives.owners import owners
+from xlmc.run.simulate import simulate
 from xlmc.run.simulation import Simulation
 from xlmc.studies.stability.angles import rounded_angles
 from xlmc.studies.stability.case import Case
@@ -64,7 +65,7 @@ def stability(
     """
     tell = told or (lambda _: None)
     tell("a run")
-    run: Simulation = model.simulate(trials=trials, seed=seed, jobs=jobs)
+    run: Simulation = simulate(model, trials=trials, seed=seed, jobs=jobs)
     case = Case(model, run, run.settings.seed)
     found: list[Finding] = []
     for name, detector in DETECTORS.items():

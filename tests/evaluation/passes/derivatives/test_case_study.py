@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mpmath import mpf
 
-from xlmc.run.model import load
+from xlmc.api import load
 from xlmc.studies.derivatives import derivatives
 
 ROOT = Path(__file__).resolve().parents[4]

@@ -1,0 +1,117 @@
+"""The rooms of xlmc, and what imports what: `python tests/session/rooms.py` prints rooms, floors, arrows and circles.
+
+A room is a folder of `xlmc/`, or a module beside them; `__init__` and `__main__` are the doors and no rooms. Every
+import counts: those inside of functions, and those for type checkers only.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parents[2] / "xlmc"
+
+ROOMS = {
+    "errors": "what people are told when something is wrong",
+    "address": "`Sheet!Cell`",
+    "columns": "columns of trials, in memory or on the disk",
+    "workbook": "read an xlsx, write sheets into it",
+    "formula": "a formula's text becomes a tree, the cells become what the forecasts need",
+    "functions": "what Excel's functions compute",
+    "distributions": "families of distributions, one a file",
+    "statistics": "the numbers of a sample, with their errors",
+    "sampling": "a seed becomes uniforms, and these become draws",
+    "definitions": "what the workbook asks for: assumptions, forecasts, filters, settings",
+    "evaluation": "trees become a graph, and the graph is computed over trials",
+    "run": "trials in, accepted trials out",
+    "results": "a run in words, on record, in a file",
+    "studies": "further questions to a workbook or a run",
+    "report": "what people look at: sheets, page, data, pictures",
+    "replay": "a recorded run repeated, and all that its workbook shows compared",
+    "api": "what people hold in Python",
+    "cli": "what people type",
+}
+"""In the order in which a workbook flows: a room imports from those above it in this table, never from those below."""
+
+DOORS = ("__init__", "__main__")
+MODULES = sorted(PACKAGE.rglob("*.py"))
+
+
+def room_of(path: Path) -> str:
+    """The room that a module lies in."""
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+@cache
+def imported(path: Path) -> frozenset[str]:
+    """Full names of all that a file imports, wherever in it."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names.update({node.module, *(f"{node.module}.{alias.name}" for alias in node.names)})
+    return frozenset(names)
+
+
+def arrows() -> dict[tuple[str, str], set[str]]:
+    """(room, the room that it imports from) -> the files that do."""
+    found: dict[tuple[str, str], set[str]] = {}
+    for path in MODULES:
+        own = room_of(path)
+        for other in {room for name in imported(path) if (room := _room_named(name))} - {own}:
+            if own not in DOORS:
+                found.setdefault((own, other), set()).add(str(path.relative_to(PACKAGE)))
+    return found
+
+
+def _room_named(name: str) -> str:
+    """The room of a module's full name; `__init__` where a name of the package itself is imported."""
+    first, _, rest = name.partition(".")
+    room = rest.partition(".")[0]
+    if first != "xlmc" or not room:  # `from xlmc import run` is told by the name that follows
+        return ""
+    return room if (PACKAGE / room).is_dir() or (PACKAGE / f"{room}.py").is_file() else "__init__"
+
+
+def floors() -> dict[str, int]:
+    """Room -> its floor: 1 where it imports from no other, else one above the highest that it imports from.
+
+    Raises:
+        ValueError: rooms import from each other in a circle.
+    """
+    below = {room: {to for own, to in arrows() if own == room} for room in ROOMS}
+    found: dict[str, int] = {}
+    while len(found) < len(below):
+        ready = {
+            room: 1 + max((found[to] for to in below[room]), default=0)
+            for room in below.keys() - found.keys()
+            if below[room] <= found.keys()
+        }
+        if not ready:
+            raise ValueError(f"a circle of rooms: {', '.join(sorted(below.keys() - found.keys()))}")
+        found |= ready
+    return found
+
+
+def upwards() -> Iterator[str]:
+    """The imports that run up the table, a line each."""
+    order = list(ROOMS)
+    for (own, other), files in arrows().items():
+        if other not in ROOMS or order.index(other) > order.index(own):
+            yield from (f"{file} imports from {other}" for file in sorted(files))
+
+
+def main() -> None:
+    """Print them."""
+    standing = floors()
+    for room, words in ROOMS.items():
+        print(f"{standing[room]:2}  {room:14}{words}")
+    print(f"{len(ROOMS)} rooms on {max(standing.values())} floors, {len(arrows())} arrows, no circle")
+    print("\n".join(upwards()) or "no arrow up")
+
+
+if __name__ == "__main__":
+    main()

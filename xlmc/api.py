@@ -1,0 +1,211 @@
+"""What people hold: the model of a workbook, its runs, and all that can be asked of either.
+
+What a model and a run *are* is `xlmc.run`; what can be done with them is a thin door here to the room that does it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from xlmc.definitions.stopping import stopping
+from xlmc.run import model, simulation
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from xlmc.run.simulate import Progress
+
+__all__ = ["Model", "Simulation", "load", "open_run"]
+
+
+class Simulation(simulation.Simulation):
+    """A finished run, with doors to files and figures: see `xlmc.run.simulation.Simulation` for what it holds."""
+
+    @classmethod
+    def of(cls, run: simulation.Simulation) -> Simulation:
+        """The same run, and its model, with the doors."""
+        found = cls.__new__(cls)
+        found.__dict__.update(run.__dict__, model=Model.of(run.model))
+        return found
+
+    def save(self, path: str | Path, *, overwrite: bool = False) -> Path:
+        """Write the workbook with result sheets, and give the path back.
+
+        As `save_page`, `keep` and `save_json` do, it replaces a file only where xlmc wrote it for the same workbook and
+        nobody has changed it since; `extract`, whose tables bear no mark, replaces none.
+
+        Args:
+            path: where to.
+            overwrite: replace any other file too, and write into the workbook itself where the path is its own.
+
+        Raises:
+            WorkbookError: the file is not ours to replace, or cannot be written.
+        """
+        from xlmc.report import save
+
+        return save(self, Path(path), overwrite=overwrite)
+
+    def save_page(self, path: str | Path, *, overwrite: bool = False) -> Path:
+        """Write the results as one page for a browser, which needs no network.
+
+        Raises:
+            WorkbookError: the file does not end in `.html`, or cannot be written.
+        """
+        from xlmc.report.page import save_page
+
+        return save_page(self, Path(path), overwrite=overwrite)
+
+    def keep(self, path: str | Path, *, overwrite: bool = False) -> Path:
+        """Save the run in a file that ends in `.xlmcrun`; `xlmc.open_run` gives it back.
+
+        Raises:
+            WorkbookError: the file cannot be written.
+            SimulationError: the workbook was not read from a file.
+        """
+        from xlmc.results.saved import keep
+
+        return keep(self, Path(path), overwrite=overwrite)
+
+    def extract(self, path: str | Path, *, overwrite: bool = False) -> Path:
+        """Write the accepted trials, with assumptions and forecasts, to a `.csv` or a `.parquet` file.
+
+        Raises:
+            WorkbookError: the file has another ending, or cannot be written.
+            SimulationError: Parquet needs pyarrow, which is not installed.
+        """
+        from xlmc.report.data.extract import extract
+
+        return extract(self, Path(path), overwrite=overwrite)
+
+    def save_json(self, path: str | Path, *, overwrite: bool = False) -> Path:
+        """Write all results as JSON; docs/json.md describes it.
+
+        Raises:
+            WorkbookError: the file cannot be written, or does not end in `.json`.
+        """
+        from xlmc.report.data.document import save_json
+
+        return save_json(self, Path(path), overwrite=overwrite)
+
+    def plot(self) -> Figure:
+        """A figure of matplotlib: every forecast's histogram and cumulative share, with the central range shaded.
+
+        Raises:
+            SimulationError: matplotlib is not installed, or there is nothing to draw.
+        """
+        from xlmc.report.plot import plot
+
+        return plot(self)
+
+
+class Model(model.Model):
+    """A workbook's assumptions, forecasts and filters, which can be simulated: see `xlmc.run.model.Model`."""
+
+    @classmethod
+    def of(cls, known: model.Model) -> Model:
+        """The same model, with the doors."""
+        found = cls.__new__(cls)
+        found.__dict__.update(known.__dict__)
+        return found
+
+    def simulate(
+        self,
+        trials: int | None = None,
+        seed: int | None = None,
+        *,
+        until_accepted: int | None = None,
+        rare: str | None = None,
+        precision: str | float | None = None,
+        precision_of: str | Sequence[str] | None = None,
+        confidence: str | float | None = None,
+        adaptive: int | None = None,
+        forecasts: str | Sequence[str] = (),
+        time_limit: str | float | None = None,
+        engine: str | None = None,
+        arithmetic: str | None = None,
+        sampling: str | None = None,
+        jobs: int = 1,
+        scheduler: str | None = None,
+        workers: int | None = None,
+        keep_inputs: int | None = 1 << 20,
+        keep_interrupted: bool = False,
+        progress: Progress | None = None,
+    ) -> Simulation:
+        """Run the simulation; what is not given comes from the workbook's settings.
+
+        However the work is divided, the result is the same to the last bit. `trials` or a goal (`until_accepted`,
+        `precision`, `adaptive`) takes the place of all that the settings say of the length of the run.
+
+        Args:
+            trials: how many, 1 or more; with a goal the most, by default 10⁹.
+            seed: 0 or more.
+            until_accepted: accepted trials, of which the last ends the run; 2 or more.
+            rare: `auto`, where accepted trials are so rare that plain ones would reach their limit before
+                `until_accepted`, learn where they are and draw there; `never`; or `always`.
+            precision: largest half width of intervals, of the number itself (`"1%"`) or in its units (`0.1`).
+            precision_of: of which numbers: `mean`, `sd`, `range`, percentiles such as `p75.5`; by default `mean,range`.
+            confidence: of these intervals, by default 95 %.
+            adaptive: significant digits that must be stable, as in JCGM 101, 7.9.
+            forecasts: names of those whose precision or stability counts; by default all.
+            time_limit: seconds, or such as `5m`, after which the run ends with the block of trials it is in.
+            engine: `numpy`, `jit`, compiled for long runs, or `formulas`, the slow reference.
+            arithmetic: `float64`, or `float32` with the engine `jit`.
+            sampling: `mc`, Monte Carlo; `lhs`, Latin hypercube; `lhs500`, the same in blocks of 500; or `sobol`,
+                scrambled Sobol. All but the first run whole replicates, and so sometimes a few more trials.
+            jobs: threads or processes.
+            scheduler: `threads`; `processes`; `local`, a Dask cluster of this machine; or the address of a Dask
+                scheduler. By default processes for a long run with several jobs, else threads.
+            workers: of the local cluster; by default one a processor.
+            keep_inputs: of how many accepted trials, from the first on, the draws are kept; None for all.
+            keep_interrupted: end the run with what it has when Ctrl-C is pressed, rather than raise KeyboardInterrupt.
+            progress: called with a `Standing` (trials, accepted, share done, means) after every block.
+
+        Raises:
+            SimulationError: an argument is out of its range, there is no room on the disk for the accepted trials,
+                the workers cannot be used, or float32 is too coarse for the model.
+        """
+        from xlmc.run.simulate import simulate
+
+        run = simulate(
+            self,
+            trials=trials,
+            seed=seed,
+            stopping=stopping(
+                until_accepted, precision, precision_of, confidence, adaptive, forecasts, time_limit, rare
+            ),
+            engine=engine,
+            arithmetic=arithmetic,
+            sampling=sampling,
+            jobs=jobs,
+            scheduler=scheduler,
+            workers=workers,
+            keep_inputs=keep_inputs,
+            keep_interrupted=keep_interrupted,
+            progress=progress,
+        )
+        return Simulation.of(run)
+
+
+def load(path: str | Path) -> Model:
+    """Read a workbook and compile what its forecasts and filters need.
+
+    Raises:
+        WorkbookError: the file cannot be read.
+        DefinitionError: a definition is not what it must be; all faulty ones are listed.
+        FormulaError: a needed cell cannot be computed.
+    """
+    return Model.of(model.load(path))
+
+
+def open_run(path: str | Path) -> Simulation:
+    """The run that `Simulation.keep` saved in a file: every statistic is the same to the last bit.
+
+    Raises:
+        WorkbookError: the file cannot be read, or is no saved run.
+        XlmcError: its workbook cannot be understood any more.
+    """
+    from xlmc.results.saved import open_run
+
+    return Simulation.of(open_run(path))

@@ -8,8 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from xlmc.errors import SimulationError
-from xlmc.sampling import directions
 from xlmc.sampling.directions import DIMENSIONS, PRECISION, direction_numbers
 from xlmc.sampling.sobol import ScrambledSobol
 
@@ -118,14 +116,6 @@ def test_the_error_of_a_smooth_mean_falls_faster_than_the_root_of_the_trials():
         return (drawn(0, size, size * 500).reshape(-1, size) ** 2).mean(axis=1).var()
 
     assert variance(64) / variance(1024) > 16**2.5
-
-
-def test_a_scipy_without_the_table(monkeypatch, tmp_path):
-    directions._table.cache_clear()
-    monkeypatch.setattr(directions.scipy, "__file__", str(tmp_path / "__init__.py"))
-    with pytest.raises(SimulationError, match="direction numbers cannot be read") as caught:
-        directions._table()
-    assert "--sampling lhs" in caught.value.hint
 
 
 def test_the_numbers_are_the_same_on_every_machine_and_in_every_version():

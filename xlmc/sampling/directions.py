@@ -1,6 +1,7 @@
-"""Sobol's direction numbers, those of Joe and Kuo 2008 (`new-joe-kuo-6.21201`), from the table that SciPy comes with.
+"""Sobol's direction numbers, those of Joe and Kuo 2008 (`new-joe-kuo-6.21201`).
 
-The table is read as data: to import `scipy.stats`, which has a generator of its own, takes most of a second.
+The table was copied from SciPy's; the folder `joe_kuo` holds it with the licences of both. To import `scipy.stats`,
+which has a generator of its own, takes most of a second.
 """
 
 from __future__ import annotations
@@ -10,10 +11,7 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
-
-from xlmc.errors import SimulationError
 
 __all__ = ["DIMENSIONS", "PRECISION", "direction_numbers"]
 
@@ -49,16 +47,7 @@ def direction_numbers(dimension: int, bits: int) -> NDArray[np.uint64]:
 
 
 @cache
-def _table() -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The polynomials (d,) and the first numbers (d, 18).
-
-    Raises:
-        SimulationError: the file is not there.
-    """
-    path = Path(scipy.__file__).parent / "stats" / "_sobol_direction_numbers.npz"
-    try:
-        with np.load(path) as table:
-            return table["poly"], table["vinit"]
-    except OSError as error:
-        hint = "Install a SciPy that has it, or use --sampling lhs"
-        raise SimulationError("the table of Sobol's direction numbers cannot be read", where=path, hint=hint) from error
+def _table() -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+    """The polynomials (d,) and the first numbers (d, 18)."""
+    with np.load(Path(__file__).parent / "joe_kuo" / "direction_numbers.npz") as table:
+        return table["polynomials"], table["starts"]

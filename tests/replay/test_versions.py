@@ -21,7 +21,7 @@ def rules(monkeypatch):
         Rule(version, version, re.compile(met)) for version, met in (("0.3.0", "a"), ("0.10.0", "a"), ("9.0", "a"))
     )
     monkeypatch.setattr(versions, "RULES", said)
-    monkeypatch.setattr(xlmc, "__version__", "0.10.1")
+    monkeypatch.setattr(versions, "__version__", "0.10.1")
 
 
 @pytest.mark.parametrize(

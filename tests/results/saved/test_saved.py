@@ -94,7 +94,7 @@ def test_a_saved_run_is_the_same_run_again(model, tmp_path, asked):
 
 def test_its_result_workbook_is_the_same_byte_for_byte(run, saved, tmp_path):
     run.save(tmp_path / "a.xlsx")
-    open_run(saved).save(tmp_path / "b.xlsx")
+    xlmc.open_run(saved).save(tmp_path / "b.xlsx")
     assert (tmp_path / "a.xlsx").read_bytes() == (tmp_path / "b.xlsx").read_bytes()
 
 

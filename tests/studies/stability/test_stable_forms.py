@@ -8,7 +8,7 @@ import openpyxl
 import pytest
 from openpyxl.worksheet.table import Table
 
-from xlmc.run.model import load
+from xlmc.api import load
 from xlmc.studies.stability import Level, stability
 
 TINY, SMALL, DATA = (1e-9, 1e-8), (1e-6, 1e-5), (1e6, 1e6 + 2)

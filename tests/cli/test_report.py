@@ -50,7 +50,7 @@ def test_nothing_is_simulated(xlmc, case_book, monkeypatch):
     def refuse(*_, **__):
         raise AssertionError("a run was simulated")
 
-    monkeypatch.setattr("xlmc.run.model.Model.simulate", refuse)
+    monkeypatch.setattr("xlmc.api.Model.simulate", refuse)
     assert xlmc("report", "case.xlmcrun", "-o", "b.xlsx").code == 0
 
 
@@ -125,8 +125,8 @@ def refuse(*_, **__):
 def test_a_file_that_cannot_be_written_takes_no_other_with_it(xlmc, book, tmp_path, monkeypatch, command):
     xlmc("simulate", book, "--save-run", "run.xlmcrun")
     source = book if command == "simulate" else "run.xlmcrun"
-    monkeypatch.setattr("xlmc.run.simulation.Simulation.save", refuse)
-    monkeypatch.setattr("xlmc.run.simulation.Simulation.save_page", refuse)
+    monkeypatch.setattr("xlmc.api.Simulation.save", refuse)
+    monkeypatch.setattr("xlmc.api.Simulation.save_page", refuse)
     outcome = xlmc(command, source, "-o", "b.xlsx", "--html", "b.html", "--json", "b.json", "--extract", "b.csv")
     assert outcome.code == 2
     assert outcome.err.count("xlmc: book-results.xlsx: the disk is full") == 2

@@ -204,7 +204,7 @@ def test_a_long_run_is_told_of_the_engine_jit(xlmc, book, monkeypatch, trials, o
     def stopped(*arguments, **named):
         raise SimulationError("stopped by the test")
 
-    monkeypatch.setattr("xlmc.run.model.Model.simulate", stopped)
+    monkeypatch.setattr("xlmc.api.Model.simulate", stopped)
     monkeypatch.setattr("xlmc.evaluation.llvm.find_spec", lambda name: object() if installed else None)
     assert ("--engine jit" in xlmc("simulate", book, "-n", trials, *options).err) is hinted
 

@@ -106,7 +106,7 @@ def test_the_command_in_the_record_repeats_the_run(xlmc, book, tmp_path):
 PROGRAM = """
 import signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)
-from xlmc import simulate
+from xlmc.run import simulate
 add = simulate._Gathered.add
 def told(self, block):
     add(self, block)

@@ -27,7 +27,7 @@ def one_line(xlmc):
 @pytest.mark.parametrize("typed", ["2,000", "2e3", "2k", "0.002M", "2_000", "2 000"])
 @pytest.mark.parametrize("option", ["-n", "--trials"])
 def test_trials_as_people_write_them(xlmc, case_study, monkeypatch, option, typed):
-    monkeypatch.setattr("xlmc.run.simulation.Simulation.save", lambda *_, **__: None)
+    monkeypatch.setattr("xlmc.api.Simulation.save", lambda *_, **__: None)
     outcome = xlmc("simulate", case_study, "-o", "r.xlsx", option, typed)
     assert outcome.code == 0
     assert "of 2,000 trials" in outcome.out

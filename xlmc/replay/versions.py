@@ -115,7 +115,7 @@ RULES: Final = (
     Rule("0.3.0", "a LAMBDA that is named like a function of Excel is not called by that name", _SMALL_LETTERS),
     Rule("0.3.0", "INDEX of several errors gives the first", _calls("INDEX")),
     Rule("0.3.0", "intervals of means and standard deviations allow for the skewness of the forecast", _ANY),
-    Rule("0.3.0", "a search for rare trials looks into every branch, and draws other trials", _ANY),
+    Rule("0.3.0", "a search for rare trials looks into every branch, solves thin layers, and draws other trials", _ANY),
     Rule(
         "0.3.0",
         "assumptions that take few values have the rank correlation asked for, ties counted, or the most they can have",

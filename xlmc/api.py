@@ -23,6 +23,8 @@ __all__ = ["Model", "Simulation", "load", "open_run"]
 class Simulation(simulation.Simulation):
     """A finished run, with doors to files and figures: see `xlmc.run.simulation.Simulation` for what it holds."""
 
+    model: Model
+
     @classmethod
     def of(cls, run: simulation.Simulation) -> Simulation:
         """The same run, and its model, with the doors."""
@@ -106,6 +108,8 @@ class Model(model.Model):
     @classmethod
     def of(cls, known: model.Model) -> Model:
         """The same model, with the doors."""
+        if isinstance(known, cls):
+            return known
         found = cls.__new__(cls)
         found.__dict__.update(known.__dict__)
         return found

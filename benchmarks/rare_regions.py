@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 from rare_books import ORDINARY, SEVERAL, RareBook
 from tables import placed
 
-__all__ = ["Run", "faults", "table"]
+__all__ = ["Run", "faults", "lines", "table", "uncovered", "wrong"]
 
 HERE = Path(__file__).resolve().parent
 RESULTS = HERE / "results" / "rare-regions.json"
@@ -84,41 +84,60 @@ def judged(runs: Sequence[Run], truth: float) -> Judged:
     )
 
 
-def faults(found: Mapping[str, Judged], before: Mapping[str, Judged]) -> Iterator[str]:
-    """What misses the bar."""
+def wrong(found: Mapping[str, Judged]) -> Iterator[str]:
+    """The books with runs that are wrong without a warning."""
     for name, each in found.items():
         if each.wrong:
             yield f"{name}: {each.wrong} runs of {each.runs} are wrong without a warning"
+
+
+def uncovered(found: Mapping[str, Judged]) -> Iterator[str]:
+    """Whether too few intervals of the runs without a warning hold the truth."""
+    silent = sum(each.silent for each in found.values())
+    held = sum(each.held for each in found.values())
+    if held < LEAST_COVERED * silent:
+        yield f"of {silent} runs without a warning {held} hold the truth"
+
+
+def faults(found: Mapping[str, Judged], before: Mapping[str, Judged]) -> Iterator[str]:
+    """What misses the bar."""
+    yield from wrong(found)
+    for name, each in found.items():
         if name in ORDINARY and each.warned > MOST_WARNED * each.runs:
             yield f"{name}: {each.warned} runs of {each.runs} warn"
         if name in ORDINARY and name in before and each.width > MOST_WIDER * before[name].width:
             yield f"{name}: intervals are {each.width / before[name].width:.2f} times as wide"
         if name in ORDINARY and name in before and each.work > MOST_WORK * before[name].work:
             yield f"{name}: the work is {each.work / before[name].work:.2f} times as much"
-    silent = sum(each.silent for each in found.values())
-    held = sum(each.held for each in found.values())
-    if held < LEAST_COVERED * silent:
-        yield f"of {silent} runs without a warning {held} hold the truth"
+    yield from uncovered(found)
     quiet = sum(found[name].warned * 2 < found[name].runs for name in SEVERAL if name in found)
     if quiet < 8:
         yield f"only {quiet} of the books with several regions end without a warning in most runs"
 
 
-def table(found: Mapping[str, Judged], before: Mapping[str, Judged]) -> str:
-    """As Markdown, a line a book."""
-    lines = [
-        "| book | probability | runs | warned | interval holds | wrong, unwarned | evaluations | width, work: × |",
+def lines(books: Mapping[str, RareBook], found: Mapping[str, Judged], last: str, cells: Mapping[str, str]) -> str:
+    """As Markdown, a line a book; the last column has a heading and a cell for each book."""
+    made = [
+        f"| book | probability | runs | warned | interval holds | wrong, unwarned | evaluations | {last} |",
         "|---|---:|---:|---:|---:|---:|---:|---:|",
     ]
     for name, each in found.items():
-        book, old = BOOKS[name], before.get(name)
         held = f"{each.held / each.silent:.0%}" if each.silent else "–"
-        beside = "–" if old is None else f"{each.width / old.width:.2f}, {each.work / old.work:.2f}"
-        lines.append(
-            f"| {book.words} | {book.truth:.2e} | {each.runs} | {each.warned} | {held} | {each.wrong} "
-            f"| {each.work:,.0f} | {beside} |"
+        made.append(
+            f"| {books[name].words} | {books[name].truth:.2e} | {each.runs} | {each.warned} | {held} | {each.wrong} "
+            f"| {each.work:,.0f} | {cells[name]} |"
         )
-    return "\n".join(lines)
+    return "\n".join(made)
+
+
+def table(found: Mapping[str, Judged], before: Mapping[str, Judged]) -> str:
+    """A line a book, beside the version of before where it was run."""
+
+    def beside(name: str, each: Judged) -> str:
+        old = before.get(name)
+        return "–" if old is None else f"{each.width / old.width:.2f}, {each.work / old.work:.2f}"
+
+    return lines(BOOKS, found, "width, work: ×", {name: beside(name, each) for name, each in found.items()})
 
 
 Kept = dict[str, dict[str, list[list[Any]]]]

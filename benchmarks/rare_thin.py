@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from rare_books import THIN
-from rare_regions import LEAST_COVERED, SEEDS, Judged, Run, judged, one
+from rare_regions import SEEDS, Judged, Run, judged, lines, one, uncovered, wrong
 from tables import placed
 
 __all__ = ["faults", "table"]
@@ -37,30 +37,16 @@ Kept = dict[str, list[list[Any]]]
 
 def faults(found: Mapping[str, Judged], seconds: Mapping[str, float]) -> Iterator[str]:
     """What misses the bar."""
-    for name, each in found.items():
-        if each.wrong:
-            yield f"{name}: {each.wrong} runs of {each.runs} are wrong without a warning"
+    yield from wrong(found)
+    for name in found:
         if seconds[name] > SLOWEST:
             yield f"{name}: a run takes {seconds[name]:.0f} s of processor time"
-    silent = sum(each.silent for each in found.values())
-    held = sum(each.held for each in found.values())
-    if held < LEAST_COVERED * silent:
-        yield f"of {silent} runs without a warning {held} hold the truth"
+    yield from uncovered(found)
 
 
 def table(found: Mapping[str, Judged], seconds: Mapping[str, float]) -> str:
-    """As Markdown, a line a book."""
-    lines = [
-        "| book | probability | runs | warned | interval holds | wrong, unwarned | evaluations | slowest, s |",
-        "|---|---:|---:|---:|---:|---:|---:|---:|",
-    ]
-    for name, each in found.items():
-        held = f"{each.held / each.silent:.0%}" if each.silent else "–"
-        lines.append(
-            f"| {THIN[name].words} | {THIN[name].truth:.2e} | {each.runs} | {each.warned} | {held} | {each.wrong} "
-            f"| {each.work:,.0f} | {seconds[name]:.0f} |"
-        )
-    return "\n".join(lines)
+    """As Markdown, a line a book, with the processor time of its slowest run."""
+    return lines(THIN, found, "slowest, s", {name: f"{seconds[name]:.0f}" for name in found})
 
 
 def measured(kept: Kept, names: Sequence[str], runs: int, until: float, results: Path) -> None:

@@ -82,7 +82,9 @@ def floors() -> dict[str, int]:
     Raises:
         ValueError: rooms import from each other in a circle.
     """
-    below = {room: {to for own, to in arrows() if own == room} for room in ROOMS}
+    below: dict[str, set[str]] = {room: set() for room in ROOMS}
+    for own, other in arrows():
+        below[own].add(other)
     found: dict[str, int] = {}
     while len(found) < len(below):
         ready = {

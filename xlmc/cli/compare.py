@@ -69,14 +69,14 @@ def compare(
     from xlmc.cli.printing import telling, warnings
     from xlmc.report.told_files import Files
     from xlmc.run.model import load
-    from xlmc.studies import comparison as analysis
+    from xlmc.studies import comparison
     from xlmc.studies.comparison.wording import book_names
 
     books = load(first), load(second)
     files = Files(output, html, [first, second], overwrite=overwrite)
     files.check()
     with telling(quiet) as told:
-        found = analysis.compare(
+        found = comparison.compare(
             *books,
             tolerance,
             chance=chance,
@@ -99,7 +99,7 @@ def compare(
     runs = zip(book_names(found), (found.first, found.second), strict=True)
     doubts = [f"{name}: {warning}" for name, run in runs for warning in run.warnings]
     warnings(doubts)
-    if doubts or found.of(analysis.Verdict.UNDECIDED):
+    if doubts or found.of(comparison.Verdict.UNDECIDED):
         raise click.exceptions.Exit(UNDECIDED)
 
 

@@ -75,7 +75,7 @@ in each trial, with the engines `numpy` and `jit` alike:
 All bits are kept by `MATCH`, `XLOOKUP` and the other lookups, criteria such as those of `COUNTIF`, `SWITCH` and
 `CHOOSE`, `SUM` (which Excel makes 0 in some cases and not in others, by no rule that is known), and the limits in the
 tables of xlmc. Bounds, derivatives, `xlmc stability` and its recomputation with 50 digits leave the last sum as it is,
-and small numbers, too. With float32, numbers are compared as they are, and small ones are kept. LibreOffice differs: it
+and small numbers, too. LibreOffice differs: it
 makes 0 of every sum that cancels to some 16 units, in brackets, too.
 
 Sources. Comparisons: Apache POI, `NumberComparer` and the doubles at which Excel's answer changes in its

@@ -128,7 +128,6 @@ class Model(model.Model):
         forecasts: str | Sequence[str] = (),
         time_limit: str | float | None = None,
         engine: str | None = None,
-        arithmetic: str | None = None,
         sampling: str | None = None,
         jobs: int = 1,
         scheduler: str | None = None,
@@ -155,7 +154,6 @@ class Model(model.Model):
             forecasts: names of those whose precision or stability counts; by default all.
             time_limit: seconds, or such as `5m`, after which the run ends with the block of trials it is in.
             engine: `numpy`, `jit`, compiled for long runs, or `formulas`, the slow reference.
-            arithmetic: `float64`, or `float32` with the engine `jit`.
             sampling: `mc`, Monte Carlo; `lhs`, Latin hypercube; `lhs500`, the same in blocks of 500; or `sobol`,
                 scrambled Sobol. All but the first run whole replicates, and so sometimes a few more trials.
             jobs: threads or processes.
@@ -168,7 +166,7 @@ class Model(model.Model):
 
         Raises:
             SimulationError: an argument is out of its range, there is no room on the disk for the accepted trials,
-                the workers cannot be used, or float32 is too coarse for the model.
+                or the workers cannot be used.
         """
         from xlmc.run.simulate import simulate
 
@@ -180,7 +178,6 @@ class Model(model.Model):
                 until_accepted, precision, precision_of, confidence, adaptive, forecasts, time_limit, rare
             ),
             engine=engine,
-            arithmetic=arithmetic,
             sampling=sampling,
             jobs=jobs,
             scheduler=scheduler,

@@ -14,7 +14,6 @@ __all__ = [
     "ErrorCode",
     "FormulaError",
     "Notice",
-    "RoundingError",
     "SimulationError",
     "WorkbookError",
     "XlmcError",
@@ -114,10 +113,6 @@ class DefinitionError(XlmcError):
 
 class SimulationError(XlmcError):
     """The run cannot be done as asked."""
-
-
-class RoundingError(SimulationError):
-    """The arithmetic asked for is too coarse for the model."""
 
 
 class FormulaError(XlmcError):

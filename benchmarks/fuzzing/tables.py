@@ -46,7 +46,7 @@ _SETTINGS: Final = (
     ("Trials", (100.0, 1.0, 0.0, 1e9, "1e3")), ("Seed", (7.0, -1.0, 0.5, 1e15)),
     ("Sampling", ("mc", "lhs", "sobol", "lhs500")),
     ("Range %", (90.0, 0.0, 100.0, 101.0, 0.5)), ("Engine", ("numpy", "formulas", "x")), ("Lognorm", ("XLRisk",)),
-    ("Arithmetic", ("float64", "float32")), ("Until accepted", (2.0, 50.0)), ("Precision %", (50.0, 1e-9)),
+    ("Arithmetic", ("float64",)), ("Until accepted", (2.0, 50.0)), ("Precision %", (50.0, 1e-9)),
     ("Significant digits", (1.0, 15.0)), ("Confidence", (95.0, 0.0)), ("Time limit", ("1s", 1.0, "0s")),
     ("Precision of", ("mean", "p50", "p101")), ("Correlation repair", ("yes",)),
 )  # fmt: skip

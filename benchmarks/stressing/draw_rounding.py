@@ -10,7 +10,7 @@ import numpy as np
 
 from stressing.charts import COLOURS, figure, save
 from stressing.forms import FORMS
-from stressing.rounding import UNITS
+from stressing.rounding import UNIT
 from stressing.sweeps import SWEEPS
 
 __all__ = ["CHARTS", "draw"]
@@ -33,27 +33,24 @@ CHARTS: Final[Mapping[str, tuple[str, Sequence[str], Sequence[int]]]] = {
 }  # fmt: skip
 """Picture -> title, sweeps (columns), equations."""
 
-ROWS: Final = (("float64", "numpy"), ("float32", "jit"))
-FLOORS: Final = {"float64": 1e-17, "float32": 1e-10}
-"""Arithmetic -> the smallest error drawn."""
+FLOOR: Final = 1e-17
+"""The smallest error drawn."""
 
 
 def draw(found: Mapping[str, Any], folder: Path) -> list[Path]:
-    """One row of panels an arithmetic; solid lines are rewritten forms, dashed ones printed."""
+    """A panel a sweep; solid lines are rewritten forms, dashed ones printed."""
     return [_drawn(found, name, folder / f"{name}.png") for name in CHARTS]
 
 
 def _drawn(found: Mapping[str, Any], name: str, path: Path) -> Path:
     title, sweeps, numbers = CHARTS[name]
     width = max(5.2 * len(sweeps) + 0.6, 12.5)
-    rows, columns = (2, len(sweeps)) if len(sweeps) > 1 else (1, 2)
-    made, axes = figure(rows, columns, title, figsize=(width, 4.2 * rows + 1.4), sharey="row" if rows > 1 else False)
-    panels = [(row, sweep) for row in ROWS for sweep in sweeps]
-    for axis, ((arithmetic, engine), sweep) in zip(axes.flat, panels, strict=True):
-        _panel(axis, found[f"{sweep}, {arithmetic}"], (engine, arithmetic), numbers)
-        axis.set_title(f"{SWEEPS[sweep].title}: {engine}, {arithmetic}", fontsize=11)
+    made, axes = figure(1, len(sweeps), title, figsize=(width, 5.6), sharey="row")
+    for axis, sweep in zip(axes.flat, sweeps, strict=True):
+        _panel(axis, found[sweep], numbers)
+        axis.set_title(SWEEPS[sweep].title, fontsize=11)
         axis.set_xlabel(SWEEPS[sweep].axis)
-        axis.axhline(UNITS[arithmetic], color="#6B7785", lw=1, ls=":", label="one rounding")
+        axis.axhline(UNIT, color="#6B7785", lw=1, ls=":", label="one rounding")
         axis.invert_xaxis()
     for axis in axes[:, 0]:
         axis.set_ylabel("relative error (of directions: over 180°)")
@@ -61,17 +58,16 @@ def _drawn(found: Mapping[str, Any], name: str, path: Path) -> Path:
     return path
 
 
-def _panel(axis: Any, sweep: Mapping[str, Any], way: tuple[str, str], numbers: Sequence[int]) -> None:
-    floor = FLOORS[way[1]]
+def _panel(axis: Any, sweep: Mapping[str, Any], numbers: Sequence[int]) -> None:
     x = np.asarray(sweep["x"])
     positive = x[x > 0]
     at = np.where(x > 0, x, positive.min() / 10)  # 0 itself stands a decade beyond the smallest
     for form, colour in zip([f for f in FORMS if f.number in numbers], COLOURS, strict=False):
         for cell, line, kind in ((form.printed, "--", "printed"), (form.rewritten, "-", "rewritten")):
-            error = np.clip(np.asarray(sweep["errors"][", ".join(way)][cell], float), floor, 1e3)
+            error = np.clip(np.asarray(sweep["errors"]["numpy"][cell], float), FLOOR, 1e3)
             axis.plot(at, error, line, color=colour, marker="." if kind == "printed" else None, ms=4, lw=1.4,
                       label=f"({form.number}) {form.what}, {kind}")  # fmt: skip
-    axis.set(xscale="log", yscale="log", ylim=(floor, 1e2))
+    axis.set(xscale="log", yscale="log", ylim=(FLOOR, 1e2))
     if (x == 0).any():
         axis.axvline(positive.min() / 10, color="#6B7785", lw=0.8)
         axis.annotate("exactly", (positive.min() / 10, 3e1), (-4, 0), textcoords="offset points", ha="right",

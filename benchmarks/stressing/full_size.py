@@ -13,7 +13,7 @@ from stressing import stops as rules
 from stressing import tails as heavy
 from stressing.rounding import measured
 from stressing.sweeps import SWEEPS
-from stressing.workbook import ARITHMETICS, forms_book
+from stressing.workbook import FORMS_ENGINES, forms_book
 
 __all__ = ["correlations", "counts", "few", "forms", "samplers", "shares", "stops", "tails"]
 
@@ -21,21 +21,18 @@ Found = Mapping[str, Any]
 
 
 def forms(fewer: int) -> Found:
-    """Sweep and arithmetic -> errors by engine and cell, and conditioning."""
+    """Sweep -> errors by engine and cell, and conditioning."""
     model, found = forms_book(), {}
-    for arithmetic in ("float64", "float32"):
-        ways = [way for way in ARITHMETICS if way[1] == arithmetic]
-        for name, sweep in SWEEPS.items():
-            points = sweep.points(single=arithmetic == "float32")[::fewer]
-            at = measured(model, points, ways)
-            found[f"{name}, {arithmetic}"] = {
-                "x": at.x.tolist(),
-                "errors": {
-                    ", ".join(way): {cell: np.minimum(errors, 1e300).tolist() for cell, errors in cells.items()}
-                    for way, cells in at.errors.items()
-                },
-                "conditions": {cell: values.tolist() for cell, values in at.conditions.items()},
-            }
+    for name, sweep in SWEEPS.items():
+        at = measured(model, sweep.points()[::fewer], FORMS_ENGINES)
+        found[name] = {
+            "x": at.x.tolist(),
+            "errors": {
+                engine: {cell: np.minimum(errors, 1e300).tolist() for cell, errors in cells.items()}
+                for engine, cells in at.errors.items()
+            },
+            "conditions": {cell: values.tolist() for cell, values in at.conditions.items()},
+        }
     return found
 
 

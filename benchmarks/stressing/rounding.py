@@ -16,12 +16,12 @@ from stressing.sweeps import Point
 from stressing.workbook import values_of
 from xlmc.api import Model
 
-__all__ = ["BOUND", "UNITS", "Measured", "measured"]
+__all__ = ["BOUND", "UNIT", "Measured", "measured"]
 
 Floats = NDArray[np.float64]
 
-UNITS: Final = {"float64": 2.0**-53, "float32": 2.0**-24}
-"""Arithmetic -> its unit roundoff: the largest relative error of one operation."""
+UNIT: Final = 2.0**-53
+"""The unit roundoff: the largest relative error of one operation."""
 
 BOUND: Final = 8.0
 """What the rewritten forms stay below, as `Measured.excess` counts."""
@@ -33,28 +33,28 @@ class Measured:
 
     Attributes:
         x: of the points, `(n,)`.
-        errors: engine and arithmetic -> cell -> `(n,)`; infinite where the cell is an error or no number.
+        errors: engine -> cell -> `(n,)`; infinite where the cell is an error or no number.
         conditions: rewritten cell -> `(n,)`; see `exact.conditioning`.
     """
 
     x: Floats
-    errors: dict[tuple[str, str], dict[str, Floats]]
+    errors: dict[str, dict[str, Floats]]
     conditions: dict[str, Floats]
 
-    def excess(self, way: tuple[str, str], cell: str, rewritten: str) -> Floats:
+    def excess(self, engine: str, cell: str, rewritten: str) -> Floats:
         """The error over that which one rounding of the answer and of each quantity of the evidence makes, `(n,)`."""
-        return np.asarray(self.errors[way][cell] / (UNITS[way[1]] * (1.0 + self.conditions[rewritten])))
+        return np.asarray(self.errors[engine][cell] / (UNIT * (1.0 + self.conditions[rewritten])))
 
 
-def measured(model: Model, points: Sequence[Point], ways: Sequence[tuple[str, str]]) -> Measured:
-    """Compute every form at every point in every way, and hold it against 80 digits."""
+def measured(model: Model, points: Sequence[Point], engines: Sequence[str]) -> Measured:
+    """Compute every form at every point with every engine, and hold it against 80 digits."""
     columns = {name: np.array([point.evidence[name] for point in points]) for name in INPUTS}
     truths = [exact(point.evidence) for point in points]
     found = [conditioning(point.evidence) for point in points]
     errors = {}
-    for way in ways:
-        values = values_of(model, columns, *way)
-        errors[way] = {
+    for engine in engines:
+        values = values_of(model, columns, engine)
+        errors[engine] = {
             cell: np.array(
                 [_error(value, t[form.rewritten], form.angle) for value, t in zip(values[cell], truths, strict=True)]
             )

@@ -11,7 +11,7 @@ import numpy as np
 from stressing.exact import forward
 from stressing.forms import INPUTS
 
-__all__ = ["SWEEPS", "Point", "Sweep", "random_crashes", "rounded"]
+__all__ = ["SWEEPS", "Point", "Sweep", "in_order", "random_crashes"]
 
 
 class Point(NamedTuple):
@@ -33,19 +33,16 @@ class Sweep(NamedTuple):
         axis: what `Point.x` is, with its unit.
         places: from harmless to worst.
         crash: a place -> the evidence there.
-        single_from: places below are none in float32, which has steps of 1.5e-5 at 197 degrees.
     """
 
     title: str
     axis: str
     places: tuple[float, ...]
     crash: Callable[[float], Mapping[str, float]]
-    single_from: float = 0.0
 
-    def points(self, *, single: bool = False) -> list[Point]:
-        """Evidence at each place, in numbers of float32 where `single`."""
-        places = (x for x in self.places if not single or x >= self.single_from)
-        return [Point(x, rounded(self.crash(x), single=single)) for x in places]
+    def points(self) -> list[Point]:
+        """Evidence at each place."""
+        return [Point(x, in_order(self.crash(x))) for x in self.places]
 
 
 MASSES: Final = (1650.0, 1210.0)
@@ -53,11 +50,9 @@ REST: Final = {"I_1": 2900.0, "I_2": 1750.0, "a_1": 1.9, "b_1": 0.45, "a_2": -0.
 """kg·m² and m: what does not depend on the place."""
 
 
-def rounded(evidence: Mapping[str, float], *, single: bool) -> dict[str, float]:
-    """In the order of `INPUTS`; in numbers that float32 has, so that its arithmetic is measured and not its inputs."""
-    if not single:
-        return {name: float(evidence[name]) for name in INPUTS}
-    return {name: float(np.float32(evidence[name])) for name in INPUTS}
+def in_order(evidence: Mapping[str, float]) -> dict[str, float]:
+    """In the order of `INPUTS`."""
+    return {name: float(evidence[name]) for name in INPUTS}
 
 
 def _direction(degrees: float) -> tuple[float, float]:
@@ -115,19 +110,17 @@ def _decades(first: float, last: float, each: int) -> tuple[float, ...]:
 _APPROACHES: Final = "angle between the approaches δ, degrees"
 
 SWEEPS: Final = {
-    "catching up": Sweep("One vehicle catches the other up", _APPROACHES, _decades(90, 1e-8, 3), _catching_up, 1e-3),
-    "sideswipe": Sweep("A sideswipe", _APPROACHES, _decades(90, 1e-8, 3), _side_by_side, 1e-3),
-    "head-on": Sweep("Head-on", "180° less δ, degrees", _decades(90, 1e-8, 3), _head_on, 1e-3),
+    "catching up": Sweep("One vehicle catches the other up", _APPROACHES, _decades(90, 1e-8, 3), _catching_up),
+    "sideswipe": Sweep("A sideswipe", _APPROACHES, _decades(90, 1e-8, 3), _side_by_side),
+    "head-on": Sweep("Head-on", "180° less δ, degrees", _decades(90, 1e-8, 3), _head_on),
     "through 90": Sweep("α2 near 90°", "α2 less 90°, degrees", (*_decades(30, 1e-12, 2), 0.0), _across(90.0)),
     "through 270": Sweep("α2 near 270°", "α2 less 270°, degrees", (*_decades(30, 1e-12, 2), 0.0), _across(270.0)),
     "light": Sweep("A light touch", "delta-V over speed, vehicle 1", _decades(0.5, 1e-6, 4), _light),
-    "pole": Sweep(
-        "e_t near its pole", "tangent, from square to the sliding, degrees", _decades(30, 1e-8, 3), _glide, 1e-3
-    ),
+    "pole": Sweep("e_t near its pole", "tangent, from square to the sliding, degrees", _decades(30, 1e-8, 3), _glide),
 }
 
 
-def random_crashes(count: int, seed: int, *, single: bool = False) -> list[Point]:
+def random_crashes(count: int, seed: int) -> list[Point]:
     """Crashes of all kinds: δ at least 10° from 0 and 180, as the templates' check asks."""
     rng = np.random.default_rng(seed)
     points = []
@@ -137,5 +130,5 @@ def random_crashes(count: int, seed: int, *, single: bool = False) -> list[Point
             continue
         evidence = _central(alphas, tuple(rng.uniform(3.0, 35.0, 2).tolist()), rng.uniform(0.3, 1.9))
         evidence |= {"gamma_t": rng.uniform(0.0, 180.0), "a_1": rng.uniform(-2.0, 2.0), "b_2": rng.uniform(-2.0, 2.0)}
-        points.append(Point(float(len(points)), rounded(evidence, single=single)))
+        points.append(Point(float(len(points)), in_order(evidence)))
     return points

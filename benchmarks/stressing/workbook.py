@@ -14,12 +14,12 @@ from stressing.forms import CONSTANTS, FORMS, INPUTS, PRINTED, REWRITTEN
 from xlmc.api import Model, load
 from xlmc.definitions.model import name_key
 
-__all__ = ["ARITHMETICS", "book_of", "forms_book", "values_of"]
+__all__ = ["FORMS_ENGINES", "book_of", "forms_book", "values_of"]
 
 Floats = NDArray[np.float64]
 
-ARITHMETICS = (("numpy", "float64"), ("jit", "float64"), ("jit", "float32"))
-"""Engine and arithmetic."""
+FORMS_ENGINES = ("numpy", "jit")
+"""Those that the forms are measured with."""
 
 
 def book_of(
@@ -95,12 +95,12 @@ def forms_book() -> Model:
     return book_of(assumptions, cells, [name for form in FORMS for name in (form.printed, form.rewritten)])
 
 
-def values_of(model: Model, inputs: Mapping[str, Floats], engine: str, arithmetic: str) -> dict[str, Floats]:
+def values_of(model: Model, inputs: Mapping[str, Floats], engine: str) -> dict[str, Floats]:
     """Every forecast of given draws, `(n,)`, NaN where it is an error; with numpy by `Model.function` itself."""
     if engine == "numpy":
         return model.function(inputs)
     n = next(iter(inputs.values())).size
-    evaluator = model.program(engine, arithmetic).evaluator(n)
+    evaluator = model.program(engine).evaluator(n)
     evaluator.filters({name_key(name): np.ascontiguousarray(column) for name, column in inputs.items()}, n)
     columns = evaluator.forecasts(np.arange(n))
     return {f.name: column.as_floats() for f, column in zip(model.forecasts, columns, strict=True)}

@@ -168,28 +168,6 @@ def test_the_engine_jit_prints_the_same_answers(xlmc, book):
     assert xlmc("simulate", book, "-n", 20_000, "--engine", "jit").out == xlmc("simulate", book, "-n", 20_000).out
 
 
-def test_float32_is_said(xlmc, book):
-    pytest.importorskip("llvmlite")
-    outcome = xlmc("simulate", book, "-n", 20_000, "--engine", "jit", "--arithmetic", "float32")
-    assert outcome.code == 0
-    assert "computed in float32" in outcome.out
-
-
-def test_too_coarse_an_arithmetic_writes_nothing(xlmc, book, tmp_path, monkeypatch):
-    pytest.importorskip("llvmlite")
-    monkeypatch.setattr("xlmc.run.rounding.MOST_DIFFERENCE", 1e-12)
-    outcome = xlmc("simulate", book, "-n", 20_000, "--engine", "jit", "--arithmetic", "float32")
-    assert outcome.code == 1
-    assert "Use --arithmetic float64" in outcome.err
-    assert not (tmp_path / "case-results.xlsx").exists()
-
-
-def test_float32_needs_the_engine_jit(xlmc, book):
-    outcome = xlmc("simulate", book, "-n", 1_000, "--arithmetic", "float32")
-    assert outcome.code == 2
-    assert "--engine jit" in outcome.err
-
-
 @pytest.mark.parametrize(
     ("trials", "options", "installed", "hinted"),
     [

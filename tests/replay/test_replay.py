@@ -59,7 +59,6 @@ RUNS = {
     "precision": {"precision": "20%", "precision_of": "p50", "forecasts": "area"},
     "time": {"precision": 1e-9, "time_limit": 0.001},
     "jit": {"engine": "jit", "trials": 35_000},
-    "single precision": {"engine": "jit", "arithmetic": "float32"},
     "slow reference": {"engine": "formulas", "trials": 40},
     "some draws kept": {"keep_inputs": 5},
     "nothing accepted": {"trials": 1, "seed": 7},

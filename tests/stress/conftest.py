@@ -19,18 +19,16 @@ def forms_book():
 
 @pytest.fixture(scope="session")
 def sweep(forms_book):
-    """`sweep("light", "float64")`: what was measured there, by numpy and jit; each sweep is run once."""
+    """`sweep("light")`: what was measured there, by numpy and jit; each sweep is run once."""
     from stressing.rounding import measured
     from stressing.sweeps import SWEEPS
-    from stressing.workbook import ARITHMETICS
+    from stressing.workbook import FORMS_ENGINES
 
     found = {}
 
-    def measure(name, arithmetic):
-        if (name, arithmetic) not in found:
-            ways = [way for way in ARITHMETICS if way[1] == arithmetic]
-            points = SWEEPS[name].points(single=arithmetic == "float32")
-            found[name, arithmetic] = measured(forms_book, points, ways)
-        return found[name, arithmetic]
+    def measure(name):
+        if name not in found:
+            found[name] = measured(forms_book, SWEEPS[name].points(), FORMS_ENGINES)
+        return found[name]
 
     return measure

@@ -22,11 +22,11 @@ from xlmc.cli.new import new
 from xlmc.cli.replay import replay
 from xlmc.cli.report import report
 from xlmc.cli.screen import screen
-from xlmc.cli.simulate import INTERRUPTED, NOT_TO_BE_USED, simulate
+from xlmc.cli.simulate import INTERRUPTED, simulate
 from xlmc.cli.stability import stability
 from xlmc.cli.terminal import prepare, say
 from xlmc.cli.verify import verify
-from xlmc.errors import RoundingError, XlmcError
+from xlmc.errors import XlmcError
 from xlmc.run.version import __version__
 
 __all__ = ["main", "xlmc"]
@@ -52,7 +52,7 @@ for _command in (new, check, fit, verify, simulate, report, replay, compare, scr
 
 
 def main() -> None:
-    """Run the command line; a mistake in the input is a message and exit code 2, too coarse an arithmetic 1."""
+    """Run the command line; a mistake in the input is a message and exit code 2."""
     prepare()
     try:
         # A command that asks for an exit code returns it.
@@ -63,7 +63,7 @@ def main() -> None:
         sys.exit(BAD_INPUT)
     except XlmcError as error:
         say(f"xlmc: {error}", err=True)
-        sys.exit(NOT_TO_BE_USED if isinstance(error, RoundingError) else BAD_INPUT)
+        sys.exit(BAD_INPUT)
     except (click.Abort, KeyboardInterrupt):
         say("xlmc: interrupted; nothing was written.", err=True)
         sys.exit(INTERRUPTED)

@@ -35,11 +35,6 @@ INTERRUPTED = 130
     help="numpy; jit: compiled, for long runs; formulas: the slow reference.  [default: the book's, else numpy]",
 )
 @click.option(
-    "--arithmetic",
-    type=OneOf("float64", "float32"),
-    help="float32: half the digits, with --engine jit only.  [default: the book's, else float64]",
-)
-@click.option(
     "--sampling",
     type=OneOf("mc", "lhs", "lhs500", "sobol"),
     help="mc: Monte Carlo; lhs: Latin hypercube; lhs500: in blocks of 500; sobol: scrambled Sobol."
@@ -72,7 +67,6 @@ def simulate(
     trials: int | None,
     seed: int | None,
     engine: str | None,
-    arithmetic: str | None,
     sampling: str | None,
     jobs: int,
     scheduler: str | None,
@@ -111,7 +105,6 @@ def simulate(
             seed,
             **length,
             engine=engine,
-            arithmetic=arithmetic,
             sampling=sampling,
             jobs=jobs,
             scheduler=scheduler,

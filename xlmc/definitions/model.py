@@ -165,7 +165,6 @@ class Settings:
     engine: str = "numpy"
     stopping: Stopping = NO_GOAL
     lognorm: str = ""
-    arithmetic: str = "float64"
 
 
 @dataclass(frozen=True, slots=True)

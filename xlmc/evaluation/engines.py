@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from xlmc.errors import SimulationError
 from xlmc.evaluation.engine import Program
 from xlmc.evaluation.llvm import jit_filler, jit_program
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
@@ -20,24 +19,14 @@ ENGINES: Mapping[str, Callable[..., Program]] = {
 """Name of an engine -> program of (lowering, filters, forecasts, inputs whose draws may be errors)."""
 
 
-def options_of(engine: str, arithmetic: str, between: Mapping[str, Bounds]) -> dict[str, Any]:
+def options_of(engine: str, between: Mapping[str, Bounds]) -> dict[str, Any]:
     """What a program of the engine takes besides.
 
     Args:
         engine: its name.
-        arithmetic: `float64` or `float32`.
         between: name of an input -> its bounds, for engines that make use of them.
-
-    Raises:
-        SimulationError: there is no such arithmetic, or the engine does not know it.
     """
-    if arithmetic == "float64":
-        return {"between": between} if engine == "numpy" else {}
-    if arithmetic != "float32":
-        raise SimulationError(f"there is no arithmetic {arithmetic!r}", hint="choose float64 or float32")
-    if engine != "jit":
-        raise SimulationError(f"the engine `{engine}` computes in float64 only", hint="use `--engine jit`, or float64")
-    return {"single": True}
+    return {"between": between} if engine == "numpy" else {}
 
 
 FILLERS = {"jit": jit_filler}

@@ -241,7 +241,6 @@ def _repeated(model: Model, record: Record, settings: Settings, jobs: int, progr
         seed=settings.seed,
         stopping=stopping(goal if waited else None, rare=settings.stopping.rare),
         engine=settings.engine,
-        arithmetic=settings.arithmetic,
         sampling=settings.sampling,
         jobs=jobs,
         keep_inputs=kept if kept < accepted else max(kept, KEPT_INPUTS),

@@ -41,7 +41,7 @@ def base_case(simulation: Simulation) -> BaseCase | None:
     if len(known) < len(base):
         return None
     settings = simulation.settings  # always in float64
-    evaluator = model.program(settings.engine if settings.arithmetic == "float64" else "numpy").evaluator(1)
+    evaluator = model.program(settings.engine).evaluator(1)
     filters = [_fails(column) for column in evaluator.filters(known, 1)]
     columns = evaluator.forecasts(np.zeros(1, np.intp))
     return BaseCase(

@@ -117,7 +117,7 @@ class Model:
         self.groups: tuple[CorrelatedGroup, ...] = tuple(
             correlated_groups(definitions.correlations, names, self._draws)
         )
-        self._programs: dict[tuple[str, str], Program] = {}
+        self._programs: dict[str, Program] = {}
         self._check_targets()
         self._checks = _lowered_checks(workbook, definitions, self.live)
         repairs = repair_notices(self.groups, definitions.correlations, names)
@@ -220,20 +220,20 @@ class Model:
         if missing:
             raise SimulationError(f"no values for the assumption {missing[0]!r}", hint="give every live assumption")
 
-    def program(self, engine: str, arithmetic: str = "float64") -> Program:
+    def program(self, engine: str) -> Program:
         """The filters and forecasts, compiled for an engine once.
 
         Raises:
-            SimulationError: there is no such engine, or it does not know the arithmetic.
+            SimulationError: there is no such engine.
         """
         if engine not in ENGINES:
             raise SimulationError(f"there is no engine {engine!r}", hint=f"choose one of {', '.join(ENGINES)}")
-        if (engine, arithmetic) not in self._programs:
+        if engine not in self._programs:
             parts = self._lowering, self.filter_targets, self._forecast_targets, self.fallible
             with paused_collection():
-                options = options_of(engine, arithmetic, self._supports)
-                self._programs[engine, arithmetic] = ENGINES[engine](*parts, **options)
-        return self._programs[engine, arithmetic]
+                options = options_of(engine, self._supports)
+                self._programs[engine] = ENGINES[engine](*parts, **options)
+        return self._programs[engine]
 
     @property
     def _supports(self) -> dict[str, tuple[float, float]]:

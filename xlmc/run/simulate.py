@@ -20,7 +20,6 @@ from xlmc.run.blocks import Block, FilterTally, Task
 from xlmc.run.checking import LEAST_CHECKED
 from xlmc.run.pilot import planned
 from xlmc.run.rare.deciding import looks_of
-from xlmc.run.rounding import Rounding, checked_rounding
 from xlmc.run.scheduling.crew import Crew
 from xlmc.run.scheduling.recipe import worker_of
 from xlmc.run.simulation import KEPT_INPUTS, Simulation
@@ -63,7 +62,6 @@ def simulate(
     seed: int | None = None,
     stopping: Stopping = NO_GOAL,
     engine: str | None = None,
-    arithmetic: str | None = None,
     sampling: str | None = None,
     jobs: int = 1,
     scheduler: str | None = None,
@@ -73,7 +71,7 @@ def simulate(
     progress: Progress | None = None,
 ) -> Simulation:
     """Run a model; see `Model.simulate`."""
-    settings = _settings(model, trials, seed, engine, arithmetic, sampling, stopping)
+    settings = _settings(model, trials, seed, engine, sampling, stopping)
     plan = planned(model, settings)
     rule, looks = chosen_rule(settings.stopping, model.forecasts), looks_of(model, settings)
     watch = Watch(rule, plan.trials, settings.stopping.seconds, time.monotonic)
@@ -83,9 +81,8 @@ def simulate(
         raise SimulationError(
             f"the draws of {keep_inputs} trials were asked for", hint="give 0 or more, or None for all"
         )
-    program = model.program(settings.engine, settings.arithmetic)
+    program = model.program(settings.engine)
     block = min(BLOCK, program.largest_block)
-    rounding = checked_rounding(model, program, settings, block) if settings.arithmetic == "float32" else None
     most_inputs = plan.trials if keep_inputs is None else keep_inputs
     if model.checks:
         most_inputs = max(most_inputs, LEAST_CHECKED)
@@ -113,11 +110,11 @@ def simulate(
                 if progress is not None and teller is not None:
                     progress(teller.after(finished, watch.share))
         if stopped is not None:
-            return gathered.simulation(settings, plan, stopped, rounding)
+            return gathered.simulation(settings, plan, stopped)
         found = _searched(model, settings, gathered.trials, gathered.accepted_trials, watch, interruption, progress)
     if isinstance(found, Stopped):
-        return gathered.simulation(settings, plan, found, rounding)
-    return _with_search(gathered.simulation(settings, plan, watch.goal_reached, rounding), found, most_inputs)
+        return gathered.simulation(settings, plan, found)
+    return _with_search(gathered.simulation(settings, plan, watch.goal_reached), found, most_inputs)
 
 
 class _EndedError(Exception):
@@ -164,7 +161,7 @@ def _with_search(plain: Simulation, found: Search, most_inputs: int) -> Simulati
     gathered = _Gathered(model, block, most_inputs)
     for each in accepted_blocks(model, found.uniforms, block, lambda: gathered.wants_inputs):
         gathered.add(each)
-    drawn = gathered.simulation(plain.settings, plain.plan, plain.stopped, None)
+    drawn = gathered.simulation(plain.settings, plain.plan, plain.stopped)
     return replace(
         plain,
         trial_index=drawn.trial_index,
@@ -180,11 +177,10 @@ def _settings(
     trials: int | None,
     seed: int | None,
     engine: str | None,
-    arithmetic: str | None,
     sampling: str | None,
     stopping: Stopping,
 ) -> Settings:
-    given = {"trials": trials, "seed": seed, "engine": engine, "arithmetic": arithmetic, "sampling": sampling}
+    given = {"trials": trials, "seed": seed, "engine": engine, "sampling": sampling}
     settings = replace(model.definitions.settings, **{k: v for k, v in given.items() if v is not None})  # type: ignore[arg-type]
     if trials is not None or stopping.has_goal:
         settings = replace(settings, trials=LIMIT if trials is None else trials, stopping=stopping)
@@ -255,7 +251,7 @@ class _Gathered:
         """A forecast's accepted trials so far, `(m,)`, NaN where it has no number."""
         return self._keeper.columns({"": ("forecast", place)})[""]
 
-    def simulation(self, settings: Settings, plan: Plan, stopped: Stopped, rounding: Rounding | None) -> Simulation:
+    def simulation(self, settings: Settings, plan: Plan, stopped: Stopped) -> Simulation:
         return Simulation(
             model=self._model,
             settings=settings,
@@ -271,5 +267,4 @@ class _Gathered:
             invalid=self._invalid,
             error_trials=self.lost,
             stopped=stopped,
-            rounding=rounding,
         )

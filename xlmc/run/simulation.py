@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from xlmc.address import Cell
     from xlmc.run.model import Model
     from xlmc.run.rare.account import RareAccount
-    from xlmc.run.rounding import Rounding
 
 __all__ = [
     "ERROR_SHARE",
@@ -186,7 +185,6 @@ class Simulation:
         error_trials: trials lost to errors: undecided by a filter, drawn from no distribution, or accepted without a
             number in some forecast. Each counts once.
         stopped: what ended it.
-        rounding: what float32 changed in the first trials; None with float64.
         origin: where it was made, if it was saved and opened again; None for one that was made here.
         rare: where the accepted trials come from, where that is a learned proposal; None with plain trials.
     """
@@ -205,7 +203,6 @@ class Simulation:
     invalid: Counter[str]
     error_trials: int
     stopped: Stopped = ALL_TRIALS
-    rounding: Rounding | None = None
     origin: Origin | None = None
     rare: RareAccount | None = None
 
@@ -279,7 +276,7 @@ class Simulation:
     @cached_property
     def notices_of_run(self) -> tuple[Notice, ...]:
         """What the person should know of this run alone."""
-        found = [] if self.rounding is None else [self.rounding.notice]
+        found: list[Notice] = []
         if not self.plan.replicates and 0 < self.accepted < FEW:
             found.append(Notice(f"only {_trials(self.accepted)} accepted. {_OF_FEW}"))
         samples = {name: result.sample for name, result in self.results.items()}

@@ -25,7 +25,6 @@ def test_settings_and_counts(run, record):
         "sampling.seed": 5,
         "sampling.method": "mc",
         "sampling.engine": "numpy",
-        "sampling.arithmetic": "float64",
         "sampling.block": run.block,
         "counts.trials": 4000,
         "counts.accepted": run.accepted,

@@ -40,9 +40,9 @@ def test_trials_and_seed_are_always_said(run):
 def test_other_settings_are_said_where_the_workbook_does_not_say_them():
     own = Settings(trials=10, seed=1, sampling="mc", engine="numpy")
     model = SimpleNamespace(definitions=SimpleNamespace(settings=own), workbook=SimpleNamespace(name="-b.xlsx"))
-    used = replace(own, sampling="lhs", engine="jit", arithmetic="float32")
+    used = replace(own, sampling="lhs", engine="jit")
     simulation = SimpleNamespace(settings=used, model=model, trials=20, stopped=ALL_TRIALS)
-    command = "xlmc simulate ./-b.xlsx --trials 20 --seed 1 --sampling lhs --engine jit --arithmetic float32"
+    command = "xlmc simulate ./-b.xlsx --trials 20 --seed 1 --sampling lhs --engine jit"
     assert repeat_command(simulation) == command
 
 

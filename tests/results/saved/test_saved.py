@@ -28,7 +28,7 @@ RUNS = {
     "stable digits": {"adaptive": 1, "trials": 3000},
     "some draws kept": {"keep_inputs": 10},
     "no draws kept": {"keep_inputs": 0},
-    "single precision": {"engine": "jit", "arithmetic": "float32"},
+    "compiled": {"engine": "jit"},
     "slow reference": {"engine": "formulas", "trials": 40},
     "one trial": {"trials": 1},
     "rare": {"until_accepted": 300, "rare": "always"},
@@ -71,7 +71,6 @@ def same(first, second):
         "invalid",
         "error_trials",
         "stopped",
-        "rounding",
         "rare",
     ):
         assert getattr(first, name) == getattr(second, name), name
@@ -205,7 +204,7 @@ def changed(**found):
 
 
 FAULTS = {
-    "another version": (changed(version=2), "version 2, and this xlmc reads version 1"),
+    "another version": (changed(version=3), "version 3, and this xlmc reads versions 1 to 2"),
     "another format": (changed(format="zip"), "its format"),
     "no columns": (changed(columns=[]), "its list of trials"),
     "more trials than were planned": (changed(trials=10**9), "its number of trials"),
@@ -241,6 +240,31 @@ FAULTS = {
 def test_what_is_no_saved_run_is_refused_in_words(saved, tmp_path, change, message):
     with pytest.raises(XlmcError, match=message):
         open_run(repacked(saved, tmp_path / "bad.xlmcrun", change))
+
+
+def of_version_1(arithmetic):
+    """A change that makes of a saved run what xlmc 0.2.0 would have saved."""
+
+    def change(parts, document):
+        document.update(version=1, rounding=None)
+        document["settings"]["arithmetic"] = arithmetic
+        document["origin"]["software"]["xlmc"] = "0.2.0"
+
+    return change
+
+
+def test_a_run_that_an_earlier_version_saved_is_opened(run, saved, tmp_path):
+    again = open_run(repacked(saved, tmp_path / "old.xlmcrun", of_version_1("float64")))
+    assert again.settings == run.settings
+    assert np.array_equal(again.trial_index, run.trial_index)
+
+
+def test_one_in_float32_is_refused_and_the_version_named(saved, tmp_path):
+    path = repacked(saved, tmp_path / "old.xlmcrun", of_version_1("float32"))
+    with pytest.raises(XlmcError, match=r"xlmc 0\.2\.0 computed this run in float32.*with xlmc 0\.2\.0") as caught:
+        open_run(path)
+    assert "\n" not in str(caught.value)
+    assert str(path) in str(caught.value)
 
 
 FIELDS = ["settings", "stopped", "tally", "faults", "invalid", "columns", "order", "origin", "block", "trials"]

@@ -50,7 +50,6 @@ def test_always_is_after_the_prior(model):
 REFUSED = [
     ({}, {}, "not how many"),
     ({"accepted": 5}, {"engine": "formulas"}, "engine numpy"),
-    ({"accepted": 5}, {"arithmetic": "float32"}, "float64"),
     ({"accepted": 5}, {"trials": 100_000}, "the limit is 100,000"),
     ({"accepted": 10**7}, {}, "room for 1,000,000"),
 ]

@@ -56,7 +56,7 @@ def test_every_method_is_there(small):
     keys = [curve.method.key for curve in small.every]
     assert keys[:5] == ["corners", "optimised", "worst-case", "taylor-1", "taylor-2"]
     assert keys[5:10] == ["mc", "lhs", "sobol", "grid", "surrogate"]
-    assert keys[10:] == ["mc/jit", "mc/float32", "mc/formulas"]
+    assert keys[10:] == ["mc/jit", "mc/formulas"]
     assert small.absent == {}
     assert small.ladder == (512, 2_048, 8_192)
     assert [rung.settled for rung in small.curves[0].rungs] == [False, True, True]

@@ -34,7 +34,6 @@ _SAMPLINGS = {
 }
 _ENGINES = ("numpy", "jit", "formulas")
 _LOGNORMS = ("@RISK", "XLRisk")
-_ARITHMETICS = ("float64", "float32")
 
 
 def read_settings(workbook: Workbook, tables: list[DefinitionTable], findings: Findings) -> tuple[Settings, float]:
@@ -108,12 +107,12 @@ def _lognorm(row: Row, _findings: Findings) -> str:
     return found
 
 
-def _arithmetic(row: Row, _findings: Findings) -> str:
+def _arithmetic(row: Row, _findings: Findings) -> None:
+    """A row of earlier books, which could ask for float32."""
     typed = required_text(row, "Value")
-    if plain(typed) not in _ARITHMETICS:
-        message = f"There is no arithmetic {typed!r}"
-        raise DefinitionError(message, where=row.cell("Value"), hint="Use float64 or float32")
-    return plain(typed)
+    if plain(typed) != "float64":
+        message = f"There is no arithmetic {typed!r}: xlmc computes in float64"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Delete the row")
 
 
 def _range(row: Row, findings: Findings) -> float:

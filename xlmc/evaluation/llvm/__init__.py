@@ -36,7 +36,6 @@ def jit_program(
     filters: Sequence[Target],
     forecasts: Sequence[Target],
     may_err: frozenset[str],
-    single: bool = False,
 ) -> Program:
     """The filters and forecasts as compiled loops.
 
@@ -45,17 +44,16 @@ def jit_program(
         filters: evaluated on all trials.
         forecasts: evaluated on the survivors.
         may_err: the inputs whose draws may be errors (NaNs).
-        single: compute in float32.
 
     Raises:
-        SimulationError: llvmlite is not installed, or a number in a formula is out of the range of float32.
+        SimulationError: llvmlite is not installed.
     """
     if not available():
         hint = 'install it with `pip install "xlmc[jit]"`, or use the engine `numpy`'
         raise SimulationError("the engine `jit` needs the package llvmlite, which is not installed", hint=hint)
     from xlmc.evaluation.llvm.program import JitProgram
 
-    return JitProgram(lowering, filters, forecasts, may_err, single)
+    return JitProgram(lowering, filters, forecasts, may_err)
 
 
 def jit_filler(

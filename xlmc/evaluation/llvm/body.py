@@ -13,14 +13,12 @@ from typing import Any
 
 from llvmlite import ir
 
-from xlmc.errors import SimulationError
 from xlmc.evaluation.graph.dag import Constant, Dag, Select
 from xlmc.evaluation.llvm.arithmetic import Arithmetic, intrinsic
 from xlmc.evaluation.llvm.contexts import ROOT, Context, branch
 from xlmc.evaluation.llvm.machine import Machine
 from xlmc.evaluation.llvm.recipes import Literal, Operand, Recipe, literal
 from xlmc.evaluation.llvm.sine import sine_and_cosine
-from xlmc.evaluation.llvm.single_sine import LARGEST_ANGLE, single_sine_and_cosine
 from xlmc.functions import Kind
 from xlmc.functions.denormals import TINIEST
 
@@ -28,9 +26,8 @@ __all__ = ["Body", "Loaded"]
 
 _BIT = ir.IntType(1)
 
-_EXCELS_LARGEST_ANGLE = 2.0**27
-_LARGEST, _SMALLEST = (2 - 2.0**-23) * 2.0**127, 2.0**-126
-"""Of float32, but for zero and numbers of fewer digits."""
+_LARGEST_ANGLE = 2.0**27
+"""That Excel takes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,12 +45,10 @@ class Body:
         loaded: the nodes from outside the loop, each as its own kind or, where that is none of the loop's, as wanted.
         contexts: of the nodes of the loop.
         machine: the processor.
-        single: compute in float32.
 
     Attributes:
         builder: where instructions go.
         real: the type of numbers.
-        single: whether they are float32.
     """
 
     def __init__(
@@ -63,13 +58,11 @@ class Body:
         loaded: Mapping[Operand, Loaded],
         contexts: Mapping[int, Context],
         machine: Machine,
-        single: bool = False,
     ) -> None:
         self.builder: Any = builder
-        self.real: Any = ir.FloatType() if single else ir.DoubleType()
-        self.single = single
+        self.real: Any = ir.DoubleType()
         self._dag, self._contexts, self._fused = dag, contexts, machine.fused
-        self._flushes = machine.flushes or single
+        self._flushes = machine.flushes
         self._known = dict(loaded)
         self._checked: set[tuple[Operand, Context]] = set()
         self._sums: dict[Context, Any] = {}
@@ -78,14 +71,7 @@ class Body:
         self._context = ROOT
 
     def number(self, value: float) -> Any:
-        """A constant.
-
-        Raises:
-            SimulationError: it is out of the range of float32.
-        """
-        if self.single and value and not _SMALLEST <= abs(value) <= _LARGEST:
-            hint = "use float64"
-            raise SimulationError(f"the number {value:g} in a formula is out of the range of float32", hint=hint)
+        """A constant."""
         return ir.Constant(self.real, value)
 
     def truth(self, value: bool) -> Any:
@@ -97,23 +83,18 @@ class Body:
         return intrinsic(self.builder, self.real, name, *arguments)
 
     def of_doubles(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """A function that is made of arithmetic on doubles; with float32 its result is rounded."""
-        do = Arithmetic(self.builder, self._fused)
-        if not self.single:
-            return function(do, *arguments)
-        wide = [self.builder.fpext(argument, ir.DoubleType()) for argument in arguments]
-        return self.builder.fptrunc(function(do, *wide), self.real)
+        """A function that is made of arithmetic."""
+        return function(Arithmetic(self.builder, self._fused), *arguments)
 
     @property
     def largest_angle(self) -> float:
-        """Above it a sine is computed again: Excel refuses it, or it has too few digits in float32."""
-        return LARGEST_ANGLE if self.single else _EXCELS_LARGEST_ANGLE
+        """Above it a sine is computed again: Excel refuses it."""
+        return _LARGEST_ANGLE
 
     def sine_and_cosine(self, angle: Any) -> tuple[Any, Any]:
         """Both, computed once for each angle."""
         if id(angle) not in self._turns:
-            both = single_sine_and_cosine if self.single else sine_and_cosine
-            self._turns[id(angle)] = angle, both(self.builder, angle, self._fused)
+            self._turns[id(angle)] = angle, sine_and_cosine(self.builder, angle, self._fused)
         return self._turns[id(angle)][1]
 
     def flag(self, wrong: Any) -> None:

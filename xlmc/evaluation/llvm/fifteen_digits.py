@@ -1,7 +1,7 @@
 """Comparisons at 15 digits, and the last sum of a formula, in the loop. See `functions.fifteen_digits`, `last_sum`.
 
 A comparison with a constant is one with the last double that is equal to it. Two numbers that vary and nearly agree
-are left to the careful path, trial by trial. In float32 numbers are compared as they are: they have but 7 digits.
+are left to the careful path, trial by trial.
 """
 
 from __future__ import annotations
@@ -39,8 +39,7 @@ def at_15_digits(dag: Dag, node: Apply, symbol: str) -> Emit:
         return _with_constant(TWINS[symbol], 1, float(left.value))
 
     def emit(body: Body, parts: Sequence[Any]) -> Any:
-        if not body.single:
-            body.flag(_nearly_equal(body, *parts))
+        body.flag(_nearly_equal(body, *parts))
         return body.builder.fcmp_ordered(_RELATIONS[symbol], *parts)
 
     return emit
@@ -63,8 +62,6 @@ def _with_constant(symbol: str, varying: int, number: float) -> Emit:
         def is_(relation: str, limit: float) -> Any:
             return body.builder.fcmp_ordered(relation, parts[varying], body.number(limit))
 
-        if body.single:
-            return is_(_RELATIONS[symbol], number)
         match symbol:
             case "<" | ">=":
                 return is_(symbol, least)
@@ -81,8 +78,6 @@ def _with_constant(symbol: str, varying: int, number: float) -> Emit:
 def settled(body: Body, parts: Sequence[Any]) -> Any:
     """0 where a sum is within eight units in the last place of its first number, else the sum."""
     total, first = parts
-    if body.single:
-        return total
     builder = body.builder
     exponent = builder.and_(builder.bitcast(first, _INTEGER), ir.Constant(_INTEGER, _EXPONENT))
     limit = builder.fmul(builder.bitcast(exponent, body.real), body.number(EIGHT_UNITS))

@@ -20,7 +20,7 @@ __all__ = ["Load", "compiled"]
 
 _NAME = "over_trials"
 _BYTE, _BIT, _LONG = ir.IntType(8), ir.IntType(1), ir.IntType(64)
-_DOUBLE, _SINGLE = ir.DoubleType(), ir.FloatType()
+_DOUBLE = ir.DoubleType()
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,17 +46,15 @@ def compiled(
     recipes: Mapping[int, Recipe],
     loads: Sequence[Load],
     stores: Sequence[int],
-    single: bool,
 ) -> NativeLoop:
     """The loop that computes the nodes of `recipes`, as native code.
 
     It takes the addresses of: the loads, the stores, the survivors (int64; not read where no load is picked), and one
-    byte a trial, which it sets to 1 where the trial must be computed again. With `single` it computes in float32; its
-    arrays are doubles all the same.
+    byte a trial, which it sets to 1 where the trial must be computed again.
     """
     module = ir.Module()
-    inner = _inner(dag, module, machine, recipes, loads, stores, single)
-    _entry(module, inner, None if single else machine)
+    inner = _inner(dag, module, machine, recipes, loads, stores)
+    _entry(module, inner, machine)
     return machine.native(module, _NAME)
 
 
@@ -71,7 +69,6 @@ def _inner(
     recipes: Mapping[int, Recipe],
     loads: Sequence[Load],
     stores: Sequence[int],
-    single: bool,
 ) -> ir.Function:
     """The loop itself; its arrays do not overlap, which is what lets it run several trials at once."""
     arrays = [*(load.stored for load in loads), *(dag.types[place] for place in stores)]
@@ -90,16 +87,15 @@ def _inner(
     i, count = builder.phi(_LONG), builder.phi(_LONG)
     picked = builder.load(builder.gep(survivors, [i])) if any(load.picked for load in loads) else i
     loaded = {
-        load.operand: Loaded(_loaded(builder, pointer, picked if load.picked else i, single), load.fallible)
+        load.operand: Loaded(_loaded(builder, pointer, picked if load.picked else i), load.fallible)
         for load, pointer in zip(loads, pointers, strict=False)
     }
-    body = Body(dag, builder, loaded, contexts(dag, recipes, stores), machine, single)
+    body = Body(dag, builder, loaded, contexts(dag, recipes, stores), machine)
     for place, recipe in recipes.items():
         body.compute(place, recipe)
     for place, pointer in zip(stores, pointers[len(loads) :], strict=True):
         result = body.result(place)
         stored = builder.zext(result, _BYTE) if result.type == _BIT else result
-        stored = builder.fpext(stored, _DOUBLE) if stored.type == _SINGLE else stored
         builder.store(stored, builder.gep(pointer, [i]))
     wrong = body.wrong()
     counted = count
@@ -122,18 +118,13 @@ def _inner(
     return function
 
 
-def _loaded(builder: ir.IRBuilder, pointer: Any, i: Any, single: bool) -> Any:
+def _loaded(builder: ir.IRBuilder, pointer: Any, i: Any) -> Any:
     value = builder.load(builder.gep(pointer, [i]))
-    if value.type == _BYTE:
-        return builder.icmp_unsigned("!=", value, _BYTE(0))
-    return builder.fptrunc(value, _SINGLE) if single else value
+    return builder.icmp_unsigned("!=", value, _BYTE(0)) if value.type == _BYTE else value
 
 
-def _entry(module: ir.Module, inner: ir.Function, flushing: Machine | None) -> None:
-    """The function to call: it takes the arrays' addresses as one array.
-
-    float32 has so few powers of ten that its small numbers are not given up.
-    """
+def _entry(module: ir.Module, inner: ir.Function, machine: Machine) -> None:
+    """The function to call: it takes the arrays' addresses as one array."""
     function = ir.Function(module, ir.FunctionType(_LONG, [_BYTE.as_pointer().as_pointer(), _LONG]), _NAME)
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     addresses, n = function.args
@@ -145,4 +136,4 @@ def _entry(module: ir.Module, inner: ir.Function, flushing: Machine | None) -> N
     def loop() -> Any:
         return builder.call(inner, [*arguments, n])
 
-    builder.ret(loop() if flushing is None else while_flushing(builder, flushing.triple, loop))
+    builder.ret(while_flushing(builder, machine.triple, loop))

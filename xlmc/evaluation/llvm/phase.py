@@ -56,7 +56,6 @@ class Phase:
         keep: the nodes whose values are wanted afterwards.
         early: the nodes that were computed before, on a wider set of trials; None where this is the first phase.
         may_err: the inputs whose draws may be errors.
-        single: compute in float32.
 
     Attributes:
         stores: the nodes that need memory.
@@ -71,9 +70,7 @@ class Phase:
         keep: Iterable[int],
         early: frozenset[int] | None,
         may_err: frozenset[str],
-        single: bool = False,
     ) -> None:
-        self._single = single
         self._dag, self._machine, self._recipes, self._may_err = dag, machine, recipes, may_err
         self._early = early
         parts = stages(dag, [place for place in places if not isinstance(dag.nodes[place], Input)], recipes)
@@ -99,7 +96,7 @@ class Phase:
                         loads[load.operand] = load
         stores = tuple(place for place in stage.places if place in wanted)
         found = tuple(loads.values())
-        return Loop(compiled(self._dag, self._machine, recipes, found, stores, self._single), found, stores)
+        return Loop(compiled(self._dag, self._machine, recipes, found, stores), found, stores)
 
     def _load(self, part: Operand) -> Load | None:
         """How a node from outside is read; None for a constant."""
@@ -109,9 +106,7 @@ class Phase:
         is_input = isinstance(node, Input)
         picked = self._early is not None and (is_input or part.place in self._early)
         if isinstance(node, Input):
-            return Load(
-                Operand(part.place, Kind.NUMBER), Kind.NUMBER, picked, self._single or node.name in self._may_err
-            )
+            return Load(Operand(part.place, Kind.NUMBER), Kind.NUMBER, picked, node.name in self._may_err)
         if part.place in self._recipes:
             own = self._dag.types[part.place]
             return Load(Operand(part.place, own), own, picked, False)  # it was checked when it was written

@@ -36,7 +36,6 @@ class JitProgram:
 
     Args:
         may_err: the inputs whose draws may be errors (NaNs).
-        single: compute in float32, but for what is left to NumPy and the careful path.
 
     Attributes:
         largest_block: the largest block, a power of two, whose arrays take no more than 256 MB.
@@ -48,7 +47,6 @@ class JitProgram:
         filters: Sequence[Target],
         forecasts: Sequence[Target],
         may_err: frozenset[str],
-        single: bool = False,
     ) -> None:
         self.dag, self.may_err = lowering.dag, may_err
         self.filter_places = [lowering.target(target) for target in filters]
@@ -63,8 +61,8 @@ class JitProgram:
         late = [place for place in self.dag.upstream(self.forecast_places, needed) if place not in early]
         carried = {used for place in late for used in needed(place)} | set(self.forecast_places)
         keep = {*self.filter_places, *(carried & early)}
-        self.first = Phase(self.dag, machine(), recipes, first, keep, None, may_err, single)
-        self.late = Phase(self.dag, machine(), recipes, late, set(self.forecast_places), early, may_err, single)
+        self.first = Phase(self.dag, machine(), recipes, first, keep, None, may_err)
+        self.late = Phase(self.dag, machine(), recipes, late, set(self.forecast_places), early, may_err)
         self.inputs = _inputs(self.dag, [*first, *late])
         self.careful_inputs = _inputs(self.dag, self.dag.upstream([*self.filter_places, *self.forecast_places]))
         self.stores = (*self.first.stores, *self.late.stores)

@@ -22,7 +22,6 @@ from xlmc.functions.values import ERROR, LOGICAL, Floats, Value
 
 __all__ = [
     "DOUBLE",
-    "SINGLE",
     "Jitter",
     "closure",
     "evaluation",
@@ -33,7 +32,6 @@ __all__ = [
 ]
 
 DOUBLE: Final = 2.0**-53
-SINGLE: Final = 2.0**-24
 """Half a unit of the last place, as a share of the number."""
 
 _EXACT: Final = frozenset(

@@ -36,7 +36,6 @@ STYLES: Final[Mapping[str, Style]] = {
     "grid": Style("#A3123A", "D", (8, 2, 2, 2)),
     "surrogate": Style("#8A5AA8", "P", (4, 1.5, 1, 1.5)),
     "mc/jit": Style("#4C9BD6", "v"),
-    "mc/float32": Style("#7F8FA1", "<"),
     "mc/formulas": Style("#999999", "X"),
     "taylor-1": Style("#222222", "X"),
     "taylor-2": Style("#222222", "*"),

@@ -118,5 +118,3 @@ def _remarks(simulation: Simulation, rows: Sequence[SummaryRow]) -> Iterator[str
     yield from base_sentences(simulation)
     if simulation.stopped != ALL_TRIALS:
         yield f"The run ended when {simulation.stopped.sentence}."
-    if simulation.rounding is not None:
-        yield f"{simulation.rounding.notice}."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from xlmc.results.record.cell_table import cell_section
@@ -27,7 +27,6 @@ from xlmc.workbook.inject import original_hash
 
 if TYPE_CHECKING:
     from xlmc.run.rare.account import RareAccount
-    from xlmc.run.rounding import Rounding
     from xlmc.run.simulation import Simulation
 
 __all__ = ["make_record"]
@@ -176,9 +175,7 @@ def _sampling(simulation: Simulation) -> Section:
         Entry("generator", "Generator", generator_text(simulation)),
         *([Entry("dimensions", "Sobol dimensions", ", ".join(plan.order))] if plan.order else []),
         Entry("engine", "Engine", settings.engine),
-        Entry("arithmetic", "Arithmetic", settings.arithmetic),
         Entry("block", "Trials in a block", simulation.block),
-        *(() if simulation.rounding is None else _rounding(simulation.rounding)),
     )
     return Section("sampling", "Sampling", entries)
 
@@ -219,13 +216,6 @@ def _rare(found: RareAccount) -> Section:
         Entry("faulty", "Accepted trials with an error in a forecast", found.faulty),
     )
     return Section("rare", "Search for rare accepted trials", entries)
-
-
-def _rounding(found: Rounding) -> Iterator[Entry]:
-    yield Entry("rounding_trials", "First trials that were also computed in float64", found.trials)
-    yield Entry("rounding_decisions", "Of them accepted by one and rejected by the other", found.decisions)
-    for number, (name, difference) in enumerate(found.differences.items(), 1):
-        yield Entry(f"rounding_{number}", f"Largest relative difference of {name}", plain(difference))
 
 
 def _errors(simulation: Simulation) -> Section:

@@ -32,8 +32,6 @@ def repeat_command(simulation: Simulation) -> str:
         options.append(f"--rare {settings.stopping.rare}")
     if settings.engine != own.engine:
         options.append(f"--engine {settings.engine}")
-    if settings.arithmetic != own.arithmetic:
-        options.append(f"--arithmetic {settings.arithmetic}")
     return " ".join(["xlmc simulate", quoted_argument(f"./{book}" if book.startswith("-") else book), *options])
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
 from xlmc.definitions.model import Settings
 from xlmc.definitions.stopping import Precision, Stopping
@@ -13,7 +14,22 @@ from xlmc.results.record.model import Entry, Record, Section, Value
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
 
-__all__ = ["recorded_settings", "settings_section"]
+__all__ = ["FLOAT64", "in_float32", "recorded_settings", "settings_section"]
+
+FLOAT64: Final = "float64"
+"""The arithmetic of all runs; those of xlmc 0.2.0 and before could also be computed in float32."""
+
+
+def in_float32(version: str, where: Path | None = None) -> WorkbookError:
+    """What is said of a run that was.
+
+    Args:
+        version: the xlmc that made it; empty where nothing says so.
+        where: the file, where it is not known to whoever is told.
+    """
+    made = f"xlmc {version}" if version else "An older xlmc"
+    message = f"{made} computed this run in float32, and this one computes in float64 only"
+    return WorkbookError(message, where=where, hint=f"Open or repeat it with {made.removeprefix('An ')}")
 
 
 def settings_section(simulation: Simulation) -> Section:
@@ -25,7 +41,6 @@ def settings_section(simulation: Simulation) -> Section:
         Entry("seed", "Seed", str(settings.seed)),  # as text: a worksheet's numbers have 15 to 17 digits
         Entry("sampling", "Sampling", settings.sampling),
         Entry("engine", "Engine", settings.engine),
-        Entry("arithmetic", "Arithmetic", settings.arithmetic),
         Entry("lognorm", "RiskLognorm is that of", settings.lognorm or None),
         Entry("until_accepted", "Until so many are accepted", asked.accepted),
         Entry("precision", "Precision", None if precision is None else precision.tolerance),
@@ -47,16 +62,18 @@ def recorded_settings(record: Record) -> Settings:
 
     Raises:
         KeyError: the record does not hold them.
-        WorkbookError: they are none.
+        WorkbookError: they are none, or the run was computed in float32.
     """
     section = {entry.key: entry.value for entry in record.section("settings").entries}
+    if section.get("arithmetic", FLOAT64) != FLOAT64:
+        software = {entry.key: entry.value for entry in record.section("software").entries}
+        raise in_float32(str(software.get("xlmc", "")))
     try:
         return Settings(
             trials=_whole(section["trials"]),
             seed=int(str(section["seed"])),
             sampling=str(section["sampling"]),
             engine=str(section["engine"]),
-            arithmetic=str(section["arithmetic"]),
             lognorm=str(section["lognorm"] or ""),
             stopping=_stopping(section),
         )

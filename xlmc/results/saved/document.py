@@ -14,7 +14,6 @@ from xlmc.evaluation.engines import ENGINES
 from xlmc.results.saved.typed import counts, made, texts, told, whole
 from xlmc.run.blocks import FilterTally
 from xlmc.run.rare.account import RareAccount
-from xlmc.run.rounding import Rounding
 from xlmc.run.simulation import Origin
 from xlmc.run.stopping import Stopped
 from xlmc.sampling import METHODS, Plan
@@ -25,7 +24,6 @@ __all__ = [
     "origin_of",
     "plan_of",
     "rare_of",
-    "rounding_of",
     "settings_of",
     "stopped_of",
     "tally_document",
@@ -33,7 +31,8 @@ __all__ = [
 ]
 
 FORMAT: Final = "xlmc saved run"
-VERSION: Final = 1
+VERSION: Final = 2
+"""Of version 1 were the runs that could be computed in float32; those in float64 are opened all the same."""
 
 _ENDS: Final = frozenset({"trials", "accepted", "precision", "adaptive", "time", "interruption", "search"})
 
@@ -48,7 +47,7 @@ def settings_of(found: object) -> Settings:
     told(1 <= settings.trials <= MOST_TRIALS, "its number of trials")
     told(settings.seed >= 0, "its seed")
     told(settings.sampling in METHODS, "its sampling")
-    told(settings.engine in ENGINES and settings.arithmetic in ("float64", "float32"), "its engine")
+    told(settings.engine in ENGINES, "its engine")
     told(settings.lognorm in ("", "@RISK", "XLRisk"), "its RiskLognorm")
     _check(settings.stopping)
     return settings
@@ -124,15 +123,6 @@ def stopped_of(found: object) -> Stopped:
     stopped = made(Stopped, found, "its end")
     told(stopped.by in _ENDS, "its end")
     return stopped
-
-
-def rounding_of(found: object) -> Rounding | None:
-    """What float32 changed.
-
-    Raises:
-        ValueError: it is something else.
-    """
-    return None if found is None else made(Rounding, found, "its rounding")
 
 
 def rare_of(found: object) -> RareAccount | None:

@@ -120,7 +120,6 @@ def _document(simulation: Simulation, columns: list[dict[str, Any]]) -> dict[str
         "invalid": dict(sorted(simulation.invalid.items())),
         "faults": {name: dict(sorted(faults.items())) for name, faults in simulation.faults.items()},
         "stopped": asdict(simulation.stopped),
-        "rounding": None if simulation.rounding is None else asdict(simulation.rounding),
         "rare": None if simulation.rare is None else asdict(simulation.rare),
         "origin": {"software": dict(origin.software), "processor": dict(origin.processor)},
         "columns": columns,

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from xlmc.columns import Keeper, parts
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError, WorkbookError, XlmcError
+from xlmc.results.record.settings_table import FLOAT64, in_float32
 from xlmc.results.saved.archive import AGAIN, DAMAGE, RUN, WORKBOOK, Package, opened
 from xlmc.results.saved.columns import read_column
 from xlmc.results.saved.document import (
@@ -24,7 +25,6 @@ from xlmc.results.saved.document import (
     origin_of,
     plan_of,
     rare_of,
-    rounding_of,
     settings_of,
     stopped_of,
     tally_of,
@@ -87,10 +87,23 @@ def _document(package: Package, path: Path) -> Document:
         whole(found.get("version"), "its version")
     except (ValueError, RecursionError) as error:
         raise _damaged(path, error) from error
-    if found.get("version") != VERSION:
-        message = f"the saved run is of version {found.get('version')}, and this xlmc reads version {VERSION}"
+    if not 1 <= found["version"] <= VERSION:
+        message = f"the saved run is of version {found['version']}, and this xlmc reads versions 1 to {VERSION}"
         raise WorkbookError(message, where=path, hint="Install the xlmc that it was saved with")
-    return dict(found)
+    return _in_float64(dict(found), path)
+
+
+def _in_float64(found: dict[str, Any], path: Path) -> Document:
+    """The document of a run that was computed as xlmc still computes.
+
+    Raises:
+        WorkbookError: it was computed in float32.
+    """
+    settings, origin = (found.get(name) for name in ("settings", "origin"))
+    if isinstance(settings, dict) and settings.pop("arithmetic", FLOAT64) != FLOAT64:
+        software = origin.get("software") if isinstance(origin, dict) else None
+        raise in_float32(str(software.get("xlmc", "")) if isinstance(software, dict) else "", path)
+    return found
 
 
 def _model(package: Package, found: Document, path: Path) -> Model:
@@ -207,7 +220,6 @@ def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
         invalid=invalid,
         error_trials=whole(found["error_trials"], "its number of trials with errors"),
         stopped=stopped_of(found["stopped"]),
-        rounding=rounding_of(found["rounding"]),
         rare=rare,
         origin=origin_of(found["origin"]),
     )

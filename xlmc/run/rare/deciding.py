@@ -80,7 +80,7 @@ def _fault(model: Model, settings: Settings) -> str | None:
         return "the workbook has no filters, so every trial is accepted"
     if not model.live:
         return "no assumption is drawn"
-    if settings.engine == "formulas" or settings.arithmetic != "float64":
+    if settings.engine == "formulas":
         return "the search is computed by the engine numpy, in float64"
     if len(model.live) > MOST_ASSUMPTIONS:
         return f"{len(model.live):,} assumptions are drawn, and there is room for {MOST_ASSUMPTIONS:,}"

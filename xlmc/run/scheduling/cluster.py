@@ -149,7 +149,7 @@ class _Workers:
     def __init__(self, packed: bytes) -> None:
         self._recipe = unpacked(packed)
         self._model = self._recipe.model()
-        self._program = self._model.program(self._recipe.engine, self._recipe.arithmetic)
+        self._program = self._model.program(self._recipe.engine)
         self._idle: SimpleQueue[Worker] = SimpleQueue()
 
     def take(self) -> Worker:

@@ -76,7 +76,7 @@ class Crew:
         if scheduler == "threads":
             yield from by_threads([worker() for _ in range(jobs)], blocks, tasks)
             return
-        recipe = Recipe.of(model, settings.engine, settings.seed, block, settings.arithmetic, plan)
+        recipe = Recipe.of(model, settings.engine, settings.seed, block, plan)
         if scheduler == "processes":
             own = worker()
             portable = own if settings.engine in _PORTABLE else recipe

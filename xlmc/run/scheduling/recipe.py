@@ -41,7 +41,6 @@ class Recipe:
     engine: str
     seed: int
     block: int
-    arithmetic: str = "float64"
     plan: Plan | None = None
 
     @classmethod
@@ -51,13 +50,12 @@ class Recipe:
         engine: str,
         seed: int,
         block: int,
-        arithmetic: str = "float64",
         plan: Plan | None = None,
     ) -> Recipe:
         """The recipe of a run."""
         bare = replace(model.workbook, parts={}, data=b"")  # the file as it was: only the result sheets need it
         needed = plan if plan is not None and plan.size else None  # independent trials may be any number
-        return cls(bare, model.definitions, model.path, engine, seed, block, arithmetic, needed)
+        return cls(bare, model.definitions, model.path, engine, seed, block, needed)
 
     def packed(self) -> bytes:
         """The recipe with the software it was made with, for `unpacked`."""
@@ -70,7 +68,7 @@ class Recipe:
     def runner(self) -> Worker:
         """See `Portable`."""
         model = self.model()
-        return self.worker(model, model.program(self.engine, self.arithmetic))
+        return self.worker(model, model.program(self.engine))
 
     def worker(self, model: Model, program: Program) -> Worker:
         """What runs its blocks, given its model again and that model's program."""

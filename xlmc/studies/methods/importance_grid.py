@@ -72,7 +72,7 @@ class ImportanceGrid:
 
 def _learned(model: Model, trials: int, seed: int) -> dict[str, Floats]:
     """Key of an assumption -> density of its uniforms in each bin, `(BINS,)`, 1 where it is as without a grid."""
-    run = simulate(model, trials=trials, seed=seed, sampling="mc", engine="numpy", arithmetic="float64", keep_inputs=0)
+    run = simulate(model, trials=trials, seed=seed, sampling="mc", engine="numpy", keep_inputs=0)
     if not run.accepted:
         message = f"the filters accept none of {trials:,} trials, and there is nothing to learn a grid from"
         raise SimulationError(message, hint="run more trials, or see whether the filters contradict the assumptions")

@@ -148,7 +148,6 @@ def _command(study: Study, curve: Curve, wanted: Need) -> str:
         for name, chosen, usual in (
             ("sampling", method.method, MONTE_CARLO.method),
             ("engine", method.engine, MONTE_CARLO.engine),
-            ("arithmetic", method.arithmetic, MONTE_CARLO.arithmetic),
         )
         if chosen != usual
     ]

@@ -117,9 +117,7 @@ def reference_of(model: Model, trials: int, sampling: str, engine: str, seed: in
         SimulationError: fewer than 100 trials are accepted.
     """
     started = time.perf_counter()
-    run = simulate(
-        model, trials=trials, seed=seed, sampling=sampling, engine=engine, arithmetic="float64", keep_inputs=_WATCHED
-    )
+    run = simulate(model, trials=trials, seed=seed, sampling=sampling, engine=engine, keep_inputs=_WATCHED)
     if run.accepted < 100:
         message = f"of {run.trials:,} reference trials the filters accept {run.accepted}, too few to measure methods by"
         raise SimulationError(

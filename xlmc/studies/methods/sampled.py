@@ -19,14 +19,13 @@ class Sampled:
 
     Attributes:
         method: as the setting `Sampling` has it.
-        engine, arithmetic: likewise.
+        engine: likewise.
     """
 
     key: str
     name: str
     method: str = "mc"
     engine: str = "numpy"
-    arithmetic: str = "float64"
     cannot: str = ""
 
     @property
@@ -38,7 +37,7 @@ class Sampled:
         """See `Method`.
 
         Raises:
-            SimulationError: there is no such engine here, or its arithmetic is too coarse.
+            SimulationError: there is no such engine here.
         """
         started = time.perf_counter()
         run = simulate(
@@ -47,7 +46,6 @@ class Sampled:
             seed=seed,
             sampling=self.method,
             engine=self.engine,
-            arithmetic=self.arithmetic,
             keep_inputs=0,
         )
         answers = {f.name: answer_of(run.forecasts[f.name], None, f.central) for f in model.forecasts}
@@ -64,7 +62,6 @@ SAMPLERS = (MONTE_CARLO, LATIN, SOBOL)
 
 ENGINE_VARIANTS = (
     Sampled("mc/jit", "Monte Carlo, engine jit", engine="jit"),
-    Sampled("mc/float32", "Monte Carlo, jit in float32", engine="jit", arithmetic="float32"),
     Sampled("mc/formulas", "Monte Carlo, engine formulas", engine="formulas"),
 )
 """The same trials as `MONTE_CARLO`, computed by something else: the errors are the same, the seconds are not."""

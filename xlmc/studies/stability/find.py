@@ -18,7 +18,6 @@ from xlmc.studies.stability.filters import narrow_filters
 from xlmc.studies.stability.findings import Finding, Level, Stability
 from xlmc.studies.stability.jumps import jumps
 from xlmc.studies.stability.quadrant import lost_quadrants
-from xlmc.studies.stability.single import single_precision
 from xlmc.studies.stability.tails import heavy_tails
 
 if TYPE_CHECKING:
@@ -38,7 +37,6 @@ DETECTORS: Final[Mapping[str, Callable[[Case], Iterable[Finding]]]] = {
     "jumps": jumps,
     "angles": rounded_angles,
     "amplification": amplifying_forecasts,
-    "float32": single_precision,
 }
 """What is looked for -> what finds it."""
 
@@ -78,7 +76,7 @@ def stability(
 
 
 _OF_DIGITS: Final = frozenset({"division", "cancellation", "rounding"})
-_OF_NUMBERS: Final = frozenset({"tail", "amplification", "float32"})
+_OF_NUMBERS: Final = frozenset({"tail", "amplification"})
 
 
 def _first_causes(case: Case, findings: Iterable[Finding]) -> list[Finding]:

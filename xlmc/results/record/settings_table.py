@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["FLOAT64", "in_float32", "recorded_settings", "settings_section"]
 
 FLOAT64: Final = "float64"
-"""The arithmetic of all runs; those of xlmc 0.2.0 and before could also be computed in float32."""
+"""The arithmetic of all runs; those of xlmc 0.3.0 and before could also be computed in float32."""
 
 
 def in_float32(version: str, where: Path | None = None) -> WorkbookError:

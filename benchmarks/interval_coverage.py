@@ -23,7 +23,8 @@ from scipy.special import bdtr
 from tables import placed
 
 import xlmc.statistics as xs
-from xlmc.sampling import METHODS, Plan
+from xlmc.sampling.methods import METHODS
+from xlmc.sampling.plan import Plan
 
 __all__ = ["RUNS", "Cell", "faults", "measure", "one_run", "table"]
 
@@ -102,7 +103,7 @@ def table(found: Mapping[str, Any]) -> str:
     for cell in (Cell(*each) for each in found["cells"]):
         shares = " | ".join(f"{100 * hits / found['runs']:.1f}" for hits in cell.hits)
         least = f"{cell.accepted:,}" + ("" if cell.per_replicate is None else f" ({cell.per_replicate:,})")
-        lines.append(f"| {cell.problem} | {METHODS[cell.method]} | {cell.trials:,} | {least} | {shares} |")
+        lines.append(f"| {cell.problem} | {METHODS[cell.method].name} | {cell.trials:,} | {least} | {shares} |")
     return "\n".join(lines)
 
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from tables import placed
 
 from xlmc.api import Model, load
-from xlmc.sampling import METHODS
+from xlmc.sampling.methods import METHODS
 
 __all__ = ["gains", "means", "table"]
 
@@ -61,7 +61,7 @@ def table(found: Mapping[str, Any]) -> str:
     for case, methods in found["gains"].items():
         for method, (ratios, intervals) in methods.items():
             shown = [_shown(*each) for each in zip(ratios, intervals, strict=True)]
-            lines.append(f"| {case} | {METHODS[method]} | {' | '.join(shown)} |")
+            lines.append(f"| {case} | {METHODS[method].name} | {' | '.join(shown)} |")
     return "\n".join(lines)
 
 

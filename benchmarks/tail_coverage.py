@@ -32,7 +32,8 @@ from tail_problems import ORDINARY, PROBLEMS, RANKS, STATISTICS, Problem
 
 import xlmc.statistics as xs
 from xlmc.run.simulation import FARTHEST_PART, FEW, LEAST_ACCEPTED, TELLING
-from xlmc.sampling import METHODS, Plan
+from xlmc.sampling.methods import METHODS
+from xlmc.sampling.plan import Plan
 from xlmc.statistics.sample import MOST_GROUPS
 
 __all__ = ["Cell", "faults", "measure", "one_run", "tables"]
@@ -197,7 +198,7 @@ def tables(found: Sequence[Cell]) -> str:
             for method in SAMPLING:
                 row = {_asked(c.trials): c for c in found if (c.problem, c.method) == (problem, method)}
                 shown = [_shown(row[size], number) if size in row else "" for size in sizes]
-                lines.append(f"| {problem} | {METHODS[method]} | " + " | ".join(shown) + " |")
+                lines.append(f"| {problem} | {METHODS[method].name} | " + " | ".join(shown) + " |")
         parts.append("\n".join(lines))
     made = ", ".join(f"{count:,} of {size:,} trials" for size, count in runs.items())
     return "\n\n".join([f"Runs: {made}.", *parts])

@@ -20,6 +20,7 @@ from xlmc.address import Area
 from xlmc.api import Model
 from xlmc.definitions import read_definitions
 from xlmc.errors import XlmcError
+from xlmc.evaluation.engines import ENGINES
 from xlmc.workbook.model import CellContent, Formula
 
 TRIALS = 100_000
@@ -277,7 +278,7 @@ def test_an_array_of_draws_spills(workbook):
     """The cells that a dynamic array fills draw on their own: the variance of their sum is the sum of theirs."""
     array = Formula("RANDARRAY(3,1,0,6)", 1, 1, Area("S", 1, 1, 3, 1), dynamic=True)
     held = workbook({"A1": CellContent(1.0, array), "A2": 1.0, "A3": 1.0, "B1": "=RiskOutput()+SUM(A1:A3)"})
-    run = Model(held, read_definitions(held), Path("book.xlsx")).simulate(trials=TRIALS, seed=999)
+    run = Model(held, read_definitions(held, ENGINES), Path("book.xlsx")).simulate(trials=TRIALS, seed=999)
     found = run["S!B1"]
     assert abs(found.mean.value - 9) < 5 * 3 / math.sqrt(TRIALS)
     assert abs(found.standard_deviation.value - 3) < 5 * found.standard_deviation.error

@@ -14,7 +14,7 @@ from xlmc.definitions import Settings
 from xlmc.errors import SimulationError
 from xlmc.results.record import make_record
 from xlmc.run.pilot import planned
-from xlmc.sampling import METHODS
+from xlmc.sampling.methods import METHODS
 
 ROUNDED = ", whole ones, for the 1,000 trials that were asked for"
 STRATIFIED = [method for method in METHODS if method != "mc"]

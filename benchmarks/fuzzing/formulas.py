@@ -18,6 +18,7 @@ from fuzzing.splicing import spliced
 from xlmc.address import Area
 from xlmc.api import Model
 from xlmc.definitions import Definitions, read_definitions
+from xlmc.evaluation.engines import ENGINES
 from xlmc.report.summary import summarise, summary_text
 from xlmc.run.model import understood
 from xlmc.run.simulation import Simulation
@@ -158,7 +159,7 @@ def _model(given: Input, kind: str) -> Model:
 def _read(kind: str) -> tuple[Workbook, Definitions]:
     """The book with a formula that will be replaced, and its definitions."""
     workbook = read_workbook(book_of("0", kind=kind), NAME)
-    return workbook, read_definitions(workbook)
+    return workbook, read_definitions(workbook, ENGINES)
 
 
 def _agree(one: str, first: Simulation, other: str, second: Simulation) -> None:

@@ -22,6 +22,7 @@ from fuzzing.xml_changes import changed
 from xlmc.api import Model
 from xlmc.definitions import read_definitions
 from xlmc.errors import XlmcError
+from xlmc.evaluation.engines import ENGINES
 from xlmc.workbook import read_workbook
 
 __all__ = ["make", "run"]
@@ -83,7 +84,7 @@ def run(given: Input, folder: Path) -> Reached:
             problems.append(error)
     if problems:
         raise problems[0]
-    definitions = read_definitions(workbook)
+    definitions = read_definitions(workbook, ENGINES)
     if "verify" in given.steps:
         from xlmc.studies.verify import verify
 

@@ -15,7 +15,7 @@ from problems import Normals
 from scipy import stats
 
 import xlmc.statistics as xs
-from xlmc.sampling import Plan
+from xlmc.sampling.plan import Plan
 
 __all__ = ["METHODS", "after_filters", "exact_coverage", "shares", "waited_for"]
 

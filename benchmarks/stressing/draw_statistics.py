@@ -10,7 +10,7 @@ import numpy as np
 
 from stressing.charts import COLOURS, binomial_error, coverage_axis, figure, save
 from xlmc.run.simulation import FARTHEST_PART, FEW, LEAST_ACCEPTED, TELLING
-from xlmc.sampling import METHODS
+from xlmc.sampling.methods import METHODS
 
 __all__ = ["correlations", "counts", "few", "samplers", "shares", "stops", "tails"]
 
@@ -38,7 +38,7 @@ def samplers(found: Found, folder: Path) -> list[Path]:
             at = cells[0]["statistics"].index(name)
             given = [c["given"][at] for c in cells]
             _points(axis, [c["accepted"] / 16 for c in cells], [c["hits"][at] for c in cells], given, place,
-                    METHODS[method])  # fmt: skip
+                    METHODS[method].name)  # fmt: skip
         axis.axvline(LEAST_ACCEPTED, color=EDGE, ls=":", label="fewer: xlmc warns (not Monte Carlo)")
         axis.set_xscale("log")
         _plain(axis)
@@ -128,7 +128,7 @@ def correlations(found: Found, folder: Path) -> list[Path]:
                 places = np.array([max(1.0 - abs(row["asked"]), 1e-8) for row in rows])[order]
                 axis.plot(places, np.array(expected)[order], "-", color="#1F3044", lw=1.2,
                           label="two standard errors of so many draws, and their bias")  # fmt: skip
-        axis.set(xscale="log", yscale="log", title=METHODS[sampling], ylim=(3e-16, 1e-1))
+        axis.set(xscale="log", yscale="log", title=METHODS[sampling].name, ylim=(3e-16, 1e-1))
         axis.set_xlabel("1 − |correlation asked for|; leftmost: exactly ±1")
     axes[0, 0].set_ylabel("|drawn − asked for|, rank correlation")
     save(made, axes, folder / "correlations.png")

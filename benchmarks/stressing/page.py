@@ -12,7 +12,7 @@ from tables import placed
 
 from stressing.forms import FORMS
 from stressing.sweeps import SWEEPS
-from xlmc.sampling import METHODS
+from xlmc.sampling.methods import METHODS
 
 __all__ = ["TABLES", "filled"]
 
@@ -106,7 +106,7 @@ def _samplers(found: Found) -> str:
         others = [f"{np.delete(share, spread).min():.1f}" for share in shares.values()]
         runs = f"{next(iter(by_method.values()))['runs']:,}"
         rows.append([f"{acceptance:g}", f"{expected:g}", *others, *(f"{s[spread]:.1f}" for s in shares.values()), runs])
-    methods = [METHODS[name] for name in next(iter(cells.values()))]
+    methods = [METHODS[name].name for name in next(iter(cells.values()))]
     headings = [f"{what}, {method}" for what in ("worst but SD", "SD") for method in methods]
     return _table(["acceptance", "accepted / 16", *headings, "runs"], rows)
 

@@ -10,6 +10,7 @@ import pytest
 
 from xlmc.address import Cell, parse_address
 from xlmc.definitions.reader import read_definitions
+from xlmc.evaluation.engines import ENGINES
 from xlmc.workbook.model import CellContent, DefinedName, Formula, Sheet, Table, Workbook
 
 
@@ -152,7 +153,7 @@ def read(changed_book):
     """The definitions of that workbook."""
 
     def definitions(*args, **kwargs):
-        return read_definitions(changed_book(*args, **kwargs))
+        return read_definitions(changed_book(*args, **kwargs), ENGINES)
 
     return definitions
 

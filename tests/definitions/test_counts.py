@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.definitions import read_definitions
+from xlmc.evaluation.engines import ENGINES
 
 HEADINGS = [
     "Name",
@@ -42,7 +43,7 @@ def read(make_book, blocks):
             **blocks("Inputs!A9", [["Name", "Cell"], ["Twice", ("=Inputs!$B$2", 1.0)]]),
         }
         tables = [("xlmc_assumptions", "Inputs!A1:K2"), ("xlmc_forecasts", "Inputs!A9:B10")]
-        return read_definitions(make_book(cells, tables))
+        return read_definitions(make_book(cells, tables), ENGINES)
 
     return definitions
 

@@ -10,6 +10,7 @@ from xlmc.address import Cell
 from xlmc.definitions.model import Assumption, Correlation, Filter, Forecast, Settings
 from xlmc.definitions.reader import read_definitions
 from xlmc.errors import ErrorCode
+from xlmc.evaluation.engines import ENGINES
 
 NONE = MappingProxyType(
     dict.fromkeys(["xlmc_assumptions", "xlmc_forecasts", "xlmc_filters", "xlmc_correlations", "xlmc_settings"])
@@ -90,7 +91,7 @@ def test_definitions_are_read_from_any_sheet_and_from_copies(read, blocks):
 
 
 def test_an_empty_workbook(make_book):
-    found = read_definitions(make_book({}))
+    found = read_definitions(make_book({}), ENGINES)
     assert len(found.problems) == 1
     assert "nothing to run" in str(found.problems[0])
 

@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, ByPercentiles
-from xlmc.sampling import Draw, Sampler, Stage
+from xlmc.sampling.draws import Draw, Sampler, Stage
 
 TRIALS, BLOCK, BINS = 1_000_000, 50_000, 1000
 CUMUL = FAMILIES["Cumul"].built(np.array([[1.0, 0.25], [1.5, 0.75]]))

@@ -10,8 +10,7 @@ import pytest
 
 from xlmc.address import parse_address
 from xlmc.errors import ErrorCode
-from xlmc.evaluation import Target
-from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT
+from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT, Target
 from xlmc.evaluation.engines import ENGINES
 from xlmc.evaluation.graph.lower import Lowering
 from xlmc.evaluation.graph.widening import widened

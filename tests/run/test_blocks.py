@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode
-from xlmc.evaluation import Column
-from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT
+from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT, Column
 from xlmc.run.blocks import FilterTally, Task, Worker, _tally, fault_text
 
 BLOCK = 24

@@ -9,7 +9,8 @@ from xlmc.address import Cell
 from xlmc.definitions import Correlation
 from xlmc.results.record.correlations_met import correlations_met
 from xlmc.run.correlating import correlated_groups, repair_notices, used
-from xlmc.sampling import METHODS, GaussianCopula
+from xlmc.sampling.copula import GaussianCopula
+from xlmc.sampling.methods import METHODS
 
 UNIT = {"low": 0, "high": 1}
 

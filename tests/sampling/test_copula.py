@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from xlmc.sampling import GaussianCopula
+from xlmc.sampling.copula import GaussianCopula
 from xlmc.sampling.nearest import nearest_correlation
 
 N = 200_000

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from xlmc.distributions import FAMILIES
-from xlmc.sampling import CorrelatedGroup, Draw, GaussianCopula, Sampler, Stage, Stream
+from xlmc.sampling.copula import GaussianCopula
+from xlmc.sampling.draws import CorrelatedGroup, Draw, Sampler, Stage
+from xlmc.sampling.streams import Stream
 
 UNIFORM, NORMAL = FAMILIES["Uniform"], FAMILIES["Normal"]
 PAIR = np.array([[1.0, 0.8], [0.8, 1.0]])

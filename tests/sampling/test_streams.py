@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from xlmc.sampling import Stream
+from xlmc.sampling.streams import Stream
 
 SEED = 999
 

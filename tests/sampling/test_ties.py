@@ -9,7 +9,8 @@ import pytest
 from scipy import stats
 
 from xlmc.distributions import family_named
-from xlmc.sampling import Draw, GaussianCopula
+from xlmc.sampling.copula import GaussianCopula
+from xlmc.sampling.draws import Draw
 from xlmc.sampling.ties import Ties, bounds, parameter, spearman, ties_of
 
 HALF, TENTH = Ties(np.array([0.5])), Ties(np.array([0.9]))

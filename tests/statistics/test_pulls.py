@@ -10,7 +10,7 @@ from scipy import stats
 from scipy.special import ndtri
 
 import xlmc.statistics as xs
-from xlmc.sampling import Plan
+from xlmc.sampling.plan import Plan
 from xlmc.statistics.estimate import LENGTHENED, t_quantile, t_range
 from xlmc.statistics.pulls import trial_skewness
 

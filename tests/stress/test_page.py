@@ -60,14 +60,13 @@ def test_a_part_at_a_small_size(stress, tmp_path):
 
 def test_the_forms_of_the_page_keep_the_bound(stress):
     from stressing.forms import FORMS
-    from stressing.rounding import BOUND, UNITS
+    from stressing.rounding import BOUND, UNIT
 
     for name, sweep in results(stress, "forms").items():
-        unit = UNITS[name.rpartition(", ")[2]]
         for cells in sweep["errors"].values():
             for form in FORMS:
                 pairs = zip(cells[form.rewritten], sweep["conditions"][form.rewritten], strict=True)
-                assert all(error < BOUND * unit * (1 + condition) for error, condition in pairs), (name, form.number)
+                assert all(error < BOUND * UNIT * (1 + condition) for error, condition in pairs), (name, form.number)
 
 
 def test_runs_that_ended_by_themselves_hold_the_truth(stress):

@@ -14,7 +14,7 @@ from committed_books import BOOKS
 from needed_programs import missing
 
 from xlmc.address import parse_address
-from xlmc.evaluation import Target
+from xlmc.evaluation.engine import Target
 from xlmc.evaluation.engines import ENGINES
 from xlmc.evaluation.graph.lower import Lowering
 from xlmc.evaluation.graph.widening import widened

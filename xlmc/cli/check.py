@@ -28,12 +28,13 @@ def check(book: Path) -> None:
     from xlmc.cli.printing import notices
     from xlmc.definitions import read_definitions
     from xlmc.errors import XlmcError
+    from xlmc.evaluation.engines import ENGINES
     from xlmc.run.filter_values import filter_faults
     from xlmc.run.model import Model
     from xlmc.workbook import read_workbook
 
     workbook = read_workbook(book)
-    definitions = read_definitions(workbook)
+    definitions = read_definitions(workbook, ENGINES)
     problems: list[XlmcError] = list(definitions.problems)
     model: Model | None = None
     if not problems:

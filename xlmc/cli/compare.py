@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.parameter_types import OneOf, WholeNumber
-from xlmc.cli.run_options import jobs_option
+from xlmc.cli.parameter_types import WholeNumber
+from xlmc.cli.run_options import engine_option, jobs_option
 from xlmc.cli.terminal import say, say_json
 from xlmc.cli.told_options import show, told_options
 
@@ -42,7 +42,7 @@ UNDECIDED = 1
 @click.option("--pair", multiple=True, help="'A=B': forecast A of the first book is forecast B of the second.")
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials of each run.  [default: the books' larger number]")
 @click.option("--seed", type=WholeNumber(0), help="Seed of each run.  [default: the first book's]")
-@click.option("--engine", type=OneOf("numpy", "jit", "formulas"), help="As for xlmc simulate.")
+@engine_option
 @jobs_option
 @click.option("--no-causes", is_flag=True, help="Do not look for what makes the difference.")
 @told_options

@@ -8,8 +8,10 @@ from typing import Any, TypeVar
 import click
 
 from xlmc.cli.parameter_types import OneOf, WholeNumber
+from xlmc.evaluation.engines import ENGINES
+from xlmc.sampling.methods import METHODS
 
-__all__ = ["jobs_option", "stopping_options"]
+__all__ = ["engine_option", "jobs_option", "sampling_option", "stopping_options"]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -19,6 +21,14 @@ jobs_option = click.option(
     "-j", "--jobs", type=WholeNumber(1, _MOST_JOBS), default=1, show_default=True, help="Threads or processes."
 )
 """Who computes; the result does not depend on it."""
+
+_SAMPLINGS = "; ".join(f"{method.key}: {method.name}" for method in METHODS.values())
+_ENGINES = "; ".join(f"{engine.key}: {engine.what}" if engine.what else engine.key for engine in ENGINES.values())
+
+sampling_option = click.option(
+    "--sampling", type=OneOf(*METHODS), help=f"{_SAMPLINGS}.  [default: the book's, else mc]"
+)
+engine_option = click.option("--engine", type=OneOf(*ENGINES), help=f"{_ENGINES}.  [default: the book's, else numpy]")
 
 _OPTIONS = (
     click.option(

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.parameter_types import OneOf, WholeNumber
-from xlmc.cli.run_options import jobs_option
+from xlmc.cli.parameter_types import WholeNumber
+from xlmc.cli.run_options import engine_option, jobs_option
 from xlmc.cli.terminal import say, say_json
 from xlmc.cli.told_options import show, told_options
 
@@ -52,7 +52,7 @@ NOT_TO_BE_USED = 1
 )
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials of each run.  [default: the book's, else 200000]")
 @click.option("--seed", type=WholeNumber(0), help="Seed of each run.  [default: the book's, else 999]")
-@click.option("--engine", type=OneOf("numpy", "jit", "formulas"), help="As for xlmc simulate.")
+@engine_option
 @jobs_option
 @told_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")

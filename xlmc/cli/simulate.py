@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from xlmc.cli.output_options import NOT_WRITTEN, Outputs, output_options, results_beside
-from xlmc.cli.parameter_types import OneOf, WholeNumber
-from xlmc.cli.run_options import jobs_option, stopping_options
+from xlmc.cli.parameter_types import WholeNumber
+from xlmc.cli.run_options import engine_option, jobs_option, sampling_option, stopping_options
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
@@ -29,17 +29,8 @@ INTERRUPTED = 130
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials to run.  [default: the book's, else 200000]")
 @stopping_options
 @click.option("--seed", type=WholeNumber(0), help="Seed of the random streams.  [default: the book's, else 999]")
-@click.option(
-    "--engine",
-    type=OneOf("numpy", "jit", "formulas"),
-    help="numpy; jit: compiled, for long runs; formulas: the slow reference.  [default: the book's, else numpy]",
-)
-@click.option(
-    "--sampling",
-    type=OneOf("mc", "lhs", "lhs500", "sobol"),
-    help="mc: Monte Carlo; lhs: Latin hypercube; lhs500: in blocks of 500; sobol: scrambled Sobol."
-    "  [default: the book's, else mc]",
-)
+@engine_option
+@sampling_option
 @jobs_option
 @click.option(
     "--scheduler",

@@ -25,12 +25,13 @@ _SHOWN = 50
 def verify(book: Path, everything: bool, as_json: bool) -> None:
     """Recompute the formulas of BOOK at their base values and compare with the values Excel saved."""
     from xlmc.definitions import read_definitions
+    from xlmc.evaluation.engines import ENGINES
     from xlmc.studies.verify import Status
     from xlmc.studies.verify import verify as check
     from xlmc.workbook import read_workbook
 
     workbook = read_workbook(book)
-    definitions = None if everything else read_definitions(workbook)
+    definitions = None if everything else read_definitions(workbook, ENGINES)
     if definitions is not None and not definitions.forecasts and not definitions.filters:
         raise click.UsageError(f"{book} has no forecasts and no filters; give --all to check every formula cell.")
     found = check(workbook, definitions)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.findings import Findings
 from xlmc.definitions.in_cells.calls import InCells, read_in_cells
@@ -24,15 +26,19 @@ from xlmc.workbook.model import Workbook
 __all__ = ["read_definitions"]
 
 
-def read_definitions(workbook: Workbook) -> Definitions:
+def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definitions:
     """What the tables `xlmc_assumptions`, `xlmc_forecasts`, … of a workbook say, and calls such as `RiskNormal`.
 
     Nothing is raised for a mistake in them: all mistakes are in `problems`, each with its cell and what to do.
+
+    Args:
+        workbook: that was read.
+        engines: the names that its setting Engine may have.
     """
     findings = Findings()
     tables = definition_tables(workbook, findings)
     uncertain, answers, tests = Claims("assumption"), Claims("forecast"), Claims("filter")
-    settings, central = read_settings(workbook, tables["xlmc_settings"], findings)
+    settings, central = read_settings(workbook, tables["xlmc_settings"], engines, findings)
     computed = Computed(workbook, drawn=uncertain.cells)
     assumptions = read_assumptions(workbook, tables["xlmc_assumptions"], computed, uncertain, findings)
     forecasts = read_forecasts(workbook, tables["xlmc_forecasts"], computed, central, answers, findings)

@@ -1,33 +1,89 @@
-"""The engines by name, and what each takes and brings."""
+"""The engines, a row each: the command line, settings, records and runs know them from here.
 
-from collections.abc import Callable, Mapping
-from typing import Any
+To add one, write a folder beside this module with its `Program` (see `engine.py`), and its row below; describe it in
+docs/engines.md. Nothing is imported before an engine computes, so that `--help` is quick.
+"""
 
-from xlmc.evaluation.engine import Program
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
 from xlmc.evaluation.llvm import jit_filler, jit_program
-from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
-from xlmc.evaluation.passes.bounds import Bounds
-from xlmc.evaluation.reference.formulas_engine import FormulasProgram
 
-__all__ = ["ENGINES", "FILLERS", "options_of"]
+if TYPE_CHECKING:
+    from xlmc.evaluation.engine import Program, Target
+    from xlmc.evaluation.graph.lower import Lowering
+    from xlmc.evaluation.passes.bounds import Bounds
 
-ENGINES: Mapping[str, Callable[..., Program]] = {
-    "numpy": NumpyProgram.of,
-    "jit": jit_program,
-    "formulas": FormulasProgram,
-}
-"""Name of an engine -> program of (lowering, filters, forecasts, inputs whose draws may be errors)."""
+__all__ = ["ENGINES", "Engine"]
 
 
-def options_of(engine: str, between: Mapping[str, Bounds]) -> dict[str, Any]:
-    """What a program of the engine takes besides.
+@dataclass(frozen=True, slots=True)
+class Engine:
+    """One way to compute the trials of a run.
 
-    Args:
-        engine: its name.
-        between: name of an input -> its bounds, for engines that make use of them.
+    Attributes:
+        key: its name in options, settings, records and saved runs.
+        what: what it is for, in a clause; empty for the usual one.
+        load: gives what makes its program of a lowering, filters, forecasts and inputs whose draws may be errors.
+            Filters are evaluated on all trials, forecasts on the survivors.
+        bounded: it is told the bounds of the inputs, too, as `between`.
+        filler: draws its uniforms, where it brings something of its own; see `sampling.draws.Filler`.
+        library: the package that it needs besides those of every engine; empty for none.
+        portable: its workers can be pickled: to unpickle one takes a fraction of the imports that a recipe needs.
+        process_blocks: blocks that take longer than a process to start: a quarter of a second, or half of one where it
+            is not portable.
+        searches: its runs may turn to a search for rare trials, which the engine numpy computes.
     """
-    return {"between": between} if engine == "numpy" else {}
+
+    key: str
+    what: str
+    load: Callable[[], Callable[..., Program]]
+    bounded: bool = False
+    filler: Callable[..., Callable[[int], None]] | None = None
+    library: str = ""
+    portable: bool = False
+    process_blocks: float = math.inf
+    searches: bool = True
+
+    def program(
+        self,
+        lowering: Lowering,
+        filters: Sequence[Target],
+        forecasts: Sequence[Target],
+        may_err: frozenset[str],
+        between: Mapping[str, Bounds],
+    ) -> Program:
+        """The filters and forecasts, compiled.
+
+        Raises:
+            SimulationError: a library that the engine needs is missing.
+            FormulaError: it has no such formulas.
+        """
+        more = {"between": between} if self.bounded else {}
+        return self.load()(lowering, filters, forecasts, may_err, **more)
 
 
-FILLERS = {"jit": jit_filler}
-"""Name of an engine -> what draws its uniforms, where it brings something of its own; see `sampling.draws.Filler`."""
+def _numpy() -> Callable[..., Program]:
+    from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
+
+    return NumpyProgram.of
+
+
+def _formulas() -> Callable[..., Program]:
+    from xlmc.evaluation.reference.formulas_engine import FormulasProgram
+
+    return FormulasProgram
+
+
+_ROWS: Final = (
+    Engine("numpy", "", _numpy, bounded=True, portable=True, process_blocks=128),
+    Engine("jit", "compiled, for long runs", lambda: jit_program, filler=jit_filler, library="llvmlite"),
+    Engine("formulas", "the slow reference", _formulas, process_blocks=4, searches=False),
+)
+
+ENGINES: Final[dict[str, Engine]] = {row.key: row for row in _ROWS}
+"""By their keys."""

@@ -34,6 +34,7 @@ from xlmc.run.model import understood
 from xlmc.run.simulate import simulate
 from xlmc.run.simulation import KEPT_INPUTS
 from xlmc.run.version import __version__
+from xlmc.sampling.methods import METHODS
 from xlmc.workbook import read_workbook
 from xlmc.workbook.blame import told_of
 from xlmc.workbook.seal import read_seal
@@ -234,7 +235,7 @@ def _repeated(model: Model, record: Record, settings: Settings, jobs: int, progr
     trials, accepted, kept = (_count(record, key) for key in ("trials", "accepted", "inputs_kept"))
     waited = record["end.by"] in ("accepted", "search")
     goal = settings.stopping.accepted
-    whole = waited or settings.sampling != "mc"
+    whole = waited or not METHODS[settings.sampling].independent
     return simulate(
         model,
         trials=settings.trials if whole else trials,

@@ -11,7 +11,7 @@ import numpy as np
 from xlmc.definitions.model import name_key
 
 if TYPE_CHECKING:
-    from xlmc.evaluation import Column
+    from xlmc.evaluation.engine import Column
     from xlmc.run.simulation import Simulation
 
 __all__ = ["BaseCase", "base_case"]

@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
-from xlmc.evaluation import Column, Evaluator
-from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT, Kept, Sweeper, Sweeping
-from xlmc.sampling import Sampler
+from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT, Column, Evaluator, Kept, Sweeper, Sweeping
+from xlmc.sampling.draws import Sampler
 
 __all__ = ["Block", "FilterTally", "Portable", "Runner", "Task", "Worker", "fault_text"]
 

@@ -13,8 +13,7 @@ from xlmc.address import Cell, InFormula
 from xlmc.definitions import Forecast
 from xlmc.definitions.model import name_key
 from xlmc.errors import ErrorCode
-from xlmc.evaluation import Target
-from xlmc.evaluation.engine import TEXT_RESULT
+from xlmc.evaluation.engine import TEXT_RESULT, Target
 from xlmc.run.model import lowered
 from xlmc.run.scene import parameter_cells
 

@@ -11,7 +11,8 @@ from xlmc.definitions import Correlation
 from xlmc.definitions.model import name_key
 from xlmc.distributions.whole_numbers import WholeNumbers
 from xlmc.errors import Notice
-from xlmc.sampling import CorrelatedGroup, Draw, GaussianCopula
+from xlmc.sampling.copula import GaussianCopula
+from xlmc.sampling.draws import CorrelatedGroup, Draw
 from xlmc.sampling.ties import ties_of
 
 __all__ = ["CHANGED", "correlated_groups", "repair_notices", "tie_notices", "used"]

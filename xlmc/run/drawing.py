@@ -14,12 +14,12 @@ from xlmc.definitions.model import Parameter, name_key
 from xlmc.definitions.tables.data import data_family
 from xlmc.distributions import ByPercentiles, Family, Truncated
 from xlmc.errors import DefinitionError
-from xlmc.evaluation import Evaluator, Target
-from xlmc.evaluation.engines import ENGINES
+from xlmc.evaluation.engine import Evaluator, Target
 from xlmc.evaluation.graph.lower import Lowering
+from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.formula import ir
 from xlmc.functions.values import ERROR, TEXT
-from xlmc.sampling import Draw, DynamicParameters
+from xlmc.sampling.draws import Draw, DynamicParameters
 
 __all__ = ["draw_of", "dynamic_parameters", "parameter_target", "settled"]
 
@@ -129,5 +129,5 @@ def dynamic_parameters(draws: Sequence[Draw], lowering: Lowering, block: int) ->
     cells = [p for draw in draws for p in (*draw.parameters, *(draw.cutoffs or ())) if isinstance(p, Cell)]
     places = tuple(dict.fromkeys(cells))
     targets = [parameter_target(cell) for cell in places]
-    program = ENGINES["numpy"](lowering, targets, [], frozenset(lowering.inputs.values()))
+    program = NumpyProgram.of(lowering, targets, [], frozenset(lowering.inputs.values()))
     return _Varying(program.evaluator(block), places)

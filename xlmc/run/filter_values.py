@@ -14,16 +14,15 @@ from xlmc.definitions.model import name_key
 from xlmc.definitions.tables.filters import LIMIT_HINT
 from xlmc.distributions.base import show
 from xlmc.errors import DefinitionError
-from xlmc.evaluation import Target
-from xlmc.evaluation.engine import TEXT_RESULT
-from xlmc.evaluation.engines import ENGINES
+from xlmc.evaluation.engine import TEXT_RESULT, Target
+from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.formula import ir
 from xlmc.run.scene import filter_limits
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
     from xlmc.definitions import Filter
-    from xlmc.evaluation import Column
+    from xlmc.evaluation.engine import Column
     from xlmc.run.model import Model
 
 __all__ = ["filter_faults"]
@@ -42,7 +41,7 @@ def filter_faults(model: Model) -> list[DefinitionError]:
         return []
     targets = [target for each in filters for target in (Target(each.cell, each.cell), _length(each))]
     drawn = frozenset(name_key(a.name) for a in model.live)
-    evaluator = ENGINES["numpy"](model.lowering, targets, [], drawn).evaluator(_DRAWN)
+    evaluator = NumpyProgram.of(model.lowering, targets, [], drawn).evaluator(_DRAWN)
     base = {name_key(a.name): np.full(1, np.nan if a.base is None else a.base) for a in model.live}
     found = dict(_faults(filters, evaluator.filters(base, 1), "at the base case", texts=True))
     if any(not filter_limits(each) and each.cell not in found for each in filters):

@@ -12,18 +12,19 @@ from xlmc.address import Cell
 from xlmc.definitions import Assumption, Check, Definitions, Filter, Forecast, read_definitions
 from xlmc.definitions.model import name_key
 from xlmc.errors import DefinitionError, Notice, SimulationError
-from xlmc.evaluation import Evaluator, Program, Target
-from xlmc.evaluation.engines import ENGINES, FILLERS, options_of
+from xlmc.evaluation.engine import Evaluator, Program, Target
+from xlmc.evaluation.engines import ENGINES
 from xlmc.evaluation.graph.lower import Lowering
 from xlmc.evaluation.graph.widening import widened
+from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.run.base_parameters import with_base_parameters
 from xlmc.run.correlating import correlated_groups, repair_notices, tie_notices
 from xlmc.run.drawing import draw_of, dynamic_parameters
 from xlmc.run.filter_values import filter_faults
 from xlmc.run.remarks import example_notices, still_notices
 from xlmc.run.scene import Scene, condition, definitions_of_checks, in_order, refuse_without_base, survey
-from xlmc.sampling import CorrelatedGroup, Draw, Plan, Sampler, Stage
-from xlmc.sampling.draws import Filler
+from xlmc.sampling.draws import CorrelatedGroup, Draw, Filler, Sampler, Stage
+from xlmc.sampling.plan import Plan
 from xlmc.workbook import Workbook, read_workbook
 from xlmc.workbook.collecting import paused_collection
 
@@ -49,7 +50,7 @@ def understood(workbook: Workbook, path: Path) -> Model:
         FormulaError: a needed cell cannot be computed.
     """
     with paused_collection():
-        definitions = read_definitions(workbook)
+        definitions = read_definitions(workbook, ENGINES)
         if definitions.problems:
             raise _joined(definitions.problems)
         model = Model(workbook, definitions, path)
@@ -184,7 +185,7 @@ class Model:
         if n == 0:
             return {forecast.name: np.empty(0) for forecast in self.forecasts}
         needed = frozenset(name_key(a.name) for a in self.live)
-        evaluator = ENGINES["numpy"](self._lowering, self._forecast_targets, [], needed).evaluator(n)
+        evaluator = NumpyProgram.of(self._lowering, self._forecast_targets, [], needed).evaluator(n)
         columns = evaluator.filters(full, n)
         return {f.name: column.as_floats() for f, column in zip(self.forecasts, columns, strict=True)}
 
@@ -231,8 +232,7 @@ class Model:
         if engine not in self._programs:
             parts = self._lowering, self.filter_targets, self._forecast_targets, self.fallible
             with paused_collection():
-                options = options_of(engine, self._supports)
-                self._programs[engine] = ENGINES[engine](*parts, **options)
+                self._programs[engine] = ENGINES[engine].program(*parts, self._supports)
         return self._programs[engine]
 
     @property
@@ -243,7 +243,7 @@ class Model:
 
     def evaluator(self, targets: Sequence[Target], block: int) -> Evaluator:
         """What computes such targets too, all of them in every trial, for blocks of up to `block` trials."""
-        return ENGINES["numpy"](self._lowering, targets, [], self.fallible).evaluator(block)
+        return NumpyProgram.of(self._lowering, targets, [], self.fallible).evaluator(block)
 
     def sampler(
         self,
@@ -260,7 +260,7 @@ class Model:
         draws = [tuple(self._draws[a.name] for a in stage) for stage in self.scene.stages]
         stages = [Stage(stage, dynamic=i > 0) for i, stage in enumerate(draws)]
         parameters = [dynamic_parameters(stage, self._lowering, block) for stage in draws[1:]]
-        return Sampler(seed, stages, self.groups, parameters, block, plan, filler or FILLERS.get(engine))
+        return Sampler(seed, stages, self.groups, parameters, block, plan, filler or ENGINES[engine].filler)
 
     def quantiles(self, probabilities: ArrayLike) -> dict[str, NDArray[np.float64]]:
         """The quantiles of every live assumption, before filtering and whatever it is correlated with.
@@ -289,13 +289,13 @@ class Model:
 
     def program_of(self, filters: Sequence[Target]) -> Program:
         """Other targets in place of the filters, and the forecasts, compiled for the engine `numpy`."""
-        return ENGINES["numpy"](self._lowering, filters, self._forecast_targets, self.fallible)
+        return NumpyProgram.of(self._lowering, filters, self._forecast_targets, self.fallible)
 
     def check_program(self) -> Program:
         """The cells of the checks as filters, a function of the live assumptions; others stand at their base values."""
         assert self._checks is not None, "the workbook has no checks"
         targets = [Target(check.cell, check.cell) for check in self.checks]
-        return ENGINES["numpy"](self._checks, targets, [], self.fallible)
+        return NumpyProgram.of(self._checks, targets, [], self.fallible)
 
     @property
     def checked(self) -> tuple[Assumption, ...]:

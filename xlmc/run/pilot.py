@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from xlmc.definitions.model import name_key
 from xlmc.run.blocks import Block, Task
 from xlmc.run.scheduling.recipe import worker_of
-from xlmc.sampling import Plan
+from xlmc.sampling.methods import METHODS
+from xlmc.sampling.plan import Plan
 from xlmc.statistics import rank_correlation
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ Floats = NDArray[np.float64]
 def planned(model: Model, settings: Settings) -> Plan:
     """The plan of a run, with the order of its dimensions where the method has any."""
     plan = Plan.of(settings.sampling, settings.trials)
-    return replace(plan, order=_by_importance(model, settings.seed)) if plan.method == "sobol" else plan
+    return replace(plan, order=_by_importance(model, settings.seed)) if METHODS[plan.method].ordered else plan
 
 
 def _by_importance(model: Model, seed: int) -> tuple[str, ...]:

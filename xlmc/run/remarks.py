@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from xlmc.definitions import Definitions, Forecast
     from xlmc.formula import Graph
     from xlmc.run.scene import Scene
-    from xlmc.sampling import Draw
+    from xlmc.sampling.draws import Draw
 
 __all__ = ["example_notices", "still_notices"]
 

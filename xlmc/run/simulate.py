@@ -33,13 +33,13 @@ from xlmc.run.stopping import (
     may_end_early,
     refuse_other_sampling,
 )
-from xlmc.sampling import METHODS
+from xlmc.sampling.methods import METHODS
 
 if TYPE_CHECKING:
     from xlmc.definitions import Settings
     from xlmc.run.model import Model
     from xlmc.run.rare.searching import Search
-    from xlmc.sampling import Plan
+    from xlmc.sampling.plan import Plan
 
 __all__ = ["BLOCK", "PRIOR_TRIALS", "Progress", "simulate"]
 
@@ -188,14 +188,14 @@ def _settings(
         own = settings.stopping
         seconds = own.seconds if stopping.seconds is None else stopping.seconds
         settings = replace(settings, stopping=replace(own, seconds=seconds, rare=stopping.rare or own.rare))
+    if settings.sampling not in METHODS:
+        message = f"there is no sampling method {settings.sampling!r}"
+        raise SimulationError(message, hint=f"choose one of {', '.join(METHODS)}")
     refuse_other_sampling(settings.sampling, settings.stopping)
     if not 1 <= settings.trials <= MOST_TRIALS:
         raise SimulationError(f"{settings.trials} trials were asked for", hint=f"give 1 to {MOST_TRIALS:,}")
     if settings.seed < 0:
         raise SimulationError(f"the seed {settings.seed} is negative", hint="give a whole number from 0 up")
-    if settings.sampling not in METHODS:
-        message = f"there is no sampling method {settings.sampling!r}"
-        raise SimulationError(message, hint=f"choose one of {', '.join(METHODS)}")
     return settings
 
 

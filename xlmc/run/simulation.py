@@ -24,7 +24,8 @@ from xlmc.run.result_cells import ShownResults, shown_results, unavailable_warni
 from xlmc.run.stopping import Stopped
 from xlmc.run.stopping.stopped import ALL_TRIALS
 from xlmc.run.tail_notices import tail_notices
-from xlmc.sampling import METHODS, Plan
+from xlmc.sampling.methods import METHODS
+from xlmc.sampling.plan import Plan
 from xlmc.statistics import Description, Estimate, Sample
 from xlmc.statistics.sample import MOST_GROUPS
 
@@ -288,7 +289,7 @@ class Simulation:
             for name, part in hanging.items()
         ]
         rest = {name: sample for name, sample in samples.items() if name not in hanging}
-        return (*found, *tail_notices(rest, METHODS[self.plan.method]))
+        return (*found, *tail_notices(rest, METHODS[self.plan.method].name))
 
     @property
     def warnings(self) -> list[str]:
@@ -338,7 +339,7 @@ class Simulation:
         return [
             f"only {self.accepted:,} trials were accepted in {self.plan.replicates:,} replicates, fewer than "
             f"{LEAST_ACCEPTED * groups:,}, so errors and intervals are not to be trusted: run more trials, or sample "
-            f"by {METHODS['mc']}"
+            f"by {METHODS['mc'].name}"
         ]
 
     @property

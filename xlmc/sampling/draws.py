@@ -14,7 +14,8 @@ from xlmc.distributions.uniform import Uniform
 from xlmc.errors import SimulationError
 from xlmc.functions.denormals import TINIEST, flush
 from xlmc.sampling.copula import GaussianCopula
-from xlmc.sampling.plan import Margin, Plan
+from xlmc.sampling.methods import Margin
+from xlmc.sampling.plan import Plan
 from xlmc.sampling.streams import Stream
 
 __all__ = ["CorrelatedGroup", "Draw", "DynamicParameters", "Filler", "Linear", "Sampler", "Stage"]

@@ -2,42 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.errors import SimulationError
-from xlmc.sampling.directions import DIMENSIONS
-from xlmc.sampling.latin import LatinHypercube
-from xlmc.sampling.sobol import ScrambledSobol
-from xlmc.sampling.streams import Stream
+from xlmc.sampling.methods import METHODS, REPLICATES, Margin
 
-__all__ = ["METHODS", "REPLICATES", "Margin", "Plan"]
-
-METHODS: Final[Mapping[str, str]] = {
-    "mc": "Monte Carlo",
-    "lhs": "Latin hypercube",
-    "lhs500": "Latin hypercube in blocks of 500",
-    "sobol": "scrambled Sobol",
-}
-"""By their names in the settings."""
-
-REPLICATES: Final = 16
-"""The fewest of a run: their spread, and so every error, is known to 1/√30 = 18 %."""
-
-_STRATA: Final = {"lhs": 16_384, "lhs500": 500}
-"""The most trials in a replicate. More intervals gain nothing: of the variance that one input alone explains, 16,384
-leave some 4·10⁻⁹ where the forecast is smooth."""
-
-
-class Margin(Protocol):
-    """The uniforms of one assumption, in any order of blocks; for one thread."""
-
-    def uniforms(self, start: int, out: NDArray[np.float64]) -> None:
-        """Fill `out` (n,) with the uniforms of trials `start` to `start + n - 1`, in [0, 1)."""
+__all__ = ["Plan"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +18,7 @@ class Plan:
     """The method and its replicates, a range of trials each, one after the other.
 
     Attributes:
-        method: `mc`, `lhs`, `lhs500` or `sobol`.
+        method: a key of `METHODS`.
         trials: that are run: whole replicates, and so sometimes more than were asked for.
         size: trials in a replicate; 0 where the trials themselves are independent.
         order: the assumptions in the order of their Sobol dimensions; empty to take them as they are listed.
@@ -70,9 +43,10 @@ class Plan:
         """
         if method not in METHODS:
             raise ValueError(f"there is no sampling method {method!r}")
-        if method == "mc":
+        replicate = METHODS[method].replicate
+        if replicate is None:
             return cls(method, trials)
-        size = _power_of_two(trials) if method == "sobol" else min(_STRATA[method], -(-trials // REPLICATES))
+        size = replicate(trials)
         return cls(method, size * max(REPLICATES, -(-trials // size)), size)
 
     @property
@@ -80,28 +54,15 @@ class Plan:
         """How many; 0 where the trials themselves are independent."""
         return self.trials // self.size if self.size else 0
 
-    def margins(self, seed: int, names: Sequence[str]) -> list[Margin]:
+    def margins(self, seed: int, names: Sequence[str]) -> Sequence[Margin]:
         """What draws each assumption.
 
         Raises:
-            SimulationError: there are more assumptions than Sobol points have dimensions, or these are not to be had.
+            SimulationError: the method cannot draw so many assumptions.
         """
-        if self.method == "mc":
-            return [Stream(seed, name) for name in names]
-        if self.method != "sobol":
-            return [LatinHypercube(seed, name, self.size) for name in names]
-        if len(names) > DIMENSIONS:
-            message = f"Sobol points have {DIMENSIONS:,} dimensions, and {len(names):,} assumptions are drawn"
-            raise SimulationError(message, hint="Use --sampling lhs or mc")
-        places = {name: place for place, name in enumerate(self.order or names)}
-        return [ScrambledSobol(seed, name, places[name], self.size) for name in names]
+        dimensions = {name: dimension for dimension, name in enumerate(self.order or names)}
+        return METHODS[self.method].margins(seed, {name: dimensions[name] for name in names}, self.size)
 
     def replicate_of(self, trials: NDArray[np.int64]) -> NDArray[np.int64] | None:
         """The replicate of each trial, (n,); None where the trials themselves are independent."""
         return trials // self.size if self.size else None
-
-
-def _power_of_two(trials: int) -> int:
-    """The trials of a Sobol replicate: 16 to 31 of them are at most a sixteenth more than were asked for."""
-    size = 1 << max(0, (trials // REPLICATES).bit_length() - 1)
-    return size if trials <= (2 * REPLICATES - 1) * size else 2 * size

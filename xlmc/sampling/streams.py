@@ -10,9 +10,7 @@ import hashlib
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["GENERATOR", "Stream"]
-
-GENERATOR = "PCG64DXSM"
+__all__ = ["Stream"]
 
 
 class Stream:

@@ -15,6 +15,7 @@ from xlmc.definitions.in_cells.result_functions import RESULTS
 from xlmc.definitions.in_cells.risk_functions import RISK
 from xlmc.definitions.in_cells.risk_percentiles import ALTERNATES
 from xlmc.errors import FormulaError
+from xlmc.evaluation.engines import ENGINES
 from xlmc.workbook.model import CellContent, Formula
 
 A1, A2 = Cell("S", 1, 1), Cell("S", 2, 1)
@@ -163,7 +164,7 @@ def understood(workbook):
     def read(formula, **cells):
         values = {"C1": 1.0, "C2": 2.0, "D1": 3.0, "D2": 1.0, "A1": 4.0, "A2": 2.0, "P1": "low", **cells}
         book = workbook({**values, "I9": f"={formula}", "Z1": "=RiskOutput()+I9"}, names={"Rate": "S!$A$1"})
-        return read_definitions(book)
+        return read_definitions(book, ENGINES)
 
     return read
 
@@ -258,7 +259,7 @@ def test_an_array_of_draws(understood):
 
 def test_one_name_for_two(workbook):
     cells = {"A1": '=RiskNormal(1,1,RiskName("x"))', "A2": '=RiskNormal(2,1,RiskName("X"))', "A3": "=RiskOutput()+A1"}
-    found = read_definitions(workbook(cells))
+    found = read_definitions(workbook(cells), ENGINES)
     assert [a.name for a in found.assumptions] == ["x", "X (S!A2#1)"]
     assert "another assumption is called 'X'" in found.notices[0].message
 
@@ -270,7 +271,7 @@ def test_one_name_for_two(workbook):
 def test_lognorm_of_xlrisk(workbook, table, setting, family, noticed):
     cells = {"A1": "=RiskLogNorm(1,0.5)+RiskOutput()", "C1": "Setting", "D1": "Value"}
     cells |= {"C2": "Lognorm", "D2": setting} if setting else {"C2": "Seed", "D2": 1}
-    found = read_definitions(workbook(cells, tables=[table("xlmc_settings", "C1:D2", "Setting", "Value")]))
+    found = read_definitions(workbook(cells, tables=[table("xlmc_settings", "C1:D2", "Setting", "Value")]), ENGINES)
     assert found.assumptions[0].distribution == family
     assert any("XLRisk" in notice.message for notice in found.notices) == noticed
 
@@ -338,7 +339,7 @@ def test_which_formulas_are_looked_at(text, holds):
 
 
 def test_no_answer_is_marked(workbook):
-    found = read_definitions(workbook({"A1": "=RAND()"}))
+    found = read_definitions(workbook({"A1": "=RAND()"}), ENGINES)
     (problem,) = found.problems
     assert "marks no cell as an answer" in problem.message
     assert "RiskOutput" in problem.hint
@@ -355,7 +356,7 @@ def test_outputs(workbook):
         "B6": '=RiskMean("spede")',
         "B7": "=RiskMean(Q7)",
     }
-    found = read_definitions(workbook(cells))
+    found = read_definitions(workbook(cells), ENGINES)
     assert [(f.name, f.units) for f in found.forecasts] == [
         ("Speed", "mph"),
         ("S!A2", ""),
@@ -375,7 +376,7 @@ MATRIX = {"F1": 1.0, "F2": 0.5, "G2": 1.0, "F3": -0.2, "G3": 0.0, "H3": 1.0}
 def test_correlations(workbook):
     draws = {f"A{i}": f"=RiskNormal(0,1,RiskCorrmat($F$1:$H$3,{i}))" for i in (1, 2, 3)}
     other = {"B1": '=RiskNormal(0,1,RiskCorrmat(F1:H3,1,"b"))', "B2": '=RiskNormal(0,1,RiskCorrmat(F1:H3,2,"B"))'}
-    found = read_definitions(workbook({**MATRIX, **draws, **other, "C1": "=RiskOutput()+SUM(A1:B3)"}))
+    found = read_definitions(workbook({**MATRIX, **draws, **other, "C1": "=RiskOutput()+SUM(A1:B3)"}), ENGINES)
     assert found.problems == ()
     assert {(c.first, c.second): c.value for c in found.correlations} == {
         ("S!A1#1", "S!A2#1"): 0.5,
@@ -396,7 +397,7 @@ def test_correlations(workbook):
 def test_mistakes_in_a_matrix(workbook, change, message):
     draws = {f"A{i}": f"=RiskNormal(0,1,RiskCorrmat($F$1:$H$3,{i}))" for i in (1, 2)}
     cells = {**MATRIX, **draws, "C1": "=RiskOutput()+SUM(A1:B3)", **change}
-    (problem,) = read_definitions(workbook(cells)).problems
+    (problem,) = read_definitions(workbook(cells), ENGINES).problems
     assert message in problem.message
 
 
@@ -406,7 +407,7 @@ TABLE = {"J1": "First", "K1": "Second", "L1": "Correlation", "J2": "S!A1#1", "K2
 def test_a_table_may_correlate_draws_in_cells(workbook, table):
     cells = {**TABLE, "A1": "=RAND()", "A2": "=RAND()", "A3": "=RiskOutput()+A1+A2"}
     tables = [table("xlmc_correlations", "J1:L2", "First", "Second", "Correlation")]
-    found = read_definitions(workbook(cells, tables=tables))
+    found = read_definitions(workbook(cells, tables=tables), ENGINES)
     assert [(c.first, c.second, c.value) for c in found.correlations] == [("S!A1#1", "S!A2#1", 0.3)]
 
 
@@ -414,31 +415,31 @@ def test_a_pair_is_correlated_once(workbook, table):
     draws = {f"A{i}": f"=RiskNormal(0,1,RiskCorrmat($F$1:$H$3,{i}))" for i in (1, 2)}
     cells = {**MATRIX, **draws, **TABLE, "C1": "=RiskOutput()+A1+A2"}
     tables = [table("xlmc_correlations", "J1:L2", "First", "Second", "Correlation")]
-    (problem,) = read_definitions(workbook(cells, tables=tables)).problems
+    (problem,) = read_definitions(workbook(cells, tables=tables), ENGINES).problems
     assert "are correlated by this row and by the matrix" in problem.message
     assert problem.where == "S!J2"
 
 
 def test_crystal_balls_hidden_sheet_is_pointed_out(workbook):
-    found = read_definitions(workbook({"A1": "=RiskOutput()+RAND()"}, sheets=["CB_DATA_"]))
+    found = read_definitions(workbook({"A1": "=RiskOutput()+RAND()"}, sheets=["CB_DATA_"]), ENGINES)
     assert any("Crystal Ball's dialogs" in notice.message for notice in found.notices)
 
 
 def test_an_answer_that_cannot_be_read_is_never_left_out(workbook):
-    found = read_definitions(workbook({"A1": '=RiskOutput("x")+RiskSplice(1)', "A2": "=RiskOutput()+RAND()"}))
+    found = read_definitions(workbook({"A1": '=RiskOutput("x")+RiskSplice(1)', "A2": "=RiskOutput()+RAND()"}), ENGINES)
     (problem,) = found.problems
     assert (problem.where, problem.message) == ("S!A1", "the function RISKSPLICE is not supported")
 
 
 def test_a_refused_cell_that_nothing_needs_is_left_alone(workbook):
-    found = read_definitions(workbook({"A1": "=RiskSplice(1)", "A2": "=RiskOutput()+RAND()"}))
+    found = read_definitions(workbook({"A1": "=RiskSplice(1)", "A2": "=RiskOutput()+RAND()"}), ENGINES)
     assert found.problems == ()
 
 
 def test_a_shared_formula_draws_in_each_cell(workbook):
     master = Formula("RiskNormal(B1,$C$1)", 1, 1)
     cells = {f"A{row}": CellContent(1.0, master) for row in (1, 2, 3)}
-    found = read_definitions(workbook({**cells, "D1": "=RiskOutput()+SUM(A1:A3)"}))
+    found = read_definitions(workbook({**cells, "D1": "=RiskOutput()+SUM(A1:A3)"}), ENGINES)
     assert {a.name: a.parameters["mean"] for a in found.assumptions} == {
         f"S!A{row}#1": Cell("S", row, 2) for row in (1, 2, 3)
     }

@@ -5,6 +5,7 @@ import pytest
 from xlmc.address import Area, Cell
 from xlmc.definitions import read_definitions
 from xlmc.errors import ErrorCode
+from xlmc.evaluation.engines import ENGINES
 from xlmc.workbook.model import Formula
 
 HEADINGS = ["Name", "Value", "Distribution", "Data", "Cumulative", "Bandwidth", "Lower cutoff", "Upper cutoff", "Low"]
@@ -35,7 +36,7 @@ def book(make_book, blocks):
 
 @pytest.fixture
 def read(book):
-    return lambda *args, **kwargs: read_definitions(book(*args, **kwargs))
+    return lambda *args, **kwargs: read_definitions(book(*args, **kwargs), ENGINES)
 
 
 def only(found):

@@ -7,7 +7,7 @@ import pytest
 
 from xlmc.address import parse_address
 from xlmc.errors import FormulaError, XlmcError
-from xlmc.evaluation import Target
+from xlmc.evaluation.engine import Target
 from xlmc.evaluation.graph.choices import CHOICES
 from xlmc.evaluation.graph.counts import MOST, SPECIAL, check_count
 from xlmc.evaluation.graph.lambdas import LAMBDAS

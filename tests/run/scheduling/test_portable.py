@@ -13,7 +13,7 @@ from committed_books import EXAMPLES
 import xlmc
 from xlmc.run.blocks import Task
 from xlmc.run.scheduling.recipe import worker_of
-from xlmc.sampling import Plan
+from xlmc.sampling.plan import Plan
 
 FORMULAS = {
     "date": "=YEAR(40000+A1)",

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import pytest
 
@@ -49,7 +50,7 @@ def test_processes_change_no_bit(model, bits, children, jobs):
 
 @pytest.mark.parametrize(("trials", "started"), [(900, 0), (1000, 1)])
 def test_a_long_run_with_jobs_starts_processes(model, monkeypatch, children, trials, started):
-    monkeypatch.setattr(crew, "PROCESS_BLOCKS", {"numpy": 10})
+    monkeypatch.setitem(crew.ENGINES, "numpy", replace(crew.ENGINES["numpy"], process_blocks=10))
     assert model.simulate(trials).trials == trials
     assert model.simulate(trials, jobs=2).trials == trials
     assert len(children) == started

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
+from functools import partial
 from typing import Any
 
 from xlmc.definitions.findings import Findings
@@ -14,6 +15,7 @@ from xlmc.definitions.tables.stopping_settings import STOPPING_SETTINGS, read_st
 from xlmc.definitions.tables.tables import DefinitionTable, Row, rows_of
 from xlmc.distributions.naming import did_you_mean, plain
 from xlmc.errors import DefinitionError
+from xlmc.sampling.methods import METHODS
 from xlmc.workbook.model import Workbook
 
 __all__ = ["DEFAULT_CENTRAL", "read_settings"]
@@ -23,27 +25,29 @@ DEFAULT_CENTRAL = 0.51
 
 _LARGEST_SEED = 10**15  # a worksheet holds no more digits
 _KNOWN = ("Setting", "Value")
-_SAMPLINGS = {
-    "mc": "mc",
-    "montecarlo": "mc",
-    "lhs": "lhs",
-    "latinhypercube": "lhs",
-    "lhs500": "lhs500",
-    "sobol": "sobol",
-    "scrambledsobol": "sobol",
-}
-_ENGINES = ("numpy", "jit", "formulas")
 _LOGNORMS = ("@RISK", "XLRisk")
 
+_Reader = Callable[[Row, Findings], Any]
 
-def read_settings(workbook: Workbook, tables: list[DefinitionTable], findings: Findings) -> tuple[Settings, float]:
-    """The settings, and the share of the central range for forecasts that give none; mistakes leave the default."""
+
+def read_settings(
+    workbook: Workbook, tables: list[DefinitionTable], engines: Collection[str], findings: Findings
+) -> tuple[Settings, float]:
+    """The settings, and the share of the central range for forecasts that give none; mistakes leave the default.
+
+    Args:
+        workbook: that holds them.
+        tables: of settings; there should be one at most.
+        engines: the names that the setting Engine may have.
+        findings: gets the mistakes.
+    """
+    readers = _readers(engines)
     for extra in tables[1:]:
         message = f"{tables[0].table.name} and {extra.table.name} both hold settings"
         findings.problem(message, extra.where, "Keep one table, and delete the one that came with a copied sheet")
     values: dict[str, Any] = {}
     for row in rows_of(workbook, tables[:1], _KNOWN, _KNOWN, findings):
-        findings.attempt(_take, row, values, findings)
+        findings.attempt(_take, row, values, readers, findings)
     central = values.pop("range%", None)
     ends = read_stopping(tables, values, findings)
     if ends.has_goal:
@@ -54,7 +58,7 @@ def read_settings(workbook: Workbook, tables: list[DefinitionTable], findings: F
     )
 
 
-def _take(row: Row, values: dict[str, Any], findings: Findings) -> None:
+def _take(row: Row, values: dict[str, Any], readers: Mapping[str, _Reader], findings: Findings) -> None:
     """Add the row's setting to `values`, by its plain name.
 
     Raises:
@@ -62,8 +66,9 @@ def _take(row: Row, values: dict[str, Any], findings: Findings) -> None:
     """
     typed = required_text(row, "Setting")
     key, where = plain(typed), row.cell("Setting")
-    if key not in _READERS:
-        hint = did_you_mean(typed, _SETTINGS)
+    reader = {plain(name): each for name, each in readers.items()}.get(key)
+    if reader is None:
+        hint = did_you_mean(typed, readers)
         raise DefinitionError(f"There is no setting {typed!r}", where=where, hint=hint)
     if key in values:
         raise DefinitionError(f"{typed} is set twice", where=where, hint="Keep one of the two rows")
@@ -71,7 +76,7 @@ def _take(row: Row, values: dict[str, Any], findings: Findings) -> None:
     if not row.filled("Value"):
         message = f"{typed} has no value"
         raise DefinitionError(message, where=row.cell("Value"), hint="Fill in Value, or delete the row")
-    values[key] = _READERS[key](row, findings)
+    values[key] = reader(row, findings)
 
 
 def _trials(row: Row, _findings: Findings) -> int:
@@ -84,17 +89,19 @@ def _seed(row: Row, _findings: Findings) -> int:
 
 def _sampling(row: Row, _findings: Findings) -> str:
     typed = required_text(row, "Value")
-    if plain(typed) not in _SAMPLINGS:
-        message = f"There is no sampling method {typed!r}"
-        raise DefinitionError(message, where=row.cell("Value"), hint="Use mc, lhs, lhs500 or sobol")
-    return _SAMPLINGS[plain(typed)]
+    known = {name: method.key for method in METHODS.values() for name in (method.key, *method.also)}
+    if plain(typed) not in known:
+        *keys, last = METHODS
+        hint = f"Use {', '.join(keys)} or {last}"
+        raise DefinitionError(f"There is no sampling method {typed!r}", where=row.cell("Value"), hint=hint)
+    return known[plain(typed)]
 
 
-def _engine(row: Row, _findings: Findings) -> str:
+def _engine(engines: Collection[str], row: Row, _findings: Findings) -> str:
     typed = required_text(row, "Value")
-    if plain(typed) not in _ENGINES:
+    if plain(typed) not in engines:
         message = f"There is no engine {typed!r}"
-        raise DefinitionError(message, where=row.cell("Value"), hint=did_you_mean(typed, _ENGINES))
+        raise DefinitionError(message, where=row.cell("Value"), hint=did_you_mean(typed, engines))
     return plain(typed)
 
 
@@ -119,14 +126,15 @@ def _range(row: Row, findings: Findings) -> float:
     return central_share("Range %", number_of(row, "Range %"), row.cell("Value"), findings)
 
 
-_SETTINGS: Mapping[str, Callable[[Row, Findings], Any]] = {
-    "Trials": _trials,
-    "Seed": _seed,
-    "Sampling": _sampling,
-    "Engine": _engine,
-    "Arithmetic": _arithmetic,
-    "Range %": _range,
-    **STOPPING_SETTINGS,
-    "Lognorm": _lognorm,
-}
-_READERS = {plain(name): reader for name, reader in _SETTINGS.items()}
+def _readers(engines: Collection[str]) -> Mapping[str, _Reader]:
+    """Setting -> reader of its row."""
+    return {
+        "Trials": _trials,
+        "Seed": _seed,
+        "Sampling": _sampling,
+        "Engine": partial(_engine, engines),
+        "Arithmetic": _arithmetic,
+        "Range %": _range,
+        **STOPPING_SETTINGS,
+        "Lognorm": _lognorm,
+    }

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.report.summary import estimate_text
+from xlmc.sampling.methods import METHODS
 from xlmc.statistics import Estimate, format_estimate
 from xlmc.studies.methods import STATISTICS, Curve, Method, Rung, Study, need
 from xlmc.studies.methods.need import shortfall
@@ -62,7 +63,7 @@ def reference_table(study: Study) -> Table:
         answer, error = found.answers[forecast.name], found.errors[forecast.name]
         numbers = (format_of(getattr(answer, each), getattr(error, each)) for each in STATISTICS)
         rows.append((forecast.name, forecast.units, *numbers))
-    how = "Monte Carlo" if found.sampling == "mc" else "scrambled Sobol"
+    how = METHODS[found.sampling].name
     title = (
         f"Reference: {found.trials:,} trials ({how}, engine {found.engine}, seed {found.seed}), accepted "
         f"{accepted_text(found.acceptance)}, {seconds_text(found.seconds)}"

@@ -5,6 +5,8 @@ from __future__ import annotations
 import platform
 from importlib.metadata import version
 
+from xlmc.evaluation.engines import ENGINES
+
 __all__ = ["LIBRARIES", "processor", "versions"]
 
 LIBRARIES = ("numpy", "scipy", "formulas", "XlsxWriter", "openpyxl")
@@ -15,7 +17,7 @@ def versions(engine: str = "numpy") -> dict[str, str]:
     from xlmc.run.version import __version__
 
     own = {"xlmc": __version__, "python": platform.python_version()}
-    return own | {name: version(name) for name in (*LIBRARIES, *(["llvmlite"] if engine == "jit" else []))}
+    return own | {name: version(name) for name in (*LIBRARIES, *filter(None, [ENGINES[engine].library]))}
 
 
 def processor() -> dict[str, str]:

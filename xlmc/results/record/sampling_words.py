@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from xlmc.sampling import METHODS
-from xlmc.sampling.streams import GENERATOR
+from xlmc.sampling.methods import GENERATOR, METHODS
 from xlmc.statistics.sample import MOST_GROUPS
 
 if TYPE_CHECKING:
@@ -23,12 +22,12 @@ def method_text(simulation: Simulation) -> str:
     """`Latin hypercube: 16 independent replicates of 12,500 trials`."""
     plan = simulation.plan
     if simulation.rare is not None:
-        return f"{METHODS[plan.method]}: {simulation.rare.method}"
+        return f"{METHODS[plan.method].name}: {simulation.rare.method}"
     if not plan.size:
-        return f"{METHODS[plan.method]}: independent trials"
+        return f"{METHODS[plan.method].name}: independent trials"
     asked = simulation.settings.trials
     more = "" if asked == plan.trials else f", whole ones, for the {asked:,} trials that were asked for"
-    return f"{METHODS[plan.method]}: {plan.replicates} independent replicates of {plan.size:,} trials{more}"
+    return f"{METHODS[plan.method].name}: {plan.replicates} independent replicates of {plan.size:,} trials{more}"
 
 
 def errors_text(simulation: Simulation) -> str:
@@ -49,14 +48,6 @@ def sampling_sentence(simulation: Simulation) -> str:
 
 def generator_text(simulation: Simulation) -> str:
     """Where the random numbers come from."""
-    streams = f"{GENERATOR}: a stream for each assumption, seeded by (seed, name), positioned by trial number"
     if simulation.rare is not None:
         return f"{GENERATOR}, seeded by (seed, purpose): a stream to learn with, and one to draw the trials with"
-    if simulation.plan.method == "mc":
-        return streams
-    if simulation.plan.method == "sobol":
-        return (
-            f"Sobol points with the direction numbers of Joe and Kuo, an assumption a dimension; linear scramble and "
-            f"digital shift from {GENERATOR}, seeded by (seed, name), positioned by replicate"
-        )
-    return f"{streams}; a second stream for each puts the intervals of a replicate in order"
+    return METHODS[simulation.plan.method].generator

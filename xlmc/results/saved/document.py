@@ -16,7 +16,8 @@ from xlmc.run.blocks import FilterTally
 from xlmc.run.rare.account import RareAccount
 from xlmc.run.simulation import Origin
 from xlmc.run.stopping import Stopped
-from xlmc.sampling import METHODS, Plan
+from xlmc.sampling.methods import METHODS
+from xlmc.sampling.plan import Plan
 
 __all__ = [
     "FORMAT",

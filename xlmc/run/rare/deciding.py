@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import SimulationError
+from xlmc.evaluation.engines import ENGINES
 
 if TYPE_CHECKING:
     from xlmc.definitions import Settings
@@ -80,8 +81,8 @@ def _fault(model: Model, settings: Settings) -> str | None:
         return "the workbook has no filters, so every trial is accepted"
     if not model.live:
         return "no assumption is drawn"
-    if settings.engine == "formulas":
-        return "the search is computed by the engine numpy, in float64"
+    if not ENGINES[settings.engine].searches:
+        return "the search is computed by the engine numpy"
     if len(model.live) > MOST_ASSUMPTIONS:
         return f"{len(model.live):,} assumptions are drawn, and there is room for {MOST_ASSUMPTIONS:,}"
     if (settings.stopping.accepted or 0) > MOST_WANTED:

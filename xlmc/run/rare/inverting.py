@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Area, Cell
-from xlmc.evaluation import Target
+from xlmc.evaluation.engine import Target
 from xlmc.formula import ir
 from xlmc.run.rare import preimage
 from xlmc.run.rare.shortfall import Leaf, Shortfall, Together

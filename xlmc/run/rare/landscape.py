@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.evaluation import Column
+from xlmc.evaluation.engine import Column
 from xlmc.run.rare.shortfall import Leaf, Shortfall, leaves, lengths, measured, shortfall
 from xlmc.run.rare.splitting import Distance
 from xlmc.run.rare.ways_of import ways_of

@@ -27,7 +27,7 @@ from xlmc.run.scene import parameter_cells, upstream
 
 if TYPE_CHECKING:
     from xlmc.definitions import Assumption
-    from xlmc.evaluation import Evaluator
+    from xlmc.evaluation.engine import Evaluator
     from xlmc.run.model import Model
     from xlmc.run.rare.landscape import Drawing
     from xlmc.sampling.draws import Draw

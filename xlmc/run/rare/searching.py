@@ -20,6 +20,7 @@ from xlmc.run.rare.layered import Ground, Layered, ground_of
 from xlmc.run.rare.plain import MOST_PLAIN, plain_uniforms
 from xlmc.run.rare.strays import Evidence
 from xlmc.run.rare.tempered import as_they_are
+from xlmc.sampling.methods import METHODS
 from xlmc.statistics.estimate import Estimate, with_relative_error
 
 if TYPE_CHECKING:
@@ -70,7 +71,8 @@ def search(
     learning, drawing = _random(settings.seed, "learning"), _random(settings.seed, "drawing")
     landscape = ground_of(model, Landscape(model, learning), _random(settings.seed, "layers"))
     wanted, most = settings.stopping.accepted or 0, _most(settings.trials, plain)
-    evidence = [] if settings.sampling != "mc" else [_plain(model, settings, plain, accepted, landscape)]
+    independent = METHODS[settings.sampling].independent
+    evidence = [_plain(model, settings, plain, accepted, landscape)] if independent else []
     found = find(
         landscape.distance,
         landscape.accepts,

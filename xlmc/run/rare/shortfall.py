@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Area, Cell
-from xlmc.evaluation import Column, Target
+from xlmc.evaluation.engine import Column, Target
 from xlmc.formula import ir
 
 __all__ = ["Fails", "Leaf", "Shortfall", "Together", "asked", "leaves", "lengths", "measured", "shortfall"]

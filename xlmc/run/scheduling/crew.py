@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from xlmc.errors import SimulationError
+from xlmc.evaluation.engines import ENGINES
 from xlmc.run.blocks import Block, Task, Worker
 from xlmc.run.scheduling.cluster import by_cluster
 from xlmc.run.scheduling.processes import by_processes
@@ -16,17 +16,11 @@ from xlmc.run.scheduling.threads import by_threads
 
 if TYPE_CHECKING:
     from xlmc.definitions import Settings
-    from xlmc.evaluation import Program
+    from xlmc.evaluation.engine import Program
     from xlmc.run.model import Model
-    from xlmc.sampling import Plan
+    from xlmc.sampling.plan import Plan
 
-__all__ = ["PROCESS_BLOCKS", "Crew"]
-
-PROCESS_BLOCKS: Final[Mapping[str, int]] = {"numpy": 128, "formulas": 4}
-"""Engine -> blocks that take longer than a process to start: a quarter of a second, or with a recipe half of one."""
-
-_PORTABLE: Final = frozenset({"numpy"})
-"""Engines whose workers can be pickled: to unpickle one takes a fraction of the imports that a recipe needs."""
+__all__ = ["Crew"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,11 +73,11 @@ class Crew:
         recipe = Recipe.of(model, settings.engine, settings.seed, block, plan)
         if scheduler == "processes":
             own = worker()
-            portable = own if settings.engine in _PORTABLE else recipe
+            portable = own if ENGINES[settings.engine].portable else recipe
             yield from by_processes(portable, own, jobs - 1, blocks, tasks)
         else:
             yield from by_cluster(recipe, scheduler, self.workers, blocks, tasks)
 
 
 def _usual(engine: str, jobs: int, blocks: int) -> str:
-    return "processes" if jobs > 1 and blocks >= PROCESS_BLOCKS.get(engine, math.inf) else "threads"
+    return "processes" if jobs > 1 and blocks >= ENGINES[engine].process_blocks else "threads"

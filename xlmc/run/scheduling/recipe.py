@@ -12,17 +12,18 @@ from pathlib import Path
 
 from xlmc.definitions import Definitions
 from xlmc.errors import SimulationError
-from xlmc.evaluation import Program
+from xlmc.evaluation.engine import Program
+from xlmc.evaluation.engines import ENGINES
 from xlmc.run.blocks import Worker
 from xlmc.run.model import Model
 from xlmc.run.version import __version__
-from xlmc.sampling import Plan
+from xlmc.sampling.plan import Plan
 from xlmc.workbook import Workbook
 
 __all__ = ["Recipe", "check_software", "software", "worker_of"]
 
-LIBRARIES = ("numpy", "scipy", "formulas", "llvmlite")
-"""A result depends on them to its last bit, on the last with the engine `jit` only."""
+LIBRARIES = ("numpy", "scipy", "formulas", *(engine.library for engine in ENGINES.values() if engine.library))
+"""A result depends on them to its last bit; on those of an engine with that engine only."""
 
 
 def worker_of(model: Model, program: Program, engine: str, seed: int, block: int, plan: Plan | None = None) -> Worker:

@@ -11,11 +11,9 @@ from xlmc.run.stopping.accepted import UntilAccepted
 from xlmc.run.stopping.adaptive import UntilStable
 from xlmc.run.stopping.precision import UntilPrecise
 from xlmc.run.stopping.rule import Rule
+from xlmc.sampling.methods import METHODS
 
 __all__ = ["chosen_rule", "may_end_early", "refuse_other_sampling"]
-
-_ANY_LENGTH = ("mc",)
-"""Sampling methods whose trials are a sample wherever they end."""
 
 
 def chosen_rule(asked: Stopping, forecasts: Sequence[Forecast]) -> Rule | None:
@@ -47,7 +45,7 @@ def _named(names: Sequence[str], forecasts: Sequence[Forecast]) -> list[tuple[in
 
 def may_end_early(sampling: str) -> bool:
     """Whether the first trials of a run are a sample, as those of a Latin hypercube or a Sobol sequence are not."""
-    return sampling in _ANY_LENGTH
+    return METHODS[sampling].independent
 
 
 def refuse_other_sampling(sampling: str, asked: Stopping) -> None:

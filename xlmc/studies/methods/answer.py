@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from xlmc import statistics
 from xlmc.run.model import Model
-from xlmc.sampling import Plan
+from xlmc.sampling.plan import Plan
 from xlmc.statistics import Sample
 
 __all__ = ["STATISTICS", "Answer", "Errors", "Extreme", "Method", "MethodResult", "answer_of", "extremes_of"]

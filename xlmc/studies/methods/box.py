@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.run.model import Model
-from xlmc.sampling import Draw
+from xlmc.sampling.draws import Draw
 
 __all__ = ["CUT", "DRAWN", "Box", "box_of"]
 

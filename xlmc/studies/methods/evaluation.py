@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from xlmc.address import Cell
 from xlmc.definitions.model import name_key
-from xlmc.evaluation import Target
-from xlmc.evaluation.engines import ENGINES
+from xlmc.evaluation.engine import Target
+from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.run.model import Model
 from xlmc.run.scene import condition
 
@@ -59,7 +59,7 @@ class Evaluation:
         asked = [Target(condition(each), each.cell) for each in model.filters]
         asked += [Target(each.cell, each.cell) for each in model.forecasts]
         asked += [Target(cell, cell) for cell in cells]
-        program = ENGINES["numpy"](model.lowering, asked, [], frozenset(self._keys))
+        program = NumpyProgram.of(model.lowering, asked, [], frozenset(self._keys))
         self._portion = min(_PORTION, program.largest_block)
         self._evaluator = program.evaluator(self._portion)
         self.count = 0

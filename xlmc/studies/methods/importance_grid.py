@@ -23,7 +23,9 @@ from xlmc.run.blocks import Task
 from xlmc.run.model import Model
 from xlmc.run.scheduling.recipe import worker_of
 from xlmc.run.simulate import simulate
-from xlmc.sampling import Margin, Plan, Stream
+from xlmc.sampling.methods import Margin
+from xlmc.sampling.plan import Plan
+from xlmc.sampling.streams import Stream
 from xlmc.studies.methods.answer import Errors, Extreme, MethodResult, answer_of, extremes_of
 
 __all__ = ["BINS", "DEFENSIVE", "ImportanceGrid"]

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
-from xlmc.sampling import Draw, Plan
+from xlmc.sampling.draws import Draw
+from xlmc.sampling.plan import Plan
 
 __all__ = ["Moments", "drawn", "moments_of"]
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
+from xlmc.evaluation.engines import ENGINES
 from xlmc.run.model import Model
 from xlmc.run.pilot import PILOT_TRIALS
 from xlmc.run.simulate import simulate
+from xlmc.sampling.methods import METHODS
 from xlmc.studies.methods.answer import Errors, MethodResult, answer_of, extremes_of
 
-__all__ = ["ENGINE_VARIANTS", "LATIN", "MONTE_CARLO", "SAMPLERS", "SOBOL", "Sampled"]
+__all__ = ["ENGINE_VARIANTS", "MONTE_CARLO", "SAMPLERS", "Sampled"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +33,7 @@ class Sampled:
     @property
     def errors(self) -> Errors:
         """See `Method`."""
-        return "independent" if self.method == "mc" else "consistent"
+        return "independent" if METHODS[self.method].independent else "consistent"
 
     def run(self, model: Model, budget: int, seed: int) -> MethodResult:
         """See `Method`.
@@ -49,19 +51,23 @@ class Sampled:
             keep_inputs=0,
         )
         answers = {f.name: answer_of(run.forecasts[f.name], None, f.central) for f in model.forecasts}
-        learned = PILOT_TRIALS if self.method == "sobol" else 0
+        learned = PILOT_TRIALS if METHODS[self.method].ordered else 0
         seconds = time.perf_counter() - started
         ends = extremes_of(run.forecasts, run.trial_index, seed, run.plan)
         return MethodResult(seconds, run.trials + learned, answers, run.accepted / run.trials, extremes=ends)
 
 
-MONTE_CARLO = Sampled("mc", "Monte Carlo")
-LATIN = Sampled("lhs", "Latin hypercube", "lhs", cannot="filters take its gain away: what they accept is no marginal")
-SOBOL = Sampled("sobol", "Scrambled Sobol", "sobol", cannot="filters take most of its gain away")
-SAMPLERS = (MONTE_CARLO, LATIN, SOBOL)
+SAMPLERS = tuple(
+    Sampled(row.key, row.name[:1].upper() + row.name[1:], row.key, cannot=row.limit)
+    for row in METHODS.values()
+    if row.compared
+)
 
-ENGINE_VARIANTS = (
-    Sampled("mc/jit", "Monte Carlo, engine jit", engine="jit"),
-    Sampled("mc/formulas", "Monte Carlo, engine formulas", engine="formulas"),
+MONTE_CARLO = SAMPLERS[0]
+
+ENGINE_VARIANTS = tuple(
+    Sampled(f"mc/{engine}", f"Monte Carlo, engine {engine}", engine=engine)
+    for engine in ENGINES
+    if engine != MONTE_CARLO.engine
 )
 """The same trials as `MONTE_CARLO`, computed by something else: the errors are the same, the seconds are not."""

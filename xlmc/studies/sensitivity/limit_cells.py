@@ -17,7 +17,7 @@ from xlmc.studies.sensitivity.moved_limit import kept
 
 if TYPE_CHECKING:
     from xlmc.definitions import Filter
-    from xlmc.evaluation import Evaluator, Program
+    from xlmc.evaluation.engine import Evaluator, Program
     from xlmc.run.model import Model
 
 __all__ = ["Limit", "LimitCells", "Looked"]

@@ -19,7 +19,7 @@ from xlmc.studies.sensitivity.results import PERCENTS, Bar
 
 if TYPE_CHECKING:
     from xlmc.definitions import Assumption
-    from xlmc.evaluation import Column
+    from xlmc.evaluation.engine import Column
     from xlmc.run.model import Model
 
 __all__ = ["OneAtATime", "one_at_a_time"]

@@ -15,7 +15,7 @@ from xlmc.studies.sensitivity.sobol import sobol_indices
 
 if TYPE_CHECKING:
     from xlmc.definitions import Assumption
-    from xlmc.evaluation import Evaluator
+    from xlmc.evaluation.engine import Evaluator
     from xlmc.run.model import Model
     from xlmc.run.simulation import Simulation
 

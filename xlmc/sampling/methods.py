@@ -1,0 +1,144 @@
+"""The sampling methods, a row each: the command line, settings, records and `xlmc methods` know them from here.
+
+To add one, write a module beside this one with what draws the uniforms of one assumption (a `Margin`), and its row
+below; describe it in docs/sampling.md. Nothing is imported before a method draws, so that `--help` is quick.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, Protocol
+
+from xlmc.errors import SimulationError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["GENERATOR", "METHODS", "REPLICATES", "Margin", "SamplingMethod"]
+
+GENERATOR: Final = "PCG64DXSM"
+
+REPLICATES: Final = 16
+"""The fewest of a run: their spread, and so every error, is known to 1/√30 = 18 %."""
+
+_STRATA: Final = 16_384
+"""The most trials in a replicate. More intervals gain nothing: of the variance that one input alone explains, 16,384
+leave some 4·10⁻⁹ where the forecast is smooth."""
+
+_STREAMS: Final = f"{GENERATOR}: a stream for each assumption, seeded by (seed, name), positioned by trial number"
+
+
+class Margin(Protocol):
+    """The uniforms of one assumption, in any order of blocks; for one thread."""
+
+    def uniforms(self, start: int, out: NDArray[np.float64]) -> None:
+        """Fill `out` (n,) with the uniforms of trials `start` to `start + n - 1`, in [0, 1)."""
+
+
+@dataclass(frozen=True, slots=True)
+class SamplingMethod:
+    """One way to draw the trials of a run.
+
+    Attributes:
+        key: its name in options, settings, records and saved runs.
+        name: its name in sentences.
+        generator: where its numbers come from, for the record.
+        margins: seed, name -> dimension, trials in a replicate -> what draws each assumption, in the order of names.
+        replicate: trials asked for -> trials in each replicate; None where the trials are independent of each other,
+            and so are a sample wherever the run ends.
+        also: other names that a workbook may give it, as `distributions.naming.plain` makes them.
+        ordered: it spreads the first dimensions best, so that a short run finds out which assumptions matter most.
+        compared: `xlmc methods` tries it.
+        limit: why more trials may not bring the accuracy asked for, in a clause; empty where they always do.
+    """
+
+    key: str
+    name: str
+    generator: str
+    margins: Callable[[int, Mapping[str, int], int], Sequence[Margin]]
+    replicate: Callable[[int], int] | None = None
+    also: tuple[str, ...] = ()
+    ordered: bool = False
+    compared: bool = True
+    limit: str = ""
+
+    @property
+    def independent(self) -> bool:
+        """Whether its trials are independent of each other."""
+        return self.replicate is None
+
+
+def _monte_carlo(seed: int, dimensions: Mapping[str, int], _size: int) -> list[Margin]:
+    from xlmc.sampling.streams import Stream
+
+    return [Stream(seed, name) for name in dimensions]
+
+
+def _latin_hypercube(seed: int, dimensions: Mapping[str, int], size: int) -> list[Margin]:
+    from xlmc.sampling.latin import LatinHypercube
+
+    return [LatinHypercube(seed, name, size) for name in dimensions]
+
+
+def _scrambled_sobol(seed: int, dimensions: Mapping[str, int], size: int) -> list[Margin]:
+    """The margins.
+
+    Raises:
+        SimulationError: there are more assumptions than Sobol points have dimensions, or these are not to be had.
+    """
+    from xlmc.sampling.directions import DIMENSIONS
+    from xlmc.sampling.sobol import ScrambledSobol
+
+    if len(dimensions) > DIMENSIONS:
+        message = f"Sobol points have {DIMENSIONS:,} dimensions, and {len(dimensions):,} assumptions are drawn"
+        raise SimulationError(message, hint="Use --sampling lhs or mc")
+    return [ScrambledSobol(seed, name, dimension, size) for name, dimension in dimensions.items()]
+
+
+def _intervals(most: int) -> Callable[[int], int]:
+    """Replicates of at most so many trials."""
+    return lambda trials: min(most, -(-trials // REPLICATES))
+
+
+def _power_of_two(trials: int) -> int:
+    """The trials of a Sobol replicate: 16 to 31 of them are at most a sixteenth more than were asked for."""
+    size = 1 << max(0, (trials // REPLICATES).bit_length() - 1)
+    return size if trials <= (2 * REPLICATES - 1) * size else 2 * size
+
+
+_ROWS: Final = (
+    SamplingMethod("mc", "Monte Carlo", _STREAMS, _monte_carlo, also=("montecarlo",)),
+    SamplingMethod(
+        "lhs",
+        "Latin hypercube",
+        f"{_STREAMS}; a second stream for each puts the intervals of a replicate in order",
+        _latin_hypercube,
+        _intervals(_STRATA),
+        also=("latinhypercube",),
+        limit="filters take its gain away: what they accept is no marginal",
+    ),
+    SamplingMethod(
+        "lhs500",
+        "Latin hypercube in blocks of 500",
+        f"{_STREAMS}; a second stream for each puts the intervals of a replicate in order",
+        _latin_hypercube,
+        _intervals(500),
+        compared=False,
+    ),
+    SamplingMethod(
+        "sobol",
+        "scrambled Sobol",
+        "Sobol points with the direction numbers of Joe and Kuo, an assumption a dimension; linear scramble and "
+        f"digital shift from {GENERATOR}, seeded by (seed, name), positioned by replicate",
+        _scrambled_sobol,
+        _power_of_two,
+        also=("scrambledsobol",),
+        ordered=True,
+        limit="filters take most of its gain away",
+    ),
+)
+
+METHODS: Final[dict[str, SamplingMethod]] = {row.key: row for row in _ROWS}
+"""By their keys; the first is that of a run that is told nothing."""

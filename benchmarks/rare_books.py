@@ -17,7 +17,7 @@ from scipy.special import ndtr, ndtri
 
 from xlmc.address import parse_address
 from xlmc.api import Model
-from xlmc.definitions import Assumption, Correlation, Definitions, Filter, Forecast
+from xlmc.definitions.model import Assumption, Correlation, Definitions, Filter, Forecast
 from xlmc.workbook.model import CellContent, Formula, Sheet, Workbook
 
 __all__ = ["ORDINARY", "SEVERAL", "THIN", "RareBook"]

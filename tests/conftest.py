@@ -15,7 +15,7 @@ from openpyxl.worksheet.table import Table as WrittenTable
 
 from xlmc.address import Area, parse_address
 from xlmc.api import Model
-from xlmc.definitions import Assumption, Correlation, Definitions, Filter, Forecast
+from xlmc.definitions.model import Assumption, Correlation, Definitions, Filter, Forecast
 from xlmc.workbook.model import CellContent, DefinedName, Formula, Sheet, Table, Workbook
 
 

@@ -10,7 +10,7 @@ import pytest
 import xlmc.run.simulate
 from xlmc import statistics
 from xlmc.api import Model
-from xlmc.definitions import Settings
+from xlmc.definitions.model import Settings
 from xlmc.errors import SimulationError
 from xlmc.results.record import make_record
 from xlmc.run.pilot import planned

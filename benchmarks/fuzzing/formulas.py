@@ -17,7 +17,8 @@ from fuzzing.inputs import Disagreement, Input, Reached, steps_of
 from fuzzing.splicing import spliced
 from xlmc.address import Area
 from xlmc.api import Model
-from xlmc.definitions import Definitions, read_definitions
+from xlmc.definitions.model import Definitions
+from xlmc.definitions.reader import read_definitions
 from xlmc.evaluation.engines import ENGINES
 from xlmc.report.summary import summarise, summary_text
 from xlmc.run.model import understood

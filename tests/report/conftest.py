@@ -9,7 +9,7 @@ import pytest
 
 from xlmc.address import parse_address
 from xlmc.api import Model
-from xlmc.definitions import Assumption, Definitions, Filter, Forecast, Settings
+from xlmc.definitions.model import Assumption, Definitions, Filter, Forecast, Settings
 from xlmc.report.sheets.book import build_sheets
 from xlmc.workbook import CellContent, Formula, Sheet, Workbook
 

@@ -6,7 +6,7 @@ from scipy import stats
 
 import xlmc.statistics as xs
 from xlmc.address import Cell
-from xlmc.definitions import Correlation
+from xlmc.definitions.model import Correlation
 from xlmc.results.record.correlations_met import correlations_met
 from xlmc.run.correlating import correlated_groups, repair_notices, used
 from xlmc.sampling.copula import GaussianCopula

@@ -7,7 +7,7 @@ import pytest
 
 from xlmc.address import Cell
 from xlmc.api import Model
-from xlmc.definitions import Assumption
+from xlmc.definitions.model import Assumption
 from xlmc.distributions import FAMILIES, ByPercentiles
 from xlmc.errors import DefinitionError
 

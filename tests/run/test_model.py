@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from xlmc.api import load
-from xlmc.definitions import Settings
+from xlmc.definitions.model import Settings
 from xlmc.errors import DefinitionError, FormulaError, SimulationError
 
 CELLS = {"A1": 1.0, "A2": 2.0, "A3": 3.0, "B1": "=A1+A2", "B2": "=SQRT(A1)", "B3": '=IF(A1>0,"x",A1)', "C1": "=B1>0"}
@@ -140,7 +140,7 @@ def test_the_saved_value_of_a_known_part_is_noticed(book):
 
 
 def test_a_book_with_mistakes_is_not_loaded(tmp_path, monkeypatch):
-    from xlmc.definitions import Definitions
+    from xlmc.definitions.model import Definitions
     from xlmc.run import model as module
     from xlmc.workbook.model import Workbook
 

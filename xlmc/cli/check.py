@@ -10,7 +10,7 @@ import click
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Correlation, Definitions
+    from xlmc.definitions.model import Correlation, Definitions
     from xlmc.run.model import Model
     from xlmc.workbook import Workbook
 
@@ -26,7 +26,7 @@ def check(book: Path) -> None:
     """
     from xlmc.cli.base_lines import show_base_case
     from xlmc.cli.printing import notices
-    from xlmc.definitions import read_definitions
+    from xlmc.definitions.reader import read_definitions
     from xlmc.errors import XlmcError
     from xlmc.evaluation.engines import ENGINES
     from xlmc.run.filter_values import filter_faults

@@ -41,7 +41,7 @@ from xlmc.workbook.seal import read_seal
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
-    from xlmc.definitions import Settings
+    from xlmc.definitions.model import Settings
     from xlmc.run.model import Model
     from xlmc.run.simulate import Progress
     from xlmc.run.simulation import Simulation

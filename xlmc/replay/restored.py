@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from xlmc.run.stopping.stopped import Stopped
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Settings
+    from xlmc.definitions.model import Settings
     from xlmc.results.record import Record, Value
     from xlmc.run.model import Model
     from xlmc.run.simulation import Simulation

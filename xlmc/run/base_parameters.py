@@ -9,8 +9,7 @@ from collections.abc import Iterator, Mapping, Set
 from dataclasses import replace
 
 from xlmc.address import Cell, InFormula
-from xlmc.definitions import Assumption, Definitions
-from xlmc.definitions.model import Parameter, name_key
+from xlmc.definitions.model import Assumption, Definitions, Parameter, name_key
 from xlmc.definitions.tables.parameters import CUTOFFS
 from xlmc.distributions.base import show
 from xlmc.errors import DefinitionError, Notice

@@ -10,15 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell, InFormula
-from xlmc.definitions import Forecast
-from xlmc.definitions.model import name_key
+from xlmc.definitions.model import Forecast, name_key
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import TEXT_RESULT, Target
 from xlmc.run.model import lowered
 from xlmc.run.scene import parameter_cells
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Assumption, Definitions
+    from xlmc.definitions.model import Assumption, Definitions
     from xlmc.evaluation.graph.lower import Lowering
     from xlmc.run.model import Model
 

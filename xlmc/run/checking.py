@@ -17,7 +17,7 @@ from xlmc.statistics import Estimate, proportion
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
-    from xlmc.definitions import Check
+    from xlmc.definitions.model import Check
     from xlmc.evaluation.engine import Column
     from xlmc.run.model import Model
 

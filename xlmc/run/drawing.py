@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions import Assumption
-from xlmc.definitions.model import Parameter, name_key
+from xlmc.definitions.model import Assumption, Parameter, name_key
 from xlmc.definitions.tables.data import data_family
 from xlmc.distributions import ByPercentiles, Family, Truncated
 from xlmc.errors import DefinitionError

@@ -21,7 +21,7 @@ from xlmc.run.scene import filter_limits
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
-    from xlmc.definitions import Filter
+    from xlmc.definitions.model import Filter
     from xlmc.evaluation.engine import Column
     from xlmc.run.model import Model
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions import Assumption, Check, Definitions, Filter, Forecast, read_definitions
-from xlmc.definitions.model import name_key
+from xlmc.definitions.model import Assumption, Check, Definitions, Filter, Forecast, name_key
+from xlmc.definitions.reader import read_definitions
 from xlmc.errors import DefinitionError, Notice, SimulationError
 from xlmc.evaluation.engine import Evaluator, Program, Target
 from xlmc.evaluation.engines import ENGINES

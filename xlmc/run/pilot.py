@@ -23,7 +23,7 @@ from xlmc.sampling.plan import Plan
 from xlmc.statistics import rank_correlation
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Settings
+    from xlmc.definitions.model import Settings
     from xlmc.run.model import Model
 
 __all__ = ["PILOT_TRIALS", "planned"]

@@ -10,7 +10,7 @@ from xlmc.errors import Notice
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
-    from xlmc.definitions import Definitions, Forecast
+    from xlmc.definitions.model import Definitions, Forecast
     from xlmc.formula import Graph
     from xlmc.run.scene import Scene
     from xlmc.sampling.draws import Draw

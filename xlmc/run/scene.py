@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from xlmc.address import Cell, InFormula
-from xlmc.definitions import Assumption, Check, Definitions, Filter, Forecast
+from xlmc.definitions.model import Assumption, Check, Definitions, Filter, Forecast
 from xlmc.errors import DefinitionError, Notice
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.workbook import Workbook

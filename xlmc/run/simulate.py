@@ -36,7 +36,7 @@ from xlmc.run.stopping import (
 from xlmc.sampling.methods import METHODS
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Settings
+    from xlmc.definitions.model import Settings
     from xlmc.run.model import Model
     from xlmc.run.rare.searching import Search
     from xlmc.sampling.plan import Plan

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from xlmc import statistics
 from xlmc.columns import numbers, parts
-from xlmc.definitions import Forecast, Settings
-from xlmc.definitions.model import name_key
+from xlmc.definitions.model import Forecast, Settings, name_key
 from xlmc.errors import Notice, SimulationError
 from xlmc.run.blocks import FilterTally
 from xlmc.run.cell_errors import Root, error_roots

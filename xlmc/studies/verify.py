@@ -8,8 +8,8 @@ from enum import Enum
 from typing import Final
 
 from xlmc.address import Cell
-from xlmc.definitions import Definitions
 from xlmc.definitions.in_cells.calls import holds_call
+from xlmc.definitions.model import Definitions
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.graph.lower import Lowering
 from xlmc.evaluation.graph.widening import widened

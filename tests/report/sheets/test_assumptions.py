@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.definitions import Correlation
+from xlmc.definitions.model import Correlation
 from xlmc.report.conditioning import conditioning
 from xlmc.report.sheets.assumptions import HEADER
 from xlmc.statistics import rank_correlation

@@ -7,7 +7,7 @@ import pytest
 
 from xlmc.address import parse_address
 from xlmc.api import Model
-from xlmc.definitions import Assumption, Correlation, Definitions, Filter, Forecast, Settings
+from xlmc.definitions.model import Assumption, Correlation, Definitions, Filter, Forecast, Settings
 from xlmc.errors import Notice
 from xlmc.workbook import CellContent, Formula, Sheet, Workbook
 

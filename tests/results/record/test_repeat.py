@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.definitions import Settings
+from xlmc.definitions.model import Settings
 from xlmc.results.record.repeat import quoted_argument, repeat_command
 from xlmc.run.stopping.stopped import ALL_TRIALS
 

@@ -5,8 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.address import Area, Cell
-from xlmc.definitions import Assumption, Filter
-from xlmc.definitions.model import DataRange
+from xlmc.definitions.model import Assumption, DataRange, Filter
 from xlmc.results.record.wording import distribution_text, limits_text, notes_text, number_text, parameters_text, status
 
 HERE = Cell("Inputs", 7, 2)

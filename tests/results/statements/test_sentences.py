@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from xlmc.address import Cell
-from xlmc.definitions import Forecast
+from xlmc.definitions.model import Forecast
 from xlmc.results.statements.certainty import certainties
 from xlmc.results.statements.sentences import statements
 from xlmc.run.simulation import ForecastResult

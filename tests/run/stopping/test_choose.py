@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.address import parse_address
-from xlmc.definitions import Forecast
+from xlmc.definitions.model import Forecast
 from xlmc.definitions.stopping import NO_GOAL, stopping
 from xlmc.errors import SimulationError
 from xlmc.run.stopping import chosen_rule, may_end_early, refuse_other_sampling

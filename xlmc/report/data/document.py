@@ -21,7 +21,7 @@ from xlmc.workbook.target import Target
 from xlmc.workbook.writer import write_workbook
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Assumption, Filter
+    from xlmc.definitions.model import Assumption, Filter
     from xlmc.results.record.correlations_met import CorrelationMet
     from xlmc.run.checking import CheckResult
     from xlmc.run.simulation import ForecastResult, Simulation

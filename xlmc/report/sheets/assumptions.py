@@ -17,7 +17,7 @@ from xlmc.results.record.wording import distribution_text, status
 from xlmc.statistics import Estimate
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Assumption
+    from xlmc.definitions.model import Assumption
     from xlmc.report.sheets.page import Page
     from xlmc.run.simulation import Simulation
 

@@ -10,7 +10,7 @@ from xlmc.results.record.model import RecordTable, Section, Value
 from xlmc.results.record.wording import cutoffs_text, limits_text, notes_text, parameters_text, status
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Assumption, Filter
+    from xlmc.definitions.model import Assumption, Filter
     from xlmc.run.simulation import ForecastResult, Simulation
 
 __all__ = ["assumption_section", "check_section", "correlation_section", "filter_section", "forecast_section", "plain"]

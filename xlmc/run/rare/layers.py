@@ -26,7 +26,7 @@ from xlmc.run.rare.spans import Spans, common
 from xlmc.run.scene import parameter_cells, upstream
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Assumption
+    from xlmc.definitions.model import Assumption
     from xlmc.evaluation.engine import Evaluator
     from xlmc.run.model import Model
     from xlmc.run.rare.landscape import Drawing

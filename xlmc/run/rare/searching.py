@@ -24,7 +24,7 @@ from xlmc.sampling.methods import METHODS
 from xlmc.statistics.estimate import Estimate, with_relative_error
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Settings
+    from xlmc.definitions.model import Settings
     from xlmc.run.model import Model
 
 __all__ = ["Search", "accepted_blocks", "search"]

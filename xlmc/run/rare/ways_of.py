@@ -16,7 +16,7 @@ from xlmc.run.rare.switches import MOST_WAYS, Switch, formula_switches, value_sw
 from xlmc.run.scene import filter_limits, upstream
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Assumption
+    from xlmc.definitions.model import Assumption
     from xlmc.run.model import Model
 
 __all__ = ["ways_of"]

@@ -15,7 +15,7 @@ from xlmc.run.scheduling.recipe import Recipe, worker_of
 from xlmc.run.scheduling.threads import by_threads
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Settings
+    from xlmc.definitions.model import Settings
     from xlmc.evaluation.engine import Program
     from xlmc.run.model import Model
     from xlmc.sampling.plan import Plan

@@ -10,7 +10,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from xlmc.definitions import Definitions
+from xlmc.definitions.model import Definitions
 from xlmc.errors import SimulationError
 from xlmc.evaluation.engine import Program
 from xlmc.evaluation.engines import ENGINES

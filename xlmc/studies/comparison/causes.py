@@ -13,8 +13,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from xlmc.address import Cell
-from xlmc.definitions import Assumption
-from xlmc.definitions.model import name_key
+from xlmc.definitions.model import Assumption, name_key
 from xlmc.run.model import Model
 from xlmc.run.simulation import Simulation
 from xlmc.studies.comparison.inputs import Inputs

@@ -9,8 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions import Assumption, Filter
-from xlmc.definitions.model import name_key
+from xlmc.definitions.model import Assumption, Filter, name_key
 from xlmc.results.record.wording import distribution_text
 from xlmc.run.model import Model
 from xlmc.run.scene import filter_limits

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-from xlmc.definitions import Forecast
-from xlmc.definitions.model import name_key
+from xlmc.definitions.model import Forecast, name_key
 from xlmc.errors import SimulationError
 from xlmc.statistics import Estimate
 from xlmc.studies.comparison.units import factor_between

@@ -20,7 +20,7 @@ from xlmc.studies.sensitivity.results import Influence
 from xlmc.studies.sensitivity.units import Units
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Assumption
+    from xlmc.definitions.model import Assumption
     from xlmc.run.simulation import Simulation
 
 __all__ = ["MOST_ASSUMPTIONS", "Influences", "influences", "ranked_assumptions"]

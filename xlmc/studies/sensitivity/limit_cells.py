@@ -16,7 +16,7 @@ from xlmc.run.scene import filter_limits
 from xlmc.studies.sensitivity.moved_limit import kept
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Filter
+    from xlmc.definitions.model import Filter
     from xlmc.evaluation.engine import Evaluator, Program
     from xlmc.run.model import Model
 

@@ -18,7 +18,7 @@ from xlmc.definitions.model import name_key
 from xlmc.studies.sensitivity.results import PERCENTS, Bar
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Assumption
+    from xlmc.definitions.model import Assumption
     from xlmc.evaluation.engine import Column
     from xlmc.run.model import Model
 

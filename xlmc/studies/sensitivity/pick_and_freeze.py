@@ -14,7 +14,7 @@ from xlmc.statistics import Estimate
 from xlmc.studies.sensitivity.sobol import sobol_indices
 
 if TYPE_CHECKING:
-    from xlmc.definitions import Assumption
+    from xlmc.definitions.model import Assumption
     from xlmc.evaluation.engine import Evaluator
     from xlmc.run.model import Model
     from xlmc.run.simulation import Simulation

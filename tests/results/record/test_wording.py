@@ -76,5 +76,5 @@ def test_notes():
 
 
 def test_status(model):
-    found = {a.name: status(model, a) for a in model.assumptions}
+    found = {a.name: status(model, a.name, a.frozen) for a in model.assumptions}
     assert found == {"width": "drawn", "length": "drawn", "idle": "not needed", "held": "frozen", "late": "drawn"}

@@ -10,7 +10,7 @@ from xlmc.studies.sensitivity.one_at_a_time import one_at_a_time
 
 
 def bars_of(model, forecast=0):
-    return {bar.assumption: bar for bar in one_at_a_time(model, model.live).bars[forecast]}
+    return {bar.assumption: bar for bar in one_at_a_time(model, [*model.draws]).bars[forecast]}
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def model(book):
 
 
 def test_each_moves_alone_from_the_base_case(model):
-    found = one_at_a_time(model, model.live)
+    found = one_at_a_time(model, [*model.draws])
     assert found.base == (7.0,)
     bars = bars_of(model)
     share = np.array(PERCENTS) / 100.0
@@ -39,7 +39,7 @@ def test_each_moves_alone_from_the_base_case(model):
 
 
 def test_the_widest_comes_first(model):
-    bars = one_at_a_time(model, model.live).bars[0]
+    bars = one_at_a_time(model, [*model.draws]).bars[0]
     assert [bar.assumption for bar in bars] == ["a", "b", "c"]
     assert bars[0].span == pytest.approx(24.0)
 
@@ -63,7 +63,7 @@ def test_a_cell_without_a_value_is_held_at_its_median(book):
         {"a": {"cell": "A1", "low": 0.0, "high": 10.0}, "b": {"cell": "A2", "low": 1.0, "high": 3.0}},
         {"y": "B1"},
     )
-    found = one_at_a_time(model, model.live)
+    found = one_at_a_time(model, [*model.draws])
     assert found.medians == ("a",)
     assert found.base == (5.0,)
     assert bars_of(model)["b"].high == pytest.approx(5.0 * 2.8)
@@ -90,7 +90,7 @@ def test_many_assumptions_go_through_in_blocks(book, monkeypatch):
     n = 60
     cells = {f"A{i}": 1.0 for i in range(1, n + 1)} | {"B1": "=" + "+".join(f"{i}*A{i}" for i in range(1, n + 1))}
     model = book(cells, {f"a{i}": {"cell": f"A{i}", "low": 0.0, "high": 2.0} for i in range(1, n + 1)}, {"y": "B1"})
-    whole = one_at_a_time(model, model.live)
+    whole = one_at_a_time(model, [*model.draws])
     monkeypatch.setattr(model.program("numpy"), "largest_block", 7)
-    assert one_at_a_time(model, model.live) == whole
+    assert one_at_a_time(model, [*model.draws]) == whole
     assert whole.bars[0][0].span == pytest.approx(60 * 1.6)

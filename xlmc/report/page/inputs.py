@@ -57,7 +57,7 @@ def _assumption(simulation: Simulation, assumption: Assumption) -> Html:
     """Its name above two rows, in a body of their own so that they stay together."""
     named = element("tr", element("th", *_named(assumption), scope="rowgroup", colspan=str(_COLUMNS)))
     if assumption.name not in simulation.inputs:
-        why = element("td", status(simulation.model, assumption), colspan=str(_COLUMNS))
+        why = element("td", status(simulation.model, assumption.name, assumption.frozen), colspan=str(_COLUMNS))
         return element("tbody", named, element("tr", why))
     accepted, replicate = simulation.inputs[assumption.name], simulation.replicate
     kept = None if replicate is None else replicate[: accepted.size]

@@ -7,6 +7,7 @@ accepted draws.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from xlmc.report.conditioning import Conditioning, Marginal, conditioning
@@ -17,7 +18,6 @@ from xlmc.results.record.wording import distribution_text, status
 from xlmc.statistics import Estimate
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Assumption
     from xlmc.report.sheets.page import Page
     from xlmc.run.simulation import Simulation
 
@@ -58,7 +58,7 @@ def write_assumptions(page: Page, simulation: Simulation) -> None:
     of = f" of {simulation.trials:,}" if simulation.rare is None else ""
     page.title("Assumptions", f"{name}: {simulation.accepted:,}{of} trials accepted")
     page.row = HEADER
-    page.table(_headers(), [line for a in simulation.model.assumptions for line in _lines(simulation, a)])
+    page.table(_headers(), _lines(simulation))
     page.sheet.freeze_panes(HEADER + 1, 1)
     write_correlations(page, simulation)
     page.heading("What this shows")
@@ -79,19 +79,26 @@ def _headers() -> list[str]:
     return [*heads, "Shift of mean in SDs", "±", "SD accepted / before", "±"]
 
 
-def _lines(simulation: Simulation, assumption: Assumption) -> list[list[Shown]]:
-    base = cells.NONE if assumption.base is None else assumption.base
-    first = [cells.text(assumption.name, "name"), cells.text(str(assumption.cell))]
-    second = [cells.text(assumption.units, "second"), Shown(base, look="second number")]
-    first.append(cells.text(distribution_text(assumption)))
-    second.append(cells.text(assumption.source or cells.NONE, "second"))
-    if assumption.name not in simulation.inputs:
-        why = cells.text(status(simulation.model, assumption))
-        return [[*first, why, *_blank(_STATISTICS + 1)], [*second, *_blank(_STATISTICS + 2, "second")]]
-    accepted, replicate = simulation.inputs[assumption.name], simulation.replicate
+def _lines(simulation: Simulation) -> Iterator[list[Shown]]:
+    """Two for each assumption."""
+    for assumption in simulation.model.assumptions:
+        before, accepted = _statistics(simulation, assumption.name, assumption.frozen)
+        words = distribution_text(assumption)
+        yield [cells.text(assumption.name, "name"), cells.text(str(assumption.cell)), cells.text(words), *before]
+        base = Shown(cells.NONE if assumption.base is None else assumption.base, look="second number")
+        source = cells.text(assumption.source or cells.NONE, "second")
+        yield [cells.text(assumption.units, "second"), base, source, *accepted]
+
+
+def _statistics(simulation: Simulation, name: str, frozen: bool) -> tuple[list[Shown], list[Shown]]:
+    """Of the draws before filtering, and of the accepted ones; or why it is not drawn."""
+    if name not in simulation.inputs:
+        why = cells.text(status(simulation.model, name, frozen))
+        return [why, *_blank(_STATISTICS + 1)], _blank(_STATISTICS + 2, "second")
+    accepted, replicate = simulation.inputs[name], simulation.replicate
     kept = None if replicate is None else replicate[: accepted.size]
-    found = conditioning(simulation.prior[assumption.name], accepted, kept)
-    return [[*first, *_before(found)], [*second, *_accepted(found)]]
+    found = conditioning(simulation.prior[name], accepted, kept)
+    return _before(found), _accepted(found)
 
 
 def _before(found: Conditioning) -> list[Shown]:

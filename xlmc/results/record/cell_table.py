@@ -44,7 +44,7 @@ def cell_section(needed: Mapping[Cell, str], *, rows: int = MOST_ROWS) -> Sectio
         Entry("count", "Cells", len(contents)),
         Entry("sha256", "SHA-256 of their contents", hashlib.sha256(packed).hexdigest()),
     )
-    listed = len(contents) <= rows and all(len(text) <= _LONGEST for text in contents.values())
+    listed = len(contents) <= rows and max(map(len, contents.values()), default=0) <= _LONGEST
     title = "Cells that the run needed"
     if listed:
         return Section("cells", title, entries, RecordTable(_COLUMNS, tuple(contents.items())))

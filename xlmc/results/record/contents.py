@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Container
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Area, Cell, host_of
@@ -10,7 +10,7 @@ from xlmc.definitions.tables.tables import KINDS
 from xlmc.errors import ErrorCode
 from xlmc.formula.shape import text_at
 from xlmc.results.record.wording import number_text
-from xlmc.workbook.model import CellContent, CellValue, Formula
+from xlmc.workbook.model import CellValue, Formula
 
 if TYPE_CHECKING:
     from xlmc.run.model import Model
@@ -33,15 +33,15 @@ def needed_contents(model: Model) -> dict[Cell, str]:
     cells |= definition_cells(workbook)
     for assumption in model.assumptions:
         if assumption.data is not None:
-            cells |= set(_held(workbook, assumption.data.area))
+            cells.update(_held(workbook, assumption.data.area))
     linked = sorted({cell.sheet for cell in cells if cell.sheet not in workbook.sheets and workbook.sheet_of(cell)})
-    by_sheet: dict[str, list[Cell]] = {name: [] for name in (*workbook.sheets, *linked)}
-    for cell in cells:
-        if cell.sheet in by_sheet:
-            by_sheet[cell.sheet].append(cell)
-    ordered = (cell for name in by_sheet for cell in sorted(by_sheet[name]))
-    found = ((cell, content_text(workbook, cell, saved)) for cell in ordered)
-    return {cell: text for cell, text in found if text}
+    places = {name: place for place, name in enumerate((*workbook.sheets, *linked))}
+    known = (cell for cell in cells if cell.sheet in places)
+    found = {}
+    for cell in sorted(known, key=lambda cell: (places[cell.sheet], cell)):
+        if text := content_text(workbook, cell, saved):
+            found[cell] = text
+    return found
 
 
 def definition_cells(workbook: Workbook) -> set[Cell]:
@@ -87,13 +87,12 @@ def _formula_text(formula: Formula, cell: Cell) -> str:
     return f"={text_at(formula.text, cell.row - formula.row, cell.column - formula.column)}"
 
 
-def _held(workbook: Workbook, area: Area) -> Iterator[Cell]:
+def _held(workbook: Workbook, area: Area) -> list[Cell]:
     """The cells of an area that hold something."""
     sheet = workbook.sheet_of(area)
     if sheet is None:
-        return
-    cells: Mapping[tuple[int, int], CellContent] = sheet.cells
-    within: Iterable[Cell] = area.cells()
-    if area.rows * area.columns > len(cells):
-        within = (cell for cell in (Cell(area.sheet, *place) for place in cells) if cell in area)
-    yield from (cell for cell in within if cell[1:] in cells)
+        return []
+    places = sheet.cells.keys()
+    if area.rows * area.columns > len(places):
+        return [cell for cell in (Cell(area.sheet, *place) for place in places) if cell in area]
+    return [cell for cell in area.cells() if cell[1:] in places]

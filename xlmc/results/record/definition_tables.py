@@ -10,7 +10,7 @@ from xlmc.results.record.model import RecordTable, Section, Value
 from xlmc.results.record.wording import cutoffs_text, limits_text, notes_text, parameters_text, status
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Assumption, Filter
+    from xlmc.definitions.model import Filter
     from xlmc.run.simulation import ForecastResult, Simulation
 
 __all__ = ["assumption_section", "check_section", "correlation_section", "filter_section", "forecast_section", "plain"]
@@ -135,23 +135,22 @@ def check_section(simulation: Simulation) -> Section:
 
 def assumption_section(simulation: Simulation) -> Section:
     """Every assumption, drawn or not."""
-    rows = tuple(_assumption_row(simulation, assumption) for assumption in simulation.model.assumptions)
-    return Section("assumptions", "Assumptions", table=RecordTable(_ASSUMPTION, rows))
-
-
-def _assumption_row(simulation: Simulation, assumption: Assumption) -> tuple[Value, ...]:
-    return (
-        assumption.name,
-        str(assumption.cell),
-        status(simulation.model, assumption),
-        assumption.distribution,
-        parameters_text(assumption),
-        cutoffs_text(assumption),
-        assumption.base,
-        assumption.units,
-        assumption.source,
-        notes_text(assumption.notes),
+    rows = tuple(
+        (
+            assumption.name,
+            str(assumption.cell),
+            status(simulation.model, assumption.name, assumption.frozen),
+            assumption.distribution,
+            parameters_text(assumption),
+            cutoffs_text(assumption.lower_cutoff, assumption.upper_cutoff),
+            assumption.base,
+            assumption.units,
+            assumption.source,
+            notes_text(assumption.notes),
+        )
+        for assumption in simulation.model.assumptions
     )
+    return Section("assumptions", "Assumptions", table=RecordTable(_ASSUMPTION, rows))
 
 
 def correlation_section(simulation: Simulation) -> Section:

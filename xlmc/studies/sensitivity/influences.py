@@ -20,7 +20,6 @@ from xlmc.studies.sensitivity.results import Influence
 from xlmc.studies.sensitivity.units import Units
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Assumption
     from xlmc.run.simulation import Simulation
 
 __all__ = ["MOST_ASSUMPTIONS", "Influences", "influences", "ranked_assumptions"]
@@ -40,9 +39,9 @@ class Influences:
     found: tuple[Influence, ...]
 
 
-def ranked_assumptions(simulation: Simulation) -> tuple[Assumption, ...]:
+def ranked_assumptions(simulation: Simulation) -> list[str]:
     """The live assumptions to examine closely: all in their order, or of very many the most influential first."""
-    live = simulation.model.live
+    live = [a.name for a in simulation.model.live]
     if len(live) <= MOST_ASSUMPTIONS:
         return live
     places, _ = examined_places(simulation, COARSE_TRIALS)
@@ -53,16 +52,18 @@ def ranked_assumptions(simulation: Simulation) -> tuple[Assumption, ...]:
     z = np.array([column for column in columns if column is not None])
     if not z.size:
         return live[:MOST_ASSUMPTIONS]
-    scores = [float(shares(Ranked.of(_read(simulation.inputs[a.name], places)), z).max()) for a in live]
+    scores = [float(shares(Ranked.of(_read(simulation.inputs[name], places)), z).max()) for name in live]
     first = np.argsort(-np.asarray(scores), kind="stable")[:MOST_ASSUMPTIONS]
-    return tuple(live[place] for place in first)
+    return [live[place] for place in first]
 
 
-def influences(simulation: Simulation, assumptions: Sequence[Assumption]) -> list[Influences]:
-    """Of these assumptions on every forecast, in the order of the workbook."""
+def influences(simulation: Simulation, assumptions: Sequence[str]) -> list[Influences]:
+    """Of the assumptions of these names on every forecast, in the order of the workbook."""
     forecasts = simulation.model.forecasts
     places, replicate = examined_places(simulation, trials_for(len(assumptions) * len(forecasts)))
-    draws = [_read(simulation.inputs[a.name], places) for a in assumptions]
+    draws = [_read(simulation.inputs[name], places) for name in assumptions]
+    units = {a.name: a.units for a in simulation.model.live}
+    named = [(name, units[name]) for name in assumptions]
     tables: dict[bytes, _Table] = {}
     found = []
     for forecast in forecasts:
@@ -71,7 +72,7 @@ def influences(simulation: Simulation, assumptions: Sequence[Assumption]) -> lis
         key = known.tobytes()
         if key not in tables:
             tables[key] = _Table.of(draws, replicate, known)
-        found.append(tables[key].influences(assumptions, y[known]))
+        found.append(tables[key].influences(named, y[known]))
     return found
 
 
@@ -93,23 +94,24 @@ class _Table:
         enough = units.n >= LEAST_TRIALS
         return cls([Ranked.of(column[known]) for column in draws] if enough else [], units)
 
-    def influences(self, assumptions: Sequence[Assumption], y: Floats) -> Influences:
+    def influences(self, named: Sequence[tuple[str, str]], y: Floats) -> Influences:
+        """Of the assumptions with these names and units on one forecast."""
         if not self.columns or not (ranked := Ranked.of(y)).varies:
             return Influences(int(y.size), ())
         correlations = [rank_correlation(x, ranked, self.units) for x in self.columns]
-        parts = zip(assumptions, self.columns, correlations, contributions(correlations), strict=True)
+        parts = zip(named, self.columns, correlations, contributions(correlations), strict=True)
         found = [
             Influence(
-                assumption=assumption.name,
-                units=assumption.units,
+                assumption=name,
+                units=units,
                 rank_correlation=correlation,
                 contribution=contribution,
                 explained=explained(x, y, self.units),
-                explained_floor=explained_floor(x, len(assumptions)),
+                explained_floor=explained_floor(x, len(named)),
                 dependence=dependence(x, ranked, self.units),
-                dependence_floor=dependence_floor(x, len(assumptions)),
+                dependence_floor=dependence_floor(x, len(named)),
             )
-            for assumption, x, correlation, contribution in parts
+            for (name, units), x, correlation, contribution in parts
         ]
         return Influences(int(y.size), tuple(sorted(found, key=_by_share)))
 

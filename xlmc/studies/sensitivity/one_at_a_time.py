@@ -18,7 +18,6 @@ from xlmc.definitions.model import name_key
 from xlmc.studies.sensitivity.results import PERCENTS, Bar
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Assumption
     from xlmc.evaluation.engine import Column
     from xlmc.run.model import Model
 
@@ -42,17 +41,18 @@ class OneAtATime:
     medians: tuple[str, ...]
 
 
-def one_at_a_time(model: Model, assumptions: Sequence[Assumption]) -> OneAtATime:
-    """Move each of these live assumptions."""
+def one_at_a_time(model: Model, assumptions: Sequence[str]) -> OneAtATime:
+    """Move each of the live assumptions of these names."""
     quantiles = model.quantiles([*(percent / 100.0 for percent in PERCENTS), 0.5])
     base = {a.name: float(quantiles[a.name][-1]) if a.base is None else float(a.base) for a in model.live}
-    moved = {a.name: quantiles[a.name][:-1] for a in assumptions}
+    units = {a.name: a.units for a in model.live}
+    moved = {name: quantiles[name][:-1] for name in assumptions}
     answers, rejected = _evaluated(model, base, moved)
     bars = []
     for each in answers:
         made = [
-            _bar(a, base[a.name], moved[a.name], each[cases], rejected[cases])
-            for place, a in enumerate(assumptions)
+            _bar(name, units[name], base[name], moved[name], each[cases], rejected[cases])
+            for place, name in enumerate(assumptions)
             for cases in [slice(1 + place * len(PERCENTS), 1 + (place + 1) * len(PERCENTS))]
         ]
         bars.append(tuple(sorted(made, key=lambda bar: -bar.span)))
@@ -85,12 +85,12 @@ def _evaluated(model: Model, base: dict[str, float], moved: dict[str, Floats]) -
     return [np.concatenate(parts) for parts in zip(*answers, strict=True)], np.concatenate(rejected)
 
 
-def _bar(assumption: Assumption, base: float, inputs: Floats, answers: Floats, rejected: Floats) -> Bar:
+def _bar(assumption: str, units: str, base: float, inputs: Floats, answers: Floats, rejected: Floats) -> Bar:
     known = bool(np.isfinite(answers).all())
     before, after = answers[:-1], answers[1:]
     return Bar(
-        assumption=assumption.name,
-        units=assumption.units,
+        assumption=assumption,
+        units=units,
         base=base,
         inputs=tuple(inputs.tolist()),
         answers=tuple(_number(answer) for answer in answers),

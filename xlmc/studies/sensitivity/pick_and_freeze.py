@@ -14,7 +14,6 @@ from xlmc.statistics import Estimate
 from xlmc.studies.sensitivity.sobol import sobol_indices
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Assumption
     from xlmc.evaluation.engine import Evaluator
     from xlmc.run.model import Model
     from xlmc.run.simulation import Simulation
@@ -63,12 +62,12 @@ def why_not(simulation: Simulation) -> str:
     return ""
 
 
-def pick_and_freeze(model: Model, assumptions: Sequence[Assumption], trials: int, seed: int) -> SobolRun:
+def pick_and_freeze(model: Model, assumptions: Sequence[str], trials: int, seed: int) -> SobolRun:
     """The indices of a model without correlations, whatever its filters; of very many assumptions, of the first ones.
 
     Args:
         model: to evaluate.
-        assumptions: live ones, of which the indices are wanted.
+        assumptions: names of live ones, of which the indices are wanted.
         trials: of the run; no more than half as many are evaluated, but some at least.
         seed: of the run. The trials are its first ones by Monte Carlo, and those that follow them.
     """
@@ -81,10 +80,10 @@ def pick_and_freeze(model: Model, assumptions: Sequence[Assumption], trials: int
     evaluator = program.evaluator(block)
     a, b = (_answers(evaluator, draws, pairs, block) for draws in (first, second))
     found = {}
-    for assumption in chosen:
-        key = name_key(assumption.name)
+    for name in chosen:
+        key = name_key(name)
         c = _answers(evaluator, {**first, key: second[key]}, pairs, block)
-        found[assumption.name] = tuple(sobol_indices(*answers) for answers in zip(a, b, c, strict=True))
+        found[name] = tuple(sobol_indices(*answers) for answers in zip(a, b, c, strict=True))
     return SobolRun(pairs, found)
 
 

@@ -56,7 +56,6 @@ KINDS = (
     "Latin hypercube",
     "until accepted",
     "too few accepted",
-    "single precision",
     "some draws",
 )
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import click
 import pytest
+from described import undescribed
 
 from xlmc.cli import xlmc
 from xlmc.distributions import FAMILIES
@@ -46,6 +47,10 @@ def test_every_distribution_is_documented():
         if family.roles or family.data:
             assert family.formula, family.name
             assert family.source, family.name
+
+
+def test_every_sampling_method_engine_result_sheet_and_distribution_is_described():
+    assert undescribed() == []
 
 
 def test_every_function_is_documented():

@@ -1,8 +1,12 @@
-"""Families of distributions, one file each, and how they are found by the name a person types."""
+"""Families of distributions, one file each, and how they are found by the name a person types.
+
+To add one, write a module beside this one with a subclass of `Family`, list it here, and write its page anew with
+`python docs/list_distributions.py`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from typing import Final
 
 from xlmc.distributions.base import DataError, DataSpec, Family, Fault, ParameterSpec
 from xlmc.distributions.beta import Beta
@@ -94,10 +98,8 @@ _COUNTS = (
 )
 _OF_DATA = (Custom(), Discrete(), DUniform(), Empirical(), EmpiricalSmoothed())
 
-FAMILIES: Mapping[str, Family] = {family.name: family for family in (*_CONTINUOUS, *_COUNTS, *_OF_DATA)}
+FAMILIES: Final[dict[str, Family]] = {family.name: family for family in (*_CONTINUOUS, *_COUNTS, *_OF_DATA)}
 """Every family by its name."""
-
-_SPELLINGS = {plain(spelling): family for family in FAMILIES.values() for spelling in (family.name, *family.aliases)}
 
 
 def family_named(name: str, where: object = None) -> Family:
@@ -110,7 +112,8 @@ def family_named(name: str, where: object = None) -> Family:
     Raises:
         DefinitionError: no family has that name.
     """
-    family = _SPELLINGS.get(plain(name))
+    spellings = {plain(each): family for family in FAMILIES.values() for each in (family.name, *family.aliases)}
+    family = spellings.get(plain(name))
     if family is None:
         message = f"{name.strip()!r} is not a distribution of this version"
         raise DefinitionError(message, where=where, hint=did_you_mean(name, FAMILIES))

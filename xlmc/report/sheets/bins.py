@@ -15,7 +15,7 @@ from xlmc.report.summary import percent
 if TYPE_CHECKING:
     from xlmc.report.sheets.page import Page
 
-__all__ = ["HEADER", "TABLE", "write_bins"]
+__all__ = ["HEADER", "TABLE", "BinsAt", "write_bins"]
 
 HEADER = 4
 """The row of the headings, counted from 0."""

@@ -1,37 +1,172 @@
-"""All result sheets as a workbook of their own, built in memory: the same run gives the same bytes."""
+"""All result sheets as a workbook of their own, built in memory: the same run gives the same bytes.
+
+To add a sheet, write a module beside this one with a function that writes a `Page` of a run, and its row in `SHEETS`;
+describe it in docs/guide.md.
+"""
 
 from __future__ import annotations
 
 import io
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Final
 
-from xlmc.report.figure import figures_of
+from xlmc.report.figure import Figure, figures_of
 from xlmc.report.sheets import (
     assumptions,
     bins,
     certainty_sheet,
     charts,
+    limits_sheet,
     pairs_sheet,
     record_sheet,
     results,
+    sensitivity_sheet,
     statistics_sheet,
     trials,
 )
+from xlmc.report.sheets.bins import BinsAt
 from xlmc.report.sheets.curves import Curves
-from xlmc.report.sheets.dependence_sheets import write_dependence
 from xlmc.report.sheets.page import Page
 from xlmc.report.sheets.styles import CREATED, Styles
+from xlmc.report.sheets.trials import TrialsAt
 from xlmc.results.record import make_record
+from xlmc.studies.sensitivity import Sensitivities, sensitivities
 
 if TYPE_CHECKING:
+    from xlsxwriter import Workbook
+
     from xlmc.run.simulation import Simulation
 
-__all__ = ["build_sheets"]
+__all__ = ["SHEETS", "ResultSheet", "Writing", "build_sheets"]
+
+
+class Writing:
+    """A result workbook that is being written, and what its sheets share.
+
+    Attributes:
+        book: of XlsxWriter.
+        simulation: the finished run.
+        command: what the person typed, for the record.
+        rows: the most accepted trials to write out.
+        trials: where they stand, from the sheet Trials on.
+        bins: where the bins of the histograms stand, from the sheet Bins on.
+        pages: the sheets by their names.
+    """
+
+    trials: TrialsAt
+    bins: Sequence[BinsAt]
+
+    def __init__(self, book: Workbook, simulation: Simulation, command: str | None, rows: int) -> None:
+        from xlmc.report.sheets.exact_sheet import ExactSheet
+
+        self.book, self.simulation, self.command, self.rows = book, simulation, command, rows
+        self.name = simulation.model.workbook.name
+        styles = Styles(book)
+        self.pages = {
+            sheet.name: Page(book.add_worksheet(sheet.name, ExactSheet), styles, sheet.widths)
+            for sheet in SHEETS
+            if sheet.wanted(self)
+        }
+
+    @cached_property
+    def figures(self) -> list[Figure]:
+        """The histogram of each forecast."""
+        return figures_of(self.simulation)
+
+    @cached_property
+    def curves(self) -> Curves:
+        """The sheet Curves, which takes the numbers of the charts as they are drawn."""
+        return Curves(self.pages["Curves"], self.name)
+
+    @cached_property
+    def dependence(self) -> Sensitivities:
+        """What the answers depend on."""
+        return sensitivities(self.simulation)
+
+
+@dataclass(frozen=True, slots=True)
+class ResultSheet:
+    """A sheet of the result workbook.
+
+    Attributes:
+        name: on its tab.
+        write: fills its page.
+        widths: of its columns, from the first on; empty where `write` sets them.
+        after: the sheets whose cells it shows; they are written first.
+        wanted: whether a run has one.
+    """
+
+    name: str
+    write: Callable[[Page, Writing], object]
+    widths: tuple[float, ...] = ()
+    after: tuple[str, ...] = ()
+    wanted: Callable[[Writing], bool] = lambda _: True
+
+
+def _charts(page: Page, run: Writing) -> None:
+    charts.write_charts(page, run.book, run.simulation, run.figures, run.bins, run.curves)
+
+
+def _pairs(page: Page, run: Writing) -> None:
+    pairs_sheet.write_pairs(page, run.book, run.simulation, run.curves, run.trials)
+
+
+def _sensitivity(page: Page, run: Writing) -> None:
+    sensitivity_sheet.write_sensitivity(page, run.book, run.dependence, run.name)
+
+
+def _limits(page: Page, run: Writing) -> None:
+    limits_sheet.write_limits(page, run.book, run.dependence, run.name)
+
+
+def _has_limits(run: Writing) -> bool:
+    """Whether a limit could be moved."""
+    found = run.dependence
+    return bool(found.filter_limits or found.varying_limits or found.omitted_limits)
+
+
+def _trials(page: Page, run: Writing) -> None:
+    run.trials = trials.write_trials(page, run.simulation, run.rows)
+
+
+def _bins(page: Page, run: Writing) -> None:
+    run.bins = bins.write_bins(page, run.figures, run.name)
+
+
+def _record(page: Page, run: Writing) -> None:
+    record_sheet.write_record(page, make_record(run.simulation, run.command), run.name)
+
+
+SHEETS: Final[tuple[ResultSheet, ...]] = (
+    ResultSheet("Results", lambda page, run: results.write_results(page, run.simulation), results.WIDTHS),
+    ResultSheet("Charts", _charts, charts.WIDTHS, after=("Bins",)),
+    ResultSheet(
+        "Statistics", lambda page, run: statistics_sheet.write_statistics(page, run.simulation), statistics_sheet.WIDTHS
+    ),
+    ResultSheet(
+        "Certainty",
+        lambda page, run: certainty_sheet.write_certainty(page, run.simulation, run.trials),
+        certainty_sheet.WIDTHS,
+        after=("Trials",),
+    ),
+    ResultSheet("Pairs", _pairs, pairs_sheet.WIDTHS, after=("Charts", "Trials")),
+    ResultSheet(
+        "Assumptions", lambda page, run: assumptions.write_assumptions(page, run.simulation), assumptions.WIDTHS
+    ),
+    ResultSheet("Sensitivity", _sensitivity, sensitivity_sheet.WIDTHS),
+    ResultSheet("Filter limits", _limits, limits_sheet.WIDTHS, wanted=_has_limits),
+    ResultSheet("Trials", _trials, trials.WIDTHS),
+    ResultSheet("Bins", _bins),
+    ResultSheet("Curves", lambda _, run: run.curves.finish(), after=("Charts", "Pairs")),
+    ResultSheet("Record", _record, record_sheet.WIDTHS),
+)
+"""In the order of their tabs."""
 
 
 def build_sheets(simulation: Simulation, *, command: str | None = None, rows: int = trials.TRIAL_ROWS) -> bytes:
-    """The result sheets of a run: Results, Charts, Statistics, Certainty, Pairs, Assumptions, Sensitivity, Filter
-    limits, Trials, Bins, Curves, Record.
+    """The result sheets of a run.
 
     Args:
         simulation: the finished run.
@@ -40,30 +175,14 @@ def build_sheets(simulation: Simulation, *, command: str | None = None, rows: in
     """
     from xlsxwriter import Workbook
 
-    from xlmc.report.sheets.exact_sheet import ExactSheet
-
     packed = io.BytesIO()
     with Workbook(packed, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as book:
         book.set_properties({"created": CREATED})
-        styles = Styles(book)
-
-        def page(name: str, widths: tuple[float, ...]) -> Page:
-            return Page(book.add_worksheet(name, ExactSheet), styles, widths)
-
-        results.write_results(page("Results", results.WIDTHS), simulation)
-        drawing = page("Charts", charts.WIDTHS)
-        statistics_sheet.write_statistics(page("Statistics", statistics_sheet.WIDTHS), simulation)
-        certain = page("Certainty", certainty_sheet.WIDTHS)
-        together = page("Pairs", pairs_sheet.WIDTHS)
-        assumptions.write_assumptions(page("Assumptions", assumptions.WIDTHS), simulation)
-        write_dependence(book, page, simulation)
-        shown = trials.write_trials(page("Trials", trials.WIDTHS), simulation, rows)
-        certainty_sheet.write_certainty(certain, simulation, shown)
-        figures, name = figures_of(simulation), simulation.model.workbook.name
-        places = bins.write_bins(page("Bins", ()), figures, name)
-        curves = Curves(page("Curves", ()), name)
-        charts.write_charts(drawing, book, simulation, figures, places, curves)
-        pairs_sheet.write_pairs(together, book, simulation, curves, shown)
-        curves.finish()
-        record_sheet.write_record(page("Record", record_sheet.WIDTHS), make_record(simulation, command), name)
+        run = Writing(book, simulation, command, rows)
+        waiting = [sheet for sheet in SHEETS if sheet.name in run.pages]
+        while waiting:
+            names = {sheet.name for sheet in waiting}
+            sheet = next(each for each in waiting if names.isdisjoint(each.after))
+            sheet.write(run.pages[sheet.name], run)
+            waiting.remove(sheet)
     return packed.getvalue()

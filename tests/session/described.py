@@ -1,0 +1,33 @@
+"""What people can type or see, and whether a page describes it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from xlmc.distributions import FAMILIES
+from xlmc.evaluation.engines import ENGINES
+from xlmc.report.sheets.book import SHEETS
+from xlmc.sampling.methods import METHODS
+
+__all__ = ["undescribed"]
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+
+
+def undescribed() -> list[str]:
+    """`docs/sampling.md: sobol` for each sampling method, engine, result sheet and distribution that a page lacks."""
+    texts = {page.name: page.read_text(encoding="utf-8") for page in DOCS.glob("*.md")}
+    return [f"docs/{page}: {name}" for page, name, text in _expected() if text not in texts[page]]
+
+
+def _expected() -> Iterator[tuple[str, str, str]]:
+    """Page, what it must describe, and the text that does."""
+    for method in METHODS:
+        yield from ((page, method, f"`{method}`") for page in ("sampling.md", "command-line.md", "workbooks.md"))
+    for engine in ENGINES:
+        yield from ((page, engine, f"`{engine}`") for page in ("engines.md", "command-line.md", "workbooks.md"))
+    for sheet in SHEETS:
+        yield "guide.md", sheet.name, f"**{sheet.name}**"
+    for family in FAMILIES.values():
+        yield "distributions.md", family.name, f"\n## {family.name}\n"

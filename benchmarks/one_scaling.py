@@ -16,7 +16,7 @@ from typing import IO, Any
 from contest import measured
 
 import xlmc
-from xlmc.run.scheduling import standby
+from xlmc.run.scheduling.processes import idle_pool
 from xlmc.run.simulate import BLOCK
 
 ONE, TWO, ANEW, APART = "1", "2", "2 anew", "two programs"
@@ -63,7 +63,7 @@ def main() -> None:
 
 def _anew(run: Callable[[int, int], None], trials: int) -> None:
     """With a process that is started for this run."""
-    standby.end()
+    idle_pool.end()
     run(trials, 2)
 
 

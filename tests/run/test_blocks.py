@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT, Column
-from xlmc.run.blocks import FilterTally, Task, Worker, _tally, fault_text
+from xlmc.run.blocks import FilterTally, ModelRunner, Task, _tally, fault_text
 
 BLOCK = 24
 CODES = (0, 0, 0, 0, int(ErrorCode.DIV0), int(ErrorCode.NA), TEXT_RESULT, BLANK_RESULT)
@@ -71,8 +71,8 @@ def code(column, trial):
 def worked(case, start=0, keep_prior=False, keep_inputs=True):
     draws = {"a": np.arange(float(BLOCK)), "b": np.array(case["draws"])}
     evaluator = Columns(case["filters"], case["forecasts"])
-    worker = Worker(Draws(draws), evaluator, BLOCK, len(case["forecasts"]), frozenset({"b"}))
-    return worker.run(Task(start, case["trials"], keep_prior, keep_inputs)), evaluator, draws
+    runner = ModelRunner(Draws(draws), evaluator, BLOCK, len(case["forecasts"]), frozenset({"b"}))
+    return runner.run(Task(start, case["trials"], keep_prior, keep_inputs)), evaluator, draws
 
 
 @settings(max_examples=200)

@@ -14,7 +14,7 @@ from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT, Column, Evaluator, Kept, Sweeper, Sweeping
 from xlmc.sampling.draws import Sampler
 
-__all__ = ["Block", "FilterTally", "Portable", "Runner", "Task", "Worker", "fault_text"]
+__all__ = ["Block", "FilterTally", "ModelRunner", "Portable", "Runner", "Task", "fault_text"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -103,7 +103,7 @@ class Portable(Protocol):
         """It, made or made again."""
 
 
-class Worker:
+class ModelRunner:
     """Runs blocks, one after another, in one thread. It can be pickled where the engine's evaluators can.
 
     Args:
@@ -122,9 +122,9 @@ class Worker:
             self._sweep = evaluator.sweeper(sampler.draw, sampler.linear)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Worker, self._made_of
+        return ModelRunner, self._made_of
 
-    def runner(self) -> Worker:
+    def runner(self) -> ModelRunner:
         """See `Portable`."""
         return self
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from xlmc.definitions.model import name_key
 from xlmc.run.blocks import Block, Task
-from xlmc.run.scheduling.recipe import worker_of
+from xlmc.run.scheduling.run_spec import model_runner
 from xlmc.sampling.methods import METHODS
 from xlmc.sampling.plan import Plan
 from xlmc.statistics import rank_correlation
@@ -49,9 +49,9 @@ def _by_importance(model: Model, seed: int) -> tuple[str, ...]:
     """The keys of the drawn assumptions; those that matter alike stay in the order of the workbook."""
     program = model.program("numpy")  # whatever runs the trials, so that every engine has the same order
     block = min(PILOT_TRIALS, program.largest_block)
-    worker = worker_of(model, program, "numpy", seed, block)
+    runner = model_runner(model, program, "numpy", seed, block)
     starts = range(0, PILOT_TRIALS, block)
-    blocks = [worker.run(Task(start, min(block, PILOT_TRIALS - start), prior=True)) for start in starts]
+    blocks = [runner.run(Task(start, min(block, PILOT_TRIALS - start), prior=True)) for start in starts]
     accepted, forecasts = _joined([each.draws for each in blocks]), _columns(blocks)
     scores = {
         name: round(_score(draws, accepted.get(name, np.empty(0)), forecasts), _DECIMALS)

@@ -20,8 +20,8 @@ from xlmc.run.blocks import Block, FilterTally, Task
 from xlmc.run.checking import LEAST_CHECKED
 from xlmc.run.pilot import planned
 from xlmc.run.rare.deciding import looks_of
-from xlmc.run.scheduling.crew import Crew
-from xlmc.run.scheduling.recipe import worker_of
+from xlmc.run.scheduling.run_spec import model_runner
+from xlmc.run.scheduling.worker_pool import WorkerPool
 from xlmc.run.simulation import KEPT_INPUTS, Simulation
 from xlmc.run.stopping import (
     Interruption,
@@ -72,16 +72,16 @@ def simulate(
 ) -> Simulation:
     """Run a model; see `Model.simulate`."""
     settings = _settings(model, trials, seed, engine, sampling, stopping)
+    program = model.program(settings.engine)
     plan = planned(model, settings)
     rule, looks = chosen_rule(settings.stopping, model.forecasts), looks_of(model, settings)
     watch = Watch(rule, plan.trials, settings.stopping.seconds, time.monotonic)
     teller = None if progress is None else Teller([forecast.name for forecast in model.forecasts])
-    crew = Crew(jobs, scheduler, workers)
+    pool = WorkerPool(jobs, scheduler, workers)
     if keep_inputs is not None and keep_inputs < 0:
         raise SimulationError(
             f"the draws of {keep_inputs} trials were asked for", hint="give 0 or more, or None for all"
         )
-    program = model.program(settings.engine)
     block = min(BLOCK, program.largest_block)
     most_inputs = plan.trials if keep_inputs is None else keep_inputs
     if model.checks:
@@ -94,12 +94,12 @@ def simulate(
     tasks = (task(start, min(block, plan.trials - start)) for start in range(0, plan.trials, block))
     stopped: Stopped | None = None
     with Interruption(wanted=keep_interrupted and may_end_early(settings.sampling)) as interruption:
-        with closing(crew.blocks(model, program, settings, plan, block, tasks)) as blocks:
+        with closing(pool.blocks(model, program, settings, plan, block, tasks)) as blocks:
             while stopped is None and not looks.hopeless(gathered.trials, gathered.accepted):
                 finished = next(blocks)
                 counting = finished.trials if looks.certain else watch.counting(finished)
                 if counting < finished.trials:
-                    finished = worker_of(model, program, settings.engine, settings.seed, block, plan).run(
+                    finished = model_runner(model, program, settings.engine, settings.seed, block, plan).run(
                         task(gathered.trials, counting)
                     )
                 gathered.add(finished)

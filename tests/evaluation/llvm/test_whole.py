@@ -9,7 +9,7 @@ pytest.importorskip("llvmlite")
 
 import xlmc
 from xlmc.run.blocks import Task
-from xlmc.run.scheduling.recipe import worker_of
+from xlmc.run.scheduling.run_spec import model_runner
 
 BLOCK = 4096
 UNIT = {"low": 0, "high": 1}
@@ -49,13 +49,13 @@ MODELS = {
 
 
 def ran(model, sweeps, blocks=range(5, 8), *, inputs=True, draws_given=False):
-    worker = worker_of(model, model.program("jit"), "jit", 7, BLOCK)
-    assert worker._sweep is not None
+    runner = model_runner(model, model.program("jit"), "jit", 7, BLOCK)
+    assert runner._sweep is not None
     if draws_given:
-        worker._sweep = worker._evaluator.sweeper(worker._sampler.draw, None)
+        runner._sweep = runner._evaluator.sweeper(runner._sampler.draw, None)
     if not sweeps:
-        worker._sweep = None
-    return [worker.run(Task(block * BLOCK, BLOCK, False, inputs)) for block in blocks]
+        runner._sweep = None
+    return [runner.run(Task(block * BLOCK, BLOCK, False, inputs)) for block in blocks]
 
 
 def bits(block):
@@ -92,19 +92,19 @@ def test_correlated_draws(book):
 def test_a_block_in_which_a_trial_errs_is_the_block(book, filters):
     """One trial in 20,000 divides by zero: some blocks are swept, in others a filter or a forecast is an error."""
     model = book(CELLS, GIVEN, {"x": "C4"}, filters)
-    worker = worker_of(model, model.program("jit"), "jit", 7, BLOCK)
-    whole = [worker.run(Task(block * BLOCK, BLOCK, False)) for block in range(24)]
-    assert 0 < worker._sweep._careful < worker._sweep._runs
+    runner = model_runner(model, model.program("jit"), "jit", 7, BLOCK)
+    whole = [runner.run(Task(block * BLOCK, BLOCK, False)) for block in range(24)]
+    assert 0 < runner._sweep._careful < runner._sweep._runs
     assert list(map(bits, whole)) == list(map(bits, ran(model, False, range(24))))
     assert sum(block.lost for block in whole) > 0
 
 
 def test_where_most_blocks_err_they_are_no_longer_tried(book):
     model = book(CELLS | {"C4": "=1/MAX(0,A1-0.5)"}, GIVEN, {"x": "C4"}, {"f": "C1"})
-    worker = worker_of(model, model.program("jit"), "jit", 7, BLOCK)
+    runner = model_runner(model, model.program("jit"), "jit", 7, BLOCK)
     for block in range(20):
-        worker.run(Task(block * BLOCK, BLOCK, False))
-    assert worker._sweep._runs == 2
+        runner.run(Task(block * BLOCK, BLOCK, False))
+    assert runner._sweep._runs == 2
 
 
 @pytest.mark.parametrize(
@@ -118,9 +118,9 @@ def test_where_most_blocks_err_they_are_no_longer_tried(book):
 )
 def test_what_is_not_run_in_whole_blocks(book, given, forecasts, filters):
     model = book(CELLS, given, forecasts, filters)
-    assert worker_of(model, model.program("jit"), "jit", 7, BLOCK)._sweep is None
+    assert model_runner(model, model.program("jit"), "jit", 7, BLOCK)._sweep is None
 
 
 def test_the_other_engines_run_step_by_step(book):
     model = book(CELLS, *MODELS["no filters"])
-    assert worker_of(model, model.program("numpy"), "numpy", 7, BLOCK)._sweep is None
+    assert model_runner(model, model.program("numpy"), "numpy", 7, BLOCK)._sweep is None

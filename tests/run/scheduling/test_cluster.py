@@ -78,9 +78,9 @@ def test_few_tasks_are_under_way_at_once(model, monkeypatch):
 
 def test_the_workbook_is_understood_once_a_worker(model, monkeypatch):
     made = []
-    workers = scheduling._Workers
-    monkeypatch.setattr(scheduling, "_Workers", lambda packed: made.append(packed) or workers(packed))
-    scheduling._workers.cache_clear()
+    runners = scheduling._Runners
+    monkeypatch.setattr(scheduling, "_Runners", lambda packed: made.append(packed) or runners(packed))
+    scheduling._runners.cache_clear()
     with in_one_process(1) as found:
         model.simulate(3000, seed=4, scheduler=found.scheduler_address)
         model.simulate(2000, seed=4, scheduler=found.scheduler_address)
@@ -96,14 +96,14 @@ def test_workers_with_other_software_are_refused(model, monkeypatch, name):
 
 
 def test_a_worker_that_joins_later_is_asked_too(model, monkeypatch):
-    """The recipe says what it was packed with."""
+    """What it is sent says what it was packed with."""
     monkeypatch.setattr(scheduling, "_check_workers", lambda *_: None)
-    packed = scheduling.Recipe.packed
+    packed = scheduling.RunSpec.packed
     own = scheduling.software()
     with monkeypatch.context() as patch:
-        patch.setattr("xlmc.run.scheduling.recipe.software", lambda: own | {"numpy": "0.0.1"})
-        other = packed(scheduling.Recipe.of(model, "numpy", 999, 100))
-    monkeypatch.setattr(scheduling.Recipe, "packed", lambda _: other)
+        patch.setattr("xlmc.run.scheduling.run_spec.software", lambda: own | {"numpy": "0.0.1"})
+        other = packed(scheduling.RunSpec.of(model, "numpy", 999, 100))
+    monkeypatch.setattr(scheduling.RunSpec, "packed", lambda _: other)
     with in_one_process(1) as found, pytest.raises(SimulationError, match=r"numpy is .* there and 0\.0\.1 here"):
         model.simulate(1000, scheduler=found.scheduler_address)
 

@@ -12,7 +12,7 @@ from committed_books import EXAMPLES
 
 import xlmc
 from xlmc.run.blocks import Task
-from xlmc.run.scheduling.recipe import worker_of
+from xlmc.run.scheduling.run_spec import model_runner
 from xlmc.sampling.plan import Plan
 
 FORMULAS = {
@@ -34,7 +34,7 @@ def again(worker):
 
 
 def workers(model, method="mc", block=200):
-    worker = worker_of(model, model.program("numpy"), "numpy", 3, block, Plan.of(method, 1000))
+    worker = model_runner(model, model.program("numpy"), "numpy", 3, block, Plan.of(method, 1000))
     return worker, again(worker)
 
 
@@ -66,7 +66,7 @@ def test_little_is_imported(case_study, tmp_path):
     """Neither the parser nor the reader of workbooks: half of the time to start would be theirs."""
     model = xlmc.load(case_study)
     file = tmp_path / "worker"
-    file.write_bytes(pickle.dumps(worker_of(model, model.program("numpy"), "numpy", 1, 32_768)))
+    file.write_bytes(pickle.dumps(model_runner(model, model.program("numpy"), "numpy", 1, 32_768)))
     unpack = f"import pickle, sys; pickle.load(open({str(file)!r}, 'rb')); print(' '.join(sys.modules))"
     where = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     found = subprocess.run([sys.executable, "-c", unpack], capture_output=True, text=True, check=True, env=where)

@@ -12,19 +12,19 @@ import pytest
 
 from xlmc.errors import SimulationError
 from xlmc.run.blocks import Task
-from xlmc.run.scheduling import child, crew, standby
-from xlmc.run.scheduling.child import Child
-from xlmc.run.scheduling.processes import by_processes
-from xlmc.run.scheduling.recipe import Recipe, worker_of
-from xlmc.run.scheduling.sharing import Answers
+from xlmc.run.scheduling import processes, worker_pool, worker_process
+from xlmc.run.scheduling.batches import Answers
+from xlmc.run.scheduling.processes import by_processes, idle_pool
+from xlmc.run.scheduling.run_spec import RunSpec, model_runner
+from xlmc.run.scheduling.worker_process import WorkerProcess
 
 
 @pytest.fixture(autouse=True)
 def none_wait():
     """Each test starts its own processes."""
-    standby.end()
+    idle_pool.end()
     yield
-    standby.end()
+    idle_pool.end()
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def children(monkeypatch):
         started.append(popen(*arguments, **named))
         return started[-1]
 
-    monkeypatch.setattr(child.subprocess, "Popen", start)
+    monkeypatch.setattr(worker_process.subprocess, "Popen", start)
     return started
 
 
@@ -50,7 +50,7 @@ def test_processes_change_no_bit(model, bits, children, jobs):
 
 @pytest.mark.parametrize(("trials", "started"), [(900, 0), (1000, 1)])
 def test_a_long_run_with_jobs_starts_processes(model, monkeypatch, children, trials, started):
-    monkeypatch.setitem(crew.ENGINES, "numpy", replace(crew.ENGINES["numpy"], process_blocks=10))
+    monkeypatch.setitem(worker_pool.ENGINES, "numpy", replace(worker_pool.ENGINES["numpy"], process_blocks=10))
     assert model.simulate(trials).trials == trials
     assert model.simulate(trials, jobs=2).trials == trials
     assert len(children) == started
@@ -66,29 +66,29 @@ def test_an_interruption_ends_the_processes(model, children):
     assert all(one.returncode is not None for one in children)
 
 
-def answers_of(portable, lots):
-    """What a process answers that is given these lots of tasks."""
-    answers, one = Answers(), Child()
+def answers_of(portable, batches):
+    """What a process answers that is given these batches of tasks."""
+    answers, one = Answers(), WorkerProcess()
     one.begin(pickle.dumps(portable), answers)
     found = []
-    for number in range(len(lots) + 1):
+    for number in range(len(batches) + 1):
         of, answer = answers.get()
         assert of is one
         found += one.answered(answer)[1]
-        if number < len(lots):
-            one.ask(number, lots[number])
+        if number < len(batches):
+            one.ask(number, batches[number])
     one.end()
     return found
 
 
 @pytest.mark.parametrize("engine", ["numpy", "jit", "formulas"])
 def test_blocks_of_another_process_are_the_same(model, engine):
-    """Whether it is sent a worker or a recipe; of a run its share is left to chance, here it runs all blocks."""
+    """Whether it is sent a runner or a run spec; of a run its share is left to chance, here it runs all blocks."""
     tasks = [Task(start, 100, start < 300, start < 600) for start in range(0, 1000, 100)]
-    worker = worker_of(model, model.program(engine), engine, 1, 100)
-    portable = worker if engine == "numpy" else Recipe.of(model, engine, 1, 100)
+    runner = model_runner(model, model.program(engine), engine, 1, 100)
+    portable = runner if engine == "numpy" else RunSpec.of(model, engine, 1, 100)
     found = answers_of(portable, [tasks[:3], tasks[3:4], tasks[4:]])
-    assert [pickle.dumps(block) for block in found] == [pickle.dumps(worker.run(task)) for task in tasks]
+    assert [pickle.dumps(block) for block in found] == [pickle.dumps(runner.run(task)) for task in tasks]
 
 
 def test_processes_wait_for_the_next_run(model, bits, children):
@@ -103,18 +103,18 @@ def test_processes_wait_for_the_next_run(model, bits, children):
 
 def rested(model):
     """A process that has had part in a run."""
-    standby.end()
-    (one,) = standby.children(1)
+    idle_pool.end()
+    (one,) = idle_pool.take(1)
     answers = Answers()
-    one.begin(pickle.dumps(worker_of(model, model.program("numpy"), "numpy", 1, 100)), answers)
+    one.begin(pickle.dumps(model_runner(model, model.program("numpy"), "numpy", 1, 100)), answers)
     one.answered(answers.get()[1])
-    standby.give_back([one])
+    idle_pool.give_back([one])
     return one
 
 
 def test_one_that_waits_is_taken_again(model):
     one = rested(model)
-    assert standby.children(1) == [one]
+    assert idle_pool.take(1) == [one]
     one.end()
 
 
@@ -122,38 +122,38 @@ def test_one_that_died_while_it_waited_is_not(model, children):
     one = rested(model)
     children[-1].kill()
     children[-1].wait()
-    (other,) = standby.children(1)
+    (other,) = idle_pool.take(1)
     assert other is not one
     other.end()
 
 
 def test_nobody_waits_for_ever(model, monkeypatch, children):
-    monkeypatch.setattr(standby, "_PATIENCE", 0.01)
+    monkeypatch.setattr(processes, "_PATIENCE", 0.01)
     rested(model)
     assert children[-1].wait(timeout=30) is not None
 
 
 def test_one_that_is_not_needed_is_ended_though_others_are(model, monkeypatch, children):
     """A run with many processes is over; those that follow, every few moments, need one of them."""
-    monkeypatch.setattr(standby, "_PATIENCE", 1.0)
-    started = standby.children(2)
+    monkeypatch.setattr(processes, "_PATIENCE", 1.0)
+    started = idle_pool.take(2)
     answers = Answers()
     for one in started:
-        one.begin(pickle.dumps(worker_of(model, model.program("numpy"), "numpy", 1, 100)), answers)
+        one.begin(pickle.dumps(model_runner(model, model.program("numpy"), "numpy", 1, 100)), answers)
     for _ in started:
         one, answer = answers.get()
         one.answered(answer)
-    standby.give_back(started)
+    idle_pool.give_back(started)
     deadline = time.monotonic() + 30
     while children[0].poll() is None and time.monotonic() < deadline:
-        standby.give_back(standby.children(1))
+        idle_pool.give_back(idle_pool.take(1))
         time.sleep(0.1)
     assert [one.poll() is None for one in children] == [False, True]
 
 
 def test_one_that_dies_as_its_run_begins_is_told(model, children):
     one = rested(model)
-    (again,) = standby.children(1)
+    (again,) = idle_pool.take(1)
     children[-1].kill()
     children[-1].wait()
     answers = Answers()
@@ -165,9 +165,9 @@ def test_one_that_dies_as_its_run_begins_is_told(model, children):
 
 
 def test_a_process_that_dies_is_told(model, children):
-    worker = worker_of(model, model.program("numpy"), "numpy", 1, 100)
+    runner = model_runner(model, model.program("numpy"), "numpy", 1, 100)
     tasks = (Task(start, 100, False) for start in range(0, 10**9, 100))
-    blocks = by_processes(worker, worker, 1, 10**7, tasks)
+    blocks = by_processes(runner, runner, 1, 10**7, tasks)
     next(blocks)
     os.kill(children[0].pid, signal.SIGTERM)
     with pytest.raises(SimulationError, match="a process ended before its time"):
@@ -184,8 +184,8 @@ def test_a_process_that_cannot_be_started_is_told(model, monkeypatch):
 
 
 def test_an_error_in_a_process_comes_after_the_blocks_before_it(model):
-    worker = worker_of(model, model.program("numpy"), "numpy", 1, 100)
-    (block, error) = answers_of(worker, [[Task(0, 100, False), Task(100, "trials", False), Task(200, 100, False)]])
+    runner = model_runner(model, model.program("numpy"), "numpy", 1, 100)
+    (block, error) = answers_of(runner, [[Task(0, 100, False), Task(100, "trials", False), Task(200, 100, False)]])
     assert block.trials == 100
     assert isinstance(error, TypeError)
     assert "integers" in str(error)
@@ -204,4 +204,23 @@ def test_a_script_needs_no_guard(tmp_path, case_study):
     found = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True, env=where)
     assert found.stdout.startswith("once ")
     assert found.stdout.count("once") == 1
+    assert found.stderr == ""
+
+
+KILLED = """
+import os, signal, sys, xlmc
+def kill(standing):
+    if standing.trials > 400_000:
+        os.kill(os.getpid(), signal.SIGKILL)
+xlmc.load(sys.argv[1]).simulate(10**9, jobs=2, scheduler="processes", progress=kill)
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
+def test_a_program_that_is_killed_leaves_no_process(case_study):
+    """Its processes hold the pipe of its errors, which is at its end when all are gone."""
+    where = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    command = [sys.executable, "-c", KILLED, case_study]
+    found = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False, env=where, timeout=30)
+    assert found.returncode == -signal.SIGKILL
     assert found.stderr == ""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.run.blocks import Block, Task, Worker
+from xlmc.run.blocks import Block, ModelRunner, Task
 from xlmc.run.rare.account import RareAccount
 from xlmc.run.rare.equalising import Equalised
 from xlmc.run.rare.finding import Found, find
@@ -174,7 +174,7 @@ def accepted_blocks(model: Model, uniforms: Floats, block: int, wants_inputs: Ca
     given.uniforms = uniforms
     sampler = model.sampler(0, block, filler=given.filler)
     evaluator = model.program("numpy").evaluator(block)
-    worker = Worker(sampler, evaluator, block, len(model.forecasts), model.fallible)
+    runner = ModelRunner(sampler, evaluator, block, len(model.forecasts), model.fallible)
     for start in range(0, len(uniforms), block):
         count = min(block, len(uniforms) - start)
-        yield worker.run(Task(start, count, prior=False, inputs=wants_inputs()))
+        yield runner.run(Task(start, count, prior=False, inputs=wants_inputs()))

@@ -1,1 +1,1 @@
-"""Who runs the blocks: threads, processes, or the workers of a Dask cluster. Blocks come back in order from all."""
+"""What runs the blocks: threads, processes, or the workers of a Dask cluster. All give them in the same order."""

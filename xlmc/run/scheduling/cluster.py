@@ -1,7 +1,7 @@
-"""Blocks on a Dask cluster: an existing one, or one of this machine.
+"""Run blocks on a Dask cluster: an existing one, or one of this machine.
 
-The recipe is a task of its own, so Dask sends it to each worker once and makes it again where it was lost with one. A
-task is a few blocks; a worker that dies costs those it had, and Dask gives them to another. Only as many tasks are
+The `RunSpec` is a Dask task of its own, so Dask sends it to each worker once, and again to a worker that takes a lost
+one's place. A few blocks are one Dask task; where a worker dies, Dask gives its blocks to another. Only as many are
 under way as keep the workers busy, and results are taken in order, so memory stays flat here and there.
 """
 
@@ -18,8 +18,8 @@ from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any
 
 from xlmc.errors import SimulationError
-from xlmc.run.blocks import Block, Task, Worker
-from xlmc.run.scheduling.recipe import LIBRARIES, Recipe, check_software, software, unpacked
+from xlmc.run.blocks import Block, ModelRunner, Task
+from xlmc.run.scheduling.run_spec import LIBRARIES, RunSpec, check_software, software, unpacked
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -27,25 +27,25 @@ if TYPE_CHECKING:
 __all__ = ["by_cluster"]
 
 MOST_BLOCKS = 8
-"""In a task: the scheduler's milliseconds must not count beside them."""
+"""In one Dask task: enough that the scheduler's milliseconds do not count beside them."""
 
 PATIENCE = 30.0
 """Seconds to wait for a scheduler, and for its first worker."""
 
 _DEAF = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
-"""What a worker of a local cluster starts with: Ctrl-C is for us, and we end it."""
+"""Run by each worker of a local cluster first: Ctrl-C is for this process, which then ends the workers."""
 
 MODELS = 4
-"""That a worker has at hand: a cluster may serve several people."""
+"""Models that a worker keeps: a cluster may serve several people."""
 
 
 def by_cluster(
-    recipe: Recipe, scheduler: str, workers: int | None, blocks: int, tasks: Iterable[Task]
+    spec: RunSpec, scheduler: str, workers: int | None, blocks: int, tasks: Iterable[Task]
 ) -> Iterator[Block]:
     """The blocks in the order of their tasks.
 
     Args:
-        recipe: what to run.
+        spec: what to run.
         scheduler: `local`, or the address of a scheduler.
         workers: how many a local cluster has; by default one a processor.
         blocks: how many there will be.
@@ -57,7 +57,7 @@ def by_cluster(
     """
     with _client(scheduler, workers) as client:
         _check_workers(client, scheduler)
-        yield from _blocks(client, recipe.packed(), blocks, iter(tasks))
+        yield from _blocks(client, spec.packed(), blocks, iter(tasks))
 
 
 @contextmanager
@@ -74,7 +74,7 @@ def _client(scheduler: str, workers: int | None) -> Iterator[Client]:
         return
 
     class Closing(Client):  # type: ignore[misc]  # Dask tells mypy nothing of its types
-        """Closes itself where it cannot start: one that is deleted open may wait for a lock that the next one holds."""
+        """It closes itself where it cannot start: an open one that is deleted may wait for a lock of the next one."""
 
         def start(self, **options: Any) -> None:
             try:
@@ -111,11 +111,11 @@ def _blocks(client: Client, packed: bytes, blocks: int, tasks: Iterator[Task]) -
 
     threads = sum(client.nthreads().values())
     size = max(1, min(MOST_BLOCKS, blocks // (4 * threads)))
-    recipe = client.submit(_recipe, packed, key=f"xlmc-{hashlib.sha256(packed).hexdigest()}")
+    spec = client.submit(_spec, packed, key=f"xlmc-{hashlib.sha256(packed).hexdigest()}")
     waiting: deque[Future[list[Block]]] = deque()
     try:
         while some := list(islice(tasks, size)):
-            waiting.append(client.submit(_run, recipe, some, pure=False))
+            waiting.append(client.submit(_run, spec, some, pure=False))
             if len(waiting) > 2 * threads + 2:
                 yield from waiting.popleft().result()
         while waiting:
@@ -129,39 +129,39 @@ def _blocks(client: Client, packed: bytes, blocks: int, tasks: Iterator[Task]) -
         client.cancel(list(waiting))
 
 
-def _recipe(packed: bytes) -> bytes:
+def _spec(packed: bytes) -> bytes:
     return packed
 
 
 def _run(packed: bytes, tasks: list[Task]) -> list[Block]:
-    """On a worker: blocks in their order."""
-    idle = _workers(packed)
-    worker = idle.take()
+    """Run blocks in order, on a worker of the cluster."""
+    runners = _runners(packed)
+    runner = runners.take()
     try:
-        return [worker.run(task) for task in tasks]
+        return [runner.run(task) for task in tasks]
     finally:
-        idle.give(worker)
+        runners.give(runner)
 
 
-class _Workers:
-    """Those of one recipe, as many as there are threads at work."""
+class _Runners:
+    """The runners of one run on a worker: as many as its threads use at once."""
 
     def __init__(self, packed: bytes) -> None:
-        self._recipe = unpacked(packed)
-        self._model = self._recipe.model()
-        self._program = self._model.program(self._recipe.engine)
-        self._idle: SimpleQueue[Worker] = SimpleQueue()
+        self._spec = unpacked(packed)
+        self._model = self._spec.model()
+        self._program = self._model.program(self._spec.engine)
+        self._idle: SimpleQueue[ModelRunner] = SimpleQueue()
 
-    def take(self) -> Worker:
+    def take(self) -> ModelRunner:
         try:
             return self._idle.get_nowait()
         except Empty:
-            return self._recipe.worker(self._model, self._program)
+            return self._spec.runner_of(self._model, self._program)
 
-    def give(self, worker: Worker) -> None:
-        self._idle.put(worker)
+    def give(self, runner: ModelRunner) -> None:
+        self._idle.put(runner)
 
 
 @lru_cache(MODELS)
-def _workers(packed: bytes) -> _Workers:
-    return _Workers(packed)
+def _runners(packed: bytes) -> _Runners:
+    return _Runners(packed)

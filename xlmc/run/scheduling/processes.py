@@ -1,26 +1,109 @@
-"""Processes of this machine that run blocks: no lock is shared, so they scale where threads wait for each other.
+"""Processes of this machine that run blocks: they share no lock, so they scale where threads wait for each other.
 
-This process runs blocks too, from the start; the others join it when they are ready.
+This process runs blocks too, from the start; the others join it when they are ready. After a run they wait for the
+next one, which then need not start them.
 """
 
 from __future__ import annotations
 
+import atexit
+import os
 import pickle
 from collections.abc import Iterable, Iterator
+from threading import Lock, Timer
+from typing import TYPE_CHECKING, Final
 
-from xlmc.run.blocks import Block, Portable, Runner, Task
-from xlmc.run.scheduling import standby
-from xlmc.run.scheduling.sharing import Answers, Sharing, forget
+from xlmc.run.scheduling.batches import Answers, Sharing, discard
+from xlmc.run.scheduling.worker_process import WorkerProcess
 
-__all__ = ["by_processes"]
+if TYPE_CHECKING:
+    from xlmc.run.blocks import Block, Portable, Runner, Task
+
+__all__ = ["IdlePool", "by_processes", "idle_pool"]
+
+_PATIENCE: Final = 60.0
+"""Seconds that a process waits for the next run."""
+
+
+class IdlePool:
+    """Processes between runs. The last used is taken first, so that those which few runs need are ended in time."""
+
+    def __init__(self) -> None:
+        self._idle: dict[WorkerProcess, Timer] = {}  # each with what will end it
+        self._lock = Lock()
+
+    def take(self, count: int) -> list[WorkerProcess]:
+        """So many processes: idle ones first, then new ones.
+
+        Raises:
+            SimulationError: one cannot be started.
+        """
+        taken: list[WorkerProcess] = []
+        try:
+            while len(taken) < count:
+                taken.append(self._last_used() or WorkerProcess())
+        except BaseException:
+            self.give_back(taken)
+            raise
+        return taken
+
+    def _last_used(self) -> WorkerProcess | None:
+        with self._lock:
+            while self._idle:
+                worker, timer = self._idle.popitem()
+                timer.cancel()
+                if worker.alive:
+                    return worker
+                worker.end()
+        return None
+
+    def give_back(self, workers: Iterable[WorkerProcess]) -> None:
+        """Keep the processes that are at rest, and end the others."""
+        for worker in workers:
+            if worker.rest():
+                self._keep(worker)
+            else:
+                worker.end()
+
+    def _keep(self, worker: WorkerProcess) -> None:
+        timer = Timer(_PATIENCE, self._end_idle, [worker])
+        timer.daemon = True
+        with self._lock:
+            self._idle[worker] = timer
+        timer.start()
+
+    def _end_idle(self, worker: WorkerProcess) -> None:
+        """End a process, unless a run has it."""
+        with self._lock:
+            timer = self._idle.pop(worker, None)
+        if timer is not None:
+            worker.end()
+
+    def end(self) -> None:
+        """End all idle processes."""
+        with self._lock:
+            idle, self._idle = self._idle, {}
+        for worker, timer in idle.items():
+            timer.cancel()
+            worker.end()
+
+    def forget(self) -> None:
+        """In a forked process: the idle ones are its parent's, and the lock may be held by a thread of the parent."""
+        self._of_parent, self._idle, self._lock = self._idle, {}, Lock()
+
+
+idle_pool = IdlePool()
+atexit.register(idle_pool.end)
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=idle_pool.forget)
 
 
 def by_processes(portable: Portable, own: Runner, others: int, blocks: int, tasks: Iterable[Task]) -> Iterator[Block]:
     """The blocks in the order of their tasks.
 
     Args:
-        portable: what makes the runner of another process.
-        own: what runs its blocks in this process.
+        portable: makes the runner of each other process.
+        own: runs blocks in this process.
         others: how many more processes.
         blocks: how many there will be at most.
         tasks: taken as they are needed.
@@ -29,11 +112,11 @@ def by_processes(portable: Portable, own: Runner, others: int, blocks: int, task
         SimulationError: a process cannot be started, or ended before its time.
     """
     packed, answers = pickle.dumps(portable, protocol=5), Answers()
-    children = standby.children(others)
+    workers = idle_pool.take(others)
     try:
-        for child in children:
-            child.begin(packed, answers)
-        yield from Sharing(own, children, answers, blocks, tasks).in_order()
+        for worker in workers:
+            worker.begin(packed, answers)
+        yield from Sharing(own, workers, answers, blocks, tasks).in_order()
     finally:
-        standby.give_back(children)
-        forget(answers)
+        idle_pool.give_back(workers)
+        discard(answers)

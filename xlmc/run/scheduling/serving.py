@@ -1,10 +1,9 @@
-"""A process that runs blocks for another, seen from inside.
+"""The inside of a worker process: it runs blocks for the process that started it, its parent.
 
-It is told what makes its runner, with the path to import from: it answers None. Then it is given tasks, and answers
-each lot by its blocks, the last of which is what went wrong, if something did. Told None, it lets go of the runner and
-waits for the next.
+The parent sends three kinds of message. A job names the import path and holds a pickled `Portable`: the process makes
+its runner and answers None. A list of tasks is answered by their blocks (see `run_batch`). None lets the runner go.
 
-It imports what the runner is made of and no more: a process that is late brings little.
+Only what a runner is made of is imported: the sooner a process is ready, the more blocks it runs.
 """
 
 from __future__ import annotations
@@ -14,66 +13,63 @@ import pickle
 import sys
 from typing import TYPE_CHECKING, Any, BinaryIO
 
-from xlmc.run.scheduling.lots import run_lot
+from xlmc.run.scheduling.batches import run_batch
 
 if TYPE_CHECKING:
     from xlmc.run.blocks import Block, Portable, Runner, Task
 
-__all__ = ["Order", "send", "serve"]
-
-Order = tuple[list[str], bytes]
-"""The path to import from, and a `Portable`, pickled."""
+__all__ = ["send", "serve"]
 
 
 def send(pipe: Any, message: object) -> None:
-    """To the other side."""
+    """Write a message into a pipe."""
     pickle.dump(message, pipe, protocol=5)
     pipe.flush()
 
 
 def serve() -> None:
-    """Until nobody asks any more."""
-    source, answers = sys.stdin.buffer, _answers()
+    """Serve requests until the parent closes the pipe."""
+    requests, answers = sys.stdin.buffer, _answers()
     runner: Runner | None = None
     try:
         while True:
-            message: Order | list[Task] | None = pickle.load(source)
+            message: tuple[list[str], bytes] | list[Task] | None = pickle.load(requests)
             if isinstance(message, list):
                 send(answers, _blocks(runner, message))
                 continue
             runner = None
             if message is not None:
-                runner, failure = _runner(message)
+                runner, failure = _runner(*message)
                 send(answers, failure)
     except (EOFError, BrokenPipeError):
         return
 
 
-def _runner(order: Order) -> tuple[Runner | None, Exception | None]:
-    sys.path[:], packed = order
+def _runner(path: list[str], packed: bytes) -> tuple[Runner | None, Exception | None]:
+    sys.path[:] = path
     try:
         portable: Portable = pickle.loads(packed)
         return portable.runner(), None
-    except Exception as error:  # whatever it is, it is told on the other side
+    except Exception as error:  # of any kind: it is raised in the parent
         return None, _portable(error)
 
 
 def _blocks(runner: Runner | None, tasks: list[Task]) -> list[Block | Exception]:
     assert runner is not None, "tasks before a runner"
-    return [_portable(each) if isinstance(each, Exception) else each for each in run_lot(runner, tasks)]
+    return [_portable(each) if isinstance(each, Exception) else each for each in run_batch(runner, tasks)]
 
 
 def _portable(error: Exception) -> Exception:
-    """The error, or its words where it cannot be sent."""
+    """The error, or its words where it cannot be pickled and made again."""
     try:
         pickle.loads(pickle.dumps(error))
-    except Exception:  # an exception may hold anything, and take any arguments to be made again
+    except Exception:  # an exception may hold anything, and its class may want any arguments
         return RuntimeError(f"{type(error).__name__}: {error}")
     return error
 
 
 def _answers() -> BinaryIO:
-    """The pipe for answers; whatever is printed goes to stderr."""
+    """The pipe for answers; what anybody prints goes to stderr instead."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     return answers

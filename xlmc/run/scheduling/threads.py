@@ -1,4 +1,4 @@
-"""Threads of this process that run blocks: for engines whose blocks are native code, and hold no lock of Python's."""
+"""Threads of this process that run blocks: for engines whose blocks are native code without Python's lock."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import takewhile
 from queue import SimpleQueue
 from threading import Thread
+from typing import TYPE_CHECKING
 
 from xlmc.errors import SimulationError
-from xlmc.run.blocks import Block, Runner, Task
-from xlmc.run.scheduling.lots import run_lot
-from xlmc.run.scheduling.sharing import Answers, Helper, Sharing, forget
+from xlmc.run.scheduling.batches import Answers, Sharing, Worker, discard, run_batch
+
+if TYPE_CHECKING:
+    from xlmc.run.blocks import Block, Runner, Task
 
 __all__ = ["by_threads"]
 
@@ -19,7 +21,7 @@ def by_threads(runners: Sequence[Runner], blocks: int, tasks: Iterable[Task]) ->
     """The blocks in the order of their tasks.
 
     Args:
-        runners: one a thread; this thread is the first.
+        runners: one for each thread; the first is for this thread.
         blocks: how many there will be at most.
         tasks: taken as they are needed.
 
@@ -32,32 +34,32 @@ def by_threads(runners: Sequence[Runner], blocks: int, tasks: Iterable[Task]) ->
             yield own.run(task)
         return
     answers = Answers()
-    threads = [_Thread(runner, answers) for runner in others]
+    workers = [_WorkerThread(runner, answers) for runner in others]
     try:
-        for thread in threads:
-            thread.start()
-        yield from Sharing(own, threads, answers, blocks, tasks).in_order()
+        for worker in workers:
+            worker.start()
+        yield from Sharing(own, workers, answers, blocks, tasks).in_order()
     finally:
-        for thread in threads:
-            thread.end()
-        for thread in threads:
-            thread.join()
-        forget(answers)
+        for worker in workers:
+            worker.stop()
+        for worker in workers:
+            worker.join()
+        discard(answers)
 
 
-class _Thread(Helper):
+class _WorkerThread(Worker):
     """A thread, for one run."""
 
     def __init__(self, runner: Runner, answers: Answers) -> None:
         super().__init__()
         self._runner, self._answers = runner, answers
-        self._lots: SimpleQueue[Sequence[Task] | None] = SimpleQueue()
-        self._ended = False
-        # A program may end without closing a run that it left half-way.
+        self._batches: SimpleQueue[Sequence[Task] | None] = SimpleQueue()
+        self._stopped = False
+        # A daemon: a program may end without closing a run that it left half-way.
         self._thread = Thread(target=self._serve, daemon=True)
 
     def start(self) -> None:
-        """Have it take lots.
+        """Start the thread.
 
         Raises:
             SimulationError: the system has no thread left.
@@ -69,22 +71,22 @@ class _Thread(Helper):
         self._ready = True
 
     def _take(self, tasks: Sequence[Task]) -> None:
-        self._lots.put(tasks)
+        self._batches.put(tasks)
 
     def _serve(self) -> None:
         try:
-            while (tasks := self._lots.get()) is not None:
-                wanted = takewhile(lambda _: not self._ended, tasks)
-                self._answers.put((self, run_lot(self._runner, wanted)))
-        except BaseException as error:  # whatever it is, else the run would wait for an answer for ever
+            while (tasks := self._batches.get()) is not None:
+                wanted = takewhile(lambda _: not self._stopped, tasks)
+                self._answers.put((self, run_batch(self._runner, wanted)))
+        except BaseException as error:  # of any kind: else the run would wait for an answer for ever
             self._answers.put((self, error))
 
-    def end(self) -> None:
-        """Have it end after the block it is at."""
-        self._ended = True
-        self._lots.put(None)
+    def stop(self) -> None:
+        """Have the thread end after the block that it is running."""
+        self._stopped = True
+        self._batches.put(None)
 
     def join(self) -> None:
-        """Wait until it has ended, if it was started."""
+        """Wait until the thread has ended, if it was started."""
         if self._thread.is_alive():
             self._thread.join()

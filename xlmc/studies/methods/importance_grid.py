@@ -21,7 +21,7 @@ from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
 from xlmc.run.blocks import Task
 from xlmc.run.model import Model
-from xlmc.run.scheduling.recipe import worker_of
+from xlmc.run.scheduling.run_spec import model_runner
 from xlmc.run.simulate import simulate
 from xlmc.sampling.methods import Margin
 from xlmc.sampling.plan import Plan
@@ -102,10 +102,10 @@ def _weighted(
     program = model.program("numpy")
     block = min(_BLOCK, program.largest_block)
     plan = _GridPlan("mc", trials, grids=grids, weights=np.empty(block))
-    worker = worker_of(model, program, "numpy", seed, block, plan)
+    runner = model_runner(model, program, "numpy", seed, block, plan)
     weights, columns, accepted = [], [], []
     for start in range(0, trials, block):
-        found = worker.run(Task(start, min(block, trials - start), prior=False, inputs=False))
+        found = runner.run(Task(start, min(block, trials - start), prior=False, inputs=False))
         weights.append(plan.weights[found.accepted - start])
         columns.append(found.forecasts)
         accepted.append(found.accepted)

@@ -14,27 +14,29 @@ from xlmc.definitions.model import Definitions
 from xlmc.errors import SimulationError
 from xlmc.evaluation.engine import Program
 from xlmc.evaluation.engines import ENGINES
-from xlmc.run.blocks import Worker
+from xlmc.run.blocks import ModelRunner
 from xlmc.run.model import Model
 from xlmc.run.version import __version__
 from xlmc.sampling.plan import Plan
 from xlmc.workbook import Workbook
 
-__all__ = ["Recipe", "check_software", "software", "worker_of"]
+__all__ = ["RunSpec", "check_software", "model_runner", "software"]
 
 LIBRARIES = ("numpy", "scipy", "formulas", *(engine.library for engine in ENGINES.values() if engine.library))
 """A result depends on them to its last bit; on those of an engine with that engine only."""
 
 
-def worker_of(model: Model, program: Program, engine: str, seed: int, block: int, plan: Plan | None = None) -> Worker:
-    """What runs blocks of a model in this process, in one thread."""
+def model_runner(
+    model: Model, program: Program, engine: str, seed: int, block: int, plan: Plan | None = None
+) -> ModelRunner:
+    """What runs the blocks of a model in this process, in one thread."""
     sampler, evaluator = model.sampler(seed, block, engine, plan), program.evaluator(block)
-    return Worker(sampler, evaluator, block, len(model.forecasts), model.fallible)
+    return ModelRunner(sampler, evaluator, block, len(model.forecasts), model.fallible)
 
 
 @dataclass(frozen=True)
-class Recipe:
-    """All that blocks are a function of, besides their trial numbers."""
+class RunSpec:
+    """All that decides the blocks of a run, besides their trial numbers."""
 
     workbook: Workbook
     definitions: Definitions
@@ -52,45 +54,45 @@ class Recipe:
         seed: int,
         block: int,
         plan: Plan | None = None,
-    ) -> Recipe:
-        """The recipe of a run."""
+    ) -> RunSpec:
+        """Of a run of this model."""
         bare = replace(model.workbook, parts={}, data=b"")  # the file as it was: only the result sheets need it
         needed = plan if plan is not None and plan.size else None  # independent trials may be any number
         return cls(bare, model.definitions, model.path, engine, seed, block, needed)
 
     def packed(self) -> bytes:
-        """The recipe with the software it was made with, for `unpacked`."""
+        """It and the software that it was made with, as bytes for `unpacked`."""
         return pickle.dumps((software(), pickle.dumps(self, protocol=5)), protocol=5)
 
     def model(self) -> Model:
-        """The model again."""
+        """The model, made again."""
         return Model(self.workbook, self.definitions, self.path)
 
-    def runner(self) -> Worker:
+    def runner(self) -> ModelRunner:
         """See `Portable`."""
         model = self.model()
-        return self.worker(model, model.program(self.engine))
+        return self.runner_of(model, model.program(self.engine))
 
-    def worker(self, model: Model, program: Program) -> Worker:
-        """What runs its blocks, given its model again and that model's program."""
-        return worker_of(model, program, self.engine, self.seed, self.block, self.plan)
+    def runner_of(self, model: Model, program: Program) -> ModelRunner:
+        """What runs the blocks, given `model()` and its program."""
+        return model_runner(model, program, self.engine, self.seed, self.block, self.plan)
 
 
-def unpacked(packed: bytes) -> Recipe:
-    """The recipe that was packed. It must come from a process of one's own: to unpack is to run what is in it.
+def unpacked(packed: bytes) -> RunSpec:
+    """What was packed. The bytes must come from a process of one's own: to unpickle them is to run what is in them.
 
     Raises:
         SimulationError: it was packed with other software than there is here.
     """
     theirs, inner = pickle.loads(packed)
     check_software(theirs, software(), "this worker")
-    recipe: Recipe = pickle.loads(inner)
-    return recipe
+    spec: RunSpec = pickle.loads(inner)
+    return spec
 
 
 @cache
 def software() -> dict[str, str]:
-    """Name -> version of what decides a result here, with the processor's vector instructions."""
+    """Name -> version of what decides the last bits of a result here, and the processor's vector instructions."""
     import numpy
 
     found: dict[str, list[str]] = numpy.show_config(mode="dicts")["SIMD Extensions"]  # type: ignore[assignment]

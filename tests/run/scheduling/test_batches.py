@@ -10,18 +10,18 @@ import pytest
 
 from xlmc.errors import SimulationError
 from xlmc.run.blocks import Task
-from xlmc.run.scheduling import sharing, standby
-from xlmc.run.scheduling.processes import by_processes
-from xlmc.run.scheduling.sharing import Answers, Helper, Sharing
+from xlmc.run.scheduling import batches
+from xlmc.run.scheduling.batches import Answers, Sharing, Worker
+from xlmc.run.scheduling.processes import by_processes, idle_pool
 from xlmc.run.scheduling.threads import by_threads
 
 
 @pytest.fixture(autouse=True)
 def none_wait():
     """Processes that other tests have started are not for these."""
-    standby.end()
+    idle_pool.end()
     yield
-    standby.end()
+    idle_pool.end()
 
 
 class Numbers:
@@ -115,7 +115,7 @@ def test_tasks_are_taken_as_they_are_needed():
 
 
 def test_the_first_block_comes_soon():
-    """However slow blocks are: before it a thread has not run a whole lot of many."""
+    """However slow blocks are: before it a thread has not run a whole batch of many."""
     other = Numbers()
     blocks = by_threads([Slow(Numbers()), Slow(other)], 10**6, numbered())
     next(blocks)
@@ -123,28 +123,28 @@ def test_the_first_block_comes_soon():
     blocks.close()
 
 
-class Recording(Helper):
-    """Answers at once, and knows how large its lots were."""
+class Recording(Worker):
+    """Answers at once, and knows how large its batches were."""
 
     def __init__(self, answers):
         super().__init__()
-        self.answers, self.lots = answers, []
+        self.answers, self.batches = answers, []
         self._ready = True
 
     def _take(self, tasks):
-        self.lots.append(len(tasks))
+        self.batches.append(len(tasks))
         self.answers.put((self, [task.start for task in tasks]))
 
 
 @pytest.mark.parametrize(("seconds", "most"), [(0.001, 4), (0.025, 4), (0.03, 3), (0.06, 1), (5.0, 1)])
-def test_lots_are_small_where_blocks_are_slow(monkeypatch, seconds, most):
-    """Else a time limit, and whoever looks at the progress, would wait for a whole lot of them."""
+def test_batches_are_small_where_blocks_are_slow(monkeypatch, seconds, most):
+    """Else a time limit, and whoever looks at the progress, would wait for a whole batch of them."""
     answers, clock = Answers(), itertools.count()
-    monkeypatch.setattr(sharing, "perf_counter", lambda: seconds * next(clock))
-    helper = Recording(answers)
-    assert list(Sharing(Numbers(), [helper], answers, 1000, numbered()).in_order()) == list(range(1000))
-    assert helper.lots[0] == helper.lots[-1] == 1
-    assert max(helper.lots) == most
+    monkeypatch.setattr(batches, "perf_counter", lambda: seconds * next(clock))
+    worker = Recording(answers)
+    assert list(Sharing(Numbers(), [worker], answers, 1000, numbered()).in_order()) == list(range(1000))
+    assert worker.batches[0] == worker.batches[-1] == 1
+    assert max(worker.batches) == most
 
 
 class Ends(Numbers):

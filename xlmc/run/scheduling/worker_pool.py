@@ -1,4 +1,4 @@
-"""Who was asked to run the blocks, and who does where nobody was named."""
+"""Choose what runs the blocks: threads, processes or a Dask cluster."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from xlmc.errors import SimulationError
 from xlmc.evaluation.engines import ENGINES
-from xlmc.run.blocks import Block, Task, Worker
+from xlmc.run.blocks import Block, ModelRunner, Task
 from xlmc.run.scheduling.cluster import by_cluster
 from xlmc.run.scheduling.processes import by_processes
-from xlmc.run.scheduling.recipe import Recipe, worker_of
+from xlmc.run.scheduling.run_spec import RunSpec, model_runner
 from xlmc.run.scheduling.threads import by_threads
 
 if TYPE_CHECKING:
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from xlmc.run.model import Model
     from xlmc.sampling.plan import Plan
 
-__all__ = ["Crew"]
+__all__ = ["WorkerPool"]
 
 
 @dataclass(frozen=True, slots=True)
-class Crew:
-    """Threads, processes or the workers of a cluster.
+class WorkerPool:
+    """The threads, processes or Dask workers that a run was asked to use.
 
     Attributes:
         jobs: threads or processes.
@@ -33,7 +33,7 @@ class Crew:
         workers: of a local cluster.
 
     Raises:
-        SimulationError: there is no such crew.
+        SimulationError: the settings contradict each other, or name no scheduler.
     """
 
     jobs: int = 1
@@ -58,26 +58,27 @@ class Crew:
         """The blocks of a run, of `block` trials each, in the order of their tasks.
 
         Raises:
-            SimulationError: the crew cannot be had, or did not finish.
+            SimulationError: the workers cannot be had, or did not finish.
         """
         blocks = -(-plan.trials // block)
         jobs = min(self.jobs, blocks)
-        scheduler = self.scheduler or _usual(settings.engine, jobs, blocks)
+        scheduler = self.scheduler or _scheduler(settings.engine, jobs, blocks)
 
-        def worker() -> Worker:
-            return worker_of(model, program, settings.engine, settings.seed, block, plan)
+        def runner() -> ModelRunner:
+            return model_runner(model, program, settings.engine, settings.seed, block, plan)
 
         if scheduler == "threads":
-            yield from by_threads([worker() for _ in range(jobs)], blocks, tasks)
+            yield from by_threads([runner() for _ in range(jobs)], blocks, tasks)
             return
-        recipe = Recipe.of(model, settings.engine, settings.seed, block, plan)
+        spec = RunSpec.of(model, settings.engine, settings.seed, block, plan)
         if scheduler == "processes":
-            own = worker()
-            portable = own if ENGINES[settings.engine].portable else recipe
+            own = runner()
+            portable = own if ENGINES[settings.engine].portable else spec
             yield from by_processes(portable, own, jobs - 1, blocks, tasks)
         else:
-            yield from by_cluster(recipe, scheduler, self.workers, blocks, tasks)
+            yield from by_cluster(spec, scheduler, self.workers, blocks, tasks)
 
 
-def _usual(engine: str, jobs: int, blocks: int) -> str:
+def _scheduler(engine: str, jobs: int, blocks: int) -> str:
+    """The scheduler of a run that names none: processes where they save more time than they take to start."""
     return "processes" if jobs > 1 and blocks >= ENGINES[engine].process_blocks else "threads"

@@ -14,6 +14,7 @@ from described import undescribed
 
 from xlmc.cli import xlmc
 from xlmc.distributions import FAMILIES
+from xlmc.run.version import __version__
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -86,7 +87,12 @@ def test_readme_shows_the_output_of_its_command(tmp_path):
     assert [line.rstrip() for line in shown.splitlines() if "results.xlsx" not in line] == table
 
 
+def test_package_and_citation_name_the_version():
+    for name, line in (("pyproject.toml", f'version = "{__version__}"'), ("CITATION.cff", f"version: {__version__}")):
+        assert line in (ROOT / name).read_text(encoding="utf-8").splitlines(), name
+
+
 def test_links_between_documents_lead_somewhere():
-    for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
+    for page in (*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")):
         for target in re.findall(r"\]\((?!http)([^)#]+)", page.read_text(encoding="utf-8")):
             assert (page.parent / target).exists(), f"{page.name}: {target}"

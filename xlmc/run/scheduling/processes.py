@@ -2,6 +2,23 @@
 
 This process runs blocks too, from the start; the others join it when they are ready. After a run they wait for the
 next one, which then need not start them.
+
+Why no library does this: `python benchmarks/pools.py` runs the same blocks with loky's `get_reusable_executor` and with
+`concurrent.futures.ProcessPoolExecutor` in the place of `IdlePool` and `WorkerProcess` (loky 3.7.0, Python 3.11.7,
+2026-11-23, two cores; benchmarks/results/pools.json). With `-j 2`, as a multiple of the speed of these modules in the
+same turn, the median of the turns:
+
+    case, engine numpy unless named                 loky   concurrent.futures
+    case study, the process waits from before       1.00   0.98
+    case study, the process is started in the run   0.93   0.97
+    skid, which keeps every trial, waiting          0.81   0.84
+    skid, started                                   0.92   0.88
+    case study, engine formulas, waiting            1.04   1.01
+    case study, a whole program with one run        0.86   0.92
+
+So a process that waits is as fast where answers are small. Both lose where a program runs once, as every command does,
+and where answers are large. After a SIGKILL of the program both leave their processes behind (they were still there
+after 90 s); these end with it. `concurrent.futures` also needs a script to guard its main module.
 """
 
 from __future__ import annotations

@@ -8,12 +8,14 @@ without an operator meets every text that begins with it. Letters: n trials, k r
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Final
 
 import numpy as np
 
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions.arguments import direct_errors, earliest, refused, where_wrong, with_errors
 from xlmc.functions.criteria import met
+from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.logical import choose
 from xlmc.functions.lookup.picking import Places, cell_of, each_part, picked, side_by_side
 from xlmc.functions.math import aggregate
@@ -98,12 +100,15 @@ def _reduced(cells: Value, field: Value, reduce: Reduce, held: Bools) -> Value:
     return with_errors(reduce(column, held), where_wrong(~known, ErrorCode.VALUE))
 
 
-def _register(name: str, meaning: str, reduce: Reduce, returns: Kind = Kind.NUMBER) -> None:
+_OF_NUMBERS: Final = Facts(empty_cells=EmptyCells.IGNORED_IN_FIRST)
+
+
+def _register(name: str, meaning: str, reduce: Reduce, returns: Kind = Kind.NUMBER, facts: Facts = _OF_NUMBERS) -> None:
     def body(database: Value, field: Value, criteria: Value, *, date1904: bool = False) -> Value:
         return _of_records(database, field, criteria, reduce, date1904)
 
     body.__doc__ = meaning
-    excel(name, Cells, Anything, Cells, returns=returns, dated=True)(body)
+    excel(name, Cells, Anything, Cells, returns=returns, dated=True, facts=facts)(body)
 
 
 _register("DSUM", "Sum of the field's numbers.", numbers_held(aggregate.sum_))
@@ -125,7 +130,7 @@ def _the_one(column: Value, held: Bools) -> Value:
     return with_errors(found, earliest(none, several))
 
 
-_register("DGET", "The field of the only record that meets the criteria.", _the_one, Kind.ANY)
+_register("DGET", "The field of the only record that meets the criteria.", _the_one, Kind.ANY, Facts())
 
 
 def _count(name: str, meaning: str, counts: Callable[[Value], Bools]) -> None:
@@ -146,7 +151,7 @@ def _count(name: str, meaning: str, counts: Callable[[Value], Bools]) -> None:
         return choose(absent, _of_records(database, constant(1), criteria, of_all, date1904), counted)
 
     body.__doc__ = meaning
-    excel(name, Cells, Anything, Cells, dated=True)(body)
+    excel(name, Cells, Anything, Cells, dated=True, facts=_OF_NUMBERS)(body)
 
 
 _count("DCOUNT", "How many of the records have a number in the field.", lambda column: column.kinds == NUMBER)

@@ -16,6 +16,7 @@ from typing import Any, ClassVar, Final
 import numpy as np
 
 from xlmc.functions.denormals import TINIEST
+from xlmc.functions.facts import Facts
 from xlmc.functions.registry import Function, Kind, Number
 from xlmc.functions.values import Bools, Floats
 
@@ -97,5 +98,7 @@ def never_cancels(result: tuple[float, float], first: tuple[float, float], secon
 
 _SETTLES: Final = Settled()
 
-SETTLED: Final = Function("settled", (Number, Number), _SETTLES, Kind.NUMBER, ufunc=_SETTLES)
+SETTLED: Final = Function(
+    "settled", (Number, Number), _SETTLES, Kind.NUMBER, ufunc=_SETTLES, facts=Facts(never_errs=True)
+)
 """The function of a sum, and of the number in it that comes first."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.facts import EmptyCells, Facts, Repeats
 from xlmc.functions.registry import Anything, Kind, Logical, Logicals, excel
 from xlmc.functions.values import (
     BLANK,
@@ -67,7 +68,7 @@ def if_na(value: Value, instead: Value) -> Value:
     return choose(value.kinds == ERROR + ErrorCode.NA, zero_if_blank(instead), zero_if_blank(value))
 
 
-@excel("NOT", Logical, returns=Kind.LOGICAL, ufunc=np.logical_not)
+@excel("NOT", Logical, returns=Kind.LOGICAL, ufunc=np.logical_not, facts=Facts(never_errs=True, condition=True))
 def not_(x: Bools) -> Bools:
     """The opposite."""
     return np.logical_not(x)
@@ -78,19 +79,37 @@ def _of_what_counts(x: Bools, counts: Bools, result: Bools) -> Floats:
     return np.where(counts.any(axis=1), result, VALUE)
 
 
-@excel("AND", Logicals, returns=Kind.LOGICAL, ufunc=np.logical_and)
+@excel(
+    "AND",
+    Logicals,
+    returns=Kind.LOGICAL,
+    ufunc=np.logical_and,
+    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.ONCE, condition=True),
+)
 def and_(x: Bools, counts: Bools) -> Value:
     """Whether all are TRUE."""
     return _logical(_of_what_counts(x, counts, np.asarray((x | ~counts).all(axis=1))))
 
 
-@excel("OR", Logicals, returns=Kind.LOGICAL, ufunc=np.logical_or)
+@excel(
+    "OR",
+    Logicals,
+    returns=Kind.LOGICAL,
+    ufunc=np.logical_or,
+    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.ONCE, condition=True),
+)
 def or_(x: Bools, counts: Bools) -> Value:
     """Whether any is TRUE."""
     return _logical(_of_what_counts(x, counts, np.asarray((x & counts).any(axis=1))))
 
 
-@excel("XOR", Logicals, returns=Kind.LOGICAL, ufunc=np.logical_xor)
+@excel(
+    "XOR",
+    Logicals,
+    returns=Kind.LOGICAL,
+    ufunc=np.logical_xor,
+    facts=Facts(empty_cells=EmptyCells.IGNORED, condition=True),
+)
 def xor(x: Bools, counts: Bools) -> Value:
     """Whether an odd number is TRUE."""
     return _logical(_of_what_counts(x, counts, (x & counts).sum(axis=1) % 2 == 1))
@@ -118,7 +137,7 @@ def _is(name: str, meaning: str, test: object) -> None:
         return Value.of_logicals(np.broadcast_to(test(x.kinds), x.shape))  # type: ignore[operator]
 
     body.__doc__ = meaning
-    excel(name, Anything, returns=Kind.LOGICAL)(body)
+    excel(name, Anything, returns=Kind.LOGICAL, facts=Facts(exact_steps=True))(body)
 
 
 _is("ISERROR", "Whether it is any error.", lambda kinds: kinds >= ERROR)

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from xlmc.functions.facts import Facts
 from xlmc.functions.fifteen_digits import COMPARISONS
 from xlmc.functions.registry import Anything, Function, Kind, Number, excel
 from xlmc.functions.values import BLANK, DIV0, ERROR, NUM, TEXT, Floats, Value
@@ -20,20 +21,20 @@ __all__ = ["ALL_BITS", "compare"]
 
 _Relation = Callable[[Any, Any], Any]
 
-excel("+", Number, Number, ufunc=np.add)(np.add)
-excel("-", Number, Number, ufunc=np.subtract)(np.subtract)
-excel("*", Number, Number, ufunc=np.multiply)(np.multiply)
-excel("u-", Number, ufunc=np.negative)(np.negative)
-excel("u+", Anything, returns=Kind.ANY)(lambda x: x)
+excel("+", Number, Number, ufunc=np.add, facts=Facts(never_errs=True, adds=True, measures=True))(np.add)
+excel("-", Number, Number, ufunc=np.subtract, facts=Facts(never_errs=True, adds=True, measures=True))(np.subtract)
+excel("*", Number, Number, ufunc=np.multiply, facts=Facts(never_errs=True, measures=True))(np.multiply)
+excel("u-", Number, ufunc=np.negative, facts=Facts(never_errs=True, unrounded=True))(np.negative)
+excel("u+", Anything, returns=Kind.ANY, facts=Facts(never_errs=True, unrounded=True))(lambda x: x)
 
 
-@excel("/", Number, Number, ufunc=np.divide)
+@excel("/", Number, Number, ufunc=np.divide, facts=Facts(measures=True))
 def divide(x: Floats, y: Floats) -> Floats:
     """Quotient; `#DIV/0!` by zero."""
     return np.where(y == 0, DIV0, x / y)
 
 
-@excel("%", Number)
+@excel("%", Number, facts=Facts(never_errs=True))
 def percent(x: Floats) -> Floats:
     """A hundredth."""
     return x / 100
@@ -43,7 +44,7 @@ def _not_zero_to_zero(x: Floats, y: Floats) -> bool:
     return bool(np.all(y != 0) or np.all(x != 0))
 
 
-@excel("^", Number, Number, aliases=("POWER",), ufunc=np.power, guard=_not_zero_to_zero)
+@excel("^", Number, Number, aliases=("POWER",), ufunc=np.power, guard=_not_zero_to_zero, facts=Facts(measures=True))
 def power(x: Floats, y: Floats) -> Floats:
     """Power; `0^0` is `#NUM!`, zero to a negative power `#DIV/0!`, a negative base needs a whole exponent."""
     result = np.power(x, y)
@@ -102,9 +103,10 @@ ALL_BITS: Final[dict[str, Function]] = {}
 def _register(symbol: str, relation: _Relation) -> None:
     digits = COMPARISONS[symbol]
     body = partial(compare, relation, digits)
-    excel(symbol, Anything, Anything, returns=Kind.LOGICAL, ufunc=digits)(body)
+    facts = Facts(never_errs=True, condition=True)
+    excel(symbol, Anything, Anything, returns=Kind.LOGICAL, ufunc=digits, facts=facts)(body)
     strict = partial(compare, relation, digits.plain)
-    ALL_BITS[symbol] = Function(symbol, (Anything, Anything), strict, Kind.LOGICAL, ufunc=digits.plain)
+    ALL_BITS[symbol] = Function(symbol, (Anything, Anything), strict, Kind.LOGICAL, ufunc=digits.plain, facts=facts)
 
 
 _register("=", operator.eq)

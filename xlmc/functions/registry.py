@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.functions.budget import ask_for_cells
+from xlmc.functions.facts import NOTHING, Facts
 from xlmc.functions.values import ERROR, LOGICAL, NUMBER, Bools, Codes, Value, from_objects
 
 __all__ = [
@@ -136,6 +137,8 @@ class Function:
         guard: takes the body's float arrays, says whether all of them lie where `ufunc` and Excel agree.
         volatile: its value changes without its arguments.
         dated: the body takes `date1904`, keyword only: whether serial dates count from 1904.
+        macintosh: the body takes `macintosh`, keyword only: whether the book was made by Excel for the Macintosh.
+        facts: what else is known of it.
         home: the module that registers it.
         takes_values, takes_sets: whether any argument is of `ANY` kind, or all are one set.
         on_numbers: with arguments that are all numbers, the ufunc alone may be run.
@@ -150,6 +153,8 @@ class Function:
     guard: Callable[..., bool] | None = None
     volatile: bool = False
     dated: bool = False
+    macintosh: bool = False
+    facts: Facts = NOTHING
     home: str = ""
     takes_values: bool = field(init=False)
     takes_sets: bool = field(init=False)
@@ -157,7 +162,13 @@ class Function:
     takes_plainly: int = field(init=False)
 
     def __post_init__(self) -> None:
-        """Answer once what is asked of every node."""
+        """Answer once what is asked of every node.
+
+        Raises:
+            ValueError: it has a ufunc, which gives one value, and spills.
+        """
+        if self.ufunc is not None and self.facts.spills:
+            raise ValueError(f"{self.name} has a ufunc, so it cannot spill")
         values = any(parameter.kind is Kind.ANY for parameter in self.parameters)
         sets = any(parameter.as_set for parameter in self.parameters)
         kinds = {parameter.kind for parameter in self.parameters}
@@ -171,8 +182,8 @@ class Function:
         """A row goes to another process by its name, where it is looked up; one that was made for a workbook whole."""
         if REGISTRY.get(self.name) is self:
             return row_of, (self.name, self.home)
-        made = self.name, self.parameters, self.body, self.returns, self.ufunc, self.guard, self.volatile, self.dated
-        return Function, made
+        options = self.volatile, self.dated, self.macintosh, self.facts
+        return Function, (self.name, self.parameters, self.body, self.returns, self.ufunc, self.guard, *options)
 
     def parameter(self, position: int) -> Parameter:
         """The parameter of an argument; the last ones repeat where they may."""
@@ -192,10 +203,24 @@ class Function:
             self._ask_for(arguments)
         with np.errstate(all="ignore"):
             if self.takes_values:
-                return _as_value(self.body(*arguments), self.returns, None)
-            if self.takes_sets:
-                return self._of_sets(arguments)
-            return self._of_elements(arguments)
+                result = _as_value(self.body(*arguments), self.returns, None)
+            elif self.takes_sets:
+                result = self._of_sets(arguments)
+            else:
+                result = self._of_elements(arguments)
+        if result.numbers.ndim == 3 and not self.facts.spills:
+            self._check_spread(arguments)
+        return result
+
+    def _check_spread(self, arguments: Sequence[Value]) -> None:
+        """Make sure that many cells come of an argument of single values that was given many.
+
+        Raises:
+            TypeError: none was; the row does not say that the function spills.
+        """
+        shapes = [a.numbers.ndim for i, a in enumerate(arguments) if not self.parameter(i).ranged]
+        if 3 not in shapes:
+            raise TypeError(f"{self.name} gave many cells; its row in the registry must say `facts=Facts(spills=True)`")
 
     def _ask_for(self, arguments: Sequence[Value]) -> None:
         """Ask for the array that the arguments spread to, and for that of all those that are put side by side."""
@@ -243,6 +268,8 @@ def _as_value(result: Any, returns: Kind, errors: Codes | None) -> Value:
     if isinstance(result, Value):
         return result if errors is None else _overlaid(result, errors)
     array = np.atleast_1d(np.asarray(result))
+    if errors is not None and array.ndim > errors.ndim:
+        errors = errors[:, None, None]
     if errors is not None:
         array = np.broadcast_to(array, np.broadcast_shapes(array.shape, errors.shape))
     if array.dtype == object:
@@ -256,6 +283,8 @@ def _overlaid(value: Value, errors: Codes | None) -> Value:
     """Argument errors go before whatever the body made of those trials."""
     if errors is None:
         return value
+    if value.numbers.ndim > errors.ndim:
+        errors = errors[:, None, None]
     kinds = np.where(errors > 0, errors + np.uint8(ERROR), value.kinds).astype(np.uint8)
     return Value(value.numbers, kinds, value.texts)
 
@@ -303,12 +332,14 @@ def excel(
     guard: Callable[..., bool] | None = None,
     volatile: bool = False,
     dated: bool = False,
+    macintosh: bool = False,
+    facts: Facts = NOTHING,
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Register a body as the Excel function `name`."""
     home = str(sys._getframe(1).f_globals["__name__"])  # a body may be NumPy's, which does not say
 
     def register(body: Callable[..., Any]) -> Callable[..., Any]:
-        row = Function(name, parameters, body, returns, ufunc, guard, volatile, dated, home)
+        row = Function(name, parameters, body, returns, ufunc, guard, volatile, dated, macintosh, facts, home)
         for key in (name, *aliases):
             if key in REGISTRY:
                 raise ValueError(f"{key} is registered twice")

@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from xlmc.functions.facts import Facts
 from xlmc.functions.math import aggregate
 from xlmc.functions.registry import Cells, Function, Kind, row_of
 from xlmc.functions.values import BLANK, ERROR, NUMBER, Value
@@ -25,8 +26,12 @@ def _so_far(cells: Value, of: str) -> Value:
     return Value(np.where(none, 0.0, result.numbers), np.where(none, np.uint8(BLANK), result.kinds))
 
 
+def _facts_of(name: str) -> Facts:
+    return Facts(unrounded=row_of(name, aggregate.__name__).facts.unrounded)
+
+
 SO_FAR: Final[Mapping[str, Function]] = {
-    name: Function(f"{name} so far", (Cells,), partial(_so_far, of=name), Kind.ANY)
+    name: Function(f"{name} so far", (Cells,), partial(_so_far, of=name), Kind.ANY, facts=_facts_of(name))
     for name in ("MAX", "MIN", "PRODUCT")
 }
 """By the name of Excel's function."""

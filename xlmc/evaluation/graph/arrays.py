@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.evaluation.graph.dag import MANY, SHAPING, Constant, Dag, Range, Select
+from xlmc.evaluation.graph.dag import MANY, Constant, Dag, Range, Select
 from xlmc.evaluation.graph.dag import Apply as ApplyNode
 from xlmc.evaluation.graph.either import parts_of
 from xlmc.functions import Function, Kind
@@ -113,7 +113,7 @@ def spread(dag: Dag, function: Function, loose: tuple[int, ...], apply: Callable
     row or column 0, which gives whole columns or rows, does so for all cells at once; where 0 is one of many numbers,
     each cell is looked up on its own.
     """
-    shaping = function.name in SHAPING
+    shaping = function.facts.sized_by_numbers
     if function.name == "INDEX":
         zeros = [place for place in loose if _has_zero(dag, place)]
         if any(dag.sizes[place] is None for place in zeros):

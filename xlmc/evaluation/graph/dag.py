@@ -20,9 +20,7 @@ from xlmc.functions.logical import if_, if_error, if_na
 from xlmc.functions.values import BLANK, ERROR, LOGICAL, NUMBER, TEXT, ShapeVaries, Value, constant
 
 __all__ = [
-    "EITHER",
     "MANY",
-    "SHAPING",
     "Apply",
     "Constant",
     "Dag",
@@ -92,49 +90,6 @@ Size = tuple[int, ...] | None
 
 MANY: Final = (-1, -1)
 """The size of a value that may be many cells, how many being known only during the run."""
-
-EITHER: Final = "one of two sizes"
-"""The name of the function that chooses between values of different sizes."""
-
-_SPILLING: Final = frozenset(
-    {
-        EITHER,
-        "CHOOSECOLS",
-        "CHOOSEROWS",
-        "DROP",
-        "EXPAND",
-        "FILTER",
-        "FREQUENCY",
-        "GROWTH",
-        "HSTACK",
-        "LINEST",
-        "LOGEST",
-        "MINVERSE",
-        "MMULT",
-        "MODE.MULT",
-        "MUNIT",
-        "SEQUENCE",
-        "SORT",
-        "SORTBY",
-        "TAKE",
-        "TEXTSPLIT",
-        "TOCOL",
-        "TOROW",
-        "TRANSPOSE",
-        "TREND",
-        "UNIQUE",
-        "VSTACK",
-        "WRAPCOLS",
-        "WRAPROWS",
-        "INDEX",
-        "XLOOKUP",
-        "RANDARRAY",
-    }
-)
-"""Functions that give many cells, or may."""
-
-SHAPING: Final = frozenset({"DROP", "EXPAND", "SEQUENCE", "TAKE", "TOCOL", "TOROW", "WRAPCOLS", "WRAPROWS"})
-"""Those of them whose arguments of single values decide how many cells they give."""
 
 
 class Repeat(NamedTuple):
@@ -268,7 +223,7 @@ class Dag:
 
     def _is_plain(self, node: Apply) -> bool:
         """Whether it makes one value of single ones, some of which vary: the case of nearly every node."""
-        if node.function.name in _SPILLING or any(self.sizes[part] is not None for part in node.arguments):
+        if node.function.facts.spills or any(self.sizes[part] is not None for part in node.arguments):
             return False
         return not all(isinstance(self.nodes[part], Constant) for part in node.arguments)
 
@@ -303,7 +258,7 @@ class Dag:
         if isinstance(node, Apply):  # what takes a range whole makes one value of it
             parts = [part for i, part in enumerate(parts) if not node.function.parameter(i).ranged]
         sizes = [size for part in parts if (size := self.sizes[part]) is not None]
-        if MANY in sizes or (isinstance(node, Apply) and node.function.name in _SPILLING):
+        if MANY in sizes or (isinstance(node, Apply) and node.function.facts.spills):
             return MANY
         return np.broadcast_shapes(*sizes) if sizes else None
 

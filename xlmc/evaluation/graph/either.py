@@ -13,8 +13,9 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.evaluation.graph.dag import EITHER, MANY, Apply, Dag
+from xlmc.evaluation.graph.dag import MANY, Apply, Dag
 from xlmc.functions import Function, Kind
+from xlmc.functions.facts import Facts
 from xlmc.functions.registry import Anything, Cells
 from xlmc.functions.values import ShapeVaries, Value
 
@@ -39,7 +40,7 @@ def _either(condition: Value, yes: Value, no: Value) -> Value:
     return yes if outcome[0] else no
 
 
-_EITHER: Final = Function(EITHER, (Anything, Cells, Cells), _either, Kind.ANY)
+_EITHER: Final = Function("one of two sizes", (Anything, Cells, Cells), _either, Kind.ANY, facts=Facts(spills=True))
 
 
 def differ(dag: Dag, condition: int, yes: int, no: int) -> bool:

@@ -1,4 +1,4 @@
-"""What the empty cells at the end of a whole column are to Excel's functions: by their names."""
+"""What stands for the empty cells at the end of a whole column, and what is said where nothing can."""
 
 from __future__ import annotations
 
@@ -13,42 +13,8 @@ from xlmc.functions.budget import TooLargeError
 from xlmc.functions.registry import Number
 from xlmc.functions.values import Floats
 
-__all__ = ["FIRST_ONLY", "IGNORING", "LASTING", "ON_NUMBERS", "PAIRING", "SUMMING", "at_the_last", "kept", "refused"]
+__all__ = ["at_the_last", "kept", "refused"]
 
-
-def _names(text: str) -> frozenset[str]:
-    return frozenset(text.split())
-
-
-IGNORING: Final = _names(
-    "AVEDEV AVERAGE AVERAGEA AVERAGEIF CONCAT COUNT COUNTA DEVSQ FVSCHEDULE GEOMEAN HARMEAN IRR KURT LARGE MAX MAXA "
-    "MEDIAN MIN MINA MIRR MODE MODE.MULT MODE.SNGL NPV PERCENTILE PERCENTILE.EXC PERCENTILE.INC PERCENTRANK "
-    "PERCENTRANK.EXC PERCENTRANK.INC PRODUCT QUARTILE QUARTILE.EXC QUARTILE.INC RANK RANK.AVG RANK.EQ SKEW SKEW.P "
-    "SMALL STDEV STDEV.P STDEV.S STDEVA STDEVP STDEVPA SUM SUMIF SUMSQ TRIMMEAN VAR VAR.P VAR.S VARA VARP VARPA "
-    "AND OR XOR Z.TEST ZTEST NETWORKDAYS NETWORKDAYS.INTL WORKDAY WORKDAY.INTL"
-)
-"""Functions to which empty cells of a range are nothing."""
-
-FIRST_ONLY: Final = _names("DAVERAGE DCOUNT DCOUNTA DMAX DMIN DPRODUCT DSTDEV DSTDEVP DSUM DVAR DVARP FREQUENCY")
-"""Functions to which empty cells of their first range are nothing."""
-
-PAIRING: Final = _names(
-    "SUMPRODUCT CORREL PEARSON RSQ COVARIANCE.P COVARIANCE.S COVAR SLOPE INTERCEPT STEYX FORECAST FORECAST.LINEAR "
-    "SUMX2MY2 SUMX2PY2 SUMXMY2 T.TEST TTEST F.TEST FTEST SUMIFS AVERAGEIFS MAXIFS MINIFS"
-)
-"""Functions that take ranges of one size, to which empty cells in all of them are nothing."""
-
-SUMMING: Final = _names("SUM SUMSQ COUNT COUNTA")
-"""Functions of more cells that give the sum of what they give of each part."""
-
-LASTING: Final = _names("MAX MIN MAXA MINA AND OR")
-"""Functions to which it is the same how often a cell is repeated."""
-
-ON_NUMBERS: Final = _names(
-    "AVERAGE AVEDEV DEVSQ GEOMEAN HARMEAN KURT LARGE MEDIAN PERCENTILE PERCENTILE.EXC PERCENTILE.INC PRODUCT QUARTILE "
-    "QUARTILE.EXC QUARTILE.INC SKEW SMALL STDEV STDEV.P STDEV.S STDEVP VAR VAR.P VAR.S VARP"
-)
-"""Functions of the numbers in an array, to which its texts and logicals are nothing."""
 
 _MESSAGE: Final = (
     "{} is given a whole column or row, or a range that goes on far beyond the last filled cell; xlmc cannot take all "

@@ -8,8 +8,6 @@ from functools import cached_property, partial
 from itertools import groupby
 from typing import assert_never
 
-import numpy as np
-
 from xlmc.address import Area, Cell, host_of
 from xlmc.errors import ErrorCode, FormulaError, Notice
 from xlmc.evaluation.engine import Target
@@ -33,6 +31,7 @@ from xlmc.formula import Filled, Graph, Resolver, ir
 from xlmc.formula.callables import gives_function
 from xlmc.functions import Function, Kind
 from xlmc.functions.budget import CallCount, ask_for_reading
+from xlmc.functions.facts import Facts
 from xlmc.functions.families import REGISTRY, function_named
 from xlmc.functions.last_sum import SETTLED
 from xlmc.functions.logical import zero_if_blank
@@ -43,13 +42,10 @@ from xlmc.functions.values import BLANK, Value, constant
 __all__ = ["Lowering"]
 
 
-_FACTORS = {"RADIANS": np.pi / 180, "DEGREES": 180 / np.pi}
-"""Functions that are a multiplication, to the last bit; NumPy's own are several times slower."""
-
 _PASSING_ON = ir.Call | ir.Let | ir.Invoke
 """Trees that may give a range whole where one is wanted: choices, INDEX, LET, LAMBDA."""
 
-_SHOWN = Function("shown", (Anything,), zero_if_blank, Kind.ANY)
+_SHOWN = Function("shown", (Anything,), zero_if_blank, Kind.ANY, facts=Facts(unrounded=True))
 
 
 class Lowering:
@@ -430,8 +426,8 @@ class Lowering:
 
     def made(self, function: Function, arguments: tuple[int, ...]) -> int:
         """The node of a function of nodes, cell by cell where it takes single values and is given many."""
-        if function.name in _FACTORS:
-            return self.call("*", (arguments[0], self.number(_FACTORS[function.name])))
+        if function.facts.factor is not None:
+            return self.call("*", (arguments[0], self.number(function.facts.factor)))
         if function.name == "/" and (factor := self._inverse(arguments[1])) is not None:
             return self.call("*", (arguments[0], self.number(factor)))
         chosen = self._shared_out(function, arguments)

@@ -28,6 +28,6 @@ def as_set(function: Function, date1904: bool, macintosh: bool) -> Function:
     """The function as a workbook with these settings has it; the same object each time, so that nodes are shared."""
     if function.dated:
         return replace(function, body=_Settled(function, "date1904", date1904))
-    if macintosh and function.name in ("CHAR", "CODE"):
+    if macintosh and function.macintosh:
         return replace(function, body=_Settled(function, "macintosh", macintosh))
     return function

@@ -9,22 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from xlmc.address import Area
 from xlmc.errors import FormulaError
 from xlmc.evaluation.graph.dag import Constant, Range, Rescue
-from xlmc.evaluation.graph.empty_cells import (
-    FIRST_ONLY,
-    IGNORING,
-    LASTING,
-    ON_NUMBERS,
-    PAIRING,
-    SUMMING,
-    at_the_last,
-    kept,
-    refused,
-)
+from xlmc.evaluation.graph.empty_cells import at_the_last, kept, refused
 from xlmc.evaluation.graph.exposed import Change, exposed, holds, is_spared, referred_areas
 from xlmc.evaluation.graph.extents import as_filled, by_halves, leveled, one_behind, one_further, sized
 from xlmc.evaluation.graph.references import needed
@@ -32,6 +22,7 @@ from xlmc.evaluation.graph.row_numbers import CURVED, degree, is_numbered
 from xlmc.evaluation.graph.scope import Scope
 from xlmc.formula import ir
 from xlmc.functions import Function
+from xlmc.functions.facts import EmptyCells, Repeats
 from xlmc.functions.families import function_named
 from xlmc.functions.values import BLANK, ERROR, LOGICAL, NUMBER
 
@@ -43,10 +34,6 @@ __all__ = ["lowered"]
 Arguments = tuple[ir.Expression, ...]
 Make = Callable[[Arguments, Mapping[int, Function]], int]
 """Makes the node of a call from its arguments, some of which go through a function first."""
-
-
-_LOOKUPS: Final[Mapping[str, int]] = {"MATCH": 2, "VLOOKUP": 3, "HLOOKUP": 3, "XMATCH": 3, "XLOOKUP": 5, "LOOKUP": 9}
-"""Lookups, and which argument says how they search."""
 
 
 @dataclass(frozen=True)
@@ -132,35 +119,36 @@ def _is_index(tree: ir.Expression) -> bool:
 
 def _of_areas(call: _Call) -> int:
     """A call that is given whole columns as they are."""
-    name = call.name
-    if name in _LOOKUPS:
-        return _looked_up(call)
+    name, facts = call.name, call.function.facts
+    if facts.mode_argument is not None:
+        return _looked_up(call, facts.mode_argument)
     if name == "INDEX":
         return _picked(call)
     if name == "UNIQUE" and len(call.arguments) == 1:
         return call.make(call.changed(one_further), {})
-    if name in PAIRING:
+    if facts.empty_cells is EmptyCells.PAIRED:
         return call.make(call.with_areas(leveled(call.direct)), {})
     cut = [i for i, areas in call.direct.items() if any(area.is_cut for area in areas)]
     texts = name == "TEXTJOIN" and call.arguments[1] == ir.Logical(True) and 0 not in cut
-    if name in IGNORING or texts or (name in FIRST_ONLY and cut == [0]):
+    in_first = facts.empty_cells is EmptyCells.IGNORED_IN_FIRST and cut == [0]
+    if facts.empty_cells is EmptyCells.IGNORED or texts or in_first:
         return call.make(call.changed(as_filled), {})
     raise call.refused()
 
 
 def _of_expressions(call: _Call) -> int:
     """A call that is given something computed of whole columns, cell by cell."""
-    name = call.name
-    if name in _LOOKUPS:
-        return _looked_up(call)
+    facts = call.function.facts
+    if facts.mode_argument is not None:
+        return _looked_up(call, facts.mode_argument)
     filled, further, count = _parted(call)
-    if name in ("SUMPRODUCT", *SUMMING):
+    if facts.repeats is Repeats.ADD_UP:
         return _summed(call, filled, _ends(call, further), count)
-    if name in LASTING:
+    if facts.repeats is Repeats.ONCE:
         return call.make((*filled, *(part for end in _ends(call, further) for part in end)), {})
-    if name in ON_NUMBERS and all(_is_ignored(call, further[i]) for i in call.mixed):
+    if facts.repeats is Repeats.NUMBERS_COUNT and all(_is_ignored(call, further[i]) for i in call.mixed):
         return call.make(filled, {})
-    if name == "FILTER" and 1 in call.mixed and _is_false(call, further[1]):
+    if call.name == "FILTER" and 1 in call.mixed and _is_false(call, further[1]):
         return call.make(filled, {})
     raise call.refused()
 
@@ -199,12 +187,18 @@ def _ends(call: _Call, further: Arguments) -> list[Arguments]:
     degrees = [_degree(call, i) for i in call.mixed]
     if not any(degrees):
         return [further]
-    if CURVED in degrees or call.name in ("SUMSQ", "AND", "OR") or (call.name == "SUMPRODUCT" and sum(degrees) > 1):
+    curved = CURVED in degrees or (call.name == "SUMPRODUCT" and sum(degrees) > 1)
+    if curved or not _ends_tell(call):
         raise call.refused()
     area = call.cut()[0]
     across = area.further_columns > 0
     length = (area.whole.columns if across else area.whole.rows) - 1
     return [further, call.changed(lambda area: one_behind(area, length, across))]
+
+
+def _ends_tell(call: _Call) -> bool:
+    """Whether the first and the last of the further cells say all; a lookup takes the last alone."""
+    return call.function.facts.ends_tell or call.function.facts.mode_argument is not None
 
 
 def _degree(call: _Call, position: int) -> int:
@@ -233,10 +227,10 @@ def _summed(call: _Call, filled: Arguments, ends: Sequence[Arguments], count: in
     return place
 
 
-def _looked_up(call: _Call) -> int:
+def _looked_up(call: _Call, mode: int) -> int:
     """Lookups from the first cell on find the first of the empty ones; those by halves step as over all of them."""
     name, arguments = call.name, call.arguments
-    how = arguments[_LOOKUPS[name]] if len(arguments) > _LOOKUPS[name] else None
+    how = arguments[mode] if len(arguments) > mode else None
     if name in ("XMATCH", "XLOOKUP"):
         given = ir.Number(1.0) if how is None or isinstance(how, ir.Missing) else how
         if given == ir.Number(1.0) and not _degree(call, 1):

@@ -15,7 +15,6 @@ from typing import Final
 from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Input, Select
 from xlmc.evaluation.numpy.steps import reads
 from xlmc.functions import Kind
-from xlmc.functions.last_sum import SETTLED
 
 __all__ = ["ROOT", "SURVIVORS", "Context", "Placement"]
 
@@ -35,9 +34,6 @@ SURVIVORS = Context(ROOT, -1, 1, 1)
 
 _DEEPEST: Final = 8
 """Branches within branches; below, both branches are evaluated on the trials of the one around them."""
-
-_SAFE = {"+", "-", "*", "u-", "u+", "%", "=", "<>", "<", "<=", ">", ">=", "NOT", "ABS", "SIGN", "MIN", "MAX", "SUM"}
-_SAFE |= {SETTLED.name}
 
 
 class Placement:
@@ -165,4 +161,4 @@ def _is_safe(dag: Dag, place: int) -> bool:
     node = dag.nodes[place]
     if dag.types[place] is Kind.ANY:
         return False
-    return not isinstance(node, Apply) or node.function.name in _SAFE
+    return not isinstance(node, Apply) or node.function.facts.never_errs

@@ -116,7 +116,8 @@ def _apply(dag: Dag, place: int, function: Function, arguments: tuple[int, ...],
     found = [reader for reader in readers if reader is not None]
     if _fast_ufunc(dag, node) and function.ufunc is not None:
         return _ufunc(function.ufunc, function.guard, place, found, buffer)
-    return _valued(dag, place) if function.takes_values else _body(function, place, found)
+    careful = function.takes_values or function.facts.spills
+    return _valued(dag, place) if careful else _body(function, place, found)
 
 
 def _on_numbers(dag: Dag, function: Function, arguments: tuple[int, ...]) -> bool:

@@ -12,6 +12,7 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import direct_errors, first_errors, if_blank, same_in_all_trials
+from xlmc.functions.facts import Facts
 from xlmc.functions.logical import choose
 from xlmc.functions.lookup.picking import Places, flattened, picked
 from xlmc.functions.registry import Kind, Parameter, excel
@@ -28,8 +29,11 @@ class Refusal(Exception):  # noqa: N818 - it is no error of ours: Excel shows on
         self.code = code
 
 
-def array_function(name: str, *parameters: Parameter) -> Callable[[Callable[..., Value]], Callable[..., Value]]:
-    """Register a body that gives an array, (n, r, c), or raises `Refusal`."""
+def array_function(
+    name: str, *parameters: Parameter, sized_by_numbers: bool = False
+) -> Callable[[Callable[..., Value]], Callable[..., Value]]:
+    """Register a body that gives an array, (n, r, c), or raises `Refusal`; see `Facts` for what sizes it."""
+    facts = Facts(spills=True, sized_by_numbers=sized_by_numbers)
 
     def register(body: Callable[..., Value]) -> Callable[..., Value]:
         @wraps(body)
@@ -39,7 +43,7 @@ def array_function(name: str, *parameters: Parameter) -> Callable[[Callable[...,
             except Refusal as refusal:
                 return constant(refusal.code)
 
-        excel(name, *parameters, returns=Kind.ANY)(refusing)
+        excel(name, *parameters, returns=Kind.ANY, facts=facts)(refusing)
         return body
 
     return register

@@ -16,7 +16,9 @@ from xlmc.functions.values import BLANK, ERROR, Floats, Value
 __all__: list[str] = []
 
 
-@array_function("SEQUENCE", Anything, Anything(default=None), Anything(default=None), Anything(default=None))
+@array_function(
+    "SEQUENCE", Anything, Anything(default=None), Anything(default=None), Anything(default=None), sized_by_numbers=True
+)
 def sequence(rows: Value, columns: Value | None = None, start: Value | None = None, step: Value | None = None) -> Value:
     """Numbers from `start` on by `step`, row by row."""
     r, c = decided(rows, 1), decided(columns, 1)
@@ -39,7 +41,7 @@ def _number(value: Value | None) -> Floats:
     return numbers[:, :1, :1]
 
 
-@array_function("TAKE", Arrays, Number, Number(default=None))
+@array_function("TAKE", Arrays, Number, Number(default=None), sized_by_numbers=True)
 def take(array: Value, rows: Value, columns: Value | None = None) -> Value:
     """The first rows and columns, or with negative numbers the last."""
     grid = grid_of(array)
@@ -55,7 +57,7 @@ def _taken(count: int | None) -> slice:
     return slice(count) if count > 0 else slice(count, None)
 
 
-@array_function("DROP", Arrays, Number, Number(default=None))
+@array_function("DROP", Arrays, Number, Number(default=None), sized_by_numbers=True)
 def drop(array: Value, rows: Value, columns: Value | None = None) -> Value:
     """All but the first rows and columns, or with negative numbers but the last."""
     grid = grid_of(array)
@@ -102,7 +104,7 @@ def _chosen(numbers: tuple[Value, ...], size: int) -> Places:
     return np.where(places > 0, places - 1, places + size).astype(np.intp)
 
 
-@array_function("EXPAND", Arrays, Number, Number(default=None), Anything(default=None))
+@array_function("EXPAND", Arrays, Number, Number(default=None), Anything(default=None), sized_by_numbers=True)
 def expand(array: Value, rows: Value, columns: Value | None = None, pad: Value | None = None) -> Value:
     """The array with rows and columns of `pad` added, up to so many; `#VALUE!` for fewer than there are."""
     grid = grid_of(array)
@@ -135,7 +137,7 @@ def _stacked(grids: list[Value]) -> Value:
     return joined(tall, axis=1)
 
 
-@array_function("TOCOL", Arrays, Number(default=0.0), Logical(default=False))
+@array_function("TOCOL", Arrays, Number(default=0.0), Logical(default=False), sized_by_numbers=True)
 def to_column(array: Value, ignore: Value | None = None, by_column: Value | None = None) -> Value:
     """All cells in one column, row by row or column by column; `ignore` is 1 for blanks, 2 for errors, 3 for both."""
     grid = grid_of(array)
@@ -149,13 +151,13 @@ def to_column(array: Value, ignore: Value | None = None, by_column: Value | None
     return picked(column, kept(~(blank | wrong)[:, :, 0])[:, :, None], np.zeros((1, 1, 1), np.intp))
 
 
-@array_function("TOROW", Arrays, Number(default=0.0), Logical(default=False))
+@array_function("TOROW", Arrays, Number(default=0.0), Logical(default=False), sized_by_numbers=True)
 def to_row(array: Value, ignore: Value | None = None, by_column: Value | None = None) -> Value:
     """All cells in one row, as `TOCOL` has them in one column."""
     return transposed(to_column(array, ignore, by_column))
 
 
-@array_function("WRAPROWS", Arrays, Number, Anything(default=None))
+@array_function("WRAPROWS", Arrays, Number, Anything(default=None), sized_by_numbers=True)
 def wrap_rows(vector: Value, count: Value, pad: Value | None = None) -> Value:
     """A row or column laid out in rows of so many cells, the last filled up with `pad`."""
     grid, size = grid_of(vector), decided(count, 0)
@@ -169,7 +171,7 @@ def wrap_rows(vector: Value, count: Value, pad: Value | None = None) -> Value:
     return padded(row, np.zeros((1, 1, 1), np.intp), places, pad)
 
 
-@array_function("WRAPCOLS", Arrays, Number, Anything(default=None))
+@array_function("WRAPCOLS", Arrays, Number, Anything(default=None), sized_by_numbers=True)
 def wrap_columns(vector: Value, count: Value, pad: Value | None = None) -> Value:
     """A row or column laid out in columns of so many cells, the last filled up with `pad`."""
     return transposed(wrap_rows(vector, count, pad))

@@ -16,6 +16,7 @@ from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, leveled, where_wrong
 from xlmc.functions.dates.calendar import in_calendar
 from xlmc.functions.dates.weeks import Weeks, worked_days
+from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.registry import Anything, Cells, excel
 from xlmc.functions.toolpak import OneCell, strict_numbers
 from xlmc.functions.toolpak_rows import DAYS_TO_1904, whole_days
@@ -122,13 +123,21 @@ def _work_day(start: Value, days: Value, weekend: Value, holidays: Value | None,
 _SATURDAY_AND_SUNDAY: Final = constant(1.0)
 
 
-@excel("NETWORKDAYS", OneCell, OneCell, Cells(default=None), dated=True)
+@excel("NETWORKDAYS", OneCell, OneCell, Cells(default=None), dated=True, facts=Facts(empty_cells=EmptyCells.IGNORED))
 def network_days(start: Value, end: Value, holidays: Value | None = None, *, date1904: bool = False) -> Value:
     """Days of work from one date to another, both counted; negative if the end comes first."""
     return _network_days(start, end, _SATURDAY_AND_SUNDAY, holidays, date1904)
 
 
-@excel("NETWORKDAYS.INTL", OneCell, OneCell, Anything(default=None), Cells(default=None), dated=True)
+@excel(
+    "NETWORKDAYS.INTL",
+    OneCell,
+    OneCell,
+    Anything(default=None),
+    Cells(default=None),
+    dated=True,
+    facts=Facts(empty_cells=EmptyCells.IGNORED),
+)
 def network_days_international(
     start: Value,
     end: Value,
@@ -141,13 +150,21 @@ def network_days_international(
     return _network_days(start, end, weekend, holidays, date1904)
 
 
-@excel("WORKDAY", OneCell, OneCell, Cells(default=None), dated=True)
+@excel("WORKDAY", OneCell, OneCell, Cells(default=None), dated=True, facts=Facts(empty_cells=EmptyCells.IGNORED))
 def work_day(start: Value, days: Value, holidays: Value | None = None, *, date1904: bool = False) -> Value:
     """The day of work so many days of work after a date, before it if negative; the date itself for 0."""
     return _work_day(start, days, _SATURDAY_AND_SUNDAY, holidays, date1904)
 
 
-@excel("WORKDAY.INTL", OneCell, OneCell, Anything(default=None), Cells(default=None), dated=True)
+@excel(
+    "WORKDAY.INTL",
+    OneCell,
+    OneCell,
+    Anything(default=None),
+    Cells(default=None),
+    dated=True,
+    facts=Facts(empty_cells=EmptyCells.IGNORED),
+)
 def work_day_international(
     start: Value,
     days: Value,

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, where_wrong
+from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.financial.annuities import growth
 from xlmc.functions.financial.roots import growth_root
 from xlmc.functions.registry import Anything, Arrays, Cells, excel
@@ -57,7 +58,7 @@ def _discounted(rate: Floats, flows: Floats, counts: Bools) -> Floats:
     return total
 
 
-@excel("NPV", Anything, Cells(repeat=True))
+@excel("NPV", Anything, Cells(repeat=True), facts=Facts(empty_cells=EmptyCells.IGNORED))
 def net_present_value(rate: Value, *values: Value) -> Value:
     """Present value of payments at the ends of the periods to come; `#DIV/0!` at a rate of -100 %."""
     r, r_errors = rate.to_numbers()
@@ -86,7 +87,7 @@ def has_both_signs(flows: Floats, counts: Bools) -> Bools:
     return np.asarray((counts & (flows > 0)).any(axis=1) & (counts & (flows < 0)).any(axis=1))
 
 
-@excel("IRR", Arrays, Anything(default=None))
+@excel("IRR", Arrays, Anything(default=None), facts=Facts(empty_cells=EmptyCells.IGNORED))
 def internal_rate(values: Value, guess: Value | None = None) -> Value:
     """Rate at which the payments are worth nothing; of several, the one nearest to the guess (10 %).
 
@@ -117,7 +118,7 @@ def guess_of(guess: Value | None) -> tuple[Floats, Codes]:
     return (np.full(1, 0.1), np.zeros(1, np.uint8)) if guess is None else _single(guess)
 
 
-@excel("MIRR", Arrays, Anything, Anything)
+@excel("MIRR", Arrays, Anything, Anything, facts=Facts(empty_cells=EmptyCells.IGNORED))
 def modified_rate(values: Value, finance: Value, reinvest: Value) -> Value:
     """Rate when what is paid is borrowed at one rate and what is received is invested at another.
 

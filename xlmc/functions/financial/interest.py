@@ -8,6 +8,7 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, where_wrong
+from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.registry import Cells, Number, excel
 from xlmc.functions.toolpak import OneCell, strict_numbers
 from xlmc.functions.toolpak_rows import toolpak
@@ -52,7 +53,7 @@ def growth_periods(rate: Any, pv: Any, fv: Any) -> Floats:
     return np.where(wrong, NUM, (np.log(fv) - np.log(pv)) / np.log1p(rate))
 
 
-@excel("FVSCHEDULE", OneCell, Cells)
+@excel("FVSCHEDULE", OneCell, Cells, facts=Facts(empty_cells=EmptyCells.IGNORED))
 def scheduled_growth(principal: Value, schedule: Value) -> Value:
     """What a principal grows to at one rate after the other; blank rates are 0, texts and logicals `#VALUE!`."""
     result, errors = strict_numbers(principal)

@@ -16,6 +16,7 @@ from xlmc.functions.arguments import (
     whole_numbers,
     with_errors,
 )
+from xlmc.functions.facts import Facts
 from xlmc.functions.lookup.picking import Places, cell_of, picked
 from xlmc.functions.registry import Arrays, Kind, Number, Ranges, excel
 from xlmc.functions.values import Codes, Floats, Value, constant
@@ -26,7 +27,15 @@ __all__: list[str] = []
 _NUMBER = Number(ranges=Ranges.SINGLE)
 
 
-@excel("INDEX", Arrays, _NUMBER, _NUMBER(default=None), _NUMBER(default=1.0), returns=Kind.ANY)
+@excel(
+    "INDEX",
+    Arrays,
+    _NUMBER,
+    _NUMBER(default=None),
+    _NUMBER(default=1.0),
+    returns=Kind.ANY,
+    facts=Facts(spills=True, finds=True),
+)
 def index(cells: Value, row: Value, column: Value | None = None, area: Value | None = None) -> Value:
     """The cell in a row and a column; row 0 stands for a whole column, column 0 for a whole row.
 

@@ -21,6 +21,7 @@ from xlmc.functions.arguments import (
     whole_numbers,
     with_errors,
 )
+from xlmc.functions.facts import Facts
 from xlmc.functions.lookup.halving import last_not_beyond
 from xlmc.functions.lookup.nearest import EXACT, nearest
 from xlmc.functions.lookup.picking import Places, each_part, picked, transposed
@@ -57,7 +58,7 @@ def _classic_place(key: Value, vector: Value, order: Floats) -> Places:
     return result
 
 
-@excel("MATCH", Anything, Cells, Number(default=1.0))
+@excel("MATCH", Anything, Cells, Number(default=1.0), facts=Facts(mode_argument=2, finds=True, exact_steps=True))
 def match(key: Value, cells: Value, order: Value | None = None) -> Value:
     """Place of the key, or of the last value before it, in a row or column in rising order (1) or falling order (-1).
 
@@ -79,13 +80,13 @@ def _counted_from_1(places: Places, errors: Codes) -> Value:
     return Value.of_numbers((places + 1).astype(np.float64), earliest(errors, where_wrong(places < 0, _NOT_FOUND)))
 
 
-@excel("VLOOKUP", *_IN_A_TABLE, returns=Kind.ANY)
+@excel("VLOOKUP", *_IN_A_TABLE, returns=Kind.ANY, facts=Facts(mode_argument=3, finds=True))
 def vlookup(key: Value, table: Value, column: Value, near: Value | None = None) -> Value:
     """What stands in a column of the table, in the row whose first cell is the key; or the last up to it if `near`."""
     return by_portions(_vlookup, [key, table, column, constant(True) if near is None else near], width_of(table))
 
 
-@excel("HLOOKUP", *_IN_A_TABLE, returns=Kind.ANY)
+@excel("HLOOKUP", *_IN_A_TABLE, returns=Kind.ANY, facts=Facts(mode_argument=3, finds=True))
 def hlookup(key: Value, table: Value, row: Value, near: Value | None = None) -> Value:
     """What stands in a row of the table, in the column whose first cell is the key; or the last up to it if `near`."""
     turned = transposed(table) if table.numbers.ndim == 3 else table
@@ -108,7 +109,7 @@ def _vlookup(key: Value, table: Value, column: Value, near: Value) -> Value:
     return with_errors(found, errors)
 
 
-@excel("LOOKUP", Anything, Arrays, Arrays(default=None), returns=Kind.ANY)
+@excel("LOOKUP", Anything, Arrays, Arrays(default=None), returns=Kind.ANY, facts=Facts(mode_argument=3, finds=True))
 def lookup(key: Value, cells: Value, results: Value | None = None) -> Value:
     """What stands beside the last value up to the key.
 

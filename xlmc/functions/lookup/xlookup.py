@@ -22,6 +22,7 @@ from xlmc.functions.arguments import (
     whole_numbers,
     with_errors,
 )
+from xlmc.functions.facts import Facts
 from xlmc.functions.logical import choose
 from xlmc.functions.lookup.halving import last_not_beyond
 from xlmc.functions.lookup.nearest import EXACT, LARGER, SMALLER, nearest
@@ -72,7 +73,14 @@ def _by_halves(key: Value, vector: Value, side: int, falling: bool) -> Places:
     return np.where(equal, before, -1 if side == EXACT else after)
 
 
-@excel("XMATCH", Anything, Arrays, Number(default=0.0), Number(default=1.0))
+@excel(
+    "XMATCH",
+    Anything,
+    Arrays,
+    Number(default=0.0),
+    Number(default=1.0),
+    facts=Facts(mode_argument=3, finds=True, exact_steps=True),
+)
 def xmatch(key: Value, cells: Value, mode: Value | None = None, direction: Value | None = None) -> Value:
     """Place of the key in a row or column: its equal, or the next smaller (-1) or larger (1); 2 for wildcards."""
     modes, directions = constant(None) if mode is None else mode, constant(None) if direction is None else direction
@@ -94,7 +102,15 @@ def _xmatch(key: Value, cells: Value, mode: Value, direction: Value) -> Value:
 _OPTIONS: Final = (Anything(default=None), Number(default=0.0), Number(default=1.0))
 
 
-@excel("XLOOKUP", Anything, Arrays, Arrays, *_OPTIONS, returns=Kind.ANY)
+@excel(
+    "XLOOKUP",
+    Anything,
+    Arrays,
+    Arrays,
+    *_OPTIONS,
+    returns=Kind.ANY,
+    facts=Facts(spills=True, mode_argument=5, finds=True),
+)
 def xlookup(
     key: Value,
     cells: Value,

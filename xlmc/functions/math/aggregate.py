@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import direct_errors, earliest, with_errors
 from xlmc.functions.denormals import TINIEST
+from xlmc.functions.facts import EmptyCells, Facts, Repeats
 from xlmc.functions.registry import Arrays, Cells, Number, Numbers, excel
 from xlmc.functions.values import BLANK, DIV0, NUM, NUMBER, TEXT, Bools, Codes, Floats, Value, constant
 
@@ -29,13 +30,30 @@ def _total(x: Floats) -> Floats:
     return np.asarray(np.add.accumulate(x, axis=1)[:, -1])
 
 
-@excel("SUM", Numbers, ufunc=np.add)
+@excel(
+    "SUM",
+    Numbers,
+    ufunc=np.add,
+    facts=Facts(
+        never_errs=True,
+        empty_cells=EmptyCells.IGNORED,
+        repeats=Repeats.ADD_UP,
+        ends_tell=True,
+        adds=True,
+        measures=True,
+    ),
+)
 def sum_(x: Floats, counts: Bools) -> Floats:
     """Sum."""
     return _total(np.where(counts, x, 0.0))
 
 
-@excel("PRODUCT", Numbers, ufunc=np.multiply)
+@excel(
+    "PRODUCT",
+    Numbers,
+    ufunc=np.multiply,
+    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT, measures=True),
+)
 def product(x: Floats, counts: Bools) -> Floats:
     """Product; 0 of nothing, and from where it is too small a number on."""
     so_far = np.multiply.accumulate(np.where(counts, x, 1.0), axis=1)
@@ -43,26 +61,36 @@ def product(x: Floats, counts: Bools) -> Floats:
     return np.where(counts.any(axis=1) & ~vanished, so_far[:, -1], 0.0)
 
 
-@excel("MIN", Numbers, ufunc=np.minimum)
+@excel(
+    "MIN",
+    Numbers,
+    ufunc=np.minimum,
+    facts=Facts(never_errs=True, empty_cells=EmptyCells.IGNORED, repeats=Repeats.ONCE, ends_tell=True, unrounded=True),
+)
 def minimum(x: Floats, counts: Bools) -> Floats:
     """Smallest; 0 of nothing."""
     return np.where(counts.any(axis=1), np.where(counts, x, np.inf).min(axis=1), 0.0)
 
 
-@excel("MAX", Numbers, ufunc=np.maximum)
+@excel(
+    "MAX",
+    Numbers,
+    ufunc=np.maximum,
+    facts=Facts(never_errs=True, empty_cells=EmptyCells.IGNORED, repeats=Repeats.ONCE, ends_tell=True, unrounded=True),
+)
 def maximum(x: Floats, counts: Bools) -> Floats:
     """Largest; 0 of nothing."""
     return np.where(counts.any(axis=1), np.where(counts, x, -np.inf).max(axis=1), 0.0)
 
 
-@excel("AVERAGE", Numbers)
+@excel("AVERAGE", Numbers, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT, measures=True))
 def average(x: Floats, counts: Bools) -> Floats:
     """Mean; `#DIV/0!` of nothing."""
     k = counts.sum(axis=1)
     return np.where(k > 0, sum_(x, counts) / k, DIV0)
 
 
-@excel("MEDIAN", Numbers)
+@excel("MEDIAN", Numbers, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT))
 def median(x: Floats, counts: Bools) -> Floats:
     """Middle number, or mean of the two in the middle; `#NUM!` of nothing."""
     ordered, k = _ordered(x, counts)
@@ -87,28 +115,48 @@ def _variance(x: Floats, counts: Bools, lost: int) -> tuple[Floats, Bools]:
     return _total(distance * distance) / (k - lost), k > lost
 
 
-@excel("VAR.S", Numbers, aliases=("VAR",))
+@excel(
+    "VAR.S",
+    Numbers,
+    aliases=("VAR",),
+    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT, measures=True),
+)
 def sample_variance(x: Floats, counts: Bools) -> Floats:
     """Variance, estimated from a sample; `#DIV/0!` of fewer than two."""
     variance, enough = _variance(x, counts, 1)
     return np.where(enough, variance, DIV0)
 
 
-@excel("VAR.P", Numbers, aliases=("VARP",))
+@excel(
+    "VAR.P",
+    Numbers,
+    aliases=("VARP",),
+    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT, measures=True),
+)
 def population_variance(x: Floats, counts: Bools) -> Floats:
     """Variance of the numbers themselves; `#DIV/0!` of nothing."""
     variance, enough = _variance(x, counts, 0)
     return np.where(enough, variance, DIV0)
 
 
-@excel("STDEV.S", Numbers, aliases=("STDEV",))
+@excel(
+    "STDEV.S",
+    Numbers,
+    aliases=("STDEV",),
+    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT, measures=True),
+)
 def sample_deviation(x: Floats, counts: Bools) -> Floats:
     """Standard deviation, estimated from a sample; `#DIV/0!` of fewer than two."""
     variance, enough = _variance(x, counts, 1)
     return np.where(enough, np.sqrt(variance), DIV0)
 
 
-@excel("STDEV.P", Numbers, aliases=("STDEVP",))
+@excel(
+    "STDEV.P",
+    Numbers,
+    aliases=("STDEVP",),
+    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT, measures=True),
+)
 def population_deviation(x: Floats, counts: Bools) -> Floats:
     """Standard deviation of the numbers themselves; `#DIV/0!` of nothing."""
     variance, enough = _variance(x, counts, 0)
@@ -136,13 +184,21 @@ def _how_many(parts: Iterable[Bools]) -> Floats:
     return total
 
 
-@excel("COUNT", Cells(repeat=True))
+@excel(
+    "COUNT",
+    Cells(repeat=True),
+    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.ADD_UP, ends_tell=True, exact_steps=True),
+)
 def count(*values: Value) -> Floats:
     """How many are numbers; given directly, also logicals and the texts of numbers. Errors do not count."""
     return _how_many(_numbers(value)[1] for value in values)
 
 
-@excel("COUNTA", Cells(repeat=True))
+@excel(
+    "COUNTA",
+    Cells(repeat=True),
+    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.ADD_UP, ends_tell=True, exact_steps=True),
+)
 def count_anything(*values: Value) -> Floats:
     """How many are not blank; an argument left out between commas counts, as in Excel."""
     return _how_many(_rows((value.kinds != BLANK) | (value.numbers.ndim < 3), value) for value in values)
@@ -166,7 +222,11 @@ def _first(errors: Iterable[Codes]) -> Codes:
     return first
 
 
-@excel("SUMPRODUCT", Arrays(repeat=True))
+@excel(
+    "SUMPRODUCT",
+    Arrays(repeat=True),
+    facts=Facts(empty_cells=EmptyCells.PAIRED, repeats=Repeats.ADD_UP, ends_tell=True, measures=True),
+)
 def sum_product(*values: Value) -> Value:
     """Sum of the products of the cells in one place; what is not a number is 0; `#VALUE!` for unequal shapes.
 
@@ -199,13 +259,17 @@ def _ranked(values: Value, rank: Value, place: Callable[[Floats, Places], Floats
     return Value.of_numbers(result.reshape(shape), errors.reshape(shape))
 
 
-@excel("LARGE", Cells, Number)
+@excel(
+    "LARGE", Cells, Number, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT, unrounded=True)
+)
 def large(values: Value, rank: Value) -> Value:
     """The number of a rank, the largest being 1; a fraction of a rank rounds up."""
     return _ranked(values, rank, lambda ranks, k: -np.ceil(ranks) + k)
 
 
-@excel("SMALL", Cells, Number)
+@excel(
+    "SMALL", Cells, Number, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT, unrounded=True)
+)
 def small(values: Value, rank: Value) -> Value:
     """The number of a rank, the smallest being 1; a fraction of a rank rounds down."""
     return _ranked(values, rank, lambda ranks, k: np.floor(ranks) - 1)

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from xlmc.functions.facts import Domain, EmptyCells, Facts, Repeats
 from xlmc.functions.registry import Number, Numbers, Ranges, excel
 from xlmc.functions.values import DIV0, NUM, Bools, Floats
 
@@ -15,21 +16,21 @@ __all__: list[str] = []
 _ONE_CELL: Final = Number(ranges=Ranges.ONE_CELL)
 _FACTORIALS: Final = np.array([float(math.factorial(n)) for n in range(171)])
 
-excel("ABS", Number, ufunc=np.absolute)(np.absolute)
-excel("SIGN", Number, ufunc=np.sign)(np.sign)
-excel("SQRT", Number, ufunc=np.sqrt)(np.sqrt)
-excel("EXP", Number, ufunc=np.exp)(np.exp)
-excel("LN", Number, ufunc=np.log)(np.log)
-excel("LOG10", Number, ufunc=np.log10)(np.log10)
+excel("ABS", Number, ufunc=np.absolute, facts=Facts(never_errs=True, unrounded=True))(np.absolute)
+excel("SIGN", Number, ufunc=np.sign, facts=Facts(never_errs=True, unrounded=True))(np.sign)
+excel("SQRT", Number, ufunc=np.sqrt, facts=Facts(measures=True, domain=Domain(0.0)))(np.sqrt)
+excel("EXP", Number, ufunc=np.exp, facts=Facts(measures=True))(np.exp)
+excel("LN", Number, ufunc=np.log, facts=Facts(measures=True, domain=Domain(0.0, with_ends=False)))(np.log)
+excel("LOG10", Number, ufunc=np.log10, facts=Facts(domain=Domain(0.0, with_ends=False)))(np.log10)
 
 
-@excel("SQRTPI", _ONE_CELL)
+@excel("SQRTPI", _ONE_CELL, facts=Facts(domain=Domain(0.0)))
 def sqrt_pi(x: Floats) -> Floats:
     """Square root of `x` times π."""
     return np.asarray(np.sqrt(x * np.pi))
 
 
-@excel("LOG", Number, Number(default=10.0))
+@excel("LOG", Number, Number(default=10.0), facts=Facts(domain=Domain(0.0, with_ends=False)))
 def log(x: Floats, base: Floats) -> Floats:
     """Logarithm to a base; `#NUM!` unless both are above 0, `#DIV/0!` to base 1.
 
@@ -48,7 +49,7 @@ def mod(x: Floats, divisor: Floats) -> Floats:
     return np.where(divisor == 0, DIV0, np.remainder(x, divisor))
 
 
-@excel("QUOTIENT", _ONE_CELL, _ONE_CELL)
+@excel("QUOTIENT", _ONE_CELL, _ONE_CELL, facts=Facts(exact_steps=True))
 def quotient(x: Floats, divisor: Floats) -> Floats:
     """Whole part of the quotient, towards zero; `#DIV/0!` by zero."""
     return np.where(divisor == 0, DIV0, np.trunc(x / divisor))
@@ -61,7 +62,7 @@ def fact(x: Floats) -> Floats:
     return np.where(outside, NUM, _FACTORIALS[np.where(outside, 0, x).astype(np.intp)])
 
 
-@excel("SUMSQ", Numbers)
+@excel("SUMSQ", Numbers, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.ADD_UP, measures=True))
 def sum_of_squares(x: Floats, counts: Bools) -> Floats:
     """Sum of the squares, from left to right."""
     return np.asarray(np.add.accumulate(np.where(counts, x * x, 0.0), axis=1)[:, -1])

@@ -14,6 +14,7 @@ import numpy as np
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import direct_errors, earliest, first_errors, with_errors
 from xlmc.functions.criteria import met
+from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.lookup.picking import cell_of, each_part, flattened, side_by_side
 from xlmc.functions.math.aggregate import average, maximum, minimum, sum_
 from xlmc.functions.portions import by_portions
@@ -96,49 +97,62 @@ def _resized(values: Value, rows: int, columns: int) -> Value:
     return Value(np.pad(cut.numbers, edges), np.pad(cut.kinds, edges, constant_values=BLANK), texts)
 
 
-@excel("COUNTIF", Cells, Anything, dated=True)
+@excel("COUNTIF", Cells, Anything, dated=True, facts=Facts(exact_steps=True))
 def count_if(cells: Value, criterion: Value, *, date1904: bool = False) -> Value:
     """How many cells meet the criterion."""
     return _conditional(cells, (cells, criterion), _count, date1904)
 
 
-@excel("COUNTIFS", Cells(repeat=True), Anything(repeat=True), dated=True)
+@excel("COUNTIFS", Cells(repeat=True), Anything(repeat=True), dated=True, facts=Facts(exact_steps=True))
 def count_ifs(*pairs: Value, date1904: bool = False) -> Value:
     """In how many places all ranges meet the criteria behind them."""
     return _conditional(pairs[0], pairs, _count, date1904)
 
 
-@excel("SUMIF", Cells, Anything, Cells(default=None), dated=True)
+@excel("SUMIF", Cells, Anything, Cells(default=None), dated=True, facts=Facts(empty_cells=EmptyCells.IGNORED))
 def sum_if(cells: Value, criterion: Value, values: Value | None = None, *, date1904: bool = False) -> Value:
     """Sum of the numbers beside the cells that meet the criterion, or of these cells."""
     return _beside(values, cells, criterion, _SUM, date1904)
 
 
-@excel("SUMIFS", Cells, Cells(repeat=True), Anything(repeat=True), dated=True)
+@excel(
+    "SUMIFS", Cells, Cells(repeat=True), Anything(repeat=True), dated=True, facts=Facts(empty_cells=EmptyCells.PAIRED)
+)
 def sum_ifs(values: Value, *pairs: Value, date1904: bool = False) -> Value:
     """Sum of the numbers where all ranges meet the criteria behind them."""
     return _conditional(values, pairs, _SUM, date1904)
 
 
-@excel("AVERAGEIF", Cells, Anything, Cells(default=None), dated=True)
+@excel("AVERAGEIF", Cells, Anything, Cells(default=None), dated=True, facts=Facts(empty_cells=EmptyCells.IGNORED))
 def average_if(cells: Value, criterion: Value, values: Value | None = None, *, date1904: bool = False) -> Value:
     """Mean of the numbers beside the cells that meet the criterion, or of these cells; `#DIV/0!` of none."""
     return _beside(values, cells, criterion, _AVERAGE, date1904)
 
 
-@excel("AVERAGEIFS", Cells, Cells(repeat=True), Anything(repeat=True), dated=True)
+@excel(
+    "AVERAGEIFS",
+    Cells,
+    Cells(repeat=True),
+    Anything(repeat=True),
+    dated=True,
+    facts=Facts(empty_cells=EmptyCells.PAIRED),
+)
 def average_ifs(values: Value, *pairs: Value, date1904: bool = False) -> Value:
     """Mean of the numbers where all ranges meet the criteria behind them; `#DIV/0!` of none."""
     return _conditional(values, pairs, _AVERAGE, date1904)
 
 
-@excel("MAXIFS", Cells, Cells(repeat=True), Anything(repeat=True), dated=True)
+@excel(
+    "MAXIFS", Cells, Cells(repeat=True), Anything(repeat=True), dated=True, facts=Facts(empty_cells=EmptyCells.PAIRED)
+)
 def maximum_ifs(values: Value, *pairs: Value, date1904: bool = False) -> Value:
     """Largest number where all ranges meet the criteria behind them; 0 of none."""
     return _conditional(values, pairs, _MAXIMUM, date1904)
 
 
-@excel("MINIFS", Cells, Cells(repeat=True), Anything(repeat=True), dated=True)
+@excel(
+    "MINIFS", Cells, Cells(repeat=True), Anything(repeat=True), dated=True, facts=Facts(empty_cells=EmptyCells.PAIRED)
+)
 def minimum_ifs(values: Value, *pairs: Value, date1904: bool = False) -> Value:
     """Smallest number where all ranges meet the criteria behind them; 0 of none."""
     return _conditional(values, pairs, _MINIMUM, date1904)

@@ -17,6 +17,7 @@ from xlmc.functions.arguments import (
     with_errors,
 )
 from xlmc.functions.budget import ask_for_cells, ask_for_work
+from xlmc.functions.facts import Facts
 from xlmc.functions.lookup.picking import cell_of, flattened, transposed
 from xlmc.functions.registry import Anything, Arrays, Cells, Kind, Ranges, excel
 from xlmc.functions.values import ERROR, NUM, NUMBER, Codes, Floats, Value, constant
@@ -35,7 +36,7 @@ def _matrix(value: Value) -> tuple[Floats, Codes]:
     return np.broadcast_to(cells.numbers, cells.shape), first_errors(flattened(codes, cells))[:, None, None]
 
 
-@excel("MMULT", Arrays, Arrays, returns=Kind.ANY)
+@excel("MMULT", Arrays, Arrays, returns=Kind.ANY, facts=Facts(spills=True))
 def product(left: Value, right: Value) -> Value:
     """Matrix product, (n, r, k) by (n, k, c); `#VALUE!` where the sizes do not go together.
 
@@ -64,7 +65,7 @@ def determinant(matrix: Value) -> Value:
     return Value.of_numbers(sign * np.multiply.accumulate(pivots, axis=1)[:, -1], errors[:, 0, 0])
 
 
-@excel("MINVERSE", Arrays, returns=Kind.ANY)
+@excel("MINVERSE", Arrays, returns=Kind.ANY, facts=Facts(spills=True))
 def inverse(matrix: Value) -> Value:
     """Inverse; `#VALUE!` unless the matrix is square, `#NUM!` where it is singular."""
     a, errors = _matrix(matrix)
@@ -96,7 +97,7 @@ def _eliminated(matrix: Floats) -> tuple[Floats, Floats]:
     return work, sign
 
 
-@excel("MUNIT", Anything, returns=Kind.ANY)
+@excel("MUNIT", Anything, returns=Kind.ANY, facts=Facts(spills=True))
 def unit_matrix(dimension: Value) -> Value:
     """Unit matrix; `#VALUE!` of no rows, or of more than a sheet has columns.
 
@@ -113,7 +114,7 @@ def unit_matrix(dimension: Value) -> Value:
     return Value.of_numbers(np.eye(common)[None])
 
 
-@excel("TRANSPOSE", Cells(ranges=Ranges.SINGLE), returns=Kind.ANY)
+@excel("TRANSPOSE", Cells(ranges=Ranges.SINGLE), returns=Kind.ANY, facts=Facts(spills=True))
 def transpose(cells: Value) -> Value:
     """Rows as columns: (n, r, c) -> (n, c, r)."""
     return transposed(cells.as_range())

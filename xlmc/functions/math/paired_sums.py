@@ -8,6 +8,7 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import direct_errors, earliest, first_errors, leveled, with_errors
+from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.lookup.picking import flattened
 from xlmc.functions.registry import Arrays, Cells, excel
 from xlmc.functions.toolpak import OneCell, strict_numbers
@@ -33,19 +34,19 @@ def _over_pairs(x: Value, y: Value, term: Callable[[Floats, Floats], Floats]) ->
     return Value.of_numbers(np.where(counts.any(axis=1), total, DIV0), errors)
 
 
-@excel("SUMX2MY2", Arrays, Arrays)
+@excel("SUMX2MY2", Arrays, Arrays, facts=Facts(empty_cells=EmptyCells.PAIRED))
 def sum_of_differences_of_squares(x: Value, y: Value) -> Value:
     """Sum of x² - y²."""
     return _over_pairs(x, y, lambda a, b: a * a - b * b)
 
 
-@excel("SUMX2PY2", Arrays, Arrays)
+@excel("SUMX2PY2", Arrays, Arrays, facts=Facts(empty_cells=EmptyCells.PAIRED))
 def sum_of_sums_of_squares(x: Value, y: Value) -> Value:
     """Sum of x² + y²."""
     return _over_pairs(x, y, lambda a, b: a * a + b * b)
 
 
-@excel("SUMXMY2", Arrays, Arrays)
+@excel("SUMXMY2", Arrays, Arrays, facts=Facts(empty_cells=EmptyCells.PAIRED))
 def sum_of_squares_of_differences(x: Value, y: Value) -> Value:
     """Sum of (x - y)²."""
     return _over_pairs(x, y, lambda a, b: (a - b) * (a - b))

@@ -14,6 +14,7 @@ from typing import Final
 
 import numpy as np
 
+from xlmc.functions.facts import Facts
 from xlmc.functions.registry import Number, Ranges, excel
 from xlmc.functions.values import DIV0, NUM, Bools, Floats
 
@@ -91,13 +92,13 @@ def _rounded(x: Floats, digits: Floats, further: Callable[[_Grid], Bools]) -> Fl
     return np.where(grid.fine, x, result)
 
 
-@excel("ROUND", Number, Number)
+@excel("ROUND", Number, Number, facts=Facts(exact_steps=True))
 def round_(x: Floats, digits: Floats) -> Floats:
     """To so many digits after the point (before it, if negative), halves away from zero."""
     return _rounded(x, digits, lambda grid: grid.coarse & grid.reaches(grid.n + 0.5))
 
 
-@excel("ROUNDUP", Number, Number)
+@excel("ROUNDUP", Number, Number, facts=Facts(exact_steps=True))
 def round_up(x: Floats, digits: Floats) -> Floats:
     """To so many digits, away from zero."""
     return _rounded(x, digits, _Grid.passes)
@@ -108,11 +109,11 @@ def _round_down(x: Floats, digits: Floats) -> Floats:
     return _rounded(x, digits, lambda _: np.asarray(False))
 
 
-excel("ROUNDDOWN", Number, Number)(_round_down)
-excel("TRUNC", Number, Number(default=0.0))(_round_down)
+excel("ROUNDDOWN", Number, Number, facts=Facts(exact_steps=True))(_round_down)
+excel("TRUNC", Number, Number(default=0.0), facts=Facts(exact_steps=True, unrounded=True))(_round_down)
 
 
-@excel("INT", Number)
+@excel("INT", Number, facts=Facts(unrounded=True))
 def int_(x: Floats) -> Floats:
     """Down to a whole number."""
     return _rounded(x, np.asarray(0.0), lambda grid: (x < 0) & grid.passes())
@@ -128,34 +129,34 @@ def _up(x: Floats, multiple: Floats) -> Floats:
     return -_down(-x, multiple) + 0.0
 
 
-@excel("CEILING", Number, Number)
+@excel("CEILING", Number, Number, facts=Facts(exact_steps=True))
 def ceiling(x: Floats, multiple: Floats) -> Floats:
     """Up to a multiple; away from zero when both are negative; `#NUM!` for a negative multiple of a positive number."""
     return np.where((x > 0) & (multiple < 0), NUM, _up(x, multiple))
 
 
-@excel("FLOOR", Number, Number)
+@excel("FLOOR", Number, Number, facts=Facts(exact_steps=True))
 def floor(x: Floats, multiple: Floats) -> Floats:
     """Down to a multiple; towards zero when both are negative; `#NUM!` as for CEILING, `#DIV/0!` for multiples of 0."""
     result = np.where((multiple == 0) & (x != 0), DIV0, _down(x, multiple))
     return np.where((x > 0) & (multiple < 0), NUM, result)
 
 
-@excel("CEILING.MATH", Number, Number(default=1.0), Number(default=0.0))
+@excel("CEILING.MATH", Number, Number(default=1.0), Number(default=0.0), facts=Facts(exact_steps=True))
 def ceiling_math(x: Floats, multiple: Floats, mode: Floats) -> Floats:
     """Up to a multiple, whatever its sign; a negative number away from zero when `mode` is not 0."""
     size = np.abs(multiple)
     return np.where((x < 0) & (mode != 0), _down(x, size), _up(x, size))
 
 
-@excel("FLOOR.MATH", Number, Number(default=1.0), Number(default=0.0))
+@excel("FLOOR.MATH", Number, Number(default=1.0), Number(default=0.0), facts=Facts(exact_steps=True))
 def floor_math(x: Floats, multiple: Floats, mode: Floats) -> Floats:
     """Down to a multiple, whatever its sign; a negative number towards zero when `mode` is not 0."""
     size = np.abs(multiple)
     return np.where((x < 0) & (mode != 0), _up(x, size), _down(x, size))
 
 
-@excel("MROUND", _ONE_CELL, _ONE_CELL)
+@excel("MROUND", _ONE_CELL, _ONE_CELL, facts=Facts(exact_steps=True))
 def mround(x: Floats, multiple: Floats) -> Floats:
     """To the nearest multiple, halves away from zero; `#NUM!` when the signs differ.
 
@@ -165,13 +166,13 @@ def mround(x: Floats, multiple: Floats) -> Floats:
     return np.where(np.sign(x) * np.sign(multiple) < 0, NUM, np.floor(quotient + 0.5) * multiple)
 
 
-@excel("EVEN", Number)
+@excel("EVEN", Number, facts=Facts(exact_steps=True))
 def even(x: Floats) -> Floats:
     """To the next even whole number, away from zero."""
     return np.asarray(np.copysign(np.ceil(np.abs(x) / 2) * 2, x) + 0.0)
 
 
-@excel("ODD", Number)
+@excel("ODD", Number, facts=Facts(exact_steps=True))
 def odd(x: Floats) -> Floats:
     """To the next odd whole number, away from zero; 0 to 1."""
     return np.asarray(np.copysign(np.ceil((np.abs(x) + 1) / 2) * 2 - 1, x + 0.0))

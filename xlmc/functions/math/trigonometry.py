@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from xlmc.functions.facts import Domain, Facts
 from xlmc.functions.guards import Within
 from xlmc.functions.math.sine import COSINE, SINE
 from xlmc.functions.registry import Number, excel
@@ -16,17 +17,18 @@ __all__: list[str] = []
 _LIMIT: Final = 2.0**27
 """Excel refuses the sine and its kin of larger angles, with `#NUM!`."""
 
-excel("ASIN", Number, ufunc=np.arcsin)(np.arcsin)
-excel("ACOS", Number, ufunc=np.arccos)(np.arccos)
+excel("ASIN", Number, ufunc=np.arcsin, facts=Facts(domain=Domain(-1.0, 1.0)))(np.arcsin)
+excel("ACOS", Number, ufunc=np.arccos, facts=Facts(domain=Domain(-1.0, 1.0)))(np.arccos)
 excel("ATAN", Number, ufunc=np.arctan)(np.arctan)
 excel("SINH", Number, ufunc=np.sinh)(np.sinh)
 excel("COSH", Number, ufunc=np.cosh)(np.cosh)
-excel("TANH", Number, ufunc=np.tanh)(np.tanh)
+excel("TANH", Number, ufunc=np.tanh, facts=Facts(between=(-1.0, 1.0)))(np.tanh)
 excel("ASINH", Number, ufunc=np.arcsinh)(np.arcsinh)
-excel("ACOSH", Number, ufunc=np.arccosh)(np.arccosh)
-excel("ATANH", Number, ufunc=np.arctanh)(np.arctanh)
-excel("RADIANS", Number, ufunc=np.radians)(np.radians)  # x·(π/180), to the bit what Excel gives
-excel("DEGREES", Number, ufunc=np.degrees)(np.degrees)
+excel("ACOSH", Number, ufunc=np.arccosh, facts=Facts(domain=Domain(1.0)))(np.arccosh)
+excel("ATANH", Number, ufunc=np.arctanh, facts=Facts(domain=Domain(-1.0, 1.0)))(np.arctanh)
+# x·(π/180) is to the bit what Excel gives, and NumPy's own functions are several times slower
+excel("RADIANS", Number, ufunc=np.radians, facts=Facts(factor=np.pi / 180))(np.radians)
+excel("DEGREES", Number, ufunc=np.degrees, facts=Facts(factor=180 / np.pi))(np.degrees)
 
 
 def _small(x: Floats) -> Bools:
@@ -36,19 +38,19 @@ def _small(x: Floats) -> Bools:
 _ALL_SMALL: Final = Within(_LIMIT)
 
 
-@excel("SIN", Number, ufunc=SINE, guard=_ALL_SMALL)
+@excel("SIN", Number, ufunc=SINE, guard=_ALL_SMALL, facts=Facts(measures=True, between=(-1.0, 1.0)))
 def sin(x: Floats) -> Floats:
     """Sine."""
     return np.where(_small(x), SINE(x), NUM)
 
 
-@excel("COS", Number, ufunc=COSINE, guard=_ALL_SMALL)
+@excel("COS", Number, ufunc=COSINE, guard=_ALL_SMALL, facts=Facts(measures=True, between=(-1.0, 1.0)))
 def cos(x: Floats) -> Floats:
     """Cosine."""
     return np.where(_small(x), COSINE(x), NUM)
 
 
-@excel("TAN", Number, ufunc=np.tan, guard=_ALL_SMALL)
+@excel("TAN", Number, ufunc=np.tan, guard=_ALL_SMALL, facts=Facts(measures=True))
 def tan(x: Floats) -> Floats:
     """Tangent."""
     return np.where(_small(x), np.tan(x), NUM)

@@ -10,6 +10,7 @@ from collections.abc import Callable
 import numpy as np
 
 from xlmc.functions.arguments import earliest, first_errors
+from xlmc.functions.facts import EmptyCells, Facts, Repeats
 from xlmc.functions.lookup.picking import flattened
 from xlmc.functions.registry import Cells, excel
 from xlmc.functions.samples import mean_of, spread_of
@@ -27,7 +28,9 @@ def _columns(value: Value) -> tuple[Floats, Bools, Codes]:
     return x, counts, errors
 
 
-def _over_all(name: str, meaning: str, body: Callable[[Floats, Bools], Floats], *aliases: str) -> None:
+def _over_all(
+    name: str, meaning: str, body: Callable[[Floats, Bools], Floats], repeats: Repeats = Repeats.REFUSED
+) -> None:
     """Register a function of all values, (n, k) and which of them count -> (n,)."""
 
     def apply(*values: Value) -> Value:
@@ -39,7 +42,8 @@ def _over_all(name: str, meaning: str, body: Callable[[Floats, Bools], Floats], 
         return Value.of_numbers(body(x, counts), earliest(*(first_errors(codes) for _, _, codes in parts)))
 
     apply.__doc__ = meaning
-    excel(name, Cells(repeat=True), aliases=aliases)(apply)
+    facts = Facts(empty_cells=EmptyCells.IGNORED, repeats=repeats, ends_tell=repeats is Repeats.ONCE)
+    excel(name, Cells(repeat=True), facts=facts)(apply)
 
 
 def _average(x: Floats, counts: Bools) -> Floats:
@@ -74,8 +78,8 @@ def _root(variance: Callable[[Floats, Bools], Floats]) -> Callable[[Floats, Bool
 
 
 _over_all("AVERAGEA", "Mean; `#DIV/0!` of nothing.", _average)
-_over_all("MAXA", "Largest; 0 of nothing.", _largest)
-_over_all("MINA", "Smallest; 0 of nothing.", _smallest)
+_over_all("MAXA", "Largest; 0 of nothing.", _largest, Repeats.ONCE)
+_over_all("MINA", "Smallest; 0 of nothing.", _smallest, Repeats.ONCE)
 _over_all("VARA", "Variance, estimated from a sample; `#DIV/0!` of fewer than two.", _variance)
 _over_all("VARPA", "Variance of the values themselves; `#DIV/0!` of nothing.", _population_variance)
 _over_all("STDEVA", "Standard deviation, from a sample; `#DIV/0!` of fewer than two.", _root(_variance))

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from xlmc.functions.arguments import earliest
+from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.registry import Arrays, Number, excel
 from xlmc.functions.samples import laid_out, mean_of, of_pairs, pairs_of, places_of, row_sums
 from xlmc.functions.values import DIV0, NA, Bools, Floats, Value
@@ -25,7 +26,7 @@ def _ratio(above: Floats, below: Floats) -> Floats:
     return np.where(below > 0, above / np.where(below > 0, below, 1.0), DIV0)
 
 
-@excel("CORREL", Arrays, Arrays, aliases=("PEARSON",))
+@excel("CORREL", Arrays, Arrays, aliases=("PEARSON",), facts=Facts(empty_cells=EmptyCells.PAIRED))
 @of_pairs
 def correlation(x: Floats, y: Floats, counts: Bools) -> Floats:
     """Pearson's correlation; `#DIV/0!` where one side does not vary."""
@@ -33,7 +34,7 @@ def correlation(x: Floats, y: Floats, counts: Bools) -> Floats:
     return _ratio(xy, np.sqrt(xx) * np.sqrt(yy))
 
 
-@excel("RSQ", Arrays, Arrays)
+@excel("RSQ", Arrays, Arrays, facts=Facts(empty_cells=EmptyCells.PAIRED))
 @of_pairs
 def determination(y: Floats, x: Floats, counts: Bools) -> Floats:
     """Square of Pearson's correlation; `#DIV/0!` where one side does not vary."""
@@ -43,7 +44,7 @@ def determination(y: Floats, x: Floats, counts: Bools) -> Floats:
     return np.where(root > 0, r * r, DIV0)
 
 
-@excel("COVARIANCE.P", Arrays, Arrays, aliases=("COVAR",))
+@excel("COVARIANCE.P", Arrays, Arrays, aliases=("COVAR",), facts=Facts(empty_cells=EmptyCells.PAIRED))
 @of_pairs
 def population_covariance(x: Floats, y: Floats, counts: Bools) -> Floats:
     """Covariance of the pairs themselves; `#DIV/0!` of nothing."""
@@ -51,7 +52,7 @@ def population_covariance(x: Floats, y: Floats, counts: Bools) -> Floats:
     return _ratio(xy, k)
 
 
-@excel("COVARIANCE.S", Arrays, Arrays)
+@excel("COVARIANCE.S", Arrays, Arrays, facts=Facts(empty_cells=EmptyCells.PAIRED))
 @of_pairs
 def sample_covariance(x: Floats, y: Floats, counts: Bools) -> Floats:
     """Covariance, estimated from a sample; `#DIV/0!` of fewer than two pairs."""
@@ -59,7 +60,7 @@ def sample_covariance(x: Floats, y: Floats, counts: Bools) -> Floats:
     return _ratio(xy, k - 1)
 
 
-@excel("SLOPE", Arrays, Arrays)
+@excel("SLOPE", Arrays, Arrays, facts=Facts(empty_cells=EmptyCells.PAIRED))
 @of_pairs
 def slope(y: Floats, x: Floats, counts: Bools) -> Floats:
     """Slope of the line of least squares; `#DIV/0!` where x does not vary."""
@@ -74,7 +75,7 @@ def _line(y: Floats, x: Floats, counts: Bools) -> tuple[Floats, Floats, Floats, 
     return mean_x, mean_y, row_sums(dx * dy) / np.where(xx > 0, xx, 1.0), xx > 0
 
 
-@excel("INTERCEPT", Arrays, Arrays)
+@excel("INTERCEPT", Arrays, Arrays, facts=Facts(empty_cells=EmptyCells.PAIRED))
 @of_pairs
 def intercept(y: Floats, x: Floats, counts: Bools) -> Floats:
     """Where the line of least squares meets x = 0; `#DIV/0!` where x does not vary."""
@@ -82,7 +83,7 @@ def intercept(y: Floats, x: Floats, counts: Bools) -> Floats:
     return np.where(varies, mean_y - steepness * mean_x, DIV0)
 
 
-@excel("STEYX", Arrays, Arrays)
+@excel("STEYX", Arrays, Arrays, facts=Facts(empty_cells=EmptyCells.PAIRED))
 @of_pairs
 def standard_error(y: Floats, x: Floats, counts: Bools) -> Floats:
     """Standard error of y about the line; `#DIV/0!` of fewer than three pairs, or where x does not vary."""
@@ -92,7 +93,7 @@ def standard_error(y: Floats, x: Floats, counts: Bools) -> Floats:
     return np.where(varies & (k > 2), np.sqrt(row_sums(off * off) / np.maximum(k - 2, 1.0)), DIV0)
 
 
-@excel("FORECAST.LINEAR", Number, Arrays, Arrays, aliases=("FORECAST",))
+@excel("FORECAST.LINEAR", Number, Arrays, Arrays, aliases=("FORECAST",), facts=Facts(empty_cells=EmptyCells.PAIRED))
 def forecast(at: Value, ys: Value, xs: Value) -> Value:
     """The line of least squares at a place; `#DIV/0!` where x does not vary, `#N/A` for ranges of unequal size."""
     (places,), codes, shape = places_of(at)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from xlmc.functions.facts import EmptyCells, Facts, Repeats
 from xlmc.functions.math.rounding import int_
 from xlmc.functions.registry import Cells, Number, Numbers, excel
 from xlmc.functions.samples import Sample, at_each, mean_of, row_sums, spread_of
@@ -12,14 +13,14 @@ from xlmc.functions.values import DIV0, NUM, Bools, Floats
 __all__: list[str] = []
 
 
-@excel("AVEDEV", Numbers)
+@excel("AVEDEV", Numbers, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT))
 def average_deviation(x: Floats, counts: Bools) -> Floats:
     """Mean distance from the mean; `#NUM!` of nothing."""
     _, distance, k = mean_of(x, counts)
     return np.where(k > 0, row_sums(np.abs(distance)) / np.maximum(k, 1.0), NUM)
 
 
-@excel("DEVSQ", Numbers)
+@excel("DEVSQ", Numbers, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT, measures=True))
 def squared_deviations(x: Floats, counts: Bools) -> Floats:
     """Sum of the squared distances from the mean; `#NUM!` of nothing."""
     total, k = spread_of(x, counts)
@@ -30,7 +31,7 @@ def _all_positive(x: Floats, counts: Bools) -> Bools:
     return np.asarray(counts.any(axis=1) & ((x > 0) | ~counts).all(axis=1))
 
 
-@excel("GEOMEAN", Numbers)
+@excel("GEOMEAN", Numbers, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT))
 def geometric_mean(x: Floats, counts: Bools) -> Floats:
     """Geometric mean; `#NUM!` unless all numbers are above 0."""
     logarithms = np.log(np.where(counts & (x > 0), x, 1.0))
@@ -38,7 +39,7 @@ def geometric_mean(x: Floats, counts: Bools) -> Floats:
     return np.where(_all_positive(x, counts), np.exp(mean), NUM)
 
 
-@excel("HARMEAN", Numbers)
+@excel("HARMEAN", Numbers, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT))
 def harmonic_mean(x: Floats, counts: Bools) -> Floats:
     """Harmonic mean; `#NUM!` unless all numbers are above 0."""
     inverses = np.where(counts & (x > 0), 1 / np.where(x > 0, x, 1.0), 0.0)
@@ -54,7 +55,7 @@ def _standardized(x: Floats, counts: Bools, lost: int) -> tuple[Floats, Floats, 
     return distance / np.sqrt(np.where(differ, variance, 1.0))[:, None], k, differ
 
 
-@excel("SKEW", Numbers)
+@excel("SKEW", Numbers, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT))
 def skewness(x: Floats, counts: Bools) -> Floats:
     """Skewness, estimated from a sample; `#DIV/0!` of fewer than three numbers, or of equal ones."""
     z, k, differ = _standardized(x, counts, 1)
@@ -63,14 +64,14 @@ def skewness(x: Floats, counts: Bools) -> Floats:
     return np.where(enough, row_sums(z * z * z) * k / ((k - 1) * (k - 2)), DIV0)
 
 
-@excel("SKEW.P", Numbers)
+@excel("SKEW.P", Numbers, facts=Facts(empty_cells=EmptyCells.IGNORED))
 def population_skewness(x: Floats, counts: Bools) -> Floats:
     """Skewness of the numbers themselves; `#DIV/0!` of fewer than three, or of equal ones."""
     z, k, differ = _standardized(x, counts, 0)
     return np.where((k > 2) & differ, row_sums(z * z * z) / np.maximum(k, 1.0), DIV0)
 
 
-@excel("KURT", Numbers)
+@excel("KURT", Numbers, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT))
 def kurtosis(x: Floats, counts: Bools) -> Floats:
     """Excess kurtosis, estimated from a sample; `#DIV/0!` of fewer than four numbers, or of equal ones."""
     z, k, differ = _standardized(x, counts, 1)
@@ -80,7 +81,7 @@ def kurtosis(x: Floats, counts: Bools) -> Floats:
     return np.where(enough, fourth - 3 * (k - 1) * (k - 1) / ((k - 2) * (k - 3)), DIV0)
 
 
-@excel("TRIMMEAN", Cells, Number)
+@excel("TRIMMEAN", Cells, Number, facts=Facts(empty_cells=EmptyCells.IGNORED))
 @at_each()
 def trimmed_mean(sample: Sample, share: Floats) -> Floats:
     """Mean without a share of the numbers, half of it at either end, whole numbers of them; `#NUM!` of nothing."""

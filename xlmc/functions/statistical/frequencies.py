@@ -9,6 +9,7 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong
+from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.lookup.picking import Places, flattened
 from xlmc.functions.registry import Arrays, Kind, Number, excel
 from xlmc.functions.samples import laid_out, pairs_of, places_of, row_sums, sample_of
@@ -67,7 +68,7 @@ def _places_of_modes(x: Floats, counts: Bools) -> Places:
     return np.sort(np.where(length == longest, np.take_along_axis(order, start, axis=1), k), axis=1)
 
 
-@excel("MODE.SNGL", Arrays(repeat=True), aliases=("MODE",))
+@excel("MODE.SNGL", Arrays(repeat=True), aliases=("MODE",), facts=Facts(empty_cells=EmptyCells.IGNORED))
 def mode(*values: Value) -> Value:
     """The most frequent number, the first of several; `#N/A` where none occurs twice."""
     modes = _modes_of(values)
@@ -76,7 +77,7 @@ def mode(*values: Value) -> Value:
     return Value.of_numbers(np.where(modes.how_many > 0, found, NA), modes.errors)
 
 
-@excel("MODE.MULT", Arrays(repeat=True), returns=Kind.ANY)
+@excel("MODE.MULT", Arrays(repeat=True), returns=Kind.ANY, facts=Facts(spills=True, empty_cells=EmptyCells.IGNORED))
 def modes_in_a_column(*values: Value) -> Value:
     """All of the most frequent numbers, in the order they appear in: (n, modes, 1); `#N/A` where none occurs twice.
 
@@ -90,7 +91,7 @@ def modes_in_a_column(*values: Value) -> Value:
     return Value.of_numbers(found[:, :, None], modes.errors.reshape(-1, 1, 1))
 
 
-@excel("FREQUENCY", Arrays, Arrays, returns=Kind.ANY)
+@excel("FREQUENCY", Arrays, Arrays, returns=Kind.ANY, facts=Facts(spills=True, empty_cells=EmptyCells.IGNORED_IN_FIRST))
 def frequency(values: Value, bins: Value) -> Value:
     """How many numbers are at most each bin, and above the bin below it, and how many above all: (n, b + 1, 1).
 

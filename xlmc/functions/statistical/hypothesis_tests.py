@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from xlmc.functions.arguments import earliest
+from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.registry import Arrays, Cells, Number, excel
 from xlmc.functions.samples import (
     Sample,
@@ -68,7 +69,7 @@ def _unpooled(one: Sample, other: Sample) -> Floats:
     return _outside(mean1 - mean2, np.sqrt(part1 + part2), freedom)
 
 
-@excel("T.TEST", Arrays, Arrays, Number, Number, aliases=("TTEST",))
+@excel("T.TEST", Arrays, Arrays, Number, Number, aliases=("TTEST",), facts=Facts(empty_cells=EmptyCells.PAIRED))
 def t_test(first: Value, second: Value, tails: Value, kind: Value) -> Value:
     """Probability of means so far apart: with 1 or 2 tails, of pairs (1), equal variances (2) or unequal ones (3).
 
@@ -85,7 +86,7 @@ def t_test(first: Value, second: Value, tails: Value, kind: Value) -> Value:
     return laid_out(result, earliest(one.errors[:, None], other.errors[:, None], *codes), shape)
 
 
-@excel("F.TEST", Arrays, Arrays, aliases=("FTEST",))
+@excel("F.TEST", Arrays, Arrays, aliases=("FTEST",), facts=Facts(empty_cells=EmptyCells.PAIRED))
 def f_test(first: Value, second: Value) -> Value:
     """Two-sided probability of variances so unlike; `#DIV/0!` of fewer than two numbers, or of equal ones."""
     one, other = sample_of(first), sample_of(second)
@@ -116,7 +117,7 @@ def chi_square_test(actual: Value, expected: Value) -> Value:
     return Value.of_numbers(np.where((counts & (wanted == 0)).any(axis=1), DIV0, result), errors)
 
 
-@excel("Z.TEST", Cells, Number, Number(default=None), aliases=("ZTEST",))
+@excel("Z.TEST", Cells, Number, Number(default=None), aliases=("ZTEST",), facts=Facts(empty_cells=EmptyCells.IGNORED))
 @at_each()
 def z_test(sample: Sample, centre: Floats, deviation: Floats | None = None) -> Floats:
     """Probability of a mean above the sample's, if the true one were `centre`; `#N/A` of nothing.

@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from xlmc.functions.facts import EmptyCells, Facts, Repeats
 from xlmc.functions.math.rounding import int_
 from xlmc.functions.registry import Cells, Number, excel
 from xlmc.functions.samples import Sample, at_each
@@ -46,28 +47,40 @@ def _exclusive(sample: Sample, share: Floats) -> Floats:
     return np.where(inside, _between(sample, np.where(inside, place, 1.0) - 1), NUM)
 
 
-@excel("PERCENTILE.INC", Cells, Number, aliases=("PERCENTILE",))
+@excel(
+    "PERCENTILE.INC",
+    Cells,
+    Number,
+    aliases=("PERCENTILE",),
+    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT),
+)
 @at_each()
 def percentile(sample: Sample, share: Floats) -> Floats:
     """The number that a share, 0 to 1, of the sample lies below."""
     return _inclusive(sample, share)
 
 
-@excel("PERCENTILE.EXC", Cells, Number)
+@excel("PERCENTILE.EXC", Cells, Number, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT))
 @at_each()
 def percentile_exclusive(sample: Sample, share: Floats) -> Floats:
     """The number that a share lies below, ends excluded: `#NUM!` for shares nearer to 0 or 1 than 1/(n + 1)."""
     return _exclusive(sample, share)
 
 
-@excel("QUARTILE.INC", Cells, Number, aliases=("QUARTILE",))
+@excel(
+    "QUARTILE.INC",
+    Cells,
+    Number,
+    aliases=("QUARTILE",),
+    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT),
+)
 @at_each()
 def quartile(sample: Sample, quarters: Floats) -> Floats:
     """The number that so many quarters, 0 to 4, of the sample lie below."""
     return _inclusive(sample, np.floor(quarters) / 4)
 
 
-@excel("QUARTILE.EXC", Cells, Number)
+@excel("QUARTILE.EXC", Cells, Number, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT))
 @at_each()
 def quartile_exclusive(sample: Sample, quarters: Floats) -> Floats:
     """The number that so many quarters, 1 to 3, of the sample lie below, ends excluded."""
@@ -96,7 +109,14 @@ def _rank_errors(sample: Sample, inside: Bools, digits: Floats, share: Floats) -
     return np.where((sample.size > 0) & (digits >= 1), share, NUM)
 
 
-@excel("PERCENTRANK.INC", Cells, Number, Number(default=3.0), aliases=("PERCENTRANK",))
+@excel(
+    "PERCENTRANK.INC",
+    Cells,
+    Number,
+    Number(default=3.0),
+    aliases=("PERCENTRANK",),
+    facts=Facts(empty_cells=EmptyCells.IGNORED),
+)
 @at_each()
 def percent_rank(sample: Sample, x: Floats, digits: Floats = _THREE) -> Floats:
     """The share of the sample below a number, 0 to 1, cut to so many digits; `#N/A` outside the sample."""
@@ -105,7 +125,7 @@ def percent_rank(sample: Sample, x: Floats, digits: Floats = _THREE) -> Floats:
     return _rank_errors(sample, inside, digits, np.where(inside, share, 0.0))
 
 
-@excel("PERCENTRANK.EXC", Cells, Number, Number(default=3.0))
+@excel("PERCENTRANK.EXC", Cells, Number, Number(default=3.0), facts=Facts(empty_cells=EmptyCells.IGNORED))
 @at_each()
 def percent_rank_exclusive(sample: Sample, x: Floats, digits: Floats = _THREE) -> Floats:
     """The share of the sample below a number, ends excluded, cut to so many digits; `#N/A` outside the sample."""
@@ -119,7 +139,7 @@ def _rank(x: Floats, sample: Sample, rising: Floats) -> tuple[Floats, Floats]:
     return ahead + 1, sample.how_many(np.equal, x)
 
 
-@excel("RANK.EQ", Number, Cells, Number(default=0.0), aliases=("RANK",))
+@excel("RANK.EQ", Number, Cells, Number(default=0.0), aliases=("RANK",), facts=Facts(empty_cells=EmptyCells.IGNORED))
 @at_each(1)
 def rank(sample: Sample, x: Floats, rising: Floats = _FALLING) -> Floats:
     """Rank of a number in a sample, equal numbers all with the best of theirs; `#N/A` if it is not there."""
@@ -127,7 +147,7 @@ def rank(sample: Sample, x: Floats, rising: Floats = _FALLING) -> Floats:
     return np.where(equal > 0, first, NA)
 
 
-@excel("RANK.AVG", Number, Cells, Number(default=0.0))
+@excel("RANK.AVG", Number, Cells, Number(default=0.0), facts=Facts(empty_cells=EmptyCells.IGNORED))
 @at_each(1)
 def average_rank(sample: Sample, x: Floats, rising: Floats = _FALLING) -> Floats:
     """Rank of a number in a sample, equal numbers all with the mean of theirs; `#N/A` if it is not there."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong
+from xlmc.functions.facts import Facts
 from xlmc.functions.lookup.picking import flattened
 from xlmc.functions.registry import Anything, Arrays, Kind, Ranges, excel
 from xlmc.functions.statistical.least_squares import Fit, fit
@@ -141,7 +142,7 @@ def _estimate(known: _Known | None, const: Value | None, stats: Value | None, *,
     return Value.of_numbers(result, earliest(known.errors, wrong, wrong_too)[:, None, None])
 
 
-@excel("LINEST", Arrays, *_OPTIONS, returns=Kind.ANY)
+@excel("LINEST", Arrays, *_OPTIONS, returns=Kind.ANY, facts=Facts(spills=True))
 def linest(ys: Value, xs: Value | None = None, const: Value | None = None, stats: Value | None = None) -> Value:
     """Coefficients of the plane of least squares, the last variable's first: (n, 1, p + 1), with `stats` (n, 5, p + 1).
 
@@ -155,7 +156,7 @@ def linest(ys: Value, xs: Value | None = None, const: Value | None = None, stats
     return _estimate(_known(ys, xs), const, stats, exponential=False)
 
 
-@excel("LOGEST", Arrays, *_OPTIONS, returns=Kind.ANY)
+@excel("LOGEST", Arrays, *_OPTIONS, returns=Kind.ANY, facts=Facts(spills=True))
 def logest(ys: Value, xs: Value | None = None, const: Value | None = None, stats: Value | None = None) -> Value:
     """Bases of the exponential curve b·m₁^x₁·m₂^x₂…, as LINEST of ln y gives it; the statistics are those of ln y.
 
@@ -196,7 +197,7 @@ def _predict(ys: Value, xs: Value | None, new: Value | None, const: Value | None
 _NEW = (Arrays(default=None), Arrays(default=None), _SETTING)
 
 
-@excel("TREND", Arrays, *_NEW, returns=Kind.ANY)
+@excel("TREND", Arrays, *_NEW, returns=Kind.ANY, facts=Facts(spills=True))
 def trend(ys: Value, xs: Value | None = None, new: Value | None = None, const: Value | None = None) -> Value:
     """The plane of least squares at new x, or at the known ones: (n, rows, columns of these).
 
@@ -205,7 +206,7 @@ def trend(ys: Value, xs: Value | None = None, new: Value | None = None, const: V
     return _predict(ys, xs, new, const, exponential=False)
 
 
-@excel("GROWTH", Arrays, *_NEW, returns=Kind.ANY)
+@excel("GROWTH", Arrays, *_NEW, returns=Kind.ANY, facts=Facts(spills=True))
 def growth(ys: Value, xs: Value | None = None, new: Value | None = None, const: Value | None = None) -> Value:
     """The exponential curve of LOGEST at new x, or at the known ones; `#NUM!` where some y is not above 0."""
     return _predict(ys, xs, new, const, exponential=True)

@@ -21,13 +21,13 @@ _UNKNOWN: Final = 63.0
 """The code of the question mark."""
 
 
-@excel("CHAR", Number, returns=Kind.TEXT)
+@excel("CHAR", Number, returns=Kind.TEXT, macintosh=True)
 def char(codes: Floats, *, macintosh: bool = False) -> Value:
     """The character of a code from 1 to 255 in the character set of Windows, or of the Macintosh."""
     return _CHARACTERS[macintosh](codes)
 
 
-@excel("CODE", Text)
+@excel("CODE", Text, macintosh=True)
 def code(texts: Objects, *, macintosh: bool = False) -> Value:
     """The code of the first character in the character set of Windows, or of the Macintosh; 63 if it is not there."""
     return _CODES[macintosh](texts)

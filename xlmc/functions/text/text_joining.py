@@ -9,6 +9,7 @@ import numpy as np
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, with_errors
 from xlmc.functions.budget import ask_for_texts, counted
+from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.per_element import per_element
 from xlmc.functions.per_object import object_text, per_object
 from xlmc.functions.registry import Anything, Cells, Kind, Logical, Text, excel
@@ -26,7 +27,7 @@ def concatenate(*texts: str) -> object:
     return joined if fits_in_a_cell(joined) else ErrorCode.VALUE
 
 
-@excel("CONCAT", Cells(repeat=True), returns=Kind.TEXT)
+@excel("CONCAT", Cells(repeat=True), returns=Kind.TEXT, facts=Facts(empty_cells=EmptyCells.IGNORED))
 def concat(*values: Value) -> Value:
     """The texts of all cells, row by row."""
     texts, errors = _side_by_side(values)

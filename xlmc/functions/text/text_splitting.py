@@ -10,6 +10,7 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import leveled
+from xlmc.functions.facts import Facts
 from xlmc.functions.per_object import object_text
 from xlmc.functions.registry import Anything, Cells, Kind, excel
 from xlmc.functions.text.utf16 import units
@@ -117,6 +118,7 @@ _edge("TEXTAFTER", "What stands after the n-th delimiter; `#N/A` without it.", l
     Anything(default=None),
     Anything(default=None),
     returns=Kind.ANY,
+    facts=Facts(spills=True),
 )
 def text_split(text: Value, *options: Value) -> Value:
     """A text cut into columns, and rows, at delimiters; short rows are filled up with `pad`. Of several texts, the

@@ -1,124 +1,15 @@
-"""Every family of functions, so that all of them are in the registry.
+"""Every family of functions, so that all of them are in the registry: the modules of this folder and those below it.
 
 A process that is sent a program needs the few that the program calls, and does not import this module.
 """
 
-from xlmc.functions import database, information, logical, operators
-from xlmc.functions.arrays import array_order, array_shapes
-from xlmc.functions.dates import date_differences, dates, day_count, times, week_numbers, workdays
-from xlmc.functions.engineering import base_conversion, bits, complex_functions, special_functions, unit_conversion
-from xlmc.functions.financial import (
-    accrued_interest,
-    annuities,
-    bonds,
-    cash_flows,
-    coupons,
-    dated_cash_flows,
-    depreciation,
-    discounts,
-    french_depreciation,
-    interest,
-    odd_first_bonds,
-    odd_last_bonds,
-    treasury_bills,
-)
-from xlmc.functions.lookup import index, lookup, references, xlookup
-from xlmc.functions.math import (
-    aggregate,
-    arithmetic,
-    conditional,
-    matrices,
-    number_theory,
-    numerals,
-    paired_sums,
-    precise_rounding,
-    reciprocal_trigonometry,
-    rounding,
-    subtotal,
-    trigonometry,
-)
-from xlmc.functions.registry import REGISTRY, function_named
-from xlmc.functions.statistical import (
-    any_kind,
-    beta_distributions,
-    correlation,
-    counting_distributions,
-    descriptive,
-    frequencies,
-    gamma_distributions,
-    hypothesis_tests,
-    normal_distributions,
-    quantiles,
-    regression,
-    student_distribution,
-)
-from xlmc.functions.text import characters, text_joining, text_numbers, text_parts, text_search, text_splitting
+from importlib import import_module
+from pkgutil import walk_packages
 
-__all__ = [
-    "REGISTRY",
-    "accrued_interest",
-    "aggregate",
-    "annuities",
-    "any_kind",
-    "arithmetic",
-    "array_order",
-    "array_shapes",
-    "base_conversion",
-    "beta_distributions",
-    "bits",
-    "bonds",
-    "cash_flows",
-    "characters",
-    "complex_functions",
-    "conditional",
-    "correlation",
-    "counting_distributions",
-    "coupons",
-    "database",
-    "date_differences",
-    "dated_cash_flows",
-    "dates",
-    "day_count",
-    "depreciation",
-    "descriptive",
-    "discounts",
-    "french_depreciation",
-    "frequencies",
-    "function_named",
-    "gamma_distributions",
-    "hypothesis_tests",
-    "index",
-    "information",
-    "interest",
-    "logical",
-    "lookup",
-    "matrices",
-    "normal_distributions",
-    "number_theory",
-    "numerals",
-    "odd_first_bonds",
-    "odd_last_bonds",
-    "operators",
-    "paired_sums",
-    "precise_rounding",
-    "quantiles",
-    "reciprocal_trigonometry",
-    "references",
-    "regression",
-    "rounding",
-    "special_functions",
-    "student_distribution",
-    "subtotal",
-    "text_joining",
-    "text_numbers",
-    "text_parts",
-    "text_search",
-    "text_splitting",
-    "times",
-    "treasury_bills",
-    "trigonometry",
-    "unit_conversion",
-    "week_numbers",
-    "workdays",
-    "xlookup",
-]
+import xlmc.functions
+from xlmc.functions.registry import REGISTRY, function_named
+
+__all__ = ["REGISTRY", "function_named"]
+
+for _module in walk_packages(xlmc.functions.__path__, "xlmc.functions."):
+    import_module(_module.name)

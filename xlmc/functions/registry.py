@@ -7,6 +7,15 @@ an `Anything` or `Cells` argument gets `Value`s and minds kinds and errors itsel
 
 A row with a `ufunc` promises: where no floating-point flag is raised and `guard` holds, the ufunc alone gives the
 body's values. That is what the fast engine runs.
+
+To add a function, write its body below `@excel("NAME", …)` in a file of the folder of its category: all files below
+`xlmc/functions` are imported, and no other is edited. The parameters say what the body gets; one that gives many cells
+takes `Anything`, `Cells` or `Arrays`, and its row says `facts=Facts(spills=True)`. Whatever else is known of the
+function goes into `facts`, where each fact is described, with what is assumed while it is not stated. The engines
+`numpy` and `jit` then compute it, `xlmc stability` says that it could not check it, derivatives are taken by
+differences: where that is not enough, give it a row in `evaluation/llvm/operations`, `evaluation/passes/exact` or
+`evaluation/passes/derivatives`. Test it in the folder of `tests/functions` of the same name, and write the list of
+functions anew: `python docs/list_functions.py`.
 """
 
 from __future__ import annotations
@@ -22,6 +31,7 @@ from typing import Any, Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.errors import FormulaError
 from xlmc.functions.budget import ask_for_cells
 from xlmc.functions.facts import NOTHING, Facts
 from xlmc.functions.values import ERROR, LOGICAL, NUMBER, Bools, Codes, Value, from_objects
@@ -165,10 +175,8 @@ class Function:
         """Answer once what is asked of every node.
 
         Raises:
-            ValueError: it has a ufunc, which gives one value, and spills.
+            ValueError: it spills, and its body does not get the values to see what to spill.
         """
-        if self.ufunc is not None and self.facts.spills:
-            raise ValueError(f"{self.name} has a ufunc, so it cannot spill")
         values = any(parameter.kind is Kind.ANY for parameter in self.parameters)
         sets = any(parameter.as_set for parameter in self.parameters)
         kinds = {parameter.kind for parameter in self.parameters}
@@ -177,6 +185,8 @@ class Function:
         answers = {"takes_values": values, "takes_sets": sets, "on_numbers": numbers, "takes_plainly": plainly}
         for name, found in answers.items():
             object.__setattr__(self, name, found)
+        if self.facts.spills and (self.ufunc is not None or (self.parameters and not values)):
+            raise ValueError(f"{self.name} spills: it takes `Anything`, `Cells` or `Arrays`, and has no ufunc")
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A row goes to another process by its name, where it is looked up; one that was made for a workbook whole."""
@@ -216,11 +226,15 @@ class Function:
         """Make sure that many cells come of an argument of single values that was given many.
 
         Raises:
-            TypeError: none was; the row does not say that the function spills.
+            FormulaError: none was; the row does not say that the function spills.
         """
-        shapes = [a.numbers.ndim for i, a in enumerate(arguments) if not self.parameter(i).ranged]
-        if 3 not in shapes:
-            raise TypeError(f"{self.name} gave many cells; its row in the registry must say `facts=Facts(spills=True)`")
+        if 3 not in [a.numbers.ndim for i, a in enumerate(arguments) if not self.parameter(i).ranged]:
+            raise self.not_single()
+
+    def not_single(self) -> FormulaError:
+        """What is said where it gives many cells for single ones, against what its row says."""
+        hint = "write `facts=Facts(spills=True)` into its row in xlmc/functions"
+        return FormulaError(f"{self.name} gives many cells, which its row in the registry does not say", hint=hint)
 
     def _ask_for(self, arguments: Sequence[Value]) -> None:
         """Ask for the array that the arguments spread to, and for that of all those that are put side by side."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.errors import FormulaError
 from xlmc.evaluation.block_size import array_bytes, fitting_block
 from xlmc.evaluation.engine import Column, Evaluator, Sweeper, Target
 from xlmc.evaluation.graph.dag import Dag, Input
@@ -18,7 +19,6 @@ from xlmc.evaluation.llvm.recipes import Recipe, reads, recipe_of
 from xlmc.evaluation.llvm.trials import Trials
 from xlmc.evaluation.llvm.whole import WholeBlocks, sweepable
 from xlmc.evaluation.reference.tracking import TrackingEvaluator
-from xlmc.functions.budget import TooLargeError
 from xlmc.functions.values import Floats
 
 if TYPE_CHECKING:
@@ -118,7 +118,7 @@ class _JitEvaluator:
         program = self._program
         try:
             program.first.run(self._trials, self._memory)
-        except TooLargeError:
+        except FormulaError:
             self._too_large = True
             return self._tracking.filters(inputs, n)
         self._too_large = False
@@ -137,7 +137,7 @@ class _JitEvaluator:
         trials = Trials(program.dag, m, self._trials.wrong[survivors], self._trials, survivors)
         try:
             program.late.run(trials, self._memory)
-        except TooLargeError:
+        except FormulaError:
             self._tracking.filters(self._draws, self._trials.wrong.size)
             return self._tracking.forecasts(survivors)
         columns = self._columns(trials, program.forecast_places)

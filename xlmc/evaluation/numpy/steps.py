@@ -116,8 +116,7 @@ def _apply(dag: Dag, place: int, function: Function, arguments: tuple[int, ...],
     found = [reader for reader in readers if reader is not None]
     if _fast_ufunc(dag, node) and function.ufunc is not None:
         return _ufunc(function.ufunc, function.guard, place, found, buffer)
-    careful = function.takes_values or function.facts.spills
-    return _valued(dag, place) if careful else _body(function, place, found)
+    return _valued(dag, place) if function.takes_values else _body(function, place, found)
 
 
 def _on_numbers(dag: Dag, function: Function, arguments: tuple[int, ...]) -> bool:
@@ -195,6 +194,8 @@ def _body(function: Function, place: int, readers: list[Reader]) -> Step:
 
     def step(frame: Frame) -> None:
         result = function.body(*(read(frame.values) for read in readers), *defaults)
+        if np.ndim(result.numbers if isinstance(result, Value) else result) > 1:
+            raise function.not_single()
         if isinstance(result, Value):
             result = _plain(result, function.returns)
         elif not logical and not np.isfinite(result).all():

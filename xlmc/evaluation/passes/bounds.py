@@ -51,6 +51,8 @@ def _of(dag: Dag, place: int, inputs: Mapping[str, Bounds], found: Mapping[int, 
             return _combined("*", part(first), _around((1.0 / low, 1.0 / high))) if away else _ANY
         case Apply(function, (result, _)) if function.name == SETTLED.name:
             return part(result)
+        case Apply(function) if function.facts.between is not None:
+            return function.facts.between
         case Apply(function, (only,)) if function.name in _OF_ONE:
             return _OF_ONE[function.name](*part(only))
         case _:
@@ -59,8 +61,6 @@ def _of(dag: Dag, place: int, inputs: Mapping[str, Bounds], found: Mapping[int, 
 
 _OF_ONE: Final[Mapping[str, Callable[[float, float], Bounds]]] = {
     "u-": lambda low, high: (-high, -low),
-    "SIN": lambda low, high: (-1.0, 1.0),
-    "COS": lambda low, high: (-1.0, 1.0),
     "SQRT": lambda low, high: (0.0, max(1.0, high)),  # wide, as the root of a number near 0 makes its rounding large
     "ABS": lambda low, high: (max(low, -high, 0.0), max(-low, high)),
 }

@@ -72,7 +72,7 @@ class Exact:
                     result = _applied(body, items)
                     if result is not NotImplemented:
                         return result
-                if function.name in _STEPS:
+                if function.facts.exact_steps:
                     return _decimal(_as_in_the_run(function, items))
                 self.unchecked.add(place)
                 return _as_in_the_run(function, items)
@@ -84,13 +84,6 @@ def exactly(value: Item) -> float:
     if isinstance(value, bool):
         return float(value)
     return float(value) if isinstance(value, mpf) else float("nan")
-
-
-_STEPS: Final = frozenset(
-    {"ROUND", "ROUNDUP", "ROUNDDOWN", "TRUNC", "CEILING", "FLOOR", "CEILING.MATH", "FLOOR.MATH", "MROUND", "EVEN"}
-    | {"ODD", "QUOTIENT", "MATCH", "XMATCH", "COUNT", "COUNTA", "COUNTIF", "COUNTIFS", "ISERROR", "ISNUMBER", "ISBLANK"}
-)
-"""What these give is a whole number, a multiple or a logical: exact, if their arguments are."""
 
 
 def _known(value: Value) -> Item:

@@ -34,21 +34,6 @@ __all__ = [
 DOUBLE: Final = 2.0**-53
 """Half a unit of the last place, as a share of the number."""
 
-_EXACT: Final = frozenset(
-    {"u-", "u+", "shown", "ABS", "SIGN", "MIN", "MAX", "LARGE", "SMALL", "INT", "TRUNC", "IF"}
-) | {
-    "MIN so far",
-    "MAX so far",
-}
-
-
-_ADDS: Final = frozenset({"+", "-", "SUM"})
-_CALCULATES: Final = (
-    _ADDS
-    | {"*", "/", "SQRT", "EXP", "LN", "SIN", "COS", "TAN", "SUMSQ", "SUMPRODUCT", "PRODUCT", "AVERAGE"}
-    | {"DEVSQ", "VAR.S", "VAR.P", "STDEV.S", "STDEV.P", "^"}
-)
-
 _POOL: Final = 1 << 16
 
 _ALL_WHOLE: Final = 2.0**52
@@ -190,7 +175,7 @@ def _typed(dag: Dag, places: Sequence[int]) -> set[int]:
 
 def _typed_of(node: Node) -> tuple[int, ...]:
     """The arguments that are calculated with; of a power the base, for an exponent is exact."""
-    if not isinstance(node, Apply) or node.function.name not in _CALCULATES:
+    if not isinstance(node, Apply) or not node.function.facts.measures:
         return ()
     return node.arguments[:1] if node.function.name == "^" else node.arguments
 
@@ -216,7 +201,7 @@ def term_sizes(dag: Dag, places: Sequence[int], values: Mapping[int, Value]) -> 
         node = formula_of(dag, place)
         parts = uses(node)
         size = max((found[part] for part in parts), default=0.0)
-        if isinstance(node, Apply) and node.function.name in _ADDS:
+        if isinstance(node, Apply) and node.function.facts.adds:
             sizes = [float(np.abs(values[part].numbers).max(initial=0.0)) for part in parts]
             size = max([size, *(one for one in sizes if np.isfinite(one))])
         found[place] = size
@@ -224,7 +209,7 @@ def term_sizes(dag: Dag, places: Sequence[int], values: Mapping[int, Value]) -> 
 
 
 def _rounds(node: Apply) -> bool:
-    return node.function.returns is not Kind.LOGICAL and node.function.name not in _EXACT
+    return node.function.returns is not Kind.LOGICAL and not node.function.facts.unrounded
 
 
 def numbers(value: Value, n: int) -> Floats:

@@ -170,7 +170,7 @@ class Inverting:
         undo = None if function is None else self._undo(part, cell)
         if function is None or undo is None:
             return None
-        if name in ("SIN", "COS", "TAN"):
+        if name in preimage.PERIODIC:
             self.turned.append(self._known(part, cell))
         return lambda value, known: undo(function(value), known)
 

@@ -16,6 +16,7 @@ from xlmc.run.rare.spans import Spans, chosen, common, joined, pieces
 
 __all__ = [
     "FUNCTIONS",
+    "PERIODIC",
     "TURNS",
     "divisor",
     "exponent",
@@ -217,3 +218,6 @@ FUNCTIONS: Final[Mapping[str, Callable[[Spans], Spans]]] = {
     "%": _scaled(0.01),
 }
 """Of one argument; beside them the operators before or after a value."""
+
+PERIODIC: Final = frozenset({"SIN", "COS", "TAN"})
+"""Those of them that give the same value again and again: how often is counted up to `TURNS`."""

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
 from xlmc.address import Cell
 from xlmc.formula import ir
+from xlmc.functions.families import function_named
 from xlmc.studies.stability.case import Case
 from xlmc.studies.stability.trees import factors, terms
 
 __all__ = ["Cancellation", "Division", "cancellation", "divisions", "left_of"]
-
-_BOUNDED: Final = frozenset({"SIN", "COS", "TANH"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,10 +67,15 @@ def _division(case: Case, cell: Cell, tree: ir.Expression, factor: ir.Expression
     values = values[np.isfinite(values)]
     if not values.size:
         return None
-    bounded = isinstance(factor, ir.Call) and factor.name in _BOUNDED
-    size = 1.0 if bounded else float(np.median(np.abs(values))) or float(np.abs(values).max())
+    size = 1.0 if _is_bounded(factor) else float(np.median(np.abs(values))) or float(np.abs(values).max())
     least = float(np.abs(values).min()) / size if size else 0.0
     return Division(tree, factor, place, least, bool(values.min() < 0 < values.max()))
+
+
+def _is_bounded(tree: ir.Expression) -> bool:
+    """Whether it is a sine or its like, which could be as large as 1."""
+    row = function_named(tree.name) if isinstance(tree, ir.Call) else None
+    return row is not None and row.facts.between == (-1.0, 1.0)
 
 
 def cancellation(case: Case, cell: Cell, trial: int) -> Cancellation | None:

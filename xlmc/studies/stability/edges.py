@@ -2,31 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
 
 from xlmc.address import Cell
 from xlmc.formula import ir
+from xlmc.functions.facts import Domain
+from xlmc.functions.families import function_named
 from xlmc.studies.stability.case import Case, Floats
 from xlmc.studies.stability.findings import Finding, Level
 from xlmc.studies.stability.trees import terms
 
 __all__ = ["domain_edges"]
-
-_DOMAINS: Final[Mapping[str, tuple[float, float]]] = {
-    "SQRT": (0.0, np.inf),
-    "SQRTPI": (0.0, np.inf),
-    "LN": (0.0, np.inf),
-    "LOG": (0.0, np.inf),
-    "LOG10": (0.0, np.inf),
-    "ASIN": (-1.0, 1.0),
-    "ACOS": (-1.0, 1.0),
-    "ATANH": (-1.0, 1.0),
-    "ACOSH": (1.0, np.inf),
-}
-"""Function -> what it takes."""
 
 _CLOSE: Final = 1e-3
 """Of the spread of the argument: nearer to the edge than that, and it is told of."""
@@ -36,8 +25,10 @@ def domain_edges(case: Case) -> Iterator[Finding]:
     """The functions whose argument leaves their domain in some trials, or comes close to its edge."""
     for cell in case.cells:
         for part in case.trees.parts(cell):
-            if isinstance(part, ir.Call) and part.name in _DOMAINS and not _is_of_squares(part):
-                finding = _finding(case, cell, part, *_DOMAINS[part.name])
+            row = function_named(part.name) if isinstance(part, ir.Call) else None
+            domain = None if row is None else row.facts.domain
+            if isinstance(part, ir.Call) and domain is not None and not _is_of_squares(part):
+                finding = _finding(case, cell, part, domain)
                 if finding is not None:
                     yield finding
 
@@ -51,7 +42,8 @@ def _is_of_squares(part: ir.Call) -> bool:
     return all(squares)
 
 
-def _finding(case: Case, cell: Cell, part: ir.Call, low: float, high: float) -> Finding | None:
+def _finding(case: Case, cell: Cell, part: ir.Call, domain: Domain) -> Finding | None:
+    low, high = domain.low, domain.high
     place = case.trees.place(part.arguments[0], cell)
     if place is None or place not in case.values:
         return None
@@ -63,7 +55,7 @@ def _finding(case: Case, cell: Cell, part: ir.Call, low: float, high: float) -> 
     outside = (every < low) | (every > high)
     argument, function = case.trees.text(part.arguments[0], cell), part.name
     takes = f"{low:g} or more" if high == np.inf else f"{low:g} to {high:g}"
-    above = "above 0" if function.startswith("L") else takes
+    above = takes if domain.with_ends else f"above {low:g}"
     share = float(outside[case.special :].mean())
     if share:
         what = f"{function} takes {above}, and {argument} goes to {_extreme(x, low, high):.4g}"

@@ -11,6 +11,7 @@ from xlmc.address import Cell
 from xlmc.evaluation.graph.dag import Constant, uses
 from xlmc.evaluation.passes.replicas import formula_of, numbers
 from xlmc.formula import ir
+from xlmc.functions.families import function_named
 from xlmc.studies.stability.case import Case, Floats
 from xlmc.studies.stability.findings import Finding, Level, Where
 from xlmc.studies.stability.guards import guards
@@ -23,8 +24,6 @@ _NEAREST: Final = 20
 
 _TOLD: Final = 0.01
 """Of the cell's central range."""
-
-_STEPS: Final = frozenset({"VLOOKUP", "HLOOKUP", "LOOKUP", "XLOOKUP", "MATCH", "XMATCH", "INDEX", "CHOOSE"})
 
 
 def jumps(case: Case) -> Iterator[Finding]:
@@ -39,7 +38,8 @@ def jumps(case: Case) -> Iterator[Finding]:
                 if finding is not None:
                     yield finding
     for kink in case.derivatives.kinks:
-        if kink.function in _STEPS and kink.cell in case.node:
+        row = function_named(kink.function)
+        if row is not None and row.facts.finds and kink.cell in case.node:
             text = f"{kink.function} finds {kink.ways} different cells among the trials"
             yield _finding(case, kink.cell, text, "the cell steps from one to the next", kink.share)
 

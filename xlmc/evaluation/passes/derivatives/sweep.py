@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Input, Range, Rescue, Select, evaluated, uses
+from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Input, Node, Range, Rescue, Select, evaluated, uses
 from xlmc.evaluation.graph.ragged import Ragged
 from xlmc.evaluation.passes.derivatives import arithmetic, elementary, lookup, rounding, sums  # noqa: F401 - they register their rules
 from xlmc.evaluation.passes.derivatives.jet import Jet, aligned
@@ -27,7 +27,6 @@ from xlmc.functions.values import ERROR, TEXT, Bools, Floats, ShapeVaries, Value
 __all__ = ["Unequal", "swept"]
 
 _NO_DERIVATIVE: Final = "the function has none there"
-_CONDITIONS: Final = frozenset({"<", "<=", ">", ">=", "=", "<>", "AND", "OR", "XOR", "NOT"})
 
 
 class Unequal(Exception):  # noqa: N818 - it asks for another way
@@ -113,12 +112,16 @@ def _passed(
         except ShapeVaries:
             raise Unequal from None
         jet = _defined(outcome.jet, result)
-    if outcome.ways is not None and (valued or name not in _CONDITIONS):
+    if outcome.ways is not None and (valued or not _is_condition(dag.nodes[place])):
         notes.took(place, name, outcome.ways, jumps)
     if outcome.numerical:
         notes.differed(place, name, jet.first, jet.error)
     _note_losses(place, name, why, result, jet, operands, notes, start)
     return jet
+
+
+def _is_condition(node: Node) -> bool:
+    return isinstance(node, Apply) and node.function.facts.condition
 
 
 def _described(dag: Dag, place: int) -> tuple[str, str, bool]:

@@ -1,0 +1,228 @@
+"""Facts about a function stand in its row: a list of names elsewhere is a table of rules, and is known here."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections import defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from xlmc.evaluation.graph.choices import CHOICES
+from xlmc.evaluation.graph.counts import SPECIAL
+from xlmc.evaluation.graph.lambdas import LAMBDAS
+from xlmc.evaluation.graph.places import PLACES
+from xlmc.evaluation.graph.references import REFERENCES
+from xlmc.evaluation.graph.running import FOLDS
+from xlmc.evaluation.graph.written_out import WRITTEN_OUT
+from xlmc.evaluation.passes.bounds import _OF_ONE
+from xlmc.evaluation.passes.derivatives.rules import RULES
+from xlmc.evaluation.passes.exact import EXACT
+from xlmc.formula.callables import _CHOOSING
+from xlmc.formula.references import LOOKED_AT
+from xlmc.functions.facts import EmptyCells, Facts, Repeats
+from xlmc.functions.families import REGISTRY
+from xlmc.functions.operators import ALL_BITS
+from xlmc.functions.so_far import SO_FAR
+from xlmc.functions.values import constant
+from xlmc.run.rare.preimage import FUNCTIONS, PERIODIC
+from xlmc.run.rare.switches import _OF_AREAS
+
+PACKAGE = Path(__file__).resolve().parents[2] / "xlmc"
+
+ROWS = {row.name: row for row in REGISTRY.values()}
+MADE = {"shown", "settled", *(row.name for row in SO_FAR.values())}
+"""Rows that no formula calls by name."""
+
+OURS = {*REGISTRY, *CHOICES, *PLACES, *LAMBDAS, *WRITTEN_OUT, "LET", "LAMBDA"}
+NAMES = {name for name in OURS if name.isupper()}
+
+_QUOTED = re.compile(r"[\"'](?:" + "|".join(map(re.escape, NAMES)) + r")[\"' ]")
+
+LISTS = {
+    ("definitions/in_cells/random_functions.py", "INVERSES"): "any other function of RAND() is computed from its draw",
+    ("evaluation/graph/choices.py", "CHOICES"): "any other function has all its arguments computed",
+    ("evaluation/graph/counts.py", "SPECIAL"): "any other function takes as many arguments as its row says",
+    ("evaluation/graph/lambdas.py", "LAMBDAS"): "any other function takes no LAMBDA",
+    ("evaluation/graph/one_cell.py", "_CHOICES"): "any other function that gives a range is asked for its cells",
+    ("evaluation/graph/places.py", "PLACES"): "any other function gets values, not places",
+    ("evaluation/graph/places.py", "_count"): "what PLACES has",
+    ("evaluation/graph/references.py", "REFERENCES"): "any other function gives values, not references",
+    ("evaluation/graph/running.py", "FOLDS"): "any other function is computed of each range by itself",
+    ("evaluation/graph/running.py", "RunningTotals"): "what FOLDS has",
+    ("evaluation/graph/whole_columns.py", "_looked_up"): "any other lookup searches as MATCH does, or is refused",
+    ("evaluation/graph/whole_columns.py", "_searched"): "any other lookup searches in both directions alike",
+    ("evaluation/llvm/operations.py", "_ROWS"): "any other function is computed by NumPy",
+    ("evaluation/llvm/sets.py", "_ROWS"): "any other function is computed by NumPy",
+    ("evaluation/numpy/sequence.py", "_sines_with_cosines"): "any other function is computed by itself",
+    ("evaluation/passes/bounds.py", "_OF_ONE"): "of any other function no bounds are known but those of its row",
+    ("evaluation/passes/derivatives/rounding.py", "multiples"): "any other function is differentiated by differences",
+    ("evaluation/passes/derivatives/rounding.py", "steps"): "any other function is differentiated by differences",
+    ("evaluation/passes/derivatives/sums.py", "conditional"): "one rule's own",
+    ("evaluation/passes/derivatives/sums.py", "variance"): "one rule's own",
+    ("evaluation/passes/exact.py", "EXACT"): "any other function is computed as in the run, and told of as not checked",
+    ("formula/callables.py", "_CHOOSING"): "any other function gives no LAMBDA",
+    ("formula/references.py", "LOOKED_AT"): "any other function reads its arguments",
+    ("formula/stencil.py", "_leaves"): "formulas without LET and LAMBDA are filled down by their shape",
+    ("functions/math/precise_rounding.py", "ceiling_precise"): "aliases of one row",
+    ("functions/so_far.py", "SO_FAR"): "any other function is computed of each range by itself",
+    ("replay/versions.py", "_BESIDE"): "what changed in an earlier version",
+    ("replay/versions.py", "_CHOICES"): "what changed in an earlier version",
+    ("run/rare/inverting.py", "Inverting"): "any other function is not undone: its filter is searched for",
+    ("run/rare/preimage.py", "FUNCTIONS"): "any other function is not undone: its filter is searched for",
+    ("run/rare/preimage.py", "PERIODIC"): "what FUNCTIONS has",
+    ("run/rare/switches.py", "_OF_AREAS"): "any other function of an area makes no ways to be told apart",
+    ("studies/stability/digits.py", "_STEEP"): "of any other function it is said that its argument is rounded",
+    ("studies/stability/momentum.py", "_arm"): "one form of a formula",
+    ("studies/stability/momentum.py", "components"): "one form of a formula",
+    ("studies/stability/rarer_forms.py", "_great_circle"): "one form of a formula",
+    ("studies/stability/rarer_forms.py", "_without_bounds"): "one form of a formula",
+    ("studies/stability/stable_forms.py", "LOGARITHMS"): "no other form is offered for any other function",
+    ("studies/stability/stable_forms.py", "_of_logarithms"): "one form of a formula",
+    ("studies/stability/stable_forms.py", "_of_squares"): "one form of a formula",
+    ("studies/verify.py", "_PERIODIC"): "any other function must agree with what Excel saved",
+}
+"""(file, name or function) -> what holds of a function that is not in its lists of names."""
+
+
+def _strings(node: ast.AST) -> list[str]:
+    """The texts that a set, list, tuple, dict or split text is made of."""
+    match node:
+        case ast.Set(parts) | ast.List(parts) | ast.Tuple(parts) | ast.Dict(parts):
+            return [part.value for part in parts if isinstance(part, ast.Constant) and isinstance(part.value, str)]
+        case ast.Call(ast.Attribute(ast.Constant(str() as text), "split")):
+            return text.split()
+        case _:
+            return []
+
+
+def _owned(node: ast.AST, owner: str | None) -> Iterator[tuple[str, list[str]]]:
+    """The lists below a node, each with the name at the top of the file that it belongs to."""
+    for child in ast.iter_child_nodes(node):
+        match child:
+            case ast.FunctionDef(name) | ast.ClassDef(name) if owner is None:
+                own: str | None = name
+            case ast.Assign([target]) | ast.AnnAssign(target) | ast.AugAssign(target) if owner is None:
+                own = ast.unparse(target)
+            case _:
+                own = owner
+        if (found := _strings(child)) and own is not None and own != "__all__":
+            yield own, found
+        yield from _owned(child, own)
+
+
+def _lists(source: str) -> dict[str, list[list[str]]]:
+    """By name: the lists in a file that hold two names of functions, or more."""
+    if not _QUOTED.search(source):
+        return {}
+    found = defaultdict(list)
+    for owner, names in _owned(ast.parse(source), None):
+        if len(NAMES.intersection(names)) > 1:
+            found[owner].append(names)
+    return found
+
+
+@pytest.fixture(scope="module")
+def lists():
+    return {
+        (path.relative_to(PACKAGE).as_posix(), owner): names
+        for path in sorted(PACKAGE.rglob("*.py"))
+        for owner, names in _lists(path.read_text(encoding="utf-8")).items()
+    }
+
+
+def test_a_list_would_be_found():
+    source = (
+        "A = 1\nB: Final = frozenset({'SUM', 'MAX'} | {'NO', 'MIN'})\ndef f():\n    return 'SORT TAKE DROP'.split()"
+    )
+    assert _lists(source) == {"B": [["SUM", "MAX"]], "f": [["SORT", "TAKE", "DROP"]]}
+
+
+def test_there_are_no_lists_of_functions_but_tables_of_rules(lists):
+    """A fact belongs into `xlmc.functions.facts`, and into the rows; a table of rules is written into `LISTS`."""
+    assert set(lists) - set(LISTS) == set(), "write it as a fact of the rows, or into LISTS"
+    assert set(LISTS) - set(lists) == set()
+
+
+def test_every_name_in_them_is_that_of_a_function(lists):
+    """One that was renamed fails here by its name."""
+    named = re.compile(r"[A-Z][A-Z0-9.]+")
+    unknown = {name for names in lists.values() for part in names for name in part if named.fullmatch(name)} - OURS
+    assert unknown == set()
+
+
+@pytest.mark.parametrize("table", [EXACT, RULES, _OF_ONE], ids=["exact", "derivatives", "bounds"])
+def test_tables_of_nodes_have_the_names_of_rows(table):
+    """An alias would never be looked up."""
+    assert set(table) - set(ROWS) - MADE == set()
+
+
+def test_tables_of_native_code_have_the_names_of_rows():
+    operations, sets = (
+        pytest.importorskip("xlmc.evaluation.llvm.operations"),
+        pytest.importorskip("xlmc.evaluation.llvm.sets"),
+    )
+    assert {*operations._ROWS, *sets._ROWS} - set(ROWS) - MADE == set()
+    assert all(ROWS[name].takes_sets for name in sets._ROWS)
+
+
+@pytest.mark.parametrize("table", [FUNCTIONS, _OF_AREAS, FOLDS], ids=["preimage", "switches", "running totals"])
+def test_tables_of_formulas_have_all_names_of_a_row(table):
+    """A formula may call a function by any of them."""
+    rows = {REGISTRY[name] for name in table}
+    assert {name for name, row in REGISTRY.items() if row in rows and name.isupper()} <= set(table)
+
+
+def test_lists_of_choices_and_of_places_agree():
+    assert CHOICES.keys() - {"SINGLE"} == _CHOOSING
+    assert set(LOOKED_AT) <= PLACES.keys()
+    assert REFERENCES.keys() <= PLACES.keys() | CHOICES.keys()
+    assert {*CHOICES, *PLACES, *LAMBDAS, *WRITTEN_OUT} - SPECIAL.keys() <= REGISTRY.keys()
+    assert set(PERIODIC) <= FUNCTIONS.keys()
+
+
+def test_comparisons_to_the_last_bit_state_what_the_others_do():
+    assert {name: row.facts for name, row in ALL_BITS.items()} == {name: REGISTRY[name].facts for name in ALL_BITS}
+
+
+FEW = {
+    "what spills": ({"SORT", "MMULT", "INDEX", "XLOOKUP", "LINEST"}, lambda facts: facts.spills),
+    "what its numbers size": ({"TAKE", "SEQUENCE"}, lambda facts: facts.sized_by_numbers),
+    "what looks up": ({"MATCH", "XLOOKUP", "LOOKUP"}, lambda facts: facts.mode_argument is not None),
+    "what is bounded": ({"SIN", "COS", "TANH"}, lambda facts: facts.between is not None),
+    "what has a domain": ({"SQRT", "LN", "ACOS"}, lambda facts: facts.domain is not None),
+    "what ignores empty cells": ({"SUM", "NPV"}, lambda facts: facts.empty_cells is EmptyCells.IGNORED),
+    "what adds up": ({"SUM", "COUNT", "SUMSQ"}, lambda facts: facts.repeats is Repeats.ADD_UP),
+}
+
+
+@pytest.mark.parametrize(("names", "holds"), FEW.values(), ids=FEW)
+def test_facts_are_stated(names, holds):
+    assert {name for name, row in ROWS.items() if holds(row.facts)} >= names
+    assert not holds(Facts())
+
+
+def test_a_lookup_says_how_by_an_argument_that_it_has_or_always_looks_up_by_halves():
+    told = {name: row.facts.mode_argument for name, row in ROWS.items() if row.facts.mode_argument is not None}
+    assert {name for name, argument in told.items() if argument >= ROWS[name].arity()[1]} == {"LOOKUP"}
+
+
+def test_what_lies_between_two_numbers_does():
+    for row in ROWS.values():
+        if row.facts.between is not None:
+            low, high = row.facts.between
+            found = [row([constant(x)]).numbers[0] for x in (-1e5, -2.0, 0.0, 0.5, 1.5, 4.7, 700.0)]
+            assert low <= min(found)
+            assert max(found) <= high
+
+
+def test_a_function_with_a_domain_is_an_error_beyond_it_and_a_number_within():
+    for row in ROWS.values():
+        domain = row.facts.domain
+        if domain is not None:
+            end = row([constant(domain.low)])
+            assert end.has_errors is not domain.with_ends or row.name == "ATANH", row.name
+            assert row([constant(domain.low - 0.01)]).has_errors
+            assert not row([constant(domain.low + 0.01)]).has_errors

@@ -213,23 +213,22 @@ class Function:
             self._ask_for(arguments)
         with np.errstate(all="ignore"):
             if self.takes_values:
-                result = _as_value(self.body(*arguments), self.returns, None)
-            elif self.takes_sets:
-                result = self._of_sets(arguments)
-            else:
-                result = self._of_elements(arguments)
-        if result.numbers.ndim == 3 and not self.facts.spills:
-            self._check_spread(arguments)
-        return result
+                return _as_value(self.body(*arguments), self.returns, None)
+            if self.takes_sets:
+                return self._of_sets(arguments)
+            return self._of_elements(arguments)
 
-    def _check_spread(self, arguments: Sequence[Value]) -> None:
-        """Make sure that many cells come of an argument of single values that was given many.
+    def checked(self, result: Value, arguments: Sequence[Value]) -> Value:
+        """The result, of which many cells come only of arguments of single values that are many.
 
         Raises:
-            FormulaError: none was; the row does not say that the function spills.
+            FormulaError: none of them is, and the row does not say that the function spills.
         """
-        if 3 not in [a.numbers.ndim for i, a in enumerate(arguments) if not self.parameter(i).ranged]:
-            raise self.not_single()
+        if result.numbers.ndim < 3 or self.facts.spills:
+            return result
+        if any(a.numbers.ndim == 3 and not self.parameter(i).ranged for i, a in enumerate(arguments)):
+            return result
+        raise self.not_single()
 
     def not_single(self) -> FormulaError:
         """What is said where it gives many cells for single ones, against what its row says."""

@@ -335,7 +335,8 @@ def evaluated(node: Apply | Select | Rescue | Range, values: Mapping[int, Value]
 def _evaluated(node: Apply | Select | Rescue | Range, values: Mapping[int, Value]) -> Value:
     match node:
         case Apply(function, arguments):
-            return function(arguments_of(function, [values[place] for place in arguments]))
+            given = arguments_of(function, [values[place] for place in arguments])
+            return function.checked(function(given), given)
         case Select(condition, yes, no):
             _ask_for_all(values[condition], values[yes], values[no])
             return _selected(values[condition], values[yes], values[no])

@@ -9,16 +9,14 @@ from typing import TYPE_CHECKING
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of, quote_sheet
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.arrays import beside, grid
-from xlmc.evaluation.graph.dag import Range
 from xlmc.evaluation.graph.empty_cells import refused
 from xlmc.evaluation.graph.extents import beyond, leveled
 from xlmc.evaluation.graph.references import REFERENCES, NoReference, NotYetNeeded, areas_of, cut, many_numbers, needed
 from xlmc.evaluation.graph.scope import Scope
+from xlmc.evaluation.graph.totals import without_totals
 from xlmc.formula import ir
 from xlmc.formula.shown import shown_formula
 from xlmc.functions.budget import ask_for_reading
-from xlmc.functions.families import function_named
-from xlmc.functions.math.subtotal import Skips, aggregate_skips, subtotal_skips
 from xlmc.functions.values import constant
 
 if TYPE_CHECKING:
@@ -242,69 +240,6 @@ def _spilled(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
     return lowering.array(Cell(area.sheet, area.top, area.left))
 
 
-def _without_subtotals(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
-    """SUBTOTAL and AGGREGATE leave out cells that are such totals themselves."""
-    first = 1 if name == "SUBTOTAL" else 2
-
-    def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
-        function = function_named(name)
-        if function is None or len(arguments) <= first:
-            return None
-        found = [lowering.lower(argument, scope) for argument in arguments[:first]]
-        for argument in arguments[first:]:
-            areas = areas_of(lowering, argument, scope)
-            if areas is None:
-                found.append(lowering.lower(argument, scope.over_arrays()))
-            else:
-                skipped = _skipped(lowering, name, found)
-                found += [_left_in(lowering, area, skipped) for area in areas]
-        return lowering.made(function, tuple(found))
-
-    return lower
-
-
-_TOTAL = re.compile(r"\b(SUBTOTAL|AGGREGATE)\(", re.IGNORECASE)
-
-
-def _skipped(lowering: Lowering, name: str, options: list[int]) -> Skips | None:
-    """What is left out of ranges; None where that varies."""
-    known = [lowering.known_single(option) for option in options]
-    numbers = [int(value.numbers[0]) if value is not None and value.plain else None for value in known]
-    if numbers[-1] is None:
-        return None
-    return subtotal_skips(numbers[-1]) if name == "SUBTOTAL" else aggregate_skips(numbers[-1])
-
-
-def _hidden_rows(lowering: Lowering, area: Area, skips: Skips | None) -> frozenset[int]:
-    """The rows of an area that a total leaves out because they are hidden.
-
-    Raises:
-        FormulaError: some are hidden, and whether they are left out varies.
-    """
-    sheet = lowering.graph.workbook.sheet_of(area)
-    rows = frozenset[int]() if sheet is None else sheet.hidden_rows & frozenset(range(area.top, area.bottom + 1))
-    if sheet is None or not rows:
-        return frozenset()
-    if skips is None:
-        raise FormulaError("rows of the range are hidden, and whether the total leaves them out varies")
-    if skips.hidden:
-        return rows
-    return rows & lowering.graph.workbook.filtered_rows(sheet) if skips.filtered else frozenset()
-
-
-def _left_in(lowering: Lowering, area: Area, skips: Skips | None) -> int:
-    ask_for_reading(area.rows, area.columns)  # further cells of a whole column are empty
-    hidden_rows, totals = _hidden_rows(lowering, area, skips), skips is None or skips.nested
-
-    def node(cell: Cell) -> int:
-        if cell.row in hidden_rows or (totals and _TOTAL.search(lowering.graph.text(cell))):
-            return lowering.dag.constant(constant(None))
-        return lowering.cell(cell)
-
-    rows, columns = range(area.top, area.bottom + 1), range(area.left, area.right + 1)
-    return lowering.dag.add(Range(tuple(tuple(node(Cell(area.sheet, r, c)) for c in columns) for r in rows)))
-
-
 def _summed_beside(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
     """SUMIF and AVERAGEIF take as much of the third argument as the first has rows and columns."""
 
@@ -390,6 +325,6 @@ PLACES: Mapping[str, Callable[[Lowering, Arguments, Scope], int | None]] = {
     "SHEETS": _sheets,
     "CELL": _cell,
     "ANCHORARRAY": _spilled,
-    "SUBTOTAL": _without_subtotals("SUBTOTAL"),
-    "AGGREGATE": _without_subtotals("AGGREGATE"),
+    "SUBTOTAL": without_totals("SUBTOTAL"),
+    "AGGREGATE": without_totals("AGGREGATE"),
 }

@@ -1,0 +1,116 @@
+"""SUBTOTAL and AGGREGATE: what they leave out of ranges, and what of an array of ranks comes of them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cache
+from typing import TYPE_CHECKING, Final
+
+from xlmc.address import Area, Cell
+from xlmc.errors import FormulaError
+from xlmc.evaluation.graph.arrays import cell_by_cell
+from xlmc.evaluation.graph.dag import Range
+from xlmc.evaluation.graph.references import areas_of
+from xlmc.evaluation.graph.scope import Scope
+from xlmc.formula import ir
+from xlmc.functions import Function
+from xlmc.functions.budget import ask_for_reading
+from xlmc.functions.families import function_named
+from xlmc.functions.math.subtotal import Skips, aggregate_skips, subtotal_skips
+from xlmc.functions.values import constant
+
+if TYPE_CHECKING:
+    from xlmc.evaluation.graph.lower import Lowering
+
+__all__ = ["without_totals"]
+
+Arguments = tuple[ir.Expression, ...]
+
+
+def without_totals(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
+    """SUBTOTAL and AGGREGATE leave out cells that are such totals themselves."""
+    first = 1 if name == "SUBTOTAL" else 2
+
+    def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+        function = function_named(name)
+        if function is None or len(arguments) <= first:
+            return None
+        found = [lowering.lower(argument, scope) for argument in arguments[:first]]
+        for argument in arguments[first:]:
+            areas = areas_of(lowering, argument, scope)
+            if areas is None:
+                found.append(lowering.lower(argument, scope.over_arrays()))
+            else:
+                skipped = _skipped(lowering, name, found)
+                found += [_left_in(lowering, area, skipped) for area in areas]
+        by_rank = len(found) == 4 and name == "AGGREGATE" and lowering.dag.sizes[found[3]] not in (None, (1, 1))
+        return _of_ranks(lowering, function, found) if by_rank else lowering.made(function, tuple(found))
+
+    return lower
+
+
+_OF_A_RANK: Final = range(14, 20)
+"""The numbers of AGGREGATE's functions, such as LARGE, that take a rank behind their array."""
+
+
+def _of_ranks(lowering: Lowering, function: Function, found: Sequence[int]) -> int:
+    """AGGREGATE of a range and many cells: where these are ranks, one result for each of them."""
+    number = lowering.known_single(found[0])
+    if number is None or not number.plain:
+        return lowering.made(_spilling(function), tuple(found))
+    if int(number.numbers[0]) not in _OF_A_RANK:
+        return lowering.made(function, tuple(found))
+    cells = cell_by_cell(
+        lowering.dag, (found[3],), lambda rank: lowering.made(function, (*found[:3], *rank)), constants=True
+    )
+    return lowering.made(_spilling(function), tuple(found)) if cells is None else cells
+
+
+@cache
+def _spilling(function: Function) -> Function:
+    """The function where it gives many cells, or may."""
+    return replace(function, facts=replace(function.facts, spills=True))
+
+
+_TOTAL = re.compile(r"\b(SUBTOTAL|AGGREGATE)\(", re.IGNORECASE)
+
+
+def _skipped(lowering: Lowering, name: str, options: list[int]) -> Skips | None:
+    """What is left out of ranges; None where that varies."""
+    known = [lowering.known_single(option) for option in options]
+    numbers = [int(value.numbers[0]) if value is not None and value.plain else None for value in known]
+    if numbers[-1] is None:
+        return None
+    return subtotal_skips(numbers[-1]) if name == "SUBTOTAL" else aggregate_skips(numbers[-1])
+
+
+def _hidden_rows(lowering: Lowering, area: Area, skips: Skips | None) -> frozenset[int]:
+    """The rows of an area that a total leaves out because they are hidden.
+
+    Raises:
+        FormulaError: some are hidden, and whether they are left out varies.
+    """
+    sheet = lowering.graph.workbook.sheet_of(area)
+    rows = frozenset[int]() if sheet is None else sheet.hidden_rows & frozenset(range(area.top, area.bottom + 1))
+    if sheet is None or not rows:
+        return frozenset()
+    if skips is None:
+        raise FormulaError("rows of the range are hidden, and whether the total leaves them out varies")
+    if skips.hidden:
+        return rows
+    return rows & lowering.graph.workbook.filtered_rows(sheet) if skips.filtered else frozenset()
+
+
+def _left_in(lowering: Lowering, area: Area, skips: Skips | None) -> int:
+    ask_for_reading(area.rows, area.columns)  # further cells of a whole column are empty
+    hidden_rows, totals = _hidden_rows(lowering, area, skips), skips is None or skips.nested
+
+    def node(cell: Cell) -> int:
+        if cell.row in hidden_rows or (totals and _TOTAL.search(lowering.graph.text(cell))):
+            return lowering.dag.constant(constant(None))
+        return lowering.cell(cell)
+
+    rows, columns = range(area.top, area.bottom + 1), range(area.left, area.right + 1)
+    return lowering.dag.add(Range(tuple(tuple(node(Cell(area.sheet, r, c)) for c in columns) for r in rows)))

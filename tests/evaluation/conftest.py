@@ -135,7 +135,7 @@ def ways(lower):
         draws = {address: np.full(3, float(value)) for address, value in drawn.items()}
         for way in WAYS[1:]:
             lowering, found = lower(book, draws, targets, **of_workbook)
-            program = ENGINES[way](lowering, [], found, frozenset(draws))
+            program = ENGINES[way].load()(lowering, [], found, frozenset(draws))
             evaluator = program.evaluator(3)
             list(evaluator.filters(draws, 3))
             columns = [_objects(column) for column in evaluator.forecasts(np.arange(3))]

@@ -174,7 +174,7 @@ def differences(lower):
         split = targets[: len(filters)], targets[len(filters) :]
         places = [[lowering.target(target) for target in part] for part in split]
         expected = _columns(TrackingEvaluator(lowering.dag, *places), draws, n)
-        program = ENGINES[engine](lowering, *split, frozenset(may_err))
+        program = ENGINES[engine].load()(lowering, *split, frozenset(may_err))
         return list(zip(_columns(program.evaluator(n), draws, n), expected, strict=True))
 
     return run

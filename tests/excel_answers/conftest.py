@@ -256,7 +256,7 @@ def drawn_answers(table: Table, engine: str) -> dict[Row, object]:
     found: dict[Row, object] = {row: Refused(faults[row.cell].message) for row in table.rows if row.cell in faults}
     for group in _groups([row for row in table.rows if row not in found], engine):
         cells = [cell for row in group for cell in (row.cell, row.asked)]
-        program = ENGINES[engine](lowering, [Target(cell, cell) for cell in cells], [], frozenset())
+        program = ENGINES[engine].load()(lowering, [Target(cell, cell) for cell in cells], [], frozenset())
         columns = [_held(column) for column in program.evaluator(TRIALS).filters(draws, TRIALS)]
         found |= {row: _seen(row, *pair) for row, pair in zip(group, batched(columns), strict=True)}
     return found

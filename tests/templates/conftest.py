@@ -95,7 +95,7 @@ def cells(book_path):
 
         n = max(np.size(values) for values in inputs.values())
         full = {s: np.ascontiguousarray(np.broadcast_to(np.asarray(v, float), (n,))) for s, v in inputs.items()}
-        program = ENGINES["numpy"](widened(lower), targets, [], frozenset(inputs))
+        program = ENGINES["numpy"].load()(widened(lower), targets, [], frozenset(inputs))
         columns = program.evaluator(n).filters(full, n)
         return {symbol: column.as_floats().copy() for symbol, column in zip(wanted, columns, strict=True)}
 

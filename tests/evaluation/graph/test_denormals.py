@@ -61,7 +61,7 @@ def test_each_engine_gives_what_excel_gives(lower, draws, expected, engine):
     if engine == "jit":
         pytest.importorskip("llvmlite")
     lowering, targets = lower(CELLS, draws, TARGETS)
-    columns = ENGINES[engine](lowering, targets, [], frozenset()).evaluator(500).filters(draws, 500)
+    columns = ENGINES[engine].load()(lowering, targets, [], frozenset()).evaluator(500).filters(draws, 500)
     for column, wanted, cell in zip(columns, expected, TARGETS, strict=True):
         assert column.codes is None
         np.testing.assert_allclose(column.values, wanted, rtol=1e-13, atol=0, err_msg=cell)

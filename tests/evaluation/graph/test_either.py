@@ -70,7 +70,7 @@ def test_the_compiled_engine_does_the_same(run, lower, formula):
     cells = CELLS | {"A1": 0.0, "Z9": formula}
     lowering, targets = lower(cells, {"A1": DRAWS}, ["Z9"])
     (column,) = (
-        ENGINES["jit"](lowering, targets, [], frozenset({"A1"})).evaluator(6).filters({"A1": np.array(DRAWS)}, 6)
+        ENGINES["jit"].load()(lowering, targets, [], frozenset({"A1"})).evaluator(6).filters({"A1": np.array(DRAWS)}, 6)
     )
     codes = np.zeros(6, int) if column.codes is None else column.codes
     seen = [ErrorCode(int(c)).text if c else float(v) for v, c in zip(column.values, codes, strict=True)]

@@ -187,7 +187,7 @@ def drawn(lower):
         careful.filters(draws, n)
         found = _shown(careful.forecasts(np.arange(n))[0])
         for engine in ["numpy", *(["jit"] if importlib.util.find_spec("llvmlite") else [])]:
-            evaluator = ENGINES[engine](lowering, [], targets, frozenset()).evaluator(n)
+            evaluator = ENGINES[engine].load()(lowering, [], targets, frozenset()).evaluator(n)
             evaluator.filters(draws, n)
             again = _shown(evaluator.forecasts(np.arange(n))[0])
             assert all(agree(a, b) for a, b in zip(again, found, strict=True)), (engine, again, found)

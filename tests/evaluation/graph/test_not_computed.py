@@ -60,7 +60,7 @@ SAVED = {
 def test_what_excel_did_not_know_is_its_error_with_a_notice(lower, engine, formula, saved, expected):
     draws = {"A1": np.array([1.0, 2.0])}
     lowering, targets = lower({"A1": 1.0, "B1": (f"={formula}", saved)}, draws, ["B1"])
-    columns = ENGINES[engine](lowering, targets, [], frozenset()).evaluator(2).filters(draws, 2)
+    columns = ENGINES[engine].load()(lowering, targets, [], frozenset()).evaluator(2).filters(draws, 2)
     assert [*_shown(columns[0])] == [expected] * 2
     (notice,) = {str(notice) for notice in lowering.notices}
     assert notice.upper().startswith("S!B1: EXCEL DOES NOT KNOW NOSUCH")

@@ -2,9 +2,11 @@ from __future__ import annotations
 
 import gc
 import itertools
+import os
 import threading
 import time
 import weakref
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -93,6 +95,32 @@ def test_what_goes_wrong_in_a_block_is_told_in_its_turn(shared, failing):
     with pytest.raises((ValueError, RuntimeError, TwoWordsError), match="no such"):
         found.extend(shared(failing, numbered()))
     assert found == list(range(300))
+
+
+class Adding:
+    """A run of its own: its blocks are told from those of others; made in another process by its name."""
+
+    def __init__(self, number):
+        self.number, self.where = number, os.getpid()
+
+    def runner(self):
+        return Adding(self.number)
+
+    def run(self, task):
+        return task.start + self.number, self.where
+
+
+def test_runs_in_several_threads_at_once_get_their_own_blocks():
+    """Whichever idle process each of them takes."""
+
+    def run(number):
+        return list(by_processes(Adding(number), Slow(Adding(number)), 1, 1000, numbered()))
+
+    with ThreadPoolExecutor(2) as pool:
+        found = list(pool.map(run, [0, 1000, 2000, 3000]))
+    for turn, blocks in enumerate(found):
+        assert [value for value, _ in blocks] == list(range(1000 * turn, 1000 * turn + 1000))
+    assert len({where for blocks in found for _, where in blocks}) > 1
 
 
 def test_a_thread_has_its_part():

@@ -18,7 +18,7 @@ def parsed(content, namespace=MAIN):
 
 
 def cells(rows):
-    return dict(parsed(f"<sheetData>{rows}</sheetData>").sheet.cells)
+    return dict(parsed(f"<sheetData>{rows}</sheetData>").cells)
 
 
 VALUES = {
@@ -121,7 +121,7 @@ def test_data_tables_are_values():
         '<sheetData><row r="4"><c r="C4"><f t="dataTable" ref="C4:C5" dt2D="0" dtr="0" r1="B1"/><v>1</v></c></row>'
         '<row r="5"><c r="C5"><v>2</v></c></row></sheetData>'
     )
-    assert sheet.sheet.cells == {(4, 3): CellContent(1.0), (5, 3): CellContent(2.0)}
+    assert sheet.cells == {(4, 3): CellContent(1.0), (5, 3): CellContent(2.0)}
     assert sheet.data_tables == (DataTable(Area("My sheet", 4, 3, 5, 3), (Cell("My sheet", 1, 2),)),)
     assert [cell.a1 for cell in sheet.data_tables[0].margins()] == ["C3", "B4", "B5"]
 
@@ -145,12 +145,12 @@ def test_a_data_table_whose_input_was_deleted():
 
 
 def test_merged_areas():
-    sheet = parsed('<sheetData/><mergeCells count="2"><mergeCell ref="A1:B2"/><mergeCell ref="D4"/></mergeCells>').sheet
+    sheet = parsed('<sheetData/><mergeCells count="2"><mergeCell ref="A1:B2"/><mergeCell ref="D4"/></mergeCells>')
     assert sheet.merged == (Area("My sheet", 1, 1, 2, 2), Area("My sheet", 4, 4, 4, 4))
 
 
 def test_the_sheet_is_told_of_its_tab():
-    sheet = parsed("<sheetData/>").sheet
+    sheet = parsed("<sheetData/>")
     assert (sheet.name, sheet.part, sheet.visible, sheet.cells) == (ENTRY.name, ENTRY.part, True, {})
 
 
@@ -159,18 +159,18 @@ EXPECTED = {(1, 1): CellContent(2.0, Formula("1+1", 1, 1))}
 
 
 def test_strict_files():
-    assert parsed(SHEET, STRICT).sheet.cells == EXPECTED
+    assert parsed(SHEET, STRICT).cells == EXPECTED
 
 
 def test_prefixed_files():
     prefixed = SHEET.replace("</", "</x:").replace("<", "<x:").replace("<x:/x:", "</x:")
     xml = f'<x:worksheet xmlns:x="{MAIN}">{prefixed}</x:worksheet>'
-    assert parse_sheet(xml.encode(), ENTRY, CONTEXT).sheet.cells == EXPECTED
+    assert parse_sheet(xml.encode(), ENTRY, CONTEXT).cells == EXPECTED
 
 
 def test_elements_of_other_namespaces_are_not_cells():
     other = '<extLst xmlns:x="urn:other"><x:c r="A2"><x:f>Sheet1!A1</x:f><x:v>9</x:v></x:c></extLst>'
-    assert parsed(SHEET + other).sheet.cells == EXPECTED
+    assert parsed(SHEET + other).cells == EXPECTED
 
 
 @pytest.mark.parametrize(

@@ -37,5 +37,5 @@ class Computed:
 
 
 def _array_areas(workbook: Workbook, sheet: str) -> list[Area]:
-    formulas = (content.formula for content in workbook.sheets[sheet].cells.values())
-    return [formula.array for formula in formulas if formula is not None and formula.array is not None]
+    cells = workbook.sheets[sheet].cells.values()
+    return [cell.formula.array for cell in cells if cell.formula is not None and cell.formula.array is not None]

@@ -13,13 +13,13 @@ from xlmc.definitions.model import Definitions, Settings, name_key
 from xlmc.definitions.tables.assumptions import read_assumptions
 from xlmc.definitions.tables.checks import read_checks
 from xlmc.definitions.tables.correlations import read_correlations
-from xlmc.definitions.tables.data_tables import TABLE_REASON, TablesOfRun
+from xlmc.definitions.tables.data_tables import TABLE_REASON, TablesOfRun, tables_of_run
 from xlmc.definitions.tables.filters import read_filters
 from xlmc.definitions.tables.forecasts import read_forecasts
 from xlmc.definitions.tables.identity import Claims
 from xlmc.definitions.tables.settings import read_settings
 from xlmc.definitions.tables.tables import DefinitionTable, definition_tables, holds_rows
-from xlmc.definitions.unavailable import faults_of, remark_on_tables, remark_on_unavailable, tables_met
+from xlmc.definitions.unavailable import faults_of, remark_on_tables, remark_on_unavailable
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import Workbook
 
@@ -58,7 +58,9 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
     more = in_cell_correlations(workbook, calls.assumptions, calls.matrices, correlations, findings)
     forecasts = *forecasts, *in_cell_forecasts(calls, computed, central, answers, findings)
     _remark_on_calls(calls, settings, findings)
-    what_if = tables_met(workbook, assumptions, calls, findings)
+    drawn = {each.cell for each in assumptions if not each.frozen}
+    what_if = tables_of_run(workbook, drawn, calls.results.keys() | calls.unavailable.keys(), calls.rewritten)
+    remark_on_tables(workbook.data_tables, what_if, findings)
     unavailable = {**calls.unavailable, **dict.fromkeys(faults_of(workbook, what_if.stale), TABLE_REASON)}
     remark_on_unavailable(calls.unavailable, findings)
     if not calls.assumptions:

@@ -8,28 +8,16 @@ from typing import Final
 
 from xlmc.address import Area, Cell
 from xlmc.definitions.findings import Findings
-from xlmc.definitions.in_cells.calls import InCells
-from xlmc.definitions.model import Assumption
-from xlmc.definitions.tables.data_tables import TABLE_REASON, TablesOfRun, cells_of, tables_of_run
+from xlmc.definitions.tables.data_tables import TABLE_REASON, TablesOfRun, cells_of
 from xlmc.errors import FormulaError
 from xlmc.workbook.model import DataTable, Workbook
 
-__all__ = ["areas_text", "faults_of", "remark_on_tables", "remark_on_unavailable", "tables_met"]
+__all__ = ["areas_text", "faults_of", "remark_on_tables", "remark_on_unavailable"]
 
 MOST: Final = 20
 """Areas that are named one by one."""
 
 _SHOWN: Final = "in the result workbook"
-
-
-def tables_met(
-    workbook: Workbook, assumptions: Iterable[Assumption], calls: InCells, findings: Findings
-) -> TablesOfRun:
-    """The data tables that depend on the run; a notice for each data table."""
-    drawn = {a.cell for a in assumptions if not a.frozen}
-    tables = tables_of_run(workbook, drawn, calls.results.keys() | calls.unavailable.keys(), calls.rewritten)
-    remark_on_tables(workbook.data_tables, tables, findings)
-    return tables
 
 
 def faults_of(workbook: Workbook, tables: Iterable[DataTable]) -> dict[Cell, FormulaError]:

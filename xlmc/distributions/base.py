@@ -190,10 +190,10 @@ class Family(ABC):
 
     def fault(self, *params: float, **named: float) -> Fault | None:
         """The first rule that these numbers break, if any, or that draws would be too large for a number."""
-        return self.broken_rule(*params, **named) or self._overflow(self.bind(params, named))
-
-    def _overflow(self, values: tuple[Any, ...]) -> Fault | None:
-        if self.always_finite or not self.parameters or np.isfinite(self.ppf(np.array(TRIED_U), *values)).all():
+        values = self.bind(params, named)
+        if broken := self.broken_rule(*values):
+            return broken
+        if self.always_finite or not values or np.isfinite(self.ppf(np.array(TRIED_U), *values)).all():
             return None
         return self.overflow_fault(values, "Correct the number, or cut the distribution off at both ends")
 
@@ -205,16 +205,15 @@ class Family(ABC):
         message = f"{spec.heading} ({show(value)}) is too extreme: not all draws are numbers up to 1.8E308, the largest"
         return Fault(spec.key, message, hint)
 
-    def broken_rule(self, *params: float, **named: float) -> Fault | None:
-        """The first rule that these numbers break, if any."""
-        values = self.bind(params, named)
+    def broken_rule(self, *values: float) -> Fault | None:
+        """The first rule that these numbers, one for each parameter, break, if any."""
         for spec, value in zip(self.parameters, values, strict=True):
             if not -LARGEST <= value <= LARGEST:
                 message = f"{spec.heading} ({show(value)}) must be a number between -1E150 and 1E150"
                 return Fault(spec.key, message, "Correct the number")
-        shown = {key: show(value) for key, value in zip(self.keys, values, strict=True)}
         for rule in self.rules:
             if not rule.holds(*values):
+                shown = {key: show(value) for key, value in zip(self.keys, values, strict=True)}
                 return Fault(rule.blames, rule.message.format(**shown), rule.hint)
         return None
 
@@ -336,7 +335,7 @@ class Family(ABC):
         defaults = {spec.key: spec.default for spec in self.parameters if spec.default is not None}
         if len(given) < len(params) + len(named) or {*defaults, *given} != {*self.keys}:
             raise TypeError(f"{self.name} takes {', '.join(self.keys)}")
-        return tuple(given[key] if key in given else defaults[key] for key in self.keys)
+        return tuple(map((defaults | given).__getitem__, self.keys))
 
     def _sound(self, values: tuple[Any, ...]) -> tuple[tuple[Any, ...], Any]:
         """The parameters with NaN in trials that break a rule, and where these are (None: nowhere)."""

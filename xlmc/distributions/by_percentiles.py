@@ -43,11 +43,10 @@ class ByPercentiles(Family):
         """The members that it has found are looked for again."""
         return ByPercentiles, (self.family, tuple(spec.key for spec in self._given), self.percents)
 
-    def broken_rule(self, *params: float, **named: float) -> Fault | None:
+    def broken_rule(self, *values: float) -> Fault | None:
         """The first thing wrong with these numbers, if any."""
-        if fault := super().broken_rule(*params, **named):
+        if fault := super().broken_rule(*values):
             return fault
-        values = self.bind(params, named)
         places = list(zip(self.parameters, values, strict=True))[len(self._given) :]
         for (lower, below), (upper, above) in pairwise(places):
             if not below < above:

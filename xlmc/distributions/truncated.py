@@ -34,7 +34,8 @@ class Truncated:
 
     def fault(self, lower: float, upper: float, *params: float, **named: float) -> Fault | None:
         """The first rule that these numbers break, if any; the keys add `lower_cutoff` and `upper_cutoff`."""
-        if fault := self.family.broken_rule(*params, **named):
+        values = self.family.bind(params, named)
+        if fault := self.family.broken_rule(*values):
             return fault
         for key, label, cutoff in (("lower_cutoff", "Lower", lower), ("upper_cutoff", "Upper", upper)):
             if np.isnan(cutoff):
@@ -42,9 +43,8 @@ class Truncated:
         if not lower < upper:
             message = f"Lower cutoff ({show(lower)}) is not below Upper cutoff ({show(upper)})"
             return Fault("lower_cutoff", message, "Exchange the two, or correct the wrong one")
-        values = self.family.bind(params, named)
         if not _Slice(self.family, lower, upper, values).mass >= _LEAST_MASS:
-            return self._empty(lower, upper, *params, **named)
+            return self._empty(lower, upper, *values)
         if self.family.always_finite or not values:
             return None
         if np.isfinite(self.ppf(np.array(TRIED_U), lower, upper, *values)).all():
@@ -81,8 +81,8 @@ class Truncated:
         low, high = self.family.support(*params, **named)
         return np.maximum(low, lower), np.minimum(high, upper)
 
-    def _empty(self, lower: float, upper: float, *params: float, **named: float) -> Fault:
-        low, high = self.family.support(*params, **named)
+    def _empty(self, lower: float, upper: float, *values: float) -> Fault:
+        low, high = self.family.support(*values)
         key, label, cutoff = "lower_cutoff", "Lower", lower
         if np.isinf(lower) or upper < low:
             key, label, cutoff = "upper_cutoff", "Upper", upper

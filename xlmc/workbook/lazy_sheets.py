@@ -9,9 +9,9 @@ from typing import TypeVar
 from xlmc.workbook.blame import told_of
 from xlmc.workbook.metadata import dynamic_array_marks
 from xlmc.workbook.model import DataTable, Sheet
-from xlmc.workbook.sheet import ParsedSheet, parse_sheet
+from xlmc.workbook.sheet import parse_sheet
 from xlmc.workbook.strings import shared_strings
-from xlmc.workbook.structure import SheetEntry, Structure
+from xlmc.workbook.structure import Structure
 from xlmc.workbook.values import CellContext
 
 __all__ = ["LazySheets"]
@@ -35,10 +35,14 @@ class LazySheets(Mapping[str, Sheet]):
         self._parts = parts
         self._structure = structure
         self._entries = {entry.name: entry for entry in structure.worksheets}
-        self._parsed: dict[str, ParsedSheet] = {}
+        self._parsed: dict[str, Sheet] = {}
 
     def __getitem__(self, name: str) -> Sheet:
-        return self._parse(self._entries[name]).sheet
+        if name not in self._parsed:
+            entry = self._entries[name]
+            with told_of(self._file):
+                self._parsed[name] = parse_sheet(self._parts[entry.part], entry, self._context)
+        return self._parsed[name]
 
     def __contains__(self, name: object) -> bool:
         return name in self._entries
@@ -58,8 +62,8 @@ class LazySheets(Mapping[str, Sheet]):
         Raises:
             WorkbookError: a sheet that may hold one is damaged.
         """
-        suspects = (entry for entry in self._entries.values() if _may_hold_data_table(self._parts[entry.part]))
-        return [table for entry in suspects for table in self._parse(entry).data_tables]
+        suspects = [entry.name for entry in self._entries.values() if _may_hold_data_table(self._parts[entry.part])]
+        return [table for name in suspects for table in self[name].data_tables]
 
     def mentioning(self, words: Iterable[bytes]) -> Iterator[str]:
         """The names of the sheets whose part holds one of these words, in small letters, whatever its case there."""
@@ -67,12 +71,6 @@ class LazySheets(Mapping[str, Sheet]):
             xml = self._parts[entry.part].lower()
             if b"\0" in xml[:4] or any(word in xml for word in words):  # zero bytes: an encoding of its own
                 yield entry.name
-
-    def _parse(self, entry: SheetEntry) -> ParsedSheet:
-        if entry.name not in self._parsed:
-            with told_of(self._file):
-                self._parsed[entry.name] = parse_sheet(self._parts[entry.part], entry, self._context)
-        return self._parsed[entry.name]
 
     @cached_property
     def _context(self) -> CellContext:

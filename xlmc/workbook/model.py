@@ -59,6 +59,7 @@ class Sheet:
     Attributes:
         hidden_rows: hidden by hand or by a filter; the file marks both alike.
         filtered: the rows, with the heading, of each filter that leaves rows out.
+        data_tables: Excel's what-if tables on it.
     """
 
     name: str
@@ -68,6 +69,7 @@ class Sheet:
     visible: bool = True
     hidden_rows: frozenset[int] = frozenset()
     filtered: tuple[Area, ...] = ()
+    data_tables: tuple[DataTable, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

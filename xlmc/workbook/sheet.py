@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_number
 from xlmc.errors import WorkbookError
@@ -15,7 +14,7 @@ from xlmc.workbook.strings import decode, run_text
 from xlmc.workbook.structure import SheetEntry
 from xlmc.workbook.values import CellContext, convert
 
-__all__ = ["ParsedSheet", "parse_sheet"]
+__all__ = ["parse_sheet"]
 
 _NAMESPACES = (
     "http://schemas.openxmlformats.org/spreadsheetml/2006/main",
@@ -30,15 +29,7 @@ _A1 = re.compile("([A-Z]{1,3})([1-9][0-9]{0,6})")
 _Attributes = Mapping[str, str]
 
 
-@dataclass(frozen=True, slots=True)
-class ParsedSheet:
-    """A worksheet, and Excel's what-if data tables on it."""
-
-    sheet: Sheet
-    data_tables: tuple[DataTable, ...]
-
-
-def parse_sheet(xml: bytes, entry: SheetEntry, context: CellContext) -> ParsedSheet:
+def parse_sheet(xml: bytes, entry: SheetEntry, context: CellContext) -> Sheet:
     """Read the worksheet of one tab.
 
     Raises:
@@ -50,12 +41,12 @@ def parse_sheet(xml: bytes, entry: SheetEntry, context: CellContext) -> ParsedSh
     parser.EndElementHandler = reading.end
     parser.CharacterDataHandler = reading.text.append
     feed(parser, xml, entry.part)
-    sheet = Sheet(
+    return Sheet(
         *(entry.name, entry.part, reading.cells, tuple(reading.merged), entry.visible),
         frozenset(reading.hidden_rows),
         tuple(reading.filtered),
+        tuple(reading.data_tables),
     )
-    return ParsedSheet(sheet, tuple(reading.data_tables))
 
 
 class _Pass:
@@ -122,7 +113,13 @@ class _Pass:
             return  # a blank cell with a style
         if place in self.cells:
             raise self._faulty("stands in the file twice")
-        self.cells[place] = CellContent(None if self._raw is None else self._value(self._raw), self._formula)
+        value: CellValue = None
+        if self._raw is not None:
+            try:
+                value = convert(self._cell.get("t", "n"), self._raw, self._context)
+            except ValueError as error:
+                raise self._faulty(str(error)) from None
+        self.cells[place] = CellContent(value, self._formula)
 
     def end_value(self) -> None:
         self._raw = "".join(self.text)
@@ -172,12 +169,6 @@ class _Pass:
             raise WorkbookError(f"a cell of sheet {self._sheet!r} has the address {reference!r}", hint=REPAIR)
         self._column = column_number(found[1])
         self._row = int(found[2])
-
-    def _value(self, raw: str) -> CellValue:
-        try:
-            return convert(self._cell.get("t", "n"), raw, self._context)
-        except ValueError as error:
-            raise self._faulty(str(error)) from None
 
     def _shared(self, text: str) -> Formula:
         """A master brings text and the area it is shared over; a child's own text, if any, does not count."""

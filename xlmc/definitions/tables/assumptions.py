@@ -14,10 +14,9 @@ from xlmc.definitions.tables.identity import Claims, identify
 from xlmc.definitions.tables.parameters import (
     CUTOFFS,
     PARAMETER_HEADINGS,
-    Given,
     given_parameters,
+    range_of,
     remark_on_range,
-    rules_kept,
 )
 from xlmc.definitions.tables.percentiles import is_percentile, with_percentiles
 from xlmc.definitions.tables.tables import DefinitionTable, Row, is_blank, rows_of
@@ -47,39 +46,46 @@ def read_assumptions(
     percentiles = (written for table in tables for written, _ in table.columns.values() if is_percentile(written))
     known = (*_KNOWN, *percentiles)
     rows = rows_of(workbook, tables, ("Name",), known, findings)
-    found = [_assumption(row, known, computed, claims, findings) for row in rows]
-    return tuple(each for each in found if each is not None)
+    found = [findings.attempt(_assumption, row, known, computed, claims, findings) for row in rows]
+    return tuple(filter(None, found))
 
 
 def _assumption(
     row: Row, known: tuple[str, ...], computed: Computed, claims: Claims, findings: Findings
 ) -> Assumption | None:
+    """The assumption of a row; None where the findings have a problem of it.
+
+    Raises:
+        DefinitionError: its numbers break a rule of its distribution.
+    """
     before = len(findings.problems)
     identity = identify(row, claims, findings)
     frozen = findings.attempt(logical, row, "Frozen") or False
     base = None if identity is None else findings.attempt(_base, row.workbook, computed, identity[1], frozen, findings)
     kind = findings.attempt(_family, row)
-    given = None if kind is None else _given(row, kind, findings)
-    data = None if kind is None or kind.data is None else findings.attempt(given_data, row, kind, computed, findings)
-    family = kind if kind is None or data is None else findings.attempt(cached_data_family, data, kind, row.workbook)
+    given = family = data = None
+    if kind is not None:
+        refuse_options(row, kind, findings)
+        given = given_parameters(row, kind, findings)
+        data = None if kind.data is None else findings.attempt(given_data, row, kind, computed, findings)
+        family = kind if data is None else findings.attempt(cached_data_family, data, kind, row.workbook)
     units = findings.attempt(optional_text, row, "Units") or ""
     source = findings.attempt(optional_text, row, "Source") or ""
-    if len(findings.problems) == before and family and given:
-        findings.attempt(rules_kept, family, given)
     if len(findings.problems) > before or not (identity and kind and given):
         return None
     name, cell = identity
-    if family is not None and not frozen:
-        remark_on_range(family, given, base, cell, findings)
+    ends = None if family is None else range_of(family, given, row.workbook)
+    if family is not None and ends is not None and not frozen:
+        remark_on_range(family, ends, given.places, base, cell, findings)
     return Assumption(
         name=name,
         cell=cell,
         distribution=kind.name,
-        parameters={key: given.values[key] for key in kind.keys},
+        parameters=given.parameters,
         row=row.where,
         base=base,
-        lower_cutoff=given.values.get("lower_cutoff"),
-        upper_cutoff=given.values.get("upper_cutoff"),
+        lower_cutoff=given.cutoffs.get("lower_cutoff"),
+        upper_cutoff=given.cutoffs.get("upper_cutoff"),
         units=units,
         source=source,
         frozen=frozen,
@@ -93,11 +99,6 @@ def _family(row: Row) -> Family:
     typed = optional_text(row, "Distribution")
     family = family_named(typed, where=row.cell("Distribution")) if typed else FAMILIES["Uniform"]
     return with_percentiles(row, family)
-
-
-def _given(row: Row, family: Family, findings: Findings) -> Given:
-    refuse_options(row, family, findings)
-    return given_parameters(row, family, findings)
 
 
 def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, findings: Findings) -> float | None:

@@ -16,8 +16,9 @@ from xlmc.distributions import FAMILIES, Family, ParameterSpec, Truncated
 from xlmc.distributions.base import show
 from xlmc.distributions.naming import plain
 from xlmc.errors import DefinitionError
+from xlmc.workbook.model import Workbook
 
-__all__ = ["CUTOFFS", "DATA", "PARAMETER_HEADINGS", "Given", "given_parameters", "remark_on_range", "rules_kept"]
+__all__ = ["CUTOFFS", "DATA", "PARAMETER_HEADINGS", "Given", "given_parameters", "range_of", "remark_on_range"]
 
 CUTOFFS = {"lower_cutoff": "Lower cutoff", "upper_cutoff": "Upper cutoff"}
 
@@ -33,77 +34,88 @@ _LIMITS = frozenset({"low", "minimum", "min", "high", "maximum", "max"})
 
 @dataclass(frozen=True, slots=True)
 class Given:
-    """The parameters and cutoffs of a row by key.
+    """The parameters and cutoffs of a row by key, as a run needs them.
 
     Attributes:
-        values: as a run needs them.
         places: the table's own cells that hold them; the row's first cell for one that is left to its default.
-        numbers: what they are now, typed in or as Excel cached them; None where that is unknown.
     """
 
-    values: Mapping[str, Parameter]
-    places: Mapping[str, Cell]
-    numbers: Mapping[str, float | None]
-
-    def known(self) -> tuple[dict[str, float], float, float] | None:
-        """The parameters and the two cutoffs as numbers; None unless every one is known."""
-        numbers = {key: value for key, value in self.numbers.items() if value is not None}
-        if len(numbers) < len(self.numbers):
-            return None
-        lower, upper = numbers.pop("lower_cutoff", -math.inf), numbers.pop("upper_cutoff", math.inf)
-        return numbers, lower, upper
+    parameters: dict[str, Parameter]
+    cutoffs: dict[str, Parameter]
+    places: dict[str, Cell]
 
 
 def given_parameters(row: Row, family: Family, findings: Findings) -> Given:
     """The family's parameters and the cutoffs in this row; every mistake is recorded on its own."""
-    defaults = {spec.key: spec.default for spec in family.parameters if _is_left_out(row, spec)}
-    required = (spec for spec in family.parameters if spec.key not in defaults)
+    parameters: dict[str, Parameter] = {
+        spec.key: spec.default
+        for spec in family.parameters
+        if spec.default is not None and not any(map(row.filled, spec.headings))
+    }
+    given = Given(parameters, {}, dict.fromkeys(parameters, row.where))
+    required = (spec for spec in family.parameters if spec.key not in parameters)
     headings = {spec.key: findings.attempt(_heading_of, row, family, spec) for spec in required}
     headings |= {key: heading for key, heading in CUTOFFS.items() if row.filled(heading)}
-    values: dict[str, Parameter] = {key: value for key, value in defaults.items() if value is not None}
-    places: dict[str, Cell] = dict.fromkeys(values, row.where)
     for key, heading in headings.items():
         value = None if heading is None else findings.attempt(parameter, row, heading)
         if heading is not None and value is not None:
-            values[key], places[key] = value, row.cell(heading)
+            given.places[key] = row.cell(heading)
+            (given.cutoffs if key in CUTOFFS else given.parameters)[key] = value
     _refuse_unused(row, family, findings)
-    return Given(values, places, {key: static_value(value, row.workbook) for key, value in values.items()})
+    return given
 
 
-def rules_kept(family: Family, given: Given) -> None:
-    """Check the rules of the family on the numbers as they are now; a run checks dynamic ones in every trial.
+def range_of(family: Family, given: Given, workbook: Workbook) -> tuple[float, float] | None:
+    """Check the rules of the family on the numbers as they are now, typed in or as Excel cached them.
+
+    A run checks dynamic ones in every trial.
+
+    Returns:
+        The least and the largest draw; None where a number is not known.
 
     Raises:
         DefinitionError: a rule is broken; it names the cell of the parameter to look at first.
     """
-    known = given.known()
-    if known is None:
-        return
-    numbers, lower, upper = known
-    cut = not given.places.keys().isdisjoint(CUTOFFS)
-    fault = Truncated(family).fault(lower, upper, **numbers) if cut else family.fault(**numbers)
+    numbers: dict[str, float] = {}
+    for key, value in (given.parameters | given.cutoffs).items():
+        number = static_value(value, workbook)
+        if number is None:
+            return None
+        numbers[key] = number
+    lower, upper = numbers.pop("lower_cutoff", -math.inf), numbers.pop("upper_cutoff", math.inf)
+    fault = Truncated(family).fault(lower, upper, **numbers) if given.cutoffs else family.fault(**numbers)
     if fault is not None:
         raise DefinitionError(fault.message, where=given.places[fault.key], hint=fault.hint)
+    low, high = family.support(**numbers)
+    return max(float(low), lower), min(float(high), upper)
 
 
-def remark_on_range(family: Family, given: Given, base: float | None, cell: Cell, findings: Findings) -> None:
-    """Point out what is allowed but may be a slip: a constant, a base case that could never be drawn."""
-    known = given.known()
-    if known is None:
-        return
-    numbers, lower, upper = known
-    low, high = (float(end) for end in Truncated(family).support(lower, upper, **numbers))
+def remark_on_range(
+    family: Family,
+    ends: tuple[float, float],
+    places: Mapping[str, Cell],
+    base: float | None,
+    cell: Cell,
+    findings: Findings,
+) -> None:
+    """Point out what is allowed but may be a slip: a constant, a base case that could never be drawn.
+
+    Args:
+        family: of the assumption.
+        ends: the least and the largest draw.
+        places: where its parameters stand, by key.
+        base: the base case, if there is any.
+        cell: of the assumption.
+        findings: takes the remarks.
+    """
+    low, high = ends
     if low == high:
-        where = given.places[family.keys[0]] if family.keys else cell
-        ends = "Low and High are both" if {"low", "high"} <= {*family.keys} else "Every draw is"
-        findings.notice(f"{ends} {show(low)}: the assumption does not vary", where)
+        both = "Low and High are both" if {"low", "high"} <= {*family.keys} else "Every draw is"
+        where = places[family.keys[0]] if family.keys else cell
+        findings.notice(f"{both} {show(low)}: the assumption does not vary", where)
     if base is not None and not low <= base <= high:
         reach = f"{show(low)} to {show(high)}"
         findings.notice(f"The base case ({show(base)}) lies outside the distribution ({reach})", cell)
-
-
-def _is_left_out(row: Row, spec: ParameterSpec) -> bool:
-    return spec.default is not None and not any(row.filled(heading) for heading in spec.headings)
 
 
 def _heading_of(row: Row, family: Family, spec: ParameterSpec) -> str:

@@ -7,12 +7,17 @@ from scipy import stats
 import xlmc.statistics as xs
 from xlmc.address import Cell
 from xlmc.definitions.model import Correlation
+from xlmc.distributions import FAMILIES
 from xlmc.results.record.correlations_met import correlations_met
 from xlmc.run.correlating import correlated_groups, repair_notices, used
 from xlmc.sampling.copula import GaussianCopula
+from xlmc.sampling.draws import Draw
 from xlmc.sampling.methods import METHODS
 
 UNIT = {"low": 0, "high": 1}
+
+
+DRAWS = {name: Draw(name, FAMILIES["Uniform"], (0.0, 1.0)) for name in "abcde"}
 
 
 def row(first, second, value):
@@ -33,13 +38,13 @@ def row(first, second, value):
     ],
 )
 def test_groups_of_correlated_assumptions(pairs, groups):
-    found = correlated_groups([row(*pair, 0.3) for pair in pairs], ["a", "b", "c", "d", "e"])
+    found = correlated_groups([row(*pair, 0.3) for pair in pairs], DRAWS)
     assert [group.names for group in found] == groups
 
 
 def test_a_correlation_of_0_is_none():
     rows = [row("a", "b", 0.3), row("b", "c", 0), row("d", "e", 0)]
-    assert [group.names for group in correlated_groups(rows, ["a", "b", "c", "d", "e"])] == [("a", "b")]
+    assert [group.names for group in correlated_groups(rows, DRAWS)] == [("a", "b")]
 
 
 CELLS = dict.fromkeys(("A1", "A2", "A3", "A4"), 1.0) | {"B1": "=A1+A2+A3+A4"}

@@ -103,12 +103,13 @@ def test_no_accepted_trial_is_a_warning(book):
     assert run.frame().empty
 
 
-def test_a_central_range_of_the_forecasts_own(book, monkeypatch):
+def test_a_central_range_of_the_forecasts_own(book):
     from dataclasses import replace
+
+    from xlmc import Model
 
     model = book(CELLS, GIVEN, {"x": "B1"})
     forecasts = (replace(model.forecasts[0], central=0.9, threshold=1.0),)
-    model.definitions = replace(model.definitions, forecasts=forecasts)
-    run = model.simulate(1000)
+    run = Model(model.workbook, replace(model.definitions, forecasts=forecasts), model.path).simulate(1000)
     assert run["x"].central() == statistics.central_interval(run["x"].values, 0.9)
     assert run["x"].statistics == statistics.describe(run["x"].values, central=0.9, threshold=1.0)

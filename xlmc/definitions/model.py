@@ -95,6 +95,17 @@ class Assumption:
         """What it is drawn from, given the parameters."""
         return FAMILIES[self.distribution] if self.own_family is None else self.own_family
 
+    @property
+    def formulas(self) -> dict[str, Cell]:
+        """Key of a parameter or cutoff that a formula computes -> the formula's cell."""
+        given = {**self.parameters, "lower_cutoff": self.lower_cutoff, "upper_cutoff": self.upper_cutoff}
+        return {key: value for key, value in given.items() if isinstance(value, Cell)}
+
+    @property
+    def cells(self) -> tuple[Cell, ...]:
+        """The cells whose formulas compute its data, parameters and cutoffs."""
+        return (*(() if self.data is None else self.data.cells), *self.formulas.values())
+
 
 @dataclass(frozen=True, slots=True)
 class Forecast:

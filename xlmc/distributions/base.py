@@ -251,7 +251,7 @@ class Family(ABC):
             np.copyto(own, SMALLEST_U, where=own == 0.0)
         with np.errstate(all="ignore"):
             x = _masked(self._ppf(own, *values), invalid)
-        if any(np.ndim(value) for value in values):
+        if any(map(np.ndim, values)):
             x = np.where(np.isfinite(x), x, np.nan)
         if out is None:
             return x

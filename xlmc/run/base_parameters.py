@@ -5,7 +5,7 @@ A draw cannot have limits that move with itself. What a person means is 3 % belo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Mapping, Set
 from dataclasses import replace
 
 from xlmc.address import Cell, InFormula
@@ -30,20 +30,21 @@ def with_base_parameters(workbook: Workbook, definitions: Definitions) -> Defini
         DefinitionError: such a parameter depends on another assumption, too, or the cell is blank.
         FormulaError: its formula cannot be computed.
     """
-    rows = {a.cell: a for a in definitions.assumptions if not isinstance(a.cell, InFormula)}
-    sought = [cell for assumption in rows.values() for _, cell in _formulas(assumption)]
+    assumptions = definitions.assumptions
+    sought = [cell for a in assumptions if not isinstance(a.cell, InFormula) for cell in a.formulas.values()]
     if not sought:
         return definitions
-    resolver = Resolver(workbook, [a.cell for a in definitions.assumptions], rewritten=definitions.rewritten)
-    given = frozenset(a.cell for a in definitions.assumptions)
+    rows = {a.cell: a for a in assumptions if not isinstance(a.cell, InFormula)}
+    resolver = Resolver(workbook, [a.cell for a in assumptions], rewritten=definitions.rewritten)
+    given = frozenset(a.cell for a in assumptions)
     graph = build_graph(resolver, sought, given, strict=False)
     if given.isdisjoint(graph.reached):
         return definitions
     changed = {cell: _Own(resolver, definitions, assumption).found(graph) for cell, assumption in rows.items()}
     numbers = {cell: found for cell, found in changed.items() if found}
     notices = (_notice(rows[cell], found) for cell, found in numbers.items())
-    assumptions = (_with_numbers(a, numbers.get(a.cell, {})) for a in definitions.assumptions)
-    return replace(definitions, assumptions=tuple(assumptions), notices=(*definitions.notices, *notices))
+    changed_ones = tuple(_with_numbers(a, numbers.get(a.cell, {})) for a in assumptions)
+    return replace(definitions, assumptions=changed_ones, notices=(*definitions.notices, *notices))
 
 
 class _Own:
@@ -54,7 +55,7 @@ class _Own:
 
     def found(self, graph: Graph) -> dict[str, float]:
         """Key of each such parameter -> its number."""
-        reached = ((key, cell, upstream(graph, [cell], {})) for key, cell in _formulas(self._assumption))
+        reached = ((key, cell, upstream(graph, [cell], {})) for key, cell in self._assumption.formulas.items())
         numbers = {key: self._number(key, cell, up) for key, cell, up in reached if self._assumption.cell in up}
         return {key: number for key, number in numbers.items() if number is not None}
 
@@ -87,14 +88,6 @@ class _Own:
             return Lowering(graph, drawn, held)
 
         return settled(cell, widened(lower))
-
-
-def _formulas(assumption: Assumption) -> Iterator[tuple[str, Cell]]:
-    """The parameters and cutoffs that formulas compute: key, cell."""
-    cutoffs = {key: getattr(assumption, key) for key in CUTOFFS}
-    for key, value in (*assumption.parameters.items(), *cutoffs.items()):
-        if isinstance(value, Cell):
-            yield key, value
 
 
 def _with_numbers(assumption: Assumption, numbers: Mapping[str, float]) -> Assumption:

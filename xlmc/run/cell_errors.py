@@ -14,7 +14,6 @@ from xlmc.definitions.model import Forecast, name_key
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import TEXT_RESULT, Target
 from xlmc.run.model import lowered
-from xlmc.run.scene import parameter_cells
 
 if TYPE_CHECKING:
     from xlmc.definitions.model import Assumption, Definitions
@@ -119,7 +118,7 @@ def _without_draws(definitions: Definitions, trial: Mapping[str, float]) -> Defi
         return replace(assumption, frozen=True, base=trial.get(name_key(assumption.name), assumption.base))
 
     cells = [(check.name, check.cell) for check in definitions.checks]
-    cells += [(a.name, cell) for a in definitions.assumptions if not a.frozen for cell in parameter_cells(a)]
+    cells += [(a.name, cell) for a in definitions.assumptions if not a.frozen for cell in a.cells]
     return replace(
         definitions,
         assumptions=tuple(held(a) for a in definitions.assumptions),

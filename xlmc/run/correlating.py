@@ -23,9 +23,7 @@ CHANGED = 5e-4
 """A correlation that moved by less is the one that was asked for: three decimals say all there is to say."""
 
 
-def correlated_groups(
-    correlations: Sequence[Correlation], live: Sequence[str], draws: Mapping[str, Draw] | None = None
-) -> list[CorrelatedGroup]:
+def correlated_groups(correlations: Sequence[Correlation], draws: Mapping[str, Draw]) -> list[CorrelatedGroup]:
     """The correlations among drawn assumptions, gathered in groups that have none between them.
 
     A pair of a group that no row names counts as uncorrelated, and a correlation of 0 is none: the draws are those of a
@@ -34,21 +32,18 @@ def correlated_groups(
 
     Args:
         correlations: the rows.
-        live: the drawn assumptions.
-        draws: name -> how it is drawn, for ties; None where all are continuous.
+        draws: key of a drawn assumption -> how it is drawn, at least of all that the rows name.
     """
-    order = [name_key(name) for name in live]
     pairs = {(name_key(c.first), name_key(c.second)): c for c in correlations if c.value}
-    pairs = {pair: c for pair, c in pairs.items() if pair[0] in order and pair[1] in order}
-    how = {name_key(name): draw for name, draw in (draws or {}).items()}
+    pairs = {pair: c for pair, c in pairs.items() if pair[0] in draws and pair[1] in draws}
     groups = []
-    for names in _connected(order, list(pairs)):
+    for names in _connected(list(draws), list(pairs)):
         matrix = np.eye(len(names))
         for (first, second), correlation in pairs.items():
             if first in names:
                 i, j = names.index(first), names.index(second)
                 matrix[i, j] = matrix[j, i] = correlation.value
-        ties = [ties_of(how[name]) if name in how else None for name in names]
+        ties = [ties_of(draws[name]) for name in names]
         groups.append(CorrelatedGroup(names, GaussianCopula(matrix, ties if any(ties) else ())))
     return groups
 
@@ -71,9 +66,8 @@ def tie_notices(
     Args:
         groups: of correlated assumptions.
         correlations: the rows.
-        draws: name -> how it is drawn.
+        draws: key of an assumption in them -> how it is drawn.
     """
-    how = {name_key(name): draw for name, draw in draws.items()}
     for row in correlations:
         pair = name_key(row.first), name_key(row.second)
         group = next((each for each in groups if set(pair) <= set(each.names)), None)
@@ -83,7 +77,7 @@ def tie_notices(
         wanted = float(group.copula.wanted[i, j])
         if abs(wanted - row.value) >= CHANGED:
             yield _out_of_reach(row, wanted, float(group.copula.spearman[i, j]))
-        vary = [each for name, each in zip(pair, (row.first, row.second), strict=True) if _takes_few(how[name])]
+        vary = [each for name, each in zip(pair, (row.first, row.second), strict=True) if _takes_few(draws[name])]
         if vary:
             message = (
                 f"{' and '.join(map(repr, vary))} may take few values, and the parameters vary from trial to trial: "

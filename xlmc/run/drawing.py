@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.model import Assumption, Parameter, name_key
+from xlmc.definitions.model import Assumption, DataRange, Parameter, name_key
 from xlmc.definitions.tables.data import data_family
-from xlmc.distributions import ByPercentiles, Family, Truncated
+from xlmc.distributions import ByPercentiles, Family
 from xlmc.errors import DefinitionError
 from xlmc.evaluation.engine import Evaluator, Target
 from xlmc.evaluation.graph.lower import Lowering
@@ -34,48 +34,41 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     Raises:
         DefinitionError: the numbers are no distribution.
     """
-    family = _family(assumption, lowering)
+    data = assumption.data
+    family = assumption.family if data is None else _from_data(assumption.family, data, assumption.name, lowering)
     parameters = tuple(settled(each, lowering) for each in family.bind((), assumption.parameters))
     cutoffs = None
     if assumption.lower_cutoff is not None or assumption.upper_cutoff is not None:
         lower = -np.inf if assumption.lower_cutoff is None else assumption.lower_cutoff
         upper = np.inf if assumption.upper_cutoff is None else assumption.upper_cutoff
         cutoffs = settled(lower, lowering), settled(upper, lowering)
-    if isinstance(family, ByPercentiles):
-        _refuse_varying(assumption.name, (*parameters, *(cutoffs or ())))
     draw = Draw(name_key(assumption.name), family, parameters, cutoffs)
-    _check(draw, assumption)
+    if isinstance(family, ByPercentiles) and draw.varying:  # the member with these percentiles is looked for once
+        message = f"{assumption.name}: a distribution given by percentiles cannot depend on another assumption"
+        raise DefinitionError(message, where=draw.varying[0], hint="give it by its parameters, or by numbers")
+    if (fault := draw.fault()) is not None:
+        raise DefinitionError(f"{assumption.name}: {fault.message}", where=assumption.row, hint=fault.hint)
     return draw
 
 
-def _refuse_varying(name: str, parameters: Sequence[Parameter]) -> None:
-    """The member that has these percentiles is looked for once, not in every trial."""
-    varying = next((each for each in parameters if isinstance(each, Cell)), None)
-    if varying is not None:
-        message = f"{name}: a distribution given by percentiles cannot depend on another assumption"
-        raise DefinitionError(message, where=varying, hint="give it by its parameters, or by numbers")
-
-
-def _family(assumption: Assumption, lowering: Lowering) -> Family:
-    """The family; one built from data, from what its cells compute to."""
-    if assumption.data is None:
-        return assumption.family
-    drawn = next((cell for cell in lowering.inputs if assumption.data and cell in assumption.data.area), None)
+def _from_data(family: Family, data: DataRange, name: str, lowering: Lowering) -> Family:
+    """The family of the data that the cells compute to."""
+    drawn = next((cell for cell in lowering.inputs if cell in data.area), None)
     if drawn is not None:
-        raise _varying_data(assumption, drawn)
+        raise _varying_data(name, drawn)
 
     def number(cell: Cell) -> float:
         value = settled(cell, lowering)
         if isinstance(value, Cell):
-            raise _varying_data(assumption, cell)
+            raise _varying_data(name, cell)
         return value
 
-    return data_family(assumption.family, assumption.data, number)
+    return data_family(family, data, number)
 
 
-def _varying_data(assumption: Assumption, cell: Cell) -> DefinitionError:
+def _varying_data(name: str, cell: Cell) -> DefinitionError:
     return DefinitionError(
-        f"The data of {assumption.name!r} vary with an assumption in this cell, and data must be fixed",
+        f"The data of {name!r} vary with an assumption in this cell, and data must be fixed",
         where=cell,
         hint="Draw from fixed data, and let the cell that uses the draw vary with the assumption",
     )
@@ -97,20 +90,6 @@ def settled(parameter: Parameter, lowering: Lowering) -> Parameter:
     return float(value.numbers[0])
 
 
-def _check(draw: Draw, assumption: Assumption) -> None:
-    numbers = [p for p in (*draw.parameters, *(draw.cutoffs or ())) if isinstance(p, float)]
-    if len(numbers) < len(draw.parameters) + len(draw.cutoffs or ()):
-        return  # some vary: trials in which they are no distribution become error trials
-    parameters = numbers[: len(draw.parameters)]
-    if draw.cutoffs is None:
-        fault = draw.family.fault(*parameters)
-    else:
-        lower, upper = numbers[len(parameters) :]
-        fault = Truncated(draw.family).fault(lower, upper, *parameters)
-    if fault is not None:
-        raise DefinitionError(f"{assumption.name}: {fault.message}", where=assumption.row, hint=fault.hint)
-
-
 @dataclass(frozen=True, slots=True)
 class _Varying:
     """Computes parameters from draws; see `DynamicParameters`."""
@@ -125,8 +104,7 @@ class _Varying:
 
 def dynamic_parameters(draws: Sequence[Draw], lowering: Lowering, block: int) -> DynamicParameters:
     """What computes the varying parameters of a stage from the draws of the stages before it; for one thread."""
-    cells = [p for draw in draws for p in (*draw.parameters, *(draw.cutoffs or ())) if isinstance(p, Cell)]
-    places = tuple(dict.fromkeys(cells))
+    places = tuple(dict.fromkeys(p for draw in draws for p in draw.varying if isinstance(p, Cell)))
     targets = [parameter_target(cell) for cell in places]
     program = NumpyProgram.of(lowering, targets, [], frozenset(lowering.inputs.values()))
     return _Varying(program.evaluator(block), places)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Hashable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.model import Assumption, Check, Definitions, Filter, Forecast, name_key
+from xlmc.definitions.model import Assumption, Definitions, name_key
 from xlmc.definitions.reader import read_definitions
 from xlmc.errors import DefinitionError, Notice, SimulationError
 from xlmc.evaluation.engine import Evaluator, Program, Target
@@ -22,7 +23,7 @@ from xlmc.run.correlating import correlated_groups, repair_notices, tie_notices
 from xlmc.run.drawing import draw_of, dynamic_parameters
 from xlmc.run.filter_values import filter_faults
 from xlmc.run.remarks import example_notices, still_notices
-from xlmc.run.scene import Scene, condition, definitions_of_checks, in_order, refuse_without_base, survey
+from xlmc.run.scene import Scene, condition, definitions_of_checks, drawing_order, refuse_without_base, survey
 from xlmc.sampling.draws import CorrelatedGroup, Draw, Filler, Sampler, Stage
 from xlmc.sampling.plan import Plan
 from xlmc.workbook import Workbook, read_workbook
@@ -78,17 +79,18 @@ def lowered(workbook: Workbook, definitions: Definitions) -> tuple[Scene, Loweri
         return Lowering(scenes[-1].graph, inputs, held)
 
     lowering = widened(lower)
-    return in_order(scenes[-1], lowering.led_to), lowering
+    scene = scenes[-1]
+    if lowering.led_to:
+        scene = replace(scene, stages=drawing_order(scene.graph, definitions.assumptions, lowering.led_to))
+    return scene, lowering
 
 
-def _lowered_checks(workbook: Workbook, definitions: Definitions, live: Sequence[Assumption]) -> Lowering | None:
-    """The nodes of the checks, apart from those of the run, which they must not change; None without checks.
+def _lowered_checks(workbook: Workbook, definitions: Definitions, live: Collection[str]) -> Lowering:
+    """The nodes of the checks, apart from those of the run, which they must not change.
 
     Raises:
         FormulaError, DefinitionError: a check cannot be computed.
     """
-    if not definitions.checks:
-        return None
     asked = definitions_of_checks(definitions, live)
     scene, lowering = lowered(workbook, asked)
     refuse_without_base(definitions.checks, scene, asked)
@@ -104,6 +106,8 @@ class Model:
         workbook, definitions, path: what it was made from.
         assumptions, forecasts, filters, checks: as defined.
         live: the assumptions that are drawn: needed and not frozen.
+        draws: name of a live assumption -> how it is drawn.
+        lowering: the nodes of the needed cells.
         groups: of correlated ones among them.
         notices: what the person should know.
     """
@@ -111,63 +115,57 @@ class Model:
     def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
         definitions = with_base_parameters(workbook, definitions)
         self.workbook, self.definitions, self.path = workbook, definitions, path
-        self.scene, self._lowering = lowered(workbook, definitions)
-        self.live: tuple[Assumption, ...] = self.scene.live
-        self._draws = {a.name: draw_of(a, self._lowering) for a in self.live}
-        names = [a.name for a in self.live]
-        self.groups: tuple[CorrelatedGroup, ...] = tuple(
-            correlated_groups(definitions.correlations, names, self._draws)
-        )
+        self.assumptions, self.forecasts = definitions.assumptions, definitions.forecasts
+        self.filters, self.checks = definitions.filters, definitions.checks
+        self.scene, self.lowering = lowered(workbook, definitions)
+        named = {a.name: a for a in self.assumptions}
+        self.live: tuple[Assumption, ...] = tuple(map(named.__getitem__, self.scene.live))
+        self.draws: Mapping[str, Draw] = {a.name: draw_of(a, self.lowering) for a in self.live}
+        found = {draw.name: draw.support() for draw in self.draws.values()}
+        self._ends = {key: ends for key, ends in found.items() if ends is not None}
+        rows = definitions.correlations
+        tied = {name_key(name) for row in rows for name in (row.first, row.second)}
+        correlated = {draw.name: draw for draw in self.draws.values() if draw.name in tied}
+        self.groups: tuple[CorrelatedGroup, ...] = tuple(correlated_groups(rows, correlated))
         self._programs: dict[str, Program] = {}
         self._check_targets()
-        self._checks = _lowered_checks(workbook, definitions, self.live)
-        repairs = repair_notices(self.groups, definitions.correlations, names)
-        remarks = *still_notices(self.scene, self._draws, self.forecasts), *example_notices(definitions, self.scene)
-        idle = self.scene.notices(frozenset() if self._checks is None else self._checks.graph.reached)
-        ties = tie_notices(self.groups, definitions.correlations, self._draws)
-        notices = workbook.notices, definitions.notices, idle, self._lowering.notices, ties, repairs, remarks
-        self.notices: tuple[Notice, ...] = tuple(notice for part in notices for notice in part)
+        self._checks = _lowered_checks(workbook, definitions, frozenset(self.scene.live)) if self.checks else None
+        self.notices: tuple[Notice, ...] = (
+            *workbook.notices,
+            *definitions.notices,
+            *self.scene.notices(frozenset() if self._checks is None else self._checks.graph.reached),
+            *self.lowering.notices,
+            *tie_notices(self.groups, rows, correlated),
+            *repair_notices(self.groups, rows, self.scene.live),
+            *still_notices(self.scene, self._moving(), self.forecasts),
+            *example_notices(self._sources()),
+        )
 
-    @property
-    def assumptions(self) -> tuple[Assumption, ...]:
-        return self.definitions.assumptions
+    def _sources(self) -> list[tuple[str, Cell, str]]:
+        """What is needed of assumptions and filters, the row of each, and its source or reason."""
+        idle = {a.name for a in self.scene.idle}
+        found = [(f"{a.name!r}", a.row, a.source) for a in self.assumptions if a.name not in idle]
+        return found + [(f"{each.name!r} (a filter)", each.row, each.because) for each in self.filters]
 
-    @property
-    def forecasts(self) -> tuple[Forecast, ...]:
-        return self.definitions.forecasts
-
-    @property
-    def filters(self) -> tuple[Filter, ...]:
-        return self.definitions.filters
-
-    @property
-    def checks(self) -> tuple[Check, ...]:
-        return self.definitions.checks
+    def _moving(self) -> set[Cell]:
+        """The cells of the live assumptions whose range has more than one value, as far as it is known."""
+        still = {key for key, (low, high) in self._ends.items() if low >= high}
+        return {a.cell for a in self.live if name_key(a.name) not in still}
 
     @property
     def read(self) -> frozenset[Cell]:
         """Every cell that the forecasts, filters and checks read, blank cells of ranges among them."""
-        return self._lowering.read | (frozenset() if self._checks is None else self._checks.read)
+        return self.lowering.read | (frozenset() if self._checks is None else self._checks.read)
 
     @property
     def saved(self) -> frozenset[Cell]:
         """The cells among them that xlmc cannot compute, and that hold what Excel saved."""
-        return frozenset(self._lowering.saved)
-
-    @property
-    def draws(self) -> Mapping[str, Draw]:
-        """Name of a live assumption -> how it is drawn."""
-        return self._draws
-
-    @property
-    def lowering(self) -> Lowering:
-        """The nodes of the needed cells."""
-        return self._lowering
+        return frozenset(self.lowering.saved)
 
     @property
     def fallible(self) -> frozenset[str]:
         """Keys of the assumptions whose draws may be errors: their parameters vary."""
-        return frozenset(name_key(a.name) for stage in self.scene.stages[1:] for a in stage)
+        return frozenset(name_key(name) for stage in self.scene.stages[1:] for name in stage)
 
     def function(self, inputs: Mapping[str, ArrayLike]) -> dict[str, NDArray[np.float64]]:
         """The workbook as a function: values of every live assumption in, every forecast out. Filters are not asked.
@@ -185,7 +183,7 @@ class Model:
         if n == 0:
             return {forecast.name: np.empty(0) for forecast in self.forecasts}
         needed = frozenset(name_key(a.name) for a in self.live)
-        evaluator = NumpyProgram.of(self._lowering, self._forecast_targets, [], needed).evaluator(n)
+        evaluator = NumpyProgram.of(self.lowering, self._forecast_targets, [], needed).evaluator(n)
         columns = evaluator.filters(full, n)
         return {f.name: column.as_floats() for f, column in zip(self.forecasts, columns, strict=True)}
 
@@ -230,20 +228,14 @@ class Model:
         if engine not in ENGINES:
             raise SimulationError(f"there is no engine {engine!r}", hint=f"choose one of {', '.join(ENGINES)}")
         if engine not in self._programs:
-            parts = self._lowering, self.filter_targets, self._forecast_targets, self.fallible
+            parts = self.lowering, self.filter_targets, self._forecast_targets, self.fallible
             with paused_collection():
-                self._programs[engine] = ENGINES[engine].program(*parts, self._supports)
+                self._programs[engine] = ENGINES[engine].program(*parts, self._ends)
         return self._programs[engine]
-
-    @property
-    def _supports(self) -> dict[str, tuple[float, float]]:
-        """Key of an assumption -> its least and largest draw, where both are known and finite."""
-        found = {draw.name: draw.support() for draw in self._draws.values()}
-        return {name: ends for name, ends in found.items() if ends is not None}
 
     def evaluator(self, targets: Sequence[Target], block: int) -> Evaluator:
         """What computes such targets too, all of them in every trial, for blocks of up to `block` trials."""
-        return NumpyProgram.of(self._lowering, targets, [], self.fallible).evaluator(block)
+        return NumpyProgram.of(self.lowering, targets, [], self.fallible).evaluator(block)
 
     def sampler(
         self,
@@ -257,9 +249,9 @@ class Model:
 
         With a filler, its uniforms take the place of the seed's.
         """
-        draws = [tuple(self._draws[a.name] for a in stage) for stage in self.scene.stages]
-        stages = [Stage(stage, dynamic=i > 0) for i, stage in enumerate(draws)]
-        parameters = [dynamic_parameters(stage, self._lowering, block) for stage in draws[1:]]
+        draws = self.draws.__getitem__
+        stages = [Stage(tuple(map(draws, names)), dynamic=i > 0) for i, names in enumerate(self.scene.stages)]
+        parameters = [dynamic_parameters(stage.draws, self.lowering, block) for stage in stages[1:]]
         return Sampler(seed, stages, self.groups, parameters, block, plan, filler or ENGINES[engine].filler)
 
     def quantiles(self, probabilities: ArrayLike) -> dict[str, NDArray[np.float64]]:
@@ -277,19 +269,21 @@ class Model:
         wanted = np.atleast_1d(np.asarray(probabilities, np.float64))
         held: dict[str, NDArray[np.float64]] = {}
         found: dict[str, NDArray[np.float64]] = {}
-        for place, stage in enumerate(self.scene.stages):
-            draws = [self._draws[a.name] for a in stage]
-            varying = dynamic_parameters(draws, self._lowering, 1)(held, 1) if place else {}
-            for assumption, draw in zip(stage, draws, strict=True):
-                values = np.append(wanted, 0.5)
-                draw.fill(values, varying)
-                found[assumption.name] = values[:-1]
-                held[draw.name] = values[-1:] if assumption.base is None else np.full(1, assumption.base)
+        bases = {a.name: a.base for a in self.live}
+        for place, names in enumerate(self.scene.stages):
+            varying: Mapping[Hashable, NDArray[np.float64]] = {}
+            if place:
+                varying = dynamic_parameters([self.draws[name] for name in names], self.lowering, 1)(held, 1)
+            for name in names:
+                values, base = np.append(wanted, 0.5), bases[name]
+                self.draws[name].fill(values, varying)
+                found[name] = values[:-1]
+                held[name_key(name)] = values[-1:] if base is None else np.full(1, base)
         return found
 
     def program_of(self, filters: Sequence[Target]) -> Program:
         """Other targets in place of the filters, and the forecasts, compiled for the engine `numpy`."""
-        return NumpyProgram.of(self._lowering, filters, self._forecast_targets, self.fallible)
+        return NumpyProgram.of(self.lowering, filters, self._forecast_targets, self.fallible)
 
     def check_program(self) -> Program:
         """The cells of the checks as filters, a function of the live assumptions; others stand at their base values."""
@@ -315,4 +309,4 @@ class Model:
     def _check_targets(self) -> None:
         """Lower every target once, so that a fault is told when the workbook is loaded."""
         for target in (*self.filter_targets, *self._forecast_targets):
-            self._lowering.target(target)
+            self.lowering.target(target)

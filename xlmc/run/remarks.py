@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence, Set
 from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import Notice
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
-    from xlmc.definitions.model import Definitions, Forecast
+    from xlmc.definitions.model import Forecast
     from xlmc.formula import Graph
     from xlmc.run.scene import Scene
-    from xlmc.sampling.draws import Draw
 
 __all__ = ["example_notices", "still_notices"]
 
@@ -21,11 +20,13 @@ _EXAMPLE: Final = re.compile(r"example\b", re.IGNORECASE)
 _MOST_NAMED: Final = 4
 
 
-def example_notices(definitions: Definitions, scene: Scene) -> list[Notice]:
-    """The sources and reasons that still begin with the word "Example", as those of a template do."""
-    idle = {a.cell for a in scene.idle}
-    found = [(f"{a.name!r}", a.row) for a in definitions.assumptions if _is_example(a.source) and a.cell not in idle]
-    found += [(f"{f.name!r} (a filter)", f.row) for f in definitions.filters if _is_example(f.because)]
+def example_notices(sources: Iterable[tuple[str, Cell, str]]) -> list[Notice]:
+    """The sources and reasons that still begin with the word "Example", as those of a template do.
+
+    Args:
+        sources: what each is the source of, the row where it stands, and what it says.
+    """
+    found = [(named, row) for named, row, said in sources if _EXAMPLE.match(said.strip())]
     if not found:
         return []
     named = ", ".join(name for name, _ in found[:_MOST_NAMED])
@@ -35,19 +36,14 @@ def example_notices(definitions: Definitions, scene: Scene) -> list[Notice]:
     return [Notice(message[0].upper() + message[1:], found[0][1])]
 
 
-def _is_example(text: str) -> bool:
-    return _EXAMPLE.match(text.strip()) is not None
-
-
-def still_notices(scene: Scene, draws: Mapping[str, Draw], forecasts: Sequence[Forecast]) -> list[Notice]:
+def still_notices(scene: Scene, moving: Set[Cell], forecasts: Sequence[Forecast]) -> list[Notice]:
     """The forecasts that are the same in every trial.
 
     Args:
         scene: what they need.
-        draws: name of a live assumption -> how it is drawn.
+        moving: the cells of the live assumptions whose range has more than one value.
         forecasts: all of them.
     """
-    moving = {a.cell for a in scene.live if _moves(draws[a.name])}
     reached = scene.graph.varying if len(moving) == len(scene.live) else _reached(scene.graph, moving)
     still = [forecast for forecast in forecasts if forecast.cell not in reached]
     if forecasts and len(still) == len(forecasts):
@@ -61,12 +57,7 @@ def still_notices(scene: Scene, draws: Mapping[str, Draw], forecasts: Sequence[F
     ]
 
 
-def _moves(draw: Draw) -> bool:
-    ends = draw.support()
-    return ends is None or ends[0] < ends[1]
-
-
-def _reached(graph: Graph, moving: set[Cell]) -> set[Cell]:
+def _reached(graph: Graph, moving: Set[Cell]) -> set[Cell]:
     """The cells that depend on a moving one."""
     found = set(moving)
     for cell in graph.formulas:  # each after the cells it needs

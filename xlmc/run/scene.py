@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -16,9 +16,8 @@ __all__ = [
     "Scene",
     "condition",
     "definitions_of_checks",
+    "drawing_order",
     "filter_limits",
-    "in_order",
-    "parameter_cells",
     "refuse_without_base",
     "survey",
     "targets_of",
@@ -36,18 +35,18 @@ class Scene:
 
     Attributes:
         graph: the needed formula cells.
-        stages: the assumptions to draw; the parameters of a stage depend on earlier stages only.
+        stages: names of the assumptions to draw; the parameters of a stage depend on earlier stages only.
         idle: the assumptions that nothing needs.
     """
 
     graph: Graph
-    stages: tuple[tuple[Assumption, ...], ...]
+    stages: tuple[tuple[str, ...], ...]
     idle: tuple[Assumption, ...]
 
     @property
-    def live(self) -> tuple[Assumption, ...]:
-        """The assumptions to draw, in order."""
-        return tuple(assumption for stage in self.stages for assumption in stage)
+    def live(self) -> tuple[str, ...]:
+        """The names of the assumptions to draw, in order."""
+        return tuple(name for stage in self.stages for name in stage)
 
     def notices(self, checked: Container[Cell] = ()) -> tuple[Notice, ...]:
         """What was left out; draws in cells, which may be very many, together.
@@ -80,45 +79,57 @@ def survey(workbook: Workbook, definitions: Definitions, more: Mapping[Cell, Ite
         FormulaError: a needed formula cannot be read, or needed cells form a circle.
         DefinitionError: assumptions need each other in a circle, or there are too many draws in cells.
     """
-    live = {a.cell: a for a in definitions.assumptions if not a.frozen}
+    needs = {a.cell: a.cells for a in definitions.assumptions if not a.frozen}
     held = frozenset(a.cell for a in definitions.assumptions if a.frozen)
-    resolver = Resolver(workbook, [*live, *held], rewritten=definitions.rewritten)
-    targets = targets_of(definitions)
+    resolver = Resolver(workbook, [*needs, *held], rewritten=definitions.rewritten)
+    targets = targets_of(definitions.forecasts, definitions.filters)
     while True:  # the parameters of needed assumptions may need more cells, and these more assumptions
-        graph = build_graph(resolver, targets, frozenset(live), held, more=more)
-        wanted = [cell for a in live.values() if a.cell in graph.reached for cell in parameter_cells(a)]
+        graph = build_graph(resolver, targets, frozenset(needs), held, more=more)
+        wanted = [cell for drawn, cells in needs.items() if drawn in graph.reached for cell in cells]
         if set(wanted) <= set(targets):
             break
         targets = list(dict.fromkeys(targets + wanted))
-    reached = tuple(a for a in live.values() if a.cell in graph.reached)
-    _refuse_too_many(reached)
+    calls = [a for a in definitions.assumptions if isinstance(a.cell, InFormula) and a.cell in graph.reached]
+    _refuse_too_many([a for a in calls if not a.frozen])
     idle = tuple(a for a in definitions.assumptions if a.cell not in graph.reached)
-    return Scene(graph, _stages(graph, reached, {}), idle)
+    return Scene(graph, drawing_order(graph, definitions.assumptions, {}), idle)
 
 
-def in_order(scene: Scene, led_to: Mapping[Cell, Iterable[Cell]]) -> Scene:
-    """The same with its stages as they must be where OFFSET and INDIRECT lead to more cells than formulas name.
+def drawing_order(
+    graph: Graph, assumptions: Sequence[Assumption], led_to: Mapping[Cell, Iterable[Cell]]
+) -> tuple[tuple[str, ...], ...]:
+    """The names of the assumptions to draw, in stages: the parameters of a stage depend on earlier stages only.
 
     Args:
-        scene: with stages by the cells that formulas name.
-        led_to: formula cell -> the cells that such functions in it lead to.
+        graph: of the needed cells.
+        assumptions: all of them.
+        led_to: formula cell -> the cells that OFFSET and INDIRECT in it lead to, beside those that it names.
 
     Raises:
         DefinitionError: assumptions need each other in a circle.
     """
-    return replace(scene, stages=_stages(scene.graph, scene.live, led_to)) if led_to else scene
+    drawn = {a.cell: a.name for a in assumptions if not a.frozen and a.cell in graph.reached}
+    waiting = {a.cell: upstream(graph, a.cells, led_to) for a in assumptions if a.cell in drawn}
+    stages: list[tuple[str, ...]] = []
+    while waiting:
+        ready = [cell for cell in waiting if not waiting[cell] & waiting.keys()]
+        if not ready:
+            raise _circle([a for a in assumptions if a.cell in waiting], waiting)
+        stages.append(tuple(drawn[cell] for cell in ready))
+        for cell in ready:
+            del waiting[cell]
+    return tuple(stages)
 
 
-def definitions_of_checks(definitions: Definitions, live: Sequence[Assumption]) -> Definitions:
+def definitions_of_checks(definitions: Definitions, live: Collection[str]) -> Definitions:
     """The checks as what is asked for, over the assumptions that a run draws; all others are held at their base values.
 
     Args:
         definitions: the workbook's.
-        live: the assumptions that its forecasts and filters have drawn. A check adds none to them: it must not change
-            a run.
+        live: names of the assumptions that its forecasts and filters have drawn. A check adds none to them: it must
+            not change a run.
     """
-    drawn = {a.cell for a in live}
-    assumptions = tuple(a if a.cell in drawn else replace(a, frozen=True) for a in definitions.assumptions)
+    assumptions = tuple(a if a.name in live else replace(a, frozen=True) for a in definitions.assumptions)
     asked = tuple(Forecast(check.name, check.cell, check.row) for check in definitions.checks)
     return replace(definitions, assumptions=assumptions, forecasts=asked, filters=(), correlations=(), checks=())
 
@@ -140,30 +151,20 @@ def refuse_without_base(checks: Sequence[Check], scene: Scene, definitions: Defi
     raise DefinitionError(message, where=needed.cell, hint="type its base value into the cell")
 
 
-def _refuse_too_many(reached: Sequence[Assumption]) -> None:
+def _refuse_too_many(calls: Sequence[Assumption]) -> None:
     """A sheet that repeats a model in thousands of rows draws more than a run, or its report, has room for."""
-    calls = [a for a in reached if isinstance(a.cell, InFormula)]
     if len(calls) > MOST_CALLS:
         message = f"the forecasts and filters need {len(calls):,} draws in cells, and there is room for {MOST_CALLS:,}"
         hint = "where rows repeat one model, mark the answer of a single row, and let the run repeat it"
         raise DefinitionError(message, where=calls[0].row, hint=hint)
 
 
-def targets_of(definitions: Definitions) -> list[Cell]:
+def targets_of(forecasts: Iterable[Forecast], filters: Iterable[Filter]) -> list[Cell]:
     """The cells of the forecasts and filters, and those that hold the filters' limits."""
-    targets = [forecast.cell for forecast in definitions.forecasts]
-    for filter_ in definitions.filters:
+    targets = [forecast.cell for forecast in forecasts]
+    for filter_ in filters:
         targets += [filter_.cell, *(bound for _, bound in filter_limits(filter_) if isinstance(bound, Cell))]
     return targets
-
-
-def parameter_cells(assumption: Assumption) -> Iterator[Cell]:
-    """The cells that an assumption's parameters and cutoffs stand in, and those of its data that hold formulas."""
-    if assumption.data is not None:
-        yield from assumption.data.cells
-    for parameter in (*assumption.parameters.values(), assumption.lower_cutoff, assumption.upper_cutoff):
-        if isinstance(parameter, Cell):
-            yield parameter
 
 
 def filter_limits(filter_: Filter) -> list[tuple[str, float | Cell]]:
@@ -187,21 +188,6 @@ def condition(filter_: Filter) -> ir.Expression:
 
 def _bound(bound: float | Cell) -> ir.Expression:
     return ir.Binary("+", bound, ir.Number(0.0)) if isinstance(bound, Cell) else ir.Number(bound)
-
-
-def _stages(
-    graph: Graph, reached: tuple[Assumption, ...], led_to: Mapping[Cell, Iterable[Cell]]
-) -> tuple[tuple[Assumption, ...], ...]:
-    waiting = {a.cell: upstream(graph, parameter_cells(a), led_to) for a in reached}
-    stages: list[tuple[Assumption, ...]] = []
-    while waiting:
-        ready = tuple(a for a in reached if a.cell in waiting and not waiting[a.cell] & waiting.keys())
-        if not ready:
-            raise _circle([a for a in reached if a.cell in waiting], waiting)
-        stages.append(ready)
-        for assumption in ready:
-            del waiting[assumption.cell]
-    return tuple(stages)
 
 
 def upstream(graph: Graph, cells: Iterable[Cell], led_to: Mapping[Cell, Iterable[Cell]]) -> set[Cell]:

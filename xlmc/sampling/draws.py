@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.distributions import Family, Truncated
+from xlmc.distributions.base import Fault
 from xlmc.distributions.uniform import Uniform
 from xlmc.errors import SimulationError
 from xlmc.functions.denormals import TINIEST, flush
@@ -48,12 +49,12 @@ class Draw:
 
         A draw that is too small a number for a cell is 0.
         """
-        parameters = [_known(p, dynamic) for p in self.parameters]
+        given = (*(self.cutoffs or ()), *self.parameters)
+        values = [p if isinstance(p, float) else dynamic[p] for p in given]
         if self.cutoffs is None:
-            self.family.ppf(u, *parameters, out=u)
+            self.family.ppf(u, *values, out=u)
         else:
-            lower, upper = (_known(c, dynamic) for c in self.cutoffs)
-            Truncated(self.family).ppf(u, lower, upper, *parameters, out=u)
+            Truncated(self.family).ppf(u, *values, out=u)
         if not u.min(initial=np.inf) >= TINIEST:
             flush(u)
 
@@ -64,9 +65,22 @@ class Draw:
         return Truncated(self.family).cdf(x, *self.cutoffs, *self.parameters)  # type: ignore[arg-type]  # likewise
 
     @property
+    def varying(self) -> list[Hashable]:
+        """The parameters and cutoffs that vary by trial."""
+        return [p for p in (*self.parameters, *(self.cutoffs or ())) if not isinstance(p, float)]
+
+    @property
     def fixed(self) -> bool:
         """Whether no parameter and no cutoff varies by trial."""
-        return all(isinstance(p, float) for p in (*self.parameters, *(self.cutoffs or ())))
+        return not self.varying
+
+    def fault(self) -> Fault | None:
+        """What keeps its numbers from being a distribution; None where some vary, for each trial has its own then."""
+        if not self.fixed:
+            return None
+        if self.cutoffs is None:
+            return self.family.fault(*self.parameters)  # type: ignore[arg-type]  # numbers, as they are fixed
+        return Truncated(self.family).fault(*self.cutoffs, *self.parameters)  # type: ignore[arg-type]  # likewise
 
     def refuse_no_numbers(self, draws: Floats) -> None:
         """Check what was filled in, `(n,)`; where parameters vary, NaN is an error trial, and counted as one.
@@ -99,10 +113,6 @@ class Draw:
         if not isinstance(low, float) or not isinstance(high, float) or 0 < max(abs(low), abs(high)) < _SMALL:
             return None
         return self.family.offset_and_factor(low, high)
-
-
-def _known(parameter: Hashable, dynamic: Mapping[Hashable, Floats]) -> float | Floats:
-    return parameter if isinstance(parameter, float) else dynamic[parameter]
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,10 +177,14 @@ class Sampler:
         self._stages, self._groups, self._parameters = stages, groups, parameters
         self._block = block
         grouped = {name for group in groups for name in group.names}
-        single = [draw for stage in stages for draw in stage.draws if draw.name not in grouped]
-        maps = {draw.name: found for draw in single if (found := draw.offset_and_factor()) is not None}
-        self._filled = frozenset(maps)
-        ordered = [maps.get(name, (0.0, 1.0)) for name in self._places]
+        maps = dict.fromkeys(names, (0.0, 1.0))
+        self._filled: set[str] = set()
+        for stage in stages:
+            for draw in stage.draws:
+                if draw.name not in grouped and (found := draw.offset_and_factor()) is not None:
+                    maps[draw.name] = found
+                    self._filled.add(draw.name)
+        ordered = list(maps.values())
         self._streams = [margin for margin in self._margins if isinstance(margin, Stream)]
         self._fill: Callable[[int], None]
         if filler is None or len(self._streams) < len(names):

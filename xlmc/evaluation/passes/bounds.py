@@ -27,36 +27,29 @@ def bounds(dag: Dag, places: Iterable[int], inputs: Mapping[str, Bounds]) -> dic
         inputs: name of an input -> its bounds, where it has any.
     """
     found: dict[int, Bounds] = {}
+
+    def of(node: int) -> Bounds:
+        return found[node] if node in found else of_constant(dag, node) or _ANY
+
     for place in places:
-        between = _of(dag, place, inputs, found)
+        match dag.nodes[place]:
+            case Input(name):
+                between = inputs.get(name, _ANY)
+            case Select(_, yes, no):
+                between = _around((*of(yes), *of(no)))
+            case Apply(function, (first, second)) if function.name in ("+", "-", "*", "/"):
+                between = _combined(function.name, of(first), of(second))
+            case Apply(function, (result, _)) if function.name == SETTLED.name:
+                between = of(result)
+            case Apply(function) if function.facts.between is not None:
+                between = function.facts.between
+            case Apply(function, (only,)) if function.name in _OF_ONE:
+                between = _OF_ONE[function.name](*of(only))
+            case _:
+                continue
         if math.isfinite(between[0]) and math.isfinite(between[1]):
             found[place] = between
     return found
-
-
-def _of(dag: Dag, place: int, inputs: Mapping[str, Bounds], found: Mapping[int, Bounds]) -> Bounds:
-    def part(used: int) -> Bounds:
-        return found[used] if used in found else of_constant(dag, used) or _ANY
-
-    match dag.nodes[place]:
-        case Input(name):
-            return inputs.get(name, _ANY)
-        case Select(_, yes, no):
-            return _around((*part(yes), *part(no)))
-        case Apply(function, (first, second)) if function.name in ("+", "-", "*"):
-            return _combined(function.name, part(first), part(second))
-        case Apply(function, (first, second)) if function.name == "/":
-            low, high = part(second)
-            away = low > 0.0 or high < 0.0
-            return _combined("*", part(first), _around((1.0 / low, 1.0 / high))) if away else _ANY
-        case Apply(function, (result, _)) if function.name == SETTLED.name:
-            return part(result)
-        case Apply(function) if function.facts.between is not None:
-            return function.facts.between
-        case Apply(function, (only,)) if function.name in _OF_ONE:
-            return _OF_ONE[function.name](*part(only))
-        case _:
-            return _ANY
 
 
 _OF_ONE: Final[Mapping[str, Callable[[float, float], Bounds]]] = {
@@ -81,6 +74,9 @@ def _combined(operator: str, left: Bounds, right: Bounds) -> Bounds:
         return left[0] + right[0], left[1] + right[1]
     if operator == "-":
         return left[0] - right[1], left[1] - right[0]
+    if operator == "/":
+        away = right[0] > 0.0 or right[1] < 0.0
+        return _combined("*", left, _around((1.0 / right[0], 1.0 / right[1]))) if away else _ANY
     return _around([a * b for a in left for b in right])
 
 

@@ -147,7 +147,7 @@ class Page:
         own = self._widths[first : last + 1]
         width = sum(own) + _WIDTH * (last - first + 1 - len(own))
         room = max(1.1 * width - (1.0 if shown.look == "header" else 3.0), 1.0)
-        return sum(max(1, math.ceil(len(part) / room)) for part in str(shown.value).split("\n"))
+        return sum(max(1, math.ceil(length / room)) for length in map(len, str(shown.value).split("\n")))
 
 
 def cut(value: str) -> str:

@@ -23,7 +23,7 @@ from xlmc.run.rare.preimage import TURNS
 from xlmc.run.rare.rearranged import Rearranged
 from xlmc.run.rare.shortfall import Shortfall, leaves
 from xlmc.run.rare.spans import Spans, common
-from xlmc.run.scene import parameter_cells, upstream
+from xlmc.run.scene import upstream
 
 if TYPE_CHECKING:
     from xlmc.definitions.model import Assumption
@@ -127,7 +127,7 @@ class _Looking:
         grouped = {name for group in model.groups for name in group.names}
         graph = model.scene.graph
         asked = upstream(graph, {cell for each in self._parts for cell in _cells(each)}, self._led_to)
-        varied = upstream(graph, [cell for each in model.live for cell in parameter_cells(each)], self._led_to)
+        varied = upstream(graph, [cell for each in model.live for cell in each.cells], self._led_to)
         self._formulas = [cell for cell in graph.formulas if cell in asked or cell in varied]
         candidates = [each for each in model.live if each.cell in asked and name_key(each.name) not in grouped]
         most = min(_MOST_CANDIDATES, _MOST_LOOKS // max(1, len(self._formulas)))
@@ -225,7 +225,7 @@ class _Looking:
             for each in self._formulas:
                 if not found.isdisjoint(self._read(each)):
                     found.add(each)
-            found |= {a.cell for a in self._model.live if not found.isdisjoint(parameter_cells(a))}
+            found |= {a.cell for a in self._model.live if not found.isdisjoint(a.cells)}
         return found
 
 

@@ -111,7 +111,7 @@ def _cut(model: Model, errors: dict[Cell, float]) -> list[Cell]:
     """The cells at which following the formulas upwards ends: smooth ones, and the assumptions themselves."""
     needs, found = model.scene.graph.needs, dict[Cell, None]()
     seen: set[Cell] = set()
-    open_ = targets_of(model.definitions)[::-1]
+    open_ = targets_of(model.forecasts, model.filters)[::-1]
     ends = {a.cell for a in model.live} | {cell for cell, error in errors.items() if error <= TOLERANCE}
     while open_:
         cell = open_.pop()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Final
 
 from xlmc.address import Area, Cell
 from xlmc.definitions.stopping import NO_GOAL, Stopping
@@ -12,6 +13,7 @@ from xlmc.errors import DefinitionError, FormulaError, Notice
 from xlmc.formula.ir import Expression
 
 __all__ = [
+    "CUTOFFS",
     "Assumption",
     "Check",
     "Correlation",
@@ -26,6 +28,10 @@ __all__ = [
 
 Parameter = float | Cell
 """A number, or the cell that holds it because that cell holds a formula (it may then vary with other assumptions)."""
+
+
+CUTOFFS: Final = {"lower_cutoff": "Lower cutoff", "upper_cutoff": "Upper cutoff"}
+"""Key of a cutoff -> its heading."""
 
 
 def name_key(name: str) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 from xlmc.replay.closeness import Closeness
 from xlmc.results.record import Record, Value
-from xlmc.results.record.contents import SAVED, content_text, definition_cells
+from xlmc.results.record.cells import SAVED, content_text, definition_cells
 
 if TYPE_CHECKING:
     from xlmc.address import Cell

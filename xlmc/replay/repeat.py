@@ -25,8 +25,7 @@ from xlmc.replay.sheets import SheetComparison
 from xlmc.replay.shown import compare_shown
 from xlmc.replay.versions import Rule, recorded_version, rules_since
 from xlmc.results.record import Record, make_record
-from xlmc.results.record.cell_table import recorded_cells
-from xlmc.results.record.contents import needed_contents
+from xlmc.results.record.cells import needed_contents, recorded_cells
 from xlmc.results.record.read import read_record
 from xlmc.results.record.settings_table import recorded_settings
 from xlmc.results.saved import SUFFIX, is_saved_run, open_run

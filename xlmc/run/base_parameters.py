@@ -9,8 +9,7 @@ from collections.abc import Mapping, Set
 from dataclasses import replace
 
 from xlmc.address import Cell, InFormula
-from xlmc.definitions.model import Assumption, Definitions, Parameter, name_key
-from xlmc.definitions.tables.parameters import CUTOFFS
+from xlmc.definitions.model import CUTOFFS, Assumption, Definitions, Parameter, name_key
 from xlmc.distributions.base import show
 from xlmc.errors import DefinitionError, Notice
 from xlmc.evaluation.graph.lower import Lowering

@@ -14,8 +14,7 @@ from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.formula.shape import shape_of, text_at
 from xlmc.report.sheets.book import build_sheets
-from xlmc.results.record.cell_table import MOST_ROWS, cell_section, recorded_cells
-from xlmc.results.record.contents import content_text, needed_contents
+from xlmc.results.record.cells import MOST_ROWS, cell_section, content_text, needed_contents, recorded_cells
 from xlmc.results.record.model import Entry, Record, Section
 from xlmc.results.record.read import read_record
 from xlmc.results.record.settings_table import recorded_settings, settings_section
@@ -147,7 +146,7 @@ def test_a_content_too_long_for_a_cell_is_packed():
 
 
 def test_packed_cells_come_through_a_worksheet(run, monkeypatch):
-    monkeypatch.setattr("xlmc.results.record.cell_table._PIECE", 100)
+    monkeypatch.setattr("xlmc.results.record.cells._PIECE", 100)
     monkeypatch.setattr("xlmc.results.record.make.cell_section", lambda needed: cell_section(needed, rows=0))
     record = read_record(read_workbook(build_sheets(run)))
     assert record["cells.packed_2"]

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
-from xlmc.results.record.cell_table import cell_section
-from xlmc.results.record.contents import needed_contents
+from xlmc.results.record.cells import cell_section, needed_contents
 from xlmc.results.record.definition_tables import (
     assumption_section,
     check_section,

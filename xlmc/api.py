@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from xlmc.definitions.stopping import stopping
 from xlmc.run import model, simulation
@@ -135,6 +135,7 @@ class Model(model.Model):
         keep_inputs: int | None = 1 << 20,
         keep_interrupted: bool = False,
         progress: Progress | None = None,
+        **goals: Any,
     ) -> Simulation:
         """Run the simulation; what is not given comes from the workbook's settings.
 
@@ -163,6 +164,7 @@ class Model(model.Model):
             keep_inputs: of how many accepted trials, from the first on, the draws are kept; None for all.
             keep_interrupted: end the run with what it has when Ctrl-C is pressed, rather than raise KeyboardInterrupt.
             progress: called with a `Standing` (trials, accepted, share done, means) after every block.
+            **goals: options of goals that have no argument here: see `xlmc.definitions.stopping`.
 
         Raises:
             SimulationError: an argument is out of its range, there is no room on the disk for the accepted trials,
@@ -175,7 +177,15 @@ class Model(model.Model):
             trials=trials,
             seed=seed,
             stopping=stopping(
-                until_accepted, precision, precision_of, confidence, adaptive, forecasts, time_limit, rare
+                until_accepted=until_accepted,
+                precision=precision,
+                precision_of=precision_of,
+                confidence=confidence,
+                adaptive=adaptive,
+                forecasts=forecasts,
+                time_limit=time_limit,
+                rare=rare,
+                **goals,
             ),
             engine=engine,
             sampling=sampling,

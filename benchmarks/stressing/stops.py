@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 
 import xlmc.statistics as xs
-from xlmc.definitions.stopping import Precision
+from xlmc.definitions.stopping import Precision, StableDigits
 from xlmc.run.stopping import adaptive
 from xlmc.run.stopping.adaptive import UntilStable
 from xlmc.run.stopping.precision import UntilPrecise
@@ -158,7 +158,7 @@ def stable_runs(name: str, digits: int, scale: float, runs: int, first: int = 0)
     forecast = law._replace(draw=lambda rng, n: scale * law.draw(rng, n))
     within, lengths, ended = np.zeros(4, int), [], 0
     for seed in range(first, first + runs):
-        rule = UntilStable(digits, [(0, name, 0.51)])
+        rule = UntilStable(StableDigits(digits), [(0, name, 0.51)])
         values = _run(rule, forecast, np.random.default_rng((seed, 6)), adaptive.sequence_length(0.51))
         if values is None:
             continue

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.definitions.stopping import NO_GOAL, Precision, Stopping, stopping
+from xlmc.definitions.stopping import NO_GOAL, AcceptedTrials, Precision, StableDigits, Stopping, stopping
 from xlmc.errors import SimulationError
 
 
@@ -10,64 +10,64 @@ from xlmc.errors import SimulationError
     ("given", "expected"),
     [
         ({}, NO_GOAL),
-        ({"accepted": 2}, Stopping(accepted=2)),
-        ({"tolerance": "1%"}, Stopping(precision=Precision(0.01, True))),
-        ({"tolerance": " 2.5 % "}, Stopping(precision=Precision(0.025, True))),
-        ({"tolerance": "1e-3"}, Stopping(precision=Precision(0.001))),
-        ({"tolerance": 3}, Stopping(precision=Precision(3.0))),
-        ({"tolerance": 3, "numbers": "SD, p5"}, Stopping(precision=Precision(3.0, False, ("sd", "p5")))),
-        ({"tolerance": 3, "numbers": ["mean", "mean"]}, Stopping(precision=Precision(3.0, False, ("mean",)))),
-        ({"tolerance": 3, "confidence": "99%"}, Stopping(precision=Precision(3.0, confidence=0.99))),
-        ({"tolerance": 3, "confidence": 90}, Stopping(precision=Precision(3.0, confidence=0.9))),
-        ({"tolerance": 3, "confidence": 0.9}, Stopping(precision=Precision(3.0, confidence=0.9))),
-        ({"digits": 2, "forecasts": "x"}, Stopping(digits=2, forecasts=("x",))),
-        ({"digits": 1, "forecasts": ["x", "y"]}, Stopping(digits=1, forecasts=("x", "y"))),
-        ({"seconds": "60s"}, Stopping(seconds=60.0)),
-        ({"seconds": "5m"}, Stopping(seconds=300.0)),
-        ({"seconds": "5 min"}, Stopping(seconds=300.0)),
-        ({"seconds": "1h 30m 2.5s"}, Stopping(seconds=5402.5)),
-        ({"seconds": "2H"}, Stopping(seconds=7200.0)),
-        ({"seconds": 45}, Stopping(seconds=45.0)),
-        ({"accepted": 9, "seconds": 1}, Stopping(accepted=9, seconds=1.0)),
+        ({"until_accepted": 2}, Stopping(AcceptedTrials(2))),
+        ({"precision": "1%"}, Stopping(Precision(0.01, True))),
+        ({"precision": " 2.5 % "}, Stopping(Precision(0.025, True))),
+        ({"precision": "1e-3"}, Stopping(Precision(0.001))),
+        ({"precision": 3}, Stopping(Precision(3.0))),
+        ({"precision": 3, "precision_of": "SD, p5"}, Stopping(Precision(3.0, False, ("sd", "p5")))),
+        ({"precision": 3, "precision_of": ["mean", "mean"]}, Stopping(Precision(3.0, False, ("mean",)))),
+        ({"precision": 3, "confidence": "99%"}, Stopping(Precision(3.0, confidence=0.99))),
+        ({"precision": 3, "confidence": 90}, Stopping(Precision(3.0, confidence=0.9))),
+        ({"precision": 3, "confidence": 0.9}, Stopping(Precision(3.0, confidence=0.9))),
+        ({"adaptive": 2, "forecasts": "x"}, Stopping(StableDigits(2), forecasts=("x",))),
+        ({"adaptive": 1, "forecasts": ["x", "y"]}, Stopping(StableDigits(1), forecasts=("x", "y"))),
+        ({"time_limit": "60s"}, Stopping(seconds=60.0)),
+        ({"time_limit": "5m"}, Stopping(seconds=300.0)),
+        ({"time_limit": "5 min"}, Stopping(seconds=300.0)),
+        ({"time_limit": "1h 30m 2.5s"}, Stopping(seconds=5402.5)),
+        ({"time_limit": "2H"}, Stopping(seconds=7200.0)),
+        ({"time_limit": 45}, Stopping(seconds=45.0)),
+        ({"until_accepted": 9, "time_limit": 1}, Stopping(AcceptedTrials(9), seconds=1.0)),
     ],
 )
 def test_what_is_asked_for(given, expected):
     found = stopping(**given)
     assert found == expected
-    assert found.has_goal == bool({"accepted", "tolerance", "digits"} & set(given))
+    assert found.has_goal == bool({"until_accepted", "precision", "adaptive"} & set(given))
     assert found.asked == bool(given)
 
 
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"accepted": 1}, "1 accepted trials were asked for"),
-        ({"accepted": -5}, "-5 accepted trials were asked for"),
-        ({"digits": 0}, "0 significant digits"),
-        ({"digits": 7}, "7 significant digits"),
-        ({"tolerance": "0%"}, "'0%' is no precision"),
-        ({"tolerance": -1}, "'-1' is no precision"),
-        ({"tolerance": "nan"}, "'nan' is no precision"),
-        ({"tolerance": "inf"}, "'inf' is no precision"),
-        ({"tolerance": "a lot"}, "'a lot' is no precision"),
-        ({"tolerance": 1, "numbers": "median"}, "'median' is no number"),
-        ({"tolerance": 1, "numbers": "p100"}, "'p100' is no number"),
-        ({"tolerance": 1, "numbers": "p0"}, "'p0' is no number"),
-        ({"tolerance": 1, "numbers": ""}, "'' is no number"),
-        ({"tolerance": 1, "numbers": []}, "no number was named"),
-        ({"tolerance": 1, "confidence": 100}, "'100' is no confidence"),
-        ({"tolerance": 1, "confidence": "high"}, "'high' is no confidence"),
-        ({"numbers": "mean"}, "how well numbers must be known is not said"),
+        ({"until_accepted": 1}, "1 accepted trials were asked for"),
+        ({"until_accepted": -5}, "-5 accepted trials were asked for"),
+        ({"adaptive": 0}, "0 significant digits"),
+        ({"adaptive": 7}, "7 significant digits"),
+        ({"precision": "0%"}, "'0%' is no precision"),
+        ({"precision": -1}, "'-1' is no precision"),
+        ({"precision": "nan"}, "'nan' is no precision"),
+        ({"precision": "inf"}, "'inf' is no precision"),
+        ({"precision": "a lot"}, "'a lot' is no precision"),
+        ({"precision": 1, "precision_of": "median"}, "'median' is no number"),
+        ({"precision": 1, "precision_of": "p100"}, "'p100' is no number"),
+        ({"precision": 1, "precision_of": "p0"}, "'p0' is no number"),
+        ({"precision": 1, "precision_of": ""}, "'' is no number"),
+        ({"precision": 1, "precision_of": []}, "no number was named"),
+        ({"precision": 1, "confidence": 100}, "'100' is no confidence"),
+        ({"precision": 1, "confidence": "high"}, "'high' is no confidence"),
+        ({"precision_of": "mean"}, "how well numbers must be known is not said"),
         ({"confidence": 95}, "how well numbers must be known is not said"),
         ({"forecasts": "x"}, "forecasts to look at are named, but not what for"),
-        ({"accepted": 5, "forecasts": "x"}, "forecasts to look at are named, but not what for"),
-        ({"accepted": 5, "digits": 1}, "accepted trials and stable digits were both asked for"),
-        ({"accepted": 5, "tolerance": 1}, "accepted trials and a precision were both asked for"),
-        ({"seconds": 0}, "'0' is no time"),
-        ({"seconds": -1}, "'-1' is no time"),
-        ({"seconds": "soon"}, "'soon' is no time"),
-        ({"seconds": ""}, "'' is no time"),
-        ({"seconds": "5d"}, "'5d' is no time"),
+        ({"until_accepted": 5, "forecasts": "x"}, "forecasts to look at are named, but not what for"),
+        ({"until_accepted": 5, "adaptive": 1}, "accepted trials and stable digits were both asked for"),
+        ({"until_accepted": 5, "precision": 1}, "accepted trials and a precision were both asked for"),
+        ({"time_limit": 0}, "'0' is no time"),
+        ({"time_limit": -1}, "'-1' is no time"),
+        ({"time_limit": "soon"}, "'soon' is no time"),
+        ({"time_limit": ""}, "'' is no time"),
+        ({"time_limit": "5d"}, "'5d' is no time"),
     ],
 )
 def test_what_cannot_be_meant(given, message):
@@ -75,3 +75,12 @@ def test_what_cannot_be_meant(given, message):
         stopping(**given)
     assert message in caught.value.message
     assert caught.value.hint
+
+
+def test_what_no_goal_has_is_a_mistake_of_the_program():
+    with pytest.raises(TypeError, match="unexpected keyword argument 'boredom'"):
+        stopping(until_accepted=5, boredom=5)
+
+
+def test_whole_numbers_stay_whole():
+    assert type(stopping(until_accepted=1e4).goal.number) is int

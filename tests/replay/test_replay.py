@@ -77,6 +77,24 @@ def test_every_kind_of_run_is_repeated_to_the_last_bit(model, tmp_path, asked):
         assert found.record["counts.trials"] == run.trials
 
 
+@pytest.mark.parametrize(
+    ("asked", "key"),
+    [
+        ({"until_accepted": 100}, "until_accepted"),
+        ({"precision": "20%", "precision_of": "p50"}, "precision"),
+        ({"until_accepted": 300, "rare": "always"}, "until_accepted"),
+    ],
+)
+def test_a_record_without_the_goal_that_was_reached_is_refused(model, tmp_path, asked, key):
+    model.simulate(**asked).save(tmp_path / "r.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "r.xlsx")
+    row = next(row for row in book["Record"].iter_rows() if row[0].value == f"settings.{key}")
+    row[2].value = None
+    book.save(tmp_path / "r.xlsx")
+    with pytest.raises(WorkbookError, match=rf"the record lacks 'settings\.{key}'"):
+        replay(tmp_path / "r.xlsx")
+
+
 def test_nothing_was_accepted_in_the_run_that_should_have_accepted_nothing(model):
     assert model.simulate(**RUNS["nothing accepted"]).accepted == 0
 

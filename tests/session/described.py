@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+from xlmc.definitions.stopping import GOALS
+from xlmc.definitions.tables.settings import _readers
 from xlmc.distributions import FAMILIES
 from xlmc.evaluation.engines import ENGINES
 from xlmc.report.sheets.book import SHEETS
@@ -12,11 +14,14 @@ from xlmc.sampling.methods import METHODS
 
 __all__ = ["undescribed"]
 
+OF_EARLIER_BOOKS = {"Arithmetic"}
+"""Settings that do nothing any more, and are read so that older books run."""
+
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
 def undescribed() -> list[str]:
-    """`docs/sampling.md: sobol` for each sampling method, engine, result sheet and distribution that a page lacks."""
+    """`docs/sampling.md: sobol` for each name that a page lacks: of sampling methods, engines, sheets, options, …"""
     texts = {page.name: page.read_text(encoding="utf-8") for page in DOCS.glob("*.md")}
     return [f"docs/{page}: {name}" for page, name, text in _expected() if text not in texts[page]]
 
@@ -29,5 +34,11 @@ def _expected() -> Iterator[tuple[str, str, str]]:
         yield from ((page, engine, f"`{engine}`") for page in ("engines.md", "command-line.md", "workbooks.md"))
     for sheet in SHEETS:
         yield "guide.md", sheet.name, f"**{sheet.name}**"
+    for option in (option for goal in GOALS.values() for option in goal.options):
+        typed = f"--{option.name.replace('_', '-')}"
+        yield "command-line.md", typed, f"`{typed}`"
+    for setting in _readers(ENGINES):
+        if setting not in OF_EARLIER_BOOKS:
+            yield "workbooks.md", setting, f"`{setting}`"
     for family in FAMILIES.values():
         yield "distributions.md", family.name, f"\n## {family.name}\n"

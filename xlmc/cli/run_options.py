@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 import click
 
 from xlmc.cli.parameter_types import OneOf, WholeNumber
+from xlmc.definitions.stopping import GOALS, RARE, Option
 from xlmc.evaluation.engines import ENGINES
 from xlmc.sampling.methods import METHODS
 
@@ -30,28 +31,18 @@ sampling_option = click.option(
 )
 engine_option = click.option("--engine", type=OneOf(*ENGINES), help=f"{_ENGINES}.  [default: the book's, else numpy]")
 
+
+def _goal_option(option: Option) -> Callable[[F], F]:
+    kind = WholeNumber(*option.takes) if isinstance(option.takes, tuple) else str
+    return click.option(f"--{option.name.replace('_', '-')}", type=kind, metavar=option.metavar, help=option.help)
+
+
 _OPTIONS = (
-    click.option(
-        "--until-accepted",
-        type=WholeNumber(2),
-        metavar="N",
-        help="Run until N trials are accepted, -n at most.",
-    ),
+    *(_goal_option(option) for goal in GOALS.values() for option in goal.options),
     click.option(
         "--rare",
-        type=OneOf("auto", "never", "always"),
+        type=OneOf(*RARE),
         help="Find rare accepted trials by learning where they are.  [default: auto: where -n would not be enough]",
-    ),
-    click.option(
-        "--precision", metavar="WIDTH", help="Run until numbers are known to 1% of themselves, or 0.1 in their units."
-    ),
-    click.option("--precision-of", metavar="NAMES", help="Which: mean,sd,range,p75.5.  [default: mean,range]"),
-    click.option("--confidence", metavar="PERCENT", help="Confidence of --precision.  [default: 95]"),
-    click.option(
-        "--adaptive",
-        type=WholeNumber(1, 6),
-        metavar="DIGITS",
-        help="Run until digits are stable (JCGM 101, 7.9).",
     ),
     click.option("--for", "forecasts", multiple=True, metavar="FORECAST", help="Whose.  [default: every forecast's]"),
     click.option("--time-limit", metavar="TIME", help="End the run after 60s, 5m or 1h30m."),

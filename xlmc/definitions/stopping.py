@@ -1,51 +1,154 @@
-"""When a run ends: what a person may ask for beside a number of trials, and how it is written."""
+"""When a run ends: the goals that it may go on until, and what else a person may ask for beside a number of trials.
+
+A goal is a class whose attributes are its row; `GOALS` lists them. How to add a stop rule: write its goal here, with
+its option and its setting, and put it into `GOALS`. It is a `WholeGoal` where one whole number says it all, else a
+`Goal` with fields of its own, which it checks. Write its rule in a module of `xlmc/run/stopping/` (see `rule.Rule`),
+under the goal's key, and put it into `RULES` in `choose.py` there. Describe the option in docs/command-line.md and the
+setting in docs/workbooks.md. The command line, `xlmc_settings`, `Model.simulate`, the record, saved runs and `xlmc
+replay` read all that they need here; `tests/run/stopping/test_new_rule.py` adds a rule in this way.
+"""
 
 from __future__ import annotations
 
-import math
-import re
-from collections.abc import Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, ClassVar, Final, Self
 
+from xlmc.definitions.amounts import as_confidence, as_numbers, as_seconds, as_tolerance
 from xlmc.errors import SimulationError
 
 __all__ = [
+    "GOALS",
     "LIMIT",
-    "MOST_DIGITS",
     "MOST_TRIALS",
     "NO_GOAL",
     "RARE",
+    "AcceptedTrials",
+    "Goal",
+    "Option",
     "Precision",
+    "StableDigits",
     "Stopping",
-    "as_confidence",
-    "as_numbers",
-    "as_seconds",
-    "as_tolerance",
+    "WholeGoal",
+    "only_one",
     "stopping",
 ]
 
 LIMIT: Final = 10**9
 """Trials after which a run that goes on until something gives up, where nobody says otherwise."""
 
-MOST_DIGITS: Final = 6
-MOST_TRIALS: Final = 10**12
-
 RARE: Final = ("auto", "never", "always")
 """Whether accepted trials are looked for where they are rare: `auto`, where plain trials would reach the limit."""
+
+MOST_TRIALS: Final = 10**12
 
 USUAL_NUMBERS: Final = ("mean", "range")
 """What a run is quoted by."""
 
 USUAL_CONFIDENCE: Final = 0.95
 
-_PERCENTILE = re.compile(r"p(\d+(?:\.\d+)?)")
-_TIME = re.compile(r"(?:(\d+(?:\.\d+)?)\s*h)?\s*(?:(\d+(?:\.\d+)?)\s*m(?:in)?)?\s*(?:(\d+(?:\.\d+)?)\s*s?)?")
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """Something that a person says of a goal.
+
+    Attributes:
+        name: in Python; `until_accepted` is `--until-accepted` on the command line.
+        setting: its row of `xlmc_settings`.
+        metavar: what stands for it in the help of the command line.
+        help: a sentence there.
+        takes: the least and the largest whole number that it may be; or `float`, or `str`, what a cell holds.
+        read: its value, from what was typed or given; raises SimulationError.
+    """
+
+    name: str
+    setting: str
+    metavar: str
+    help: str
+    takes: tuple[int, int] | type[float] | type[str]
+    read: Callable[[Any], Any] = str
 
 
 @dataclass(frozen=True, slots=True)
-class Precision:
-    """How well numbers of forecasts must be known.
+class Goal(ABC):
+    """What a run goes on until. The fields of a goal are what is recorded and saved of it: numbers and texts.
+
+    Attributes:
+        key: what its rule, records, JSON and saved runs know it by.
+        noun: what was asked for, in a message.
+        options: how it is asked for: the first says it, the others say more of it.
+        labels: in the record: (key, label) of each field.
+        of_forecasts: whether it looks at forecasts; at all of them, where none is named.
+        saved_as: what saved runs know it by, where that is not its key.
+    """
+
+    key: ClassVar[str]
+    noun: ClassVar[str]
+    options: ClassVar[tuple[Option, ...]]
+    labels: ClassVar[tuple[tuple[str, str], ...]]
+    of_forecasts: ClassVar[bool] = False
+    saved_as: ClassVar[str] = ""
+
+    @classmethod
+    @abstractmethod
+    def of(cls, given: Mapping[str, Any]) -> Self:
+        """The goal, from what was said: name of an option -> what was typed or given.
+
+        Raises:
+            SimulationError: it cannot be meant.
+        """
+
+
+@dataclass(frozen=True, slots=True)
+class WholeGoal(Goal):
+    """A goal that is one whole number, within the limits of its option.
+
+    Attributes:
+        number: so many.
+        things: what it counts, in a message.
+        hint: what to give instead of a number beyond the limits.
+    """
+
+    number: int
+    things: ClassVar[str]
+    hint: ClassVar[str]
+
+    def __post_init__(self) -> None:
+        limits = self.options[0].takes
+        assert isinstance(limits, tuple)
+        least, most = limits
+        if not least <= self.number <= most or self.number != int(self.number):
+            raise SimulationError(f"{self.number:,} {self.things} were asked for", hint=self.hint)
+
+    @classmethod
+    def of(cls, given: Mapping[str, Any]) -> Self:
+        """See `Goal`."""
+        return cls(int(cls(given[cls.options[0].name]).number))
+
+
+class AcceptedTrials(WholeGoal):
+    """So many accepted trials."""
+
+    __slots__ = ()
+    key = "accepted"
+    noun = things = "accepted trials"
+    hint = "Give 2 or more"
+    options = (
+        Option(
+            name="until_accepted",
+            setting="Until accepted",
+            metavar="N",
+            help="Run until N trials are accepted, -n at most.",
+            takes=(2, MOST_TRIALS),
+        ),
+    )
+    labels = (("until_accepted", "Until so many are accepted"),)
+
+
+@dataclass(frozen=True, slots=True)
+class Precision(Goal):
+    """Numbers of forecasts that are known so well.
 
     Attributes:
         tolerance: the largest half width of their intervals, in the forecast's units; or, where `relative`, over the
@@ -59,43 +162,129 @@ class Precision:
     numbers: tuple[str, ...] = USUAL_NUMBERS
     confidence: float = USUAL_CONFIDENCE
 
+    key = "precision"
+    noun = "a precision"
+    options = (
+        Option(
+            name="precision",
+            setting="Precision",
+            metavar="WIDTH",
+            help="Run until numbers are known to 1% of themselves, or 0.1 in their units.",
+            takes=float,
+            read=as_tolerance,
+        ),
+        Option(
+            name="precision_of",
+            setting="Precision of",
+            metavar="NAMES",
+            help="Which: mean,sd,range,p75.5.  [default: mean,range]",
+            takes=str,
+            read=as_numbers,
+        ),
+        Option(
+            name="confidence",
+            setting="Confidence %",
+            metavar="PERCENT",
+            help="Confidence of --precision.  [default: 95]",
+            takes=float,
+            read=as_confidence,
+        ),
+    )
+    labels = (
+        ("precision", "Precision"),
+        ("relative", "It is a share of the number"),
+        ("precision_of", "Of these numbers"),
+        ("confidence", "At this confidence"),
+    )
+    of_forecasts = True
+
+    def __post_init__(self) -> None:
+        as_tolerance(self.tolerance)
+        as_numbers(self.numbers)
+        if not 0.0 < self.confidence < 1.0:
+            raise SimulationError(f"{self.confidence!r} is no confidence", hint="Give a share such as 0.95")
+
+    @classmethod
+    def of(cls, given: Mapping[str, Any]) -> Self:
+        """See `Goal`."""
+        if "precision" not in given:
+            message = "how well numbers must be known is not said"
+            raise SimulationError(message, hint="Give a precision too, such as 1% or 0.1")
+        numbers = as_numbers(given.get("precision_of", USUAL_NUMBERS))
+        confidence = as_confidence(given.get("confidence", USUAL_CONFIDENCE))
+        return cls(*as_tolerance(given["precision"]), numbers, confidence)
+
+
+class StableDigits(WholeGoal):
+    """So many significant digits of the results are stable (JCGM 101, 7.9)."""
+
+    __slots__ = ()
+    key = "adaptive"
+    noun, things = "stable digits", "significant digits"
+    hint = "Give 1 to 6; 1 or 2 are usual"
+    options = (
+        Option(
+            name="adaptive",
+            setting="Significant digits",
+            metavar="DIGITS",
+            help="Run until digits are stable (JCGM 101, 7.9).",
+            takes=(1, 6),
+        ),
+    )
+    labels = (("adaptive", "Stable digits"),)
+    of_forecasts = True
+    saved_as = "digits"
+
+
+def only_one(goals: Sequence[Goal]) -> Goal | None:
+    """The goal that was asked for, if any.
+
+    Raises:
+        SimulationError: there are several.
+    """
+    if len(goals) > 1:
+        message = f"{' and '.join(goal.noun for goal in goals)} were both asked for"
+        raise SimulationError(message, hint="Ask for one of them")
+    return goals[0] if goals else None
+
+
+GOALS: Final[dict[str, type[Goal]]] = {goal.key: goal for goal in (AcceptedTrials, Precision, StableDigits)}
+"""Goal by its key, in the order in which options and records list them."""
+
 
 @dataclass(frozen=True, slots=True)
 class Stopping:
-    """What a run goes on until, and how long at most. At most one of the first three is there.
+    """What a run goes on until, and how long at most.
 
     Attributes:
-        accepted: so many accepted trials.
-        precision: numbers known so well.
-        digits: significant digits of the standard deviation that are stable (JCGM 101, 7.9).
-        forecasts: names of those that `precision` or `digits` look at; empty for all.
+        goal: what it goes on until; None where it is to run its trials.
+        forecasts: names of those that the goal looks at; empty for all.
         seconds: how long at most.
         rare: one of `RARE`; None for `auto`.
 
     Raises:
-        SimulationError: two goals, or forecasts for none.
+        SimulationError: forecasts for a goal that looks at none.
     """
 
-    accepted: int | None = None
-    precision: Precision | None = None
-    digits: int | None = None
+    goal: Goal | None = None
     forecasts: tuple[str, ...] = ()
     seconds: float | None = None
     rare: str | None = None
 
     def __post_init__(self) -> None:
-        goals = {"accepted trials": self.accepted, "a precision": self.precision, "stable digits": self.digits}
-        asked = [name for name, goal in goals.items() if goal is not None]
-        if len(asked) > 1:
-            raise SimulationError(f"{' and '.join(asked)} were both asked for", hint="Ask for one of them")
-        if self.forecasts and self.precision is None and self.digits is None:
+        if self.forecasts and not (self.goal and self.goal.of_forecasts):
             message = "forecasts to look at are named, but not what for"
             raise SimulationError(message, hint="Ask for a precision or for stable digits too, or name no forecasts")
 
     @property
+    def accepted(self) -> int | None:
+        """The accepted trials that the run goes on until, where that is its goal."""
+        return self.goal.number if isinstance(self.goal, AcceptedTrials) else None
+
+    @property
     def has_goal(self) -> bool:
         """Whether the run goes on until something is reached; the number of trials is then its limit."""
-        return not (self.accepted is None and self.precision is None and self.digits is None)
+        return self.goal is not None
 
     @property
     def asked(self) -> bool:
@@ -104,120 +293,33 @@ class Stopping:
 
 
 def stopping(
-    accepted: int | None = None,
-    tolerance: str | float | None = None,
-    numbers: str | Sequence[str] | None = None,
-    confidence: str | float | None = None,
-    digits: int | None = None,
+    *,
     forecasts: str | Sequence[str] = (),
-    seconds: str | float | None = None,
+    time_limit: str | float | None = None,
     rare: str | None = None,
+    **goals: Any,
 ) -> Stopping:
     """What was asked for, as typed or as given in Python.
 
+    Args:
+        forecasts: names of those that the goal looks at.
+        time_limit: how long at most: see `as_seconds`.
+        rare: one of `RARE`.
+        **goals: the options of `GOALS` by name; None for one that was not given.
+
     Raises:
         SimulationError: something of it cannot be meant.
+        TypeError: no goal has such an option.
     """
-    if accepted is not None and accepted < 2:
-        raise SimulationError(f"{accepted:,} accepted trials were asked for", hint="Give 2 or more")
-    if digits is not None and not 1 <= digits <= MOST_DIGITS:
-        message = f"{digits} significant digits were asked for"
-        raise SimulationError(message, hint=f"Give 1 to {MOST_DIGITS}; 1 or 2 are usual")
-    if tolerance is None and (numbers is not None or confidence is not None):
-        message = "how well numbers must be known is not said"
-        raise SimulationError(message, hint="Give a precision too, such as 1% or 0.1")
+    for name in goals.keys() - {option.name for goal in GOALS.values() for option in goal.options}:
+        raise TypeError(f"simulate() got an unexpected keyword argument {name!r}")
+    given = {name: value for name, value in goals.items() if value is not None}
+    found = [goal.of(given) for goal in GOALS.values() if any(option.name in given for option in goal.options)]
     if rare is not None and rare not in RARE:
         message = f"{rare!r} is no way to look for rare trials"
         raise SimulationError(message, hint=f"Choose one of {', '.join(RARE)}")
-    precision = None
-    if tolerance is not None:
-        chosen = USUAL_NUMBERS if numbers is None else as_numbers(numbers)
-        sure = USUAL_CONFIDENCE if confidence is None else as_confidence(confidence)
-        precision = Precision(*as_tolerance(tolerance), chosen, sure)
     named = (forecasts,) if isinstance(forecasts, str) else tuple(forecasts)
-    return Stopping(accepted, precision, digits, named, None if seconds is None else as_seconds(seconds), rare)
-
-
-def as_tolerance(given: str | float) -> tuple[float, bool]:
-    """A half width, and whether it is a share of the number itself: `1%` is, `0.1` is not.
-
-    Raises:
-        SimulationError: it is neither.
-
-    >>> as_tolerance("1 %"), as_tolerance(0.1)
-    ((0.01, True), (0.1, False))
-    """
-    text = str(given).strip()
-    relative = text.endswith("%")
-    value = _number(text.removesuffix("%"))
-    if value is None or not 0.0 < value < math.inf:
-        message = f"{text!r} is no precision"
-        raise SimulationError(message, hint="Give a percentage such as 1%, or a number in the forecast's units")
-    return (value / 100.0 if relative else value), relative
-
-
-def as_numbers(given: str | Sequence[str]) -> tuple[str, ...]:
-    """Names of statistics, separated by commas: `mean`, `sd`, `range`, `p75.5`.
-
-    Raises:
-        SimulationError: one of them is none of these.
-
-    >>> as_numbers("Mean, p75.5")
-    ('mean', 'p75.5')
-    """
-    parts = given.split(",") if isinstance(given, str) else given
-    names = tuple(dict.fromkeys(part.strip().casefold() for part in parts))
-    for name in names:
-        found = _PERCENTILE.fullmatch(name)
-        if name not in ("mean", "sd", "range") and not (found and 0.0 < float(found[1]) < 100.0):
-            hint = "Choose from mean, sd, range, and percentiles above 0 and below 100 such as p75.5"
-            raise SimulationError(f"{name!r} is no number whose precision can be asked for", hint=hint)
-    if not names:
-        raise SimulationError("no number was named whose precision counts", hint="Name one, such as mean")
-    return names
-
-
-def as_confidence(given: str | float) -> float:
-    """A share, from a percentage: `95%`, `95` or 0.95.
-
-    Raises:
-        SimulationError: it is not between 0 and 100 %.
-
-    >>> as_confidence("95%"), as_confidence(0.99)
-    (0.95, 0.99)
-    """
-    text = str(given).strip()
-    value = _number(text.removesuffix("%"))
-    if value is not None and (text.endswith("%") or value >= 1.0):
-        value /= 100.0
-    if value is None or not 0.0 < value < 1.0:
-        raise SimulationError(f"{text!r} is no confidence", hint="Give a percentage such as 95")
-    return value
-
-
-def as_seconds(given: str | float) -> float:
-    """A duration: `60s`, `5m`, `1h30m`, or a number of seconds.
-
-    Raises:
-        SimulationError: it is none.
-
-    >>> as_seconds("1h30m"), as_seconds("90"), as_seconds(0.5)
-    (5400.0, 90.0, 0.5)
-    """
-    text = str(given).strip().casefold()
-    found = _TIME.fullmatch(text)
-    parts = found.groups("0") if found else ()
-    value = sum(float(part) * unit for part, unit in zip(parts, (3600.0, 60.0, 1.0), strict=False))
-    if not 0.0 < value < math.inf:
-        raise SimulationError(f"{text!r} is no time", hint="Give seconds, or a duration such as 60s, 5m or 1h30m")
-    return value
-
-
-def _number(text: str) -> float | None:
-    try:
-        return float(text)
-    except ValueError:
-        return None
+    return Stopping(only_one(found), named, None if time_limit is None else as_seconds(time_limit), rare)
 
 
 NO_GOAL: Final = Stopping()

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from xlmc.definitions.stopping import stopping
+from xlmc.definitions.stopping import GOALS, AcceptedTrials, stopping
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.replay.changes import (
     Change,
@@ -139,7 +139,7 @@ def _replayed(
     cells, settings = _recorded(record, path)
     version = recorded_version(record)
     rules = rules_since(version, cells.values())
-    _refuse_incomplete(record, version, path)
+    _refuse_incomplete(record, settings, version, path)
     try:
         model = model or understood(workbook, path or Path(workbook.name))
         repeated = _repeated(model, record, settings, jobs, progress)
@@ -201,8 +201,8 @@ def _recorded(record: Record, path: Path | None) -> tuple[dict[Cell, str], Setti
         raise WorkbookError(message, where=path, hint=hint) from error
 
 
-def _refuse_incomplete(record: Record, version: str, path: Path | None) -> None:
-    """Refuse a record without an entry that the repeat or what is said of it needs.
+def _refuse_incomplete(record: Record, settings: Settings, version: str, path: Path | None) -> None:
+    """Refuse a record without an entry that the repeat or what is said of it needs; the goal that was reached is one.
 
     Raises:
         WorkbookError: it lacks one.
@@ -212,6 +212,10 @@ def _refuse_incomplete(record: Record, version: str, path: Path | None) -> None:
             record[key]
         except KeyError as error:
             raise _lacking(key, version, path) from error
+    by = str(record["end.by"])
+    reached = GOALS.get(AcceptedTrials.key if by == "search" else by)
+    if reached is not None and not isinstance(settings.stopping.goal, reached):
+        raise _lacking(f"settings.{reached.labels[0][0]}", version, path)
 
 
 def _lacking(key: object, version: str, path: Path | None) -> WorkbookError:
@@ -239,7 +243,7 @@ def _repeated(model: Model, record: Record, settings: Settings, jobs: int, progr
         model,
         trials=settings.trials if whole else trials,
         seed=settings.seed,
-        stopping=stopping(goal if waited else None, rare=settings.stopping.rare),
+        stopping=stopping(until_accepted=goal if waited else None, rare=settings.stopping.rare),
         engine=settings.engine,
         sampling=settings.sampling,
         jobs=jobs,

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from xlmc.columns import Keeper
 from xlmc.definitions.model import name_key
-from xlmc.definitions.stopping import LIMIT, NO_GOAL, Stopping
+from xlmc.definitions.stopping import LIMIT, MOST_TRIALS, NO_GOAL, Stopping
 from xlmc.errors import SimulationError
 from xlmc.run.blocks import Block, FilterTally, Task
 from xlmc.run.checking import LEAST_CHECKED
@@ -49,8 +49,6 @@ arithmetic, few enough for the cache."""
 
 PRIOR_TRIALS: Final = 65_536
 """Trials whose draws are all kept, accepted or not, to show the prior."""
-
-MOST_TRIALS: Final = 10**12
 
 Progress = Callable[[Standing], None]
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.definitions.model import Settings
-from xlmc.definitions.stopping import LIMIT, Precision, Stopping
+from xlmc.definitions.stopping import LIMIT, AcceptedTrials, Precision, StableDigits, Stopping
 
 NAME, VALUE = "Answers!A31", "Answers!B31"
 
@@ -108,17 +108,17 @@ def test_two_tables(only_problem, blocks):
 @pytest.mark.parametrize(
     ("rows", "trials", "expected"),
     [
-        ([["Until accepted", 500]], LIMIT, Stopping(accepted=500)),
-        ([["Until accepted", 500], ["Trials", 9000]], 9000, Stopping(accepted=500)),
-        ([["Until accepted", 500], ["Rare", "Never"]], LIMIT, Stopping(accepted=500, rare="never")),
-        ([["Precision %", 1]], LIMIT, Stopping(precision=Precision(0.01, relative=True))),
-        ([["precision", 0.25], ["Confidence %", 90]], LIMIT, Stopping(precision=Precision(0.25, confidence=0.9))),
+        ([["Until accepted", 500]], LIMIT, Stopping(AcceptedTrials(500))),
+        ([["Until accepted", 500], ["Trials", 9000]], 9000, Stopping(AcceptedTrials(500))),
+        ([["Until accepted", 500], ["Rare", "Never"]], LIMIT, Stopping(AcceptedTrials(500), rare="never")),
+        ([["Precision %", 1]], LIMIT, Stopping(Precision(0.01, relative=True))),
+        ([["precision", 0.25], ["Confidence %", 90]], LIMIT, Stopping(Precision(0.25, confidence=0.9))),
         (
             [["Precision", 2], ["Precision of", "SD, p75.5"], ["Look at", "Delta V; Speed ;"]],
             LIMIT,
-            Stopping(precision=Precision(2.0, numbers=("sd", "p75.5")), forecasts=("Delta V", "Speed")),
+            Stopping(Precision(2.0, numbers=("sd", "p75.5")), forecasts=("Delta V", "Speed")),
         ),
-        ([["Significant digits", 2], ["Time limit", "5m"]], LIMIT, Stopping(digits=2, seconds=300.0)),
+        ([["Significant digits", 2], ["Time limit", "5m"]], LIMIT, Stopping(StableDigits(2), seconds=300.0)),
         ([["Time limit", 90]], 200_000, Stopping(seconds=90.0)),
     ],
 )
@@ -150,4 +150,4 @@ def test_a_mistake_in_one_row_is_told_once(read, blocks):
 def test_a_precision_below_1_percent_is_told(read):
     found = read({NAME: "Precision %", VALUE: 0.5})
     assert [str(notice) for notice in found.notices] == ["Answers!B31: Precision % 0.5 is read as 0.5 %"]
-    assert found.settings.stopping.precision.tolerance == 0.005
+    assert found.settings.stopping.goal.tolerance == 0.005

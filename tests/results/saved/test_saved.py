@@ -267,6 +267,62 @@ def test_one_in_float32_is_refused_and_the_version_named(saved, tmp_path):
     assert str(path) in str(caught.value)
 
 
+GOALS = {
+    "accepted": (
+        {"until_accepted": 100, "rare": "never", "time_limit": "5m"},
+        '{"accepted": 100, "precision": null, "digits": null, "forecasts": [], "seconds": 300.0, "rare": "never"}',
+    ),
+    "precision": (
+        {"precision": "20%", "precision_of": "p50,mean", "forecasts": "area", "confidence": 90},
+        '{"accepted": null, "precision": {"tolerance": 0.2, "relative": true, "numbers": ["p50", "mean"], '
+        '"confidence": 0.9}, "digits": null, "forecasts": ["area"], "seconds": null, "rare": null}',
+    ),
+    "adaptive": (
+        {"adaptive": 1, "trials": 3000},
+        '{"accepted": null, "precision": null, "digits": 1, "forecasts": [], "seconds": null, "rare": null}',
+    ),
+}
+"""Goal -> what asks for it, and the part `settings.stopping` of run.json as xlmc 0.4.0 wrote it."""
+
+
+@pytest.mark.parametrize(("asked", "written"), GOALS.values(), ids=GOALS)
+def test_goals_are_saved_and_opened_as_in_version_0_4(model, tmp_path, asked, written):
+    run = model.simulate(**asked)
+    path = run.keep(tmp_path / "now.xlmcrun")
+    with zipfile.ZipFile(path) as package:
+        assert json.dumps(json.loads(package.read(RUN))["settings"]["stopping"]) == written
+
+    def as_then(parts, document):
+        document["settings"]["stopping"] = json.loads(written)
+
+    for change in (as_then, lambda p, d: (as_then(p, d), of_version_1("float64")(p, d))):
+        again = open_run(repacked(path, tmp_path / "then.xlmcrun", change))
+        assert (again.settings, again.stopped) == (run.settings, run.stopped)
+
+
+@pytest.mark.parametrize(
+    ("goal", "message"),
+    [
+        ({"accepted": 1}, "1 accepted trials were asked for"),
+        ({"accepted": 2.5}, "its goal, accepted trials, number"),
+        ({"accepted": True}, "its goal, accepted trials, number"),
+        ({"digits": 7}, "7 significant digits were asked for"),
+        ({"precision": {"tolerance": -1}}, "'-1' is no precision"),
+        ({"precision": {"tolerance": 1, "confidence": 95}}, "95 is no confidence"),
+        ({"precision": {"tolerance": 1, "numbers": ["median"]}}, "'median' is no number"),
+        ({"precision": {"tolerance": 1, "key": "x"}}, "the unknown field key"),
+        ({"precision": 1}, "its goal, a precision"),
+        ({"goal": {"number": 5}}, "its end, goal"),
+        ({"boredom": 5}, "the unknown field boredom"),
+        ({"forecasts": ["area"]}, "forecasts to look at are named, but not what for"),
+    ],
+)
+def test_a_goal_that_no_run_may_have_is_refused(saved, tmp_path, goal, message):
+    path = repacked(saved, tmp_path / "bad.xlmcrun", lambda p, d: d["settings"]["stopping"].update(goal))
+    with pytest.raises(WorkbookError, match=message):
+        open_run(path)
+
+
 FIELDS = ["settings", "stopped", "tally", "faults", "invalid", "columns", "order", "origin", "block", "trials"]
 
 

@@ -40,7 +40,7 @@ def test_no_search_where_none_is_possible():
 
 
 def test_always_is_after_the_prior(model):
-    settings = replace(model.definitions.settings, trials=LIMIT, stopping=stopping(accepted=10, rare="always"))
+    settings = replace(model.definitions.settings, trials=LIMIT, stopping=stopping(until_accepted=10, rare="always"))
     looks = looks_of(model, settings)
     assert looks.certain
     assert not looks.hopeless(ALWAYS_FIRST - 1, 5)
@@ -49,9 +49,9 @@ def test_always_is_after_the_prior(model):
 
 REFUSED = [
     ({}, {}, "not how many"),
-    ({"accepted": 5}, {"engine": "formulas"}, "engine numpy"),
-    ({"accepted": 5}, {"trials": 100_000}, "the limit is 100,000"),
-    ({"accepted": 10**7}, {}, "room for 1,000,000"),
+    ({"until_accepted": 5}, {"engine": "formulas"}, "engine numpy"),
+    ({"until_accepted": 5}, {"trials": 100_000}, "the limit is 100,000"),
+    ({"until_accepted": 10**7}, {}, "room for 1,000,000"),
 ]
 
 
@@ -65,20 +65,20 @@ def test_a_search_that_cannot_be_made_is_refused(model, asked, other, message):
 
 def test_without_filters_there_is_nothing_to_search_for(book):
     model = book({"A1": 1.0}, {"a": {"cell": "A1", **UNIT}}, {"x": "A1"}, {})
-    settings = replace(model.definitions.settings, trials=LIMIT, stopping=stopping(accepted=5, rare="always"))
+    settings = replace(model.definitions.settings, trials=LIMIT, stopping=stopping(until_accepted=5, rare="always"))
     with pytest.raises(SimulationError, match="no filters"):
         looks_of(model, settings)
-    settings = replace(settings, stopping=stopping(accepted=5))
+    settings = replace(settings, stopping=stopping(until_accepted=5))
     assert not looks_of(model, settings).hopeless(FIRST_LOOK, 0)
 
 
 def test_too_many_assumptions_are_not_searched(book, monkeypatch):
     monkeypatch.setattr("xlmc.run.rare.deciding.MOST_ASSUMPTIONS", 0)
     model = book({"A1": 1.0}, {"a": {"cell": "A1", **UNIT}}, {"x": "A1"}, {"f": {"cell": "A1", "at_least": 0.5}})
-    settings = replace(model.definitions.settings, trials=LIMIT, stopping=stopping(accepted=5))
+    settings = replace(model.definitions.settings, trials=LIMIT, stopping=stopping(until_accepted=5))
     assert not looks_of(model, settings).hopeless(FIRST_LOOK, 0)
 
 
 def test_only_three_ways():
     with pytest.raises(SimulationError, match="sometimes"):
-        stopping(accepted=5, rare="sometimes")
+        stopping(until_accepted=5, rare="sometimes")

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pytest
 
+from xlmc.definitions.stopping import AcceptedTrials
 from xlmc.run.stopping.accepted import UntilAccepted
 
 
@@ -24,17 +25,20 @@ BLOCKS = [(0, [3, 7]), (10, []), (20, [20, 21, 29]), (30, [30]), (40, list(range
     ("wanted", "trials"), [(2, 8), (3, 21), (4, 22), (5, 30), (6, 31), (7, 41), (15, 49), (16, 50)]
 )
 def test_the_run_ends_with_the_trial_that_was_waited_for(block_of_trials, wanted, trials):
-    assert feed(UntilAccepted(wanted), [block_of_trials(*given) for given in BLOCKS]) == (trials, wanted)
+    assert feed(UntilAccepted(AcceptedTrials(wanted)), [block_of_trials(*given) for given in BLOCKS]) == (
+        trials,
+        wanted,
+    )
 
 
 def test_too_few_end_nothing(block_of_trials):
-    assert feed(UntilAccepted(17), [block_of_trials(*given) for given in BLOCKS]) is None
+    assert feed(UntilAccepted(AcceptedTrials(17)), [block_of_trials(*given) for given in BLOCKS]) is None
 
 
 def test_how_far_it_is(block_of_trials):
-    rule = UntilAccepted(8)
+    rule = UntilAccepted(AcceptedTrials(8))
     assert rule.share == 0.0
     feed(rule, [block_of_trials(*given) for given in BLOCKS[:2]])
     assert rule.share == 0.25
     assert rule.goal == "8 trials were accepted"
-    assert UntilAccepted(10**6).goal == "1,000,000 trials were accepted"
+    assert UntilAccepted(AcceptedTrials(10**6)).goal == "1,000,000 trials were accepted"

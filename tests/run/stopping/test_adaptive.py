@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import bdtr
 
+from xlmc.definitions.stopping import StableDigits
 from xlmc.run.stopping import adaptive
 from xlmc.run.stopping.adaptive import (
     LEAST_SEQUENCES,
@@ -72,9 +73,9 @@ def normal_blocks(block, seed, size=1000, blocks=1000, scale=1.0):
 
 def test_it_ends_when_the_standard_would_but_not_before_enough_sequences(block, run_rule, monkeypatch):
     monkeypatch.setattr(adaptive, "sequence_length", lambda share: 500)
-    few, _ = run_rule(UntilStable(1, [(0, "x", 0.5)]), normal_blocks(block, 1))
+    few, _ = run_rule(UntilStable(StableDigits(1), [(0, "x", 0.5)]), normal_blocks(block, 1))
     assert few == LEAST_SEQUENCES * 500 // 1000
-    many, (values,) = run_rule(UntilStable(2, [(0, "x", 0.5)]), normal_blocks(block, 1, scale=4.0))
+    many, (values,) = run_rule(UntilStable(StableDigits(2), [(0, "x", 0.5)]), normal_blocks(block, 1, scale=4.0))
     whole = values.reshape(-1, 500)
     ends = np.quantile(whole, [0.25, 0.75], axis=1)
     found = np.array([whole.mean(axis=1), whole.std(axis=1, ddof=1), *ends])
@@ -90,9 +91,9 @@ def test_every_forecast_that_counts_must_be_stable(block, run_rule, monkeypatch)
     monkeypatch.setattr(adaptive, "sequence_length", lambda share: 50)
     rng = np.random.default_rng(2)
     blocks = [block(rng.normal(size=1000), 9.0 * rng.normal(size=1000)) for _ in range(60)]
-    assert run_rule(UntilStable(1, [(0, "x", 0.5)]), blocks)[0] == LEAST_SEQUENCES * 50 // 1000
-    both, _ = run_rule(UntilStable(1, [(0, "x", 0.5), (1, "y", 0.5)]), blocks)
-    second, _ = run_rule(UntilStable(1, [(1, "y", 0.5)]), blocks)
+    assert run_rule(UntilStable(StableDigits(1), [(0, "x", 0.5)]), blocks)[0] == LEAST_SEQUENCES * 50 // 1000
+    both, _ = run_rule(UntilStable(StableDigits(1), [(0, "x", 0.5), (1, "y", 0.5)]), blocks)
+    second, _ = run_rule(UntilStable(StableDigits(1), [(1, "y", 0.5)]), blocks)
     assert both == second > LEAST_SEQUENCES * 50 // 1000
 
 
@@ -117,5 +118,7 @@ def test_with_so_many_sequences_an_average_is_within_the_tolerance_as_often_as_i
 
 
 def test_in_words():
-    assert UntilStable(1, [(0, "x", 0.5)]).goal == "x was stable to 1 significant digit (JCGM 101, 7.9)"
-    assert UntilStable(2, [(0, "x", 0.5), (1, "y", 0.5)]).goal.startswith("x and y were stable to 2 significant digits")
+    assert UntilStable(StableDigits(1), [(0, "x", 0.5)]).goal == "x was stable to 1 significant digit (JCGM 101, 7.9)"
+    assert UntilStable(StableDigits(2), [(0, "x", 0.5), (1, "y", 0.5)]).goal.startswith(
+        "x and y were stable to 2 significant digits"
+    )

@@ -15,10 +15,10 @@ FORECASTS = [Forecast("Delta-V", CELL, CELL), Forecast("Speed", CELL, CELL, cent
 @pytest.mark.parametrize(
     ("asked", "key", "named"),
     [
-        ({"accepted": 5}, "accepted", "5 trials"),
-        ({"tolerance": "1%"}, "precision", "of Delta-V and Speed"),
-        ({"tolerance": 1, "numbers": "sd", "forecasts": " speed"}, "precision", "sd of Speed was"),
-        ({"digits": 2, "forecasts": ["SPEED", "delta-v", "Speed"]}, "adaptive", "Speed and Delta-V were"),
+        ({"until_accepted": 5}, "accepted", "5 trials"),
+        ({"precision": "1%"}, "precision", "of Delta-V and Speed"),
+        ({"precision": 1, "precision_of": "sd", "forecasts": " speed"}, "precision", "sd of Speed was"),
+        ({"adaptive": 2, "forecasts": ["SPEED", "delta-v", "Speed"]}, "adaptive", "Speed and Delta-V were"),
     ],
 )
 def test_the_rule_that_was_asked_for(asked, key, named):
@@ -29,21 +29,21 @@ def test_the_rule_that_was_asked_for(asked, key, named):
 
 def test_none_where_the_run_is_to_run_its_trials():
     assert chosen_rule(NO_GOAL, FORECASTS) is None
-    assert chosen_rule(stopping(seconds=5), FORECASTS) is None
+    assert chosen_rule(stopping(time_limit=5), FORECASTS) is None
 
 
 def test_an_unknown_forecast():
     with pytest.raises(SimulationError, match="there is no forecast 'Delta V'") as caught:
-        chosen_rule(stopping(tolerance=1, forecasts="Delta V"), FORECASTS)
+        chosen_rule(stopping(precision=1, forecasts="Delta V"), FORECASTS)
     assert caught.value.hint == "choose from 'Delta-V', 'Speed'"
 
 
 def test_without_forecasts():
     with pytest.raises(SimulationError, match="no forecast whose precision"):
-        chosen_rule(stopping(tolerance=1), [])
+        chosen_rule(stopping(precision=1), [])
 
 
-@pytest.mark.parametrize("asked", [{"accepted": 5}, {"tolerance": 1}, {"digits": 1}, {"seconds": 1}])
+@pytest.mark.parametrize("asked", [{"until_accepted": 5}, {"precision": 1}, {"adaptive": 1}, {"time_limit": 1}])
 def test_trials_that_belong_together_are_not_parted(asked):
     for sampling in ("lhs", "sobol"):
         assert not may_end_early(sampling)

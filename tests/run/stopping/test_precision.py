@@ -16,7 +16,7 @@ FORECASTS = [(0, "x", 0.51)]
 
 
 def rule(tolerance, numbers="mean", confidence=None, forecasts=FORECASTS):
-    return UntilPrecise(stopping(tolerance=tolerance, numbers=numbers, confidence=confidence).precision, forecasts)
+    return UntilPrecise(stopping(precision=tolerance, precision_of=numbers, confidence=confidence).goal, forecasts)
 
 
 def stream(block, draw, seed, size=100, blocks=2000):

@@ -177,7 +177,7 @@ def with_settings(model, **changes):
 
 
 def test_what_the_workbook_says_of_the_length_holds_until_the_call_says_something(model):
-    model = with_settings(model, trials=4000, stopping=stopping(accepted=50, seconds=1000))
+    model = with_settings(model, trials=4000, stopping=stopping(until_accepted=50, time_limit=1000))
     assert model.simulate().accepted == 50
     assert model.simulate(time_limit=500).accepted == 50
     assert model.simulate(time_limit=500).settings.stopping.seconds == 500
@@ -192,7 +192,7 @@ def test_what_the_workbook_says_of_the_length_holds_until_the_call_says_somethin
 )
 def test_the_command_in_the_record_repeats_the_same_trials(model, asked):
     """Whatever the workbook itself asks for."""
-    model = with_settings(model, trials=900, stopping=stopping(accepted=30, seconds=1000))
+    model = with_settings(model, trials=900, stopping=stopping(until_accepted=30, time_limit=1000))
     run = model.simulate(seed=8, **asked)
     words = shlex.split(make_record(run)["run.repeat"])
     assert words[:2] == ["xlmc", "simulate"]

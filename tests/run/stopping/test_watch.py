@@ -4,6 +4,7 @@ import itertools
 
 import pytest
 
+from xlmc.definitions.stopping import AcceptedTrials
 from xlmc.run.stopping import Stopped, Watch
 from xlmc.run.stopping.accepted import UntilAccepted
 from xlmc.run.stopping.wording import duration
@@ -33,7 +34,7 @@ def test_the_time_ends_it(block_of_trials):
 
 
 def test_the_goal_ends_it(block_of_trials):
-    blocks, stopped = watch(block_of_trials, rule=UntilAccepted(6))
+    blocks, stopped = watch(block_of_trials, rule=UntilAccepted(AcceptedTrials(6)))
     assert (blocks, stopped.by, stopped.sentence, stopped.reached) == (3, "accepted", "6 trials were accepted", True)
 
 
@@ -46,20 +47,20 @@ def test_the_goal_ends_it(block_of_trials):
     ],
 )
 def test_a_limit_ends_it_before_its_goal(block_of_trials, more, by, limit):
-    _, stopped = watch(block_of_trials, rule=UntilAccepted(1000), **more)
+    _, stopped = watch(block_of_trials, rule=UntilAccepted(AcceptedTrials(1000)), **more)
     assert stopped.by == by
     assert not stopped.reached
     assert stopped.sentence == f"{limit} before 1,000 trials were accepted"
 
 
 def test_the_goal_comes_first_where_several_end_it_at_once(block_of_trials):
-    found = watch(block_of_trials, rule=UntilAccepted(10), trials=50, seconds=5.0, interrupted_after=4)
+    found = watch(block_of_trials, rule=UntilAccepted(AcceptedTrials(10)), trials=50, seconds=5.0, interrupted_after=4)
     assert (found[0], found[1].by) == (5, "accepted")
     assert watch(block_of_trials, trials=50, seconds=5.0, interrupted_after=4)[1].by == "trials"
 
 
 def test_how_much_is_done(block_of_trials):
-    watching = Watch(UntilAccepted(8), 1000, None, lambda: 0.0)
+    watching = Watch(UntilAccepted(AcceptedTrials(8)), 1000, None, lambda: 0.0)
     watching.after(block_of_trials(0, [0, 5]), None)
     assert watching.share == 0.25
     watching = Watch(None, 40, None, lambda: 0.0)

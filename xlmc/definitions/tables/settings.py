@@ -11,7 +11,7 @@ from xlmc.definitions.model import Settings
 from xlmc.definitions.stopping import LIMIT, MOST_TRIALS
 from xlmc.definitions.tables.fields import central_share, required_text
 from xlmc.definitions.tables.setting_values import number_of, whole_number
-from xlmc.definitions.tables.stopping_settings import STOPPING_SETTINGS, read_stopping
+from xlmc.definitions.tables.stopping_settings import read_stopping, stopping_settings
 from xlmc.definitions.tables.tables import DefinitionTable, Row, rows_of
 from xlmc.distributions.naming import did_you_mean, plain
 from xlmc.errors import DefinitionError
@@ -135,6 +135,6 @@ def _readers(engines: Collection[str]) -> Mapping[str, _Reader]:
         "Engine": partial(_engine, engines),
         "Arithmetic": _arithmetic,
         "Range %": _range,
-        **STOPPING_SETTINGS,
+        **stopping_settings(),
         "Lognorm": _lognorm,
     }

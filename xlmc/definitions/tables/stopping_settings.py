@@ -2,21 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any, Final, TypeVar
+from collections.abc import Callable
+from functools import partial
+from typing import Any, TypeVar
 
+from xlmc.definitions.amounts import as_seconds
 from xlmc.definitions.findings import Findings
-from xlmc.definitions.stopping import (
-    MOST_DIGITS,
-    MOST_TRIALS,
-    NO_GOAL,
-    RARE,
-    Stopping,
-    as_confidence,
-    as_numbers,
-    as_seconds,
-    stopping,
-)
+from xlmc.definitions.stopping import GOALS, NO_GOAL, RARE, Option, Stopping, stopping
 from xlmc.definitions.tables.fields import required_text
 from xlmc.definitions.tables.setting_values import number_of, whole_number
 from xlmc.definitions.tables.tables import DefinitionTable, Row
@@ -24,36 +16,50 @@ from xlmc.distributions.base import show
 from xlmc.distributions.naming import plain
 from xlmc.errors import DefinitionError, SimulationError
 
-__all__ = ["STOPPING_SETTINGS", "read_stopping"]
+__all__ = ["read_stopping", "stopping_settings"]
 
 T = TypeVar("T")
 
 _LEAST_PERCENT = 0.1
 
 
+def stopping_settings() -> dict[str, Callable[[Row, Findings], Any]]:
+    """Setting -> reader of its row: what `stopping` takes."""
+    options = {option.setting: partial(_option, option) for option in _options()}
+    return options | {
+        "Precision": _precision,
+        "Precision %": _percent,
+        "Rare": _rare,
+        "Look at": _names,
+        "Time limit": _seconds,
+    }
+
+
 def read_stopping(tables: list[DefinitionTable], values: dict[str, Any], findings: Findings) -> Stopping:
     """What the settings say of the end of the run, taken out of `values`; a mistake is one of the whole table."""
-    mistaken = any(values.get(key, key) is None for key in _ENDS)
-    given = {argument: values.pop(key, None) for key, argument in _ENDS.items()}
-    if mistaken:
+    given = {name: values.pop(plain(name)) for name in stopping_settings() if plain(name) in values}
+    if any(value is None for value in given.values()):  # a mistake, which was told
         return NO_GOAL
-    relative, absolute = given.pop("percent"), given["tolerance"]
     try:
-        if relative is not None and absolute is not None:
+        if "Precision %" in given and "Precision" in given:
             raise SimulationError("Precision and Precision % are both set", hint="Keep one of the two rows")
-        given["tolerance"] = absolute if relative is None else f"{relative!r}%"
-        return stopping(**{argument: value for argument, value in given.items() if value is not None})
+        arguments = {option.setting: option.name for option in _options()} | _OTHERS
+        return stopping(**{arguments[name]: value for name, value in given.items()})
     except SimulationError as error:
         findings.problem(error.message, tables[0].where, error.hint or "")
         return NO_GOAL
 
 
-def _accepted(row: Row, _findings: Findings) -> int:
-    return whole_number(row, "Until accepted", 2, MOST_TRIALS)
+def _options() -> list[Option]:
+    return [option for goal in GOALS.values() for option in goal.options]
 
 
-def _digits(row: Row, _findings: Findings) -> int:
-    return whole_number(row, "Significant digits", 1, MOST_DIGITS)
+def _option(option: Option, row: Row, _findings: Findings) -> Any:
+    if isinstance(option.takes, tuple):
+        return whole_number(row, option.setting, *option.takes)
+    given = required_text(row, "Value") if option.takes is str else number_of(row, option.setting)
+    _as_written(row, option.read, given)
+    return given
 
 
 def _precision(row: Row, _findings: Findings) -> float:
@@ -64,7 +70,7 @@ def _precision(row: Row, _findings: Findings) -> float:
     return value
 
 
-def _percent(row: Row, findings: Findings) -> float:
+def _percent(row: Row, findings: Findings) -> str:
     """A cell in percent format holds 0.01 for 1 %: what could be meant so is refused or told."""
     value, where = number_of(row, "Precision %"), row.cell("Value")
     if value < _LEAST_PERCENT:
@@ -72,19 +78,11 @@ def _percent(row: Row, findings: Findings) -> float:
         raise DefinitionError(message, where=where, hint="Type 1 for 1 %, in a cell without percent format")
     if value < 1:
         findings.notice(f"Precision % {show(value)} is read as {show(value)} %", where)
-    return value
-
-
-def _precision_of(row: Row, _findings: Findings) -> tuple[str, ...]:
-    return _as_written(row, as_numbers, required_text(row, "Value"))
+    return f"{value!r}%"
 
 
 def _names(row: Row, _findings: Findings) -> tuple[str, ...]:
     return tuple(name.strip() for name in required_text(row, "Value").split(";") if name.strip())
-
-
-def _confidence(row: Row, _findings: Findings) -> float:
-    return _as_written(row, as_confidence, number_of(row, "Confidence %"))
 
 
 def _seconds(row: Row, _findings: Findings) -> float:
@@ -114,28 +112,5 @@ def _as_written(row: Row, read: Callable[[Any], T], given: object) -> T:
         raise DefinitionError(error.message, where=row.cell("Value"), hint=error.hint) from error
 
 
-STOPPING_SETTINGS: Final[Mapping[str, Callable[[Row, Findings], Any]]] = {
-    "Until accepted": _accepted,
-    "Rare": _rare,
-    "Precision": _precision,
-    "Precision %": _percent,
-    "Precision of": _precision_of,
-    "Confidence %": _confidence,
-    "Significant digits": _digits,
-    "Look at": _names,
-    "Time limit": _seconds,
-}
-"""Setting -> reader of its row."""
-
-_ENDS = {
-    plain("Until accepted"): "accepted",
-    plain("Rare"): "rare",
-    plain("Precision"): "tolerance",
-    plain("Precision %"): "percent",
-    plain("Precision of"): "numbers",
-    plain("Confidence %"): "confidence",
-    plain("Significant digits"): "digits",
-    plain("Look at"): "forecasts",
-    plain("Time limit"): "seconds",
-}
-"""Setting -> what `stopping` calls it."""
+_OTHERS = {"Precision %": "precision", "Rare": "rare", "Look at": "forecasts", "Time limit": "time_limit"}
+"""Setting -> what `stopping` calls it, of those that are no option of a goal."""

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Iterator
+from dataclasses import astuple, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final, get_type_hints
 
 from xlmc.definitions.model import Settings
-from xlmc.definitions.stopping import Precision, Stopping
+from xlmc.definitions.stopping import GOALS, Goal, Stopping, only_one
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.results.record.model import Entry, Record, Section, Value
 
@@ -35,19 +37,13 @@ def in_float32(version: str, where: Path | None = None) -> WorkbookError:
 def settings_section(simulation: Simulation) -> Section:
     """What the run was asked to do, each setting so that it reads back as the same one."""
     settings, asked = simulation.settings, simulation.settings.stopping
-    precision = asked.precision
     entries = (
         Entry("trials", "Trials at most", settings.trials),
         Entry("seed", "Seed", str(settings.seed)),  # as text: a worksheet's numbers have 15 to 17 digits
         Entry("sampling", "Sampling", settings.sampling),
         Entry("engine", "Engine", settings.engine),
         Entry("lognorm", "RiskLognorm is that of", settings.lognorm or None),
-        Entry("until_accepted", "Until so many are accepted", asked.accepted),
-        Entry("precision", "Precision", None if precision is None else precision.tolerance),
-        Entry("relative", "It is a share of the number", None if precision is None else precision.relative),
-        Entry("precision_of", "Of these numbers", None if precision is None else ",".join(precision.numbers)),
-        Entry("confidence", "At this confidence", None if precision is None else precision.confidence),
-        Entry("adaptive", "Stable digits", asked.digits),
+        *(entry for kind in GOALS.values() for entry in _goal_entries(kind, asked.goal)),
         Entry(
             "for", "Of these forecasts", json.dumps(asked.forecasts, ensure_ascii=False) if asked.forecasts else None
         ),
@@ -55,6 +51,13 @@ def settings_section(simulation: Simulation) -> Section:
         Entry("rare", "Search for rare trials", asked.rare),
     )
     return Section("settings", "Settings", entries)
+
+
+def _goal_entries(kind: type[Goal], asked: Goal | None) -> Iterator[Entry]:
+    """An entry for every field of a goal, empty where another was asked for."""
+    values = astuple(asked) if isinstance(asked, kind) else [None] * len(kind.labels)
+    for (key, label), value in zip(kind.labels, values, strict=True):
+        yield Entry(key, label, ",".join(value) if isinstance(value, tuple) else value)
 
 
 def recorded_settings(record: Record) -> Settings:
@@ -83,24 +86,32 @@ def recorded_settings(record: Record) -> Settings:
 
 
 def _stopping(section: dict[str, Value]) -> Stopping:
-    precision = None
-    if section["precision"] is not None:
-        numbers = tuple(str(section["precision_of"]).split(","))
-        confidence = float(section["confidence"])  # type: ignore[arg-type]
-        precision = Precision(float(section["precision"]), bool(section["relative"]), numbers, confidence)
+    goals = [_goal(kind, section) for kind in GOALS.values() if section.get(kind.labels[0][0]) is not None]
     forecasts = tuple(str(name) for name in json.loads(str(section["for"] or "[]")))
     seconds = section["time_limit"]
     return Stopping(
-        accepted=None if section["until_accepted"] is None else _whole(section["until_accepted"]),
-        precision=precision,
-        digits=None if section["adaptive"] is None else _whole(section["adaptive"]),
+        goal=only_one(goals),
         forecasts=forecasts,
         seconds=None if seconds is None else float(seconds),
         rare=None if section["rare"] is None else str(section["rare"]),
     )
 
 
+def _goal(kind: type[Goal], section: dict[str, Value]) -> Goal:
+    hints = get_type_hints(kind)
+    values = zip(fields(kind), kind.labels, strict=True)
+    return kind(*(_READERS.get(hints[field.name], _list)(section[key]) for field, (key, _) in values))
+
+
+def _list(value: Value) -> tuple[str, ...]:
+    return tuple(str(value).split(","))
+
+
 def _whole(value: Value) -> int:
     if not isinstance(value, int | float) or value != int(value):
         raise ValueError(f"{value!r} is no whole number")
     return int(value)
+
+
+_READERS: Final[dict[Any, Callable[[Any], Any]]] = {int: _whole, float: float, bool: bool, str: str}
+"""The type of a goal's field -> what reads its entry; lists of texts stand with commas."""

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Final
 
 import numpy as np
 
 from xlmc.definitions.model import Settings
-from xlmc.definitions.stopping import MOST_DIGITS, MOST_TRIALS, RARE, Stopping, as_numbers
+from xlmc.definitions.stopping import GOALS, MOST_TRIALS, RARE, Goal, Stopping, WholeGoal, only_one
 from xlmc.evaluation.engines import ENGINES
-from xlmc.results.saved.typed import counts, made, texts, told, whole
+from xlmc.results.saved.typed import counts, made, mapping, texts, told, whole
 from xlmc.run.blocks import FilterTally
 from xlmc.run.rare.account import RareAccount
 from xlmc.run.simulation import Origin
-from xlmc.run.stopping import Stopped
+from xlmc.run.stopping.stopped import WITHOUT_GOAL, Stopped
 from xlmc.sampling.methods import METHODS
 from xlmc.sampling.plan import Plan
 
@@ -25,6 +25,7 @@ __all__ = [
     "origin_of",
     "plan_of",
     "rare_of",
+    "settings_document",
     "settings_of",
     "stopped_of",
     "tally_document",
@@ -35,7 +36,19 @@ FORMAT: Final = "xlmc saved run"
 VERSION: Final = 2
 """Of version 1 were the runs that could be computed in float32; those in float64 are opened all the same."""
 
-_ENDS: Final = frozenset({"trials", "accepted", "precision", "adaptive", "time", "interruption", "search"})
+
+def settings_document(settings: Settings) -> dict[str, Any]:
+    """The settings, with an entry for every goal: a number, or the fields of one that has several."""
+    asked = settings.stopping
+    goals = {kind.saved_as or kind.key: _goal_document(asked.goal, kind) for kind in GOALS.values()}
+    more = {name: value for name, value in asdict(asked).items() if name != "goal"}
+    return {**asdict(settings), "stopping": goals | more}
+
+
+def _goal_document(goal: Goal | None, kind: type[Goal]) -> object:
+    if not isinstance(goal, kind):
+        return None
+    return goal.number if isinstance(goal, WholeGoal) else asdict(goal)
 
 
 def settings_of(found: object) -> Settings:
@@ -44,25 +57,32 @@ def settings_of(found: object) -> Settings:
     Raises:
         ValueError, SimulationError: they are none.
     """
-    settings = made(Settings, found, "its settings")
+    given = dict(mapping(found, "its settings"))
+    stopping = _stopping_of(given.pop("stopping", {}))
+    settings = replace(made(Settings, given, "its settings"), stopping=stopping)
     told(1 <= settings.trials <= MOST_TRIALS, "its number of trials")
     told(settings.seed >= 0, "its seed")
     told(settings.sampling in METHODS, "its sampling")
     told(settings.engine in ENGINES, "its engine")
     told(settings.lognorm in ("", "@RISK", "XLRisk"), "its RiskLognorm")
-    _check(settings.stopping)
     return settings
 
 
-def _check(stopping: Stopping) -> None:
-    """Refuse what no run may be asked to go on until."""
-    told(stopping.accepted is None or 2 <= stopping.accepted <= MOST_TRIALS, "its number of accepted trials")
-    told(stopping.digits is None or 1 <= stopping.digits <= MOST_DIGITS, "its significant digits")
-    told(stopping.seconds is None or stopping.seconds > 0, "its time limit")
-    told(stopping.rare is None or stopping.rare in RARE, "what is done where accepted trials are rare")
-    if stopping.precision is not None:
-        told(stopping.precision.tolerance > 0 and 0 < stopping.precision.confidence < 1, "its precision")
-        as_numbers(stopping.precision.numbers)
+def _stopping_of(found: object) -> Stopping:
+    """What the run was to go on until; no run may be asked for anything else."""
+    given = dict(mapping(found, "its end"))
+    goals = [_goal_of(kind, given.pop(kind.saved_as or kind.key, None)) for kind in GOALS.values()]
+    forecasts = texts(given.pop("forecasts", []), "the forecasts that its end looks at")
+    limits = made(Stopping, given, "its end")
+    told(limits.seconds is None or limits.seconds > 0, "its time limit")
+    told(limits.rare is None or limits.rare in RARE, "what is done where accepted trials are rare")
+    return replace(limits, goal=only_one([goal for goal in goals if goal is not None]), forecasts=forecasts)
+
+
+def _goal_of(kind: type[Goal], found: object) -> Goal | None:
+    if found is None:
+        return None
+    return made(kind, {"number": found} if issubclass(kind, WholeGoal) else found, f"its goal, {kind.noun}")
 
 
 def plan_of(settings: Settings, order: object) -> Plan:
@@ -122,7 +142,7 @@ def stopped_of(found: object) -> Stopped:
         ValueError: it is something else.
     """
     stopped = made(Stopped, found, "its end")
-    told(stopped.by in _ENDS, "its end")
+    told(stopped.by in {*GOALS, *WITHOUT_GOAL}, "its end")
     return stopped
 
 

@@ -16,7 +16,7 @@ from xlmc.errors import SimulationError, WorkbookError
 from xlmc.results.record.environment import processor, versions
 from xlmc.results.saved.archive import RUN, SUFFIX, WORKBOOK, write_entries
 from xlmc.results.saved.columns import column_header, column_parts
-from xlmc.results.saved.document import FORMAT, VERSION, tally_document
+from xlmc.results.saved.document import FORMAT, VERSION, settings_document, tally_document
 from xlmc.run.simulation import Origin
 from xlmc.workbook.seal import blank_seal, seal_file
 from xlmc.workbook.target import Target
@@ -111,7 +111,7 @@ def _document(simulation: Simulation, columns: list[dict[str, Any]]) -> dict[str
         "format": FORMAT,
         "version": VERSION,
         "workbook": {"name": model.workbook.name, "sha256": model.workbook.sha256},
-        "settings": asdict(simulation.settings),
+        "settings": settings_document(simulation.settings),
         "order": list(simulation.plan.order),
         "block": simulation.block,
         "trials": simulation.trials,

@@ -35,7 +35,8 @@ def made(kind: type[T], found: object, what: str) -> T:
     assert isinstance(found, dict)
     assert is_dataclass(kind)
     required = {each.name for each in fields(kind) if each.default is MISSING and each.default_factory is MISSING}
-    known = get_type_hints(kind)
+    hints = get_type_hints(kind)
+    known = {each.name: hints[each.name] for each in fields(kind)}
     told(required <= found.keys(), f"{what} lacks {', '.join(sorted(required - found.keys()))}")
     told(found.keys() <= known.keys(), f"{what} has the unknown field {', '.join(sorted(found.keys() - known.keys()))}")
     given = {name: _typed(known[name], value, f"{what}, {name}") for name, value in found.items()}

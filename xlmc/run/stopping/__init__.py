@@ -4,7 +4,7 @@ No rule draws or evaluates anything: it is given what a block holds. As blocks c
 a rule that looks at nothing but blocks ends the run at the same trial for any number of threads.
 """
 
-from xlmc.run.stopping.choose import chosen_rule, may_end_early, refuse_other_sampling
+from xlmc.run.stopping.choose import RULES, chosen_rule, may_end_early, refuse_other_sampling
 from xlmc.run.stopping.interruption import Interruption
 from xlmc.run.stopping.rule import Observed, Rule
 from xlmc.run.stopping.standing import Standing, Teller
@@ -12,6 +12,7 @@ from xlmc.run.stopping.stopped import Stopped
 from xlmc.run.stopping.watch import Watch
 
 __all__ = [
+    "RULES",
     "Interruption",
     "Observed",
     "Rule",

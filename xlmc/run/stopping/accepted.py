@@ -6,39 +6,34 @@ distribution, so that the share of accepted trials is estimated otherwise: see `
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
+from xlmc.definitions.stopping import AcceptedTrials
 from xlmc.run.stopping.rule import Columns, Observed
 
 __all__ = ["UntilAccepted"]
 
 
-@dataclass(slots=True)
 class UntilAccepted:
-    """See `Rule`.
+    """See `Rule`."""
 
-    Attributes:
-        wanted: accepted trials.
-    """
+    key = AcceptedTrials.key
 
-    wanted: int
-    key: str = field(default="accepted", init=False)
-    _seen: int = field(default=0, init=False)
+    def __init__(self, asked: AcceptedTrials) -> None:
+        self._wanted, self._seen = asked.number, 0
 
     @property
     def goal(self) -> str:
-        return f"{self.wanted:,} trials were accepted"
+        return f"{self._wanted:,} trials were accepted"
 
     @property
     def share(self) -> float:
-        return min(1.0, self._seen / self.wanted)
+        return min(1.0, self._seen / self._wanted)
 
     def counting(self, block: Observed, start: int) -> int:
-        missing = self.wanted - self._seen
+        missing = self._wanted - self._seen
         if block.accepted.size < missing:
             return block.trials
         return int(block.accepted[missing - 1]) - start + 1
 
     def reached(self, block: Observed, columns: Columns) -> bool:
         self._seen += block.accepted.size
-        return self._seen >= self.wanted
+        return self._seen >= self._wanted

@@ -19,6 +19,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.definitions.stopping import StableDigits
 from xlmc.run.stopping.rule import Columns, Observed
 from xlmc.run.stopping.running import RunningMoments
 from xlmc.run.stopping.wording import be, list_of
@@ -100,14 +101,14 @@ class UntilStable:
     """See `Rule`.
 
     Args:
-        digits: significant ones.
+        asked: how many significant ones.
         forecasts: (place, name, share of the central range) of those that count.
     """
 
-    key = "adaptive"
+    key = StableDigits.key
 
-    def __init__(self, digits: int, forecasts: Sequence[tuple[int, str, float]]) -> None:
-        self._digits, self._names = digits, [name for _, name, _ in forecasts]
+    def __init__(self, asked: StableDigits, forecasts: Sequence[tuple[int, str, float]]) -> None:
+        self._digits, self._names = asked.number, [name for _, name, _ in forecasts]
         self._sequences = {place: Sequences(share) for place, _, share in forecasts}
         self._share = 0.0
 

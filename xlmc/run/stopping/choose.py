@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Final
 
 from xlmc.definitions.model import Forecast, name_key
 from xlmc.definitions.stopping import Stopping
@@ -13,7 +14,15 @@ from xlmc.run.stopping.precision import UntilPrecise
 from xlmc.run.stopping.rule import Rule
 from xlmc.sampling.methods import METHODS
 
-__all__ = ["chosen_rule", "may_end_early", "refuse_other_sampling"]
+__all__ = ["RULES", "chosen_rule", "may_end_early", "refuse_other_sampling"]
+
+RULES: Final[dict[str, Callable[..., Rule]]] = {
+    UntilAccepted.key: UntilAccepted,
+    UntilPrecise.key: UntilPrecise,
+    UntilStable.key: UntilStable,
+}
+"""The key of a goal -> its rule: made of the goal and, where it looks at forecasts, of these, each as (place, name,
+share of the central range)."""
 
 
 def chosen_rule(asked: Stopping, forecasts: Sequence[Forecast]) -> Rule | None:
@@ -22,13 +31,11 @@ def chosen_rule(asked: Stopping, forecasts: Sequence[Forecast]) -> Rule | None:
     Raises:
         SimulationError: there is no forecast of a name, or none at all.
     """
-    if asked.accepted is not None:
-        return UntilAccepted(asked.accepted)
-    if asked.precision is not None:
-        return UntilPrecise(asked.precision, _named(asked.forecasts, forecasts))
-    if asked.digits is not None:
-        return UntilStable(asked.digits, _named(asked.forecasts, forecasts))
-    return None
+    goal = asked.goal
+    if goal is None:
+        return None
+    rule = RULES[goal.key]
+    return rule(goal, _named(asked.forecasts, forecasts)) if goal.of_forecasts else rule(goal)
 
 
 def _named(names: Sequence[str], forecasts: Sequence[Forecast]) -> list[tuple[int, str, float]]:

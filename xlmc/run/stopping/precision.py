@@ -74,7 +74,7 @@ class UntilPrecise:
         forecasts: (place, name, share of the central range) of those that count.
     """
 
-    key = "precision"
+    key = Precision.key
 
     def __init__(self, asked: Precision, forecasts: Sequence[tuple[int, str, float]]) -> None:
         self._asked, self._names = asked, [name for _, name, _ in forecasts]

@@ -39,7 +39,7 @@ class Rule(Protocol):
     """Looks at the blocks of a run, each once, in their order.
 
     Attributes:
-        key: what programs know it by.
+        key: of its goal: see `definitions.stopping`.
         goal: what must come to pass, in words: `1,000 trials were accepted`.
         share: how far it is on the way there, 0 to 1; an estimate.
     """

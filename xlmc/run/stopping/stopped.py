@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-__all__ = ["ALL_TRIALS", "Stopped"]
+__all__ = ["ALL_TRIALS", "WITHOUT_GOAL", "Stopped"]
+
+WITHOUT_GOAL: Final = ("trials", "time", "interruption", "search")
+"""What ends a run that has not come to its goal."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,7 +16,7 @@ class Stopped:
     """What ended a run.
 
     Attributes:
-        by: `trials` (there were no more to run), `accepted`, `precision`, `adaptive`, `time`, `interruption` or
+        by: the key of the goal that was reached, `trials` (there were no more to run), `time`, `interruption` or
             `search` (no accepted trials were found where they are rare).
         because: in words, without a full stop.
         goal: in words, what the run was to go on until; None where it was to run its trials.
@@ -26,7 +29,7 @@ class Stopped:
     @property
     def reached(self) -> bool:
         """Whether the run came to what it was to go on until."""
-        return self.goal is None or self.by not in ("trials", "time", "interruption", "search")
+        return self.goal is None or self.by not in WITHOUT_GOAL
 
     @property
     def interrupted(self) -> bool:

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from xlmc.definitions.stopping import as_tolerance
+from xlmc.definitions.amounts import as_tolerance
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
 from xlmc.studies.methods.answer import STATISTICS, Answer, Extreme, Method, MethodResult

@@ -1,0 +1,96 @@
+"""Widths, shares and durations as people write them in Python, on the command line and in `xlmc_settings`."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+
+from xlmc.errors import SimulationError
+
+__all__ = ["as_confidence", "as_numbers", "as_seconds", "as_tolerance"]
+
+_TIME = re.compile(r"(?:(\d+(?:\.\d+)?)\s*h)?\s*(?:(\d+(?:\.\d+)?)\s*m(?:in)?)?\s*(?:(\d+(?:\.\d+)?)\s*s?)?")
+_PERCENTILE = re.compile(r"p(\d+(?:\.\d+)?)")
+
+
+def as_tolerance(given: str | float) -> tuple[float, bool]:
+    """A half width, and whether it is a share of the number itself: `1%` is, `0.1` is not.
+
+    Raises:
+        SimulationError: it is neither.
+
+    >>> as_tolerance("1 %"), as_tolerance(0.1)
+    ((0.01, True), (0.1, False))
+    """
+    text = str(given).strip()
+    relative = text.endswith("%")
+    value = _number(text.removesuffix("%"))
+    if value is None or not 0.0 < value < math.inf:
+        message = f"{text!r} is no precision"
+        raise SimulationError(message, hint="Give a percentage such as 1%, or a number in the forecast's units")
+    return (value / 100.0 if relative else value), relative
+
+
+def as_numbers(given: str | Sequence[str]) -> tuple[str, ...]:
+    """Names of statistics, separated by commas: `mean`, `sd`, `range`, `p75.5`.
+
+    Raises:
+        SimulationError: one of them is none of these.
+
+    >>> as_numbers("Mean, p75.5")
+    ('mean', 'p75.5')
+    """
+    parts = given.split(",") if isinstance(given, str) else given
+    names = tuple(dict.fromkeys(part.strip().casefold() for part in parts))
+    for name in names:
+        found = _PERCENTILE.fullmatch(name)
+        if name not in ("mean", "sd", "range") and not (found and 0.0 < float(found[1]) < 100.0):
+            hint = "Choose from mean, sd, range, and percentiles above 0 and below 100 such as p75.5"
+            raise SimulationError(f"{name!r} is no number whose precision can be asked for", hint=hint)
+    if not names:
+        raise SimulationError("no number was named whose precision counts", hint="Name one, such as mean")
+    return names
+
+
+def as_confidence(given: str | float) -> float:
+    """A share, from a percentage: `95%`, `95` or 0.95.
+
+    Raises:
+        SimulationError: it is not between 0 and 100 %.
+
+    >>> as_confidence("95%"), as_confidence(0.99)
+    (0.95, 0.99)
+    """
+    text = str(given).strip()
+    value = _number(text.removesuffix("%"))
+    if value is not None and (text.endswith("%") or value >= 1.0):
+        value /= 100.0
+    if value is None or not 0.0 < value < 1.0:
+        raise SimulationError(f"{text!r} is no confidence", hint="Give a percentage such as 95")
+    return value
+
+
+def as_seconds(given: str | float) -> float:
+    """A duration: `60s`, `5m`, `1h30m`, or a number of seconds.
+
+    Raises:
+        SimulationError: it is none.
+
+    >>> as_seconds("1h30m"), as_seconds("90"), as_seconds(0.5)
+    (5400.0, 90.0, 0.5)
+    """
+    text = str(given).strip().casefold()
+    found = _TIME.fullmatch(text)
+    parts = found.groups("0") if found else ()
+    value = sum(float(part) * unit for part, unit in zip(parts, (3600.0, 60.0, 1.0), strict=False))
+    if not 0.0 < value < math.inf:
+        raise SimulationError(f"{text!r} is no time", hint="Give seconds, or a duration such as 60s, 5m or 1h30m")
+    return value
+
+
+def _number(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None

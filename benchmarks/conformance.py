@@ -24,7 +24,7 @@ sys.path.insert(0, str(ROOT))
 from xlmc.errors import WorkbookError
 from xlmc.formula.shape import shape_of
 from xlmc.studies.verify import CellCheck, Status, verify
-from xlmc.workbook import read_workbook
+from xlmc.workbook.reader import read_workbook
 
 ENDINGS = (".xlsx", ".xlsm")
 LEFT_OUT = (Status.VOLATILE, Status.NOT_CACHED)

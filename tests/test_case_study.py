@@ -108,7 +108,7 @@ def test_the_reference_engine_agrees(model):
 
 def test_verify_finds_every_cell_right():
     from xlmc.studies.verify import Status, verify
-    from xlmc.workbook import read_workbook
+    from xlmc.workbook.reader import read_workbook
 
     found = verify(read_workbook(BOOK))
     assert found.count(Status.MATCHED) == len(found.cells) > 70

@@ -23,8 +23,8 @@ from xlmc.evaluation.engines import ENGINES
 from xlmc.report.summary import summarise, summary_text
 from xlmc.run.model import understood
 from xlmc.run.simulation import Simulation
-from xlmc.workbook import Workbook, read_workbook
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.model import CellContent, Formula, Workbook
+from xlmc.workbook.reader import read_workbook
 
 __all__ = ["book_of", "make", "run"]
 

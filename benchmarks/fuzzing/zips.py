@@ -23,7 +23,7 @@ from xlmc.api import Model
 from xlmc.definitions.reader import read_definitions
 from xlmc.errors import XlmcError
 from xlmc.evaluation.engines import ENGINES
-from xlmc.workbook import read_workbook
+from xlmc.workbook.reader import read_workbook
 
 __all__ = ["make", "run"]
 

@@ -13,7 +13,7 @@ from xlmc.errors import ErrorCode
 from xlmc.evaluation.graph.lower import Lowering
 from xlmc.evaluation.graph.widening import widened
 from xlmc.formula import Resolver, build_graph
-from xlmc.workbook import read_workbook
+from xlmc.workbook.reader import read_workbook
 
 __all__ = ["Shown", "Values", "computed"]
 

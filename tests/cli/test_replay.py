@@ -12,8 +12,8 @@ import pytest
 
 from xlmc import __version__
 from xlmc.errors import XlmcError
-from xlmc.workbook import read_workbook
 from xlmc.workbook.package import read_parts
+from xlmc.workbook.reader import read_workbook
 from xlmc.workbook.writer import package_bytes
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.errors import DefinitionError, FormulaError, SimulationError, WorkbookError
-from xlmc.workbook import read_workbook
+from xlmc.workbook.reader import read_workbook
 
 
 def verdict(error):

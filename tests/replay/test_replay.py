@@ -14,7 +14,7 @@ from xlmc.replay import Change, replay
 from xlmc.replay import repeat as repeating
 from xlmc.results.record import Entry, Record, RecordTable, make_record
 from xlmc.results.record.read import read_record
-from xlmc.workbook import read_workbook
+from xlmc.workbook.reader import read_workbook
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/intersection.xlsx"
 

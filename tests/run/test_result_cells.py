@@ -14,9 +14,9 @@ import xlsxwriter
 import xlmc
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.run.result_cells import filled_sheets, result_values
-from xlmc.workbook import read_workbook
 from xlmc.workbook.inject import original_hash
 from xlmc.workbook.package import read_parts
+from xlmc.workbook.reader import read_workbook
 from xlmc.workbook.writer import package_bytes
 
 FORMULAS = {

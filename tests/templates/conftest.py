@@ -19,7 +19,7 @@ from xlmc.evaluation.engines import ENGINES
 from xlmc.evaluation.graph.lower import Lowering
 from xlmc.evaluation.graph.widening import widened
 from xlmc.formula import Resolver, build_graph
-from xlmc.workbook import read_workbook
+from xlmc.workbook.reader import read_workbook
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT))

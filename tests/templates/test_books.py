@@ -11,7 +11,7 @@ from committed_books import BOOKS, TEMPLATES
 
 import xlmc
 from xlmc.studies.verify import Status, verify
-from xlmc.workbook import read_workbook
+from xlmc.workbook.reader import read_workbook
 
 REFERENCE = re.compile(r"=Model!D\d+")
 LIKE_A_CELL = re.compile(r"[A-Z]{1,3}\d+|R\d*(C\d*)?|C\d*", re.IGNORECASE)

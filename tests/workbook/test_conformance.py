@@ -13,7 +13,7 @@ from openpyxl.worksheet.formula import ArrayFormula, DataTableFormula
 
 from xlmc.address import column_letters
 from xlmc.errors import ErrorCode, WorkbookError
-from xlmc.workbook import read_workbook
+from xlmc.workbook.reader import read_workbook
 
 FOLDER = Path(__file__).parents[3] / "shared" / "conformance" / "workbooks"
 BOOKS = sorted(FOLDER.glob("*.xls[xm]"))

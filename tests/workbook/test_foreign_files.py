@@ -8,7 +8,7 @@ import zipfile
 import pytest
 
 from xlmc.errors import WorkbookError
-from xlmc.workbook import read_workbook
+from xlmc.workbook.reader import read_workbook
 
 OLE = bytes.fromhex("D0CF11E0A1B11AE1") + bytes(600)
 

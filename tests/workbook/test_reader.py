@@ -7,7 +7,8 @@ import xlsxwriter
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, WorkbookError
-from xlmc.workbook import DefinedName, Formula, Table, Workbook, read_workbook
+from xlmc.workbook.model import DefinedName, Formula, Table, Workbook
+from xlmc.workbook.reader import read_workbook
 
 
 @pytest.fixture

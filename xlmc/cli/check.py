@@ -12,7 +12,7 @@ from xlmc.cli.terminal import paragraph, say
 if TYPE_CHECKING:
     from xlmc.definitions.model import Correlation, Definitions
     from xlmc.run.model import Model
-    from xlmc.workbook import Workbook
+    from xlmc.workbook.model import Workbook
 
 __all__ = ["check"]
 
@@ -31,7 +31,7 @@ def check(book: Path) -> None:
     from xlmc.evaluation.engines import ENGINES
     from xlmc.run.filter_values import filter_faults
     from xlmc.run.model import Model
-    from xlmc.workbook import read_workbook
+    from xlmc.workbook.reader import read_workbook
 
     workbook = read_workbook(book)
     definitions = read_definitions(workbook, ENGINES)

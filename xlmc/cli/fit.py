@@ -83,7 +83,7 @@ def _values(book: Path, reference: str) -> tuple[list[float], str, int]:
     from xlmc.definitions.tables.area_reference import area_of_reference
     from xlmc.definitions.tables.data import area_values
     from xlmc.definitions.tables.fields import number_in
-    from xlmc.workbook import read_workbook
+    from xlmc.workbook.reader import read_workbook
 
     workbook = read_workbook(book)
     only_sheet = next(iter(workbook.sheets)) if len(workbook.sheets) == 1 else None

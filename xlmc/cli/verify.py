@@ -28,7 +28,7 @@ def verify(book: Path, everything: bool, as_json: bool) -> None:
     from xlmc.evaluation.engines import ENGINES
     from xlmc.studies.verify import Status
     from xlmc.studies.verify import verify as check
-    from xlmc.workbook import read_workbook
+    from xlmc.workbook.reader import read_workbook
 
     workbook = read_workbook(book)
     definitions = None if everything else read_definitions(workbook, ENGINES)

@@ -12,7 +12,7 @@ from xlmc.results.record.cells import SAVED, content_text, definition_cells
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
-    from xlmc.workbook import Workbook
+    from xlmc.workbook.model import Workbook
 
 __all__ = [
     "Change",

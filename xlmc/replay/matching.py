@@ -10,7 +10,7 @@ from xlmc.replay.closeness import Closeness
 from xlmc.workbook.inject import marked_names
 
 if TYPE_CHECKING:
-    from xlmc.workbook import Sheet, Workbook
+    from xlmc.workbook.model import Sheet, Workbook
 
 __all__ = ["matched"]
 

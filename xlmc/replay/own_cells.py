@@ -13,7 +13,7 @@ from xlmc.workbook.model import CellContent
 
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
-    from xlmc.workbook import Workbook
+    from xlmc.workbook.model import Workbook
 
 __all__ = ["compare_own_cells"]
 

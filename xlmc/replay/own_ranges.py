@@ -12,7 +12,7 @@ from xlmc.formula import Resolver, build_graph
 from xlmc.workbook.model import CellContent
 
 if TYPE_CHECKING:
-    from xlmc.workbook import Sheet, Workbook
+    from xlmc.workbook.model import Sheet, Workbook
 
 __all__ = ["counted"]
 

@@ -34,8 +34,8 @@ from xlmc.run.simulate import simulate
 from xlmc.run.simulation import KEPT_INPUTS
 from xlmc.run.version import __version__
 from xlmc.sampling.methods import METHODS
-from xlmc.workbook import read_workbook
 from xlmc.workbook.blame import told_of
+from xlmc.workbook.reader import read_workbook
 from xlmc.workbook.seal import read_seal
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from xlmc.run.model import Model
     from xlmc.run.simulate import Progress
     from xlmc.run.simulation import Simulation
-    from xlmc.workbook import Workbook
+    from xlmc.workbook.model import Workbook
 
 __all__ = ["Replayed", "replay"]
 

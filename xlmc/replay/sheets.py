@@ -18,12 +18,12 @@ from xlmc.replay.matching import matched
 from xlmc.replay.own_ranges import counted
 from xlmc.report.sheets.book import build_sheets
 from xlmc.report.sheets.trials import HEADER, TRIAL_ROWS
-from xlmc.workbook import read_workbook
 from xlmc.workbook.model import CellContent, CellValue
+from xlmc.workbook.reader import read_workbook
 
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
-    from xlmc.workbook import Sheet, Workbook
+    from xlmc.workbook.model import Sheet, Workbook
 
 __all__ = ["CellDifference", "SheetComparison", "compare_sheets"]
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from xlmc.replay.closeness import Closeness
     from xlmc.results.record import Record
     from xlmc.run.simulation import Simulation
-    from xlmc.workbook import Workbook
+    from xlmc.workbook.model import Workbook
 
 __all__ = ["compare_shown"]
 

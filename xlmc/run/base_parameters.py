@@ -17,7 +17,7 @@ from xlmc.evaluation.graph.widening import widened
 from xlmc.formula import Graph, Resolver, build_graph
 from xlmc.run.drawing import settled
 from xlmc.run.scene import upstream
-from xlmc.workbook import Workbook
+from xlmc.workbook.model import Workbook
 
 __all__ = ["with_base_parameters"]
 

@@ -26,8 +26,9 @@ from xlmc.run.remarks import example_notices, still_notices
 from xlmc.run.scene import Scene, condition, definitions_of_checks, drawing_order, refuse_without_base, survey
 from xlmc.sampling.draws import CorrelatedGroup, Draw, Filler, Sampler, Stage
 from xlmc.sampling.plan import Plan
-from xlmc.workbook import Workbook, read_workbook
 from xlmc.workbook.collecting import paused_collection
+from xlmc.workbook.model import Workbook
+from xlmc.workbook.reader import read_workbook
 
 __all__ = ["Model", "load", "lowered", "understood"]
 

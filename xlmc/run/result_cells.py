@@ -25,8 +25,8 @@ from xlmc.evaluation.graph.widening import widened
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.formula.mentions import mentioned
 from xlmc.formula.substitute import substituted
-from xlmc.workbook import CellValue, Workbook
 from xlmc.workbook.injection.cached_values import with_values
+from xlmc.workbook.model import CellValue, Workbook
 
 if TYPE_CHECKING:
     from xlmc.run.simulation import ForecastResult, Simulation

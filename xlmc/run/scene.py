@@ -10,7 +10,7 @@ from xlmc.address import Cell, InFormula
 from xlmc.definitions.model import Assumption, Check, Definitions, Filter, Forecast
 from xlmc.errors import DefinitionError, Notice
 from xlmc.formula import Graph, Resolver, build_graph, ir
-from xlmc.workbook import Workbook
+from xlmc.workbook.model import Workbook
 
 __all__ = [
     "Scene",

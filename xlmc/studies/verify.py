@@ -16,7 +16,7 @@ from xlmc.evaluation.graph.widening import widened
 from xlmc.formula import Resolver, build_graph
 from xlmc.formula.shown import shown_formula
 from xlmc.run.scene import targets_of
-from xlmc.workbook import CellValue, Workbook
+from xlmc.workbook.model import CellValue, Workbook
 
 __all__ = ["TOLERANCE", "CellCheck", "Status", "Verification", "verify"]
 

@@ -12,7 +12,7 @@ import xlsxwriter
 from xlmc.address import Area
 from xlmc.errors import FormulaError
 from xlmc.studies.verify import verify
-from xlmc.workbook import read_workbook
+from xlmc.workbook.reader import read_workbook
 
 FORMULAS = {
     "SUBTOTAL(9,A2:A5)": (15.0, 11.0, 11.0, 11.0),

@@ -19,8 +19,8 @@ from xlmc.results.record.model import Entry, Record, Section
 from xlmc.results.record.read import read_record
 from xlmc.results.record.settings_table import recorded_settings, settings_section
 from xlmc.results.record.structure_table import structure_section
-from xlmc.workbook import read_workbook
 from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.reader import read_workbook
 
 TEXTS = {
     "A1+B2": "B3+C4",

@@ -13,8 +13,7 @@ from typing import Final
 
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.results.record.model import Entry, Record, RecordTable, Section, Value
-from xlmc.workbook import Sheet, Workbook
-from xlmc.workbook.model import CellContent
+from xlmc.workbook.model import CellContent, Sheet, Workbook
 
 __all__ = ["read_record"]
 

@@ -32,8 +32,8 @@ from xlmc.results.saved.document import (
 from xlmc.results.saved.typed import counts, made, mapping, told, whole
 from xlmc.run.model import Model, understood
 from xlmc.run.simulation import Simulation
-from xlmc.workbook import read_workbook
 from xlmc.workbook.package import LIMITS
+from xlmc.workbook.reader import read_workbook
 
 __all__ = ["is_saved_run", "open_run"]
 

@@ -18,7 +18,7 @@ from xlmc.run.blocks import ModelRunner
 from xlmc.run.model import Model
 from xlmc.run.version import __version__
 from xlmc.sampling.plan import Plan
-from xlmc.workbook import Workbook
+from xlmc.workbook.model import Workbook
 
 __all__ = ["RunSpec", "check_software", "model_runner", "software"]
 

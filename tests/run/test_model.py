@@ -26,6 +26,15 @@ def test_what_a_model_shows(model):
     assert model.definitions.settings == Settings(trials=200_000, seed=999, sampling="mc", engine="numpy")
 
 
+def test_what_offset_leads_to_keeps_the_order_of_the_first_stages(book):
+    """Correlated draws depend on the order: a run gives the numbers that earlier versions gave."""
+    cells = {"A1": 1.0, "A2": 1.0, "A3": 1.0, "B1": "=SUM(A1:A3)", "C1": "=A3-5", "C2": "=OFFSET(D1,2,-3)-5"}
+    low = {"named": ("A1", "C1"), "by offset": ("A2", "C2"), "needed": ("A3", 0)}
+    model = book(cells, {name: {"cell": cell, "low": at, "high": 9} for name, (cell, at) in low.items()}, {"x": "B1"})
+    assert [list(stage) for stage in model.scene.stages] == [["needed"], ["by offset", "named"]]
+    assert [a.name for a in model.live] == ["needed", "by offset", "named"]
+
+
 def test_the_workbook_as_a_function(model):
     found = model.function({"mass": [4.0, 9.0, -1.0], "Speed ": 0.5})
     assert {name: values.shape for name, values in found.items()} == dict.fromkeys(FORECASTS, (3,))

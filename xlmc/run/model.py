@@ -82,7 +82,9 @@ def lowered(workbook: Workbook, definitions: Definitions) -> tuple[Scene, Loweri
     lowering = widened(lower)
     scene = scenes[-1]
     if lowering.led_to:
-        scene = replace(scene, stages=drawing_order(scene.graph, definitions.assumptions, lowering.led_to))
+        named = {a.name: a for a in definitions.assumptions}
+        live = [named[name] for name in scene.live]  # in this order, on which correlated draws depend
+        scene = replace(scene, stages=drawing_order(scene.graph, live, lowering.led_to))
     return scene, lowering
 
 

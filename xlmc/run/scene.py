@@ -102,7 +102,7 @@ def drawing_order(
 
     Args:
         graph: of the needed cells.
-        assumptions: all of them.
+        assumptions: all of them, or those to draw; within a stage they keep this order.
         led_to: formula cell -> the cells that OFFSET and INDIRECT in it lead to, beside those that it names.
 
     Raises:

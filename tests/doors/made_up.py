@@ -7,7 +7,6 @@ python tests/doors/made_up.py --undescribed   what no page describes
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -70,7 +69,7 @@ def register() -> None:
     distributions.FAMILIES[EitherEnd.name] = EitherEnd()
     method = methods.SamplingMethod("mirrored", "mirrored pairs", "pairs of a stream", _margins, lambda _: 2)
     methods.METHODS[method.key] = method
-    engines.ENGINES["slower"] = replace(engines.ENGINES["numpy"], key="slower", what="as numpy")
+    engines.ENGINES["slower"] = engines.ENGINES["numpy"]._replace(key="slower", what="as numpy")
     from xlmc.report.sheets import book
 
     book.SHEETS = (*book.SHEETS, book.ResultSheet("Made up", _write, after=("Trials",)))

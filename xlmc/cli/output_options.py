@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
 
 import click
 
@@ -48,8 +47,7 @@ def output_options(command: F) -> F:
     return command
 
 
-@dataclass(frozen=True, slots=True)
-class Outputs:
+class Outputs(NamedTuple):
     """The files asked for.
 
     Attributes:
@@ -154,7 +152,7 @@ class Outputs:
         found, reason = free_target(self.book, self.name)
         if reason is not None:
             say(f"note: {self.book}: {reason}; it stays as it is, and results go to {found}.", err=True)
-        return replace(self, book=found)
+        return self._replace(book=found)
 
     def write(self, run: Simulation) -> tuple[bool, list[str]]:
         """Write them all: whether all could be, and what to say of where they are when the answer has been printed.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import codecs
 import errno
-import json
 import math
 import os
 import sys
@@ -89,6 +88,8 @@ def say_json(value: object) -> None:
     Raises:
         WorkbookError: as for `say`.
     """
+    import json
+
     text = json.dumps(_finite(value), indent=2, ensure_ascii=not _is_unicode(sys.stdout), allow_nan=False)
     if printable(text) != text:
         text = "".join(one if printable(one) == one else json.dumps(one)[1:-1] for one in text)

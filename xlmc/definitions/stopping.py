@@ -13,7 +13,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Final, Self
+from typing import Any, ClassVar, Final, NamedTuple, Self
 
 from xlmc.definitions.amounts import as_confidence, as_numbers, as_seconds, as_tolerance
 from xlmc.errors import SimulationError
@@ -49,8 +49,7 @@ USUAL_NUMBERS: Final = ("mean", "range")
 USUAL_CONFIDENCE: Final = 0.95
 
 
-@dataclass(frozen=True, slots=True)
-class Option:
+class Option(NamedTuple):
     """Something that a person says of a goal.
 
     Attributes:

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from xlmc.evaluation.llvm import jit_filler, jit_program
 
@@ -21,8 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["ENGINES", "Engine"]
 
 
-@dataclass(frozen=True, slots=True)
-class Engine:
+class Engine(NamedTuple):
     """One way to compute the trials of a run.
 
     Attributes:

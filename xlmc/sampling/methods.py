@@ -7,8 +7,7 @@ below; describe it in docs/sampling.md. Nothing is imported before a method draw
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
 
 from xlmc.errors import SimulationError
 
@@ -37,8 +36,7 @@ class Margin(Protocol):
         """Fill `out` (n,) with the uniforms of trials `start` to `start + n - 1`, in [0, 1)."""
 
 
-@dataclass(frozen=True, slots=True)
-class SamplingMethod:
+class SamplingMethod(NamedTuple):
     """One way to draw the trials of a run.
 
     Attributes:

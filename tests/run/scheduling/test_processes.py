@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import replace
 
 import pytest
 
@@ -50,7 +49,7 @@ def test_processes_change_no_bit(model, bits, children, jobs):
 
 @pytest.mark.parametrize(("trials", "started"), [(900, 0), (1000, 1)])
 def test_a_long_run_with_jobs_starts_processes(model, monkeypatch, children, trials, started):
-    monkeypatch.setitem(worker_pool.ENGINES, "numpy", replace(worker_pool.ENGINES["numpy"], process_blocks=10))
+    monkeypatch.setitem(worker_pool.ENGINES, "numpy", worker_pool.ENGINES["numpy"]._replace(process_blocks=10))
     assert model.simulate(trials).trials == trials
     assert model.simulate(trials, jobs=2).trials == trials
     assert len(children) == started

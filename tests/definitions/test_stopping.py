@@ -77,6 +77,12 @@ def test_what_cannot_be_meant(given, message):
     assert caught.value.hint
 
 
+def test_too_many_accepted_trials_are_refused_with_what_to_give():
+    with pytest.raises(SimulationError) as caught:
+        stopping(until_accepted=10**12 + 1)
+    assert caught.value.hint == "Give 2 to 1,000,000,000,000"
+
+
 def test_what_no_goal_has_is_a_mistake_of_the_program():
     with pytest.raises(TypeError, match="unexpected keyword argument 'boredom'"):
         stopping(until_accepted=5, boredom=5)

@@ -132,7 +132,7 @@ class AcceptedTrials(WholeGoal):
     __slots__ = ()
     key = "accepted"
     noun = things = "accepted trials"
-    hint = "Give 2 or more"
+    hint = f"Give 2 to {MOST_TRIALS:,}"
     options = (
         Option(
             name="until_accepted",

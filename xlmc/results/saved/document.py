@@ -71,6 +71,7 @@ def settings_of(found: object) -> Settings:
 def _stopping_of(found: object) -> Stopping:
     """What the run was to go on until; no run may be asked for anything else."""
     given = dict(mapping(found, "its end"))
+    told("goal" not in given, "its end has the unknown field goal")  # each goal has a field of its own
     goals = [_goal_of(kind, given.pop(kind.saved_as or kind.key, None)) for kind in GOALS.values()]
     forecasts = texts(given.pop("forecasts", []), "the forecasts that its end looks at")
     limits = made(Stopping, given, "its end")

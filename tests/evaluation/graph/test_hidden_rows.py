@@ -23,6 +23,11 @@ FORMULAS = {
     "SUBTOTAL(109,A2:A8)": (183.0, 183.0, 183.0, 183.0),
     "AGGREGATE(9,5,A2:A5)": (11.0, 11.0, 11.0, 11.0),
     "AGGREGATE(9,4,A2:A5)": (15.0, 15.0, 15.0, 15.0),
+    "SUBTOTAL(9,A2:A3,A4:A8)": (255.0, 251.0, 251.0, 251.0),
+    "SUBTOTAL(109,A2:A3,A4:A8)": (183.0, 183.0, 183.0, 183.0),
+    "AGGREGATE(9,5,A2:A3,A4:A5)": (11.0, 11.0, 11.0, 11.0),
+    "AGGREGATE(9,4,A2:A3,A4:A5)": (15.0, 15.0, 15.0, 15.0),
+    "AGGREGATE(14,5,A2:A8,A4)": (2.0, 2.0, 2.0, 2.0),
     "SUM(A2:A5)": (15.0, 15.0, 15.0, 15.0),
 }
 """With rows 4 and 8 hidden: by hand; row 4 by a filter of the sheet, of a table; by hand within an active filter."""

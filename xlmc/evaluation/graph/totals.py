@@ -9,7 +9,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Area, Cell
-from xlmc.errors import FormulaError
+from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.arrays import cell_by_cell
 from xlmc.evaluation.graph.dag import Range
 from xlmc.evaluation.graph.references import areas_of
@@ -38,13 +38,18 @@ def without_totals(name: str) -> Callable[[Lowering, Arguments, Scope], int | No
         if function is None or len(arguments) <= first:
             return None
         found = [lowering.lower(argument, scope) for argument in arguments[:first]]
-        for argument in arguments[first:]:
-            areas = areas_of(lowering, argument, scope)
+        skipped = _skipped(lowering, name, found)
+        nested = name == "SUBTOTAL" or (None if skipped is None else skipped.nested)
+        ranked = name == "AGGREGATE" and _is_ranked(lowering, found[0])
+        for position, argument in enumerate(arguments[first:]):
+            is_rank = ranked and position == 1
+            areas = None if is_rank else areas_of(lowering, argument, scope)
             if areas is None:
                 found.append(lowering.lower(argument, scope.over_arrays()))
+            elif ranked and len(areas) > 1:
+                return lowering.error(ErrorCode.VALUE)
             else:
-                skipped = _skipped(lowering, name, found)
-                found += [_left_in(lowering, area, skipped) for area in areas]
+                found += [_left_in(lowering, area, skipped, nested) for area in areas]
         by_rank = len(found) == 4 and name == "AGGREGATE" and lowering.dag.sizes[found[3]] not in (None, (1, 1))
         return _of_ranks(lowering, function, found) if by_rank else lowering.made(function, tuple(found))
 
@@ -55,12 +60,18 @@ _OF_A_RANK: Final = range(14, 20)
 """The numbers of AGGREGATE's functions, such as LARGE, that take a rank behind their array."""
 
 
+def _is_ranked(lowering: Lowering, number: int) -> bool | None:
+    """Whether AGGREGATE's function takes a rank; None where it varies."""
+    known = lowering.known_single(number)
+    return int(known.numbers[0]) in _OF_A_RANK if known is not None and known.plain else None
+
+
 def _of_ranks(lowering: Lowering, function: Function, found: Sequence[int]) -> int:
     """AGGREGATE of a range and many cells: where these are ranks, one result for each of them."""
-    number = lowering.known_single(found[0])
-    if number is None or not number.plain:
+    ranked = _is_ranked(lowering, found[0])
+    if ranked is None:
         return lowering.made(_spilling(function), tuple(found))
-    if int(number.numbers[0]) not in _OF_A_RANK:
+    if not ranked:
         return lowering.made(function, tuple(found))
     cells = cell_by_cell(
         lowering.dag, (found[3],), lambda rank: lowering.made(function, (*found[:3], *rank)), constants=True
@@ -103,14 +114,20 @@ def _hidden_rows(lowering: Lowering, area: Area, skips: Skips | None) -> frozens
     return rows & lowering.graph.workbook.filtered_rows(sheet) if skips.filtered else frozenset()
 
 
-def _left_in(lowering: Lowering, area: Area, skips: Skips | None) -> int:
+def _left_in(lowering: Lowering, area: Area, skips: Skips | None, nested: bool | None) -> int:
+    """The cells of an area that count; `nested` is whether totals are left out, None where that varies.
+
+    Raises:
+        FormulaError: a cell is hidden, or such a total, and whether it is left out varies.
+    """
     ask_for_reading(area.rows, area.columns)  # further cells of a whole column are empty
-    hidden_rows, totals = _hidden_rows(lowering, area, skips), skips is None or skips.nested
+    hidden_rows = _hidden_rows(lowering, area, skips)
 
     def node(cell: Cell) -> int:
-        if cell.row in hidden_rows or (totals and _TOTAL.search(lowering.graph.text(cell))):
-            return lowering.dag.constant(constant(None))
-        return lowering.cell(cell)
+        total = nested is not False and _TOTAL.search(lowering.graph.text(cell)) is not None
+        if total and nested is None:
+            raise FormulaError(f"{cell} is a total itself, and whether AGGREGATE leaves it out varies")
+        return lowering.dag.constant(constant(None)) if total or cell.row in hidden_rows else lowering.cell(cell)
 
     rows, columns = range(area.top, area.bottom + 1), range(area.left, area.right + 1)
     return lowering.dag.add(Range(tuple(tuple(node(Cell(area.sheet, r, c)) for c in columns) for r in rows)))

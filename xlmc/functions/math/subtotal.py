@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.errors import ErrorCode
+from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions.arguments import leveled, refused, whole_numbers
 from xlmc.functions.logical import choose
 from xlmc.functions.lookup.picking import each_part, flattened
@@ -111,6 +111,7 @@ def _by_number(number: Value, compute: Callable[[int], Value]) -> Value:
 
     Raises:
         ShapeVaries: these are arrays of different shapes.
+        FormulaError: the number is an array, and so are these, of a size that does not fit it.
     """
     numbers, errors = whole_numbers(number)
     result = refused(number, ErrorCode.VALUE, errors)
@@ -119,6 +120,11 @@ def _by_number(number: Value, compute: Callable[[int], Value]) -> Value:
     shapes = {value.shape[1:] for value in found.values()} | ({()} if errors.any() else set())
     if number.numbers.ndim == 1 and len(shapes) > 1:
         raise ShapeVaries
+    try:
+        np.broadcast_shapes(number.shape[1:], *shapes)
+    except ValueError:
+        hint = "give one number, or arrays of one size"
+        raise FormulaError("AGGREGATE is given arrays of different sizes", hint=hint) from None
     for wanted, value in found.items():
         result = choose((numbers == wanted) & (errors == 0), value, result)
     return result

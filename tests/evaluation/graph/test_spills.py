@@ -70,3 +70,9 @@ def test_a_spill_whose_size_varies_is_what_each_trial_gives(book):
     cells = {**CELLS, **spilling("_xlfn._xlws.FILTER(A1:A3,A1:A3>1)", (1, 8, 2, 8), 2.0, 3.0), "J1": "=SUM(H1#)"}
     model = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1"})
     assert model.function({"a": [1.0, 5.0]})["sum"].tolist() == [5.0, 10.0]
+
+
+@pytest.mark.parametrize("formula", ["TAKE(D1:D3,A1)", "IF(A1>1,TAKE(D1:D3,A1),TAKE(D1:D3,1))"])
+def test_cells_of_a_spill_of_a_drawn_size_show_0_for_empty_ones(run, formula):
+    cells = spilling(formula, (1, 8, 1, 8), None) | {"Z1": "=SUM(LEN(H1#))", "Z2": '=SUM(--(H1#=""))'}
+    assert run(cells, {"A1": [1.0, 2.0, 3.0]}, ["Z1", "Z2"]).forecasts == [[1.0, 2.0, 3.0], [0.0, 0.0, 0.0]]

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import event, given, note, settings
 from hypothesis import strategies as st
 
+from xlmc.errors import ErrorCode
 from xlmc.evaluation.numpy.buffers import Buffers
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 
@@ -310,3 +311,20 @@ def test_a_long_chain_of_cells(run):
 
 def test_a_long_sum(run):
     assert run({"B1": "=A1" + "+A1" * 3999}, {"A1": [0.5]}, ["B1"]).forecasts == [[2000.0]]
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        ("COUNT(IFERROR(TAKE(B1:B3,A1),9))", [1.0, 2.0, 3.0]),
+        ("AGGREGATE(9,6,IFNA(TAKE(B1:B3,A1),9))", [4.0, 6.0, 15.0]),
+        ("COUNT(IFERROR(TAKE(B1:B3,A1),{1;2;3;4}))", [4.0, 4.0, 4.0]),
+        ("SUM(IFERROR(TAKE(B1:B2,2),A1:A4))", [9.0, 10.0, 11.0]),
+        ('LEN(IFERROR(INDEX(B1:B4,A1*0+4),"x"))', [1.0, 1.0, 1.0]),
+        ("SUM(LEN(IFERROR(TAKE(D1:D3,A1),7)))", [1.0, 2.0, 3.0]),
+    ],
+)
+def test_rescues_of_many_cells_and_of_blanks(run, formula, expected):
+    """`B3` is an error that only the third trial takes, and may hide in an array of its own size; `D1` on is empty."""
+    cells = {"A3": "=A1", "A4": 2.0, "B1": 4.0, "B2": 2.0, "B3": ErrorCode.NA, "Z1": f"={formula}"}
+    assert run(cells, {"A1": [1.0, 2.0, 3.0]}, ["Z1"]).forecasts == [expected]

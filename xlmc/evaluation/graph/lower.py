@@ -109,6 +109,12 @@ class Lowering:
         """The node of all that an array formula in a cell gives."""
         return self._arrays.get(cell, self.cell(cell))
 
+    def spilled(self, cell: Cell) -> int:
+        """The node of the cells that it fills, which show 0 for an empty one."""
+        place = self.array(cell)
+        constant_ = isinstance(self.dag.nodes[place], Constant)
+        return self.zero_if_blank(place) if constant_ else self.made(_SHOWN, (place,))
+
     def is_saved(self, cell: Cell) -> bool:
         """Whether formulas see what Excel saved in a formula's cell, rather than what it gives."""
         return self._audit or cell in self.saved

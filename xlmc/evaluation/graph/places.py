@@ -237,7 +237,7 @@ def _spilled(lowering: Lowering, arguments: Arguments, scope: Scope) -> int:
     if areas is not None:
         return lowering.lower(areas[0], scope)
     area = _referred(lowering, arguments, scope)
-    return lowering.array(Cell(area.sheet, area.top, area.left))
+    return lowering.spilled(Cell(area.sheet, area.top, area.left))
 
 
 def _summed_beside(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:

@@ -25,6 +25,14 @@ class Ragged(Value):
         super().__init__(np.zeros((len(trials), 0, 0)), np.zeros((1, 1, 1), np.uint8))
         object.__setattr__(self, "trials", trials)
 
+    @property
+    def has_errors(self) -> bool:
+        return any(trial.has_errors for trial in self.trials)
+
+    @property
+    def plain(self) -> bool:
+        return all(trial.plain for trial in self.trials)
+
     def take(self, index: NDArray[np.intp]) -> Value:
         """The trials of `index`."""
         return Ragged([self.trials[i] for i in index])

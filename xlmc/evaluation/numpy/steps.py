@@ -14,9 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Range, Rescue, Select, evaluated, uses
+from xlmc.evaluation.graph.ragged import Ragged, by_trial
 from xlmc.functions import Function, Kind
 from xlmc.functions.budget import ask_for_live
 from xlmc.functions.denormals import Underflow, flush, flushed
+from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value
 
@@ -71,7 +73,7 @@ def reads(dag: Dag, place: int) -> tuple[int, ...]:
     node = dag.nodes[place]
     if isinstance(node, Apply) and not node.function.takes_sets:
         return node.arguments
-    if isinstance(node, Rescue):
+    if isinstance(node, Rescue) and dag.sizes[node.instead] is None:
         return (node.value,)
     if isinstance(node, Apply) and _folded(dag, node) is not None:
         return tuple(cell for cell, _ in _cells(dag, node))  # also what does not count: it may turn out an error
@@ -89,9 +91,9 @@ def make_step(dag: Dag, place: int, buffer: int | None) -> Step:
             return _apply(dag, place, function, arguments, buffer)
         case Select(condition, yes, no) if dag.types[place] is not Kind.ANY:
             return _select(dag, place, (condition, yes, no), buffer)
-        case Rescue(value, _, _):
+        case Rescue(value, instead) if dag.sizes[instead] is None:
             return _rescue(dag, place, value)
-        case Select() | Range():
+        case Select() | Rescue() | Range():
             return _valued(dag, place)
         case _:
             raise TypeError(f"{node} is no step")
@@ -288,20 +290,31 @@ def _select(dag: Dag, place: int, parts: tuple[int, int, int], buffer: int | Non
 
 
 def _rescue(dag: Dag, place: int, value: int) -> Step:
-    """On the fast path nothing needs rescue."""
+    """On the fast path nothing needs rescue; a blank is 0 all the same.
+
+    Where many cells may stand in, there may be more of them than of the value, and it is evaluated whole.
+    """
 
     def step(frame: Frame) -> None:
         found = frame.values[value]
-        if isinstance(found, Value) and found.has_errors:
-            raise Departure
+        if isinstance(found, Value):
+            if found.has_errors:
+                raise Departure
+            found = _without_blanks(found)
         frame.values[place] = found if dag.types[place] is dag.types[value] else as_value(found, dag.types[value])
 
     return step
 
 
+def _without_blanks(value: Value) -> Value:
+    if isinstance(value, Ragged):
+        return by_trial(lambda trial: zero_if_blank(trial[0]), {0: value})
+    return zero_if_blank(value)
+
+
 def _valued(dag: Dag, place: int) -> Step:
     node = dag.nodes[place]
-    assert isinstance(node, Apply | Select | Range)
+    assert isinstance(node, Apply | Select | Rescue | Range)
     kind = dag.types[place]
 
     def step(frame: Frame) -> None:

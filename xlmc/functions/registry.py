@@ -355,7 +355,7 @@ def excel(
         row = Function(name, parameters, body, returns, ufunc, guard, volatile, dated, macintosh, facts, home)
         for key in (name, *aliases):
             if key in REGISTRY:
-                raise ValueError(f"{key} is registered twice")
+                raise ValueError(f"{key} is registered twice, in {REGISTRY[key].home} and in {home}")
             REGISTRY[key] = row
         return body
 

@@ -95,6 +95,19 @@ def test_a_record_without_the_goal_that_was_reached_is_refused(model, tmp_path, 
         replay(tmp_path / "r.xlsx")
 
 
+@pytest.mark.parametrize("asked", [{"until_accepted": 10_000}, {"precision": 1e-6}, {"adaptive": 6}], ids=str)
+def test_a_record_without_the_goal_that_was_not_reached_is_refused(model, tmp_path, asked):
+    run = model.simulate(trials=200, **asked)
+    assert not run.stopped.reached
+    run.save(tmp_path / "r.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "r.xlsx")
+    row = next(row for row in book["Record"].iter_rows() if row[0].value == f"settings.{next(iter(asked))}")
+    row[0].value = row[2].value = None
+    book.save(tmp_path / "r.xlsx")
+    with pytest.raises(WorkbookError, match="the record lacks the setting that asked for its goal, "):
+        replay(tmp_path / "r.xlsx")
+
+
 def test_nothing_was_accepted_in_the_run_that_should_have_accepted_nothing(model):
     assert model.simulate(**RUNS["nothing accepted"]).accepted == 0
 

@@ -155,7 +155,7 @@ def _replayed(
         of_the_model = (*structure_changes(record, found), *definition_changes(record, found))
         environment = tuple(environment_changes(record, found))
     except KeyError as error:
-        raise _lacking(error.args[0], version, path) from error
+        raise _lacking(repr(error.args[0]), version, path) from error
     changes = (*cell_changes(cells, contents_now(workbook, cells) | needed_contents(model)), *of_the_model)
     shown = SheetComparison()
     if path is not None:
@@ -202,7 +202,7 @@ def _recorded(record: Record, path: Path | None) -> tuple[dict[Cell, str], Setti
 
 
 def _refuse_incomplete(record: Record, settings: Settings, version: str, path: Path | None) -> None:
-    """Refuse a record without an entry that the repeat or what is said of it needs; the goal that was reached is one.
+    """Refuse a record without an entry that the repeat or what is said of it needs; the goal of the run is one.
 
     Raises:
         WorkbookError: it lacks one.
@@ -211,16 +211,19 @@ def _refuse_incomplete(record: Record, settings: Settings, version: str, path: P
         try:
             record[key]
         except KeyError as error:
-            raise _lacking(key, version, path) from error
+            raise _lacking(repr(key), version, path) from error
     by = str(record["end.by"])
     reached = GOALS.get(AcceptedTrials.key if by == "search" else by)
     if reached is not None and not isinstance(settings.stopping.goal, reached):
-        raise _lacking(f"settings.{reached.labels[0][0]}", version, path)
+        raise _lacking(repr(f"settings.{reached.labels[0][0]}"), version, path)
+    words = next((entry.value for entry in record.section("end").entries if entry.key == "goal"), None)
+    if words and not settings.stopping.has_goal:
+        raise _lacking(f"the setting that asked for its goal, {words}", version, path)
 
 
-def _lacking(key: object, version: str, path: Path | None) -> WorkbookError:
+def _lacking(what: str, version: str, path: Path | None) -> WorkbookError:
     edited = "It was edited" if version in ("", __version__) else f"xlmc {version} made it"
-    return WorkbookError(f"the record lacks {key!r}", where=path, hint=f"{edited}: run the workbook again")
+    return WorkbookError(f"the record lacks {what}", where=path, hint=f"{edited}: run the workbook again")
 
 
 def _repeat_command(record: Record) -> str:

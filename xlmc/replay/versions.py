@@ -122,6 +122,13 @@ RULES: Final = (
         _FEW_VALUES,
         _CORRELATED,
     ),
+    Rule(
+        "0.4.0",
+        "SUBTOTAL and AGGREGATE leave out the same of each of several ranges",
+        _calls("SUBTOTAL", "AGGREGATE"),
+    ),
+    Rule("0.4.0", "IFERROR and IFNA see the errors of arrays whose size is drawn", _calls("IFERROR", "IFNA")),
+    Rule("0.4.0", "A1# shows 0 for the empty cells of a range whose size is drawn", _calls("ANCHORARRAY")),
 )
 """In the order of versions."""
 

@@ -144,6 +144,7 @@ def first_in_line() -> None:
         hurry(process.pid)
 
     hurry("self")
+    # xlmc starts its processes in sessions of their own, by Popen and nothing else; the libraries' stay in this one.
     subprocess.Popen.__init__ = started  # type: ignore[method-assign]
 
 

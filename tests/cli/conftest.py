@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from fewer_sheets import CHARTS, SENSITIVITY, leave_out
 
 from xlmc.cli import main
-from xlmc.report.sheets import book
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -51,5 +51,4 @@ def whole_book() -> None:
 def short_books(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Results without charts and the sheets on sensitivity, which take longest, unless the test takes `whole_book`."""
     if "whole_book" not in request.fixturenames:
-        slow = ("Charts", "Pairs", "Sensitivity", "Filter limits")
-        monkeypatch.setattr(book, "SHEETS", [sheet for sheet in book.SHEETS if sheet.name not in slow])
+        leave_out(monkeypatch, *CHARTS, *SENSITIVITY)

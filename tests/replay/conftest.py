@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import openpyxl
 import pytest
+from fewer_sheets import CHARTS, SENSITIVITY, leave_out
 
 import xlmc
 from xlmc.report.sheets import book as result_sheets
@@ -16,8 +17,7 @@ def _short_books():
     `tests/cli/test_replay.py` has whole books.
     """
     with pytest.MonkeyPatch.context() as patch:
-        slow = ("Charts", "Pairs", "Sensitivity", "Filter limits")
-        patch.setattr(result_sheets, "SHEETS", [sheet for sheet in result_sheets.SHEETS if sheet.name not in slow])
+        leave_out(patch, *CHARTS, *SENSITIVITY)
         yield
 
 

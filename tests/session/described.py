@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from xlmc.definitions.stopping import GOALS
-from xlmc.definitions.tables.settings import _readers
+from xlmc.definitions.tables.settings import _settings
 from xlmc.distributions import FAMILIES
 from xlmc.evaluation.engines import ENGINES
 from xlmc.report.sheets.book import SHEETS
@@ -37,8 +37,8 @@ def _expected() -> Iterator[tuple[str, str, str]]:
     for option in (option for goal in GOALS.values() for option in goal.options):
         typed = f"--{option.name.replace('_', '-')}"
         yield "command-line.md", typed, f"`{typed}`"
-    for setting in _readers(ENGINES):
-        if setting not in OF_EARLIER_BOOKS:
-            yield "workbooks.md", setting, f"`{setting}`"
+    for setting in _settings(ENGINES).values():
+        if setting.name not in OF_EARLIER_BOOKS:
+            yield "workbooks.md", setting.name, f"`{setting.name}`"
     for family in FAMILIES.values():
         yield "distributions.md", family.name, f"\n## {family.name}\n"

@@ -123,7 +123,8 @@ class WholeGoal(Goal):
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> Self:
         """See `Goal`."""
-        return cls(int(cls(given[cls.options[0].name]).number))
+        checked = cls(given[cls.options[0].name])  # before `int`, which would make 50 of 50.5
+        return cls(int(checked.number))
 
 
 class AcceptedTrials(WholeGoal):

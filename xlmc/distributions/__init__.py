@@ -6,6 +6,7 @@ To add one, write a module beside this one with a subclass of `Family`, list it 
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Final
 
 from xlmc.distributions.base import DataError, DataSpec, Family, Fault, ParameterSpec
@@ -102,6 +103,12 @@ FAMILIES: Final[dict[str, Family]] = {family.name: family for family in (*_CONTI
 """Every family by its name."""
 
 
+@cache
+def _spellings() -> dict[str, Family]:
+    """Every plain name that a person may type -> its family."""
+    return {plain(name): family for family in FAMILIES.values() for name in (family.name, *family.aliases)}
+
+
 def family_named(name: str, where: object = None) -> Family:
     """The family a person means; case, blanks, underscores and hyphens do not count.
 
@@ -112,8 +119,7 @@ def family_named(name: str, where: object = None) -> Family:
     Raises:
         DefinitionError: no family has that name.
     """
-    spellings = {plain(each): family for family in FAMILIES.values() for each in (family.name, *family.aliases)}
-    family = spellings.get(plain(name))
+    family = _spellings().get(plain(name))
     if family is None:
         message = f"{name.strip()!r} is not a distribution of this version"
         raise DefinitionError(message, where=where, hint=did_you_mean(name, FAMILIES))

@@ -116,7 +116,7 @@ def simulate(
 
 
 class _EndedError(Exception):
-    """Somebody, or the time, ended a search."""
+    """Ctrl-C or the time limit stopped a search."""
 
     def __init__(self, stopped: Stopped) -> None:
         super().__init__(stopped.because)

@@ -27,6 +27,7 @@ _STRATA: Final = 16_384
 leave some 4·10⁻⁹ where the forecast is smooth."""
 
 _STREAMS: Final = f"{GENERATOR}: a stream for each assumption, seeded by (seed, name), positioned by trial number"
+_SORTED: Final = f"{_STREAMS}; a second stream for each puts the intervals of a replicate in order"
 
 
 class Margin(Protocol):
@@ -111,7 +112,7 @@ _ROWS: Final = (
     SamplingMethod(
         "lhs",
         "Latin hypercube",
-        f"{_STREAMS}; a second stream for each puts the intervals of a replicate in order",
+        _SORTED,
         _latin_hypercube,
         _intervals(_STRATA),
         also=("latinhypercube",),
@@ -120,7 +121,7 @@ _ROWS: Final = (
     SamplingMethod(
         "lhs500",
         "Latin hypercube in blocks of 500",
-        f"{_STREAMS}; a second stream for each puts the intervals of a replicate in order",
+        _SORTED,
         _latin_hypercube,
         _intervals(500),
         compared=False,

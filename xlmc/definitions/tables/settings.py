@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from xlmc.definitions.findings import Findings
 from xlmc.definitions.model import Settings
@@ -30,6 +30,13 @@ _LOGNORMS = ("@RISK", "XLRisk")
 _Reader = Callable[[Row, Findings], Any]
 
 
+class _Setting(NamedTuple):
+    """A setting as people write it, and what reads its row."""
+
+    name: str
+    read: _Reader
+
+
 def read_settings(
     workbook: Workbook, tables: list[DefinitionTable], engines: Collection[str], findings: Findings
 ) -> tuple[Settings, float]:
@@ -41,13 +48,13 @@ def read_settings(
         engines: the names that the setting Engine may have.
         findings: gets the mistakes.
     """
-    readers = _readers(engines)
+    settings = _settings(engines)
     for extra in tables[1:]:
         message = f"{tables[0].table.name} and {extra.table.name} both hold settings"
         findings.problem(message, extra.where, "Keep one table, and delete the one that came with a copied sheet")
     values: dict[str, Any] = {}
     for row in rows_of(workbook, tables[:1], _KNOWN, _KNOWN, findings):
-        findings.attempt(_take, row, values, readers, findings)
+        findings.attempt(_take, row, values, settings, findings)
     central = values.pop("range%", None)
     ends = read_stopping(tables, values, findings)
     if ends.has_goal:
@@ -58,7 +65,7 @@ def read_settings(
     )
 
 
-def _take(row: Row, values: dict[str, Any], readers: Mapping[str, _Reader], findings: Findings) -> None:
+def _take(row: Row, values: dict[str, Any], settings: Mapping[str, _Setting], findings: Findings) -> None:
     """Add the row's setting to `values`, by its plain name.
 
     Raises:
@@ -66,9 +73,8 @@ def _take(row: Row, values: dict[str, Any], readers: Mapping[str, _Reader], find
     """
     typed = required_text(row, "Setting")
     key, where = plain(typed), row.cell("Setting")
-    reader = {plain(name): each for name, each in readers.items()}.get(key)
-    if reader is None:
-        hint = did_you_mean(typed, readers)
+    if key not in settings:
+        hint = did_you_mean(typed, (setting.name for setting in settings.values()))
         raise DefinitionError(f"There is no setting {typed!r}", where=where, hint=hint)
     if key in values:
         raise DefinitionError(f"{typed} is set twice", where=where, hint="Keep one of the two rows")
@@ -76,7 +82,7 @@ def _take(row: Row, values: dict[str, Any], readers: Mapping[str, _Reader], find
     if not row.filled("Value"):
         message = f"{typed} has no value"
         raise DefinitionError(message, where=row.cell("Value"), hint="Fill in Value, or delete the row")
-    values[key] = reader(row, findings)
+    values[key] = settings[key].read(row, findings)
 
 
 def _trials(row: Row, _findings: Findings) -> int:
@@ -126,9 +132,9 @@ def _range(row: Row, findings: Findings) -> float:
     return central_share("Range %", number_of(row, "Range %"), row.cell("Value"), findings)
 
 
-def _readers(engines: Collection[str]) -> Mapping[str, _Reader]:
-    """Setting -> reader of its row."""
-    return {
+def _settings(engines: Collection[str]) -> dict[str, _Setting]:
+    """Plain name -> the setting."""
+    readers: dict[str, _Reader] = {
         "Trials": _trials,
         "Seed": _seed,
         "Sampling": _sampling,
@@ -138,3 +144,4 @@ def _readers(engines: Collection[str]) -> Mapping[str, _Reader]:
         **stopping_settings(),
         "Lognorm": _lognorm,
     }
+    return {plain(name): _Setting(name, read) for name, read in readers.items()}

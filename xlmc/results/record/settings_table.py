@@ -23,7 +23,7 @@ FLOAT64: Final = "float64"
 
 
 def in_float32(version: str, where: Path | None = None) -> WorkbookError:
-    """What is said of a run that was.
+    """The refusal of a run that was computed in float32.
 
     Args:
         version: the xlmc that made it; empty where nothing says so.

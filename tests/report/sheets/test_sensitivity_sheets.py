@@ -232,3 +232,16 @@ def test_what_is_noise_reads_noise_in_the_table(make, opened):
     flow = Flow()
     write_influences(flow, sensitivities(run)["x"], False)
     assert str(flow.html).count(">noise<") == 4
+
+
+def test_units_that_read_like_a_reference_stay_words(make):
+    run = make.simulate(
+        {"A1": 1.0, "B1": "=A1^2"},
+        [make.uniform("a", "A1", 0.0, 2.0, base=1.0)],
+        [make.forecast("f", "B1", units="Model!D50")],
+        [make.filter("kept", "B1", at_least=0.5)],
+    )
+    with zipfile.ZipFile(io.BytesIO(build_sheets(run))) as package:
+        charts = [package.read(name).decode() for name in package.namelist() if name.startswith("xl/charts/chart")]
+    assert [xml for xml in charts if "(Model!\N{WORD JOINER}D50)</a:t>" in xml]
+    assert {f for xml in charts for f in re.findall(r"<c:f>(.*?)</c:f>", xml) if "D50" in f} == set()

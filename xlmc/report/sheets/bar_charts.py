@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from xlmc.report.sheets.chart_style import axis_format
+from xlmc.report.sheets.chart_style import axis_format, no_reference
 from xlmc.report.sheets.ranges import TableAt
 from xlmc.report.sheets.styles import DARK, GRID, INK, LIGHT
 
@@ -43,7 +43,7 @@ def bar_chart(
     errors = {"type": "custom", "plus_values": at.formula(error), "minus_values": at.formula(error), "line": _WHISKER}
     chart.add_series(
         {
-            "name": title,
+            "name": no_reference(title),
             "categories": at.column(0),
             "values": at.column(value),
             "fill": {"color": DARK},
@@ -92,7 +92,7 @@ def _axes(chart: ChartBar, axis: str, number: str) -> None:
     )
     chart.set_x_axis(
         {
-            "name": axis,
+            "name": no_reference(axis),
             "name_font": {**FONT, "bold": False},
             "num_font": FONT,
             "num_format": axis_format(number),
@@ -105,7 +105,9 @@ def _axes(chart: ChartBar, axis: str, number: str) -> None:
 
 def dressed(chart: Any, title: str) -> Any:
     """The chart with its title, in its size."""
-    chart.set_title({"name": title, "name_font": {"size": 12, "bold": True, "color": INK}, "overlay": False})
+    chart.set_title(
+        {"name": no_reference(title), "name_font": {"size": 12, "bold": True, "color": INK}, "overlay": False}
+    )
     chart.set_size({"width": SIZE[0], "height": SIZE[1]})
     chart.set_chartarea({"border": {"color": GRID}})
     return chart

@@ -1,4 +1,4 @@
-"""What all charts have in common: fonts, axes, size. Their texts are references to cells, so that none is a formula."""
+"""What all charts have in common: fonts, axes, size. Texts of the workbook: references to cells, or `no_reference`."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ __all__ = [
     "axis_format",
     "bounds",
     "finish",
+    "no_reference",
     "straight",
     "upwards",
 ]
@@ -50,6 +51,18 @@ def axis_format(number_format: str) -> str:
     '0%;"−"0%'
     """
     return f'{number_format};"−"{number_format}'
+
+
+def no_reference(text: str) -> str:
+    r"""The text of a title or an axis so that it stays text, whatever it says.
+
+    XlsxWriter takes words that hold `Sheet!A1`, say as units, for a reference, and writes one that does not exist. An
+    invisible word joiner (U+2060) behind the exclamation mark keeps them words.
+
+    >>> ascii(no_reference("Change (Model!D50)"))
+    "'Change (Model!\\u2060D50)'"
+    """
+    return text.replace("!", "!\u2060")
 
 
 def straight(chart: Any) -> Any:
@@ -90,7 +103,7 @@ def across(name: Reference | None = None, **more: Any) -> dict[str, Any]:
 def upwards(name: str | Reference, number_format: str = "#,##0", **more: Any) -> dict[str, Any]:
     """The vertical axis."""
     return {
-        "name": name,
+        "name": no_reference(name) if isinstance(name, str) else name,
         "name_font": {**FONT, "bold": False, "rotation": -90},
         "num_font": FONT,
         "num_format": axis_format(number_format),

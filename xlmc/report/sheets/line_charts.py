@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.report.sheets.bar_charts import AXIS, FONT, dressed
-from xlmc.report.sheets.chart_style import axis_format, straight
+from xlmc.report.sheets.chart_style import axis_format, no_reference, straight
 from xlmc.report.sheets.ranges import TableAt
 from xlmc.report.sheets.styles import GRID
 
@@ -37,7 +37,9 @@ def spider_chart(book: Workbook, at: TableAt, title: str, axis: str, first: int,
             }
         )
     chart.set_x_axis({"name": "Assumption at this percentile of its own distribution", **_axis(), "line": AXIS})
-    chart.set_y_axis({"name": axis, **_axis(upwards=True), "num_format": axis_format("General"), **_GRIDLINES})
+    chart.set_y_axis(
+        {"name": no_reference(axis), **_axis(upwards=True), "num_format": axis_format("General"), **_GRIDLINES}
+    )
     chart.set_legend({"position": "right", "font": FONT})
     return dressed(chart, title)
 
@@ -81,9 +83,11 @@ def limit_chart(
         )
     plain = {"visible": False}
     form = axis_format("General")
-    chart.set_x_axis({"name": across, **_axis(), "num_format": form, "line": AXIS, "major_gridlines": plain})
+    chart.set_x_axis(
+        {"name": no_reference(across), **_axis(), "num_format": form, "line": AXIS, "major_gridlines": plain}
+    )
     up = {"num_format": axis_format(number), **(ends or {}), **_GRIDLINES}
-    chart.set_y_axis({"name": axis, **_axis(upwards=True), **up})
+    chart.set_y_axis({"name": no_reference(axis), **_axis(upwards=True), **up})
     chart.set_legend({"position": "right", "font": FONT} if len(tables) > 1 else {"none": True})
     return dressed(chart, title)
 

@@ -3,8 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.distributions.base import DataError
 from xlmc.distributions.custom import Custom
+from xlmc.distributions.parameters import DataError
 
 B = np.nan
 

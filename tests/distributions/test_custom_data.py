@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from xlmc.distributions.base import DataError
 from xlmc.distributions.custom_data import custom_pieces, rows_of, value_pieces, weighted_pieces
+from xlmc.distributions.parameters import DataError
 from xlmc.distributions.pieces import Piece
 
 B = None  # a blank cell

@@ -3,8 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.distributions.base import DataError
 from xlmc.distributions.discrete import Discrete
+from xlmc.distributions.parameters import DataError
 
 
 def test_values_and_probabilities():

@@ -3,9 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.distributions.base import DataError
 from xlmc.distributions.discrete_values import DUniform
 from xlmc.distributions.empirical import Empirical
+from xlmc.distributions.parameters import DataError
 
 COLUMN = np.array([[4.0], [1.0], [np.nan], [2.0], [1.0]])
 

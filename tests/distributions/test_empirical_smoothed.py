@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from xlmc.distributions import Truncated
-from xlmc.distributions.base import DataError
 from xlmc.distributions.empirical_smoothed import EmpiricalSmoothed, silverman
+from xlmc.distributions.parameters import DataError
 
 RNG = np.random.default_rng(20010311)
 SAMPLES = {

@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from xlmc.distributions import FAMILIES, Truncated
-from xlmc.distributions.base import TRIED_U, DataError
+from xlmc.distributions.base import TRIED_U
+from xlmc.distributions.parameters import DataError
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.sampling.draws import Draw
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from xlmc.distributions import FAMILIES
-from xlmc.distributions.matching import match_percentiles
+from xlmc.distributions.by_percentiles import match_percentiles
 
 # The members that percentiles are taken from.
 MEMBERS = [

@@ -10,8 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.distributions import FAMILIES, Truncated
-from xlmc.distributions.whole_numbers import WholeNumbers
-from xlmc.distributions.whole_search import smallest
+from xlmc.distributions.whole_numbers import WholeNumbers, smallest
 
 INF = math.inf
 FEW = {

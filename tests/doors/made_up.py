@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from xlmc import distributions
-from xlmc.distributions.base import HIGH, Family, ParameterSpec
+from xlmc.distributions.base import Family
+from xlmc.distributions.parameters import HIGH, ParameterSpec
 from xlmc.evaluation import engines
 from xlmc.sampling import methods
 from xlmc.sampling.streams import Stream

@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from xlmc.sampling.copula import GaussianCopula
-from xlmc.sampling.nearest import nearest_correlation
+from xlmc.sampling.copula import GaussianCopula, nearest_correlation
 
 N = 200_000
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.sampling.nearest import nearest_correlation
+from xlmc.sampling.copula import nearest_correlation
 
 
 def symmetric(k, seed):

@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.errors import SimulationError
-from xlmc.sampling.directions import DIMENSIONS
 from xlmc.sampling.methods import METHODS, REPLICATES
 from xlmc.sampling.plan import Plan
+from xlmc.sampling.sobol import DIMENSIONS
 
 STRATIFIED = [method for method in METHODS if method != "mc"]
 

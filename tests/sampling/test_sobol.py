@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from xlmc.sampling.directions import DIMENSIONS, PRECISION, direction_numbers
-from xlmc.sampling.sobol import ScrambledSobol
+from xlmc.sampling.sobol import DIMENSIONS, PRECISION, ScrambledSobol, direction_numbers
 
 SEED = 999
 

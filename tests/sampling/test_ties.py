@@ -9,9 +9,8 @@ import pytest
 from scipy import stats
 
 from xlmc.distributions import family_named
-from xlmc.sampling.copula import GaussianCopula
+from xlmc.sampling.copula import GaussianCopula, Ties, bounds, parameter, spearman
 from xlmc.sampling.draws import Draw
-from xlmc.sampling.ties import Ties, bounds, parameter, spearman, ties_of
 
 HALF, TENTH = Ties(np.array([0.5])), Ties(np.array([0.9]))
 DIE = Ties(np.arange(1, 6) / 6)
@@ -92,7 +91,7 @@ def test_solved_parameters_that_contradict_each_other_are_repaired():
     ],
 )
 def test_the_values_of_a_draw(name, parameters, cuts):
-    assert ties_of(Draw("x", family_named(name), parameters)).cuts == pytest.approx(cuts, abs=1e-12)
+    assert Draw("x", family_named(name), parameters).ties().cuts == pytest.approx(cuts, abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -100,10 +99,10 @@ def test_the_values_of_a_draw(name, parameters, cuts):
     [("Normal", (1.0, 2.0)), ("Uniform", (0.0, 1.0)), ("Uniform", (2.0, 2.0)), ("Poisson", (1e7,)), ("Yes-No", ("p",))],
 )
 def test_no_ties_that_matter_or_are_known(name, parameters):
-    assert ties_of(Draw("x", family_named(name), parameters)) is None
+    assert Draw("x", family_named(name), parameters).ties() is None
 
 
 def test_many_values_are_taken_together():
-    ties = ties_of(Draw("x", family_named("Poisson"), (400.0,)))
+    ties = Draw("x", family_named("Poisson"), (400.0,)).ties()
     assert ties is None or ties.cuts.size < 600
     assert spearman(Ties(np.arange(1, 100) / 100), None, 0.5) == pytest.approx(6 / math.pi * math.asin(0.25), abs=1e-4)

@@ -23,7 +23,7 @@ class WholeNumber(click.ParamType):  # type: ignore[type-arg]  # no generic befo
         Raises:
             BadParameter: it is none, or lies outside.
         """
-        from xlmc.definitions.tables.typed_numbers import typed_whole_number
+        from xlmc.definitions.amounts import typed_whole_number
 
         found = value if isinstance(value, int) else typed_whole_number(value)
         if found is None:

@@ -6,20 +6,23 @@ from collections.abc import Collection
 
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.findings import Findings
-from xlmc.definitions.in_cells.calls import InCells, read_in_cells
-from xlmc.definitions.in_cells.correlations import in_cell_correlations
-from xlmc.definitions.in_cells.forecasts import in_cell_forecasts
+from xlmc.definitions.in_cells.calls import InCells, in_cell_correlations, in_cell_forecasts, read_in_cells
 from xlmc.definitions.model import Definitions, Settings, name_key
 from xlmc.definitions.tables.assumptions import read_assumptions
-from xlmc.definitions.tables.checks import read_checks
 from xlmc.definitions.tables.correlations import read_correlations
-from xlmc.definitions.tables.data_tables import TABLE_REASON, TablesOfRun, tables_of_run
-from xlmc.definitions.tables.filters import read_filters
+from xlmc.definitions.tables.filters import read_checks, read_filters
 from xlmc.definitions.tables.forecasts import read_forecasts
 from xlmc.definitions.tables.identity import Claims
 from xlmc.definitions.tables.settings import read_settings
 from xlmc.definitions.tables.tables import DefinitionTable, definition_tables, holds_rows
-from xlmc.definitions.unavailable import faults_of, remark_on_tables, remark_on_unavailable
+from xlmc.definitions.unavailable import (
+    TABLE_REASON,
+    TablesOfRun,
+    faults_of,
+    remark_on_tables,
+    remark_on_unavailable,
+    tables_of_run,
+)
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import Workbook
 

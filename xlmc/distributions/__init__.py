@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Final
 
-from xlmc.distributions.base import DataError, DataSpec, Family, Fault, ParameterSpec
+from xlmc.distributions.base import Family
 from xlmc.distributions.beta import Beta
 from xlmc.distributions.beta_pert import BetaPERT
 from xlmc.distributions.binomial import Binomial
@@ -37,6 +37,7 @@ from xlmc.distributions.naming import did_you_mean, plain
 from xlmc.distributions.negative_binomial import NegativeBinomial
 from xlmc.distributions.negbin import Negbin
 from xlmc.distributions.normal import Normal
+from xlmc.distributions.parameters import DataError, DataSpec, Fault, ParameterSpec
 from xlmc.distributions.pareto import Pareto
 from xlmc.distributions.piecewise import Piecewise
 from xlmc.distributions.poisson import Poisson

@@ -11,49 +11,19 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.distributions.data_spec import DataError, DataSpec
+from xlmc.distributions.parameters import Constraint, DataSpec, Fault, ParameterSpec, Role, show
 
-__all__ = [
-    "HIGH",
-    "LARGEST",
-    "LIKELIEST",
-    "LOCATION",
-    "LOW",
-    "MEAN",
-    "SCALE",
-    "SHAPE",
-    "SMALLEST_U",
-    "STD_DEV",
-    "TRIED_U",
-    "Array",
-    "DataError",
-    "DataSpec",
-    "Family",
-    "Fault",
-    "ParameterSpec",
-    "Role",
-    "Rule",
-    "Values",
-    "above_zero",
-    "at_most",
-    "ends",
-    "rising",
-    "share",
-    "show",
-]
+__all__ = ["LARGEST", "SMALLEST_U", "TRIED_U", "Array", "Family", "Values", "ends", "share"]
 
 Array = NDArray[np.float64]
 Values = float | Array
 """A number, or one number for each trial, `(n,)`."""
 
-Role = Literal["location", "scale", "rate", "log scale", "shape", "ordered"]
-"""What a parameter does: moves, stretches or bends the distribution; those that are ordered rise in their order."""
 
 SMALLEST_U = 2.0**-54
 """What u = 0 stands for where the quantile of 0 is infinite: half a step of the grid k·2^-53 that u comes from."""
@@ -66,83 +36,6 @@ TRIED_U = (2.0**-80, SMALLEST_U, 1e-12, 1e-3, 0.1, 0.3, 0.5, 0.7, 0.9, 0.999, 1 
 """Where quantiles are tried out before a run. No sampling method asks for one beyond the first and the last."""
 
 
-@dataclass(frozen=True, slots=True)
-class ParameterSpec:
-    """A parameter: the key the code uses and the column headings people may write, the usual one first.
-
-    With a default the parameter may be left out, and its column blank.
-    """
-
-    key: str
-    headings: tuple[str, ...]
-    default: float | None = None
-
-    @property
-    def heading(self) -> str:
-        return self.headings[0]
-
-
-LOW = ParameterSpec("low", ("Low", "Minimum", "Min"))
-HIGH = ParameterSpec("high", ("High", "Maximum", "Max"))
-LIKELIEST = ParameterSpec("likeliest", ("Likeliest", "Mode", "Most likely"))
-MEAN = ParameterSpec("mean", ("Mean", "Average"))
-STD_DEV = ParameterSpec("std_dev", ("Std dev", "Standard deviation", "SD", "Std. dev.", "St dev"))
-LOCATION = ParameterSpec("location", ("Location", "Loc"), default=0.0)
-SCALE = ParameterSpec("scale", ("Scale",))
-SHAPE = ParameterSpec("shape", ("Shape",))
-
-
-@dataclass(frozen=True, slots=True)
-class Rule:
-    """What the parameters must keep.
-
-    Attributes:
-        blames: the key of the parameter whose cell a person should look at first.
-        holds: of the parameters in order; works on numbers and on `(n,)` arrays. False where a parameter is NaN.
-        message: what is wrong when it does not hold; `{key}` stands for the value of a parameter.
-        hint: what to do then.
-    """
-
-    blames: str
-    holds: Callable[..., Any]
-    message: str
-    hint: str
-
-
-def above_zero(parameters: Sequence[ParameterSpec], key: str, hint: str = "Give a positive number") -> Rule:
-    """The parameter with this key must be positive."""
-    place, heading = _place_of(parameters, key)
-    return Rule(key, lambda *values: values[place] > 0, f"{heading} ({{{key}}}) must be above 0", hint)
-
-
-def at_most(parameters: Sequence[ParameterSpec], key: str, limit: float, hint: str) -> Rule:
-    """The parameter with this key has a largest value."""
-    place, heading = _place_of(parameters, key)
-    message = f"{heading} ({{{key}}}) must be at most {show(limit)}"
-    return Rule(key, lambda *values: values[place] <= limit, message, hint)
-
-
-def rising(parameters: Sequence[ParameterSpec], lower: str, upper: str) -> Rule:
-    """The parameter `lower` must not be above the parameter `upper`."""
-    (left, below), (right, above) = _place_of(parameters, lower), _place_of(parameters, upper)
-    message = f"{below} ({{{lower}}}) is above {above} ({{{upper}}})"
-    hint = "Exchange the two, or correct the wrong one"
-    return Rule(lower, lambda *values: values[left] <= values[right], message, hint)
-
-
-def _place_of(parameters: Sequence[ParameterSpec], key: str) -> tuple[int, str]:
-    return next((place, spec.heading) for place, spec in enumerate(parameters) if spec.key == key)
-
-
-@dataclass(frozen=True, slots=True)
-class Fault:
-    """A broken rule in words, with the key of the parameter to look at first."""
-
-    key: str
-    message: str
-    hint: str
-
-
 class Family(ABC):
     """A family of distributions. The parameters of every method follow the order of `parameters`, or go by key.
 
@@ -153,7 +46,7 @@ class Family(ABC):
         rules: what the parameters must keep.
         open_below: the quantile of 0 is minus infinity, so u = 0 is read as `SMALLEST_U`.
         always_finite: every draw is a finite number if the parameters keep every rule; otherwise draws are tried out.
-        roles: of each parameter, so that percentiles may stand in its place; empty where they may not (`matching.py`).
+        roles: of each parameter, so that percentiles may stand in its place; empty where they may not.
         data: what a family that is built from data needs; None for one that has parameters alone.
         formula: its density, distribution or quantile function in the headings of its parameters, for people.
         source: where the formula is written down.
@@ -163,7 +56,7 @@ class Family(ABC):
     name: str
     aliases: tuple[str, ...] = ()
     parameters: tuple[ParameterSpec, ...]
-    rules: tuple[Rule, ...] = ()
+    rules: tuple[Constraint, ...] = ()
     open_below: bool = False
     always_finite: bool = False
     roles: tuple[Role, ...] = ()
@@ -374,8 +267,3 @@ def ends(low: float, high: float, *parameters: Values) -> tuple[Array, Array]:
     """Two fixed ends of the support in the shape of the parameters, e.g. 0 and infinity."""
     shape = np.broadcast_shapes(*(np.shape(each) for each in parameters))
     return np.full(shape, low), np.full(shape, high)
-
-
-def show(value: float) -> str:
-    """A number as a person would write it."""
-    return format(value, ".12g")

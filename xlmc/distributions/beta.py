@@ -4,18 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.distributions.base import (
-    HIGH,
-    LOW,
-    Array,
-    Family,
-    ParameterSpec,
-    Values,
-    above_zero,
-    at_most,
-    rising,
-    share,
-)
+from xlmc.distributions.base import Array, Family, Values, share
+from xlmc.distributions.parameters import HIGH, LOW, ParameterSpec, above_zero, at_most, rising
 
 __all__ = ["Beta"]
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.distributions.base import HIGH, LIKELIEST, LOW, Array, Family, Values, share
+from xlmc.distributions.base import Array, Family, Values, share
 from xlmc.distributions.beta import Beta
+from xlmc.distributions.parameters import HIGH, LIKELIEST, LOW
 from xlmc.distributions.triangular import Triangular
 
 __all__ = ["BetaPERT"]

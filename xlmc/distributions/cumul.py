@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from xlmc.distributions.base import Array, DataError, DataSpec, Values, show
-from xlmc.distributions.between import Between, data_column
-from xlmc.distributions.piecewise import Piecewise
+from xlmc.distributions.base import Array, Values
+from xlmc.distributions.parameters import DataError, DataSpec, show
+from xlmc.distributions.piecewise import Between, Piecewise, data_column
 
 __all__ = ["Cumul"]
 

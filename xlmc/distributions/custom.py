@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from xlmc.distributions.base import Array, DataSpec
+from xlmc.distributions.base import Array
 from xlmc.distributions.custom_data import custom_pieces, rows_of
+from xlmc.distributions.parameters import DataSpec
 from xlmc.distributions.pieces import Pieces
 
 __all__ = ["Custom"]

@@ -21,7 +21,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from xlmc.distributions.base import LARGEST, Array, DataError, show
+from xlmc.distributions.base import LARGEST, Array
+from xlmc.distributions.parameters import DataError, show
 from xlmc.distributions.pieces import Piece
 
 __all__ = ["MOST_VALUES", "custom_pieces", "rows_of", "value_pieces", "weighted_pieces"]

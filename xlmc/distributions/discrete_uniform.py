@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.distributions.base import HIGH, LOW, Array, ParameterSpec, Rule, Values
+from xlmc.distributions.base import Array, Values
+from xlmc.distributions.parameters import HIGH, LOW, Constraint, ParameterSpec
 from xlmc.distributions.whole_numbers import MOST, WholeNumbers
 
 __all__ = ["DiscreteUniform"]
 
 
-def _whole(spec: ParameterSpec, place: int) -> Rule:
-    return Rule(
+def _whole(spec: ParameterSpec, place: int) -> Constraint:
+    return Constraint(
         spec.key,
         lambda *ends: (abs(ends[place]) <= MOST) & (ends[place] == np.floor(ends[place])),
         f"{spec.heading} ({{{spec.key}}}) must be a whole number from -{MOST:,.0f} to {MOST:,.0f}",
@@ -40,7 +41,7 @@ class DiscreteUniform(WholeNumbers):
     rules = (
         _whole(LOW, 0),
         _whole(HIGH, 1),
-        Rule(
+        Constraint(
             "low",
             lambda low, high: low <= high,
             "Low ({low}) is above High ({high})",

@@ -14,8 +14,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from xlmc.distributions.base import LARGEST, Array, DataError, DataSpec, Family, Values, show
+from xlmc.distributions.base import LARGEST, Array, Family, Values
 from xlmc.distributions.custom_data import rows_of, value_pieces
+from xlmc.distributions.parameters import DataError, DataSpec, show
 
 __all__ = ["REACH", "EmpiricalSmoothed", "silverman"]
 

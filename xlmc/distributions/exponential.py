@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.distributions.base import Array, Family, ParameterSpec, Values, above_zero, ends
+from xlmc.distributions.base import Array, Family, Values, ends
+from xlmc.distributions.parameters import ParameterSpec, above_zero
 
 __all__ = ["Exponential"]
 

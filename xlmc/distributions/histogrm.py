@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from xlmc.distributions.base import HIGH, LOW, Array, DataError, DataSpec, Family, Values, show
-from xlmc.distributions.between import BELOW, data_column
-from xlmc.distributions.piecewise import Piecewise
+from xlmc.distributions.base import Array, Family, Values
+from xlmc.distributions.parameters import HIGH, LOW, DataError, DataSpec, show
+from xlmc.distributions.piecewise import BELOW, Piecewise, data_column
 
 __all__ = ["Histogrm"]
 

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from xlmc.distributions.base import Array, Rule, Values
+from xlmc.distributions.base import Array, Values
+from xlmc.distributions.parameters import Constraint
 from xlmc.distributions.whole_numbers import POPULATION, SUCCESS, TRIALS, WholeNumbers, whole
 
 __all__ = ["Hypergeometric"]
@@ -40,13 +41,13 @@ class Hypergeometric(WholeNumbers):
         whole(parameters, SUCCESS, 0),
         whole(parameters, TRIALS, 0),
         whole(parameters, POPULATION, 1),
-        Rule(
+        Constraint(
             "success",
             lambda success, _trials, population: success <= population,
             "Success ({success}) is above Population ({population})",
             "Success counts those of the kind among the whole population",
         ),
-        Rule(
+        Constraint(
             "trials",
             lambda _success, trials, population: trials <= population,
             "Trials ({trials}) is above Population ({population})",

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.distributions.base import LOCATION, Array, Family, ParameterSpec, Rule, Values, above_zero, ends
+from xlmc.distributions.base import Array, Family, Values, ends
+from xlmc.distributions.parameters import LOCATION, Constraint, ParameterSpec, above_zero
 
 __all__ = ["Lognorm2"]
 
@@ -31,7 +32,7 @@ class Lognorm2(Family):
     roles = ("location", "log scale", "shape")
     rules = (
         above_zero(parameters, "sigma"),
-        Rule(
+        Constraint(
             "mu",
             lambda _location, mu, sigma: mu + 9 * sigma <= 345,
             "Mu ({mu}) and Sigma ({sigma}) give values above 1E150",

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.distributions.base import LOCATION, MEAN, STD_DEV, Array, Family, Rule, Values, above_zero, ends
+from xlmc.distributions.base import Array, Family, Values, ends
 from xlmc.distributions.lognorm2 import Lognorm2
+from xlmc.distributions.parameters import LOCATION, MEAN, STD_DEV, Constraint, above_zero
 
 __all__ = ["Lognormal"]
 
@@ -29,7 +30,7 @@ class Lognormal(Family):
     parameters = (LOCATION, MEAN, STD_DEV)
     roles = ("ordered", "ordered", "scale")
     rules = (
-        Rule(
+        Constraint(
             "mean",
             lambda location, mean, _std_dev: mean > location,
             "Mean ({mean}) must be above Location ({location})",

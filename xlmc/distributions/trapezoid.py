@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.distributions.base import HIGH, LOW, Array, Family, ParameterSpec, Rule, Values, share
+from xlmc.distributions.base import Array, Family, Values, share
+from xlmc.distributions.parameters import HIGH, LOW, Constraint, ParameterSpec
 
 __all__ = ["Trapezoid"]
 
@@ -41,25 +42,25 @@ class Trapezoid(Family):
     elsewhere = ("@RISK General(low, high, {low likeliest, high likeliest}, {1, 1})",)
     roles = ("ordered", "ordered", "ordered", "ordered")
     rules = (
-        Rule(
+        Constraint(
             "low",
             lambda low, _b, _c, high: low <= high,
             "Low ({low}) is above High ({high})",
             "Exchange the two, or correct the wrong one",
         ),
-        Rule(
+        Constraint(
             "low_likeliest",
             lambda low, low_likeliest, _c, _high: low <= low_likeliest,
             "Low likeliest ({low_likeliest}) is below Low ({low})",
             "The four must rise: Low, Low likeliest, High likeliest, High",
         ),
-        Rule(
+        Constraint(
             "low_likeliest",
             lambda _low, low_likeliest, high_likeliest, _high: low_likeliest <= high_likeliest,
             "Low likeliest ({low_likeliest}) is above High likeliest ({high_likeliest})",
             "Exchange the two, or correct the wrong one",
         ),
-        Rule(
+        Constraint(
             "high_likeliest",
             lambda _low, _b, high_likeliest, high: high_likeliest <= high,
             "High likeliest ({high_likeliest}) is above High ({high})",

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.distributions.base import HIGH, LIKELIEST, LOW, Array, Family, Rule, Values, share
+from xlmc.distributions.base import Array, Family, Values, share
+from xlmc.distributions.parameters import HIGH, LIKELIEST, LOW, Constraint
 
 __all__ = ["Triangular"]
 
@@ -30,19 +31,19 @@ class Triangular(Family):
     roles = ("ordered", "ordered", "ordered")
     always_finite = True
     rules = (
-        Rule(
+        Constraint(
             "low",
             lambda low, _likeliest, high: low <= high,
             "Low ({low}) is above High ({high})",
             "Exchange the two, or correct the wrong one",
         ),
-        Rule(
+        Constraint(
             "likeliest",
             lambda low, likeliest, _high: low <= likeliest,
             "Likeliest ({likeliest}) is below Low ({low})",
             "Give a value from Low to High",
         ),
-        Rule(
+        Constraint(
             "likeliest",
             lambda _low, likeliest, high: likeliest <= high,
             "Likeliest ({likeliest}) is above High ({high})",

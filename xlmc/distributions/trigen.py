@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.distributions.base import LIKELIEST, Array, Family, ParameterSpec, Rule, Values, rising
+from xlmc.distributions.base import Array, Family, Values
+from xlmc.distributions.parameters import LIKELIEST, Constraint, ParameterSpec, rising
 from xlmc.distributions.triangular import Triangular
 
 __all__ = ["Trigen"]
@@ -37,25 +38,25 @@ class Trigen(Family):
     rules = (
         rising(parameters, "bottom", "likeliest"),
         rising(parameters, "likeliest", "top"),
-        Rule(
+        Constraint(
             "bottom",
             lambda bottom, _likeliest, top, _below, _above: bottom < top,
             "Bottom ({bottom}) and Top ({top}) must differ",
             "Give two values with Likeliest between them",
         ),
-        Rule(
+        Constraint(
             "bottom_percent",
             lambda _bottom, _likeliest, _top, below, _above: below >= 0,
             "Bottom % ({bottom_percent}) must be 0 or more",
             "Type a percentage, such as 10",
         ),
-        Rule(
+        Constraint(
             "top_percent",
             lambda _bottom, _likeliest, _top, _below, above: (above > 1) & (above <= 100),
             "Top % ({top_percent}) must be above 1 and at most 100",
             "Type a percentage, such as 90, not a share",
         ),
-        Rule(
+        Constraint(
             "bottom_percent",
             lambda _bottom, _likeliest, _top, below, above: below < above,
             "Bottom % ({bottom_percent}) is not below Top % ({top_percent})",

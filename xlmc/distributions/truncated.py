@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from xlmc.distributions.base import SMALLEST_U, TRIED_U, Array, Family, Fault, Values, show
+from xlmc.distributions.base import SMALLEST_U, TRIED_U, Array, Family, Values
+from xlmc.distributions.parameters import Fault, show
 
 __all__ = ["Truncated"]
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.distributions.base import HIGH, LOW, Array, Family, Rule, Values, share
+from xlmc.distributions.base import Array, Family, Values, share
+from xlmc.distributions.parameters import HIGH, LOW, Constraint
 
 __all__ = ["Uniform"]
 
@@ -32,7 +33,7 @@ class Uniform(Family):
     source = "Johnson, Kotz and Balakrishnan, Continuous Univariate Distributions, vol. 2, ch. 26"
     elsewhere = ("Crystal Ball Uniform (minimum, maximum)", "@RISK Uniform(min, max)")
     rules = (
-        Rule(
+        Constraint(
             "low",
             lambda low, high: low <= high,
             "Low ({low}) is above High ({high})",

@@ -15,9 +15,10 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from xlmc.distributions.base import SMALLEST_U, Array, Family, ParameterSpec, Rule, Values
-from xlmc.distributions.whole_search import FARTHEST, smallest
+from xlmc.distributions.base import SMALLEST_U, Array, Family, Values
+from xlmc.distributions.parameters import Constraint, ParameterSpec
 
 __all__ = [
     "MOST",
@@ -29,6 +30,7 @@ __all__ = [
     "TRIALS",
     "WholeNumbers",
     "probability",
+    "smallest",
     "whole",
     "within_reach",
 ]
@@ -47,6 +49,12 @@ SUCCESS = ParameterSpec("success", ("Success", "Successes"))
 POPULATION = ParameterSpec("population", ("Population",))
 SHAPE = ParameterSpec("shape", ("Shape",))
 RATE = ParameterSpec("rate", ("Rate",))
+
+FARTHEST = 2.0**52
+"""Whole numbers are told apart up to here."""
+
+Holds = Callable[[Array, NDArray[np.intp]], NDArray[np.bool_]]
+"""Of candidates `(m,)` and the trials `(m,)` they belong to: where it holds. It does from some number up."""
 
 
 class WholeNumbers(Family):
@@ -142,10 +150,10 @@ def _table(family: WholeNumbers, params: tuple[float, ...]) -> tuple[float, Arra
     return float(first), np.maximum.accumulate(probabilities)
 
 
-def probability(parameters: Sequence[ParameterSpec], *, positive: bool = False) -> Rule:
+def probability(parameters: Sequence[ParameterSpec], *, positive: bool = False) -> Constraint:
     """The rule that Probability lies between 0 and 1; 1 is allowed, and so is 0 unless it must be `positive`."""
     place = parameters.index(PROBABILITY)
-    return Rule(
+    return Constraint(
         "probability",
         lambda *values: ((values[place] > 0) if positive else (values[place] >= 0)) & (values[place] <= 1),
         f"Probability ({{probability}}) must be {'above 0 and at most 1' if positive else 'from 0 to 1'}",
@@ -153,9 +161,9 @@ def probability(parameters: Sequence[ParameterSpec], *, positive: bool = False) 
     )
 
 
-def within_reach(successes: Callable[..., Any]) -> Rule:
+def within_reach(successes: Callable[..., Any]) -> Constraint:
     """The rule that waiting for so many successes, of the parameters, does not pass what counts can reach."""
-    return Rule(
+    return Constraint(
         "probability",
         lambda *values: successes(*values) <= 1e13 * values[0],
         "Probability ({probability}) is so small that the count may pass 1E15",
@@ -163,12 +171,40 @@ def within_reach(successes: Callable[..., Any]) -> Rule:
     )
 
 
-def whole(parameters: Sequence[ParameterSpec], spec: ParameterSpec, least: float) -> Rule:
+def whole(parameters: Sequence[ParameterSpec], spec: ParameterSpec, least: float) -> Constraint:
     """The rule that a parameter is a whole number from `least` to `MOST`."""
     place = parameters.index(spec)
-    return Rule(
+    return Constraint(
         spec.key,
         lambda *values: (values[place] >= least) & (values[place] <= MOST) & (values[place] == np.floor(values[place])),
         f"{spec.heading} ({{{spec.key}}}) must be a whole number from {least:.0f} to {MOST:,.0f}",
         "Correct the number, or wrap its formula in ROUND",
     )
+
+
+def smallest(holds: Holds, guess: Array, low: Array, high: Array) -> Array:
+    """The smallest whole number in [low, high] for which `holds`; `high` where it holds nowhere below.
+
+    Steps that double lead from the guess to a bracket, halving narrows it: a right guess costs two questions.
+
+    Args:
+        holds: the condition.
+        guess: `(n,)`; NaN in trials that have no answer.
+        low: `(n,)`, where to begin.
+        high: `(n,)`, where to end; may be infinite.
+    """
+    below, above = low - 1, np.minimum(high, FARTHEST)
+    k = np.clip(np.rint(guess), low, above)
+    step = np.ones_like(k)
+    open_ = np.flatnonzero(np.isfinite(k) & (above - below > 1))
+    while open_.size:
+        here = k[open_]
+        held = holds(here, open_)
+        above[open_] = np.where(held, here, above[open_])
+        below[open_] = np.where(held, below[open_], here)
+        onward = np.where(held, here - step[open_], here + step[open_])
+        within = (onward > below[open_]) & (onward < above[open_])
+        k[open_] = np.where(within, onward, np.floor((below[open_] + above[open_]) / 2))
+        step[open_] *= 2
+        open_ = open_[above[open_] - below[open_] > 1]
+    return np.where(np.isfinite(k), above, np.nan)

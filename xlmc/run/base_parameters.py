@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from xlmc.address import Cell, InFormula
 from xlmc.definitions.model import CUTOFFS, Assumption, Definitions, Parameter, name_key
-from xlmc.distributions.base import show
+from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError, Notice
 from xlmc.evaluation.graph.lower import Lowering
 from xlmc.evaluation.graph.widening import widened

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.definitions.model import name_key
-from xlmc.distributions.base import show
+from xlmc.distributions.parameters import show
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT
 from xlmc.statistics import Estimate, proportion

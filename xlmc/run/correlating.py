@@ -12,7 +12,6 @@ from xlmc.distributions.whole_numbers import WholeNumbers
 from xlmc.errors import Notice
 from xlmc.sampling.copula import GaussianCopula
 from xlmc.sampling.draws import CorrelatedGroup, Draw
-from xlmc.sampling.ties import ties_of
 
 __all__ = ["CHANGED", "correlated_groups", "repair_notices", "tie_notices", "used"]
 
@@ -43,7 +42,7 @@ def correlated_groups(correlations: Sequence[Correlation], draws: Mapping[str, D
             if first in names:
                 i, j = names.index(first), names.index(second)
                 matrix[i, j] = matrix[j, i] = correlation.value
-        ties = [ties_of(draws[name]) for name in names]
+        ties = [draws[name].ties() for name in names]
         groups.append(CorrelatedGroup(names, GaussianCopula(matrix, ties if any(ties) else ())))
     return groups
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from xlmc.definitions.model import name_key
 from xlmc.definitions.tables.filters import LIMIT_HINT
-from xlmc.distributions.base import show
+from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError
 from xlmc.evaluation.engine import TEXT_RESULT, Target
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram

@@ -1,27 +1,70 @@
-"""Rank correlation by a Gaussian copula: uniforms in, uniforms out, trial by trial."""
+"""Rank correlation by a Gaussian copula: uniforms in, uniforms out, trial by trial.
+
+**Contradictions.** No draws can have correlations that contradict each other: the nearest matrix that some can have is
+used instead (`nearest_correlation`).
+
+**Ties.** Assumptions that take few values, such as Yes-No, have equal draws, which share their mean rank. The Spearman
+correlation of two draws is Pearson's of their mean ranks, F(x) less half of P(x). With a Gaussian copula of parameter
+r, cuts h and k of the normals between the values, and steps w and v of the mean ranks there,
+
+    both step      cov = Σ Σ w v ∫ exp(-(h² + k² - 2hk·sin t) / (2cos² t)) dt / 2π        t from 0 to asin r
+    one does not   cov = Σ w ∫ exp(-h² / (2cos² t)) dt / 2π                               t from 0 to asin(r/√2)
+
+(Plackett 1954: the derivative of the bivariate normal probability is its density; sin t for the correlation as in
+Drezner and Wesolowsky 1990). The most and the least are those of r = ±1, Fréchet's bounds.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.sampling.nearest import nearest_correlation
-from xlmc.sampling.ties import Ties, bounds, parameter, spearman
-
-__all__ = ["GaussianCopula"]
+__all__ = ["GaussianCopula", "Ties", "bounds", "nearest_correlation", "parameter", "spearman", "ties_of"]
 
 Floats = NDArray[np.float64]
 
-_HALF_STEP = 2.0**-54
+Quantiles = Callable[[Floats], Floats]
+"""Takes uniforms `(n,)`, gives the draws that are made of them."""
 
-_LEAST = 2.0**-80
+_HALF_STEP: Final = 2.0**-54
+
+_LEAST: Final = 2.0**-80
 """The least probability that a draw is made from: less has a chance of 1e-24."""
 
-_ROUNDING = 1e-9
+_ROUNDING: Final = 1e-9
 """An eigenvalue so little below 0 is one of 0: no correlation need change by more than this."""
+
+_PROJECTIONS: Final = 10_000
+_CLOSE: Final = 1e-12
+"""The change of a round, beside the size of the matrix, at which the projections have met."""
+
+_GRID: Final = 4096
+"""Probabilities at which a draw is looked at."""
+
+_FEW: Final = 512
+"""Changes of value between these: with no more of them the ends are looked at as well, where rare values lie."""
+
+_ENDS: Final = 0.5 ** np.arange(13, 50)
+"""Probabilities beyond the first and the last of the grid."""
+
+_NEGLIGIBLE: Final = 1e-4
+"""Ties that take away less of the variance of ranks than this are left out: the correlation differs by half of it."""
+
+_FINE: Final = 1 / 256
+"""Values less probable than that are taken together."""
+
+_NEAR: Final = 1e-12
+"""What is so near to a bound is the bound."""
+
+_HALVINGS: Final = 60
+_NODES: Final = 64
+_CONTINUOUS_SPREAD: Final = float(np.sqrt(1 / 12))
 
 
 class GaussianCopula:
@@ -38,8 +81,8 @@ class GaussianCopula:
         spearman: the matrix that the draws have.
         repaired: whether that is another one than was wanted, because no joint distribution of this kind has it.
 
-    Source: Pearson correlation of the normals ρ = 2 sin(π r_s / 6) (Kruskal 1958), which is exact; see `ties` for draws
-    with few values. These are what must be positive semidefinite, so it is they that are repaired (Higham 2002), and
+    Source: Pearson correlation of the normals ρ = 2 sin(π r_s / 6) (Kruskal 1958), which is exact; for draws with few
+    values see `Ties`. These are what must be positive semidefinite, so it is they that are repaired (Higham 2002), and
     the ranks follow from them.
     """
 
@@ -61,8 +104,8 @@ class GaussianCopula:
 
     def _tied(self) -> Iterator[tuple[int, int]]:
         """The pairs of which one takes few values."""
-        places = range(len(self._ties))
-        return ((i, j) for i, j in combinations(places, 2) if self._ties[i] or self._ties[j])
+        rows = range(len(self._ties))
+        return ((i, j) for i, j in combinations(rows, 2) if self._ties[i] or self._ties[j])
 
     def join(self, u: Floats) -> None:
         """Replace the rows of `u` (k, n), independent uniforms in [0, 1), by joined ones."""
@@ -87,3 +130,167 @@ def _triangular_root(matrix: Floats) -> Floats:
     turned: Floats = np.linalg.qr((vectors * np.sqrt(np.maximum(values, 0.0))).T, mode="r")  # type: ignore[assignment]
     triangle = turned.T * np.where(np.diagonal(turned) < 0.0, -1.0, 1.0)
     return np.asarray(triangle / np.linalg.norm(triangle, axis=1, keepdims=True))
+
+
+def nearest_correlation(matrix: Floats) -> Floats:
+    """The correlation matrix (k, k) nearest to a symmetric one in the Frobenius norm.
+
+    Projections by turns on the positive semidefinite matrices and on those with a diagonal of 1; Dykstra's correction
+    of the first makes them meet at the nearest point rather than at any (Higham 2002, algorithm 3.3).
+
+    >>> nearest_correlation(np.array([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0]]))[0].round(4).tolist()
+    [1.0, 0.7607, 0.1573]
+    """
+    found, correction = matrix.copy(), np.zeros_like(matrix)
+    for _ in range(_PROJECTIONS):
+        before = found
+        corrected = before - correction
+        inside = _semidefinite(corrected)
+        correction = inside - corrected
+        found = inside.copy()
+        np.fill_diagonal(found, 1.0)
+        if np.linalg.norm(found - before) <= _CLOSE * np.linalg.norm(found):
+            break
+    return found
+
+
+def _semidefinite(matrix: Floats) -> Floats:
+    """Without its negative eigenvalues."""
+    values, vectors = np.linalg.eigh(matrix)
+    return np.asarray((vectors * np.maximum(values, 0.0)) @ vectors.T)
+
+
+@dataclass(frozen=True, eq=False)
+class Ties:
+    """The values that a draw takes.
+
+    Attributes:
+        cuts: the probabilities, rising, at which it goes from one value to the next, `(m - 1,)` of m values.
+    """
+
+    cuts: Floats
+
+    @cached_property
+    def chances(self) -> Floats:
+        """The probability of each value, `(m,)`."""
+        return np.diff(self.cuts, prepend=0.0, append=1.0)
+
+    @cached_property
+    def steps(self) -> Floats:
+        """By how much the mean rank grows from one value to the next, `(m - 1,)`."""
+        return np.asarray((self.chances[:-1] + self.chances[1:]) / 2)
+
+    @cached_property
+    def normals(self) -> Floats:
+        """The cuts of a normal number."""
+        from scipy.special import ndtri
+
+        return np.asarray(ndtri(self.cuts))
+
+    @property
+    def spread(self) -> float:
+        """The standard deviation of the mean ranks."""
+        return float(np.sqrt((1 - np.sum(self.chances**3)) / 12))
+
+
+def ties_of(quantiles: Quantiles) -> Ties | None:
+    """The values that a draw takes; None where hardly any two draws are equal, or all."""
+    u = (np.arange(_GRID) + 0.5) / _GRID
+    found = quantiles(u)
+    new = np.flatnonzero(found[1:] != found[:-1])
+    if new.size <= _FEW:
+        u = np.concatenate([_ENDS[::-1], u, 1 - _ENDS])
+        found = quantiles(u)
+        new = np.flatnonzero(found[1:] != found[:-1])
+    if new.size in (0, u.size - 1):
+        return None
+    ties = Ties(_coarse(_refined_cuts(quantiles, u, found, new)))
+    return ties if np.sum(ties.chances**3) > _NEGLIGIBLE else None
+
+
+def _refined_cuts(quantiles: Quantiles, u: Floats, found: Floats, new: NDArray[np.intp]) -> Floats:
+    """Where the value changes after each of some probabilities, by halving."""
+    low, high, before = u[new].copy(), u[new + 1].copy(), found[new]
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        grown = quantiles(middle) > before
+        low, high = np.where(grown, low, middle), np.where(grown, middle, high)
+    return high
+
+
+def _coarse(cuts: Floats) -> Floats:
+    """The cuts without those between values that are all improbable."""
+    following = np.append(cuts[1:], 1.0)
+    kept, last = [], 0.0
+    for cut, after in zip(cuts, following, strict=True):
+        if cut - last >= _FINE or after - cut >= 2 * _FINE:
+            kept.append(cut)
+            last = cut
+    return np.array(kept)
+
+
+def spearman(first: Ties | None, second: Ties | None, r: float) -> float:
+    """The rank correlation of two draws that a Gaussian copula of parameter r joins; None for a continuous one."""
+    if first is None and second is None:
+        return float(6 / np.pi * np.arcsin(np.clip(r, -1.0, 1.0) / 2))
+    if first is None or second is None:
+        one = first or second
+        assert one is not None
+        return _beside_continuous(one, r) / (one.spread * _CONTINUOUS_SPREAD)
+    if abs(r) >= 1.0:
+        return _at_the_bound(first, second, r) / (first.spread * second.spread)
+    return _both_tied(first, second, r) / (first.spread * second.spread)
+
+
+def _quadrature(end: float) -> tuple[Floats, Floats]:
+    """Points and weights from 0 to the end (Gauss and Legendre)."""
+    x, w = np.polynomial.legendre.leggauss(_NODES)
+    return end * (x + 1) / 2, end * w / 2
+
+
+def _beside_continuous(ties: Ties, r: float) -> float:
+    t, w = _quadrature(float(np.arcsin(np.clip(r, -1.0, 1.0) / np.sqrt(2))))
+    density = np.exp(-(ties.normals[:, None] ** 2) / (2 * np.cos(t) ** 2))
+    return float(ties.steps @ density @ w / (2 * np.pi))
+
+
+def _both_tied(first: Ties, second: Ties, r: float) -> float:
+    total = 0.0
+    h, k = first.normals[:, None], second.normals[None, :]
+    for t, w in zip(*_quadrature(float(np.arcsin(r))), strict=True):
+        density = np.exp(-(h**2 + k**2 - 2 * h * k * np.sin(t)) / (2 * np.cos(t) ** 2))
+        total += w * float(first.steps @ density @ second.steps)
+    return total / (2 * np.pi)
+
+
+def _at_the_bound(first: Ties, second: Ties, r: float) -> float:
+    """The covariance of mean ranks where both draws come from one uniform, or from u and 1-u."""
+    above, beyond = 1 - first.cuts[:, None], 1 - second.cuts[None, :]
+    both = np.minimum(above, beyond) if r > 0 else np.maximum(above + beyond - 1, 0.0)
+    return float(first.steps @ (both - above * beyond) @ second.steps)
+
+
+def bounds(first: Ties | None, second: Ties | None) -> tuple[float, float]:
+    """The least and the most that the rank correlation can be."""
+    return spearman(first, second, -1.0), spearman(first, second, 1.0)
+
+
+def parameter(first: Ties | None, second: Ties | None, wanted: float) -> float:
+    """The copula's parameter that gives a rank correlation; ±1 where it is out of reach.
+
+    >>> round(parameter(None, Ties(np.array([0.5])), 0.5), 4)
+    0.6195
+    """
+    least, most = bounds(first, second)
+    if wanted >= most - _NEAR:
+        return 1.0
+    if wanted <= least + _NEAR:
+        return -1.0
+    low, high = -1.0, 1.0
+    while high - low > 1e-13:
+        middle = (low + high) / 2
+        if spearman(first, second, middle) < wanted:
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.distributions import Family, Truncated
-from xlmc.distributions.base import Fault
+from xlmc.distributions.parameters import Fault
 from xlmc.distributions.uniform import Uniform
 from xlmc.errors import SimulationError
 from xlmc.functions.denormals import TINIEST, flush
-from xlmc.sampling.copula import GaussianCopula
+from xlmc.sampling.copula import GaussianCopula, Ties, ties_of
 from xlmc.sampling.methods import Margin
 from xlmc.sampling.plan import Plan
 from xlmc.sampling.streams import Stream
@@ -28,6 +28,10 @@ _SMALL: Final = 2.0**-900
 
 DynamicParameters = Callable[[Mapping[str, Floats], int], Mapping[Hashable, Floats]]
 """Takes the draws made so far and the number of trials, gives the parameters that depend on them; NaN for an error."""
+
+Filler = Callable[[Sequence[Stream], Sequence[tuple[float, float]], Floats], Callable[[int], None]]
+"""Takes streams of independent trials, an offset and a factor for each, and rows `(k, block)`. What it gives takes the
+first trial of a block, and fills each row with offset + factor·uniform."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +100,15 @@ class Draw:
             message = f"{self.family.name} of the assumption {self.name!r} gives draws that are no numbers"
             raise SimulationError(message, hint="its parameters are too extreme: correct them in the workbook")
 
+    def ties(self) -> Ties | None:
+        """The values that it takes; None where hardly any two draws are equal, or all, or where parameters vary."""
+        return ties_of(self._quantiles) if self.fixed else None
+
+    def _quantiles(self, u: Floats) -> Floats:
+        found = u.copy()
+        self.fill(found, {})
+        return found
+
     def support(self) -> tuple[float, float] | None:
         """The least and the largest draw; None where either is infinite, or where the parameters vary."""
         if not self.fixed:
@@ -138,11 +151,6 @@ class Linear:
     names: tuple[str, ...]
     streams: tuple[Stream, ...]
     maps: tuple[tuple[float, float], ...]
-
-
-Filler = Callable[[Sequence[Stream], Sequence[tuple[float, float]], Floats], Callable[[int], None]]
-"""Takes streams of independent trials, an offset and a factor for each, and rows `(k, block)`. What it gives takes the
-first trial of a block, and fills each row with offset + factor·uniform."""
 
 
 class Sampler:

@@ -87,8 +87,7 @@ def _scrambled_sobol(seed: int, dimensions: Mapping[str, int], size: int) -> lis
     Raises:
         SimulationError: there are more assumptions than Sobol points have dimensions, or these are not to be had.
     """
-    from xlmc.sampling.directions import DIMENSIONS
-    from xlmc.sampling.sobol import ScrambledSobol
+    from xlmc.sampling.sobol import DIMENSIONS, ScrambledSobol
 
     if len(dimensions) > DIMENSIONS:
         message = f"Sobol points have {DIMENSIONS:,} dimensions, and {len(dimensions):,} assumptions are drawn"

@@ -6,19 +6,18 @@ independent replicates (Latin hypercube, scrambled Sobol), and are Monte Carlo e
 
 from xlmc.statistics.association import rank_correlation
 from xlmc.statistics.describe import Description, describe
-from xlmc.statistics.digits import format_estimate, supported_digits
-from xlmc.statistics.estimate import Estimate
-from xlmc.statistics.extremes import maximum, minimum, range_width
-from xlmc.statistics.inverse import inverse_proportion
+from xlmc.statistics.estimate import Estimate, format_estimate, supported_digits
+from xlmc.statistics.heavy_tails import farthest_part
 from xlmc.statistics.mode import mode
 from xlmc.statistics.proportions import (
+    inverse_proportion,
     probability_above,
     probability_between,
     proportion,
     replicated_proportion,
     share,
 )
-from xlmc.statistics.quantiles import central_interval, median, percentile, percentiles
+from xlmc.statistics.quantiles import central_interval, maximum, median, minimum, percentile, percentiles, range_width
 from xlmc.statistics.sample import Sample
 from xlmc.statistics.smooth import (
     coefficient_of_variation,
@@ -31,7 +30,6 @@ from xlmc.statistics.smooth import (
     too_short,
     variance,
 )
-from xlmc.statistics.tails import farthest_part
 
 __all__ = [
     "Description",

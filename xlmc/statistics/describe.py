@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 
 from xlmc.statistics import quantiles, smooth
 from xlmc.statistics.estimate import Estimate
-from xlmc.statistics.extremes import maximum, minimum, range_width
 from xlmc.statistics.mode import mode
 from xlmc.statistics.proportions import probability_above
+from xlmc.statistics.quantiles import maximum, minimum, range_width
 from xlmc.statistics.sample import Sample, Values
 
 __all__ = ["Description", "describe"]

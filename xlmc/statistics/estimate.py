@@ -1,4 +1,4 @@
-"""A number and how well it is known: value, standard error, interval."""
+"""A number and how well it is known: value, standard error, interval; printed with the digits that the error allows."""
 
 from __future__ import annotations
 
@@ -7,10 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-__all__ = ["Estimate"]
+__all__ = ["Estimate", "format_estimate", "supported_digits"]
 
 LEAST_DOF = 1.0 - 1e-9
 """Fewer degrees of freedom give no error; the margin is for the rounding of an effective sample size."""
+
+LENGTHENED = 0.15
+"""A sample shows too little of its skewness: intervals are longer by so much of it."""
+
+MOST_DIGITS = 15  # all that a double holds for certain
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,10 +36,6 @@ class Estimate:
     error: float | None = None
     interval: tuple[float, float] | None = None
     n: int = 0
-
-
-LENGTHENED = 0.15
-"""A sample shows too little of its skewness: intervals are longer by so much of it."""
 
 
 def with_error(value: float, error: float, dof: float, confidence: float, n: int, skewness: float = 0.0) -> Estimate:
@@ -104,3 +105,49 @@ def one_tail(confidence: float) -> float:
     if not 0.0 < confidence < 1.0:
         raise ValueError(f"a confidence lies between 0 and 1, not at {confidence}")
     return (1.0 - confidence) / 2.0
+
+
+def supported_digits(estimate: Estimate) -> int | None:
+    """Decimals for the value printed alone: the last one is good to ± 1 with 95 % confidence (2 errors ≤ 1 unit).
+
+    Negative for tens, hundreds, …; None where no error limits the digits.
+
+    >>> supported_digits(Estimate(17.0213, error=0.0023))
+    2
+    """
+    if not estimate.error:
+        return None
+    return math.floor(-math.log10(2.0 * estimate.error))
+
+
+def format_estimate(value: float, error: float | None) -> str:
+    """The error to two significant digits and the value to the same decimal; six digits where there is no error.
+
+    >>> format_estimate(17.02134, 0.00231)
+    '17.0213 ± 0.0023'
+    >>> format_estimate(48211.3, 870.0)
+    '48210 ± 870'
+    >>> format_estimate(17.02134, None)
+    '17.0213'
+    """
+    if error is None or not math.isfinite(value):
+        return f"{value:.6g}"
+    if error == 0.0:
+        return f"{value:.6g} ± 0"
+    size = _exponent(max(abs(value), error))
+    if not -4 <= size < MOST_DIGITS:
+        scaled = format_estimate(value / 10.0**size, error / 10.0**size)
+        return f"({scaled})e{size:+03d}"
+    decimals = 1 - _exponent(error)
+    if decimals + size >= MOST_DIGITS:  # an error below the last bit of the value
+        return f"{value:.{MOST_DIGITS}g} ± {error:.1e}"
+    return f"{_rounded(value, decimals)} ± {_rounded(error, decimals)}"
+
+
+def _exponent(number: float) -> int:
+    """The power of ten of a number rounded to two digits: 0.00996 -> -2."""
+    return int(f"{number:.1e}".partition("e")[2])
+
+
+def _rounded(number: float, decimals: int) -> str:
+    return f"{round(number, decimals) + 0.0:.{max(decimals, 0)}f}"  # + 0.0: no negative zero

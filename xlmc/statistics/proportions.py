@@ -10,6 +10,12 @@ that of the share of them that have one more.
 **Error.** √(p(1 − p)/n), or the spread between weighted trials or replicates (ratio estimate: replicates may differ in
 size). It is never less than that of a share of 0 in n trials, Wilson's half width over 1.96: no trial seen is no proof
 of none, so a share is never 0 ± 0.
+
+**Until there are enough successes.** Where trials go on until the N-th success, their number n has a negative binomial
+distribution. N/n is then too large on average; (N − 1)/(n − 1) is right on average (Haldane 1945), and p(1 − p)/(n − 2)
+is so for its variance (Finney 1949). The interval is exact: at either end as many trials or more, or as few or fewer,
+have the probability of one tail (George & Elston 1993). As n ≤ k just where k trials have N successes or more, the ends
+are quantiles of beta distributions, like Clopper and Pearson's.
 """
 
 from __future__ import annotations
@@ -25,7 +31,15 @@ from xlmc.columns import release
 from xlmc.statistics.estimate import LEAST_DOF, Estimate, one_tail, t_quantile
 from xlmc.statistics.sample import Sample, Values
 
-__all__ = ["Method", "probability_above", "probability_between", "proportion", "replicated_proportion", "share"]
+__all__ = [
+    "Method",
+    "inverse_proportion",
+    "probability_above",
+    "probability_between",
+    "proportion",
+    "replicated_proportion",
+    "share",
+]
 
 Floats = NDArray[np.float64]
 Method = Literal["wilson", "clopper-pearson"]
@@ -66,6 +80,27 @@ def replicated_proportion(
     if n == 0.0:
         return Estimate(np.nan)
     return _pooled(hits, totals, n, hits.size - 1.0, int(n), confidence, method)
+
+
+def inverse_proportion(successes: int, trials: int, *, confidence: float = 0.95) -> Estimate:
+    """The share of successes, of which so many were waited for; the last trial is one.
+
+    Raises:
+        ValueError: fewer than 2 successes, or fewer trials than successes.
+
+    >>> inverse_proportion(3, 9).value
+    0.25
+    """
+    from scipy.special import betaincinv
+
+    if not 2 <= successes <= trials:
+        raise ValueError(f"{successes} successes, waited for in {trials} trials")
+    tail, misses = one_tail(confidence), trials - successes
+    p = (successes - 1) / (trials - 1)
+    error = least_error(trials) if misses == 0 else max((p * (1.0 - p) / (trials - 2)) ** 0.5, least_error(trials))
+    low = float(betaincinv(successes, misses + 1.0, tail))
+    high = 1.0 if misses == 0 else float(betaincinv(successes, misses, 1.0 - tail))
+    return Estimate(p, error, (low, high), trials)
 
 
 def share(

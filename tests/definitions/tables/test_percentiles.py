@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.address import Cell
-from xlmc.definitions.tables.percentiles import is_percentile
+from xlmc.definitions.tables.assumptions import is_percentile
 from xlmc.distributions import FAMILIES
 
 ROW = ["Name", "Value", "Distribution"]

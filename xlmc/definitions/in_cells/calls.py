@@ -1,36 +1,45 @@
 """Calls in cells that stand for assumptions: `=10+RiskNormal(5,1)*2`, `=CB.Uniform(0,1)`, `=NORM.INV(RAND(),5,1)`.
 
 Each call is an assumption of its own, named `Sheet!Cell#k` for the k-th call of the cell, from the left and from 1, or
-as it names itself. In the formula a cell of its own stands in its place; an argument that is an expression becomes
-such a cell, too. So the rest of a run sees nothing but assumptions and formulas.
+as it names itself. In the formula a cell of its own stands instead of the call; an argument that is an expression
+becomes such a cell, too. So the rest of a run sees nothing but assumptions and formulas.
+
+Formulas also mark answers, by `RiskOutput` or by a cell that shows results of theirs, and `RiskCorrmat` names matrices
+of rank correlations.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import combinations
 from typing import Final
 
-from xlmc.address import Cell
+from xlmc.address import Area, Cell
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.findings import Findings
 from xlmc.definitions.in_cells.draws import MatrixPlace
 from xlmc.definitions.in_cells.reading import CellReading, Output
 from xlmc.definitions.in_cells.result_functions import Asked, mentions_result
-from xlmc.definitions.model import Assumption, name_key
+from xlmc.definitions.model import Assumption, Correlation, Forecast, name_key
+from xlmc.definitions.tables.fields import number_in
 from xlmc.definitions.tables.identity import Claims
+from xlmc.definitions.tables.tables import is_blank
+from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import Resolver, ir
 from xlmc.workbook.lazy_sheets import LazySheets
 from xlmc.workbook.model import Formula, Workbook
 
-__all__ = ["InCells", "holds_call", "read_in_cells"]
+__all__ = ["InCells", "holds_call", "in_cell_correlations", "in_cell_forecasts", "read_in_cells"]
 
 _CALL: Final = re.compile(r"(?<![\w.])(?:_xl\w+\.)*(?:RAND|RANDBETWEEN|RANDARRAY|Risk\w+|CB\.\w+)\s*\(", re.IGNORECASE)
 _OUTPUT: Final = re.compile(r"RiskOutput\s*\(", re.IGNORECASE)
 _TEXTS: Final = re.compile(r'"(?:[^"]|"")*"')
 _MARKS: Final = (b"rand", b"risk", b"cb.")
+
+_Row = tuple[Assumption, MatrixPlace]
 
 
 def holds_call(text: str) -> bool:
@@ -180,3 +189,116 @@ def _any_of(names: Collection[str]) -> re.Pattern[str] | None:
     if not names:
         return None
     return re.compile(rf"(?<![\w.\\])(?:{'|'.join(map(re.escape, sorted(names)))})(?![\w.])", re.IGNORECASE)
+
+
+def in_cell_correlations(
+    workbook: Workbook,
+    assumptions: Iterable[Assumption],
+    matrices: Mapping[str, MatrixPlace],
+    rows: Iterable[Correlation],
+    findings: Findings,
+) -> list[Correlation]:
+    """The correlations between draws that name rows of one matrix, in one instance of it; those of 0 left out.
+
+    Args:
+        workbook: holds the matrices.
+        assumptions: drawn in cells.
+        matrices: name of an assumption -> its row in a matrix.
+        rows: the correlations of tables, which may be about other pairs only.
+        findings: takes mistakes.
+    """
+    groups: dict[tuple[Area, str], list[_Row]] = {}
+    for assumption in assumptions:
+        place = matrices.get(assumption.name)
+        if place is not None and not assumption.frozen:
+            groups.setdefault((place.area, place.instance), []).append((assumption, place))
+    taken = {frozenset((row.first, row.second)): row for row in rows}
+    found = []
+    for first, second in (pair for group in groups.values() for pair in _pairs(group, findings)):
+        row = taken.get(frozenset((first[0].name, second[0].name)))
+        if row is not None:
+            message = f"{row.first!r} and {row.second!r} are correlated by this row and by the matrix {first[1].area}"
+            findings.problem(message, row.row, "Keep one of them")
+            continue
+        found.append(findings.attempt(_correlation, workbook, first, second))
+    return [each for each in found if each is not None and each.value != 0]
+
+
+def _pairs(group: list[_Row], findings: Findings) -> Iterator[tuple[_Row, _Row]]:
+    for first, second in combinations(group, 2):
+        if first[1].position == second[1].position:
+            message = f"{first[0].name!r} and {second[0].name!r} have the same row of the matrix {first[1].area}"
+            hint = "Give each draw its own position, or its own instance of the matrix"
+            findings.problem(message, second[0].row, hint)
+        else:
+            yield first, second
+
+
+def _correlation(workbook: Workbook, first: _Row, second: _Row) -> Correlation:
+    """The number below the diagonal; the one above where that cell is blank.
+
+    Raises:
+        DefinitionError: neither holds a number from -1 to 1.
+    """
+    area, (upper, lower) = first[1].area, sorted((first[1].position, second[1].position))
+    below, above = (
+        Cell(area.sheet, area.top + row - 1, area.left + column - 1) for row, column in ((lower, upper), (upper, lower))
+    )
+    cell = above if is_blank(workbook.content(below)) else below
+    content = workbook.content(cell)
+    if is_blank(content):
+        hint = "Fill it in, or the one beside it across the diagonal"
+        raise DefinitionError("The cell of a rank correlation is blank", where=below, hint=hint)
+    value = number_in("The matrix of rank correlations", content, cell)
+    if not -1 <= value <= 1:
+        message = f"Correlation ({show(value)}) must lie between -1 and 1"
+        raise DefinitionError(message, where=cell, hint="Type a rank correlation from -1 to 1")
+    return Correlation(first[0].name, second[0].name, value, cell)
+
+
+def in_cell_forecasts(
+    found: InCells, computed: Computed, central: float, claims: Claims, findings: Findings
+) -> list[Forecast]:
+    """The cells with `RiskOutput`, then those of which `RiskMean(B9)` and its like show results.
+
+    Args:
+        found: the calls of the workbook.
+        computed: which cells something gives a value.
+        central: the share of the central range.
+        claims: takes their names and cells; the rows of tables have taken theirs.
+        findings: takes remarks.
+    """
+    outputs = [
+        Forecast(_take_forecast(output.name or str(cell), cell, claims, findings), cell, cell, output.units, central)
+        for cell, output in found.outputs.items()
+        if cell not in claims.cells
+    ]
+    shown = []
+    for cell, asked in found.results.items():
+        for each in asked:
+            if isinstance(each.place, str):
+                _remark_on_name(each.place, each.function, cell, claims, findings)
+            elif not computed.at_all(each.place):
+                message = f"{each.function} asks for results of {each.place}, which nothing computes: nothing is shown"
+                findings.notice(message, cell)
+            elif each.place not in claims.cells:
+                message = f"{each.place} is taken for a forecast, because {each.function} shows results of it"
+                findings.notice(message, cell)
+                name = _take_forecast(str(each.place), each.place, claims, findings)
+                shown.append(Forecast(name, each.place, cell, central=central))
+    return [*outputs, *shown]
+
+
+def _take_forecast(name: str, cell: Cell, claims: Claims, findings: Findings) -> str:
+    """Take the cell, and the name, with its cell behind it where another has that name."""
+    claims.take_cell(cell, cell)
+    if name_key(name) in claims.names:
+        findings.notice(f"another forecast is called {name!r}; this one is called '{name} ({cell})'", cell)
+        name = f"{name} ({cell})"
+    return claims.take_name(name, cell)
+
+
+def _remark_on_name(name: str, function: str, cell: Cell, claims: Claims, findings: Findings) -> None:
+    if name_key(name) not in claims.names:
+        message = f"{function} asks for results of {name!r}, and no forecast is called so: nothing is shown"
+        findings.notice(message, cell)

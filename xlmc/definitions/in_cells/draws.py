@@ -1,20 +1,33 @@
-"""What a call in a cell draws, whichever program it was written for."""
+"""What a call in a cell draws, whichever program it was written for, and its base case.
+
+A draw that does not name its base case has its mean for one, as @RISK shows it between simulations.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Final
 
-from xlmc.address import Area
+import numpy as np
+
+from xlmc.address import Area, Cell
 from xlmc.definitions.in_cells.trees import elements, is_left_out, rows_of_trees
-from xlmc.distributions import FAMILIES, Family
-from xlmc.errors import FormulaError
+from xlmc.definitions.model import DataRange, Parameter
+from xlmc.definitions.tables.data import data_family
+from xlmc.distributions import FAMILIES, Family, Truncated
+from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import ir
 
-__all__ = ["Arguments", "Drawn", "MatrixPlace", "Properties", "Signature", "listed"]
+__all__ = ["Arguments", "Drawn", "MatrixPlace", "Properties", "Signature", "base_of", "percentile_cutoffs"]
 
 Arguments = Mapping[str, ir.Expression]
 """The arguments of a call by what they are called."""
+
+_NODES: Final = 256
+"""Points of the Gauss-Legendre rule over the probabilities of a distribution that is cut off."""
+
+Cutoffs = tuple[Parameter | None, Parameter | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,10 +128,10 @@ class Signature:
             source = given["data"]
             return Drawn(function, family, parameters, tuple(rows_of_trees(source)), (source,), properties)
         sources = tuple(given[name] for name in ("x", "p") if name in given)
-        return Drawn(function, family, parameters, listed(function, sources), sources, properties)
+        return Drawn(function, family, parameters, _listed(function, sources), sources, properties)
 
 
-def listed(function: str, sources: tuple[ir.Expression, ...]) -> tuple[tuple[ir.Expression, ...], ...]:
+def _listed(function: str, sources: tuple[ir.Expression, ...]) -> tuple[tuple[ir.Expression, ...], ...]:
     """Lists side by side as rows.
 
     Raises:
@@ -129,3 +142,77 @@ def listed(function: str, sources: tuple[ir.Expression, ...]) -> tuple[tuple[ir.
         lengths = " and ".join(str(len(column)) for column in columns)
         raise FormulaError(f"the lists of {function} have {lengths} elements", hint="give lists of the same length")
     return tuple(zip(*columns, strict=True))
+
+
+def base_of(
+    family: Family,
+    numbers: Mapping[str, float | None],
+    data: DataRange | None,
+    cutoffs: Cutoffs,
+    limits: tuple[float | None, ...],
+    saved: Callable[[Cell], float | None],
+) -> float | None:
+    """The mean; None where a number is not known before the workbook is calculated, or there is no finite mean.
+
+    Args:
+        family: of the draw; without its data.
+        numbers: its parameters.
+        data: what the family is built from.
+        cutoffs: as the run needs them.
+        limits: the same as numbers.
+        saved: the number that a cell holds.
+    """
+    known = {key: number for key, number in numbers.items() if number is not None}
+    unknown = len(known) < len(numbers) or any(
+        cutoff is not None and limit is None for cutoff, limit in zip(cutoffs, limits, strict=True)
+    )
+    built = family if data is None else _built(family, data, saved)
+    if unknown or built is None:
+        return None
+    if all(limit is None for limit in limits):
+        mean = np.nan if built.fault(**known) else float(built.mean(**known))
+    else:
+        lower, upper = (end if limit is None else limit for limit, end in zip(limits, (-np.inf, np.inf), strict=True))
+        mean = _mean_between(built, lower, upper, known)
+    return mean if np.isfinite(mean) else None
+
+
+def _built(family: Family, data: DataRange, saved: Callable[[Cell], float | None]) -> Family | None:
+    """The family with its data; None where a cell is not calculated yet, or they are no distribution.
+
+    Of the latter the model tells when it is made.
+    """
+    values = {cell: saved(cell) for cell in data.cells}
+    numbers = {cell: value for cell, value in values.items() if value is not None}
+    if len(numbers) < len(values):
+        return None
+    try:
+        return data_family(family, data, numbers.__getitem__)
+    except DefinitionError:
+        return None
+
+
+def _mean_between(family: Family, lower: float, upper: float, known: Mapping[str, float]) -> float:
+    cut = Truncated(family)
+    if cut.fault(lower, upper, **known):
+        return np.nan
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    return float(weights @ cut.ppf((nodes + 1) / 2, lower, upper, *family.bind((), known)) / 2)
+
+
+def percentile_cutoffs(drawn: Drawn, numbers: Mapping[str, float | None], percents: tuple[float, float]) -> Cutoffs:
+    """The cutoffs below which these probabilities lie; None for one at an end.
+
+    Raises:
+        FormulaError: a parameter is not a number that is known before the workbook is calculated.
+    """
+    known = {key: number for key, number in numbers.items() if number is not None}
+    if len(known) < len(numbers) or drawn.data or drawn.family.fault(**known):
+        hint = "cut off at values with RiskTruncate, or give the parameters as numbers"
+        raise FormulaError(f"RiskTruncateP of {drawn.function} needs parameters that are fixed numbers", hint=hint)
+    values = drawn.family.bind((), known)
+    low, high = percents
+    return (
+        None if low == 0 else float(drawn.family.ppf(low, *values)),
+        None if high == 1 else float(drawn.family.ppf(high, *values)),
+    )

@@ -8,9 +8,8 @@ from typing import Final
 
 from xlmc.address import Area, Cell, InFormula
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.in_cells.base import base_of, percentile_cutoffs
 from xlmc.definitions.in_cells.crystal_ball_functions import crystal_ball_draw
-from xlmc.definitions.in_cells.draws import Drawn, MatrixPlace
+from xlmc.definitions.in_cells.draws import Drawn, MatrixPlace, base_of, percentile_cutoffs
 from xlmc.definitions.in_cells.random_functions import random_draw
 from xlmc.definitions.in_cells.result_functions import NOT_COMPUTED, Asked, asked_for, is_result, not_computed
 from xlmc.definitions.in_cells.risk_functions import risk_draw

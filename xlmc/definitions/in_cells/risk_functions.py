@@ -1,22 +1,47 @@
 """@RISK's and XLRisk's functions that draw: `RiskNormal(mean, sd, RiskTruncate(0, 9))`.
 
-Parameters come first, then property functions in any order. Source: Palisade's @RISK manual, "@RISK Functions", and the
-XLRisk manual; the two differ only in `RiskLogNorm` (see `lognorm`).
+Parameters come first, then property functions in any order. The two programs differ only in `RiskLogNorm` (see
+`lognorm`). Alternate forms, `RiskNormalAlt(5%, 10, 95%, 20)` or `RiskTriangAlt("min", 0, "m. likely", 3, 90%, 8)`, take
+pairs: what is given, a parameter by its name or a percentile by the probability below, and its value. `RiskNormalAltD`
+counts percentiles from above.
+
+Source: Palisade's @RISK manual, "@RISK Functions" and "Alternate Parameters", and the XLRisk manual.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Final
 
-from xlmc.definitions.in_cells.draws import Arguments, Drawn, Signature
-from xlmc.definitions.in_cells.risk_percentiles import alternate_draw
+from xlmc.definitions.in_cells.draws import Arguments, Drawn, Properties, Signature
 from xlmc.definitions.in_cells.risk_properties import is_property, properties_of
-from xlmc.definitions.in_cells.trees import quotient
+from xlmc.definitions.in_cells.trees import difference, number_of, quotient, total
+from xlmc.distributions import FAMILIES
+from xlmc.distributions.by_percentiles import by_percentiles
+from xlmc.distributions.parameters import show
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
 
-__all__ = ["LOGNORMS", "RISK", "risk_draw"]
+__all__ = ["ALTERNATES", "RISK", "risk_draw"]
+
+_LOCATED: Final = {"location": 0.0}
+
+_LOGNORM: Final = Signature("Lognormal", ("mean", "std_dev"), _LOCATED)
+
+_LOGNORM2: Final = Signature("Lognorm2", ("mu", "sigma"), _LOCATED)
+
+_LOGNORMS: Final = {"@RISK": _LOGNORM, "XLRisk": _LOGNORM2}
+"""What `RiskLognorm(a, b)` means: mean and standard deviation of the draw, or of its logarithm."""
+
+_Pairs = dict[str, ir.Expression]
+
+_Points = dict[float, ir.Expression]
+
+_LOC: Final = {"loc": "location"}
+
+_LIMITS: Final = {"min": "low", "m. likely": "likeliest", "max": "high"}
 
 
 def _rayleigh_scale(given: Arguments) -> ir.Expression:
@@ -26,13 +51,6 @@ def _rayleigh_scale(given: Arguments) -> ir.Expression:
 def _half_freedom(given: Arguments) -> ir.Expression:
     return quotient(given["freedom"], ir.Number(2.0))
 
-
-_LOCATED: Final = {"location": 0.0}
-_LOGNORM: Final = Signature("Lognormal", ("mean", "std_dev"), _LOCATED)
-_LOGNORM2: Final = Signature("Lognorm2", ("mu", "sigma"), _LOCATED)
-
-LOGNORMS: Final = {"@RISK": _LOGNORM, "XLRisk": _LOGNORM2}
-"""What `RiskLognorm(a, b)` means: mean and standard deviation of the draw, or of its logarithm."""
 
 RISK: Final = {
     "RiskUniform": Signature("Uniform", ("low", "high")),
@@ -78,7 +96,7 @@ def risk_draw(call: ir.Call, lognorm: str) -> Drawn | None:
 
     Args:
         call: resolved.
-        lognorm: a key of `LOGNORMS`.
+        lognorm: a key of `_LOGNORMS`.
 
     Raises:
         FormulaError: its arguments or properties are not what they must be.
@@ -87,9 +105,139 @@ def risk_draw(call: ir.Call, lognorm: str) -> Drawn | None:
     given, properties = call.arguments[:count], call.arguments[count:]
     if call.name in _BY_NAME:
         name = _BY_NAME[call.name]
-        signature = LOGNORMS[lognorm] if name == "RiskLognorm" else RISK[name]
+        signature = _LOGNORMS[lognorm] if name == "RiskLognorm" else RISK[name]
         if len(given) != len(signature.takes):
             hint = f"it takes {', '.join(signature.takes)}, and then property functions such as RiskTruncate"
             raise FormulaError(f"{name} has {len(given)} arguments", hint=hint)
         return signature.drawn(name, given, properties_of(name, properties))
-    return alternate_draw(call.name, given, lambda name: properties_of(name, properties))
+    return _alternate_draw(call.name, given, lambda name: properties_of(name, properties))
+
+
+@dataclass(frozen=True, slots=True)
+class _Alternate:
+    """A family with @RISK's names of its parameters, and those that @RISK's does not have.
+
+    `rate` names a parameter that is one over ours; `mean_above` says that the mean is counted from the location.
+    """
+
+    family: str
+    names: Mapping[str, str]
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    inverted: str = ""
+    mean_above: bool = False
+
+
+ALTERNATES: Final = {
+    "RiskUniform": _Alternate("Uniform", {"min": "low", "max": "high"}),
+    "RiskNormal": _Alternate("Normal", {"mu": "mean", "sigma": "std_dev"}),
+    "RiskTriang": _Alternate("Triangular", _LIMITS),
+    "RiskPert": _Alternate("BetaPERT", _LIMITS),
+    "RiskLognorm": _Alternate("Lognormal", {"mu": "mean", "sigma": "std_dev", **_LOC}, mean_above=True),
+    "RiskLognorm2": _Alternate("Lognorm2", {"mu": "mu", "sigma": "sigma", **_LOC}),
+    "RiskExpon": _Alternate("Exponential", {"beta": "rate"}, inverted="rate"),
+    "RiskGamma": _Alternate("Gamma", {"alpha": "shape", "beta": "scale", **_LOC}),
+    "RiskWeibull": _Alternate("Weibull", {"alpha": "shape", "beta": "scale", **_LOC}),
+    "RiskLogistic": _Alternate("Logistic", {"alpha": "mean", "beta": "scale"}),
+    "RiskPareto": _Alternate("Pareto", {"theta": "shape", "a": "location"}),
+    "RiskExtvalue": _Alternate("Maximum Extreme", {"a": "likeliest", "b": "scale"}),
+    "RiskExtvalueMin": _Alternate("Minimum Extreme", {"a": "likeliest", "b": "scale"}),
+    "RiskBetaGeneral": _Alternate("Beta", {"alpha1": "alpha", "alpha2": "beta", "min": "low", "max": "high"}),
+    "RiskStudent": _Alternate("Student's t", {"nu": "degrees"}, {"midpoint": 0.0, "scale": 1.0}),
+}
+"""Function without `Alt` -> its alternate form."""
+
+_ALTERNATES_BY_NAME: Final = {
+    f"{name.upper()}ALT{ending}": (f"{name}Alt{ending}", alternate, bool(ending))
+    for name, alternate in ALTERNATES.items()
+    for ending in ("", "D")
+}
+
+
+def _alternate_draw(
+    name: str, arguments: tuple[ir.Expression, ...], properties: Callable[[str], Properties]
+) -> Drawn | None:
+    """What a call of an alternate form draws; None where it is none.
+
+    Args:
+        name: of the function, in capitals.
+        arguments: those before the property functions.
+        properties: reads these; takes the name of the function for messages.
+
+    Raises:
+        FormulaError: the pairs are no distribution of the family.
+    """
+    if name not in _ALTERNATES_BY_NAME:
+        return None
+    function, alternate, descending = _ALTERNATES_BY_NAME[name]
+    given, points = _pairs(function, alternate, arguments, descending)
+    parameters: _Pairs = {key: ir.Number(value) for key, value in alternate.fixed.items()} | given
+    if alternate.family == "Uniform":
+        return Drawn(
+            function, FAMILIES["Uniform"], _uniform(function, parameters, points), properties=properties(function)
+        )
+    family = FAMILIES[alternate.family]
+    if points:
+        try:
+            family = by_percentiles(family, set(parameters), [_percent(share) for share in points])
+        except ValueError as error:
+            hint = "give one percentile for each parameter that is left out"
+            raise FormulaError(f"{function}: {error}", hint=hint) from None
+        parameters |= {f"p{show(_percent(share))}": value for share, value in points.items()}
+    missing = [spec.heading for spec in family.parameters if spec.key not in parameters and spec.default is None]
+    if missing:
+        raise FormulaError(f"{function} does not say its {missing[0]}", hint="give it, or one more percentile")
+    return Drawn(function, family, parameters, properties=properties(function))
+
+
+def _pairs(
+    function: str, alternate: _Alternate, arguments: tuple[ir.Expression, ...], descending: bool
+) -> tuple[_Pairs, _Points]:
+    """The parameters by our key, and the percentiles by the probability below them, rising."""
+    if len(arguments) % 2 or not arguments:
+        raise FormulaError(f"{function} has {len(arguments)} arguments", hint="give pairs: what, and its value")
+    given: _Pairs = {}
+    points: _Points = {}
+    for what, value in zip(arguments[::2], arguments[1::2], strict=True):
+        if isinstance(what, ir.Text):
+            key = alternate.names.get(what.value.strip().casefold())
+            if key is None:
+                raise FormulaError(
+                    f"{function} has no parameter {what.value!r}",
+                    hint=f"use {', '.join(map(repr, alternate.names))}, or a percentile such as 5%",
+                )
+            taken, place = key in given, key
+            given[key] = quotient(1.0, value) if key == alternate.inverted else value
+        else:
+            share = _share(function, what, descending)
+            taken, place = share in points, f"{100 * share:g} %"
+            points[share] = value
+        if taken:
+            raise FormulaError(f"{function} is given {place} twice", hint="keep one of them")
+    if alternate.mean_above and "location" in given and "mean" in given:
+        given["mean"] = total(given["mean"], given["location"])
+    return given, dict(sorted(points.items()))
+
+
+def _percent(share: float) -> float:
+    return round(100 * share, 10)
+
+
+def _share(function: str, what: ir.Expression, descending: bool) -> float:
+    share = number_of(what)
+    if share is None or not 0 < share < 1:
+        hint = "write probabilities such as 5% or 0.05, and names of parameters in quotes"
+        raise FormulaError(f"{function} has a percentile that is not between 0 and 1", hint=hint)
+    return round(1 - share if descending else share, 15)
+
+
+def _uniform(function: str, given: _Pairs, points: _Points) -> _Pairs:
+    """The limits of a Uniform through what is given: a straight line of values over probabilities."""
+    known = dict(points)
+    known |= {end: given[key] for key, end in (("low", 0.0), ("high", 1.0)) if key in given}
+    if len(known) != 2:
+        raise FormulaError(f"{function} is given {len(known)} values", hint="give two: limits or percentiles")
+    (p, x), (q, y) = sorted(known.items(), key=lambda item: item[0])
+    slope = quotient(difference(y, x), ir.Number(q - p))
+    low = difference(x, ir.Binary("*", ir.Number(p), slope))
+    high = total(x, ir.Binary("*", ir.Number(1 - p), slope))
+    return {"low": given.get("low", low), "high": given.get("high", high)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -13,15 +14,15 @@ from xlmc.definitions.model import CUTOFFS, Assumption, Parameter
 from xlmc.definitions.tables.data import OPTIONS, cached_data_family, given_data, refuse_options
 from xlmc.definitions.tables.fields import logical, number_in, optional_text, parameter, static_value
 from xlmc.definitions.tables.identity import Claims, identify
-from xlmc.definitions.tables.percentiles import is_percentile, with_percentiles
 from xlmc.definitions.tables.tables import DefinitionTable, Row, is_blank, rows_of
 from xlmc.distributions import FAMILIES, Family, ParameterSpec, Truncated, family_named
-from xlmc.distributions.base import show
+from xlmc.distributions.by_percentiles import by_percentiles
 from xlmc.distributions.naming import plain
+from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import Workbook
 
-__all__ = ["read_assumptions"]
+__all__ = ["is_percentile", "read_assumptions"]
 
 _OURS = (heading for family in FAMILIES.values() for spec in family.parameters for heading in spec.headings)
 
@@ -32,6 +33,8 @@ _LIMITS = frozenset({"low", "minimum", "min", "high", "maximum", "max"})
 
 _FIXED = ("Name", "Value", "Cell", "Distribution", *CUTOFFS.values(), "Units", "Source", "Frozen")
 _KNOWN = (*_FIXED, *_PARAMETERS, *OPTIONS)
+
+_HEADING = re.compile(r"p(\d{1,3}(?:\.\d+)?)")
 
 
 def read_assumptions(
@@ -102,7 +105,7 @@ def _assumption(
 def _family(row: Row) -> Family:
     typed = optional_text(row, "Distribution")
     family = family_named(typed, where=row.cell("Distribution")) if typed else FAMILIES["Uniform"]
-    return with_percentiles(row, family)
+    return _with_percentiles(row, family)
 
 
 def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, findings: Findings) -> float | None:
@@ -243,3 +246,37 @@ def _refuse_unused(row: Row, family: Family, findings: Findings) -> None:
         if plain(heading) in _LIMITS:
             hint = "Clear the cell; to cut the distribution off, use Lower cutoff and Upper cutoff"
         findings.problem(f"{family.name} has no {row.heading(heading)}", row.cell(heading), hint)
+
+
+def is_percentile(heading: str) -> bool:
+    """Whether a column of that name holds percentiles."""
+    return _HEADING.fullmatch(plain(heading)) is not None
+
+
+def _with_percentiles(row: Row, family: Family) -> Family:
+    """The family with the row's percentiles in place of the parameters that it leaves blank; itself without any.
+
+    Raises:
+        DefinitionError: the row has more or fewer percentiles than blank parameters, or one outside 0 to 100.
+    """
+    headings = [heading for heading in row.headings if is_percentile(heading) and row.filled(heading)]
+    if not (headings and family.roles):
+        return family
+    percents = [_percent(row, heading) for heading in headings]
+    blank = [spec for spec in family.parameters if not any(row.filled(heading) for heading in spec.headings)]
+    try:
+        return by_percentiles(family, {*family.keys} - {spec.key for spec in blank}, percents)
+    except ValueError:
+        left = ", ".join(spec.heading for spec in blank) or "no parameter"
+        message = f"{family.name} leaves {left} blank, and gives {', '.join(map(row.heading, headings))}"
+        hint = "Give one percentile for each parameter that is left blank"
+        raise DefinitionError(message, where=row.cell(headings[-1]), hint=hint) from None
+
+
+def _percent(row: Row, heading: str) -> float:
+    match = _HEADING.fullmatch(plain(heading))
+    percent = float(match[1]) if match else 0.0
+    if not 0 < percent < 100:
+        message = f"{row.heading(heading)} is no percentile"
+        raise DefinitionError(message, where=row.cell(heading), hint="Percentiles lie above P0 and below P100")
+    return percent

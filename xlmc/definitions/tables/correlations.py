@@ -9,8 +9,8 @@ from xlmc.definitions.findings import Findings
 from xlmc.definitions.model import Correlation, name_key
 from xlmc.definitions.tables.fields import number, required_text
 from xlmc.definitions.tables.tables import DefinitionTable, Row, rows_of
-from xlmc.distributions.base import show
 from xlmc.distributions.naming import did_you_mean
+from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import Workbook
 

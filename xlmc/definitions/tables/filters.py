@@ -1,4 +1,4 @@
-"""The rows of `xlmc_filters`: what makes a trial physically possible."""
+"""The rows of `xlmc_filters`, what makes a trial physically possible, and of `xlmc_checks`, cells that must be TRUE."""
 
 from __future__ import annotations
 
@@ -7,21 +7,23 @@ from collections.abc import Iterable, Mapping
 from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.findings import Findings
-from xlmc.definitions.model import Filter, Parameter
+from xlmc.definitions.model import Check, Filter, Parameter
 from xlmc.definitions.tables.fields import optional_text, parameter, static_value
 from xlmc.definitions.tables.identity import Claims, identify
-from xlmc.definitions.tables.tables import DefinitionTable, Row, as_text, is_blank, rows_of
-from xlmc.distributions.base import show
+from xlmc.definitions.tables.tables import DefinitionTable, Row, as_text, holds_rows, is_blank, rows_of
+from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.workbook.model import Workbook
 
-__all__ = ["LIMITS", "LIMIT_HINT", "read_filters"]
+__all__ = ["LIMIT_HINT", "read_checks", "read_filters"]
 
-LIMITS = {"at_least": "At least", "at_most": "At most", "above": "Above", "below": "Below"}
+_LIMITS = {"at_least": "At least", "at_most": "At most", "above": "Above", "below": "Below"}
 """Limits of a filter and their headings."""
-_KNOWN = ("Name", "Value", "Cell", *LIMITS.values(), "Because")
+_FILTER_COLUMNS = ("Name", "Value", "Cell", *_LIMITS.values(), "Because")
 LIMIT_HINT = "Fill in At least, At most, Above or Below, or make the cell a test such as =B7>0"
 """What to do where the cell of a filter is no test."""
+
+_CHECK_COLUMNS = ("Name", "Value", "Cell", "Because")
 
 
 def read_filters(
@@ -40,7 +42,7 @@ def read_filters(
         claims: takes their names and cells.
         findings: takes mistakes and remarks.
     """
-    rows = rows_of(workbook, tables, ("Name",), _KNOWN, findings)
+    rows = rows_of(workbook, tables, ("Name",), _FILTER_COLUMNS, findings)
     found = [_filter(row, computed, claims, findings) for row in rows]
     return tuple(each for each in found if each is not None)
 
@@ -48,14 +50,14 @@ def read_filters(
 def _filter(row: Row, computed: Computed, claims: Claims, findings: Findings) -> Filter | None:
     before = len(findings.problems)
     identity = identify(row, claims, findings)
-    limits = {key: findings.attempt(parameter, row, heading) for key, heading in LIMITS.items()}
+    limits = {key: findings.attempt(parameter, row, heading) for key, heading in _LIMITS.items()}
     because = findings.attempt(optional_text, row, "Because") or ""
     if len(findings.problems) > before or not identity:
         return None
     name, cell = identity
     findings.attempt(_refuse_contradiction, row, limits)
     findings.attempt(
-        _look_at, row.workbook, cell, not any(map(row.filled, LIMITS.values())), computed.at_all(cell), findings
+        _look_at, row.workbook, cell, not any(map(row.filled, _LIMITS.values())), computed.at_all(cell), findings
     )
     if len(findings.problems) > before:
         return None
@@ -64,7 +66,7 @@ def _filter(row: Row, computed: Computed, claims: Claims, findings: Findings) ->
         findings.notice(
             f"The filter {name!r} gives no evidence under Because, the first thing an opponent asks for", where
         )
-    return Filter(name=name, cell=cell, row=row.where, **limits, because=because, notes=row.notes(_KNOWN))
+    return Filter(name=name, cell=cell, row=row.where, **limits, because=because, notes=row.notes(_FILTER_COLUMNS))
 
 
 def _refuse_contradiction(row: Row, limits: Mapping[str, Parameter | None]) -> None:
@@ -78,9 +80,9 @@ def _refuse_contradiction(row: Row, limits: Mapping[str, Parameter | None]) -> N
         if low is None or high is None or low < high:
             continue
         if low > high or (floor, ceiling) != ("at_least", "at_most"):
-            pair = f"{LIMITS[floor]} ({show(low)}) and {LIMITS[ceiling]} ({show(high)})"
+            pair = f"{_LIMITS[floor]} ({show(low)}) and {_LIMITS[ceiling]} ({show(high)})"
             message = f"{pair} contradict each other: no trial could pass"
-            raise DefinitionError(message, where=row.cell(LIMITS[floor]), hint="Correct one of them")
+            raise DefinitionError(message, where=row.cell(_LIMITS[floor]), hint="Correct one of them")
 
 
 def _look_at(workbook: Workbook, cell: Cell, must_be_true: bool, computed: bool, findings: Findings) -> None:
@@ -106,3 +108,57 @@ def _look_at(workbook: Workbook, cell: Cell, must_be_true: bool, computed: bool,
 def _is_a_quantity(value: object) -> bool:
     """A number that does not stand for TRUE or FALSE."""
     return isinstance(value, int | float) and not isinstance(value, bool | ErrorCode) and value not in (0, 1)
+
+
+def read_checks(
+    workbook: Workbook,
+    tables: Iterable[DefinitionTable],
+    computed: Computed,
+    claims: Claims,
+    findings: Findings,
+) -> tuple[Check, ...]:
+    """The checks without a mistake, in the order of the rows.
+
+    Args:
+        workbook: where they are read.
+        tables: the tables that hold them.
+        computed: which cells something gives a value; a check should be on one.
+        claims: takes their names and cells.
+        findings: takes mistakes and remarks.
+    """
+    tables = tuple(tables)
+    for table in tables:
+        if not holds_rows(workbook, table):
+            findings.notice(f"The table {table.table.name} holds no check", table.where)
+    rows = rows_of(workbook, tables, ("Name",), _CHECK_COLUMNS, findings)
+    found = [_check(row, computed, claims, findings) for row in rows]
+    return tuple(each for each in found if each is not None)
+
+
+def _check(row: Row, computed: Computed, claims: Claims, findings: Findings) -> Check | None:
+    before = len(findings.problems)
+    identity = identify(row, claims, findings)
+    because = findings.attempt(optional_text, row, "Because") or ""
+    findings.attempt(_refuse_limits, row)
+    if len(findings.problems) > before or not identity:
+        return None
+    name, cell = identity
+    if is_blank(row.workbook.content(cell)) and not computed.at_all(cell):
+        findings.problem("The check cell is blank", cell, "Point to a cell that is TRUE or FALSE, such as =B7>0")
+        return None
+    if not computed.at_all(cell):
+        findings.notice("The check is a constant: it does not depend on anything", cell)
+    return Check(name=name, cell=cell, row=row.where, because=because, notes=row.notes(_CHECK_COLUMNS))
+
+
+def _refuse_limits(row: Row) -> None:
+    """Refuse limits, which a check does not have: kept as notes, they would never be tested.
+
+    Raises:
+        DefinitionError: the row fills in a limit.
+    """
+    given = next((heading for heading in _LIMITS.values() if row.filled(heading)), None)
+    if given is not None:
+        message = f"A check has no limits: its cell must be TRUE, and {row.heading(given)} would not be tested"
+        hint = "Write the limits into the check's cell, such as =AND(B7>0,B7<=1.5), or make the row a filter"
+        raise DefinitionError(message, where=row.cell(given), hint=hint)

@@ -1,26 +1,26 @@
-"""The rows of `xlmc_settings`: trials, seed and the like."""
+"""The rows of `xlmc_settings`: trials, seed and the like, and when the run ends."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
+from xlmc.definitions.amounts import as_seconds, typed_whole_number
 from xlmc.definitions.findings import Findings
 from xlmc.definitions.model import Settings
-from xlmc.definitions.stopping import LIMIT, MOST_TRIALS
-from xlmc.definitions.tables.fields import central_share, required_text
-from xlmc.definitions.tables.setting_values import number_of, whole_number
-from xlmc.definitions.tables.stopping_settings import read_stopping, stopping_settings
-from xlmc.definitions.tables.tables import DefinitionTable, Row, rows_of
+from xlmc.definitions.stopping import GOALS, LIMIT, MOST_TRIALS, NO_GOAL, RARE, Option, Stopping, stopping
+from xlmc.definitions.tables.fields import central_share, number_in, required_text
+from xlmc.definitions.tables.tables import DefinitionTable, Row, as_text, rows_of
 from xlmc.distributions.naming import did_you_mean, plain
-from xlmc.errors import DefinitionError
+from xlmc.distributions.parameters import show
+from xlmc.errors import DefinitionError, SimulationError
 from xlmc.sampling.methods import METHODS
 from xlmc.workbook.model import Workbook
 
-__all__ = ["DEFAULT_CENTRAL", "read_settings"]
+__all__ = ["read_settings"]
 
-DEFAULT_CENTRAL = 0.51
+_DEFAULT_CENTRAL = 0.51
 """The share of the central range where neither the forecast nor the settings give one: the paper's 51 %."""
 
 _LARGEST_SEED = 10**15  # a worksheet holds no more digits
@@ -28,6 +28,13 @@ _KNOWN = ("Setting", "Value")
 _LOGNORMS = ("@RISK", "XLRisk")
 
 _Reader = Callable[[Row, Findings], Any]
+
+T = TypeVar("T")
+
+_LEAST_PERCENT = 0.1
+
+_OTHERS = {"Precision %": "precision", "Rare": "rare", "Look at": "forecasts", "Time limit": "time_limit"}
+"""Setting -> what `stopping` calls it, of those that are no option of a goal."""
 
 
 class _Setting(NamedTuple):
@@ -56,12 +63,12 @@ def read_settings(
     for row in rows_of(workbook, tables[:1], _KNOWN, _KNOWN, findings):
         findings.attempt(_take, row, values, settings, findings)
     central = values.pop("range%", None)
-    ends = read_stopping(tables, values, findings)
+    ends = _read_stopping(tables, values, findings)
     if ends.has_goal:
         values.setdefault("trials", LIMIT)
     return (
         Settings(**{key: value for key, value in values.items() if value is not None}, stopping=ends),
-        DEFAULT_CENTRAL if central is None else central,
+        _DEFAULT_CENTRAL if central is None else central,
     )
 
 
@@ -86,11 +93,11 @@ def _take(row: Row, values: dict[str, Any], settings: Mapping[str, _Setting], fi
 
 
 def _trials(row: Row, _findings: Findings) -> int:
-    return whole_number(row, "Trials", 1, MOST_TRIALS)
+    return _whole_number(row, "Trials", 1, MOST_TRIALS)
 
 
 def _seed(row: Row, _findings: Findings) -> int:
-    return whole_number(row, "Seed", 0, _LARGEST_SEED)
+    return _whole_number(row, "Seed", 0, _LARGEST_SEED)
 
 
 def _sampling(row: Row, _findings: Findings) -> str:
@@ -129,7 +136,7 @@ def _arithmetic(row: Row, _findings: Findings) -> None:
 
 
 def _range(row: Row, findings: Findings) -> float:
-    return central_share("Range %", number_of(row, "Range %"), row.cell("Value"), findings)
+    return central_share("Range %", _number_of(row, "Range %"), row.cell("Value"), findings)
 
 
 def _settings(engines: Collection[str]) -> dict[str, _Setting]:
@@ -141,7 +148,131 @@ def _settings(engines: Collection[str]) -> dict[str, _Setting]:
         "Engine": partial(_engine, engines),
         "Arithmetic": _arithmetic,
         "Range %": _range,
-        **stopping_settings(),
+        **_stopping_settings(),
         "Lognorm": _lognorm,
     }
     return {plain(name): _Setting(name, read) for name, read in readers.items()}
+
+
+def _number_of(row: Row, name: str) -> float:
+    """The number in the row's Value.
+
+    Raises:
+        DefinitionError: there is something else in it.
+    """
+    return number_in(name, row.content("Value"), row.cell("Value"))
+
+
+def _whole_number(row: Row, name: str, least: int, most: int) -> int:
+    """The whole number in the row's Value, also as a text like `200,000` or `200k`.
+
+    Raises:
+        DefinitionError: there is something else in it, or a number outside `least` … `most`.
+    """
+    written = _whole_number_as_text(row, name)
+    value = _number_of(row, name) if written is None else written
+    if not least <= value <= most or value != int(value):
+        message = f"{name} must be a whole number from {least:,} to {most:,}, not {show(value)}"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Correct the number")
+    return int(value)
+
+
+def _whole_number_as_text(row: Row, name: str) -> int | None:
+    """What is written in a cell of text; None where the cell holds something else."""
+    text = row.content("Value").value
+    if not isinstance(text, str):
+        return None
+    found = typed_whole_number(text)
+    if found is None:
+        message = f"{name} is {as_text(text)!r}, which is no whole number"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Type it like 200000, 200,000, 2e5 or 200k")
+    return found
+
+
+def _stopping_settings() -> dict[str, Callable[[Row, Findings], Any]]:
+    """Setting -> reader of its row: what `stopping` takes."""
+    options = {option.setting: partial(_option, option) for option in _options()}
+    return options | {
+        "Precision": _precision,
+        "Precision %": _percent,
+        "Rare": _rare,
+        "Look at": _names,
+        "Time limit": _seconds,
+    }
+
+
+def _read_stopping(tables: list[DefinitionTable], values: dict[str, Any], findings: Findings) -> Stopping:
+    """What the settings say of the end of the run, taken out of `values`; a mistake is one of the whole table."""
+    given = {name: values.pop(plain(name)) for name in _stopping_settings() if plain(name) in values}
+    if any(value is None for value in given.values()):  # a mistake, which was told
+        return NO_GOAL
+    try:
+        if "Precision %" in given and "Precision" in given:
+            raise SimulationError("Precision and Precision % are both set", hint="Keep one of the two rows")
+        arguments = {option.setting: option.name for option in _options()} | _OTHERS
+        return stopping(**{arguments[name]: value for name, value in given.items()})
+    except SimulationError as error:
+        findings.problem(error.message, tables[0].where, error.hint or "")
+        return NO_GOAL
+
+
+def _options() -> list[Option]:
+    return [option for goal in GOALS.values() for option in goal.options]
+
+
+def _option(option: Option, row: Row, _findings: Findings) -> Any:
+    if isinstance(option.takes, tuple):
+        return _whole_number(row, option.setting, *option.takes)
+    given = required_text(row, "Value") if option.takes is str else _number_of(row, option.setting)
+    _as_written(row, option.read, given)
+    return given
+
+
+def _precision(row: Row, _findings: Findings) -> float:
+    value = _number_of(row, "Precision")
+    if value <= 0:
+        message = f"Precision must be above 0, not {show(value)}"
+        raise DefinitionError(message, where=row.cell("Value"), hint="Correct the number")
+    return value
+
+
+def _percent(row: Row, findings: Findings) -> str:
+    """A cell in percent format holds 0.01 for 1 %: what could be meant so is refused or told."""
+    value, where = _number_of(row, "Precision %"), row.cell("Value")
+    if value < _LEAST_PERCENT:
+        message = f"Precision % must be {_LEAST_PERCENT} or more, not {show(value)}"
+        raise DefinitionError(message, where=where, hint="Type 1 for 1 %, in a cell without percent format")
+    if value < 1:
+        findings.notice(f"Precision % {show(value)} is read as {show(value)} %", where)
+    return f"{value!r}%"
+
+
+def _names(row: Row, _findings: Findings) -> tuple[str, ...]:
+    return tuple(name.strip() for name in required_text(row, "Value").split(";") if name.strip())
+
+
+def _seconds(row: Row, _findings: Findings) -> float:
+    content = row.content("Value")
+    given = content.value if isinstance(content.value, str) else _number_of(row, "Time limit")
+    if not isinstance(given, str) and given < 1:
+        message = f"Time limit must be 1 second or more, not {show(given)}"
+        raise DefinitionError(
+            message, where=row.cell("Value"), hint="Type seconds, or a text such as 5m; not a clock time"
+        )
+    return _as_written(row, as_seconds, given)
+
+
+def _rare(row: Row, _findings: Findings) -> str:
+    typed = required_text(row, "Value")
+    if plain(typed) not in RARE:
+        message = f"{typed!r} is no way to look for rare trials"
+        raise DefinitionError(message, where=row.cell("Value"), hint=f"Use {', '.join(RARE)}")
+    return plain(typed)
+
+
+def _as_written(row: Row, read: Callable[[Any], T], given: object) -> T:
+    """What is read from the value; its fault told of the cell."""
+    try:
+        return read(given)
+    except SimulationError as error:
+        raise DefinitionError(error.message, where=row.cell("Value"), hint=error.hint) from error

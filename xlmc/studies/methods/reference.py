@@ -18,7 +18,7 @@ from xlmc.run.model import Model
 from xlmc.run.simulate import simulate
 from xlmc.run.simulation import Simulation
 from xlmc.statistics import Estimate, Sample
-from xlmc.statistics.tail_index import heavy_tail
+from xlmc.statistics.heavy_tails import heavy_tail
 from xlmc.studies.methods.answer import Answer, Extreme, extremes_of
 
 __all__ = [

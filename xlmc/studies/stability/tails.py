@@ -12,7 +12,7 @@ import numpy as np
 
 from xlmc.address import Cell
 from xlmc.formula import ir
-from xlmc.statistics.tail_index import heavy_tail
+from xlmc.statistics.heavy_tails import heavy_tail
 from xlmc.studies.stability.case import Case
 from xlmc.studies.stability.findings import Finding, Level
 from xlmc.studies.stability.rewriting import without_quotient

@@ -36,7 +36,7 @@ import numpy as np
 import xlmc
 from xlmc.api import Simulation
 from xlmc.cli.templates_folder import templates
-from xlmc.columns import columns
+from xlmc.columns import column_store
 from xlmc.errors import XlmcError
 from xlmc.workbook.writer import write_workbook
 
@@ -112,16 +112,16 @@ class Writers:
 def fill_columns(folder: Path, values: int) -> None:
     """Keep columns on disk, in this folder, as a long run does."""
     before, tempfile.tempdir = tempfile.tempdir, str(folder)
-    limits, columns.IN_MEMORY, columns.WRITTEN = (columns.IN_MEMORY, columns.WRITTEN), 0, 0  # type: ignore[misc]
+    limits, column_store.IN_MEMORY, column_store.WRITTEN = (column_store.IN_MEMORY, column_store.WRITTEN), 0, 0  # type: ignore[misc]
     try:
-        keeper = columns.Keeper({"a": np.dtype(np.float64)})
+        keeper = column_store.Keeper({"a": np.dtype(np.float64)})
         for _ in range(values // 1_000):
             keeper.add("a", np.ones(1_000))
             keeper.settle()
         del keeper
     finally:
         tempfile.tempdir = before
-        columns.IN_MEMORY, columns.WRITTEN = limits  # type: ignore[misc]
+        column_store.IN_MEMORY, column_store.WRITTEN = limits  # type: ignore[misc]
 
 
 def in_child(work: Callable[[], None]) -> int:

@@ -76,7 +76,7 @@ def test_a_full_disk_is_a_message_and_nothing_is_lost(xlmc, book, tmp_path, monk
     results = tmp_path / "case-results.xlsx"
     xlmc("simulate", book, "-n", 5_000)
     before = results.read_bytes()
-    monkeypatch.setattr("xlmc.columns.columns.IN_MEMORY", 0)
+    monkeypatch.setattr("xlmc.columns.column_store.IN_MEMORY", 0)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "none"))
     outcome = xlmc("simulate", book, "-n", 10_000)
     assert outcome.code == 2

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.columns import Keeper, columns, on_disk
+from xlmc.columns import Keeper, column_store, on_disk
 
 TYPES = {"x": np.dtype(np.float64), "n": np.dtype(np.int64), "never": np.dtype(np.float64)}
 NAMES = {"speed": "x", "trial": "n", "none": "never"}
@@ -26,8 +26,8 @@ def filled(blocks):
 @pytest.mark.parametrize("blocks", [0, 1, 30])
 @pytest.mark.parametrize("in_memory", [0, 5000, 1 << 27])
 def test_columns_are_what_was_added(monkeypatch, blocks, in_memory):
-    monkeypatch.setattr(columns, "IN_MEMORY", in_memory)
-    monkeypatch.setattr(columns, "WRITTEN", 3000)
+    monkeypatch.setattr(column_store, "IN_MEMORY", in_memory)
+    monkeypatch.setattr(column_store, "WRITTEN", 3000)
     found, expected = filled(blocks)
     assert list(found) == ["speed", "trial", "none"]
     assert len(found) == 3

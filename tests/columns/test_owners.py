@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import pytest
 
 from xlmc.columns import owners
-from xlmc.columns.columns import Keeper
+from xlmc.columns.column_store import Keeper
 from xlmc.columns.owners import new_file_name, new_folder_name, owned, remove_stray_files, remove_stray_folders
 
 

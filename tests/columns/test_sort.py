@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from xlmc.columns import ascending, on_disk, sort
+from xlmc.columns import ascending, on_disk, passes
 
 RUN = 64
 
@@ -13,7 +13,7 @@ RUN = 64
 @pytest.fixture(autouse=True, scope="module")
 def short_runs():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sort, "RUN", RUN)
+        patch.setattr(passes, "RUN", RUN)
         yield
 
 
@@ -36,13 +36,13 @@ def test_no_piece_is_longer_than_two_runs(stored, monkeypatch, share_of_ties, or
     column = np.where(rng.random(100 * RUN + 5) < share_of_ties, 0.5, rng.random(100 * RUN + 5))
     column = {"random": column, "ascending": np.sort(column), "descending": -np.sort(-column)}[order]
     written = []
-    append = sort.Folder.append
+    append = passes.Folder.append
     monkeypatch.setattr(
-        sort.Folder,
+        passes.Folder,
         "append",
         lambda self, name, arrays: append(self, name, [written.append(array.size) or array for array in arrays]),
     )
-    monkeypatch.setattr(sort, "PART", RUN)
+    monkeypatch.setattr(passes, "PART", RUN)
     expected = np.sort(column)
     column = stored(column)
     written.clear()

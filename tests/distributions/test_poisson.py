@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from xlmc.distributions.poisson import Poisson
-from xlmc.functions.statistical.saddle_point import poisson_mass
+from xlmc.functions.statistical.probabilities import poisson_mass
 
 POISSON = Poisson()
 

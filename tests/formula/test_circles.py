@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from xlmc.address import Cell
-from xlmc.formula.circles import circular
+from xlmc.formula.graph import circular
 
 
 def cells(letters):

@@ -10,7 +10,7 @@ from xlmc.address import Cell
 from xlmc.errors import FormulaError
 from xlmc.formula import Resolver, build_graph, ir
 from xlmc.formula import graph as module
-from xlmc.formula.spills import Spills
+from xlmc.formula.graph import Spills
 from xlmc.workbook.model import Workbook
 
 

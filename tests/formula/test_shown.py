@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.address import Area, parse_address
-from xlmc.formula.shown import shown_formula
+from xlmc.formula.shape import shown_formula
 from xlmc.workbook.model import CellContent, Formula
 
 

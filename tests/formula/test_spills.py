@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.address import Cell, parse_address
-from xlmc.formula.spills import Spills
+from xlmc.formula.graph import Spills
 
 
 @pytest.mark.parametrize(

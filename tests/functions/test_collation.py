@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.functions.collation import order_key
+from xlmc.functions.ordering import order_key
 
 RISING = ["", " ", "!", "#", "_", "~", "+", "=", "0", "9", "a", "A2", "ab", "é", "ef", "Z", "Zo", "zö", "zz"]
 

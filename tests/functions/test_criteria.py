@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.collation import order_key
 from xlmc.functions.criteria import met
+from xlmc.functions.ordering import order_key
 from xlmc.functions.values import constant, from_objects
 
 DIV0, NA = ErrorCode.DIV0, ErrorCode.NA

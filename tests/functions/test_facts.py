@@ -24,8 +24,8 @@ from xlmc.formula.callables import _CHOOSING
 from xlmc.formula.references import LOOKED_AT
 from xlmc.functions.facts import EmptyCells, Facts, Repeats
 from xlmc.functions.families import REGISTRY
+from xlmc.functions.math.aggregate import SO_FAR
 from xlmc.functions.operators import ALL_BITS
-from xlmc.functions.so_far import SO_FAR
 from xlmc.functions.values import constant
 from xlmc.run.rare.preimage import FUNCTIONS, PERIODIC
 from xlmc.run.rare.switches import _OF_AREAS
@@ -66,8 +66,8 @@ LISTS = {
     ("formula/callables.py", "_CHOOSING"): "any other function gives no LAMBDA",
     ("formula/references.py", "LOOKED_AT"): "any other function reads its arguments",
     ("formula/stencil.py", "_leaves"): "formulas without LET and LAMBDA are filled down by their shape",
-    ("functions/math/precise_rounding.py", "ceiling_precise"): "aliases of one row",
-    ("functions/so_far.py", "SO_FAR"): "any other function is computed of each range by itself",
+    ("functions/math/rounding.py", "ceiling_precise"): "aliases of one row",
+    ("functions/math/aggregate.py", "SO_FAR"): "any other function is computed of each range by itself",
     ("replay/versions.py", "_BESIDE"): "what changed in an earlier version",
     ("replay/versions.py", "_CHOICES"): "what changed in an earlier version",
     ("run/rare/inverting.py", "Inverting"): "any other function is not undone: its filter is searched for",

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.functions.last_sum import SETTLED, Settled, keep, never_cancels
+from xlmc.functions.fifteen_digits import SETTLED, Settled, keep, never_cancels
 
 NUMBERS = st.floats(-1e300, 1e300, allow_subnormal=False)
 LIMITS = st.floats(-1e6, 1e6)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.per_object import object_text, per_object
+from xlmc.functions.per_element import object_text, per_object
 from xlmc.functions.values import constant, from_objects
 
 

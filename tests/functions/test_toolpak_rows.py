@@ -5,7 +5,7 @@ import pytest
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.registry import REGISTRY, Kind, Logical, Number
-from xlmc.functions.toolpak_rows import Date, toolpak
+from xlmc.functions.toolpak import Date, toolpak
 from xlmc.functions.values import Value, from_objects
 
 NUM, VALUE, NA, DIV0 = ErrorCode.NUM, ErrorCode.VALUE, ErrorCode.NA, ErrorCode.DIV0

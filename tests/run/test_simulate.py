@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from xlmc.api import Model
-from xlmc.columns import columns, on_disk
+from xlmc.columns import column_store, on_disk
 from xlmc.errors import FormulaError, SimulationError
 from xlmc.results.record.fingerprint import fingerprint
 from xlmc.run import simulate as module
@@ -82,7 +82,7 @@ def test_just_as_many_trials_as_asked_for(model, trials):
 
 
 def test_on_disk_a_forecast_that_does_not_vary(book, monkeypatch):
-    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    monkeypatch.setattr(column_store, "IN_MEMORY", 0)
     run = book({"A1": 1.0, "B1": "=2>1"}, {"a": {"cell": "A1", **UNIT}}, {"x": "B1", "y": "A1"}).simulate(300)
     assert run.forecasts["x"].tolist() == [1.0] * 300
     assert run["x"].mean.value == 1.0
@@ -91,8 +91,8 @@ def test_on_disk_a_forecast_that_does_not_vary(book, monkeypatch):
 @pytest.mark.parametrize("trials", [100, 5000])
 def test_on_disk_no_bit_is_different(model, monkeypatch, trials):
     in_memory = model.simulate(trials)
-    monkeypatch.setattr(columns, "IN_MEMORY", 0)
-    monkeypatch.setattr(columns, "WRITTEN", 4000)
+    monkeypatch.setattr(column_store, "IN_MEMORY", 0)
+    monkeypatch.setattr(column_store, "WRITTEN", 4000)
     run = model.simulate(trials)
     assert on_disk(run.trial_index)
     assert all(on_disk(values) for part in (run.inputs, run.prior, run.forecasts) for values in part.values())
@@ -105,7 +105,7 @@ def test_on_disk_no_bit_is_different(model, monkeypatch, trials):
 
 
 def test_on_disk_a_forecast_without_a_number_is_left_out(book, monkeypatch):
-    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    monkeypatch.setattr(column_store, "IN_MEMORY", 0)
     run = book({"A1": 1.0, "B1": "=SQRT(A1-0.5)"}, {"a": {"cell": "A1", **UNIT}}, {"x": "B1"}).simulate(1000)
     kept = run.inputs["a"] >= 0.5
     assert on_disk(run["x"].values)
@@ -114,7 +114,7 @@ def test_on_disk_a_forecast_without_a_number_is_left_out(book, monkeypatch):
 
 
 def test_the_temporary_files_go_with_the_run(model, monkeypatch, tmp_path):
-    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    monkeypatch.setattr(column_store, "IN_MEMORY", 0)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     run = model.simulate(1000)
     assert list(tmp_path.iterdir())
@@ -126,7 +126,7 @@ def test_the_temporary_files_go_with_the_run(model, monkeypatch, tmp_path):
 
 @pytest.mark.parametrize("scheduler", ["threads", "processes"])
 def test_a_full_disk_ends_the_run(model, monkeypatch, scheduler):
-    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    monkeypatch.setattr(column_store, "IN_MEMORY", 0)
     monkeypatch.setattr(tempfile, "tempdir", "/there/is/none")
     with pytest.raises(SimulationError, match="temporary folder"):
         model.simulate(1000, jobs=2, scheduler=scheduler)

@@ -1,7 +1,7 @@
 import pytest
 
 from xlmc.errors import WorkbookError
-from xlmc.workbook.blame import told_of
+from xlmc.workbook.lazy_sheets import told_of
 
 
 @pytest.mark.parametrize(("where", "told"), [(None, "book.xlsx"), ("Sheet1!B7", "Sheet1!B7")])

@@ -5,7 +5,7 @@ from pathlib import Path, PureWindowsPath
 
 import pytest
 
-from xlmc.workbook.long_paths import extended, openable
+from xlmc.workbook.writer import extended, openable
 
 LONG = "\\".join(["folder of a case"] * 16)
 

@@ -1,6 +1,6 @@
 import pytest
 
-from xlmc.workbook.metadata import dynamic_array_marks
+from xlmc.workbook.lazy_sheets import dynamic_array_marks
 
 ARRAY = '<ext><d:dynamicArrayProperties xmlns:d="urn:xda" fDynamic="{}" fCollapsed="0"/></ext>'
 SPILLS, DOES_NOT = (f"<bk><extLst>{ARRAY.format(flag)}</extLst></bk>" for flag in "10")

@@ -2,7 +2,7 @@ import pytest
 
 from xlmc.address import Area
 from xlmc.errors import WorkbookError
-from xlmc.workbook.reference import area_of
+from xlmc.workbook.structure import area_of
 
 
 @pytest.mark.parametrize(

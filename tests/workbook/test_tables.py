@@ -3,7 +3,7 @@ import pytest
 from xlmc.address import Area
 from xlmc.errors import WorkbookError
 from xlmc.workbook.model import Table
-from xlmc.workbook.tables import read_table, tables_of
+from xlmc.workbook.structure import read_table, tables_of
 
 MAIN = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
 PART = "xl/worksheets/sheet1.xml"

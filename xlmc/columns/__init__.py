@@ -4,12 +4,8 @@ Flat files rather than Parquet: they need no further library, any rank of a colu
 column is an ordinary array to whoever reads it. Parquet is a format to hand results on in, not to work in.
 """
 
-from xlmc.columns.columns import Columns, Keeper
-from xlmc.columns.folder import Folder
-from xlmc.columns.mapped import on_disk, release
-from xlmc.columns.passes import PART, pairwise_sum, parts, picked
-from xlmc.columns.sift import numbers
-from xlmc.columns.sort import ascending
+from xlmc.columns.column_store import Columns, Folder, Keeper, on_disk, release
+from xlmc.columns.passes import PART, ascending, numbers, pairwise_sum, parts, picked
 
 __all__ = [
     "PART",

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.columns.mapped import on_disk, release
+from xlmc.columns.column_store import Folder, on_disk, release
 
-__all__ = ["PART", "pairwise_sum", "parts", "picked"]
+__all__ = ["PART", "ascending", "numbers", "pairwise_sum", "parts", "picked"]
 
 PART = 65_536
 """Values looked at together: a few arrays of so many fit in the processor's cache."""
@@ -53,3 +53,69 @@ def picked(values: NDArray[Any], places: NDArray[np.intp]) -> NDArray[Any]:
         found[here] = values[places[here]]
         release(values)
     return found
+
+
+def numbers(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """`(n,)` values without NaN, in their order: the column itself where it has none; on disk where it was on disk."""
+    if not any(np.isnan(part).any() for part in parts(values)):
+        return values
+    if not on_disk(values):
+        return values[~np.isnan(values)]
+    folder = Folder()
+    for part in parts(values):
+        folder.append("numbers", [part[~np.isnan(part)]])
+    return folder.array("numbers", values.dtype)
+
+
+RUN = 1 << 22
+"""Values sorted together."""
+
+
+def ascending(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """`(n,)` values without NaN in ascending order: in memory, or on disk where they were on disk.
+
+    Raises:
+        SimulationError: there is no room on the disk.
+    """
+    if not on_disk(values):
+        return np.sort(values)
+    folder = Folder()
+    for part in parts(values, RUN):
+        folder.append("runs", [np.sort(part)])
+    runs = folder.array("runs", values.dtype)
+    if values.size <= RUN:
+        return runs
+    _merge(folder, [runs[start : start + RUN] for start in range(0, runs.size, RUN)])
+    folder.remove("runs")
+    return folder.array("merged", values.dtype)
+
+
+def _merge(folder: Folder, runs: list[NDArray[np.float64]]) -> None:
+    """Write the values of all ascending runs in ascending order."""
+    splitters = _splitters(runs)
+    before = np.array([np.searchsorted(run, splitters, side="left") for run in runs])
+    after = np.array([np.searchsorted(run, splitters, side="right") for run in runs])
+    release(runs[0])
+    first, last = np.zeros((len(runs), 1), np.intp), np.array([[run.size] for run in runs])
+    begins, ends = np.hstack([first, after]), np.hstack([before, last])
+    for place in range(splitters.size + 1):
+        piece = np.concatenate([run[b:e] for run, b, e in zip(runs, begins[:, place], ends[:, place], strict=True)])
+        release(runs[0])
+        piece.sort()
+        folder.append("merged", [piece])
+        if place < splitters.size:
+            ties = int((after[:, place] - before[:, place]).sum())
+            _repeat(folder, splitters[place], ties)
+
+
+def _splitters(runs: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Ascending values, no two equal."""
+    k = len(runs)
+    step = -(-runs[0].size // k)
+    candidates = np.sort(np.concatenate([run[::step] for run in runs]))
+    return np.unique(candidates[::k])
+
+
+def _repeat(folder: Folder, value: np.float64, count: int) -> None:
+    full = np.full(min(count, PART), value)
+    folder.append("merged", (full[: min(PART, count - start)] for start in range(0, count, PART)))

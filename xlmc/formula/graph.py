@@ -1,25 +1,28 @@
-"""What the targets need: their formula cells in dependency order, and which of them vary with an assumption."""
+"""What the targets need: their formula cells in dependency order, and which of them vary with an assumption.
+
+Cells that need each other in a circle are faults. A cell may hold no formula and yet be computed: one that an array
+formula in another cell fills (`Spills`).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import Final, NamedTuple
 
+import numpy as np
+
 from xlmc.address import Area, Cell, host_of
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
-from xlmc.formula.circles import circular, cycle
 from xlmc.formula.references import references
 from xlmc.formula.resolve import Resolver
-from xlmc.formula.spills import Spills
 from xlmc.formula.stencil import Stencil
 from xlmc.formula.strips import Needs, Part, Stretch, Strips
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.model import Sheet, Workbook
 
-__all__ = ["Filled", "Graph", "Trees", "build_graph"]
-
+__all__ = ["Filled", "Graph", "Spills", "build_graph", "circular"]
 
 _MANY: Final = 64
 """Cells of a part that it is worth remembering."""
@@ -32,7 +35,7 @@ class Filled(NamedTuple):
     cells: list[Cell]
 
 
-class Trees(Mapping[Cell, ir.Expression]):
+class _Trees(Mapping[Cell, ir.Expression]):
     """The resolved trees of formula cells; those of a stencil are made when they are asked for."""
 
     def __init__(self, placed: Mapping[Cell, ir.Expression | Filled]) -> None:
@@ -63,7 +66,7 @@ class Graph:
     """
 
     workbook: Workbook
-    formulas: Trees
+    formulas: _Trees
     needs: Mapping[Cell, tuple[Cell, ...]]
     varying: frozenset[Cell]
     reached: frozenset[Cell]
@@ -104,7 +107,7 @@ def build_graph(
         walk.faults.update(circular(walk.needs))
     varying = _varying(walk.placed, walk.needs, walk.reached & inputs)
     reached = frozenset(walk.reached)
-    return Graph(resolver.workbook, Trees(walk.placed), walk.needs, varying, reached, walk.faults)
+    return Graph(resolver.workbook, _Trees(walk.placed), walk.needs, varying, reached, walk.faults)
 
 
 class _Walk:
@@ -166,7 +169,7 @@ class _Walk:
 
     def _close_circle(self, cell: Cell) -> None:
         if self._strict:
-            raise cycle([*self._trail][[*self._trail].index(cell) :])
+            raise _cycle([*self._trail][[*self._trail].index(cell) :])
         self.circular = True
 
     def _read(self, cell: Cell) -> ir.Expression | Filled | None:
@@ -243,3 +246,97 @@ def _varying(formulas: Iterable[Cell], needs: Needs, inputs: Iterable[Cell]) -> 
                 varying.add(cell)
                 break
     return frozenset(varying)
+
+
+def circular(needs: Mapping[Cell, Sequence[Cell]]) -> dict[Cell, FormulaError]:
+    """Every cell that needs itself, directly or through others, with one circle of those that it is in with.
+
+    Args:
+        needs: cell -> the cells it needs; those that are no keys need nothing.
+    """
+    cells = list(needs)
+    groups = _groups(cells, needs)
+    found: dict[Cell, FormulaError] = {}
+    for cell in cells:
+        if cell not in found and (loop := _loop(cell, needs, groups)):
+            fault = _cycle(loop)
+            found |= dict.fromkeys(groups[cell], fault)
+    return found
+
+
+def _cycle(cells: Sequence[Cell]) -> FormulaError:
+    """What to tell of a circle."""
+    loop = " → ".join(str(cell) for cell in [*cells, cells[0]])
+    return FormulaError(
+        f"the cells need each other in a circle: {loop}",
+        where=cells[0],
+        hint="break the circle; iterative calculation is not supported",
+    )
+
+
+def _groups(cells: Sequence[Cell], needs: Mapping[Cell, Sequence[Cell]]) -> dict[Cell, dict[Cell, None]]:
+    """The strongly connected component of every cell, in the order of the cells."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    places = {cell: place for place, cell in enumerate(cells)}
+    edges = [(places[cell], places[need]) for cell in cells for need in needs[cell] if need in places]
+    rows, columns = np.array(edges, np.int64).T
+    matrix = coo_array((np.ones(len(edges), np.int8), (rows, columns)), shape=(len(cells), len(cells)))
+    _, labels = connected_components(matrix.tocsr(), connection="strong")
+    members: dict[int, dict[Cell, None]] = {}
+    for cell, label in zip(cells, labels.tolist(), strict=True):
+        members.setdefault(label, {})[cell] = None
+    return {cell: members[label] for cell, label in zip(cells, labels.tolist(), strict=True)}
+
+
+def _loop(start: Cell, needs: Mapping[Cell, Sequence[Cell]], groups: Mapping[Cell, dict[Cell, None]]) -> list[Cell]:
+    """Follow needs within the group until a cell comes up again; nothing where the cell is in no circle."""
+    group, trail = groups[start], {start: None}
+    while True:
+        following = next((need for need in needs[next(reversed(trail))] if need in group), None)
+        if following is None:
+            return []
+        if following in trail:
+            return [*trail][[*trail].index(following) :]
+        trail[following] = None
+
+
+_MOST_LISTED: Final = 10_000
+"""Cells of an array formula that are listed one by one."""
+
+
+class Spills:
+    """Array formulas of a workbook by what they fill; a sheet is looked through when it is first asked about."""
+
+    def __init__(self, workbook: Workbook) -> None:
+        self._workbook = workbook
+        self._sheets: dict[str, tuple[dict[Cell, Cell], list[tuple[Area, Cell]]]] = {}
+
+    def anchor(self, cell: Cell) -> Cell | None:
+        """The cell whose array formula fills this other one; None where there is none."""
+        if cell.sheet not in self._sheets:
+            sheet = self._workbook.sheets.get(cell.sheet)
+            self._sheets[cell.sheet] = ({}, []) if sheet is None else _filled(sheet)
+        listed, large = self._sheets[cell.sheet]
+        if cell in listed:
+            return listed[cell]
+        return next((anchor for area, anchor in large if cell in area and cell != anchor), None) if large else None
+
+
+def _filled(sheet: Sheet) -> tuple[dict[Cell, Cell], list[tuple[Area, Cell]]]:
+    """The anchors of the cells that array formulas fill, and large areas with theirs."""
+    listed: dict[Cell, Cell] = {}
+    large = []
+    for place, content in sheet.cells.items():
+        area = None if content.formula is None else content.formula.array
+        if area is None or area.rows * area.columns == 1:
+            continue
+        anchor = Cell(sheet.name, *place)
+        if area.rows * area.columns > _MOST_LISTED:
+            large.append((area, anchor))
+        else:
+            for cell in area.cells():
+                if cell != anchor:
+                    listed.setdefault(cell, anchor)
+    return listed, large

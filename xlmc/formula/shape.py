@@ -1,20 +1,22 @@
-"""The shape of a formula: its text with every relative reference written as a distance from its own cell.
+"""A formula's text for another cell: its shape, which cells filled down have in common, and how Excel shows it.
 
-A column of formulas filled down has one shape, and is parsed once.
+In the shape every relative reference is written as a distance from the formula's own cell. A column of formulas filled
+down has one shape, and is parsed once. Excel shows the text without the prefixes that only the file has.
 """
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
-from xlmc.address import MAX_COLUMN, MAX_ROW, column_letters, column_number
+from xlmc.address import MAX_COLUMN, MAX_ROW, Cell, column_letters, column_number
 from xlmc.formula import ir
 from xlmc.formula.parse import parse_cell
 from xlmc.formula.stencil import Stencil
+from xlmc.workbook.model import Formula
 
-__all__ = ["Shape", "Shapes", "shape_of", "text_at"]
+__all__ = ["Shapes", "shape_of", "shown_formula", "text_at"]
 
 _TOKEN = re.compile(
     r'"(?:[^"]|"")*"'  # a text
@@ -129,7 +131,7 @@ def _filling(text: str, row: int) -> _Filling | None:
 
 
 @dataclass(eq=False, slots=True)
-class Shape:
+class _Shape:
     """What all formulas of one shape have in common.
 
     Attributes:
@@ -147,11 +149,11 @@ class Shapes:
     """Parses each shape once."""
 
     def __init__(self) -> None:
-        self._known: dict[str, Shape] = {}
-        self._texts: dict[tuple[str, int, int], Shape] = {}
-        self._columns: dict[int, tuple[_Filling, Shape]] = {}
+        self._known: dict[str, _Shape] = {}
+        self._texts: dict[tuple[str, int, int], _Shape] = {}
+        self._columns: dict[int, tuple[_Filling, _Shape]] = {}
 
-    def parse(self, text: str, row: int, column: int) -> Shape:
+    def parse(self, text: str, row: int, column: int) -> _Shape:
         """The shape of a formula written for a cell.
 
         Raises:
@@ -163,19 +165,56 @@ class Shapes:
             self._texts[written] = found = self._filled(text, row, column) or self._shape(text, row, column)
         return found
 
-    def _filled(self, text: str, row: int, column: int) -> Shape | None:
+    def _filled(self, text: str, row: int, column: int) -> _Shape | None:
         """The shape of the formula met last in the column, if filling that down gives this one."""
         if column not in self._columns:
             return None
         filling, shape = self._columns[column]
         return shape if filling.gives(text, row) else None
 
-    def _shape(self, text: str, row: int, column: int) -> Shape:
+    def _shape(self, text: str, row: int, column: int) -> _Shape:
         key = shape_of(text, row, column)
         found = self._known.get(key)
         if found is None:
-            self._known[key] = found = Shape(parse_cell(text), (row, column))
+            self._known[key] = found = _Shape(parse_cell(text), (row, column))
         filling = _filling(text, row)
         if filling is not None:
             self._columns[column] = filling, found
         return found
+
+
+_REFERENCE: Final = r"(?:'(?:[^']|'')*'!)?[\w.$!:]+"
+_HIDDEN: Final = re.compile(
+    r'"(?:[^"]|"")*"'  # a text
+    r"|(?:_xlfn\.)?LAMBDA\((?P<parameters>(?:\s*_xl(?:pm|op)\.[\w.]+\s*,)+)"
+    rf"|_xlfn\.ANCHORARRAY\((?P<spilled>{_REFERENCE})\)"
+    rf"|_xlfn\.SINGLE\((?P<single>{_REFERENCE})\)"
+    r"|'(?:[^']|'')*'"  # a sheet's name
+    r"|(?<![\w.])(?P<prefix>(?:_xlfn\.|_xlws\.|_xlpm\.|_xlop\.|_xleta\.)+)",
+    re.IGNORECASE,
+)
+_OPTIONAL: Final = re.compile(r"_xlop\.([\w.]+)", re.IGNORECASE)
+_NEEDED: Final = re.compile(r"_xlpm\.", re.IGNORECASE)
+
+
+def shown_formula(formula: Formula, cell: Cell) -> str:
+    """A cell's formula with its `=`; in braces where it was entered with Ctrl-Shift-Enter.
+
+    Args:
+        formula: as the file holds it; a shared formula's text is that of another cell.
+        cell: that it stands in.
+    """
+    if formula.array is not None and not formula.dynamic:
+        return f"{{={_HIDDEN.sub(_shown, formula.text)}}}"
+    text = text_at(formula.text, cell.row - formula.row, cell.column - formula.column)
+    return f"={_HIDDEN.sub(_shown, text)}"
+
+
+def _shown(found: re.Match[str]) -> str:
+    if found["parameters"] is not None:
+        return "LAMBDA(" + _NEEDED.sub("", _OPTIONAL.sub(r"[\1]", found["parameters"]))
+    if found["spilled"] is not None:
+        return f"{_NEEDED.sub('', found['spilled'])}#"
+    if found["single"] is not None:
+        return f"@{_NEEDED.sub('', found['single'])}"
+    return "" if found["prefix"] is not None else found[0]

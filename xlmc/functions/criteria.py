@@ -8,13 +8,18 @@ A criterion of one trial is held against the cells of the same trial. Letters: n
 * `<>` is the opposite in every cell, be it empty or an error; but `<>5` meets the text `5`, which `5` meets too.
 * `<`, `<=`, `>` and `>=` meet cells of the operand's kind only.
 * `""` meets what is empty or an empty text, `"="` what is empty, `"<>"` what is not.
+
+Wildcards make a pattern that a whole text fits or not: `*` for any characters, `?` for one, `~` before one taken as it
+is. A pattern is cut at its stars into pieces of fixed length, so that a text takes no more than one pass a piece: a
+chain of stars in one regular expression could take for ever.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from functools import partial
+from dataclasses import dataclass
+from functools import lru_cache, partial
 from typing import Any, Final
 
 import numpy as np
@@ -24,12 +29,11 @@ from xlmc.functions.arguments import if_blank
 from xlmc.functions.logical import choose
 from xlmc.functions.number_text import parse_number
 from xlmc.functions.ordering import Ordered, ordered
-from xlmc.functions.text.patterns import is_pattern, pattern_of
 from xlmc.functions.values import BLANK, ERROR, NUMBER, TEXT, Bools, Floats, Objects, Value, from_objects
 
-__all__ = ["met"]
+__all__ = ["is_pattern", "met", "pattern_of"]
 
-Read = Callable[[str], float | None]
+_Read = Callable[[str], float | None]
 """How a text reads as a number."""
 
 _OPERATOR: Final = re.compile(r"(<=|>=|<>|<|>|=|)(.*)", re.DOTALL)
@@ -65,7 +69,7 @@ def met(criterion: Value, cells: Value, *, begins: bool = False, date1904: bool 
     return result
 
 
-def _parsed(criterion: Value, plain: str, read: Read) -> tuple[Objects, Value]:
+def _parsed(criterion: Value, plain: str, read: _Read) -> tuple[Objects, Value]:
     """The operator and the operand of each criterion; `plain` is the operator of a text without one."""
     operand = if_blank(criterion)
     if criterion.texts is None:
@@ -80,7 +84,7 @@ def _parsed(criterion: Value, plain: str, read: Read) -> tuple[Objects, Value]:
     return np.where(is_text, operators[places], "="), choose(is_text, from_objects(items).take(places), operand)
 
 
-def _split(text: str, plain: str, read: Read) -> tuple[str, object]:
+def _split(text: str, plain: str, read: _Read) -> tuple[str, object]:
     """`">=5"` as `>=` and 5."""
     found = _OPERATOR.fullmatch(text)
     assert found is not None
@@ -90,7 +94,7 @@ def _split(text: str, plain: str, read: Read) -> tuple[str, object]:
     return operator or plain, _operand(rest, read)
 
 
-def _operand(text: str, read: Read) -> object:
+def _operand(text: str, read: _Read) -> object:
     number = read(text)
     if number is not None:
         return number
@@ -103,7 +107,7 @@ def _operand(text: str, read: Read) -> object:
         return text
 
 
-def _holds(operator: str, wanted: Ordered, found: Ordered, read: Read) -> Bools:
+def _holds(operator: str, wanted: Ordered, found: Ordered, read: _Read) -> Bools:
     if operator in _RELATIONS:
         comparable = (found.kinds == wanted.kinds) & (found.kinds != BLANK) & (found.kinds < ERROR)
         return np.asarray(comparable & _RELATIONS[operator](found.order, wanted.order))
@@ -111,7 +115,7 @@ def _holds(operator: str, wanted: Ordered, found: Ordered, read: Read) -> Bools:
     return ~equal if operator == "<>" else equal
 
 
-def _equal(wanted: Ordered, found: Ordered, begins: bool, read: Read | None) -> Bools:
+def _equal(wanted: Ordered, found: Ordered, begins: bool, read: _Read | None) -> Bools:
     """Which cells equal the operand; of a number also the texts that read as it, where `read` is given."""
     result = (found.kinds == wanted.kinds) & (found.order == wanted.order)
     is_number, is_text = wanted.kinds == NUMBER, wanted.kinds == TEXT
@@ -125,7 +129,7 @@ def _equal(wanted: Ordered, found: Ordered, begins: bool, read: Read | None) -> 
     return np.asarray(result)
 
 
-def _text_numbers(found: Ordered, read: Read) -> Floats:
+def _text_numbers(found: Ordered, read: _Read) -> Floats:
     """The number each text reads as; NaN where it is none, or is no text."""
     numbers = [read(text) for text in found.texts]
     table = np.array([np.nan if number is None else number for number in numbers])
@@ -143,3 +147,51 @@ def _by_text(found: Ordered, table: Any, otherwise: Any) -> Any:
     """What a table says of each text; something else where there is none."""
     is_text = found.kinds == TEXT
     return np.where(is_text, table[np.where(is_text, found.order, 0).astype(np.intp)], otherwise)
+
+
+_TOKEN = re.compile(r"~[*?~]|.", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class _Pattern:
+    """A pattern cut at its stars.
+
+    Attributes:
+        pieces: each compiled, with its length.
+    """
+
+    pieces: tuple[tuple[re.Pattern[str], int], ...]
+
+    def fits(self, text: str) -> bool:
+        """Whether the whole text fits, whatever its case."""
+        folded = text.casefold()
+        head, length = self.pieces[0]
+        if head.match(folded) is None:
+            return False
+        return self._rest_fits(folded, length) if len(self.pieces) > 1 else len(folded) == length
+
+    def _rest_fits(self, text: str, place: int) -> bool:
+        for piece, _ in self.pieces[1:-1]:
+            found = piece.search(text, place)
+            if found is None:
+                return False
+            place = found.end()
+        tail, length = self.pieces[-1]
+        return len(text) - length >= place and tail.match(text, len(text) - length) is not None
+
+
+def is_pattern(text: str) -> bool:
+    """Whether the text holds a wildcard or a `~`."""
+    return any(mark in text for mark in "*?~")
+
+
+@lru_cache(maxsize=4096)
+def pattern_of(text: str, begins: bool = False) -> _Pattern:
+    """The pattern that a text stands for; with `begins` anything may follow it."""
+    pieces: list[list[str]] = [[]]
+    for token in _TOKEN.findall(text.casefold() + ("*" if begins else "")):
+        if token == "*":
+            pieces.append([])
+        else:
+            pieces[-1].append("." if token == "?" else re.escape(token[-1]))
+    return _Pattern(tuple((re.compile("".join(piece), re.DOTALL), len(piece)) for piece in pieces))

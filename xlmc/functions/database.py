@@ -17,11 +17,10 @@ from xlmc.functions.arguments import direct_errors, earliest, refused, where_wro
 from xlmc.functions.criteria import met
 from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.logical import choose
-from xlmc.functions.lookup.picking import Places, cell_of, each_part, picked, side_by_side
+from xlmc.functions.lookup.picking import Places, by_portions, cell_of, each_part, picked, side_by_side
 from xlmc.functions.math import aggregate
 from xlmc.functions.math.conditional import Reduce, numbers_held
 from xlmc.functions.ordering import ordered
-from xlmc.functions.portions import by_portions
 from xlmc.functions.registry import Anything, Cells, Kind, excel
 from xlmc.functions.values import BLANK, NUMBER, TEXT, Bools, Value, constant
 

@@ -1,21 +1,24 @@
 """Values made comparable: within a kind, a comparison of values is one of floats.
 
-A number is its own order, a logical 1 or 0, a text its place among all texts that take part, in Excel's order and
-whatever its case. Letters: n trials, k values of a trial.
+A number is its own order, a logical 1 or 0, a text its rank among all texts that take part. Excel sorts texts, and
+compares them in approximate lookups, so: case does not count; symbols come before digits, digits before letters; a
+letter with an accent stands with its own; hyphens and apostrophes count only between texts that are otherwise equal.
+Letters: n trials, k values of a trial.
 """
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
-from xlmc.functions.collation import order_key
 from xlmc.functions.lookup.picking import Places, flattened
 from xlmc.functions.values import ERROR, TEXT, Codes, Floats, Objects, Value
 
-__all__ = ["Ordered", "ordered", "searched"]
+__all__ = ["Ordered", "order_key", "ordered", "searched"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,3 +83,23 @@ def _ordered(value: Value, ranks: dict[str, float], texts: tuple[str, ...]) -> O
 
 def _looked_up(texts: Objects, ranks: dict[str, float]) -> Floats:
     return np.array([ranks[text] for text in texts.ravel().tolist()], np.float64).reshape(texts.shape)
+
+
+_SYMBOLS: Final = '\t\n\r !"#$%&()*,./:;?@[\\]^_`{|}~+<=>'
+_WEIGHTS: Final[dict[int, str | None]] = {
+    **{ord(symbol): chr(place + 1) for place, symbol in enumerate(_SYMBOLS)},
+    ord("-"): None,
+    ord("'"): None,
+}
+"""All symbols weigh less than the digit 0."""
+
+
+def order_key(text: str) -> tuple[str, str]:
+    """What to sort a text by; two texts have one key where they differ in case at most."""
+    folded = text.casefold()
+    bare = folded if folded.isascii() else _without_accents(folded)
+    return bare.translate(_WEIGHTS), folded
+
+
+def _without_accents(text: str) -> str:
+    return "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))

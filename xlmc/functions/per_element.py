@@ -1,16 +1,19 @@
-"""Functions that have no vectorised form, texts above all: a body that calls Python once an element."""
+"""Bodies that call Python once an element: for functions that have no vectorised form, texts above all."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
+from xlmc.errors import ErrorCode
+from xlmc.functions.arguments import leveled
 from xlmc.functions.budget import ask_for_texts, counted
+from xlmc.functions.number_text import general_text
 from xlmc.functions.values import Value, from_objects
 
-__all__ = ["per_element"]
+__all__ = ["object_text", "per_element", "per_object"]
 
 
 def per_element(function: Callable[..., object]) -> Callable[..., Value]:
@@ -36,3 +39,44 @@ def per_element(function: Callable[..., object]) -> Callable[..., Value]:
 
 def _is_array(array: object) -> bool:
     return isinstance(array, np.ndarray)
+
+
+def per_object(function: Callable[..., object]) -> Callable[..., Value]:
+    """A body for `Anything` arguments from a function of floats, bools, strings and None, which it gets for a blank.
+
+    An error among the arguments is the result, the first of them first. The function returns what it may get, or an
+    `ErrorCode`.
+    """
+
+    def body(*values: Value, **options: object) -> Value:
+        columns = [value.objects() for value in leveled(*values)]
+        shape = np.broadcast_shapes(*(column.shape for column in columns))
+        spread = [np.broadcast_to(column, shape) for column in columns]
+        out = np.empty(shape, object)
+        ask_for_texts(out.size)
+        rows = zip(*(column.ravel().tolist() for column in spread), strict=True)
+        out.reshape(-1)[:] = list(counted(_unless_error(function, items, options) for items in rows))
+        return from_objects(out)
+
+    body.__doc__, body.__name__, body.__module__ = function.__doc__, function.__name__, function.__module__
+    return body
+
+
+def _unless_error(function: Callable[..., object], items: tuple[object, ...], options: Mapping[str, object]) -> object:
+    error = next((item for item in items if isinstance(item, ErrorCode)), None)
+    return function(*items, **options) if error is None else error
+
+
+def object_text(item: object) -> str:
+    """A value as `&` writes it; an error by its name."""
+    match item:
+        case None:
+            return ""
+        case ErrorCode():
+            return item.text
+        case bool():
+            return "TRUE" if item else "FALSE"
+        case float():
+            return general_text(item)
+        case _:
+            return str(item)

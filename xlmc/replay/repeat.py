@@ -34,7 +34,7 @@ from xlmc.run.simulate import simulate
 from xlmc.run.simulation import KEPT_INPUTS
 from xlmc.run.version import __version__
 from xlmc.sampling.methods import METHODS
-from xlmc.workbook.blame import told_of
+from xlmc.workbook.lazy_sheets import told_of
 from xlmc.workbook.reader import read_workbook
 from xlmc.workbook.seal import read_seal
 

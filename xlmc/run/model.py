@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable, Mapping, Sequence
+import gc
+from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,11 +28,10 @@ from xlmc.run.remarks import example_notices, still_notices
 from xlmc.run.scene import Scene, condition, definitions_of_checks, drawing_order, refuse_without_base, survey
 from xlmc.sampling.draws import CorrelatedGroup, Draw, Filler, Sampler, Stage
 from xlmc.sampling.plan import Plan
-from xlmc.workbook.collecting import paused_collection
 from xlmc.workbook.model import Workbook
 from xlmc.workbook.reader import read_workbook
 
-__all__ = ["Model", "load", "lowered", "understood"]
+__all__ = ["Model", "load", "lowered", "paused_collection", "understood"]
 
 
 def load(path: str | Path) -> Model:
@@ -313,3 +314,15 @@ class Model:
         """Lower every target once, so that a fault is told when the workbook is loaded."""
         for target in (*self.filter_targets, *self._forecast_targets):
             self.lowering.target(target)
+
+
+@contextmanager
+def paused_collection() -> Iterator[None]:
+    """No search for garbage meanwhile: it would walk all that was made so far again and again."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()

@@ -23,7 +23,7 @@ from xlmc.evaluation.graph.arrays import size_of
 from xlmc.evaluation.graph.lower import Lowering
 from xlmc.evaluation.graph.widening import widened
 from xlmc.formula import Graph, Resolver, build_graph, ir
-from xlmc.formula.mentions import mentioned
+from xlmc.formula.references import mentioned
 from xlmc.formula.substitute import substituted
 from xlmc.workbook.injection.cached_values import with_values
 from xlmc.workbook.model import CellValue, Workbook

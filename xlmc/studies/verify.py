@@ -14,7 +14,7 @@ from xlmc.errors import ErrorCode
 from xlmc.evaluation.graph.lower import Lowering
 from xlmc.evaluation.graph.widening import widened
 from xlmc.formula import Resolver, build_graph
-from xlmc.formula.shown import shown_formula
+from xlmc.formula.shape import shown_formula
 from xlmc.run.scene import targets_of
 from xlmc.workbook.model import CellValue, Workbook
 

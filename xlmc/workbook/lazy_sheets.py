@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import cached_property
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from xlmc.workbook.blame import told_of
-from xlmc.workbook.metadata import dynamic_array_marks
+from xlmc.errors import WorkbookError
 from xlmc.workbook.model import DataTable, Sheet
+from xlmc.workbook.safe_xml import is_true, tree
 from xlmc.workbook.sheet import parse_sheet
-from xlmc.workbook.strings import shared_strings
 from xlmc.workbook.structure import Structure
-from xlmc.workbook.values import CellContext
+from xlmc.workbook.values import CellContext, shared_strings
 
-__all__ = ["LazySheets"]
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+__all__ = ["LazySheets", "dynamic_array_marks", "told_of"]
 
 _T = TypeVar("_T")
 
@@ -88,3 +91,46 @@ class LazySheets(Mapping[str, Sheet]):
 def _may_hold_data_table(xml: bytes) -> bool:
     # XML without zero bytes at its start is in an encoding that writes ASCII as it is.
     return b"dataTable" in xml or b"\0" in xml[:4]
+
+
+_DYNAMIC = "XLDAPR"
+
+
+def dynamic_array_marks(xml: bytes, part: str) -> frozenset[str]:
+    """The values of `cm` that mark a dynamic-array formula.
+
+    `cm` counts cell metadata from 1; each names records (`rc`) of a type `t`, counted from 1, with a value `v`,
+    counted from 0, among that type's own.
+
+    Raises:
+        WorkbookError: the part is not XML.
+    """
+    root = tree(xml, part)
+    types = [element.get("name") for element in root.findall("{*}metadataTypes/{*}metadataType")]
+    spilling = _spilling_records(root)
+    wanted = {(str(types.index(_DYNAMIC) + 1), str(v)) for v in spilling} if _DYNAMIC in types else set()
+    return frozenset(
+        str(number)
+        for number, block in enumerate(root.findall("{*}cellMetadata/{*}bk"), 1)
+        if any((record.get("t"), record.get("v")) in wanted for record in block.findall("{*}rc"))
+    )
+
+
+def _spilling_records(root: Element) -> list[int]:
+    future = next((found for found in root.findall("{*}futureMetadata") if found.get("name") == _DYNAMIC), ())
+    return [number for number, block in enumerate(future) if _spills(block)]
+
+
+def _spills(block: Element) -> bool:
+    return any(is_true(found.get("fDynamic")) for found in block.iterfind(".//{*}dynamicArrayProperties"))
+
+
+@contextmanager
+def told_of(file: str) -> Iterator[None]:
+    """Complaints from within that name no place of their own are told of `file`."""
+    try:
+        yield
+    except WorkbookError as error:
+        if error.where is not None:
+            raise
+        raise WorkbookError(error.message, where=file, hint=error.hint) from error

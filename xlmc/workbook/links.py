@@ -12,9 +12,8 @@ from xlmc.errors import WorkbookError
 from xlmc.workbook.model import CellContent, CellValue, DefinedName, LinkedBook, Sheet
 from xlmc.workbook.package import relationships
 from xlmc.workbook.safe_xml import REPAIR, tree, whole_number
-from xlmc.workbook.strings import decode
 from xlmc.workbook.structure import Structure
-from xlmc.workbook.values import CellContext, convert
+from xlmc.workbook.values import CellContext, convert, decode
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

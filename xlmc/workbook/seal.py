@@ -22,10 +22,9 @@ from urllib.parse import quote, unquote
 
 from xlmc.errors import WorkbookError
 from xlmc.workbook.injection.book_edit import add_pointers
-from xlmc.workbook.injection.content_types import add_types
+from xlmc.workbook.injection.content_types import CONTENT_TYPES, add_types
 from xlmc.workbook.injection.part_numbers import free_part_names
-from xlmc.workbook.injection.result_parts import relative_target
-from xlmc.workbook.injection.roles import CONTENT_TYPES
+from xlmc.workbook.injection.result_sheet import relative_target
 from xlmc.workbook.package import read_parts, rels_part
 
 __all__ = ["ENDINGS", "Seal", "blank_seal", "read_seal", "seal_file", "sealed_parts", "sealed_text"]

@@ -8,11 +8,9 @@ from collections.abc import Callable, Mapping
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_number
 from xlmc.errors import WorkbookError
 from xlmc.workbook.model import CellContent, CellValue, DataTable, Formula, Sheet
-from xlmc.workbook.reference import area_of
 from xlmc.workbook.safe_xml import REPAIR, expat_parser, feed, is_true
-from xlmc.workbook.strings import decode, run_text
-from xlmc.workbook.structure import SheetEntry
-from xlmc.workbook.values import CellContext, convert
+from xlmc.workbook.structure import SheetEntry, area_of
+from xlmc.workbook.values import CellContext, convert, decode, run_text
 
 __all__ = ["parse_sheet"]
 

@@ -1,4 +1,4 @@
-"""The workbook part: its sheets, defined names and calculation settings."""
+"""The workbook part, with its sheets, defined names and calculation settings; and the tables of its worksheets."""
 
 from __future__ import annotations
 
@@ -7,17 +7,18 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from xlmc.address import Area, Cell, parse_address
 from xlmc.errors import Notice, WorkbookError
-from xlmc.workbook.model import DefinedName
+from xlmc.workbook.model import DefinedName, Table
 from xlmc.workbook.package import SAVE_AS, Relationship, relationships
 from xlmc.workbook.printable import printable
 from xlmc.workbook.safe_xml import REPAIR, attribute, is_true, tree, whole_number
-from xlmc.workbook.strings import decode
+from xlmc.workbook.values import decode
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
-__all__ = ["SheetEntry", "Structure", "read_structure"]
+__all__ = ["SheetEntry", "Structure", "area_of", "read_structure", "read_table", "tables_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,3 +136,58 @@ def _defined_name(element: Element, sheets: tuple[SheetEntry, ...]) -> DefinedNa
     if position is None or position >= len(sheets):
         return Notice(f"the defined name {name!r} belongs to a sheet that does not exist and is left out")
     return DefinedName(name, text, sheets[position].name)
+
+
+def area_of(reference: str | None, sheet: str, what: str) -> Area:
+    """The area `reference` names on `sheet`; a single cell is an area of one.
+
+    Raises:
+        WorkbookError: there is no reference, or it is none; `what` says whose it is.
+    """
+    try:
+        found = parse_address(reference or "", sheet)
+    except ValueError as error:
+        raise WorkbookError(f"{what} of sheet {sheet!r} has no valid range: {error}", hint=REPAIR) from None
+    if isinstance(found, Cell):
+        return Area(sheet, found.row, found.column, found.row, found.column)
+    return found
+
+
+def tables_of(parts: Mapping[str, bytes], sheet_part: str, sheet: str) -> Iterator[Table]:
+    """The tables on one worksheet.
+
+    Raises:
+        WorkbookError: a table part is missing or damaged.
+    """
+    for rel in relationships(parts, sheet_part).values():
+        if rel.kind == "table":
+            if rel.target not in parts:
+                raise WorkbookError(f"a table of sheet {sheet!r} is missing from the file", hint=REPAIR)
+            yield read_table(parts[rel.target], rel.target, sheet)
+
+
+def read_table(xml: bytes, part: str, sheet: str) -> Table:
+    """One table part.
+
+    Raises:
+        WorkbookError: the part is damaged, or its columns or rows do not fit its range.
+    """
+    root = tree(xml, part)
+    name = decode(root.get("displayName", root.get("name", "")))
+    columns = tuple(decode(column.get("name", "")) for column in root.findall("{*}tableColumns/{*}tableColumn"))
+    area = area_of(root.get("ref"), sheet, f"the table {name!r}")
+    header, totals = (whole_number(root.get(key, default)) for key, default in _ROWS)
+    if header is None or totals is None or header + totals > area.rows or len(columns) != area.columns:
+        raise WorkbookError(f"the table {name!r} of sheet {sheet!r} does not fit its range {area.a1}", hint=REPAIR)
+    return Table(name, area, columns, header, totals, _filtered(root, sheet, name))
+
+
+def _filtered(root: Element, sheet: str, name: str) -> Area | None:
+    """The range of its filter; None where no column of it has a condition."""
+    element = root.find("{*}autoFilter")
+    if element is None or not any(len(column) for column in element.findall("{*}filterColumn")):
+        return None
+    return area_of(element.get("ref"), sheet, f"the filter of the table {name!r}")
+
+
+_ROWS = (("headerRowCount", "1"), ("totalsRowCount", "0"))

@@ -1,9 +1,13 @@
-"""Put a package into a file: the same parts always give the same bytes; a failed write leaves the old file alone."""
+"""Put a package into a file: the same parts always give the same bytes; a failed write leaves the old file alone.
+
+Windows opens paths of 260 characters and more only by their extended form (`openable`).
+"""
 
 from __future__ import annotations
 
 import errno
 import io
+import ntpath
 import os
 import shutil
 import stat
@@ -16,9 +20,17 @@ from typing import BinaryIO
 
 from xlmc.columns.owners import new_file_name, owned, remove_stray_files
 from xlmc.errors import WorkbookError
-from xlmc.workbook.long_paths import openable
 
-__all__ = ["TakenError", "check_folder", "package_bytes", "refuse_if_open", "whole_file", "write_workbook"]
+__all__ = [
+    "TakenError",
+    "check_folder",
+    "extended",
+    "openable",
+    "package_bytes",
+    "refuse_if_open",
+    "whole_file",
+    "write_workbook",
+]
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time a zip can hold
 _FIRST = ("[Content_Types].xml", "_rels/.rels")  # where programs that read a package as it arrives look first
@@ -290,3 +302,27 @@ def _told(error: OSError, path: str | os.PathLike[str]) -> WorkbookError:
         hint = "Close it if a program has it open, see to its permissions, or name another file"
         return WorkbookError("the file is in use or may not be written", where=path, hint=hint)
     return WorkbookError(f"the file cannot be written ({error.strerror})", where=path, hint="Name another file")
+
+
+_LONGEST = 247
+"""Characters of a folder that every Windows creates; files beside it may have a dozen more."""
+_TEMPORARY = 48
+"""Characters of the name of the temporary file that is written beside it."""
+
+
+def openable(path: str | os.PathLike[str]) -> str:
+    """The path; on Windows a long one in its extended form, which must be absolute."""
+    return extended(os.fspath(path)) if os.name == "nt" else os.fspath(path)
+
+
+def extended(path: str) -> str:
+    r"""A Windows path, `\\?\C:\…` or `\\?\UNC\server\share\…` where it, or a temporary file beside it, is long.
+
+    The extended form takes no `..` and no `/`: the path is made absolute and plain first.
+    """
+    if path.startswith(("\\\\?\\", "\\\\.\\")):
+        return path
+    full = ntpath.normpath(path)
+    if max(len(full), len(ntpath.dirname(full)) + _TEMPORARY) <= _LONGEST or not ntpath.isabs(full):
+        return path
+    return rf"\\?\UNC{full[1:]}" if full.startswith("\\\\") else rf"\\?\{full}"

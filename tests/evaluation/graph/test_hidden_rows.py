@@ -75,7 +75,7 @@ def test_the_filter_of_a_table_counts(workbook, table):
 
 
 def test_a_table_part_tells_of_its_filter():
-    from xlmc.workbook.tables import read_table
+    from xlmc.workbook.structure import read_table
 
     part = (
         '<table xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main" name="T" displayName="T" ref="A1:B9">'

@@ -91,7 +91,7 @@ def test_what_is_known(dag):
     ],
 )
 def test_a_guard_is_asked_only_where_the_assumptions_do_not_answer(book, monkeypatch, assumption, asked):
-    from xlmc.functions.guards import Within
+    from xlmc.functions.math.trigonometry import Within
 
     calls = []
     call = Within.__call__

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.functions.dates.months import is_leap_year, is_month_end, month_length, months_later
+from xlmc.functions.dates.day_count import is_leap_year, is_month_end, month_length, months_later
 
 ZERO = date(1899, 12, 30)
 days_of_march_1900_on = st.integers(61, 2_900_000)

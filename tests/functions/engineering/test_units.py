@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.functions.engineering.units import unit_named
+from xlmc.functions.engineering.unit_conversion import unit_named
 
 EXCEL = {  # as Excel's help and tables of its constants have them
     "sg": 14593.9029372064,

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.functions.math.powers import powered
+from xlmc.functions.math.arithmetic import powered
 
 
 @pytest.mark.parametrize("exponent", [2.0, 0.5, -1.0, 3.0])

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.functions.number_format.fractions import approximated
+from xlmc.functions.number_format.numbers import approximated
 
 
 @pytest.mark.parametrize(

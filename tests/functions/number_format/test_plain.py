@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.functions.number_format.plain import general_in_cell
+from xlmc.functions.number_format.placeholders import general_in_cell
 
 GENERAL = [
     (0, "0"),

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.functions.statistical.cumulative import by_form
+from xlmc.functions.statistical.probabilities import by_form
 
 
 def _never():

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.functions.statistical.freedom import degrees_of_freedom
+from xlmc.functions.statistical.probabilities import degrees_of_freedom
 
 
 def test_from_1_to_ten_billion_fractions_dropped():

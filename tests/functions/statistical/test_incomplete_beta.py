@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.functions.statistical.incomplete_beta import incomplete_beta, inverse_beta
+from xlmc.functions.statistical.probabilities import incomplete_beta, inverse_beta
 
 BELOW = [
     ((0.5, 0.5, 1e-300), 6.3661977236758135105e-151),

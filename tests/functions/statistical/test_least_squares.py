@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from xlmc.functions.statistical.least_squares import fit
+from xlmc.functions.statistical.regression import fit
 
 LONGLEY = np.array(
     [

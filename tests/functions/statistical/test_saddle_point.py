@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.functions.statistical.saddle_point import binomial_mass, deviance, poisson_mass, stirling_error
+from xlmc.functions.statistical.probabilities import binomial_mass, deviance, poisson_mass, stirling_error
 
 POISSON = [
     ((993702635.0, 993655954.0), 4.2274572874897610619e-6),

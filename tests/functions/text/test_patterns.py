@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.functions.text.patterns import is_pattern, pattern_of
+from xlmc.functions.criteria import is_pattern, pattern_of
 
 TABLE = [
     ("abc", "ABC", True),

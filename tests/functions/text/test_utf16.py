@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.functions.text.utf16 import in_units, units, whole
+from xlmc.functions.text.text_parts import in_units, units, whole
 
 
 @given(st.text())

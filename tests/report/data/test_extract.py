@@ -121,7 +121,7 @@ def test_parquet_knows_the_record_and_the_units(model, tmp_path):
 
 def test_columns_on_disk_give_the_same_files(model, tmp_path, monkeypatch):
     model.simulate().extract(tmp_path / "a.csv")
-    monkeypatch.setattr("xlmc.columns.columns.IN_MEMORY", 0)
+    monkeypatch.setattr("xlmc.columns.column_store.IN_MEMORY", 0)
     model.simulate().extract(tmp_path / "b.csv")
     assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
 

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from xlmc.columns import columns
+from xlmc.columns import column_store
 from xlmc.errors import WorkbookError
 from xlmc.report.page import page_text, save_page
 from xlmc.report.summary import ERROR_SENTENCE
@@ -73,7 +73,7 @@ def test_the_same_run_gives_the_same_page(request, name):
 
 
 def test_results_on_disk_give_the_same_page(run, monkeypatch):
-    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    monkeypatch.setattr(column_store, "IN_MEMORY", 0)
     assert page_text(run.model.simulate()) == page_text(run)
 
 

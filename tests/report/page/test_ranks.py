@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.columns import columns
+from xlmc.columns import column_store
 from xlmc.report.page.ranks import ALL_VALUES, MOST_VALUES, most_values, rank_table
 
 values = st.lists(st.one_of(st.floats(-1e6, 1e6), st.integers(-3, 3).map(float)), min_size=1, max_size=300)
@@ -59,7 +59,7 @@ def test_trials_on_disk_give_the_same_table(make, monkeypatch):
     assumptions = [make.uniform("a", "A1", 0.0, 1.0, base=0.5)]
     run = make.simulate({"A1": 0.5, "B1": "=A1*2"}, assumptions, [make.forecast("x", "B1")], trials=5000)
     in_memory = rank_table(run["x"].sample.x, 100, [1.0])
-    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    monkeypatch.setattr(column_store, "IN_MEMORY", 0)
     on_disk = rank_table(run.model.simulate()["x"].sample.x, 100, [1.0])
     for name in ("values", "counts", "gaps"):
         assert getattr(in_memory, name).tolist() == getattr(on_disk, name).tolist()

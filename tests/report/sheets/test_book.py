@@ -9,7 +9,7 @@ import zipfile
 
 import pytest
 
-from xlmc.columns import columns, on_disk
+from xlmc.columns import column_store, on_disk
 from xlmc.report.sheets.book import build_sheets
 
 SHEETS = [
@@ -37,7 +37,7 @@ def test_threads_do_not_change_a_byte(run):
 
 
 def test_results_on_disk_do_not_change_a_byte(run, monkeypatch):
-    monkeypatch.setattr(columns, "IN_MEMORY", 0)
+    monkeypatch.setattr(column_store, "IN_MEMORY", 0)
     again = run.model.simulate()
     assert on_disk(again.trial_index)
     assert build_sheets(again) == build_sheets(run)

@@ -107,7 +107,7 @@ def test_it_holds_the_workbook_as_it_was(saved, small_book):
 
 
 def test_columns_on_disk_are_saved_and_opened_on_disk(model, tmp_path, saved, monkeypatch):
-    monkeypatch.setattr("xlmc.columns.columns.IN_MEMORY", 0)
+    monkeypatch.setattr("xlmc.columns.column_store.IN_MEMORY", 0)
     run = model.simulate()
     assert on_disk(run.trial_index)
     run.keep(tmp_path / "a.xlmcrun")

@@ -13,7 +13,7 @@ import pytest
 
 from xlmc import statistics
 from xlmc.cli.simulate import simulate as command
-from xlmc.columns import columns, on_disk
+from xlmc.columns import column_store, on_disk
 from xlmc.definitions.stopping import LIMIT, stopping
 from xlmc.errors import SimulationError
 from xlmc.results.record import make_record
@@ -118,8 +118,8 @@ def test_the_share_accepted_is_unbiased(model):
 def test_on_disk_it_ends_at_the_same_trial(model, monkeypatch):
     asked = {"precision": "2%", "precision_of": "mean,range,p90"}
     in_memory = model.simulate(**asked)
-    monkeypatch.setattr(columns, "IN_MEMORY", 0)
-    monkeypatch.setattr(columns, "WRITTEN", 4000)
+    monkeypatch.setattr(column_store, "IN_MEMORY", 0)
+    monkeypatch.setattr(column_store, "WRITTEN", 4000)
     run = model.simulate(**asked)
     assert on_disk(run.trial_index)
     assert bits(run) == bits(in_memory)

@@ -5,11 +5,17 @@ import re
 import pytest
 
 from xlmc.errors import WorkbookError
-from xlmc.workbook.injection.book_edit import NewSheet, add_pointers, add_sheets, drop_pointers
-from xlmc.workbook.injection.book_prune import mark, marked_sheets, without_sheets
-from xlmc.workbook.injection.built_book import SheetName
-from xlmc.workbook.injection.spans import parse_spans
-from xlmc.workbook.injection.splice import SplicedXml
+from xlmc.workbook.injection.book_edit import (
+    NewSheet,
+    add_pointers,
+    add_sheets,
+    drop_pointers,
+    mark,
+    marked_sheets,
+    without_sheets,
+)
+from xlmc.workbook.injection.result_sheet import SheetName
+from xlmc.workbook.injection.splice import SplicedXml, parse_spans
 
 MAIN = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
 OFFICE = 'xmlns:r="http://schemas.openxmlformats.org/officeDocument/2006/relationships"'

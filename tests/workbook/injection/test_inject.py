@@ -8,8 +8,8 @@ import pytest
 
 from xlmc.errors import WorkbookError
 from xlmc.workbook.inject import inject, original_hash, remove_result_sheets
-from xlmc.workbook.injection.roles import roles
-from xlmc.workbook.injection.spans import as_utf8, parse_spans
+from xlmc.workbook.injection.content_types import roles
+from xlmc.workbook.injection.splice import as_utf8, parse_spans
 from xlmc.workbook.package import read_parts
 from xlmc.workbook.writer import package_bytes
 

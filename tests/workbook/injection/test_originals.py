@@ -4,8 +4,7 @@ import re
 
 import pytest
 
-from xlmc.workbook.inject import inject
-from xlmc.workbook.injection.originals import original_hash, remove_result_sheets
+from xlmc.workbook.inject import inject, original_hash, remove_result_sheets
 
 BOOK = "xl/workbook.xml"
 

@@ -3,8 +3,14 @@ from __future__ import annotations
 import pytest
 
 from xlmc.workbook.injection.part_numbers import free_part_names
-from xlmc.workbook.injection.result_parts import relative_target
-from xlmc.workbook.injection.result_sheet import Renames, at_home, renamed_in, shared_items, with_differential
+from xlmc.workbook.injection.result_sheet import (
+    Renames,
+    at_home,
+    relative_target,
+    renamed_in,
+    shared_items,
+    with_differential,
+)
 from xlmc.workbook.injection.styles_merge import StyleMap
 
 STRINGS = [b"<t>zero</t>", b'<t xml:space="preserve"> &lt;c r="A1" t="s">&lt;v>0&lt;/v> </t>']

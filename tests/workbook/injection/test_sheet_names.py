@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.workbook.injection.sheet_names import free_names, free_table_name, quoted, renamed
+from xlmc.workbook.injection.part_numbers import free_names, free_table_name, quoted, renamed
 
 SHEETS = {"results": "Results (2)", "o'hara": "O'Hara (2)", "résumé": "Neu"}
 TABLES = {"trials": "Trials_2"}

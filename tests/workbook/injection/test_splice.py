@@ -5,8 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.errors import WorkbookError
-from xlmc.workbook.injection.spans import as_utf8, parse_spans
-from xlmc.workbook.injection.splice import SplicedXml, render
+from xlmc.workbook.injection.splice import SplicedXml, as_utf8, parse_spans, render
 
 TEXT = (
     '<?xml version="1.0" encoding="{}"?>\n<a xmlns="u" k=">"><!-- <b/> --><b/><c d=\'1\'>é<e></e></c><b x="1"/></a>\n'

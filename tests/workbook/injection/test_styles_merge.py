@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from xlmc.workbook.injection.spans import parse_spans
+from xlmc.workbook.injection.splice import parse_spans
 from xlmc.workbook.injection.styles_merge import merge_styles
 from xlmc.workbook.package import read_parts
 

@@ -33,7 +33,7 @@ from xlmc.functions import Function, Kind
 from xlmc.functions.budget import CallCount, ask_for_reading
 from xlmc.functions.facts import Facts
 from xlmc.functions.families import REGISTRY, function_named
-from xlmc.functions.last_sum import SETTLED
+from xlmc.functions.fifteen_digits import SETTLED
 from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.operators import ALL_BITS
 from xlmc.functions.registry import Anything, Ranges

@@ -15,7 +15,7 @@ from xlmc.evaluation.graph.references import REFERENCES, NoReference, NotYetNeed
 from xlmc.evaluation.graph.scope import Scope
 from xlmc.evaluation.graph.totals import without_totals
 from xlmc.formula import ir
-from xlmc.formula.shown import shown_formula
+from xlmc.formula.shape import shown_formula
 from xlmc.functions.budget import ask_for_reading
 from xlmc.functions.values import constant
 

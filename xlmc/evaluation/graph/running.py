@@ -22,7 +22,7 @@ from xlmc.evaluation.graph.running_ranges import Chain, RunningRanges, added
 from xlmc.formula import ir
 from xlmc.functions import Function, Kind
 from xlmc.functions.families import REGISTRY
-from xlmc.functions.so_far import SO_FAR
+from xlmc.functions.math.aggregate import SO_FAR
 from xlmc.functions.values import ERROR, NUMBER, constant
 
 __all__ = ["FOLDS", "RunningTotals"]

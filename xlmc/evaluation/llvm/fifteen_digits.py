@@ -15,8 +15,7 @@ from xlmc.evaluation.graph.dag import Apply, Dag
 from xlmc.evaluation.llvm.recipes import Emit, Operand, literal
 from xlmc.functions import Kind
 from xlmc.functions.denormals import TINIEST
-from xlmc.functions.fifteen_digits import NEAR, TWINS, equals
-from xlmc.functions.last_sum import EIGHT_UNITS
+from xlmc.functions.fifteen_digits import EIGHT_UNITS, NEAR, TWINS, equals
 
 if TYPE_CHECKING:
     from xlmc.evaluation.llvm.body import Body

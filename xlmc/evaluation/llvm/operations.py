@@ -12,8 +12,7 @@ from xlmc.evaluation.llvm.arctangent import arctangent, arctangent_of_two
 from xlmc.evaluation.llvm.fifteen_digits import at_15_digits, settled
 from xlmc.evaluation.llvm.recipes import PLAIN, Emit, Operand, Recipe, literal
 from xlmc.functions import Kind
-from xlmc.functions.fifteen_digits import Comparison
-from xlmc.functions.last_sum import SETTLED
+from xlmc.functions.fifteen_digits import SETTLED, Comparison
 
 if TYPE_CHECKING:
     from xlmc.evaluation.llvm.body import Body

@@ -15,9 +15,8 @@ from xlmc.evaluation.numpy.buffers import Buffers
 from xlmc.evaluation.numpy.steps import Departure, Frame, Step, is_elementwise_ufunc, make_step
 from xlmc.evaluation.passes.bounds import Bounds, of_constant
 from xlmc.functions import Kind
-from xlmc.functions.guards import Within
-from xlmc.functions.last_sum import SETTLED, Settled, keep, never_cancels
-from xlmc.functions.math.sine import sine_and_cosine
+from xlmc.functions.fifteen_digits import SETTLED, Settled, keep, never_cancels
+from xlmc.functions.math.trigonometry import Within, sine_and_cosine
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.values import Value
 

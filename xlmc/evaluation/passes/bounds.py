@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Final
 
 from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Input, Select
-from xlmc.functions.last_sum import SETTLED
+from xlmc.functions.fifteen_digits import SETTLED
 from xlmc.functions.values import NUMBER
 
 __all__ = ["Bounds", "bounds", "of_constant"]

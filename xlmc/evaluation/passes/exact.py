@@ -18,7 +18,7 @@ from mpmath import mp, mpf
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Input, Range, Rescue, Select
 from xlmc.evaluation.passes.replicas import formula_of
-from xlmc.functions.last_sum import SETTLED
+from xlmc.functions.fifteen_digits import SETTLED
 from xlmc.functions.values import ShapeVaries, Value, constant, from_objects
 
 __all__ = ["DIGITS", "Exact", "exactly"]

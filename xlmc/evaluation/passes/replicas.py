@@ -17,7 +17,7 @@ import numpy as np
 from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Input, Node, Range, Rescue, Select, evaluated, uses
 from xlmc.evaluation.graph.ragged import Ragged
 from xlmc.functions import Kind
-from xlmc.functions.last_sum import SETTLED
+from xlmc.functions.fifteen_digits import SETTLED
 from xlmc.functions.values import ERROR, LOGICAL, Floats, Value
 
 __all__ = [

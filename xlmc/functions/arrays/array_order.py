@@ -20,10 +20,9 @@ from xlmc.functions.arguments import (
     where_wrong,
     whole_numbers,
 )
-from xlmc.functions.arrays.array_arguments import Refusal, array_function, decided, grid_of, kept, refuse_errors
-from xlmc.functions.lookup.picking import Places, flattened, picked, transposed
+from xlmc.functions.arrays.array_shapes import Refusal, array_function, decided, grid_of, kept, refuse_errors
+from xlmc.functions.lookup.picking import Places, by_portions, flattened, picked, transposed
 from xlmc.functions.ordering import ordered
-from xlmc.functions.portions import by_portions
 from xlmc.functions.registry import Anything, Arrays, Logical, Number
 from xlmc.functions.values import BLANK, ERROR, Bools, Codes, Floats, Value, constant
 

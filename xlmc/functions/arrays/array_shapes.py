@@ -1,19 +1,105 @@
-"""Arrays cut, joined and laid out anew. What decides on the shape must be the same in all trials, or `ShapeVaries`."""
+"""Arrays cut, joined and laid out anew, and how all functions that give arrays take their arguments.
+
+What decides on the shape must be the same in all trials; where it is not, `ShapeVaries` is raised. A body raises
+`Refusal` where the result is one error instead of an array.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
 
 import numpy as np
 
 from xlmc.address import MAX_COLUMN, MAX_ROW
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import earliest, first_errors, if_blank, where_wrong, whole_numbers
-from xlmc.functions.arrays.array_arguments import Refusal, array_function, decided, grid_of, kept, padded, refuse_errors
+from xlmc.functions.arguments import (
+    direct_errors,
+    earliest,
+    first_errors,
+    if_blank,
+    same_in_all_trials,
+    where_wrong,
+    whole_numbers,
+)
 from xlmc.functions.budget import ask_for_cells
-from xlmc.functions.lookup.picking import Places, each_part, joined, picked, transposed
-from xlmc.functions.registry import Anything, Arrays, Logical, Number
-from xlmc.functions.values import BLANK, ERROR, Floats, Value
+from xlmc.functions.facts import Facts
+from xlmc.functions.logical import choose
+from xlmc.functions.lookup.picking import Places, each_part, flattened, joined, picked, transposed
+from xlmc.functions.registry import Anything, Arrays, Kind, Logical, Number, Parameter, excel
+from xlmc.functions.values import BLANK, ERROR, Bools, Codes, Floats, Value, constant
 
-__all__: list[str] = []
+__all__ = ["Refusal", "array_function", "decided", "grid_of", "kept", "refuse_errors"]
+
+
+class Refusal(Exception):  # noqa: N818 - it is no error of ours: Excel shows one
+    """The whole result is an error."""
+
+    def __init__(self, code: ErrorCode) -> None:
+        super().__init__(code.text)
+        self.code = code
+
+
+def array_function(
+    name: str, *parameters: Parameter, sized_by_numbers: bool = False
+) -> Callable[[Callable[..., Value]], Callable[..., Value]]:
+    """Register a body that gives an array, (n, r, c), or raises `Refusal`; see `Facts` for what sizes it."""
+    facts = Facts(spills=True, sized_by_numbers=sized_by_numbers)
+
+    def register(body: Callable[..., Value]) -> Callable[..., Value]:
+        @wraps(body)
+        def refusing(*values: Value) -> Value:
+            try:
+                return body(*values)
+            except Refusal as refusal:
+                return constant(refusal.code)
+
+        excel(name, *parameters, returns=Kind.ANY, facts=facts)(refusing)
+        return body
+
+    return register
+
+
+def refuse_errors(codes: Codes) -> None:
+    """Refuse where the first error of each trial, (n,), is one.
+
+    Raises:
+        Refusal: there is that error in all trials.
+        ShapeVaries: it differs between trials.
+    """
+    code = int(same_in_all_trials(codes))
+    if code:
+        raise Refusal(ErrorCode(code))
+
+
+def grid_of(value: Value) -> Value:
+    """An argument as a range; a single error is refused."""
+    refuse_errors(direct_errors(value))
+    return value.as_range()
+
+
+def decided(value: Value | None, default: float | None = None) -> int | None:
+    """A whole number that decides on the shape; the default where it is left out or empty."""
+    if value is None or same_in_all_trials(flattened(value.kinds == BLANK, value)).all():
+        return None if default is None else int(default)
+    numbers, errors = if_blank(value).to_numbers()
+    refuse_errors(first_errors(flattened(errors, value)))
+    if value.numbers.ndim == 3 and value.shape[1:] != (1, 1):
+        raise Refusal(ErrorCode.CALC)  # each of many numbers would make an array of its own
+    return int(np.trunc(same_in_all_trials(flattened(numbers, value))[0]))
+
+
+def kept(mask: Bools) -> Places:
+    """The places that are kept: (n, k) -> (n, as many as are TRUE).
+
+    Raises:
+        ShapeVaries: as many differ between trials.
+        Refusal: there are none.
+    """
+    count = int(same_in_all_trials(mask.sum(axis=1)))
+    if count == 0:
+        raise Refusal(ErrorCode.CALC)
+    return np.argsort(~mask, axis=1, kind="stable")[:, :count]
 
 
 @array_function(
@@ -113,7 +199,7 @@ def expand(array: Value, rows: Value, columns: Value | None = None, pad: Value |
     if r < grid.shape[1] or c < grid.shape[2] or r > MAX_ROW or c > MAX_COLUMN:
         raise Refusal(ErrorCode.VALUE)
     ask_for_cells(grid.shape[0], r, c)
-    return padded(grid, np.arange(r)[None, :, None], np.arange(c)[None, None, :], pad)
+    return _padded(grid, np.arange(r)[None, :, None], np.arange(c)[None, None, :], pad)
 
 
 @array_function("VSTACK", Arrays(repeat=True))
@@ -132,7 +218,7 @@ def _stacked(grids: list[Value]) -> Value:
     n, c = max(grid.shape[0] for grid in grids), max(grid.shape[2] for grid in grids)
     ask_for_cells(n, sum(grid.shape[1] for grid in grids), c)
     columns = np.arange(c)[None, None, :]
-    wide = [padded(grid, np.arange(grid.shape[1])[None, :, None], columns, None) for grid in grids]
+    wide = [_padded(grid, np.arange(grid.shape[1])[None, :, None], columns, None) for grid in grids]
     tall = [each_part(grid, lambda part: np.broadcast_to(part, (n, *part.shape[1:]))) for grid in wide]
     return joined(tall, axis=1)
 
@@ -168,10 +254,18 @@ def wrap_rows(vector: Value, count: Value, pad: Value | None = None) -> Value:
     row = each_part(grid, lambda part: part.reshape(part.shape[0], 1, -1))
     size = min(size, row.shape[2])
     places = np.arange(-(-row.shape[2] // size) * size).reshape(1, -1, size)
-    return padded(row, np.zeros((1, 1, 1), np.intp), places, pad)
+    return _padded(row, np.zeros((1, 1, 1), np.intp), places, pad)
 
 
 @array_function("WRAPCOLS", Arrays, Number, Anything(default=None), sized_by_numbers=True)
 def wrap_columns(vector: Value, count: Value, pad: Value | None = None) -> Value:
     """A row or column laid out in columns of so many cells, the last filled up with `pad`."""
     return transposed(wrap_rows(vector, count, pad))
+
+
+def _padded(cells: Value, rows: Places, columns: Places, pad: Value | None) -> Value:
+    """The cells at these places, (1, r, c) together; the pad, or `#N/A`, where a place lies outside."""
+    inside = (rows < cells.shape[1]) & (columns < cells.shape[2])
+    found = picked(cells, np.minimum(rows, cells.shape[1] - 1), np.minimum(columns, cells.shape[2] - 1))
+    missing = pad is None or bool((pad.kinds == BLANK).all())
+    return choose(inside, found, constant(ErrorCode.NA) if pad is None or missing else pad)

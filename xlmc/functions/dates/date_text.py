@@ -14,7 +14,7 @@ from typing import Final
 
 from xlmc.functions.dates.calendar import SECONDS_A_DAY, in_calendar, parts_of, serial_of
 
-__all__ = ["MONTHS", "Moment", "parse_date", "parse_moment", "parse_time"]
+__all__ = ["MONTHS", "parse_date", "parse_moment", "parse_time"]
 
 MONTHS: Final = (
     "January",
@@ -33,7 +33,7 @@ MONTHS: Final = (
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class _Moment:
     """What a text says: a day, a time, or both.
 
     Attributes:
@@ -79,18 +79,18 @@ _TIME: Final = re.compile(
 _HOUR: Final = re.compile(r"(?P<hour>[0-9]{1,2}) +(?P<half>[ap])m?")
 
 
-def parse_moment(text: str, date1904: bool = False) -> Moment | None:
+def parse_moment(text: str, date1904: bool = False) -> _Moment | None:
     """The date, the time, or the date followed by the time that a text is; None for any other."""
     time = parse_time(text)
     if time is not None:
-        return Moment(None, time)
+        return _Moment(None, time)
     day = parse_date(text, date1904)
     if day is not None:
-        return Moment(day, None)
+        return _Moment(day, None)
     for space in re.finditer(" +", text):
         day, time = parse_date(text[: space.start()], date1904), parse_time(text[space.end() :])
         if day is not None and time is not None:
-            return Moment(day, time)
+            return _Moment(day, time)
     return None
 
 

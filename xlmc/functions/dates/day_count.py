@@ -1,7 +1,8 @@
-"""How many days and years lie between dates by the rules of the bond markets: Excel's `basis` argument.
+"""How many days, months and years lie between dates, and steps of months through the calendar.
 
-0: months of 30 days (US), years of 360; 1: true days and years; 2: true days, years of 360; 3: true days, years of 365;
-4: months of 30 days (European), years of 360. Dates are serials of the 1900 system.
+Bond markets count by five rules, Excel's `basis` argument. 0: months of 30 days (US), years of 360; 1: true days and
+years; 2: true days, years of 360; 3: true days, years of 365; 4: months of 30 days (European), years of 360. There,
+dates are serials of the 1900 system. `DATEDIF` counts whole years, months and days.
 
 Sources: D. A. Wheeler, "YEARFRAC Incompatibilities between Excel 2007 and OOXML" (2008), for what Excel does; values
 that Excel computed, for the rest.
@@ -10,17 +11,54 @@ that Excel computed, for the rest.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
-from xlmc.functions.dates.calendar import parts_of, serial_of
-from xlmc.functions.dates.months import is_leap_year, is_month_end
-from xlmc.functions.registry import Number
-from xlmc.functions.toolpak_rows import Date, toolpak
-from xlmc.functions.values import NUM, Bools, Floats
+from xlmc.functions.dates.calendar import in_calendar, parts_of, serial_of
+from xlmc.functions.registry import Number, Text, excel
+from xlmc.functions.toolpak import Date, toolpak
+from xlmc.functions.values import NUM, Bools, Floats, Objects
 
-__all__ = ["by_basis", "days_between", "days_in_year", "european_360", "is_basis", "us_360"]
+__all__ = [
+    "by_basis",
+    "days_between",
+    "days_in_year",
+    "european_360",
+    "is_basis",
+    "is_leap_year",
+    "is_month_end",
+    "month_length",
+    "months_later",
+    "us_360",
+]
+
+
+def is_leap_year(year: Any) -> Bools:
+    """Whether a year of the Gregorian calendar has a 29 February."""
+    year = np.asarray(year)
+    return np.asarray((year % 4 == 0) & ((year % 100 != 0) | (year % 400 == 0)))
+
+
+def month_length(year: Any, month: Any, date1904: bool = False) -> Floats:
+    """How many days a month has; months may run over. February 1900 has 29 in the 1900 system."""
+    return serial_of(year, month + 1, 1, date1904) - serial_of(year, month, 1, date1904)
+
+
+def is_month_end(serial: Any) -> Bools:
+    """Whether a day of the 1900 system is the last of its month."""
+    year, month, day = parts_of(serial)
+    return np.asarray(day == month_length(year, month))
+
+
+def months_later(serial: Any, months: Any, to_end: Any = False) -> Floats:
+    """The same day so many months later, or the last day of that month where it has no such day or `to_end` holds.
+
+    In the 1900 system. What lies outside Excel's calendar comes out outside of `in_calendar`.
+    """
+    year, month, day = parts_of(serial)
+    length = month_length(year, month + months)
+    return serial_of(year, month + months, np.where(to_end, length, np.minimum(day, length)))
 
 
 def is_basis(basis: Any) -> Bools:
@@ -95,3 +133,73 @@ def year_fraction(start: Any, end: Any, basis: Any) -> Floats:
     """Years between two dates, whichever comes first."""
     start, end = np.minimum(start, end), np.maximum(start, end)
     return np.where(is_basis(basis), days_between(start, end, basis) / days_in_year(start, end, basis), NUM)
+
+
+_Dates = tuple[Any, Any, bool]
+"""Start, end, and whether they count from 1904."""
+
+
+def _days(dates: _Dates) -> Floats:
+    start, end, _ = dates
+    return np.asarray(np.floor(end) - np.floor(start))
+
+
+def _months(dates: _Dates) -> Floats:
+    """Whole months."""
+    start, end, date1904 = dates
+    (year, month, day), (last_year, last_month, last_day) = (parts_of(serial, date1904) for serial in (start, end))
+    months = (last_year - year) * 12 + last_month - month - (last_day < day)
+    return np.asarray(months, np.float64)
+
+
+def _years(dates: _Dates) -> Floats:
+    return np.floor(_months(dates) / 12)
+
+
+def _months_beyond_years(dates: _Dates) -> Floats:
+    return np.mod(_months(dates), 12)
+
+
+def _days_beyond_months(dates: _Dates) -> Floats:
+    """From the day of the start in the month of the end, or in the one before, which may have no such day: then Excel
+    counts on into the next month, and may come to less than 0.
+    """
+    start, end, date1904 = dates
+    day, (last_year, last_month, last_day) = parts_of(start, date1904)[2], parts_of(end, date1904)
+    borrowed = np.where(last_day >= day, 0.0, month_length(last_year, last_month - 1, date1904))
+    return np.asarray(borrowed + last_day - day, np.float64)
+
+
+def _days_beyond_years(dates: _Dates) -> Floats:
+    """To the day of the end within the year from the start on; a start on 29 February is 1 March in another year."""
+    start, end, date1904 = dates
+    (year, month, day), (last_year, last_month, last_day) = (parts_of(serial, date1904) for serial in (start, end))
+    next_year = (last_month < month) | ((last_month == month) & (last_day < day))
+    until = serial_of(year + next_year, last_month, last_day, date1904)
+    leap_day = (month == 2) & (day == 29) & (last_year > year)
+    return np.asarray(np.maximum(until - np.floor(start) - leap_day, 0.0))
+
+
+_UNITS: Final[dict[str, Callable[[_Dates], Floats]]] = {
+    "Y": _years,
+    "M": _months,
+    "D": _days,
+    "MD": _days_beyond_months,
+    "YM": _months_beyond_years,
+    "YD": _days_beyond_years,
+}
+
+
+@excel("DATEDIF", Number, Number, Text, dated=True)
+def difference(start: Any, end: Any, unit: Objects, *, date1904: bool = False) -> Floats:
+    """What the unit names, from one date to a later one; `#NUM!` for other units and for dates in the wrong order."""
+    names = np.vectorize(lambda text: str(text).upper(), otypes=[object])(unit)
+    inside = in_calendar(np.asarray(start), date1904) & in_calendar(np.asarray(end), date1904)
+    wrong = ~inside | np.greater(np.floor(start), np.floor(end))
+    dates = np.where(wrong, 1.0, start), np.where(wrong, 1.0, end), date1904
+    result = np.full(np.broadcast_shapes(wrong.shape, names.shape), NUM)
+    for name, count in _UNITS.items():
+        here = names == name
+        if here.any():
+            result = np.where(here & ~wrong, count(dates), result)
+    return result

@@ -1,19 +1,25 @@
-"""BIN2DEC and its like: ten digits at most; the larger half of what they can count stands for negative numbers."""
+"""Numbers in other bases, and their bits.
+
+`BIN2DEC` and its like take ten digits at most; the larger half of what these can count stands for negative numbers.
+`BITAND` and its like take whole numbers of at most 48 bits, from 0 on; anything else is `#NUM!`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Final
 
+import numpy as np
+
 from xlmc.errors import ErrorCode
 from xlmc.functions.math.numerals import digits_of, read_digits
-from xlmc.functions.registry import Kind, excel
+from xlmc.functions.registry import Kind, Number, excel
 from xlmc.functions.toolpak import OneCell, number_of, per_object
-from xlmc.functions.values import general_text
+from xlmc.functions.values import NUM, Bools, Floats, general_text
 
 __all__: list[str] = []
 
-_PLACES: Final = 10
+_MOST_DIGITS: Final = 10
 _ANY_LENGTH: Final = object()
 _BASES: Final = {"BIN": ("binary", 2), "OCT": ("octal", 8), "HEX": ("hexadecimal", 16)}
 
@@ -23,10 +29,10 @@ def _read(item: object, base: int) -> int | ErrorCode:
     if isinstance(item, bool):
         return ErrorCode.VALUE
     text = general_text(item) if isinstance(item, float) else str(item or "")
-    number = read_digits(text, base) if len(text) <= _PLACES else None
+    number = read_digits(text, base) if len(text) <= _MOST_DIGITS else None
     if number is None:
         return ErrorCode.NUM
-    return number if number < base**_PLACES // 2 else number - int(base**_PLACES)
+    return number if number < base**_MOST_DIGITS // 2 else number - int(base**_MOST_DIGITS)
 
 
 def _whole(item: object) -> int | ErrorCode:
@@ -39,7 +45,7 @@ def _length(places: object) -> int | ErrorCode | None:
     if places is _ANY_LENGTH:
         return None
     length = _whole(places)
-    if isinstance(length, ErrorCode) or 1 <= length <= _PLACES:
+    if isinstance(length, ErrorCode) or 1 <= length <= _MOST_DIGITS:
         return length
     return ErrorCode.NUM
 
@@ -49,7 +55,7 @@ def _written(number: int | ErrorCode, base: int, places: object) -> str | ErrorC
     length = _length(places)
     if isinstance(length, ErrorCode) or isinstance(number, ErrorCode):
         return length if isinstance(length, ErrorCode) else ErrorCode(number)
-    most = base**_PLACES // 2
+    most = base**_MOST_DIGITS // 2
     if not -most <= number < most:
         return ErrorCode.NUM
     if number < 0:
@@ -95,3 +101,45 @@ for _name, (_word, _base) in _BASES.items():
         if _other != _name:
             _meaning = f"The {_new_word} digits of a number in {_word} digits."
             _register(f"{_name}2{_other}", _meaning, _between(_base, _new_base), text=True)
+
+
+_END_OF_BITS: Final = 2.0**48
+_FURTHEST_SHIFT: Final = 53
+
+
+def _has_bits(x: Floats) -> Bools:
+    return np.asarray((x >= 0) & (x < _END_OF_BITS) & (x == np.trunc(x)))
+
+
+def _register_bits(name: str, meaning: str, operation: np.ufunc) -> None:
+    def body(x: Floats, y: Floats) -> Floats:
+        fit = _has_bits(x) & _has_bits(y)
+        left, right = (np.where(fit, z, 0.0).astype(np.int64) for z in (x, y))
+        return np.where(fit, operation(left, right), NUM)
+
+    body.__doc__ = meaning
+    excel(name, Number, Number)(body)
+
+
+_register_bits("BITAND", "Bits that both numbers have.", np.bitwise_and)
+_register_bits("BITOR", "Bits that either number has.", np.bitwise_or)
+_register_bits("BITXOR", "Bits that only one of the numbers has.", np.bitwise_xor)
+
+
+@excel("BITLSHIFT", Number, Number)
+def shifted_left(x: Floats, places: Floats) -> Floats:
+    """Bits moved left by up to 53 places, or right by a negative number; what falls off on the right is lost.
+
+    `#NUM!` where the result has more than 48 bits.
+    """
+    shift = np.trunc(places)
+    fit = _has_bits(x) & (np.abs(shift) <= _FURTHEST_SHIFT)
+    moved = np.floor(np.ldexp(np.where(fit, x, 0.0), np.where(fit, shift, 0.0).astype(np.intc)))
+    return np.where(fit & (moved < _END_OF_BITS), moved, NUM)
+
+
+@excel("BITRSHIFT", Number, Number)
+def shifted_right(x: Floats, places: Floats) -> Floats:
+    """Bits moved right by up to 53 places, or left by a negative number."""
+    result: Floats = shifted_left(x, -places)
+    return result

@@ -1,6 +1,7 @@
-"""What uneven payments are worth, and the rates at which they are worth nothing.
+"""What uneven payments are worth, in equal periods or on any dates, and the rates at which they are worth nothing.
 
-Letters: n trials, k payments of a trial. Of ranges only the numbers count, in their order, rows first.
+Letters: n trials, k payments of a trial. In equal periods only the numbers of a range count, in their order, _rows
+first. With dates blank cells do not count, and texts and logicals are `#VALUE!`.
 """
 
 from __future__ import annotations
@@ -17,12 +18,13 @@ from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.financial.annuities import growth
 from xlmc.functions.financial.roots import growth_root
 from xlmc.functions.registry import Anything, Arrays, Cells, excel
-from xlmc.functions.values import NUMBER, Bools, Codes, Floats, Value
+from xlmc.functions.toolpak import OneCell, strict_numbers, whole_days
+from xlmc.functions.values import BLANK, NUMBER, Bools, Codes, Floats, Value
 
-__all__ = ["guess_of", "has_both_signs", "rows"]
+__all__: list[str] = []
 
 
-def rows(array: NDArray[Any], value: Value) -> NDArray[Any]:
+def _rows(array: NDArray[Any], value: Value) -> NDArray[Any]:
     """One row per trial: (n,) or (n, r, c) -> (n, k)."""
     return np.broadcast_to(array, value.shape).reshape(value.shape[0], -1)
 
@@ -30,7 +32,7 @@ def rows(array: NDArray[Any], value: Value) -> NDArray[Any]:
 def _single(value: Value) -> tuple[Floats, Codes]:
     """A number per trial, and its error: (n,) each."""
     x, errors = value.to_numbers()
-    return rows(x, value)[:, 0], rows(errors, value)[:, 0]
+    return _rows(x, value)[:, 0], _rows(errors, value)[:, 0]
 
 
 def _flows(values: Sequence[Value]) -> tuple[Floats, Bools, Codes]:
@@ -40,7 +42,7 @@ def _flows(values: Sequence[Value]) -> tuple[Floats, Bools, Codes]:
         in_range = value.numbers.ndim == 3
         x, errors = (value.numbers, value.errors) if in_range else value.to_numbers()
         counts = (value.kinds == NUMBER) if in_range else (errors == 0)
-        parts.append((rows(x, value), rows(counts, value), rows(errors, value)))
+        parts.append((_rows(x, value), _rows(counts, value), _rows(errors, value)))
     n = max(x.shape[0] for x, _, _ in parts)
     x, counts, errors = (
         np.concatenate([np.broadcast_to(part[i], (n, part[i].shape[1])) for part in parts], axis=1) for i in range(3)
@@ -82,7 +84,7 @@ def _packed(flows: Floats, counts: Bools) -> tuple[Floats, NDArray[np.intp]]:
     return np.take_along_axis(np.where(kept, flows, 0.0), order, axis=1), kept.sum(axis=1)
 
 
-def has_both_signs(flows: Floats, counts: Bools) -> Bools:
+def _has_both_signs(flows: Floats, counts: Bools) -> Bools:
     """Whether there are payments and receipts: (n, k), (n, k) -> (n,)."""
     return np.asarray((counts & (flows > 0)).any(axis=1) & (counts & (flows < 0)).any(axis=1))
 
@@ -94,7 +96,7 @@ def internal_rate(values: Value, guess: Value | None = None) -> Value:
     `#NUM!` where there is none or the payments are all of one sign.
     """
     flows, counts, errors = _flows([values.as_range()])
-    start, start_errors = guess_of(guess)
+    start, start_errors = _guess_of(guess)
     n = max(flows.shape[0], start.shape[0])
     packed, how_many = _packed(flows, counts)
     k = packed.shape[1]
@@ -109,11 +111,11 @@ def internal_rate(values: Value, guess: Value | None = None) -> Value:
         return np.where(x >= 0, at_first, at_last)
 
     rate = growth_root(worth, np.broadcast_to(start, (n,)))
-    rate = np.where(has_both_signs(flows, counts), rate, np.nan)
+    rate = np.where(_has_both_signs(flows, counts), rate, np.nan)
     return Value.of_numbers(rate, earliest(np.broadcast_to(errors, (n,)), start_errors))
 
 
-def guess_of(guess: Value | None) -> tuple[Floats, Codes]:
+def _guess_of(guess: Value | None) -> tuple[Floats, Codes]:
     """Where to look for a rate, (n,), and errors: at 10 % unless told."""
     return (np.full(1, 0.1), np.zeros(1, np.uint8)) if guess is None else _single(guess)
 
@@ -135,3 +137,67 @@ def modified_rate(values: Value, finance: Value, reinvest: Value) -> Value:
     rate = np.where(receives, np.expm1(np.log(np.where(receives, ratio, 1.0)) / np.where(k > 1, k - 1, 1)), -1.0)
     divided = where_wrong(~pays | (k < 2) | (borrowed == -1) | (invested == -1), ErrorCode.DIV0)
     return Value.of_numbers(rate, earliest(errors, borrowed_errors, invested_errors, divided))
+
+
+def _dated(values: Value, dates: Value, date1904: bool) -> tuple[Floats, Floats, Codes]:
+    """Payments and years after the first: (n, k) each; and errors (n,).
+
+    `#NUM!` for a date before the first, for dates and payments of unequal number, and where there are none.
+    """
+    flows, how_many, errors = _filled(values)
+    serials, how_many_dates, date_errors = _filled(dates)
+    k = min(flows.shape[1], serials.shape[1])
+    dated = np.arange(k) < how_many_dates[:, None]
+    days, valid = whole_days(np.where(dated, serials[:, :k], serials[:, :1]), date1904)
+    years = (days - days[:, :1]) / 365
+    wrong = (how_many != how_many_dates) | (how_many == 0) | ~valid.all(axis=1) | (years < 0).any(axis=1)
+    return flows[:, :k], np.maximum(years, 0.0), earliest(errors, date_errors, where_wrong(wrong, ErrorCode.NUM))
+
+
+def _filled(value: Value) -> tuple[Floats, NDArray[np.intp], Codes]:
+    """The numbers of all cells but blank ones, at the left, with zeros behind; how many; the first error."""
+    x, errors = strict_numbers(value)
+    filled = _rows(value.kinds != BLANK, value)
+    order = np.argsort(~filled, axis=1, kind="stable")
+    packed = np.take_along_axis(np.where(filled, _rows(x, value), 0.0), order, axis=1)
+    return packed, filled.sum(axis=1), first_errors(_rows(errors, value))
+
+
+@excel("XNPV", OneCell, Cells, Cells, dated=True)
+def dated_present_value(rate: Value, values: Value, dates: Value, *, date1904: bool = False) -> Value:
+    """Worth, on the first date, of payments on dates, by years of 365 days; `#NUM!` unless the rate is above 0."""
+    r, rate_errors = (_rows(a, rate)[:, 0] for a in strict_numbers(rate))
+    flows, years, errors = _dated(values, dates, date1904)
+    lost = r <= 0
+    log_growth = np.log1p(np.where(lost, 0.0, r))
+    total = np.zeros(1)
+    for column in range(flows.shape[1]):
+        total = total + flows[:, column] * np.exp(-years[:, column] * log_growth)
+    return Value.of_numbers(total, earliest(rate_errors, errors, where_wrong(lost, ErrorCode.NUM)))
+
+
+@excel("XIRR", Cells, Cells, OneCell(default=None), dated=True)
+def dated_rate(values: Value, dates: Value, guess: Value | None = None, *, date1904: bool = False) -> Value:
+    """Rate at which payments on dates are worth nothing; of several, the one nearest to the guess (10 %).
+
+    `#NUM!` where there is none or the payments are all of one sign.
+    """
+    flows, years, errors = _dated(values, dates, date1904)
+    start, start_errors = _guess_of(guess)
+    n = max(flows.shape[0], years.shape[0], start.shape[0])
+    alive = flows != 0
+    first = np.where(alive, years, np.inf).min(axis=1, keepdims=True)
+    last = np.where(alive, years, -np.inf).max(axis=1, keepdims=True)
+
+    def worth(x: Floats) -> Floats:
+        """On the first day for positive rates, on the last for negative ones, so that nothing grows."""
+        total = np.zeros(1)
+        for column in range(flows.shape[1]):
+            since, until = years[:, column] - first[:, 0], last[:, 0] - years[:, column]
+            factor = np.exp(-np.abs(x) * np.where(x >= 0, since, until))
+            total = total + np.where(alive[:, column], flows[:, column] * factor, 0.0)
+        return total
+
+    usable = _has_both_signs(flows, np.ones_like(alive)) & (errors == 0)
+    rate = growth_root(worth, np.broadcast_to(start, (n,)))
+    return Value.of_numbers(np.where(usable, rate, np.nan), earliest(np.broadcast_to(errors, (n,)), start_errors))

@@ -22,10 +22,8 @@ from xlmc.functions.arguments import (
     with_errors,
 )
 from xlmc.functions.facts import Facts
-from xlmc.functions.lookup.halving import last_not_beyond
-from xlmc.functions.lookup.nearest import EXACT, nearest
-from xlmc.functions.lookup.picking import Places, each_part, picked, transposed
-from xlmc.functions.portions import by_portions, width_of
+from xlmc.functions.lookup.picking import Places, by_portions, each_part, picked, transposed, width_of
+from xlmc.functions.lookup.searching import EXACT, last_not_beyond, nearest
 from xlmc.functions.registry import Anything, Arrays, Cells, Kind, Logical, Number, Ranges, excel
 from xlmc.functions.values import Codes, Floats, Value, constant
 

@@ -24,11 +24,9 @@ from xlmc.functions.arguments import (
 )
 from xlmc.functions.facts import Facts
 from xlmc.functions.logical import choose
-from xlmc.functions.lookup.halving import last_not_beyond
-from xlmc.functions.lookup.nearest import EXACT, LARGER, SMALLER, nearest
-from xlmc.functions.lookup.picking import Places, each_part, picked, transposed
+from xlmc.functions.lookup.picking import Places, by_portions, each_part, picked, transposed, width_of
+from xlmc.functions.lookup.searching import EXACT, LARGER, SMALLER, last_not_beyond, nearest
 from xlmc.functions.ordering import ordered
-from xlmc.functions.portions import by_portions, width_of
 from xlmc.functions.registry import Anything, Arrays, Kind, Number, excel
 from xlmc.functions.values import BLANK, Codes, Value, constant
 

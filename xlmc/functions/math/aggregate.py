@@ -7,8 +7,9 @@ blank in it does not count; given directly it does.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +18,10 @@ from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import direct_errors, earliest, with_errors
 from xlmc.functions.denormals import TINIEST
 from xlmc.functions.facts import EmptyCells, Facts, Repeats
-from xlmc.functions.registry import Arrays, Cells, Number, Numbers, excel
-from xlmc.functions.values import BLANK, DIV0, NUM, NUMBER, TEXT, Bools, Codes, Floats, Value, constant
+from xlmc.functions.registry import REGISTRY, Arrays, Cells, Function, Kind, Number, Numbers, excel
+from xlmc.functions.values import BLANK, DIV0, ERROR, NUM, NUMBER, TEXT, Bools, Codes, Floats, Value, constant
 
-__all__: list[str] = []
+__all__ = ["SO_FAR"]
 
 Places = NDArray[np.intp]
 
@@ -273,3 +274,26 @@ def large(values: Value, rank: Value) -> Value:
 def small(values: Value, rank: Value) -> Value:
     """The number of a rank, the smallest being 1; a fraction of a rank rounds down."""
     return _ranked(values, rank, lambda ranks, k: np.floor(ranks) - 1)
+
+
+def _so_far(cells: Value, of: str) -> Value:
+    """What the function gives of a range, (n, r, c) -> (n,); blank where no cell is a number."""
+    result = REGISTRY[of]((cells,))
+    none = ~(cells.kinds == NUMBER).any(axis=(1, 2)) & (result.kinds < ERROR)
+    return Value(np.where(none, 0.0, result.numbers), np.where(none, np.uint8(BLANK), result.kinds))
+
+
+SO_FAR: Final[Mapping[str, Function]] = {
+    name: Function(
+        f"{name} so far",
+        (Cells,),
+        partial(_so_far, of=name),
+        Kind.ANY,
+        facts=Facts(unrounded=REGISTRY[name].facts.unrounded),
+    )
+    for name in ("MAX", "MIN", "PRODUCT")
+}
+"""Functions of the numbers so far, by the name of Excel's function: blank while there are none.
+
+Excel gives 0 for the largest, the smallest or the product of no numbers at all; 0 would count when more cells follow.
+"""

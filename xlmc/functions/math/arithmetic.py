@@ -1,9 +1,9 @@
-"""Signs, roots, powers, logarithms and remainders."""
+"""Signs, roots, powers, logarithms and remainders; `powered` gives one trial what it gives many."""
 
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from xlmc.functions.facts import Domain, EmptyCells, Facts, Repeats
 from xlmc.functions.registry import Number, Numbers, Ranges, excel
 from xlmc.functions.values import DIV0, NUM, Bools, Floats
 
-__all__: list[str] = []
+__all__ = ["powered"]
 
 _ONE_CELL: Final = Number(ranges=Ranges.ONE_CELL)
 _FACTORIALS: Final = np.array([float(math.factorial(n)) for n in range(171)])
@@ -66,3 +66,14 @@ def fact(x: Floats) -> Floats:
 def sum_of_squares(x: Floats, counts: Bools) -> Floats:
     """Sum of the squares, from left to right."""
     return np.asarray(np.add.accumulate(np.where(counts, x * x, 0.0), axis=1)[:, -1])
+
+
+def powered(base: Any, exponent: Any) -> Floats:
+    """`base` to the power of `exponent`, both of at least one axis; NaN for a negative base and a fraction.
+
+    Where the exponent is one number for all trials, NumPy squares, inverts and takes square roots by other means than
+    `pow`, which may differ in the last bit. So each trial gets an exponent of its own.
+    """
+    base, exponents = np.broadcast_arrays(np.atleast_1d(np.asarray(base, np.float64)), np.asarray(exponent, np.float64))
+    powers: Floats = np.where(exponents == 2, base * base, np.power(base, exponents.copy()))
+    return powers

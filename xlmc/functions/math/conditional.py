@@ -15,9 +15,8 @@ from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import direct_errors, earliest, first_errors, with_errors
 from xlmc.functions.criteria import met
 from xlmc.functions.facts import EmptyCells, Facts
-from xlmc.functions.lookup.picking import cell_of, each_part, flattened, side_by_side
+from xlmc.functions.lookup.picking import by_portions, cell_of, each_part, flattened, side_by_side
 from xlmc.functions.math.aggregate import average, maximum, minimum, sum_
-from xlmc.functions.portions import by_portions
 from xlmc.functions.registry import Anything, Cells, excel
 from xlmc.functions.values import BLANK, NUMBER, Bools, Floats, Value, constant
 

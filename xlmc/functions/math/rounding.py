@@ -176,3 +176,17 @@ def even(x: Floats) -> Floats:
 def odd(x: Floats) -> Floats:
     """To the next odd whole number, away from zero; 0 to 1."""
     return np.asarray(np.copysign(np.ceil((np.abs(x) + 1) / 2) * 2 - 1, x + 0.0))
+
+
+@excel("CEILING.PRECISE", Number, Number(default=1.0), aliases=("ISO.CEILING", "ECMA.CEILING"))
+def ceiling_precise(x: Floats, multiple: Floats) -> Floats:
+    """Up to a multiple whose sign does not matter."""
+    result: Floats = ceiling_math(x, multiple, np.zeros(1))
+    return result
+
+
+@excel("FLOOR.PRECISE", Number, Number(default=1.0))
+def floor_precise(x: Floats, multiple: Floats) -> Floats:
+    """Down to a multiple whose sign does not matter."""
+    result: Floats = floor_math(x, multiple, np.zeros(1))
+    return result

@@ -7,7 +7,7 @@ section writes it, and whether a minus goes before, is for the format to say (`c
 
 from __future__ import annotations
 
-from xlmc.functions.number_format.choice import NumberFormat, parse_format
+from xlmc.functions.number_format.sections import NumberFormat, parse_format
 from xlmc.functions.number_format.tokens import FormatError, UnknownFormat
 
 __all__ = ["FormatError", "NumberFormat", "UnknownFormat", "parse_format"]

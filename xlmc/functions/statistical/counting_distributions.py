@@ -7,9 +7,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.functions.registry import Logical, Number, excel
-from xlmc.functions.statistical.cumulative import by_form
-from xlmc.functions.statistical.incomplete_beta import incomplete_beta
-from xlmc.functions.statistical.saddle_point import binomial_mass, poisson_mass
+from xlmc.functions.statistical.probabilities import binomial_mass, by_form, incomplete_beta, poisson_mass
 from xlmc.functions.values import NUM, Bools, Floats
 
 __all__: list[str] = []

@@ -5,9 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from xlmc.functions.registry import Logical, Number, excel
-from xlmc.functions.statistical.cumulative import by_form
-from xlmc.functions.statistical.freedom import degrees_of_freedom
-from xlmc.functions.statistical.saddle_point import poisson_mass
+from xlmc.functions.statistical.probabilities import by_form, degrees_of_freedom, poisson_mass
 from xlmc.functions.values import NUM, Bools, Floats
 
 __all__ = ["chi_square_above"]

@@ -17,9 +17,8 @@ from xlmc.functions.samples import (
     row_sums,
     sample_of,
 )
-from xlmc.functions.statistical.beta_distributions import f_above, f_below
+from xlmc.functions.statistical.beta_distributions import f_above, f_below, t_outside
 from xlmc.functions.statistical.gamma_distributions import chi_square_above
-from xlmc.functions.statistical.student_distribution import t_outside
 from xlmc.functions.values import DIV0, NA, NUM, Floats, Value
 
 __all__: list[str] = []

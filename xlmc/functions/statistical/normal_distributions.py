@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.functions.registry import Logical, Number, excel
-from xlmc.functions.statistical.cumulative import by_form
+from xlmc.functions.statistical.probabilities import by_form
 from xlmc.functions.values import NUM, Bools, Floats
 
 __all__: list[str] = []

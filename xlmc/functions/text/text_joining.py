@@ -10,10 +10,9 @@ from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, with_errors
 from xlmc.functions.budget import ask_for_texts, counted
 from xlmc.functions.facts import EmptyCells, Facts
-from xlmc.functions.per_element import per_element
-from xlmc.functions.per_object import object_text, per_object
+from xlmc.functions.per_element import object_text, per_element, per_object
 from xlmc.functions.registry import Anything, Cells, Kind, Logical, Text, excel
-from xlmc.functions.text.utf16 import LONGEST, fits_in_a_cell
+from xlmc.functions.text.text_parts import LONGEST, fits_in_a_cell
 from xlmc.functions.values import Codes, Objects, Value, constant, from_objects
 
 __all__: list[str] = []

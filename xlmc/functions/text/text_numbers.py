@@ -9,8 +9,7 @@ from typing import Final
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions.number_format import FormatError, UnknownFormat, parse_format
 from xlmc.functions.number_text import parse_number, parse_plain_number, shown
-from xlmc.functions.per_element import per_element
-from xlmc.functions.per_object import object_text, per_object
+from xlmc.functions.per_element import object_text, per_element, per_object
 from xlmc.functions.registry import Anything, Kind, Logical, Number, Text, excel
 
 __all__: list[str] = []

@@ -11,9 +11,9 @@ import numpy as np
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import leveled
 from xlmc.functions.facts import Facts
-from xlmc.functions.per_object import object_text
+from xlmc.functions.per_element import object_text
 from xlmc.functions.registry import Anything, Cells, Kind, excel
-from xlmc.functions.text.utf16 import units
+from xlmc.functions.text.text_parts import units
 from xlmc.functions.values import Objects, ShapeVaries, Value, constant, from_objects
 
 __all__: list[str] = []

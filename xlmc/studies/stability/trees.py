@@ -13,9 +13,8 @@ from xlmc.evaluation.graph.references import NotYetNeeded
 from xlmc.evaluation.graph.scope import Scope
 from xlmc.formula import ir
 from xlmc.formula.resolve import Resolver
-from xlmc.formula.substitute import substituted
+from xlmc.formula.substitute import substituted, unfolded
 from xlmc.formula.text import formula_text
-from xlmc.formula.unfold import unfolded
 from xlmc.run.model import Model
 from xlmc.studies.stability.naming import Naming
 from xlmc.workbook.model import Formula

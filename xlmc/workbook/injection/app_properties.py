@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from html import escape
 from itertools import islice
 
-from xlmc.workbook.injection.sheet_names import quoted
-from xlmc.workbook.injection.spans import Element
-from xlmc.workbook.injection.splice import SplicedXml, render
+from xlmc.workbook.injection.part_numbers import quoted
+from xlmc.workbook.injection.splice import Element, SplicedXml, render
 
 __all__ = ["list_sheets", "unlist_sheets"]
 

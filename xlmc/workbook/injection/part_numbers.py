@@ -1,17 +1,112 @@
-"""Numbers that must be unique in a package, and which ones are free: of parts and of tables."""
+"""What must be unique in a workbook, and what is free there: names of sheets, of parts and of tables.
+
+Also how formulas write the names of sheets and how these are changed in them, and which parts a part leads to.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import count
 
-from xlmc.workbook.injection.reach import pointed_to
-from xlmc.workbook.injection.sheet_names import free_table_name
 from xlmc.workbook.package import relationships
 from xlmc.workbook.safe_xml import tree
 
-__all__ = ["TableNumbers", "free_part_names", "free_tables"]
+__all__ = [
+    "TableNumbers",
+    "free_names",
+    "free_part_names",
+    "free_table_name",
+    "free_tables",
+    "quoted",
+    "reached",
+    "renamed",
+]
+
+_LONGEST = 31  # characters in a sheet name, Excel's limit
+
+_TOKEN = re.compile(
+    r"""
+    (?P<text>"(?:[^"]|"")*")            # "text", which may look like a reference
+  | '(?P<quoted>(?:[^']|'')*)'!         # 'My sheet'!
+  | (?<![\w.\]\#])(?P<bare>[\w.\\]+)!   # Sheet!, but neither [1]Sheet! of another workbook nor #REF!
+  | (?<![\w.\]])(?P<table>[\w.\\]+)(?=\[)   # Table[
+    """,
+    re.VERBOSE,
+)
+
+
+def free_names(wanted: Sequence[str], taken: Collection[str]) -> dict[str, str]:
+    """A sheet name for each one wanted: itself, or `Results (2)` where the workbook has a sheet of that name."""
+    used = {name.casefold() for name in taken}
+    found: dict[str, str] = {}
+    for name in wanted:
+        found[name] = next(candidate for candidate in _numbered(name) if candidate.casefold() not in used)
+        used.add(found[name].casefold())
+    return found
+
+
+def free_table_name(wanted: str, taken: Collection[str]) -> str:
+    """The table name itself, or `Trials_2`. `taken` holds folded names of tables and of defined names alike."""
+    candidates = (wanted if number == 1 else f"{wanted}_{number}" for number in count(1))
+    return next(candidate for candidate in candidates if candidate.casefold() not in taken)
+
+
+def quoted(name: str) -> str:
+    """The name as a formula may always write it: `O'Hara -> 'O''Hara'`."""
+    return "'" + name.replace("'", "''") + "'"
+
+
+def renamed(formula: str, sheets: Mapping[str, str], tables: Mapping[str, str]) -> str:
+    """The formula with sheets and tables called by their new names; strings and other workbooks' sheets stay.
+
+    Keys of both mappings are folded old names.
+    """
+
+    def new(match: re.Match[str]) -> str:
+        if match["text"] is not None:
+            return match[0]
+        if match["table"] is not None:
+            return tables.get(match["table"].casefold(), match[0])
+        name = match["bare"] if match["quoted"] is None else match["quoted"].replace("''", "'")
+        changed = sheets.get(name.casefold())
+        return match[0] if changed is None else f"{quoted(changed)}!"
+
+    return _TOKEN.sub(new, formula)
+
+
+def _numbered(name: str) -> Iterator[str]:
+    yield name
+    for number in count(2):
+        suffix = f" ({number})"
+        yield name[: _LONGEST - len(suffix)] + suffix
+
+
+def reached(parts: Mapping[str, bytes], *starts: str) -> list[str]:
+    """The parts themselves and all they lead to, nearest first, each once. `""` is the package, and not in the list.
+
+    Raises:
+        WorkbookError: a rels part is not XML.
+    """
+    found = dict.fromkeys(starts)
+    queue = list(starts)
+    for part in queue:
+        new = [target for target in _pointed_to(parts, part) if target not in found]
+        found |= dict.fromkeys(new)
+        queue += new
+    return [part for part in found if part]
+
+
+def _pointed_to(parts: Mapping[str, bytes], part: str) -> list[str]:
+    """The parts in this package that one part points to, each once.
+
+    Raises:
+        WorkbookError: the rels part is not XML.
+    """
+    targets = (rel.target for rel in relationships(parts, part).values() if not rel.external)
+    return list(dict.fromkeys(target for target in targets if target in parts))
+
 
 _NUMBERED = re.compile(r"(.*?)([0-9]*)(\.[^./]*)?", re.DOTALL)
 
@@ -72,7 +167,7 @@ def free_tables(
 
 def _tables(parts: Mapping[str, bytes], workbook: str) -> Iterator[Mapping[str, str]]:
     """The attributes of every table of the workbook."""
-    for sheet in pointed_to(parts, workbook):
+    for sheet in _pointed_to(parts, workbook):
         for rel in relationships(parts, sheet).values():
             if rel.kind == "table" and rel.target in parts:
                 yield tree(parts[rel.target], rel.target).attrib

@@ -1,20 +1,38 @@
-"""A sheet built by XlsxWriter, made at home in another workbook: its styles renumbered, its texts inside its cells.
+"""The sheets that XlsxWriter built, read from their own workbook and carried over to the user's.
 
-XlsxWriter's XML has one fixed form (`<c r="A1" s="3" t="s"><v>0</v></c>`, `<` and `>` always escaped in texts and
-attributes), so patterns that start at a `<` cannot mistake text for markup, and large sheets take one fast pass.
+Each sheet is rewritten for its new package: its styles renumbered, its texts inside its cells, its pointers to other
+parts. XlsxWriter's XML has one fixed form (`<c r="A1" s="3" t="s"><v>0</v></c>`, `<` and `>` always escaped in texts
+and attributes), so patterns that start at a `<` cannot mistake text for markup, and large sheets take one fast pass.
 """
 
 from __future__ import annotations
 
+import posixpath
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape, unescape
+from typing import Final
 
-from xlmc.workbook.injection.sheet_names import renamed
+from xlmc.workbook.injection.content_types import roles
+from xlmc.workbook.injection.part_numbers import TableNumbers, renamed
+from xlmc.workbook.injection.splice import Element, SplicedXml, parse_spans
 from xlmc.workbook.injection.styles_merge import StyleMap
+from xlmc.workbook.package import Relationship, relationships, rels_part
 
-__all__ = ["Renames", "at_home", "renamed_in", "shared_items", "with_differential"]
+__all__ = [
+    "BuiltBook",
+    "BuiltSheet",
+    "Carrier",
+    "Renames",
+    "SheetName",
+    "at_home",
+    "read_built",
+    "relative_target",
+    "renamed_in",
+    "shared_items",
+    "with_differential",
+]
 
 _CELL = re.compile(rb'<c r="([A-Z]+[0-9]+)"(?: s="([0-9]+)")?( t="s"><v>([0-9]+)</v>)?')
 _ROW_STYLE = re.compile(rb'(<row\b[^>]*? s=")([0-9]+)')
@@ -99,3 +117,151 @@ def _cells(body: bytes, strings: Sequence[bytes], cells: Sequence[int]) -> bytes
 
 def _numbered(places: Sequence[int]) -> Callable[[re.Match[bytes]], bytes]:
     return lambda match: match[1] + b"%d" % places[int(match[2])]
+
+
+@dataclass(frozen=True, slots=True)
+class SheetName:
+    """A defined name of one sheet, such as its print titles; `text` is what it stands for."""
+
+    name: str
+    text: str
+    hidden: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltSheet:
+    """A worksheet as built. `type` is the relationship type that leads to it, `state` is None where it is visible."""
+
+    name: str
+    part: str
+    type: str
+    state: str | None
+    names: tuple[SheetName, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltBook:
+    """A built workbook. `strings` are the contents of its shared strings, as XML."""
+
+    parts: Mapping[str, bytes]
+    sheets: tuple[BuiltSheet, ...]
+    styles: bytes
+    strings: tuple[bytes, ...]
+
+
+def read_built(parts: Mapping[str, bytes]) -> BuiltBook:
+    """The built workbook of a package.
+
+    Raises:
+        ValueError: it has names for the whole workbook, which might be the user's own, or chart sheets, to which no
+            name can belong.
+    """
+    role = roles(parts)
+    assert role.styles is not None  # XlsxWriter always writes styles
+    pointers = relationships(parts, role.workbook)
+    root = parse_spans(parts[role.workbook], role.workbook)
+    sheets, names = root.find("sheets"), root.find("definedNames")
+    assert sheets is not None
+    strings = next((parts[pointer.target] for pointer in pointers.values() if pointer.kind == "sharedStrings"), None)
+    return BuiltBook(
+        parts=parts,
+        sheets=tuple(_sheet(element, place, names, pointers) for place, element in enumerate(sheets.children)),
+        styles=parts[role.styles],
+        strings=tuple(shared_items(strings)),
+    )
+
+
+def _sheet(element: Element, place: int, names: Element | None, pointers: Mapping[str, Relationship]) -> BuiltSheet:
+    name, pointer = element.attributes["name"], pointers[element.foreign("id") or ""]
+    if pointer.kind != "worksheet":
+        raise ValueError(f"the result sheet {name!r} must be a worksheet")
+    state = element.attributes.get("state")
+    return BuiltSheet(name, pointer.target, pointer.type, state, tuple(_names_of(names, place)))
+
+
+def _names_of(names: Element | None, place: int) -> Iterator[SheetName]:
+    for element in names.children if names else ():
+        attributes = element.attributes
+        if "localSheetId" not in attributes:
+            raise ValueError(f"the name {attributes['name']!r} must belong to one result sheet")
+        if attributes["localSheetId"] == str(place):
+            yield SheetName(attributes["name"], element.text, hidden=attributes.get("hidden") == "1")
+
+
+_AXIS: Final = re.compile(rb"<c:(catAx|dateAx)>.*?</c:\1>", re.DOTALL)
+_BEHIND_AXIS_FORMAT: Final = re.compile(rb"<c:(majorTickMark|minorTickMark|tickLblPos) ")
+_GENERAL: Final = b'<c:numFmt formatCode="General" sourceLinked="1"/>'
+
+
+@dataclass(frozen=True, slots=True)
+class Carrier:
+    """All that is new about the built parts: `names` and `types` (content types) by their old part names."""
+
+    built: BuiltBook
+    names: Mapping[str, str]
+    types: Mapping[str, str]
+    styles: StyleMap
+    renames: Renames
+    tables: TableNumbers
+
+    def parts(self) -> dict[str, bytes]:
+        """The new parts, each followed by its rels part."""
+        carried = {}
+        for old, new in self.names.items():
+            carried[new] = self._rewritten(old)
+            if rels_part(old) in self.built.parts:
+                carried[rels_part(new)] = self._pointers(old)
+        return carried
+
+    def _rewritten(self, part: str) -> bytes:
+        xml = self.built.parts[part]
+        match self.types[part].rpartition(".")[2]:
+            case "worksheet+xml":
+                return renamed_in(at_home(xml, self.built.strings, self.styles), self.renames)
+            case "table+xml":
+                return renamed_in(with_differential(self._table(part), self.styles), self.renames)
+            case "chart+xml":
+                return renamed_in(_with_axis_format(xml), self.renames)
+            case "drawing+xml":
+                return renamed_in(xml, self.renames)
+            case _:
+                return xml
+
+    def _table(self, part: str) -> bytes:
+        document = SplicedXml(self.built.parts[part], part)
+        document.set(document.root, "id", self.tables.ids[part])
+        for attribute in ("name", "displayName"):
+            name = document.root.attributes[attribute]
+            document.set(document.root, attribute, self.tables.names.get(name.casefold(), name))
+        return document.result()
+
+    def _pointers(self, part: str) -> bytes:
+        document = SplicedXml(self.built.parts[rels_part(part)], rels_part(part))
+        targets = relationships(self.built.parts, part)
+        for element in document.root.children:
+            target = targets[element.attributes["Id"]].target
+            raw = element.attributes["Target"]
+            if raw.startswith("#"):  # a link to a place in the workbook
+                document.set(element, "Target", "#" + self.renames.formula(raw[1:]))
+            elif target in self.names:
+                document.set(element, "Target", relative_target(self.names[part], self.names[target]))
+        return document.result()
+
+
+def relative_target(source: str, target: str) -> str:
+    """How one part points to another: `xl/workbook.xml, xl/styles.xml -> styles.xml`."""
+    return posixpath.relpath(f"/{target}", posixpath.dirname(f"/{source}"))
+
+
+def _with_axis_format(xml: bytes) -> bytes:
+    """The chart with a number format on every category axis: Excel writes one always, and some programs want it.
+
+    Only the axes are looked at: a chart is one of XlsxWriter's, and mostly numbers.
+    """
+    return _AXIS.sub(lambda axis: _formatted(axis[0]), xml)
+
+
+def _formatted(axis: bytes) -> bytes:
+    if b"<c:numFmt " in axis:
+        return axis
+    return _BEHIND_AXIS_FORMAT.sub(lambda behind: _GENERAL + behind[0], axis, count=1)

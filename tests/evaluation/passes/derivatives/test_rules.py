@@ -193,7 +193,7 @@ def test_two_arguments(book, formula, data):
 
 def test_every_rule_is_for_a_function_of_the_registry():
     from xlmc.functions.families import REGISTRY
-    from xlmc.functions.so_far import SO_FAR
+    from xlmc.functions.math.aggregate import SO_FAR
 
     names = {row.name for row in [*REGISTRY.values(), *SO_FAR.values()]} | {"shown", "settled"}
     assert set(RULES) - names == set()

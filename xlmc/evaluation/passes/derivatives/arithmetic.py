@@ -9,7 +9,7 @@ import numpy as np
 from xlmc.evaluation.passes.derivatives.jet import chained
 from xlmc.evaluation.passes.derivatives.rules import Operand, Outcome, elementwise, leveled, rule
 from xlmc.functions import Function
-from xlmc.functions.last_sum import SETTLED
+from xlmc.functions.fifteen_digits import SETTLED
 from xlmc.functions.values import Floats, Value
 
 __all__: list[str] = []

@@ -1,21 +1,68 @@
-"""Probability masses without cancellation, for any parameters: Loader's saddle-point expansion.
+"""What distribution functions share: their two forms, degrees of freedom, and probabilities without loss of digits.
 
-A mass is a ratio of factorials times powers, each of which may be enormous; their logarithms cancel, and with them the
-digits. The expansion splits the mass into deviances, which are small near the mode and exact far from it.
+A probability mass is a ratio of factorials times powers, each of which may be enormous; their logarithms cancel, and
+with them the digits. Loader's saddle-point expansion splits the mass into deviances, which are small near the mode and
+exact far from it. Its arguments need not be whole, so that the densities of the gamma, beta, F and t distributions come
+from the same two masses. Source: C. Loader, "Fast and Accurate Computation of Binomial Probabilities", 2000.
 
-Source: C. Loader, "Fast and Accurate Computation of Binomial Probabilities", 2000. The arguments need not be whole, so
-that the densities of the gamma, beta, F and t distributions come from the same two masses.
+The incomplete beta function of x loses digits where x is near 1. So whoever calls also says what y = 1 - x is, as it
+knows it best, and the smaller of the two is worked with.
 """
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Callable
+from typing import Any, Final
 
 import numpy as np
 
-from xlmc.functions.values import Floats
+from xlmc.functions.values import Bools, Floats
 
-__all__ = ["binomial_mass", "deviance", "poisson_mass", "stirling_error"]
+__all__ = [
+    "binomial_mass",
+    "by_form",
+    "degrees_of_freedom",
+    "deviance",
+    "incomplete_beta",
+    "inverse_beta",
+    "poisson_mass",
+    "stirling_error",
+]
+
+
+def incomplete_beta(a: Floats, b: Floats, x: Floats, y: Floats) -> Floats:
+    """The regularised incomplete beta function, the probability of a number up to x = 1 - y; arrays that broadcast."""
+    from scipy.special import betainc, betaincc
+
+    low = np.asarray(x) <= y
+    out = np.empty(np.broadcast_shapes(np.shape(a), np.shape(b), np.shape(low)))
+    betainc(a, b, x, out=out, where=low)
+    betaincc(b, a, y, out=out, where=~low)
+    return out
+
+
+def inverse_beta(a: Floats, b: Floats, p: Floats) -> tuple[Floats, Floats]:
+    """The beta number x of a probability, and 1 - x; arrays that broadcast."""
+    from scipy.special import betainccinv, betaincinv
+
+    return np.asarray(betaincinv(a, b, p)), np.asarray(betainccinv(b, a, p))
+
+
+_MOST_FREEDOM: Final = 1e10
+
+
+def degrees_of_freedom(given: Floats) -> tuple[Bools, Floats]:
+    """Whether these are degrees of freedom, from 1 to 10¹⁰, and how many: the whole number; 1 where they are not."""
+    valid = (np.asarray(given) >= 1) & (given <= _MOST_FREEDOM)
+    return valid, np.floor(np.where(valid, given, 1.0))
+
+
+def by_form(cumulative: Bools, probability: Callable[[], Any], density: Callable[[], Any]) -> Floats:
+    """The probability up to a point where `cumulative`, else the density at it; neither is computed for nothing."""
+    below = probability() if np.any(cumulative) else 0.0
+    at = 0.0 if np.all(cumulative) else density()
+    return np.where(cumulative, below, at)
+
 
 _SERIES_FROM: Final = 16.0
 _STIRLING: Final = (1 / 12, -1 / 360, 1 / 1260, -1 / 1680, 1 / 1188)

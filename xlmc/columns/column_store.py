@@ -1,0 +1,206 @@
+"""A temporary folder of column files, which goes when nothing needs it any more."""
+
+from __future__ import annotations
+
+import errno
+import mmap
+import os
+import shutil
+import tempfile
+import weakref
+from collections.abc import Hashable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.columns.owners import new_folder_name, owned, remove_stray_folders
+from xlmc.errors import SimulationError
+
+__all__ = ["IN_MEMORY", "Columns", "Folder", "Keeper", "mapped", "on_disk", "release"]
+
+
+class _Mapping(mmap.mmap):
+    """Tells our read-only maps, whose pages can be dropped at any time, from those of others, whose may not."""
+
+
+def mapped(path: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
+    """The `(n,)` numbers of a file, read-only; the file may be deleted meanwhile where the system allows it."""
+    if path.stat().st_size == 0:
+        return np.empty(0, dtype)
+    with path.open("rb") as file:
+        return np.frombuffer(_Mapping(file.fileno(), 0, access=mmap.ACCESS_READ), dtype)
+
+
+def on_disk(values: NDArray[Any]) -> bool:
+    """Whether the array is one of `mapped`, or part of one."""
+    return _mapping(values) is not None
+
+
+def release(values: NDArray[Any]) -> None:
+    """Give back the memory that an array of `mapped` took so far; it is read again when it is asked for."""
+    mapping = _mapping(values)
+    if mapping is not None and hasattr(mmap, "MADV_DONTNEED"):
+        mapping.madvise(mmap.MADV_DONTNEED)
+
+
+def _mapping(values: NDArray[Any]) -> _Mapping | None:
+    base: object = values
+    while isinstance(base, np.ndarray):
+        base = base.base
+    if isinstance(base, memoryview):
+        base = base.obj
+    return base if isinstance(base, _Mapping) else None
+
+
+_FULL = (errno.ENOSPC, errno.EDQUOT)
+_HINT = "Set TMPDIR to a folder on a disk with more room, or ask for fewer trials"
+_TOO_MANY = (errno.EMFILE, errno.ENFILE)
+
+
+class Folder:
+    """Files of raw numbers, each written front to back.
+
+    It is removed with this object, or at the interpreter's end. An array that is still mapped keeps its numbers.
+
+    Raises:
+        SimulationError: there is no folder to write to.
+    """
+
+    def __init__(self) -> None:
+        with _told(None):
+            self.path = Path(tempfile.gettempdir(), new_folder_name())
+            kept = ExitStack()
+            kept.enter_context(owned(self.path.name))
+            self.path.mkdir(mode=0o700)
+        self._end = weakref.finalize(self, _remove, self.path, os.getpid(), kept)
+
+    def append(self, name: str, arrays: Iterable[NDArray[Any]]) -> None:
+        """Write `(n,)` arrays at the end of a file.
+
+        Raises:
+            SimulationError: the disk is full, or the folder cannot be written to.
+        """
+        with _told(self.path), (self.path / name).open("ab") as file:
+            for array in arrays:
+                file.write(array.data)
+
+    def array(self, name: str, dtype: np.dtype[Any]) -> NDArray[Any]:
+        """The numbers of a file, `(n,)`, read-only; see `release`.
+
+        Raises:
+            SimulationError: the file cannot be read.
+        """
+        with _told(self.path):
+            return mapped(self.path / name, dtype)
+
+    def remove(self, name: str) -> None:
+        """Delete a file, if it is there; where an open file cannot be deleted, it goes with the folder."""
+        with _told(self.path):
+            try:
+                (self.path / name).unlink(missing_ok=True)
+            except PermissionError:  # Windows, while an array is mapped
+                return
+
+
+def _remove(path: Path, owner: int, kept: ExitStack) -> None:
+    if os.getpid() == owner:  # a forked child inherits the object, not the folder
+        shutil.rmtree(path, ignore_errors=True)
+        kept.close()
+
+
+@contextmanager
+def _told(path: Path | None) -> Iterator[None]:
+    """Failures of the disk in words."""
+    try:
+        yield
+    except OSError as error:
+        where, hint = path or "temporary folder", _HINT
+        message = f"the accepted trials cannot be kept there: {error.strerror or error}"
+        if error.errno in _FULL:
+            message = "there is no room left on the disk for the accepted trials"
+        elif error.errno in _TOO_MANY:
+            hint = "Allow more open files: ulimit -n 8192"
+        raise SimulationError(message, where=where, hint=hint) from error
+
+
+IN_MEMORY: Final = 1 << 27
+"""Bytes of all columns of a keeper together that stay in memory."""
+
+WRITTEN: Final = 1 << 24
+"""Bytes that are gathered before they are written: large writes cost least."""
+
+Array = NDArray[Any]
+
+
+class Columns(Mapping[str, Array]):
+    """Columns in files, by name. Each is mapped anew whenever it is asked for, so that none stays in memory."""
+
+    def __init__(self, folder: Folder, files: Mapping[str, tuple[str, np.dtype[Any]]]) -> None:
+        self._folder, self._files = folder, files
+
+    def __getitem__(self, name: str) -> Array:
+        file, dtype = self._files[name]
+        return self._folder.array(file, dtype)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._files)
+
+    def __len__(self) -> int:
+        return len(self._files)
+
+
+class Keeper:
+    """Collects columns; the arrays it is given are its own from then on. Folders that killed runs left are removed.
+
+    Args:
+        types: column -> the type of its numbers.
+    """
+
+    def __init__(self, types: Mapping[Hashable, np.dtype[Any]]) -> None:
+        self._types = dict(types)
+        self._files = {key: f"{number}.column" for number, key in enumerate(types)}
+        self._waiting: dict[Hashable, list[Array]] = {key: [] for key in types}
+        self._bytes = 0
+        self._folder: Folder | None = None
+        remove_stray_folders()
+
+    def add(self, key: Hashable, values: Array) -> None:
+        """Put `(m,)` values at the end of a column."""
+        if values.size:
+            self._waiting[key].append(values)
+            self._bytes += values.nbytes
+
+    def settle(self) -> None:
+        """Write what waits, if it is much; to be called when all columns of a block are added.
+
+        Raises:
+            SimulationError: there is no room on the disk.
+        """
+        if self._bytes > (IN_MEMORY if self._folder is None else WRITTEN):
+            self._write()
+
+    def _write(self) -> None:
+        self._folder = self._folder or Folder()
+        for key, waiting in self._waiting.items():
+            self._folder.append(self._files[key], waiting)
+            waiting.clear()
+        self._bytes = 0
+
+    def columns(self, keys: Mapping[str, Hashable]) -> Mapping[str, Array]:
+        """Finished columns, each under a name of its own; in memory if nothing was written yet.
+
+        Raises:
+            SimulationError: there is no room on the disk.
+        """
+        if self._folder is None:
+            return {name: self._joined(key) for name, key in keys.items()}
+        self._write()
+        return Columns(self._folder, {name: (self._files[key], self._types[key]) for name, key in keys.items()})
+
+    def _joined(self, key: Hashable) -> Array:
+        if len(self._waiting[key]) != 1:
+            self._waiting[key] = [np.concatenate([np.empty(0, self._types[key]), *self._waiting[key]])]
+        return self._waiting[key][0]

@@ -35,7 +35,7 @@ import numpy as np
 
 import xlmc
 from xlmc.api import Simulation
-from xlmc.cli.templates_folder import templates
+from xlmc.cli.new import templates
 from xlmc.columns import column_store
 from xlmc.errors import XlmcError
 from xlmc.workbook.writer import write_workbook

@@ -19,7 +19,7 @@ from machine import describe
 from tables import placed
 
 import xlmc
-from xlmc.cli.methods_json import study_json
+from xlmc.cli.methods import study_json
 from xlmc.report.methods import save_methods, tables
 from xlmc.studies.methods import STATISTICS, Rung, Study, recommendation, study
 from xlmc.studies.methods.curve import rung_of

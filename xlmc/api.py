@@ -77,7 +77,7 @@ class Simulation(simulation.Simulation):
             WorkbookError: the file has another ending, or cannot be written.
             SimulationError: Parquet needs pyarrow, which is not installed.
         """
-        from xlmc.report.data.extract import extract
+        from xlmc.report.extract import extract
 
         return extract(self, Path(path), overwrite=overwrite)
 
@@ -87,7 +87,7 @@ class Simulation(simulation.Simulation):
         Raises:
             WorkbookError: the file cannot be written, or does not end in `.json`.
         """
-        from xlmc.report.data.document import save_json
+        from xlmc.report.json_document import save_json
 
         return save_json(self, Path(path), overwrite=overwrite)
 

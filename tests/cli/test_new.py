@@ -1,7 +1,12 @@
 from __future__ import annotations
 
+import shutil
+
+import committed_books
 import openpyxl
 import pytest
+
+from xlmc.cli.new import templates
 
 TEMPLATES = [
     "skid",
@@ -72,3 +77,19 @@ def test_refuses_a_folder_that_is_not_there(xlmc, tmp_path):
     outcome = xlmc("new", "planar-impact", tmp_path / "nowhere" / "case.xlsx")
     assert outcome.code == 2
     assert "nowhere" in outcome.err
+
+
+def test_results_and_marks_of_open_books_are_no_templates(tmp_path):
+    folder = tmp_path / "templates"
+    folder.mkdir()
+    skid = committed_books.TEMPLATES["skid"]
+    for name in ("skid", "skid-si", "skid-results", "skid-si-results", "skid-results-2", "skid-results-13"):
+        shutil.copy(skid, folder / f"{name}.xlsx")
+    (folder / "~$skid.xlsx").write_bytes(b"\x05Analyst")
+    found = templates(tmp_path / "xlmc")
+    assert {name: sorted(template.editions) for name, template in found.items()} == {"skid": ["imperial", "si"]}
+
+
+def test_the_templates_are_the_committed_ones():
+    files = [path for template in templates().values() for path in template.editions.values()]
+    assert sorted(path.name for path in files) == sorted(path.name for path in committed_books.TEMPLATES.values())

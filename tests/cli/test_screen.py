@@ -68,12 +68,12 @@ def test_no_table_is_wider_than_80_columns_where_that_is_all_there_is(case_study
     """No number is cut, and no table becomes a list."""
     from xlmc.api import load
     from xlmc.cli import printing
-    from xlmc.cli.screen import _told
-    from xlmc.cli.told_options import show
+    from xlmc.cli.screen import _report
+    from xlmc.cli.study_output import show
     from xlmc.studies.screening import screen
 
     monkeypatch.setattr(printing, "_PIPE_WIDTH", 80)
-    show(_told(screen(load(case_study), trials=5000)).blocks)
+    show(_report(screen(load(case_study), trials=5000)).blocks)
     lines = capsys.readouterr().out.splitlines()
     assert max(len(line) for line in lines if line.startswith(" ")) <= 80
     headings = [line for line in lines if "Held or left out" in line]

@@ -19,7 +19,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.cli import main, terminal
-from xlmc.cli.table import laid_out
+from xlmc.cli.printing import table_lines
 from xlmc.workbook.printable import printable
 
 pytestmark = pytest.mark.usefixtures("short_books")
@@ -179,7 +179,7 @@ ANSWERS = (
 @pytest.mark.parametrize("width", [36, 40, 60, 70, 80, 100, 200])
 def test_tables_fit_the_width_and_cut_no_number(width):
     headings, rows = ANSWERS
-    lines = list(laid_out(headings, rows, (2, 3), width, "-"))
+    lines = list(table_lines(headings, rows, (2, 3), width, "-"))
     assert max(map(len, lines)) <= width
     text = " ".join(" ".join(lines).split())
     for number in ("11.799 ± 0.013", "4.717 ± 0.034"):
@@ -194,7 +194,7 @@ def test_tables_fit_the_width_and_cut_no_number(width):
 
 def test_a_table_with_room_has_a_line_for_each_row():
     headings, rows = ANSWERS
-    assert len(list(laid_out(headings, rows, (2, 3), 160, "-"))) == 2 + len(rows)
+    assert len(list(table_lines(headings, rows, (2, 3), 160, "-"))) == 2 + len(rows)
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from xlmc.report.sheets.chart_style import bounds
+from xlmc.report.sheets.styles import bounds
 from xlmc.statistics import describe
 
 COIN = np.where(np.arange(600) % 2, 1.0, -1.0)

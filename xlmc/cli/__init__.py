@@ -7,17 +7,22 @@ to do; 130 interrupted by Ctrl-C; 143 ended by SIGTERM. Modules here import what
 
 from __future__ import annotations
 
+import os
+import signal
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Final
 
 import click
 
 from xlmc.cli.check import check
-from xlmc.cli.commands import Commands
 from xlmc.cli.compare import compare
-from xlmc.cli.ending import ending_in_order
 from xlmc.cli.fit import fit
 from xlmc.cli.methods import methods
-from xlmc.cli.mistakes import mistake
+from xlmc.cli.mistakes import did_you_mean, mistake
 from xlmc.cli.new import new
 from xlmc.cli.replay import replay
 from xlmc.cli.report import report
@@ -33,9 +38,46 @@ __all__ = ["main", "xlmc"]
 
 BAD_INPUT = 2
 
+_BOOKS: Final = (".xlsx", ".xlsm", ".xltx", ".xltm")
+
+_ASKING_TO_END: Final = ("SIGTERM", "SIGHUP", "SIGBREAK")
+_STDERR: Final = 2
+_FROM_SIGNAL: Final = 128
+"""Added to a signal's number, as shells do: 143 after SIGTERM, 129 after SIGHUP."""
+
+
+class _Commands(click.Group):
+    """xlmc's commands, in the order in which a person needs them."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names, in the order in which they were added."""
+        return list(self.commands)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the list, each command with all of its first sentence; what is long wraps."""
+        rows = [(name, self.commands[name].get_short_help_str(limit=1_000)) for name in self.list_commands(ctx)]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The command that the first argument names.
+
+        Raises:
+            UsageError: it names none; the message offers the nearest.
+        """
+        typed = args[0]
+        if typed not in self.commands and not typed.startswith("-"):
+            near = did_you_mean(typed, self.commands)
+            if typed.casefold().endswith(_BOOKS):
+                near = f" To run that workbook, type: xlmc simulate {typed}"
+            raise click.UsageError(f"there is no command {typed!r}.{near}", ctx)
+        return super().resolve_command(ctx, args)
+
 
 @click.group(
-    cls=Commands,
+    cls=_Commands,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
@@ -56,7 +98,7 @@ def main() -> None:
     prepare()
     try:
         # A command that asks for an exit code returns it.
-        with ending_in_order():
+        with _end_in_order():
             sys.exit(xlmc.main(prog_name="xlmc", standalone_mode=False) or 0)
     except click.ClickException as error:
         say(f"xlmc: {mistake(error)}", err=True)
@@ -76,3 +118,29 @@ def main() -> None:
     except MemoryError:
         say("xlmc: out of memory. Ask for fewer trials.", err=True)
         sys.exit(BAD_INPUT)
+
+
+@contextmanager
+def _end_in_order() -> Iterator[None]:
+    """Make a signal that asks the process to end an exit, on whose way temporary files are removed.
+
+    A signal that is ignored stays ignored. Python hears signals in its main thread alone: elsewhere this does nothing.
+    """
+    ours = []
+    if threading.current_thread() is threading.main_thread():
+        numbers = [getattr(signal, name) for name in _ASKING_TO_END if hasattr(signal, name)]
+        ours = [number for number in numbers if signal.getsignal(number) is signal.SIG_DFL]
+    for number in ours:
+        signal.signal(number, _exit)
+    try:
+        yield
+    finally:
+        for number in ours:
+            signal.signal(number, signal.SIG_DFL)
+
+
+def _exit(number: int, frame: FrameType | None) -> None:
+    signal.signal(number, signal.SIG_DFL)  # a second one ends it at once
+    # Not by `click`: whoever was interrupted may be in the middle of printing.
+    os.write(_STDERR, f"xlmc: ended by {signal.Signals(number).name}; no half file is left.\n".encode())
+    raise SystemExit(_FROM_SIGNAL + number)

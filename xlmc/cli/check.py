@@ -1,20 +1,31 @@
-"""`xlmc check`: what a workbook asks for, as understood, and what is wrong with it."""
+"""`xlmc check`: what a workbook asks for, as understood, and what is wrong with it.
+
+Other commands take from here what the terminal says of checks that fail and of trials lost to errors.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from xlmc.cli.terminal import paragraph, say
+from xlmc.errors import sentence
 
 if TYPE_CHECKING:
     from xlmc.definitions.model import Correlation, Definitions
+    from xlmc.run.cell_errors import BaseErrors
+    from xlmc.run.checking import CheckResult
     from xlmc.run.model import Model
+    from xlmc.run.simulation import Simulation
     from xlmc.workbook.model import Workbook
 
-__all__ = ["check"]
+__all__ = ["check", "check_table", "failing_lines", "show_first"]
+
+_MOST_CELLS = 12
+"""Cells of one kind that are listed."""
 
 
 @click.command()
@@ -24,7 +35,6 @@ def check(book: Path) -> None:
 
     Checks that fail and cells in error at the base case stand first.
     """
-    from xlmc.cli.base_lines import show_base_case
     from xlmc.cli.printing import notices
     from xlmc.definitions.reader import read_definitions
     from xlmc.errors import XlmcError
@@ -43,7 +53,7 @@ def check(book: Path) -> None:
             problems += filter_faults(model)
         except XlmcError as error:
             problems.append(error)
-    faults = [] if model is None else show_base_case(model)
+    faults = [] if model is None else _show_base_case(model)
     _show_definitions(definitions if model is None else model.definitions, model)
     if model is not None:
         _show_need(model, workbook)
@@ -60,6 +70,42 @@ def check(book: Path) -> None:
     if faults:
         raise click.exceptions.Exit(1)
     say("No problem found.")
+
+
+def _show_base_case(model: Model) -> list[str]:
+    """Print the checks that fail and the cells in error; return why the answer must not be used as it stands."""
+    from xlmc.run.cell_errors import errors_at_base
+    from xlmc.run.checking import base_checks
+
+    failing = [check.fault for check in base_checks(model) if check.holds is False]
+    errors = errors_at_base(model)
+    lines = [sentence(f"{fault[0].upper()}{fault[1:]}") for fault in failing]
+    lines += _error_lines(model, errors)
+    if lines:
+        say(f"{model.workbook.name}: at the base case, every assumption at its cell's own value\n")
+    for line in lines:
+        say(paragraph(line, hanging="  "))
+    if lines:
+        say()
+    if not errors.answers:
+        return failing
+    cell, code = next(iter(errors.roots.items()))
+    return [*failing, f"at the base case {cell} is {code.text}, and so is a cell that was asked for"]
+
+
+def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
+    """The cells that errors come from with their formulas, then the cells that have theirs from these."""
+    from xlmc.results.record.cells import content_text
+
+    handled = "" if errors.answers else " (handled: no forecast, filter or check is an error)"
+    for cell, code in list(errors.roots.items())[:_MOST_CELLS]:
+        yield f"{cell} {code.text}{handled}: {content_text(model.workbook, cell)}"
+    if len(errors.roots) > _MOST_CELLS:
+        yield f"… and {len(errors.roots) - _MOST_CELLS:,} more cells in error of themselves"
+    if errors.others:
+        named = ", ".join(f"{cell} {code.text}" for cell, code in list(errors.others.items())[:_MOST_CELLS])
+        more = f" and {len(errors.others) - _MOST_CELLS:,} more" if len(errors.others) > _MOST_CELLS else ""
+        yield f"Cells that have their error from these: {named}{more}."
 
 
 def _show_definitions(definitions: Definitions, model: Model | None) -> None:
@@ -102,3 +148,47 @@ def _show_need(model: Model, workbook: Workbook) -> None:
     say(paragraph(said))
     if model.scene.idle:
         say(paragraph("Not needed by the scene: " + ", ".join(a.name for a in model.scene.idle) + "."))
+
+
+def show_first(run: Simulation) -> None:
+    """Print the checks that fail, then the cells that trials were lost in."""
+    from xlmc.results.record.errors_met import lost_sentences
+
+    name = run.model.workbook.name
+    _show_lines(f"{name}: checks that fail", failing_lines(run))
+    _show_lines(f"{name}: trials lost to errors", [f"{sentence}." for sentence in lost_sentences(run)])
+
+
+def failing_lines(run: Simulation) -> list[str]:
+    """One line a check that fails, at the base case or in too many accepted trials."""
+    return [sentence(f"{warning[0].upper()}{warning[1:]}") for check in run.checks for warning in check.warnings]
+
+
+def _show_lines(title: str, lines: Sequence[str]) -> None:
+    if not lines:
+        return
+    say(f"{title}\n")
+    for line in lines:
+        say(paragraph(line, hanging="  "))
+    say()
+
+
+def check_table(run: Simulation) -> None:
+    """Print how many accepted trials fail each check; only how many checks there are where no trial fails one."""
+    from xlmc.cli.printing import table
+    from xlmc.run.checking import checks_sentence
+
+    if not run.checks:
+        return
+    if all(check.holds and not check.failed for check in run.checks):
+        say(paragraph(f"{checks_sentence(run.checks)}.") + "\n")
+        return
+    rows = [(check.name, check.base.found or "", f"{check.failed:,}", _share(check)) for check in run.checks]
+    title = f"Checks, in {run.checks[0].looked_at}"
+    table(title, ("Check", "Base case", "Failing", "Share"), rows, right=(2, 3))
+
+
+def _share(check: CheckResult) -> str:
+    from xlmc.report.summary import share_text
+
+    return share_text(check.share)

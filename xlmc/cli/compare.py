@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.parameter_types import WholeNumber
-from xlmc.cli.run_options import engine_option, jobs_option
+from xlmc.cli.options import WholeNumber, engine_option, jobs_option
+from xlmc.cli.study_output import show, study_options
 from xlmc.cli.terminal import say, say_json
-from xlmc.cli.told_options import show, told_options
 
 if TYPE_CHECKING:
-    from xlmc.report.told import Block, Told
+    from xlmc.report.study_report import Block, StudyReport
     from xlmc.studies.comparison import Comparison, ForecastComparison
     from xlmc.studies.comparison.causes import Step
 
@@ -45,7 +44,7 @@ UNDECIDED = 1
 @engine_option
 @jobs_option
 @click.option("--no-causes", is_flag=True, help="Do not look for what makes the difference.")
-@told_options
+@study_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
 def compare(
@@ -66,8 +65,9 @@ def compare(
     quiet: bool,
 ) -> None:
     """Run FIRST and SECOND over the same trials, and say whether the simpler one is enough."""
-    from xlmc.cli.printing import telling, warnings
-    from xlmc.report.told_files import Files
+    from xlmc.cli.printing import warnings
+    from xlmc.cli.progress import step_line
+    from xlmc.report.study_report import Files
     from xlmc.run.model import load
     from xlmc.studies import comparison
     from xlmc.studies.comparison.wording import book_names
@@ -75,7 +75,7 @@ def compare(
     books = load(first), load(second)
     files = Files(output, html, [first, second], overwrite=overwrite)
     files.check()
-    with telling(quiet) as told:
+    with step_line(quiet) as told:
         found = comparison.compare(
             *books,
             tolerance,
@@ -88,12 +88,12 @@ def compare(
             causes=not no_causes,
             told=told,
         )
-    told_of = _told(found)
-    written = files.write(told_of, "Comparison")
+    report = _report(found)
+    written = files.write(report, "Comparison")
     if as_json:
         say_json(_as_json(found))
     else:
-        show([told_of.below, *told_of.blocks])
+        show([report.below, *report.blocks])
         for path in written:
             say(f"Written: {path}")
     runs = zip(book_names(found), (found.first, found.second), strict=True)
@@ -120,15 +120,15 @@ def _pairs(given: tuple[str, ...]) -> dict[str, str]:
     return found
 
 
-def _told(found: Comparison) -> Told:
-    from xlmc.report.told import Table, Told
+def _report(found: Comparison) -> StudyReport:
+    from xlmc.report.study_report import StudyReport, Table
     from xlmc.studies.comparison.wording import book_names, verdict_text
 
     books = book_names(found)
     headings = ("", "First", "Second", "Difference", "Tolerance")
     tables = [Table(_title(each), headings, tuple(_rows(each)), (1, 2, 3, 4)) for each in found.forecasts]
     blocks: list[Block] = [*verdict_text(found), *tables, *_sentences(found), _MEANING]
-    return Told("Do two models give the same answer?", f"{books[0]} (first) and {books[1]} (second)", blocks)
+    return StudyReport("Do two models give the same answer?", f"{books[0]} (first) and {books[1]} (second)", blocks)
 
 
 def _sentences(found: Comparison) -> Iterator[str]:
@@ -178,7 +178,7 @@ def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
 
 
 def _as_json(found: Comparison) -> dict[str, object]:
-    from xlmc.cli.plain import acceptance_json
+    from xlmc.cli.study_output import acceptance_json
     from xlmc.studies.comparison.wording import book_names, verdict_text
 
     books, inputs = book_names(found), found.inputs
@@ -203,7 +203,7 @@ def _as_json(found: Comparison) -> dict[str, object]:
 
 
 def _entry(each: ForecastComparison, books: tuple[str, str]) -> dict[str, object]:
-    from xlmc.cli.plain import difference_json, estimate_json
+    from xlmc.cli.study_output import difference_json, estimate_json
 
     entry: dict[str, object] = {
         "name": each.first.name,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.parameter_types import OneOf
+from xlmc.cli.options import OneOf
 from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:

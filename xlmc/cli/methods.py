@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from xlmc.cli.parameter_types import WholeNumber
+from xlmc.cli.options import WholeNumber
+from xlmc.cli.study_output import estimate_json, finite
 from xlmc.cli.terminal import paragraph, say, say_json
 
 if TYPE_CHECKING:
-    from xlmc.studies.methods import Study
+    from xlmc.studies.methods import Curve, Rung, Study
 
-__all__ = ["methods"]
+__all__ = ["methods", "study_json"]
+
 
 NOT_TO_BE_USED = 1
 
@@ -66,8 +68,7 @@ def methods(
     quiet: bool,
 ) -> None:
     """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
-    from xlmc.cli.methods_json import study_json
-    from xlmc.cli.printing import telling
+    from xlmc.cli.progress import step_line
     from xlmc.report.methods import check_targets, save_methods
     from xlmc.run.model import load
     from xlmc.studies.methods import quick_settings, study
@@ -78,7 +79,7 @@ def methods(
     given = {name: value for name, value in asked.items() if value is not None}
     if quick:
         given = quick_settings(given)
-    with telling(quiet) as told:
+    with step_line(quiet) as told:
         found = study(model, accuracy=accuracy, seed=seed, told=told, **given)
     for path in output:
         save_methods(found, path, overwrite=overwrite)
@@ -107,3 +108,97 @@ def _show(found: Study) -> None:
     for advice in recommendation(found):
         say(paragraph(advice))
         say()
+
+
+def study_json(found: Study) -> dict[str, Any]:
+    """Everything that was measured, as JSON holds it."""
+    from xlmc.studies.methods import STATISTICS, recommendation
+    from xlmc.studies.methods.choice import choice
+
+    reference = found.reference
+    best = choice(found) if found.varying else None
+    chosen = best and best.chosen
+    return {
+        "workbook": found.model.workbook.name,
+        "accuracy": found.accuracy[0],
+        "seed": found.seed,
+        "reference": {
+            "trials": reference.trials,
+            "accepted": reference.accepted,
+            "sampling": reference.sampling,
+            "engine": reference.engine,
+            "seconds": reference.seconds,
+            "acceptance": estimate_json(reference.acceptance),
+            "forecasts": {
+                name: {
+                    each: {
+                        "value": finite(getattr(answer, each)),
+                        "error": finite(getattr(reference.errors[name], each)),
+                    }
+                    for each in STATISTICS
+                }
+                for name, answer in reference.answers.items()
+            },
+            "widths": {name: finite(width) for name, width in reference.widths.items()},
+        },
+        "recommended": chosen and chosen.method.key,
+        "cheapest": [curve.method.key for curve in best.cheapest] if best else [],
+        "methods": [_curve(found, curve) for curve in found.every],
+        "not_used": dict(found.absent),
+        "recommendation": recommendation(found),
+    }
+
+
+def _curve(found: Study, curve: Curve) -> dict[str, Any]:
+    from xlmc.report.methods.tables import cannot
+    from xlmc.studies.methods import STATISTICS, need
+    from xlmc.studies.methods.need import shortfall
+
+    drawn = curve not in found.once
+    wanted = need(found, curve) if drawn and found.varying else None
+    near = shortfall(found, curve) if curve.answers and found.varying and not drawn else None
+    return {
+        "method": curve.method.key,
+        "name": curve.method.name,
+        "cannot": cannot(found, curve.method),
+        "remarks": list(curve.remarks),
+        "setup_seconds": curve.setup,
+        "bounds": {name: {"least": least, "most": most} for name, (least, most) in curve.ranges.items()},
+        "bounds_at": [
+            {"forecast": name, "end": end, "assumptions": dict(point)} for (name, end), point in curve.ends.items()
+        ],
+        "runs": [_rung(found, rung, drawn) for rung in curve.rungs],
+        "slopes": {
+            each: {"trials": finite(curve.slope(each, "budget")), "seconds": finite(curve.slope(each, "seconds"))}
+            for each in STATISTICS
+        },
+        "needs": wanted
+        and {"trials": finite(wanted.trials), "seconds": finite(wanted.seconds), "reaches": wanted.reaches},
+        "near_enough": near and near.reaches,
+    }
+
+
+def _rung(found: Study, rung: Rung, drawn: bool) -> dict[str, Any]:
+    from xlmc.studies.methods import STATISTICS
+
+    return {
+        "trials": rung.budget if drawn else None,
+        "seconds": finite(rung.seconds),
+        "seconds_median": finite(rung.usual),
+        "seconds_measured": rung.measured,
+        "evaluations": rung.evaluations,
+        "effective": rung.effective,
+        "failed": rung.failed,
+        "acceptance_error": None if rung.acceptance is None else finite(rung.acceptance.value),
+        "errors": {
+            forecast.name: {
+                each: {
+                    "rms": finite(rung.errors[forecast.name, each].value),
+                    "error": finite(rung.errors[forecast.name, each].error),
+                    "bias": finite(rung.errors[forecast.name, each].bias),
+                }
+                for each in STATISTICS
+            }
+            for forecast in found.model.forecasts
+        },
+    }

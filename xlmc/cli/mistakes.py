@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import Final
 
 import click
 
-from xlmc.cli.near import did_you_mean
-
-__all__ = ["mistake"]
+__all__ = ["did_you_mean", "mistake"]
 
 _EXTRA: Final = re.compile(r"unexpected extra arguments? \((.*)\)")
 """How click tells of arguments that a command does not take."""
@@ -53,3 +52,16 @@ def _sentence(text: str) -> str:
 
 def _see(command: str) -> str:
     return f" See {command} --help."
+
+
+def did_you_mean(typed: str, known: Iterable[str]) -> str:
+    """A question to put behind a message, with a blank before it; empty where no known name is alike.
+
+    >>> did_you_mean("planar-imapct", ["skid", "planar-impact"])
+    ' Did you mean planar-impact?'
+    """
+    from difflib import get_close_matches
+
+    spellings = {name.casefold(): name for name in known}
+    found = get_close_matches(typed.casefold(), spellings, n=1, cutoff=0.6)
+    return f" Did you mean {spellings[found[0]]}?" if found else ""

@@ -1,33 +1,41 @@
-"""`xlmc new`: list the templates, or copy one."""
+"""`xlmc new`: list the templates that people start from, or copy one."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Final
 
 import click
 
-from xlmc.cli.near import did_you_mean
-from xlmc.cli.parameter_types import OneOf
+from xlmc.cli.mistakes import did_you_mean
+from xlmc.cli.options import OneOf
 from xlmc.cli.terminal import paragraph, say
 from xlmc.errors import WorkbookError
 
-if TYPE_CHECKING:
-    from xlmc.cli.templates_folder import Template
+__all__ = ["Template", "new", "templates"]
 
-__all__ = ["new"]
+_UNITS: Final = {"imperial": "", "si": "-si"}
+"""Units of an edition -> what its file name has after the template's name."""
+
+_PACKAGE: Final = Path(__file__).parents[1]
+
+_DUBLIN_CORE: Final = "{http://purl.org/dc/elements/1.1/}"
+_CATEGORY: Final = "{http://schemas.openxmlformats.org/package/2006/metadata/core-properties}category"
+
+_NO_TEMPLATE: Final = re.compile(r"^~\$|-results(-\d+)?$")
+"""What else may lie in the folder of a checkout: the mark that Excel makes beside an open workbook, and results."""
 
 
 @click.command()
 @click.argument("template", required=False)
 @click.argument("book", required=False, type=click.Path(readable=False, path_type=Path))
-@click.option("--units", type=OneOf("imperial", "si"), default="imperial", show_default=True, help="Units of the copy.")
+@click.option("--units", type=OneOf(*_UNITS), default="imperial", show_default=True, help="Units of the copy.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
 def new(template: str | None, book: Path | None, units: str, overwrite: bool) -> None:
     """List the templates, or copy TEMPLATE to BOOK (by default TEMPLATE.xlsx here)."""
-    from xlmc.cli.templates_folder import templates
-
     known = templates()
     if template is None:
         _list(known)
@@ -56,10 +64,57 @@ def _list(known: Mapping[str, Template]) -> None:
 
 
 def _copy(source: Path, target: Path, templates: Sequence[Path], *, overwrite: bool) -> None:
-    """Copy a template; a file that is there is replaced where it is an untouched copy of one."""
+    """Copy a template; an existing file is replaced where it is an untouched copy of one."""
     from xlmc.workbook.target import Target
     from xlmc.workbook.writer import write_workbook
 
     goal = Target(target, "", overwrite, templates)
     goal.check()
     write_workbook(target, source.read_bytes(), goal.check)
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """One template, as its document properties describe it.
+
+    Attributes:
+        editions: units -> file.
+        question: what it answers.
+        needs: the inputs it needs.
+        rung: its step on the ladder of models, such as `rung 1`; the simplest come first.
+    """
+
+    editions: Mapping[str, Path]
+    question: str
+    needs: str
+    rung: str
+
+
+def templates(package: Path = _PACKAGE) -> dict[str, Template]:
+    """Every template by name, the simplest first.
+
+    Args:
+        package: the folder of the installed package; the templates are in it, or in a checkout beside it.
+
+    Raises:
+        WorkbookError: the templates are missing from the installation.
+    """
+    for folder in (package / "templates", package.parent / "templates"):
+        books = {path.stem: path for path in folder.glob("*.xlsx") if not _NO_TEMPLATE.search(path.stem)}
+        names = [name for name in books if not any(end and name.endswith(end) for end in _UNITS.values())]
+        if names:
+            found = {name: _template(name, books) for name in names}
+            return dict(sorted(found.items(), key=lambda item: (item[1].rung, item[0])))
+    raise WorkbookError("the templates are missing", where=package, hint="install xlmc again")
+
+
+def _template(name: str, books: Mapping[str, Path]) -> Template:
+    from xml.etree import ElementTree
+
+    from xlmc.workbook.package import read_parts
+
+    editions = {units: books[name + end] for units, end in _UNITS.items() if name + end in books}
+    core = read_parts(books[name].read_bytes()).get("docProps/core.xml", b"<none/>")
+    properties = ElementTree.fromstring(core)
+    question, needs = (properties.findtext(_DUBLIN_CORE + key, default="") for key in ("subject", "description"))
+    return Template(editions, question, needs, properties.findtext(_CATEGORY, default=""))

@@ -119,11 +119,11 @@ class Outputs(NamedTuple):
 
             check_page_path(self.html)
         if self.json is not None:
-            from xlmc.report.data.document import check_json_path
+            from xlmc.report.json_document import check_json_path
 
             check_json_path(self.json)
         for path in self.extract:
-            from xlmc.report.data.extract import check_extract_path
+            from xlmc.report.extract import check_extract_path
 
             check_extract_path(path)
 

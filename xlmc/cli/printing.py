@@ -1,23 +1,33 @@
-"""How results look on a terminal or in a pipe."""
+"""How results look on a terminal or in a pipe: tables that fit its width, notes and warnings.
+
+In a table words wrap, numbers are never cut, and what is too wide becomes a list.
+"""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
 
-from xlmc.cli.table import laid_out
 from xlmc.cli.terminal import degraded, on_terminal, paragraph, put, say, width
 from xlmc.workbook.printable import printable
 
 if TYPE_CHECKING:
     from xlmc.errors import Notice
 
-__all__ = ["notices", "table", "telling", "warnings"]
+__all__ = ["notices", "table", "table_lines", "warnings"]
 
 _PIPE_WIDTH: Final = 160
+
 _BOLD: Final = "\x1b[1m", "\x1b[0m"
+
+_GAPS: Final = ("   ", "  ")
+"""Between columns: the narrower one where the wider one would cut something."""
+
+_LEAST: Final = 13
+"""Columns of text are not made narrower than this to make room."""
 
 
 def table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]], *, right: Sequence[int] = ()) -> None:
@@ -27,7 +37,7 @@ def table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]], *,
     """
     widest = width() if on_terminal() else _PIPE_WIDTH
     shown = [[_one_line(cell) for cell in row] for row in rows]
-    lines = laid_out([_one_line(heading) for heading in headings], shown, right, widest, degraded("─"))
+    lines = table_lines([_one_line(heading) for heading in headings], shown, right, widest, degraded("─"))
     put("\n".join((_bold(paragraph(_one_line(title))), "", *lines)) + "\n\n")
 
 
@@ -52,14 +62,129 @@ def _bold(text: str) -> str:
     return text if plain else text.join(_BOLD)
 
 
-@contextmanager
-def telling(quiet: bool) -> Iterator[Callable[[str], None] | None]:
-    """On stderr, what is running, while it runs; None where there is no terminal to say it on."""
-    if quiet or not on_terminal(err=True):
-        yield None
-        return
-    from rich.console import Console
-    from rich.markup import escape
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """A column: its heading and cells, each as the pieces between which a line may end."""
 
-    with Console(stderr=True).status("", spinner="line") as status:
-        yield lambda what: status.update(escape(degraded(printable(f"running: {what}"), err=True)))
+    heading: list[str]
+    cells: list[list[str]]
+    right: bool
+
+    @property
+    def natural(self) -> int:
+        """The width at which nothing wraps."""
+        return max(_wide(" ".join(pieces)) for pieces in (self.heading, *self.cells))
+
+    @property
+    def least(self) -> int:
+        """The width below which a number, or a word of text that is not long, would be cut."""
+        pieces = [piece for cell in self.cells for piece in cell]
+        longest = max((_wide(piece) for piece in pieces), default=0)
+        heading = max((_wide(piece) for piece in self.heading), default=0)
+        return max(heading, longest if self.right else min(longest, _LEAST))
+
+
+def table_lines(
+    headings: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[int], width: int, rule: str
+) -> Iterator[str]:
+    """The lines of a table.
+
+    Args:
+        headings: of its columns.
+        rows: their cells.
+        right: the columns that are aligned to the right: their cells are numbers, which wrap only before "to".
+        width: of the longest line.
+        rule: the character of the line below the headings.
+    """
+    columns = [
+        _Column(_words(heading), [_pieces(row[place], place in right) for row in rows], place in right)
+        for place, heading in enumerate(headings)
+    ]
+    for gap in _GAPS:
+        widths = _widths(columns, width, gap)
+        if widths is not None:
+            yield from _lines([column.heading for column in columns], columns, widths, gap)
+            yield " " + rule * (sum(widths) + len(gap) * (len(widths) - 1))
+            for place in range(len(rows)):
+                yield from _lines([column.cells[place] for column in columns], columns, widths, gap)
+            return
+    yield from _listed(headings, rows, width)
+
+
+def _widths(columns: Sequence[_Column], width: int, gap: str) -> list[int] | None:
+    """Of each column; None where they cannot be made narrow enough."""
+    widths = [column.natural for column in columns]
+    room = width - 2 - len(gap) * (len(columns) - 1)
+    least = [column.least for column in columns]
+    if sum(least) > room:
+        return None
+    while sum(widths) > room:  # the widest that can give way does
+        place = max((place for place in range(len(widths)) if widths[place] > least[place]), key=widths.__getitem__)
+        widths[place] -= 1
+    return widths
+
+
+def _lines(cells: Sequence[list[str]], columns: Sequence[_Column], widths: Sequence[int], gap: str) -> Iterator[str]:
+    wrapped = [_wrapped(pieces, width) for pieces, width in zip(cells, widths, strict=True)]
+    for parts in zip_longest(*wrapped, fillvalue=""):
+        filled = (_filled(part, width, column) for part, width, column in zip(parts, widths, columns, strict=True))
+        yield f" {gap.join(filled)}".rstrip()
+
+
+def _filled(text: str, width: int, column: _Column) -> str:
+    blank = " " * (width - _wide(text))
+    return blank + text if column.right else text + blank
+
+
+def _listed(headings: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> Iterator[str]:
+    """Each row as lines of heading and cell."""
+    longest = max((_wide(heading) for heading in headings[1:]), default=0)
+    for row in rows:
+        for part in _wrapped(_words(row[0]), width - 1):
+            yield f" {part}"
+        for heading, cell in zip(headings[1:], row[1:], strict=True):
+            start = f"   {heading}{' ' * (longest - _wide(heading))}  "
+            for part in _wrapped(_words(cell), max(_LEAST, width - len(start))) if cell else ():
+                yield start + part
+                start = " " * len(start)
+
+
+def _pieces(cell: str, right: bool) -> list[str]:
+    if not right:
+        return _words(cell)
+    first, to, second = cell.partition(" to ")
+    return [first, f"to {second}"] if to else [cell]
+
+
+def _words(text: str) -> list[str]:
+    return text.split() or [""]
+
+
+def _wrapped(pieces: Sequence[str], width: int) -> list[str]:
+    lines: list[str] = []
+    for piece in pieces:
+        if lines and _wide(lines[-1]) + 1 + _wide(piece) <= width:
+            lines[-1] += f" {piece}"
+        else:
+            *full, last = _folded(piece, width)
+            lines += [*full, last]
+    return lines
+
+
+def _folded(word: str, width: int) -> list[str]:
+    """A word that is longer than a line, on several."""
+    parts = [""]
+    for letter in word:
+        if parts[-1] and _wide(parts[-1]) + _wide(letter) > width:
+            parts.append("")
+        parts[-1] += letter
+    return parts
+
+
+def _wide(text: str) -> int:
+    """Columns of the screen that a text takes: two for an East Asian letter, none for a mark on another."""
+    if text.isascii():
+        return len(text)
+    from rich.cells import cell_len
+
+    return cell_len(text)

@@ -1,8 +1,8 @@
-"""How a run stands, on a terminal."""
+"""What is running, on a terminal: a bar for a run, a line for the steps of a study."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from xlmc.run.simulate import Progress
     from xlmc.run.stopping import Standing
 
-__all__ = ["errors_line", "progress_bar", "trials_line"]
+__all__ = ["errors_line", "progress_bar", "step_line", "trials_line"]
 
 
 def trials_line(standing: Standing) -> str:
@@ -58,3 +58,16 @@ def progress_bar(quiet: bool) -> Iterator[Progress | None]:
             bar.update(task, completed=standing.share, description=trials_line(standing))
 
         yield show
+
+
+@contextmanager
+def step_line(quiet: bool) -> Iterator[Callable[[str], None] | None]:
+    """A line on stderr that says which step is running; None where there is no terminal to show it on."""
+    if quiet or not on_terminal(err=True):
+        yield None
+        return
+    from rich.console import Console
+    from rich.markup import escape
+
+    with Console(stderr=True).status("", spinner="line") as status:
+        yield lambda what: status.update(escape(degraded(printable(f"running: {what}"), err=True)))

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.check_lines import failing_lines
-from xlmc.cli.run_options import jobs_option
+from xlmc.cli.check import failing_lines
+from xlmc.cli.options import jobs_option
 from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:

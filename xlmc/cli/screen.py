@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.parameter_types import WholeNumber
-from xlmc.cli.run_options import engine_option, jobs_option
+from xlmc.cli.options import WholeNumber, engine_option, jobs_option
+from xlmc.cli.study_output import show, study_options
 from xlmc.cli.terminal import say, say_json
-from xlmc.cli.told_options import show, told_options
 
 if TYPE_CHECKING:
-    from xlmc.report.told import Block, Table, Told
+    from xlmc.report.study_report import Block, StudyReport, Table
     from xlmc.studies.screening import Cost, Screening
 
 __all__ = ["screen"]
@@ -54,7 +53,7 @@ NOT_TO_BE_USED = 1
 @click.option("--seed", type=WholeNumber(0), help="Seed of each run.  [default: the book's, else 999]")
 @engine_option
 @jobs_option
-@told_options
+@study_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
 def screen(
@@ -74,15 +73,16 @@ def screen(
     quiet: bool,
 ) -> None:
     """Find which assumptions of BOOK may be held, and which filters left out, without moving its answers."""
-    from xlmc.cli.printing import telling, warnings
-    from xlmc.report.told_files import Files
+    from xlmc.cli.printing import warnings
+    from xlmc.cli.progress import step_line
+    from xlmc.report.study_report import Files
     from xlmc.run.model import load
     from xlmc.studies import screening
 
     model = load(book)
     files = Files(output, html, [book], overwrite=overwrite)
     files.check()
-    with telling(quiet) as told:
+    with step_line(quiet) as told:
         found = screening.screen(
             model,
             tolerance,
@@ -95,12 +95,12 @@ def screen(
             jobs=jobs,
             told=told,
         )
-    told_of = _told(found)
-    written = files.write(told_of, "Screening")
+    report = _report(found)
+    written = files.write(report, "Screening")
     if as_json:
         say_json(_as_json(found))
     else:
-        show([f"{told_of.below.partition(':')[0]}: what it could do without", *told_of.blocks])
+        show([f"{report.below.partition(':')[0]}: what it could do without", *report.blocks])
         for path in written:
             say(f"Written: {path}")
     warnings(found.run.warnings)
@@ -108,12 +108,12 @@ def screen(
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 
 
-def _told(found: Screening) -> Told:
-    from xlmc.report.told import Told
+def _report(found: Screening) -> StudyReport:
+    from xlmc.report.study_report import StudyReport
 
     run = found.run
     below = f"{run.model.workbook.name}: {found.runs} runs of {run.trials:,} trials, seed {run.settings.seed}"
-    return Told("What the book could do without", below, [*_verdicts(found), *_tables(found), *_meaning(found)])
+    return StudyReport("What the book could do without", below, [*_verdicts(found), *_tables(found), *_meaning(found)])
 
 
 def _tables(found: Screening) -> Iterator[Block]:
@@ -131,7 +131,7 @@ def _tables(found: Screening) -> Iterator[Block]:
 
 def _table(title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> Table:
     """What each change costs. `first` are columns with headings."""
-    from xlmc.report.told import Table
+    from xlmc.report.study_report import Table
 
     headings = (*(heading for heading, _ in first), "Cost", "Accepted, %")
     rows = tuple(
@@ -153,7 +153,7 @@ def _size(tolerances: float) -> str:
 
 def _of_forecast(found: Screening, name: str) -> Table:
     """Of every change, the number of a forecast that it moves most, measured in its tolerance."""
-    from xlmc.report.told import Table
+    from xlmc.report.study_report import Table
     from xlmc.studies.comparison.wording import amount
 
     units = found.run[name].definition.units
@@ -257,7 +257,7 @@ def _meaning(found: Screening) -> Iterable[str]:
 
 
 def _as_json(found: Screening) -> dict[str, object]:
-    from xlmc.cli.plain import estimate_json
+    from xlmc.cli.study_output import estimate_json
 
     run = found.run
     return {
@@ -287,7 +287,7 @@ def _as_json(found: Screening) -> dict[str, object]:
 
 
 def _entry(cost: Cost, found: Screening) -> dict[str, object]:
-    from xlmc.cli.plain import acceptance_json, difference_json, finite
+    from xlmc.cli.study_output import acceptance_json, difference_json, finite
 
     expected = {each.name: each.size for each in found.expected}
     return {

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from xlmc.cli.options import WholeNumber, engine_option, jobs_option, sampling_option, stopping_options
 from xlmc.cli.output_options import NOT_WRITTEN, Outputs, output_options, results_beside
-from xlmc.cli.parameter_types import WholeNumber
-from xlmc.cli.run_options import engine_option, jobs_option, sampling_option, stopping_options
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
@@ -133,7 +132,7 @@ def _hints(model: Model, trials: int | None, engine: str | None) -> list[Notice]
 
 def show_run(run: Simulation) -> None:
     """Print the paper's table, the acceptance and what each filter rejected."""
-    from xlmc.cli.check_lines import check_table, show_first
+    from xlmc.cli.check import check_table, show_first
     from xlmc.cli.printing import table
     from xlmc.report.summary import ERROR_SENTENCE, summarise, summary_text
     from xlmc.results.record.sampling_words import sampling_sentence

@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.parameter_types import WholeNumber
-from xlmc.cli.run_options import jobs_option
+from xlmc.cli.options import WholeNumber, jobs_option
+from xlmc.cli.study_output import show, study_options
 from xlmc.cli.terminal import paragraph, say, say_json
-from xlmc.cli.told_options import show, told_options
 
 if TYPE_CHECKING:
-    from xlmc.report.told import Block, Table, Told
+    from xlmc.report.study_report import Block, StudyReport, Table
     from xlmc.studies.stability import CellDigits, Finding, Stability
 
 __all__ = ["stability"]
@@ -28,7 +27,7 @@ NOT_TO_BE_USED = 1
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials of the run.  [default: the book's, else 200000]")
 @click.option("--seed", type=WholeNumber(0), help="Seed of the run.  [default: the book's, else 999]")
 @jobs_option
-@told_options
+@study_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is being done.")
 def stability(
@@ -44,17 +43,18 @@ def stability(
     quiet: bool,
 ) -> None:
     """Find where BOOK loses digits, or its numbers are not what they seem, within the ranges of its assumptions."""
-    from xlmc.cli.printing import telling, warnings
-    from xlmc.report.told_files import Files
+    from xlmc.cli.printing import warnings
+    from xlmc.cli.progress import step_line
+    from xlmc.report.study_report import Files
     from xlmc.run.model import load
     from xlmc.studies import stability as room
 
     model = load(book)
     files = Files(output, html, [book], overwrite=overwrite)
     files.check()
-    with telling(quiet) as told:
+    with step_line(quiet) as told:
         found = room.stability(model, trials=trials, seed=seed, jobs=jobs, told=told)
-    written = files.write(_told(found, all_cells), "Stability")
+    written = files.write(_report(found, all_cells), "Stability")
     if as_json:
         say_json(_as_json(found))
     else:
@@ -102,8 +102,8 @@ def _show_cells(found: Stability, all_cells: bool) -> None:
     show([_cells(found, all_cells)])
 
 
-def _told(found: Stability, all_cells: bool) -> Told:
-    from xlmc.report.told import Told
+def _report(found: Stability, all_cells: bool) -> StudyReport:
+    from xlmc.report.study_report import StudyReport
 
     findings = [text for number, one in enumerate(found.findings, start=1) for text in _finding_texts(number, one)]
     blocks: list[Block] = [
@@ -113,7 +113,7 @@ def _told(found: Stability, all_cells: bool) -> Told:
         *_sentences(found),
     ]
     below = f"{found.run.model.workbook.name}: {found.run.trials:,} trials, seed {found.run.settings.seed}"
-    return Told("Are the digits there?", below, blocks)
+    return StudyReport("Are the digits there?", below, blocks)
 
 
 def _finding_texts(number: int, finding: Finding) -> Iterator[str]:
@@ -135,7 +135,7 @@ def _said(finding: Finding) -> Iterator[str]:
 
 
 def _cells(found: Stability, all_cells: bool) -> Table:
-    from xlmc.report.told import Table
+    from xlmc.report.study_report import Table
 
     model = found.run.model
     targets = {row.cell for row in model.forecasts} | {row.cell for row in model.filters}
@@ -195,7 +195,7 @@ def _as_json(found: Stability) -> dict[str, object]:
 
 
 def _finding_json(finding: Finding) -> dict[str, object]:
-    from xlmc.cli.plain import finite
+    from xlmc.cli.study_output import finite
 
     return {
         "level": finding.level.name.lower(),
@@ -214,7 +214,7 @@ def _finding_json(finding: Finding) -> dict[str, object]:
 
 
 def _cell_json(cell: CellDigits) -> dict[str, object]:
-    from xlmc.cli.plain import finite
+    from xlmc.cli.study_output import finite
 
     return {
         "cell": str(cell.cell),

@@ -4,7 +4,7 @@ import pytest
 
 from xlmc.report.page.dependence import dependence, limits
 from xlmc.report.page.element import EMPTY
-from xlmc.report.sheets.influence_table import BARS
+from xlmc.report.sheets.sensitivity_sheet import BARS
 from xlmc.studies.sensitivity import sensitivities
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from xlmc.report.page.ranks import ALL_VALUES, MOST_VALUES
+from xlmc.report.page.payload import ALL_VALUES, MOST_VALUES
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 MOST_BYTES = 150_000

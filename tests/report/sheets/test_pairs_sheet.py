@@ -9,7 +9,7 @@ import openpyxl
 import pytest
 
 from xlmc.report.sheets.book import build_sheets
-from xlmc.report.sheets.chart_style import bounds
+from xlmc.report.sheets.styles import bounds
 from xlmc.results.statements import pairs_of
 
 

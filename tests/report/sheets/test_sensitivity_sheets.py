@@ -10,11 +10,11 @@ import openpyxl
 import pytest
 from openpyxl.utils import range_boundaries
 
-from xlmc.report.number_format import NOISE
 from xlmc.report.page.flow import Flow
 from xlmc.report.sheets.book import build_sheets
-from xlmc.report.sheets.influence_table import write_influences
+from xlmc.report.sheets.cells import NOISE
 from xlmc.report.sheets.limits_sheet import moved_caption
+from xlmc.report.sheets.sensitivity_sheet import write_influences
 from xlmc.studies.sensitivity import sensitivities
 
 

@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 
 from xlmc.report.methods.book import book
 from xlmc.report.methods.figure import STYLES, draw
-from xlmc.report.methods.labels import spread
-from xlmc.report.methods.picture import HOW_TO_READ, column_of, picture_of
+from xlmc.report.methods.picture import HOW_TO_READ, column_of, picture_of, spread
 from xlmc.studies.methods.choice import choice
 
 

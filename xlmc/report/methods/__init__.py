@@ -2,6 +2,81 @@
 
 from __future__ import annotations
 
-from xlmc.report.methods.save import check_targets, save_methods
+import io
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Final
 
-__all__ = ["check_targets", "save_methods"]
+from xlmc.errors import WorkbookError
+from xlmc.studies.methods import Study
+from xlmc.workbook.package import read_parts
+from xlmc.workbook.seal import sealed_parts, sealed_text
+from xlmc.workbook.target import Target, is_same_file, refuse_same_file
+from xlmc.workbook.writer import package_bytes, write_workbook
+
+__all__ = ["ENDINGS", "check_targets", "save_methods"]
+
+
+ENDINGS: Final = (".png", ".html", ".xlsx")
+
+
+def check_targets(paths: Sequence[Path], source: Path, *, overwrite: bool = False) -> None:
+    """See that every file can be written, before anything is measured.
+
+    Raises:
+        TakenError: a file is not ours to replace, or a program has it open.
+        WorkbookError: an ending is unknown, a folder is not there, a file is the workbook itself or is named twice, or
+            there is nothing to draw with.
+    """
+    refuse_same_file(paths)
+    for path in paths:
+        ending = path.suffix.casefold()
+        if ending not in ENDINGS:
+            message = f"a study of methods is not written as {ending or 'a file without ending'}"
+            raise WorkbookError(message, where=path, hint="Name a file that ends in .png, .html or .xlsx")
+        if is_same_file(path, source):
+            raise WorkbookError("this is the workbook itself", where=path, hint="Name another file")
+        Target(path, source.name, overwrite).check()
+        if ending != ".xlsx" and find_spec("matplotlib") is None:
+            hint = "Install it with `pip install 'xlmc[plots]'`, or ask for .xlsx"
+            raise WorkbookError("there is no matplotlib here to draw with", where=path, hint=hint)
+
+
+def save_methods(study: Study, path: Path, *, overwrite: bool = False) -> Path:
+    """Write a study in the form that the ending of the path says; an untouched page or workbook of ours is replaced.
+
+    Raises:
+        TakenError: the file is not ours to replace.
+        WorkbookError: it cannot be written.
+    """
+    check_targets([path], study.model.path, overwrite=overwrite)
+    target = Target(path, study.model.path.name, overwrite)
+    write_workbook(path, _sealed(study, path.suffix.casefold()), target.check)
+    return path
+
+
+def _sealed(study: Study, ending: str) -> bytes:
+    """The content with its seal; a picture has none."""
+    content, name = _content(study, ending), study.model.path.name
+    if ending == ".html":
+        return sealed_text(content, ending, name)
+    if ending == ".xlsx":
+        return package_bytes(sealed_parts(read_parts(content), "xl/worksheets/sheet1.xml", name))
+    return content
+
+
+def _content(study: Study, ending: str) -> bytes:
+    if ending == ".xlsx":
+        from xlmc.report.methods.book import book
+
+        return book(study)
+    if ending == ".html":
+        from xlmc.report.methods.page import page
+
+        return page(study).encode()
+    from xlmc.report.methods.figure import draw
+
+    drawn = io.BytesIO()
+    draw(study).savefig(drawn, format="png", dpi=130)
+    return drawn.getvalue()

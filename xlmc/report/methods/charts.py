@@ -7,12 +7,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.report.methods.figure import OTHER, STYLES, Style
-from xlmc.report.methods.labels import spread
-from xlmc.report.methods.picture import HOW_TO_READ, Line, Picture, column_of, guides_of, picture_of
+from xlmc.report.methods.picture import HOW_TO_READ, Line, Picture, column_of, guides_of, picture_of, spread
 from xlmc.report.sheets import cells
-from xlmc.report.sheets.chart_style import FONT, straight
 from xlmc.report.sheets.page import Page
-from xlmc.report.sheets.styles import GRID, INK
+from xlmc.report.sheets.styles import FONT, GRID, INK, straight
 from xlmc.studies.methods import STATISTICS, Curve, Study
 
 if TYPE_CHECKING:

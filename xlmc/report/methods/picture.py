@@ -20,7 +20,20 @@ from xlmc.studies.methods.law import law
 from xlmc.studies.methods.need import Need, reach_of, seconds_of, shortfall
 from xlmc.studies.methods.number_words import seconds_text, trials_text
 
-__all__ = ["HOW_TO_READ", "Label", "Line", "Mark", "Picture", "Point", "Work", "column_of", "guides_of", "picture_of"]
+__all__ = [
+    "HOW_TO_READ",
+    "Label",
+    "Line",
+    "Mark",
+    "Picture",
+    "Point",
+    "Work",
+    "column_of",
+    "guides_of",
+    "picture_of",
+    "spread",
+]
+
 
 Work = Literal["seconds", "evaluations"]
 
@@ -325,3 +338,43 @@ def _frame(lines: Sequence[Line], scale: float) -> tuple[float, float, float, fl
 
 def _decade(value: float, rounds: Callable[[float], int]) -> float:
     return 10.0 ** rounds(math.log10(value))
+
+
+def spread(heights: Sequence[float], apart: float, bottom: float, top: float) -> list[float]:
+    """Heights that are at least so far apart, in the same order, each as near to what it was as the others allow.
+
+    Args:
+        heights: falling, or in the order in which labels shall stand from the top.
+        apart: the least distance; less where there is not room enough.
+        bottom: of the column.
+        top: likewise.
+
+    >>> spread([5.0, 5.0, 1.0], 1.0, 0.0, 10.0)
+    [5.5, 4.5, 1.0]
+    """
+    if not heights:
+        return []
+    step = min(apart, (top - bottom) / max(len(heights) - 1, 1))
+    groups: list[tuple[float, int]] = []  # the middle of labels that touch each other, and how many there are
+    for height in heights:
+        middle, count = height, 1
+        while groups and groups[-1][0] - groups[-1][1] * step / 2.0 < middle + count * step / 2.0:
+            other, more = groups.pop()
+            middle, count = (other * more + middle * count) / (more + count), more + count
+        groups.append((middle, count))
+    found = [middle + (count - 1) * step / 2.0 - place * step for middle, count in groups for place in range(count)]
+    return _inside(found, step, bottom, top)
+
+
+def _inside(heights: list[float], step: float, bottom: float, top: float) -> list[float]:
+    """The same, pushed back from both ends."""
+    found = []
+    limit = top
+    for height in heights:
+        found.append(min(height, limit))
+        limit = found[-1] - step
+    limit = bottom
+    for place in range(len(found) - 1, -1, -1):
+        found[place] = max(found[place], limit)
+        limit = found[place] + step
+    return found

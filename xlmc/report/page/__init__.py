@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from xlmc.report.page.page import page_text
-from xlmc.report.page.save_page import check_page_path, save_page
+from xlmc.report.page.page import check_page_path, page_text, save_page
 
 __all__ = ["check_page_path", "page_text", "save_page"]

@@ -6,13 +6,18 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from xlmc.report.page.drawing import Bar, Line, bars, lines
 from xlmc.report.page.element import EMPTY, Html, element
 from xlmc.report.page.flow import Flow
-from xlmc.report.sheets.influence_table import BARS, influence_captions, write_influences
+from xlmc.report.page.svg import Bar, Line, bars, lines
 from xlmc.report.sheets.limits_sheet import limit_sentences, moved_caption, write_acceptance, write_answers
-from xlmc.report.sheets.moves_table import move_captions, write_moves
-from xlmc.report.sheets.sensitivity_sheet import sensitivity_sentences
+from xlmc.report.sheets.sensitivity_sheet import (
+    BARS,
+    influence_captions,
+    move_captions,
+    sensitivity_sentences,
+    write_influences,
+    write_moves,
+)
 from xlmc.results.record.wording import number_text
 from xlmc.studies.sensitivity.noise import noise
 

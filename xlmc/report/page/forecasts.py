@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 from xlmc.report.figure import Figure
 from xlmc.report.page.element import EMPTY, Html, element, joined, void
-from xlmc.report.page.payload import overlays_of
-from xlmc.report.page.ranks import most_values
+from xlmc.report.page.payload import most_values, overlays_of
 from xlmc.report.summary import percent
 
 if TYPE_CHECKING:

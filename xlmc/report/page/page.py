@@ -10,34 +10,33 @@ import hashlib
 from collections.abc import Iterator
 from html import escape
 from importlib.resources import files
+from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
 
+from xlmc.errors import WorkbookError
 from xlmc.report.figure import figures_of
 from xlmc.report.page.answers import answers
 from xlmc.report.page.dependence import dependence, limits
 from xlmc.report.page.element import EMPTY, Html, element, joined
-from xlmc.report.page.flow import Flow
 from xlmc.report.page.forecasts import charts, overlays
-from xlmc.report.page.inputs import inputs
 from xlmc.report.page.payload import payload_text
-from xlmc.report.page.recorded import recorded
-from xlmc.report.sheets.accounting import write_accounting
-from xlmc.report.sheets.certainty_sheet import write_ranges
-from xlmc.report.sheets.checks_table import write_checks
-from xlmc.report.sheets.pairs_sheet import pair_sentences, write_pair_table
-from xlmc.report.sheets.results import LAST, write_counts
-from xlmc.report.sheets.statistics_sheet import write_forecast
+from xlmc.report.page.sections import assumptions, certainty, checks, filters, notices, pairs, record, statistics
 from xlmc.results.record import make_record
-from xlmc.results.statements import pairs_of
 from xlmc.studies.sensitivity import sensitivities
+from xlmc.workbook.seal import sealed_text
+from xlmc.workbook.target import Target
+from xlmc.workbook.writer import check_folder, write_workbook
 
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
 
-__all__ = ["page_text"]
+__all__ = ["check_page_path", "page_text", "save_page"]
+
+ENDINGS = (".html", ".htm")
 
 _STYLES = ("uplot/uPlot.min.css", "page.css", "charts.css", "print.css")
+
 _SCRIPTS = (
     "sharp.js",
     "uplot/uPlot.iife.min.js",
@@ -49,6 +48,7 @@ _SCRIPTS = (
     "overlay.js",
     "start.js",
 )
+
 _LICENCE = "uplot/LICENSE"
 
 _LINKS = {
@@ -68,6 +68,43 @@ _LINKS = {
 }
 
 
+def save_page(simulation: Simulation, path: Path, *, command: str | None = None, overwrite: bool = False) -> Path:
+    """Write the page whole or not at all; an untouched page of the same workbook is replaced.
+
+    Args:
+        simulation: the finished run.
+        path: where to; it ends in `.html` or `.htm`.
+        command: what the person typed, for the record.
+        overwrite: replace any other file too.
+
+    Returns:
+        The path.
+
+    Raises:
+        TakenError: the file is not ours to replace.
+        WorkbookError: the file has another ending, or cannot be written.
+    """
+    check_page_path(path)
+    target = Target(path, simulation.model.workbook.name, overwrite)
+    target.check()
+    # Half of a surrogate pair, which a damaged name can hold, has no UTF-8: the browser shows a reference's mark.
+    text = page_text(simulation, command=command).encode("utf-8", "xmlcharrefreplace")
+    write_workbook(path, sealed_text(text, ".html", target.book), target.check)
+    return path
+
+
+def check_page_path(path: Path) -> None:
+    """Refuse, before a long run, what no page can be written to: another kind of file, and what `check_folder` refuses.
+
+    Raises:
+        WorkbookError: it is one of these.
+    """
+    if path.suffix.casefold() not in ENDINGS:
+        hint = f"Name it '{path.stem or 'results'}.html'"
+        raise WorkbookError("the page must end in .html", where=path, hint=hint)
+    check_folder(path)
+
+
 def page_text(simulation: Simulation, *, command: str | None = None) -> str:
     """The page of a run; the same run gives the same text.
 
@@ -81,16 +118,16 @@ def page_text(simulation: Simulation, *, command: str | None = None) -> str:
         "answer": answers(simulation),
         "forecasts": charts(simulation, figures),
         "overlay": overlays(figures),
-        "certainty": _certainty(simulation),
-        "pairs": _pairs(simulation),
-        "statistics": _statistics(simulation),
+        "certainty": certainty(simulation),
+        "pairs": pairs(simulation),
+        "statistics": statistics(simulation),
         "sensitivity": dependence(found),
-        "checks": _checks(simulation),
-        "filters": _filters(simulation),
+        "checks": checks(simulation),
+        "filters": filters(simulation),
         "limits": limits(found),
-        "assumptions": inputs(simulation),
-        "notices": _notices(simulation),
-        "record": recorded(make_record(simulation, command)),
+        "assumptions": assumptions(simulation),
+        "notices": notices(simulation),
+        "record": record(make_record(simulation, command)),
     }
     styles, scripts = [_asset(path) for path in _STYLES], [_asset(path) for path in _SCRIPTS]
     return Template(_asset("page.html")).substitute(
@@ -136,56 +173,3 @@ def _header(simulation: Simulation, keys: list[str]) -> Html:
         element("p", element("bdi", simulation.model.workbook.name), f": {run}", class_="subtitle"),
         element("nav", *links, aria_label="Parts of this page"),
     )
-
-
-def _statistics(simulation: Simulation) -> Html:
-    forecasts = []
-    for result in simulation.results.values():
-        flow = Flow()
-        write_forecast(flow, result)
-        forecasts.append(element("div", flow.html, class_="forecast-statistics"))
-    said = "Of the accepted trials. The last two columns are the 95 % interval of each number."
-    return element(
-        "section", element("h2", "Statistics"), element("p", said, class_="remark"), *forecasts, id="statistics"
-    )
-
-
-def _certainty(simulation: Simulation) -> Html:
-    flow = Flow()
-    write_ranges(flow, simulation)
-    said = "The share of the accepted trials below, in and above each central range, as it is rounded here."
-    return element(
-        "section", element("h2", "Certainty of ranges"), element("p", said, class_="remark"), flow.html, id="certainty"
-    )
-
-
-def _pairs(simulation: Simulation) -> Html:
-    pairs = pairs_of(simulation)
-    if not pairs:
-        return EMPTY
-    flow = Flow()
-    write_pair_table(flow, pairs)
-    remarks = (element("p", said, class_="remark") for said in pair_sentences(simulation, pairs))
-    return element("section", element("h2", "Forecasts two at a time"), flow.html, *remarks, id="pairs")
-
-
-def _checks(simulation: Simulation) -> Html:
-    if not simulation.checks:
-        return EMPTY
-    flow = Flow()
-    write_checks(flow, simulation, LAST)
-    return element("section", element("h2", "Checks"), flow.html, id="checks")
-
-
-def _filters(simulation: Simulation) -> Html:
-    flow = Flow()
-    write_counts(flow, simulation)
-    write_accounting(flow, simulation, LAST)
-    return element("section", element("h2", "Trials and filters"), flow.html, id="filters")
-
-
-def _notices(simulation: Simulation) -> Html:
-    if not simulation.notices:
-        return EMPTY
-    notices = (element("p", str(notice), class_="notice") for notice in simulation.notices)
-    return element("section", element("h2", "Notices"), *notices, id="notices")

@@ -9,14 +9,15 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.columns import picked, release
 from xlmc.report.figure import Figure
-from xlmc.report.page.ranks import most_values, rank_table
 from xlmc.report.summary import percent
 from xlmc.statistics import Estimate, format_estimate
 from xlmc.statistics.estimate import t_quantile
@@ -24,9 +25,28 @@ from xlmc.statistics.estimate import t_quantile
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
 
-__all__ = ["overlays_of", "payload", "payload_text"]
+__all__ = [
+    "ALL_VALUES",
+    "MOST_VALUES",
+    "RankTable",
+    "most_values",
+    "overlays_of",
+    "payload",
+    "payload_text",
+    "rank_table",
+]
 
 CONFIDENCE = 0.95
+
+ALL_VALUES = 50_000
+"""On a page, of all its forecasts: some 1.2 MB."""
+
+MOST_VALUES, _FEWEST = 20_000, 200
+"""Of a forecast."""
+
+Floats = NDArray[np.float64]
+
+Counts = NDArray[np.int64]
 
 
 def payload_text(simulation: Simulation, figures: Sequence[Figure]) -> str:
@@ -105,3 +125,51 @@ def _marks(figure: Figure) -> Iterator[tuple[str, float, str]]:
     for label, value in (("Base case", answer.base), ("Threshold", answer.threshold)):
         if value is not None:
             yield label, value, f"{value:.6g}"
+
+
+@dataclass(frozen=True, slots=True)
+class RankTable:
+    """Trials by value.
+
+    Attributes:
+        values: `(k,)` ascending, all different.
+        counts: `(k,)` trials at each.
+        gaps: `(k - 1,)` trials between each and the next.
+    """
+
+    values: Floats
+    counts: Counts
+    gaps: Counts
+
+    @property
+    def exact(self) -> bool:
+        """Whether every trial is at one of the values."""
+        return not self.gaps.any()
+
+
+def most_values(forecasts: int) -> int:
+    """How many values of each forecast a page of so many has room for."""
+    return min(max(ALL_VALUES // max(forecasts, 1), _FEWEST), MOST_VALUES)
+
+
+def rank_table(x: Floats, most: int, marks: Iterable[float] = ()) -> RankTable:
+    """The table of ascending `(n,)` trials.
+
+    Args:
+        x: in memory or on disk; none of them NaN.
+        most: values to give, 2 or more.
+        marks: further values at which counts must be exact; those that are not finite are left out.
+    """
+    ranks = np.arange(x.size) if x.size <= most else np.rint(np.linspace(0, x.size - 1, most)).astype(np.intp)
+    finite: list[float] = [mark for mark in marks if np.isfinite(mark)]
+    values = np.unique(np.concatenate([picked(x, ranks), finite]))
+    while True:
+        below, upto = np.searchsorted(x, values, side="left"), np.searchsorted(x, values, side="right")
+        gaps = below[1:] - upto[:-1]
+        wide = np.flatnonzero(gaps)[: max(most - values.size, 0)]
+        if not wide.size:
+            break
+        # Ranks of whole numbers fall on the same values: there is room for those between.
+        values = np.union1d(values, picked(x, upto[wide] + gaps[wide] // 2))
+    release(x)
+    return RankTable(values, upto - below, gaps)

@@ -1,4 +1,4 @@
-"""The part of Results that says what each filter asks, why, and which trials it rejected; and the errors met."""
+"""What Results and the page say of filters, errors and checks: what each asks, why, and which trials it concerns."""
 
 from __future__ import annotations
 
@@ -9,16 +9,23 @@ from xlmc.report.sheets.cells import Shown
 from xlmc.results.record.errors_met import ErrorMet, errors_met
 from xlmc.results.record.sampling_words import REJECTED_SENTENCE
 from xlmc.results.record.wording import limits_text
+from xlmc.run.checking import checks_sentence
 from xlmc.statistics import proportion
 
 if TYPE_CHECKING:
     from xlmc.report.sheets.page import Page
+    from xlmc.run.checking import CheckResult
     from xlmc.run.simulation import Simulation
 
-__all__ = ["write_accounting"]
+__all__ = ["write_accounting", "write_checks"]
 
-_STARTS = (0, 1, 3, 5)
+
+_FILTER_STARTS = (0, 1, 3, 5)
 """The columns that a filter, its cell, its limits and its reason begin in."""
+
+_CHECK_HEADERS = ("Check", "Cell", "Base case", "Trials failing", "Share", "±", "Because")
+
+_CHECK_STARTS = (0, 1, 3, 5, 6, 7, 8)
 
 
 def write_accounting(page: Page, simulation: Simulation, last: int) -> None:
@@ -46,11 +53,11 @@ def write_accounting(page: Page, simulation: Simulation, last: int) -> None:
 
 def _write_filters(page: Page, simulation: Simulation, last: int) -> None:
     headers = ("Filter", "Cell", "Must be", "Because")
-    page.spread([cells.text(header, "header left") for header in headers], _STARTS, last)
+    page.spread([cells.text(header, "header left") for header in headers], _FILTER_STARTS, last)
     for number, filter_ in enumerate(simulation.model.filters, 1):
         texts = (str(filter_.cell), limits_text(filter_), filter_.because or cells.NONE)
         name = cells.text(f"{number}. {filter_.name}", "name")
-        page.spread([name, *(cells.text(text) for text in texts)], _STARTS, last)
+        page.spread([name, *(cells.text(text) for text in texts)], _FILTER_STARTS, last)
 
 
 def _write_rejections(page: Page, simulation: Simulation) -> None:
@@ -103,3 +110,34 @@ def _write_errors(page: Page, simulation: Simulation) -> None:
 def _among(simulation: Simulation, met: ErrorMet) -> int:
     """The trials that an error was counted in: those of forecasts, where accepted ones were searched for, in these."""
     return simulation.accepted if simulation.rare is not None and met.kind == "forecast" else simulation.trials
+
+
+def write_checks(page: Page, simulation: Simulation, last: int) -> None:
+    """Write the checks, and how many accepted trials fail each; nothing where the workbook has none.
+
+    Args:
+        page: the sheet.
+        simulation: the run.
+        last: the column that wide texts reach to.
+    """
+    checks = simulation.checks
+    if not checks:
+        return
+    page.heading("Checks: each cell must be TRUE")
+    page.spread([cells.text(header, "header left") for header in _CHECK_HEADERS], _CHECK_STARTS, last)
+    for check in checks:
+        page.spread(_check_line(check), _CHECK_STARTS, last)
+    page.row += 1
+    page.wide(f"{checks_sentence(checks)}. A check rejects no trial.", "remark", last)
+
+
+def _check_line(check: CheckResult) -> list[Shown]:
+    found = check.base.found
+    return [
+        cells.text(check.name, "name"),
+        cells.text(str(check.cell)),
+        cells.text(cells.NONE if found is None else found, "warning" if check.holds is False else "text"),
+        cells.count(check.failed),
+        *cells.share(check.share),
+        cells.text(check.because or cells.NONE),
+    ]

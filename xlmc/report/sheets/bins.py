@@ -1,21 +1,26 @@
-"""The sheet Bins: the numbers that the charts draw, a table for each."""
+"""The sheet Bins: the numbers of the histograms, a table for each; and the histogram as Excel draws it from them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from xlmc.report.figure import Figure
 from xlmc.report.histogram import Histogram
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
-from xlmc.report.sheets.histogram_chart import BinsAt
+from xlmc.report.sheets.styles import DARK, LIGHT, Reference, across, finish, upwards
 from xlmc.report.summary import percent
 
 if TYPE_CHECKING:
+    from xlsxwriter.chart_column import ChartColumn
+    from xlsxwriter.workbook import Workbook
+
     from xlmc.report.sheets.page import Page
 
-__all__ = ["HEADER", "TABLE", "BinsAt", "write_bins"]
+__all__ = ["HEADER", "TABLE", "BinsAt", "histogram_chart", "write_bins"]
+
 
 HEADER = 4
 """The row of the headings, counted from 0."""
@@ -23,18 +28,44 @@ HEADER = 4
 TABLE = 6
 """Columns of a table; a narrow one follows."""
 
+_COUNTS = (3, 4)
+
 _ON_A_PAGE, _SCALE = 2, 64
 """Tables side by side, and the percentage at which so many fit."""
 
 
+@dataclass(frozen=True, slots=True)
+class BinsAt:
+    """Where a table of bins stands; rows and columns are counted from 0.
+
+    Attributes:
+        header: the row of column headings; the bins follow it, and above it stand the chart's title and its axis's.
+        last: the row of the last bin.
+        left: the column of the labels and of both titles; the counts stand `_COUNTS` to its right.
+    """
+
+    sheet: str
+    header: int
+    last: int
+    left: int
+
+    def cell(self, row: int, column: int = 0) -> Reference:
+        """A reference to one cell, its column counted from `left`."""
+        return [self.sheet, row, self.left + column]
+
+    def column(self, column: int) -> Reference:
+        """A reference to the bins of one column."""
+        return [self.sheet, self.header + 1, self.left + column, self.last, self.left + column]
+
+
 def write_bins(page: Page, figures: Sequence[Figure], name: str) -> list[BinsAt]:
-    """Write the sheet with the tables of bins side by side; the place of each is returned."""
+    """Write the sheet with the tables of bins side by side; what is returned says where each stands."""
     page.title("Bins of the histograms", f"{name}: the numbers that the charts draw")
-    places = [_write_table(page, figure) for figure in figures]
+    tables = [_write_table(page, figure) for figure in figures]
     page.sheet.freeze_panes(HEADER + 1, 0)
-    breaks = [place.left for place in places[_ON_A_PAGE::_ON_A_PAGE]]
+    breaks = [table.left for table in tables[_ON_A_PAGE::_ON_A_PAGE]]
     page.printed(name, repeat=HEADER, repeat_from=HEADER - 2, scale=_SCALE, columns=breaks)
-    return places
+    return tables
 
 
 def _write_table(page: Page, figure: Figure) -> BinsAt:
@@ -63,3 +94,24 @@ def _rest(bins: Histogram) -> Iterator[tuple[str, int]]:
     yield "Below", bins.below
     yield "Above", bins.above
     yield "All", int(bins.inside.sum() + bins.outside.sum()) + bins.below + bins.above
+
+
+def histogram_chart(book: Workbook, at: BinsAt, bins: Histogram) -> ChartColumn:
+    """The chart. Its texts are references to cells, so that none of them can be taken for a formula."""
+    chart = book.add_chart({"type": "column", "subtype": "stacked"})
+    for column, colour in zip(_COUNTS, (DARK, LIGHT), strict=True):
+        chart.add_series(
+            {
+                "name": at.cell(at.header, column),
+                "categories": at.column(0),
+                "values": at.column(column),
+                "fill": {"color": colour},
+                "border": {"none": True},
+                "gap": 4,
+            }
+        )
+    marks = {"interval_unit": bins.step, "interval_tick": bins.step}
+    chart.set_x_axis(across(at.cell(at.header - 1), **marks))
+    chart.set_y_axis(upwards("Accepted trials", min=0))
+    finish(chart, at.cell(at.header - 2))
+    return chart

@@ -1,13 +1,49 @@
-"""What stands in a cell of a result sheet: a text or a number, how the number shows, how the cell looks."""
+"""What stands in a cell of a result sheet: a text or a number, how the number shows, how the cell looks.
+
+Excel's number formats show no more decimals than a standard error supports, as `format_estimate` prints them. A cell
+keeps its full number; only what it shows is cut. Excel cannot show a number rounded to tens, so one whose error is
+larger than a unit shows its units too, with the error beside it.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
-from xlmc.report import number_format
 from xlmc.statistics import Estimate
 
-__all__ = ["BLANK", "NONE", "Shown", "count", "digits_of", "estimate", "exact", "interval", "share", "text"]
+__all__ = [
+    "BLANK",
+    "NOISE",
+    "NONE",
+    "Shown",
+    "count",
+    "estimate",
+    "exact",
+    "interval",
+    "paired_format",
+    "share",
+    "share_format",
+    "spread_format",
+    "text",
+]
+
+NONE = "–"
+"""Where there is no number to show."""
+
+NOISE = '"noise";"noise";"noise"'
+"""Of a number that is no more than noise: the word stands for it."""
+
+_COUNT = "#,##0"
+
+_DIGITS = 6
+"""Significant digits where no error limits them."""
+
+_ROOM = 9
+"""Characters that columns have room for; fewer decimals are shown rather than `###`."""
+
+_LARGEST, _SMALLEST = 1e7, 1e-4
+"""Beyond these a number is shown with a power of ten."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,9 +56,6 @@ class Shown:
 
 
 BLANK = Shown(None)
-
-NONE = "–"
-"""Where there is no number to show."""
 
 
 def text(value: str, look: str = "text") -> Shown:
@@ -37,34 +70,78 @@ def exact(value: float | None, number: str = "General") -> Shown:
 
 def count(value: int) -> Shown:
     """Trials."""
-    return Shown(value, number_format.COUNT)
+    return Shown(value, _COUNT)
 
 
 def estimate(
     found: Estimate, look: str = "number", error_look: str = "error", *, like: Estimate | None = None
 ) -> list[Shown]:
     """Two cells: the value, and its standard error in the same digits; without an error, in those of `like`."""
-    digits = number_format.paired(like if found.error is None and like is not None else found)
+    digits = paired_format(like if found.error is None and like is not None else found)
     return [Shown(found.value, digits, look), _error(found.error, digits, error_look)]
 
 
 def share(found: Estimate) -> list[Shown]:
     """Two cells: a share of trials and its standard error, in percent."""
-    digits = number_format.share_paired(found)
+    digits = share_format(found)
     return [Shown(found.value, digits), _error(found.error, digits, "error")]
 
 
 def interval(found: Estimate, *, percent: bool = False) -> list[Shown]:
     """Two cells: the ends of the 95 % interval, in the digits of the value."""
-    digits = number_format.share_paired(found) if percent else number_format.paired(found)
+    digits = share_format(found) if percent else paired_format(found)
     low, high = found.interval or (None, None)
     return [_error(low, digits, "error"), _error(high, digits, "error")]
 
 
-def digits_of(found: Estimate) -> str:
-    """The number format of a value beside its error, for numbers to be compared with it."""
-    return number_format.paired(found)
-
-
 def _error(value: float | None, digits: str, look: str) -> Shown:
     return Shown(NONE if value is None else value, digits, look)
+
+
+def paired_format(estimate: Estimate) -> str:
+    """For a value with its error in a cell of its own: two digits of the error."""
+    if estimate.error == 0.0:
+        return "General"
+    return _format(estimate.value, _paired_decimals(estimate))
+
+
+def share_format(estimate: Estimate) -> str:
+    """`paired_format` for a share, in percent."""
+    decimals = _paired_decimals(estimate)
+    return "0" + _fraction(max((4 if decimals is None else decimals) - 2, 0)) + "%"
+
+
+def spread_format(spread: float) -> str:
+    """For single trials: four digits of their spread."""
+    return _format(spread, 3 - _exponent(spread)) if _usable(spread) else "General"
+
+
+def _paired_decimals(estimate: Estimate) -> int | None:
+    return 1 - _exponent(estimate.error) if estimate.error and _usable(estimate.error) else None
+
+
+def _format(value: float, decimals: int | None) -> str:
+    if not math.isfinite(value):
+        return "General"
+    if decimals is None:
+        if value == 0.0:
+            return "General"
+        decimals = _DIGITS - 1 - _exponent(value)
+    size = max(abs(value), 10.0**-decimals)
+    if not _SMALLEST <= size < _LARGEST:
+        return "0" + _fraction(min(max(decimals + _exponent(size), 0), 3)) + "E+00"
+    room = _ROOM - len(f"{value:,.0f}") - 1
+    return "#,##0" + _fraction(max(min(decimals, room), 0))
+
+
+def _fraction(decimals: int) -> str:
+    return "." + "0" * decimals if decimals else ""
+
+
+def _usable(number: float) -> bool:
+    return number != 0.0 and math.isfinite(number)
+
+
+def _exponent(number: float) -> int:
+    """The power of ten of a number rounded to two digits: 0.00996 -> -2."""
+    return int(f"{number:.1e}".partition("e")[2])

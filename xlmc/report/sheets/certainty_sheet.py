@@ -5,25 +5,37 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from xlmc.report.sheets import cells
-from xlmc.report.sheets.own_range import write_own_ranges
-from xlmc.results.statements import MEANING, certainties, statements
+from xlmc.report.sheets.cells import Shown
+from xlmc.results.statements import MEANING, certainties, rounded_range, statements
+from xlmc.statistics import proportion
 
 if TYPE_CHECKING:
-    from xlmc.report.sheets.cells import Shown
+    from numpy.typing import NDArray
+
     from xlmc.report.sheets.page import Page
     from xlmc.report.sheets.trials import TrialsAt
     from xlmc.results.statements import Certainty
-    from xlmc.run.simulation import Simulation
+    from xlmc.run.simulation import ForecastResult, Simulation
 
 __all__ = ["LAST", "WIDTHS", "write_certainty", "write_ranges"]
 
+
 WIDTHS = (34, 26, 12, 12, 11, 11, 11)
+
 LAST = len(WIDTHS) - 1
+
 _ON_A_PAGE, _SCALE = 33, 80
 """Rows, and the percentage at which so many fit."""
+
+_PERCENT = "0.0%"
+
+_Z = "1.96"
 
 
 def write_certainty(page: Page, simulation: Simulation, trials: TrialsAt) -> None:
@@ -38,7 +50,7 @@ def write_certainty(page: Page, simulation: Simulation, trials: TrialsAt) -> Non
     page.heading("Certainty of ranges")
     write_ranges(page, simulation)
     start = page.row
-    write_own_ranges(page, simulation, trials, LAST)
+    _write_own_ranges(page, simulation, trials)
     apart = start // _ON_A_PAGE != page.row // _ON_A_PAGE
     page.printed(name, scale=_SCALE, breaks=[start] if apart else [])
 
@@ -61,3 +73,63 @@ def _line(name: str, found: Certainty) -> list[Shown]:
         *cells.share(share),
         *cells.interval(share, percent=True),
     ]
+
+
+def _write_own_ranges(page: Page, simulation: Simulation, trials: TrialsAt) -> None:
+    """Write a line for each forecast that has a number on the sheet Trials; nothing where there is none."""
+    found = [
+        (place, result, simulation.forecasts[name][: trials.shown])
+        for place, (name, result) in enumerate(simulation.results.items())
+    ]
+    found = [each for each in found if not np.isnan(each[2]).all()]
+    if not found:
+        return
+    from xlsxwriter.utility import xl_range_formula
+
+    page.heading("Certainty of a range of your own")
+    page.wide(_said(simulation, trials), "paragraph", LAST)
+    heads = ["Forecast", "Units", "From", "to", "Certainty", "Trials"]
+    errors = simulation.plan.size == 0
+    page.table([*heads[:5], "±", heads[5]] if errors else heads, [])
+    for place, result, values in found:
+        _write_line(page, result, values, xl_range_formula(*trials.column(place)), errors)
+
+
+def _said(simulation: Simulation, trials: TrialsAt) -> str:
+    which = f"all {trials.shown:,} accepted trials"
+    if trials.shown < simulation.accepted:
+        which = f"the first {trials.shown:,} of {simulation.accepted:,} accepted trials, which stand"
+    else:
+        which += ", which stand"
+    said = f"Type the ends of a range into the yellow cells; an empty one is no end. Formulas count {which} on the "
+    said += "sheet Trials; both ends belong to the range."
+    if simulation.plan.size:
+        return f"{said} These trials depend on each other within their replicates, so no error is given."
+    return said
+
+
+def _write_line(page: Page, result: ForecastResult, values: NDArray[np.float64], column: str, errors: bool) -> None:
+    from xlsxwriter.utility import xl_rowcol_to_cell
+
+    definition, row = result.definition, page.row
+    spoken = rounded_range(result.sample, result.statistics.central, definition.central)
+    assert spoken is not None  # there are numbers
+    known = values[~np.isnan(values)]
+    share = proportion(int(np.count_nonzero((known >= spoken.low) & (known <= spoken.high))), known.size)
+    page.line([cells.text(definition.name, "name"), cells.text(definition.units)])
+    for place, end in ((2, spoken.low), (3, spoken.high)):
+        page.put(row, place, Shown(end, "General", "typed"))
+    low, high = xl_rowcol_to_cell(row, 2), xl_rowcol_to_cell(row, 3)
+    certainty, trials = xl_rowcol_to_cell(row, 4), xl_rowcol_to_cell(row, 6 if errors else 5)
+    inside = f'ISNUMBER({column})*((({low}="")+({column}>={low}))>0)*((({high}="")+({column}<={high}))>0)'
+    page.formula(row, 4, f"=SUMPRODUCT({inside})/{trials}", Shown(share.value, _PERCENT, "answer"))
+    if errors:
+        least = f"{_Z}/(2*({trials}+{_Z}^2))"
+        formula = f"=MAX(SQRT({certainty}*(1-{certainty})/{trials}),{least})"
+        page.formula(row, 5, formula, Shown(_error(share.value, known.size), _PERCENT, "error"))
+    page.formula(row, 6 if errors else 5, f"=COUNT({column})", Shown(known.size, cells.count(0).format))
+
+
+def _error(share: float, trials: int) -> float:
+    """As the formula has it, with 1.96 for the quantile of the normal distribution."""
+    return max(math.sqrt(share * (1.0 - share) / trials), 1.96 / (2.0 * (trials + 1.96**2)))

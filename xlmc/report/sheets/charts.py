@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 
 from xlmc.report.figure import Figure, varying
 from xlmc.report.sheets import cells
-from xlmc.report.sheets.cumulative_charts import cumulative_charts
+from xlmc.report.sheets.bins import BinsAt, histogram_chart
+from xlmc.report.sheets.curve_charts import MOST, alike, cumulative_charts, overlay_chart, trend_chart
 from xlmc.report.sheets.curves import Curves
-from xlmc.report.sheets.histogram_chart import BinsAt, histogram_chart
-from xlmc.report.sheets.overlay_chart import MOST, alike, overlay_chart, trend_chart
 from xlmc.report.summary import percent
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
-from xlmc.report.sheets.chart_style import Reference
+from xlmc.report.sheets.styles import Reference
 
 if TYPE_CHECKING:
     from xlmc.report.sheets.page import Page

@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from xlmc.report.sheets import cells
-from xlmc.report.sheets.bar_charts import ROWS as CHART_ROWS
 from xlmc.report.sheets.cells import Shown
-from xlmc.report.sheets.chart_style import bounds
-from xlmc.report.sheets.line_charts import limit_chart
-from xlmc.report.sheets.ranges import TableAt
+from xlmc.report.sheets.sensitivity_charts import CHART_ROWS, TableAt, limit_chart
+from xlmc.report.sheets.styles import bounds
 from xlmc.results.record.wording import number_text
 
 if TYPE_CHECKING:

@@ -8,13 +8,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from xlmc.report import number_format
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import BLANK, Shown
-from xlmc.report.sheets.chart_style import Reference, across, axis_format, bounds, finish, straight, upwards
 from xlmc.report.sheets.charts import Drawing, place_drawings
 from xlmc.report.sheets.curves import Curves, TableAt
-from xlmc.report.sheets.styles import DARK
+from xlmc.report.sheets.styles import DARK, Reference, across, axis_format, bounds, finish, straight, upwards
 from xlmc.results.statements import PAIRS, Pair, pairs_of
 
 if TYPE_CHECKING:
@@ -153,7 +151,7 @@ def _points(
     if known[-1] < min(known.size, trials.shown):
         place = simulation.model.forecasts.index(forecast)
         return _Points(trials.heading(place), trials.column(place, known.size), limits)
-    digits = number_format.exact(float(values.max()) - float(values.min()))
+    digits = cells.spread_format(float(values.max()) - float(values.min()))
     axis = f"{forecast.name} ({forecast.units})" if forecast.units else forecast.name
     rows = [[Shown(value, digits)] for value in values.tolist()]
     table = curves.write(["Points of a scatter chart"], axis, [forecast.name], rows)

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from xlmc.report.base_case import base_case
 from xlmc.report.sheets import cells
-from xlmc.report.sheets.accounting import write_accounting
+from xlmc.report.sheets.accounting import write_accounting, write_checks
 from xlmc.report.sheets.cells import Shown
-from xlmc.report.sheets.checks_table import write_checks
-from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, range_heading, summarise
+from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, base_case, percent, range_heading, summarise
 from xlmc.results.record.errors_met import lost_sentences
 from xlmc.results.record.sampling_words import sampling_sentence
 from xlmc.run.stopping.stopped import ALL_TRIALS
@@ -90,7 +88,7 @@ def _answer(row: SummaryRow, rows: Sequence[SummaryRow]) -> list[Shown]:
         *cells.estimate(row.standard_deviation, "answer"),
         *cells.estimate(row.low, "answer"),
         *cells.estimate(row.high, "answer"),
-        cells.exact(row.base, cells.digits_of(row.mean)),
+        cells.exact(row.base, cells.paired_format(row.mean)),
     ]
     if any(other.threshold is not None for other in rows):
         shown += _above(row)

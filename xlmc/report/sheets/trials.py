@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.report import number_format
+from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
-from xlmc.report.sheets.chart_style import Reference
+from xlmc.report.sheets.styles import Reference
 
 if TYPE_CHECKING:
     from xlmc.report.sheets.page import Page
     from xlmc.run.simulation import Simulation
 
 __all__ = ["HEADER", "MOST_ROWS", "TRIAL_ROWS", "WIDTHS", "TrialsAt", "write_trials"]
+
 
 TRIAL_ROWS = 10_000
 """Accepted trials on the sheet, unless asked otherwise: more make the file slow to open."""
@@ -100,7 +101,7 @@ def _heading(name: str, units: str, look: str) -> Shown:
 def _write_values(page: Page, index: NDArray[np.int64], columns: list[NDArray[np.float64]]) -> None:
     page.numbers(page.row, 0, index.tolist(), "0", "trial")
     for place, values in enumerate(columns, 1):
-        page.numbers(page.row, place, values.tolist(), number_format.exact(_spread(values)))
+        page.numbers(page.row, place, values.tolist(), cells.spread_format(_spread(values)))
     page.row += index.size
 
 

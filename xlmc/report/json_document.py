@@ -1,21 +1,26 @@
-"""All results of a run as one JSON document; docs/json.md describes it, `document.schema.json` defines it."""
+"""All results of a run as one JSON document; docs/json.md describes it, `results.schema.json` defines it.
+
+JSON holds no NaN and no infinity: null stands for them, and an estimate says why.
+"""
 
 from __future__ import annotations
 
 import json
+import math
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.errors import WorkbookError
-from xlmc.report.base_case import BaseCase, base_case
 from xlmc.report.conditioning import Marginal, conditioning
-from xlmc.report.data.dependence_json import certainties_json, pairs_json, sensitivity_json, statements_json
-from xlmc.report.data.estimate_json import estimate_json, number_json
+from xlmc.report.summary import BaseCase, base_case
 from xlmc.results.record import make_record
 from xlmc.results.record.correlations_met import correlations_met
 from xlmc.results.record.errors_met import errors_met, lost_sentences
 from xlmc.results.record.wording import cutoffs_text, limits_text, parameters_text, status
-from xlmc.statistics import proportion
+from xlmc.results.statements import certainties, pairs_of, statements
+from xlmc.statistics import Estimate, proportion
+from xlmc.studies.sensitivity import sensitivities
 from xlmc.workbook.seal import sealed_text
 from xlmc.workbook.target import Target
 from xlmc.workbook.writer import write_workbook
@@ -23,14 +28,37 @@ from xlmc.workbook.writer import write_workbook
 if TYPE_CHECKING:
     from xlmc.definitions.model import Assumption, Filter
     from xlmc.results.record.correlations_met import CorrelationMet
+    from xlmc.results.statements import Pair
     from xlmc.run.checking import CheckResult
     from xlmc.run.simulation import ForecastResult, Simulation
+    from xlmc.statistics import Estimate
 
-__all__ = ["FORMAT", "SCHEMA", "STATISTICS", "VERSION", "check_json_path", "document", "save_json"]
+__all__ = [
+    "FORMAT",
+    "NO_ERROR",
+    "NO_VALUE",
+    "SCHEMA",
+    "STATISTICS",
+    "UNBOUNDED",
+    "VERSION",
+    "check_json_path",
+    "document",
+    "estimate_json",
+    "number_json",
+    "save_json",
+]
 
 FORMAT: Final = "xlmc results"
+
 VERSION: Final = 1
-SCHEMA: Final = Path(__file__).with_name("document.schema.json")
+
+SCHEMA: Final = Path(__file__).with_name("results.schema.json")
+
+NO_VALUE: Final = "not defined for these trials"
+
+NO_ERROR: Final = "no standard error can be given"
+
+UNBOUNDED: Final = "so few trials do not bound the interval"
 
 STATISTICS: Final = (
     "mean",
@@ -48,6 +76,8 @@ STATISTICS: Final = (
 )
 
 Json = dict[str, Any]
+
+_EstimateJson = dict[str, float | str | None]
 
 
 def document(simulation: Simulation, *, command: str | None = None) -> Json:
@@ -68,9 +98,9 @@ def document(simulation: Simulation, *, command: str | None = None) -> Json:
         "forecasts": [_forecast(result, base) for result in simulation.results.values()],
         "filters": [_filter(simulation, place, each) for place, each in enumerate(simulation.model.filters)],
         "assumptions": [_assumption(simulation, each) for each in simulation.model.assumptions],
-        "statements": statements_json(simulation),
-        "pairs": pairs_json(simulation),
-        "sensitivity": sensitivity_json(simulation),
+        "statements": [_as_json(each) for each in statements(simulation)],
+        "pairs": [_pair(each) for each in pairs_of(simulation)],
+        "sensitivity": _as_json(sensitivities(simulation)),
         "correlations": [_correlation(met) for met in correlations_met(simulation)],
         "errors": [
             {"in": met.kind, "name": met.name, "cell": str(met.cell), "error": met.error, "trials": met.trials}
@@ -147,7 +177,7 @@ def _forecast(result: ForecastResult, base: BaseCase | None) -> Json:
         "certainty": None
         if above is None
         else {"threshold": definition.threshold, "probability_above": estimate_json(above)},
-        "certainties": certainties_json(result),
+        "certainties": [_as_json(each) for each in certainties(result)],
         "base_case": None if base is None else number_json(base.forecasts[definition.name]),
         "without_number": {error: count for error, count in sorted(result.faults.items()) if count},
     }
@@ -231,3 +261,51 @@ def _correlation(met: CorrelationMet) -> Json:
         "accepted": None if met.accepted is None else estimate_json(met.accepted),
         "row": None if met.row is None else str(met.row),
     }
+
+
+def _pair(pair: Pair) -> Json:
+    others = (field.name for field in fields(pair) if field.name not in ("first", "second"))
+    return {"first": pair.first.name, "second": pair.second.name} | {
+        name: _as_json(getattr(pair, name)) for name in others
+    }
+
+
+def _as_json(value: Any) -> Any:
+    """Dataclasses as objects, tuples as lists, estimates with their reasons, and null for what is no number."""
+    if isinstance(value, Estimate):
+        return estimate_json(value)
+    if isinstance(value, float):
+        return number_json(value)
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    if isinstance(value, tuple | list):
+        return [_as_json(each) for each in value]
+    return {field.name: _as_json(getattr(value, field.name)) for field in fields(value)}
+
+
+def number_json(value: float | None) -> float | None:
+    """The number; None where it is none."""
+    return float(value) if value is not None and math.isfinite(value) else None
+
+
+def estimate_json(found: Estimate) -> _EstimateJson:
+    """`{"value": …, "error": …, "low": …, "high": …}`, with a `reason` where one of them is null.
+
+    >>> from xlmc.statistics import Estimate
+    >>> estimate_json(Estimate(3.0, 0.5, (2.0, 4.0)))
+    {'value': 3.0, 'error': 0.5, 'low': 2.0, 'high': 4.0}
+    >>> estimate_json(Estimate(3.0))["reason"]
+    'no standard error can be given'
+    """
+    low, high = found.interval or (None, None)
+    numbers = [number_json(number) for number in (found.value, found.error, low, high)]
+    told: _EstimateJson = dict(zip(("value", "error", "low", "high"), numbers, strict=True))
+    if None in numbers:
+        told["reason"] = _reason(numbers[0], numbers[1], found.interval is not None)
+    return told
+
+
+def _reason(value: float | None, error: float | None, interval: bool) -> str:
+    if value is None:
+        return NO_VALUE
+    return UNBOUNDED if interval and error is not None else NO_ERROR

@@ -1,15 +1,49 @@
-"""Estimates and differences as JSON holds them: no infinities, no NaNs."""
+"""How `xlmc compare`, `screen` and `stability` give out what they found: a sheet, a page, the terminal, JSON."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
+    from xlmc.report.study_report import Block
     from xlmc.statistics import Estimate
     from xlmc.studies.comparison import Acceptance, Change, Difference
 
-__all__ = ["acceptance_json", "difference_json", "estimate_json", "finite"]
+__all__ = ["acceptance_json", "difference_json", "estimate_json", "finite", "show", "study_options"]
+
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def study_options(command: Command) -> Command:
+    """Add the three options."""
+    path = click.Path(path_type=Path)
+    command = click.option("--overwrite", is_flag=True, help="Replace existing files, whoever wrote them.")(command)
+    command = click.option("--html", type=path, help="Also write the result as a page, .html.")(command)
+    return click.option("-o", "--output", type=path, help="Also write the result as a sheet, .xlsx.")(command)
+
+
+def show(blocks: Iterable[Block]) -> None:
+    """Print paragraphs, and tables with a line of space around them."""
+    from xlmc.cli.printing import table
+
+    spaced = True
+    for each in blocks:
+        if isinstance(each, str):
+            say(paragraph(each))
+            spaced = False
+        else:
+            if not spaced:
+                say()
+            table(each.title, each.headings, each.rows, right=each.right)
+            spaced = True
 
 
 def finite(value: float | None) -> float | None:

@@ -7,14 +7,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from xlmc.report.page.element import Html, element, joined
-from xlmc.report.page.scale import Scale, scale_of
 
-__all__ = ["Bar", "Line", "bars", "lines"]
+__all__ = ["Bar", "Line", "Scale", "bars", "lines", "scale_of"]
 
 _WIDTH, _HEIGHT = 520, 260
+
 _NAMES, _ROW, _MARGIN = 244, 20, 12
+
 _BELOW = 44
+
 _LONGEST = 37
+
+_ROUND_STEPS = (1.0, 2.0, 5.0, 10.0)
+
+_ROOM = 0.03
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,3 +123,50 @@ def _rect(x: float, y: float, width: float, height: float, look: str) -> Html:
 
 def _stroke(x1: float, y1: float, x2: float, y2: float, look: str) -> Html:
     return element("line", x1=f"{x1:.1f}", y1=f"{y1:.1f}", x2=f"{x2:.1f}", y2=f"{y2:.1f}", class_=look)
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """From `low` at `start` to `high` at `stop`; `step` is between ticks."""
+
+    low: float
+    high: float
+    start: float
+    stop: float
+    step: float
+
+    def __call__(self, value: float) -> float:
+        """Where a number stands."""
+        return self.start + (self.stop - self.start) * (value - self.low) / (self.high - self.low)
+
+    @property
+    def ticks(self) -> list[float]:
+        """The multiples of the step within the scale."""
+        first, last = math.ceil(self.low / self.step - 1e-9), math.floor(self.high / self.step + 1e-9)
+        return [float(f"{place * self.step:.12g}") for place in range(first, last + 1)]
+
+    def text(self, tick: float) -> str:
+        """A tick in the digits that the step needs."""
+        return f"{tick:g}".replace("-", "−")
+
+
+def scale_of(values: list[float], start: float, stop: float, *, most: int = 6) -> Scale:
+    """A scale that reaches over all finite values, with a little room, and has `most` ticks at most.
+
+    >>> scale_of([0.0, 0.93], 0.0, 100.0).ticks
+    [0.0, 0.2, 0.4, 0.6, 0.8]
+    """
+    known = [value for value in values if math.isfinite(value)] or [0.0]
+    low, high = min(known), max(known)
+    if high - low <= 1e-12 * max(abs(low), abs(high), 1e-300):
+        margin = 0.5 * abs(low) or 0.5
+        low, high = low - margin, high + margin
+    else:
+        low, high = low - _ROOM * (high - low), high + _ROOM * (high - low)
+    step = _round_above((high - low) / most)
+    return Scale(low, high, start, stop, step)
+
+
+def _round_above(width: float) -> float:
+    power = 10.0 ** math.floor(math.log10(width))
+    return power * next(factor for factor in _ROUND_STEPS if factor * power >= width * (1.0 - 1e-9))

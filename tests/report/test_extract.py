@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 import xlmc
 from xlmc.columns import PART
 from xlmc.errors import SimulationError, WorkbookError
-from xlmc.report.data.extract import safe_heading
+from xlmc.report.extract import safe_heading
 from xlmc.results.record import make_record
 
 parquet = pytest.importorskip("pyarrow.parquet")
@@ -129,9 +129,9 @@ def test_columns_on_disk_give_the_same_files(model, tmp_path, monkeypatch):
 @pytest.mark.parametrize("ending", ["csv", "parquet"])
 def test_it_takes_no_more_memory_for_more_trials(model, tmp_path, ending, monkeypatch):
     part = 1024
-    monkeypatch.setattr("xlmc.report.data.extract.make_record", lambda *_: _Empty())
-    monkeypatch.setattr("xlmc.report.data.extract.PART", part)
-    monkeypatch.setattr("xlmc.report.data.extract._ROW_GROUP", part)
+    monkeypatch.setattr("xlmc.report.extract.make_record", lambda *_: _Empty())
+    monkeypatch.setattr("xlmc.report.extract.PART", part)
+    monkeypatch.setattr("xlmc.report.extract._ROW_GROUP", part)
     run = model.simulate(50)
     peaks = []
     for n in (8 * part, 32 * part):
@@ -165,7 +165,7 @@ def test_where_it_cannot_be_written(model, tmp_path, name):
 
 def test_parquet_without_pyarrow_is_a_message(model, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    monkeypatch.setattr("xlmc.report.data.extract.find_spec", lambda name: None)
+    monkeypatch.setattr("xlmc.report.extract.find_spec", lambda name: None)
     with pytest.raises(SimulationError, match=r"need pyarrow, which is not installed.*xlmc\[parquet\]"):
         model.simulate(5).extract(tmp_path / "trials.parquet")
 
@@ -173,7 +173,7 @@ def test_parquet_without_pyarrow_is_a_message(model, tmp_path, monkeypatch):
 def test_a_failed_write_leaves_the_old_file(model, tmp_path, monkeypatch):
     path = tmp_path / "trials.csv"
     path.write_bytes(b"old")
-    monkeypatch.setattr("xlmc.report.data.extract._fields", lambda values: 1 / 0)
+    monkeypatch.setattr("xlmc.report.extract._fields", lambda values: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         model.simulate().extract(path, overwrite=True)
     assert [(each.name, each.read_bytes()) for each in tmp_path.iterdir()] == [("trials.csv", b"old")]

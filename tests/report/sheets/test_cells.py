@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.report.number_format import exact, paired, share_paired
+from xlmc.report.sheets.cells import paired_format, share_format, spread_format
 from xlmc.statistics import Estimate, format_estimate, proportion
 
 PAIRED = [
@@ -29,12 +29,12 @@ PAIRED = [
 
 @pytest.mark.parametrize(("value", "error", "expected"), PAIRED)
 def test_formats_of_a_value_beside_its_error(value, error, expected):
-    assert paired(Estimate(value, error)) == expected
+    assert paired_format(Estimate(value, error)) == expected
 
 
 @given(st.floats(1e-2, 9e3), st.floats(1e-3, 1e2))
 def test_the_sheet_shows_the_digits_that_the_command_line_prints(value, error):
-    decimals = paired(Estimate(value, error)).partition(".")[2].count("0")
+    decimals = paired_format(Estimate(value, error)).partition(".")[2].count("0")
     printed = format_estimate(value, error).split(" ")[0].partition(".")[2]
     room = 9 - len(f"{value:,.0f}") - 1
     assert decimals == min(len(printed), max(room, 0))
@@ -50,11 +50,11 @@ def test_the_sheet_shows_the_digits_that_the_command_line_prints(value, error):
     ],
 )
 def test_formats_of_shares(estimate, expected):
-    assert share_paired(estimate) == expected
+    assert share_format(estimate) == expected
 
 
 @pytest.mark.parametrize(
     ("spread", "expected"), [(200.0, "#,##0.0"), (0.35, "#,##0.0000"), (4e8, "0.000E+00"), (0.0, "General")]
 )
 def test_formats_of_single_trials_follow_their_spread(spread, expected):
-    assert exact(spread) == expected
+    assert spread_format(spread) == expected

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["check_extract_path", "extract", "safe_heading"]
 
+
 _STARTS_A_FORMULA: Final = ("=", "+", "-", "@", "\t", "\r", "\n", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 """With which spreadsheets take the text of a CSV field for a formula; the last four in East Asian editions."""
 

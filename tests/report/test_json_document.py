@@ -10,8 +10,16 @@ import pytest
 
 import xlmc
 from xlmc.errors import WorkbookError
-from xlmc.report.data.document import SCHEMA, STATISTICS, document, save_json
-from xlmc.report.data.estimate_json import NO_ERROR, NO_VALUE, UNBOUNDED, estimate_json
+from xlmc.report.json_document import (
+    NO_ERROR,
+    NO_VALUE,
+    SCHEMA,
+    STATISTICS,
+    UNBOUNDED,
+    document,
+    estimate_json,
+    save_json,
+)
 from xlmc.results.record import make_record
 from xlmc.results.statements import certainties, pairs_of, statements
 from xlmc.statistics import Estimate

@@ -1,0 +1,198 @@
+"""What a study found, as paragraphs and tables of texts: one content for the terminal, a page and a sheet."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import Final
+
+from xlmc.errors import WorkbookError
+from xlmc.report.sheets import cells
+from xlmc.report.sheets.cells import Shown
+from xlmc.report.sheets.page import Page
+from xlmc.report.sheets.styles import CREATED, Styles
+from xlmc.workbook.package import read_parts
+from xlmc.workbook.seal import sealed_parts, sealed_text
+from xlmc.workbook.target import Target, is_same_file, refuse_same_file
+from xlmc.workbook.writer import package_bytes, write_workbook
+
+__all__ = ["Block", "Files", "StudyReport", "Table"]
+
+_WIDTHS: Final = (44.0, *[17.0] * 7)
+
+_LAST: Final = 5
+"""The column to which paragraphs reach."""
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table of texts.
+
+    Attributes:
+        title: above it.
+        headings: of its columns.
+        rows: their cells.
+        right: the columns of numbers.
+    """
+
+    title: str
+    headings: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    right: tuple[int, ...] = ()
+
+
+Block = str | Table
+
+
+@dataclass(frozen=True, slots=True)
+class StudyReport:
+    """What a study found.
+
+    Attributes:
+        title: what it is.
+        below: of which book, from how many trials.
+        blocks: paragraphs and tables in their order.
+    """
+
+    title: str
+    below: str
+    blocks: Sequence[Block]
+
+
+class Files:
+    """The workbook and the page that are asked for; either may be None.
+
+    Args:
+        output: the workbook, which must end in .xlsx.
+        html: the page, which must end in .html.
+        sources: the workbooks that were studied, which are never written to.
+        overwrite: replace files that are not ours, too.
+    """
+
+    def __init__(self, output: Path | None, html: Path | None, sources: Sequence[Path], *, overwrite: bool) -> None:
+        self._endings = [(path, ending) for path, ending in ((output, ".xlsx"), (html, ".html")) if path is not None]
+        self._sources, self._overwrite = sources, overwrite
+
+    def check(self) -> None:
+        """See that every file can be written, before anything is run.
+
+        Raises:
+            TakenError: a file is not ours to replace, or a program has it open.
+            WorkbookError: an ending is another, a folder is not there, a file is a workbook that is studied, or is
+                named twice.
+        """
+        refuse_same_file([path for path, _ in self._endings])
+        for path, ending in self._endings:
+            if path.suffix.casefold() != ending:
+                kind = "the sheet" if ending == ".xlsx" else "the page"
+                raise WorkbookError(
+                    f"{kind} must end in {ending}", where=path, hint=f"Name a file that ends in {ending}"
+                )
+            if any(is_same_file(path, source) for source in self._sources):
+                raise WorkbookError("this is the workbook itself", where=path, hint="Name another file")
+            self._target(path).check()
+
+    def _target(self, path: Path) -> Target:
+        return Target(path, self._sources[0].name, self._overwrite)
+
+    def write(self, report: StudyReport, sheet: str) -> list[Path]:
+        """Write them; an untouched file of ours is replaced.
+
+        Raises:
+            TakenError: a file is not ours to replace.
+            WorkbookError: it cannot be written.
+        """
+        name = self._sources[0].name
+        for path, ending in self._endings:
+            if ending == ".html":
+                content = sealed_text(_page(report).encode(), ending, name)
+            else:
+                parts = read_parts(_book(report, sheet))
+                content = package_bytes(sealed_parts(parts, "xl/worksheets/sheet1.xml", name))
+            write_workbook(path, content, self._target(path).check)
+        return [path for path, _ in self._endings]
+
+
+def _page(report: StudyReport) -> str:
+    """As one HTML page that needs nothing else."""
+    body = "".join(_table(each) if isinstance(each, Table) else f"<p>{escape(each)}</p>\n" for each in report.blocks)
+    return (
+        "<!DOCTYPE html>\n"
+        f'<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>{escape(report.title)}</title>\n'
+        f"<style>{_STYLE}</style>\n</head>\n<body>\n"
+        f'<h1>{escape(report.title)}</h1>\n<p class="below">{escape(report.below)}</p>\n{body}</body>\n</html>\n'
+    )
+
+
+def _table(table: Table) -> str:
+    def row(cells_: Sequence[str], tag: str) -> str:
+        found = (
+            f"<{tag}>{escape(cell)}</{tag}>" if place in table.right else f'<{tag} class="left">{escape(cell)}</{tag}>'
+            for place, cell in enumerate(cells_)
+        )
+        return f"<tr>{''.join(found)}</tr>\n"
+
+    rows = "".join(row(each, "td") for each in table.rows)
+    return (
+        f'<h2>{escape(table.title)}</h2>\n<div class="wide"><table><thead>{row(table.headings, "th")}</thead>\n'
+        f"<tbody>{rows}</tbody></table></div>\n"
+    )
+
+
+def _book(report: StudyReport, sheet: str) -> bytes:
+    """As a workbook of one sheet."""
+    from xlsxwriter import Workbook
+
+    packed = io.BytesIO()
+    with Workbook(packed, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as made:
+        made.set_properties({"created": CREATED})
+        written = Page(made.add_worksheet(sheet), Styles(made), _WIDTHS)
+        written.title(report.title, report.below)
+        written.row += 1
+        for each in report.blocks:
+            if isinstance(each, Table):
+                written.heading(each.title)
+                written.table(each.headings, [_cells(row, each.right) for row in each.rows])
+                written.row += 1
+            else:
+                written.wide(each, "paragraph", _LAST)
+        written.printed(report.title)
+    return packed.getvalue()
+
+
+def _cells(row: Sequence[str], right: Sequence[int]) -> list[Shown]:
+    """A text that is a number becomes one; a number with its error stays as it is printed."""
+    return [_cell(text, place, place in right) for place, text in enumerate(row)]
+
+
+def _cell(text: str, place: int, is_number: bool) -> Shown:
+    if not is_number:
+        return cells.text(text, "name" if place == 0 else "text")
+    try:
+        return Shown(float(text))
+    except ValueError:
+        return cells.text(text, "number")
+
+
+_STYLE: Final = """
+body { font: 15px/1.5 "Segoe UI", "Helvetica Neue", Arial, sans-serif; color: #1F3044; margin: 2em auto;
+  max-width: 1000px; padding: 0 1em; }
+h1 { font-size: 1.5em; margin-bottom: 0; }
+h2 { font-size: 1.1em; margin-top: 1.8em; }
+p { max-width: 60em; overflow-wrap: anywhere; }
+p.below { color: #52606D; margin-top: .2em; }
+div.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-size: 13px; }
+th { background: #1F3044; color: #fff; font-weight: 600; text-align: right; padding: .35em .6em; }
+td { border-bottom: 1px solid #D5DBE3; padding: .3em .6em; text-align: right; font-variant-numeric: tabular-nums; }
+th.left, td.left { text-align: left; }
+td:not(.left) { white-space: nowrap; }
+@media print {
+  body { margin: 0; max-width: none; font-size: 11px; }
+  table { font-size: 9px; }
+  h2 { break-after: avoid; }
+}
+"""

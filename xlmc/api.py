@@ -140,7 +140,7 @@ class Model(model.Model):
         """Run the simulation; what is not given comes from the workbook's settings.
 
         However the work is divided, the result is the same to the last bit. `trials` or a goal (`until_accepted`,
-        `precision`, `adaptive`) takes the place of all that the settings say of the length of the run.
+        `precision`, `adaptive`) replaces all that the settings say of the length of the run.
 
         Args:
             trials: how many, 1 or more; with a goal the most, by default 10⁹.

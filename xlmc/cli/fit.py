@@ -40,7 +40,7 @@ def fit(source: str, cells: str | None, kind: str | None, by: str, name: str, as
     """
     from xlmc.studies import fitting
 
-    book, reference = _place(source, cells)
+    book, reference = _book_and_range(source, cells)
     values, where, blank = _values(book, reference)
     found = fitting.fit(values, kind=kind, by=by)
     described = f"fitted by maximum likelihood to {book.name} {where}, n = {found.n}"
@@ -55,7 +55,7 @@ def fit(source: str, cells: str | None, kind: str | None, by: str, name: str, as
         raise click.exceptions.Exit(TOO_FEW)
 
 
-def _place(source: str, cells: str | None) -> tuple[Path, str]:
+def _book_and_range(source: str, cells: str | None) -> tuple[Path, str]:
     """The workbook, and the reference in it.
 
     Raises:

@@ -133,8 +133,8 @@ class Outputs(NamedTuple):
 
         for path in (self.book, *self._others):
             if path is not None and not (self.in_place and path == self.book) and is_same_file(path, self.source):
-                place = "--in-place writes the result sheets into it" if path == self.book else None
-                raise WorkbookError("this is the file that is read", where=path, hint=place or "Name another file")
+                hint = "--in-place writes the result sheets into it" if path == self.book else None
+                raise WorkbookError("this is the file that is read", where=path, hint=hint or "Name another file")
 
     def _with_book(self) -> Outputs:
         from xlmc.workbook.target import Target, free_target

@@ -97,16 +97,16 @@ def table_lines(
         rule: the character of the line below the headings.
     """
     columns = [
-        _Column(_words(heading), [_pieces(row[place], place in right) for row in rows], place in right)
-        for place, heading in enumerate(headings)
+        _Column(_words(heading), [_pieces(row[index], index in right) for row in rows], index in right)
+        for index, heading in enumerate(headings)
     ]
     for gap in _GAPS:
         widths = _widths(columns, width, gap)
         if widths is not None:
             yield from _lines([column.heading for column in columns], columns, widths, gap)
             yield " " + rule * (sum(widths) + len(gap) * (len(widths) - 1))
-            for place in range(len(rows)):
-                yield from _lines([column.cells[place] for column in columns], columns, widths, gap)
+            for index in range(len(rows)):
+                yield from _lines([column.cells[index] for column in columns], columns, widths, gap)
             return
     yield from _listed(headings, rows, width)
 
@@ -119,8 +119,8 @@ def _widths(columns: Sequence[_Column], width: int, gap: str) -> list[int] | Non
     if sum(least) > room:
         return None
     while sum(widths) > room:  # the widest that can give way does
-        place = max((place for place in range(len(widths)) if widths[place] > least[place]), key=widths.__getitem__)
-        widths[place] -= 1
+        index = max((index for index in range(len(widths)) if widths[index] > least[index]), key=widths.__getitem__)
+        widths[index] -= 1
     return widths
 
 

@@ -136,12 +136,12 @@ def _table(title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]])
     headings = (*(heading for heading, _ in first), "Cost", "Accepted, %")
     rows = tuple(
         (
-            *(column[place] for _, column in first),
+            *(column[index] for _, column in first),
             "no number" if cost.lost else _size(cost.size),
             _percent(cost),
             cost.judgement.verdict.value,
         )
-        for place, cost in enumerate(costs)
+        for index, cost in enumerate(costs)
     )
     return Table(title, (*headings, "Verdict"), rows, tuple(range(1, len(headings))))
 

@@ -56,7 +56,7 @@ _READER_GONE: Final = (errno.EPIPE, errno.EINVAL)
 
 
 def prepare() -> None:
-    """Let stdout and stderr write something readable in place of what their encoding lacks."""
+    """Let stdout and stderr write something readable instead of what their encoding lacks."""
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
@@ -178,7 +178,7 @@ def _silence(stream: TextIO) -> None:
         os.close(nowhere)
 
 
-def _in_place_of(error: UnicodeError) -> tuple[str, int]:
+def _readable_instead(error: UnicodeError) -> tuple[str, int]:
     if not isinstance(error, UnicodeEncodeError):
         raise error
     lacking = error.object[error.start : error.end]
@@ -196,4 +196,4 @@ def _readable(character: str) -> str:
     return bare or character.encode("ascii", "backslashreplace").decode()
 
 
-codecs.register_error(_HANDLER, _in_place_of)
+codecs.register_error(_HANDLER, _readable_instead)

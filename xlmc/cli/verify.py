@@ -87,9 +87,9 @@ def _show(found: Verification) -> None:
     volatile = [cell for cell in found.of(Status.VOLATILE) if cell.reason]
     for status, listed in ((Status.UNSUPPORTED, found.of(Status.UNSUPPORTED)), (Status.VOLATILE, volatile)):
         for reason, cells in groups(listed):
-            places = ", ".join(str(cell.cell) for cell in cells[:5])
+            where = ", ".join(str(cell.cell) for cell in cells[:5])
             more = f" and {len(cells) - 5:,} more" if len(cells) > 5 else ""
-            say(f"{status.value}: {reason} ({places}{more})")
+            say(f"{status.value}: {reason} ({where}{more})")
 
 
 def _percent(difference: float | None) -> str:

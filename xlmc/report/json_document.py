@@ -96,7 +96,7 @@ def document(simulation: Simulation, *, command: str | None = None) -> Json:
         "record": make_record(simulation, command).as_dict(),
         "trials": _trials(simulation),
         "forecasts": [_forecast(result, base) for result in simulation.results.values()],
-        "filters": [_filter(simulation, place, each) for place, each in enumerate(simulation.model.filters)],
+        "filters": [_filter(simulation, index, each) for index, each in enumerate(simulation.model.filters)],
         "assumptions": [_assumption(simulation, each) for each in simulation.model.assumptions],
         "statements": [_as_json(each) for each in statements(simulation)],
         "pairs": [_pair(each) for each in pairs_of(simulation)],
@@ -183,10 +183,10 @@ def _forecast(result: ForecastResult, base: BaseCase | None) -> Json:
     }
 
 
-def _filter(simulation: Simulation, place: int, each: Filter) -> Json:
+def _filter(simulation: Simulation, index: int, each: Filter) -> Json:
     tally, filters = simulation.tally, simulation.model.filters
-    rejected, only = int(tally.rejected[place]), int(tally.only[place])
-    together = zip(filters, tally.together[place].tolist(), strict=True)
+    rejected, only = int(tally.rejected[index]), int(tally.only[index])
+    together = zip(filters, tally.together[index].tolist(), strict=True)
     return {
         "name": each.name,
         "cell": str(each.cell),
@@ -197,7 +197,7 @@ def _filter(simulation: Simulation, place: int, each: Filter) -> Json:
         "only": only,
         "share_only": estimate_json(proportion(only, simulation.trials)),
         "also_by": {other.name: count for other, count in together if other is not each},
-        "errors": sum(tally.errors[place].values()),
+        "errors": sum(tally.errors[index].values()),
     }
 
 

@@ -130,8 +130,8 @@ def _page(report: StudyReport) -> str:
 def _table(table: Table) -> str:
     def row(cells_: Sequence[str], tag: str) -> str:
         found = (
-            f"<{tag}>{escape(cell)}</{tag}>" if place in table.right else f'<{tag} class="left">{escape(cell)}</{tag}>'
-            for place, cell in enumerate(cells_)
+            f"<{tag}>{escape(cell)}</{tag}>" if index in table.right else f'<{tag} class="left">{escape(cell)}</{tag}>'
+            for index, cell in enumerate(cells_)
         )
         return f"<tr>{''.join(found)}</tr>\n"
 
@@ -165,12 +165,12 @@ def _book(report: StudyReport, sheet: str) -> bytes:
 
 def _cells(row: Sequence[str], right: Sequence[int]) -> list[Shown]:
     """A text that is a number becomes one; a number with its error stays as it is printed."""
-    return [_cell(text, place, place in right) for place, text in enumerate(row)]
+    return [_cell(text, index, index in right) for index, text in enumerate(row)]
 
 
-def _cell(text: str, place: int, is_number: bool) -> Shown:
+def _cell(text: str, index: int, is_number: bool) -> Shown:
     if not is_number:
-        return cells.text(text, "name" if place == 0 else "text")
+        return cells.text(text, "name" if index == 0 else "text")
     try:
         return Shown(float(text))
     except ValueError:

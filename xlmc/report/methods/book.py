@@ -50,8 +50,8 @@ def book(study: Study) -> bytes:
         forecasts = Page(made.add_worksheet("Forecasts"), styles, (34.0, 10.0, 38.0, 22.0, 22.0, 22.0, 22.0))
         data = Page(made.add_worksheet(DATA), styles, (70.0, 14.0, 14.0, 14.0, 14.0))
         _write_words(words, study)
-        places = _write_runs(runs, study)
-        write_charts(charts, data, made, study, places)
+        curve_rows = _write_runs(runs, study)
+        write_charts(charts, data, made, study, curve_rows)
         _write_forecasts(forecasts, study)
     return packed.getvalue()
 
@@ -80,8 +80,8 @@ def _write_words(page: Page, study: Study) -> None:
 def _texts(page: Page, table: tables.Table) -> None:
     rows = [
         [
-            cells.text(cell, "name" if place == 0 else "text" if place < table.right else "number")
-            for place, cell in enumerate(row)
+            cells.text(cell, "name" if index == 0 else "text" if index < table.right else "number")
+            for index, cell in enumerate(row)
         ]
         for row in table.rows
     ]
@@ -95,17 +95,17 @@ def _write_runs(page: Page, study: Study) -> list[tuple[Curve, int, int]]:
     )
     page.row += 1
     page.table(_HEADINGS, ())
-    places = []
+    curve_rows = []
     for curve in study.every:
         if not curve.answers:
             continue
         first = page.row
         for rung in curve.rungs:
             page.line(_rung_cells(study, curve, rung))
-        places.append((curve, first, page.row - 1))
+        curve_rows.append((curve, first, page.row - 1))
     page.line([cells.text("The reference's own error", "label"), *[cells.BLANK] * 4, *_floor(study)])
     page.printed(study.model.workbook.name)
-    return places
+    return curve_rows
 
 
 def _rung_cells(study: Study, curve: Curve, rung: Rung) -> list[Shown]:

@@ -70,7 +70,7 @@ class _Data:
 
 
 def write_charts(
-    page: Page, data: Page, made: Workbook, study: Study, places: Sequence[tuple[Curve, int, int]]
+    page: Page, data: Page, made: Workbook, study: Study, curve_rows: Sequence[tuple[Curve, int, int]]
 ) -> None:
     """Write the charts, and the points of the first to a sheet of their own."""
     page.title("Speed against accuracy", study.model.workbook.name)
@@ -84,7 +84,7 @@ def write_charts(
     titles = {FIRST_ERROR + n: f"{name}, % of the 5–95 % range" for n, name in enumerate(STATISTICS.values())}
     titles[FIRST_ERROR + len(STATISTICS)] = "Accepted share, % of it"
     for number, (column, title) in enumerate(titles.items()):
-        chart = _small(made, study, title, column, places)
+        chart = _small(made, study, title, column, curve_rows)
         if chart is not None:
             page.sheet.insert_chart(top, 0, chart, {"object_position": 1, "x_offset": number * _SMALL[0]})
     page.printed(study.model.workbook.name, scale=_SCALE)
@@ -97,8 +97,8 @@ def _main(made: Workbook, data: _Data, picture: Picture) -> ChartScatter:
     start, end = left / 10.0 ** math.ceil(0.3 * wide), right * 10.0 ** math.ceil(0.55 * wide)
     for mark in picture.marks:
         _add(chart, data, mark.words[0], [(start, mark.y), (right, mark.y)], _ASKED, width=1.25)
-        for place, words in enumerate(reversed(mark.words)):
-            _words(chart, data, words, (start, mark.y * 10.0 ** ((0.022 + 0.033 * place) * high)), _ASKED)
+        for index, words in enumerate(reversed(mark.words)):
+            _words(chart, data, words, (start, mark.y * 10.0 ** ((0.022 + 0.033 * index) * high)), _ASKED)
     x0 = start * 10.0**0.15
     y0, fall = guides_of(picture, bottom)
     for slope, text in ((-0.5, "slope −½: four times the work, half the error"), (-1.0, "slope −1")):
@@ -210,12 +210,12 @@ def _words(
 
 
 def _small(
-    made: Workbook, study: Study, title: str, column: int, places: Sequence[tuple[Curve, int, int]]
+    made: Workbook, study: Study, title: str, column: int, curve_rows: Sequence[tuple[Curve, int, int]]
 ) -> ChartScatter | None:
     """One number's error against the trials; engines, whose errors are those of Monte Carlo, would hide it."""
     chart = straight(made.add_chart({"type": "scatter", "subtype": "straight_with_markers"}))
     drawn = 0
-    for curve, first, last in places:
+    for curve, first, last in curve_rows:
         if curve not in study.curves or not _has(curve, column):
             continue
         style = _style(curve)
@@ -237,10 +237,10 @@ def _small(
 
 def _has(curve: Curve, column: int) -> bool:
     """Whether there is an error above zero to draw."""
-    place = column - FIRST_ERROR
-    if place == len(STATISTICS):
+    index = column - FIRST_ERROR
+    if index == len(STATISTICS):
         return any(rung.acceptance is not None and rung.acceptance.value > 0.0 for rung in curve.rungs)
-    return any(rung.shares[[*STATISTICS][place]] > 0.0 for rung in curve.rungs)
+    return any(rung.shares[[*STATISTICS][index]] > 0.0 for rung in curve.rungs)
 
 
 def _finished(chart: ChartScatter, size: tuple[int, int]) -> ChartScatter:

@@ -86,13 +86,13 @@ def _lines(lines: Sequence[tuple[str, str]]) -> str:
 def _text(said: str) -> str:
     """Escaped, what stands between backticks as code."""
     parts = escape(said).split("`")
-    return "".join(f"<code>{part}</code>" if place % 2 else part for place, part in enumerate(parts))
+    return "".join(f"<code>{part}</code>" if index % 2 else part for index, part in enumerate(parts))
 
 
 def _table(table: tables.Table) -> str:
     head = "".join(
-        f'<th class="left">{escape(each)}</th>' if place < table.right else f"<th>{escape(each)}</th>"
-        for place, each in enumerate(table.headings)
+        f'<th class="left">{escape(each)}</th>' if index < table.right else f"<th>{escape(each)}</th>"
+        for index, each in enumerate(table.headings)
     )
     rows = "".join(f"<tr>{_row(row, table.right)}</tr>\n" for row in table.rows)
     return f'<h2>{escape(table.title)}</h2>\n<div class="wide"><table><tr>{head}</tr>\n{rows}</table></div>\n'
@@ -100,8 +100,8 @@ def _table(table: tables.Table) -> str:
 
 def _row(row: tuple[str, ...], right: int) -> str:
     return "".join(
-        f'<td class="left">{escape(cell)}</td>' if place < right else f"<td>{escape(cell)}</td>"
-        for place, cell in enumerate(row)
+        f'<td class="left">{escape(cell)}</td>' if index < right else f"<td>{escape(cell)}</td>"
+        for index, cell in enumerate(row)
     )
 
 

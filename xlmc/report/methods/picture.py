@@ -362,7 +362,7 @@ def spread(heights: Sequence[float], apart: float, bottom: float, top: float) ->
             other, more = groups.pop()
             middle, count = (other * more + middle * count) / (more + count), more + count
         groups.append((middle, count))
-    found = [middle + (count - 1) * step / 2.0 - place * step for middle, count in groups for place in range(count)]
+    found = [middle + (count - 1) * step / 2.0 - index * step for middle, count in groups for index in range(count)]
     return _inside(found, step, bottom, top)
 
 
@@ -374,7 +374,7 @@ def _inside(heights: list[float], step: float, bottom: float, top: float) -> lis
         found.append(min(height, limit))
         limit = found[-1] - step
     limit = bottom
-    for place in range(len(found) - 1, -1, -1):
-        found[place] = max(found[place], limit)
-        limit = found[place] + step
+    for index in range(len(found) - 1, -1, -1):
+        found[index] = max(found[index], limit)
+        limit = found[index] + step
     return found

@@ -59,8 +59,8 @@ def _question(simulation: Simulation) -> Iterator[Html | str]:
         yield f"{simulation.accepted:,} that agree with the evidence were kept; one as they come agrees with "
         yield f"probability {probability_text(simulation.rare)}. The evidence "
     yield "asks: "
-    for place, filter_ in enumerate(model.filters):
-        yield "; " if place else ""
+    for index, filter_ in enumerate(model.filters):
+        yield "; " if index else ""
         yield element("bdi", filter_.name)
         yield f" {limits_text(filter_)}"
     yield ". The answers are those of these accepted trials."
@@ -89,7 +89,7 @@ def _table(rows: Sequence[SummaryRow]) -> Html:
         "div",
         element(
             "table",
-            element("thead", element("tr", *(_head(head, place > 1) for place, head in enumerate(heads)))),
+            element("thead", element("tr", *(_head(head, index > 1) for index, head in enumerate(heads)))),
             element("tbody", *(_line(row, mixed, thresholds) for row in rows)),
         ),
         class_="wide-table answers",

@@ -120,16 +120,16 @@ def _limit(limit: FilterLimit, units: dict[str, str]) -> Html:
 
 def _moved(limit: FilterLimit, units: dict[str, str]) -> Iterator[Html]:
     """A chart for the forecasts of each unit: changes in different units have no common axis."""
-    places: dict[str, list[int]] = {}
-    for place, slope in enumerate(limit.slopes):
-        places.setdefault(units[slope.forecast], []).append(place)
-    for unit, of_unit in places.items():
+    by_unit: dict[str, list[int]] = {}
+    for index, slope in enumerate(limit.slopes):
+        by_unit.setdefault(units[slope.forecast], []).append(index)
+    for unit, indexes in by_unit.items():
         drawn = [
             Line(
-                limit.slopes[place].forecast,
-                tuple((p.limit, p.answers[place].change.value, p.answers[place].change.error) for p in limit.points),
+                limit.slopes[index].forecast,
+                tuple((p.limit, p.answers[index].change.value, p.answers[index].change.error) for p in limit.points),
             )
-            for place in of_unit
+            for index in indexes
         ]
         upwards = f"Change of the mean{f', {unit}' if unit else ''}"
         across = f"Limit: {limit.filter} {limit.relation}"

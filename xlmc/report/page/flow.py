@@ -88,9 +88,9 @@ def _heads(cells: Sequence[Shown]) -> bool:
 
 def _table(headers: Sequence[str], rows: Sequence[Sequence[Shown]]) -> Html:
     """A table of a sheet's cells, which can be pushed aside where it is wider than the page."""
-    numbers = {place for row in rows for place, shown in enumerate(row) if shown.look in _NUMBERS}
-    heads = (_head(text, place in numbers) for place, text in enumerate(headers))
-    body = [element("tr", *(_cell(shown, place) for place, shown in enumerate(row))) for row in rows]
+    numbers = {index for row in rows for index, shown in enumerate(row) if shown.look in _NUMBERS}
+    heads = (_head(text, index in numbers) for index, text in enumerate(headers))
+    body = [element("tr", *(_cell(shown, index) for index, shown in enumerate(row))) for row in rows]
     parts = [element("thead", element("tr", *heads))] if headers else []
     return element("div", element("table", *parts, element("tbody", *body)), class_="wide-table")
 
@@ -99,8 +99,8 @@ def _head(text: str, right: bool) -> Html:
     return element("th", text, scope="col", class_="number" if right else None)
 
 
-def _cell(shown: Shown, place: int) -> Html:
-    if place == 0 and isinstance(shown.value, str):
+def _cell(shown: Shown, index: int) -> Html:
+    if index == 0 and isinstance(shown.value, str):
         return element("th", shown.value, scope="row")
     is_number = shown.look in _NUMBERS
     return element("td", shown_html(shown), class_=shown.look if is_number else None)

@@ -130,11 +130,11 @@ def _overlays(figures: Sequence[Figure], groups: Sequence[Sequence[int]]) -> lis
                 "div",
                 class_="chart",
                 role="img",
-                aria_label=f"Chart of {', '.join(figures[place].name for place in places)}",
+                aria_label=f"Chart of {', '.join(figures[index].name for index in group)}",
             ),
             element("ul", class_="legend"),
             class_="overlay",
             data_overlay=str(number),
         )
-        for number, places in enumerate(groups)
+        for number, group in enumerate(groups)
     ]

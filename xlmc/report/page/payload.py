@@ -68,9 +68,9 @@ def payload(simulation: Simulation, figures: Sequence[Figure]) -> dict[str, Any]
 def overlays_of(figures: Sequence[Figure]) -> list[list[int]]:
     """The figures, counted from 0, that one overlay can show: two or more in one unit."""
     by_units: dict[str, list[int]] = {}
-    for place, figure in enumerate(figures):
-        by_units.setdefault(figure.answer.units, []).append(place)
-    return [places for places in by_units.values() if len(places) > 1]
+    for index, figure in enumerate(figures):
+        by_units.setdefault(figure.answer.units, []).append(index)
+    return [group for group in by_units.values() if len(group) > 1]
 
 
 def _forecast(simulation: Simulation, figure: Figure, most: int) -> dict[str, Any]:

@@ -94,7 +94,7 @@ def assumptions(simulation: Simulation) -> Html:
     correlations = Flow()
     write_correlations(correlations, simulation)
     names = enumerate((*_HEADS, *_CHANGES))
-    heads = (element("th", head, scope="col", class_="number" if place else None) for place, head in names)
+    heads = (element("th", head, scope="col", class_="number" if index else None) for index, head in names)
     bodies = (_assumption(simulation, assumption) for assumption in simulation.model.assumptions)
     table = element("table", element("thead", element("tr", *heads)), *bodies)
     return element(

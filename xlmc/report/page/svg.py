@@ -47,8 +47,8 @@ def bars(drawn: Sequence[Bar], title: str, axis: str) -> Html:
     bottom = 24 + _ROW * len(drawn)
     scale = scale_of([0.0, *ends], _NAMES, _WIDTH - _MARGIN)
     found = [_text(0, 14, title, "title"), *_across(scale, 24, bottom, axis)]
-    for place, bar in enumerate(drawn):
-        found += _bar(bar, 24 + _ROW * place, scale)
+    for index, bar in enumerate(drawn):
+        found += _bar(bar, 24 + _ROW * index, scale)
     found.append(_stroke(scale(0.0), 24, scale(0.0), bottom, "axis"))
     return _drawing(found, bottom + _BELOW, f"{title}: {', '.join(bar.name for bar in drawn)}")
 
@@ -88,7 +88,7 @@ def _line(line: Line, number: int, x: Scale, y: Scale) -> list[Html]:
     if not known:
         return []
     look = f"line-{(number - 1) % 6 + 1}"
-    path = " ".join(f"{'L' if place else 'M'}{at:.1f} {up:.1f}" for place, (at, up, _, _) in enumerate(known))
+    path = " ".join(f"{'L' if index else 'M'}{at:.1f} {up:.1f}" for index, (at, up, _, _) in enumerate(known))
     found = [element("path", d=path, class_=f"line {look}")]
     for at, up, value, error in known:
         if error:
@@ -117,8 +117,8 @@ def _text(x: float, y: float, value: str, look: str) -> Html:
 
 
 def _rect(x: float, y: float, width: float, height: float, look: str) -> Html:
-    places = {"x": f"{x:.1f}", "y": f"{y:.1f}", "width": f"{width:.1f}", "height": f"{height:.1f}"}
-    return element("rect", class_=look, **places)
+    box = {"x": f"{x:.1f}", "y": f"{y:.1f}", "width": f"{width:.1f}", "height": f"{height:.1f}"}
+    return element("rect", class_=look, **box)
 
 
 def _stroke(x1: float, y1: float, x2: float, y2: float, look: str) -> Html:
@@ -143,7 +143,7 @@ class Scale:
     def ticks(self) -> list[float]:
         """The multiples of the step within the scale."""
         first, last = math.ceil(self.low / self.step - 1e-9), math.floor(self.high / self.step + 1e-9)
-        return [float(f"{place * self.step:.12g}") for place in range(first, last + 1)]
+        return [float(f"{index * self.step:.12g}") for index in range(first, last + 1)]
 
     def text(self, tick: float) -> str:
         """A tick in the digits that the step needs."""

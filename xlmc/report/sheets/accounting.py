@@ -68,19 +68,19 @@ def _write_rejections(page: Page, simulation: Simulation) -> None:
         [*headers, *(f"Also by {other}" for other in range(1, pairs + 1))],
         [
             [
-                cells.text(f"{place + 1}. {filter_.name}", "name"),
-                cells.count(sum(tally.errors[place].values())),
-                *_counted(int(tally.rejected[place]), simulation.trials),
-                *_counted(int(tally.only[place]), simulation.trials),
-                *(_pair(simulation, place, other) for other in range(pairs)),
+                cells.text(f"{index + 1}. {filter_.name}", "name"),
+                cells.count(sum(tally.errors[index].values())),
+                *_counted(int(tally.rejected[index]), simulation.trials),
+                *_counted(int(tally.only[index]), simulation.trials),
+                *(_pair(simulation, index, other) for other in range(pairs)),
             ]
-            for place, filter_ in enumerate(filters)
+            for index, filter_ in enumerate(filters)
         ],
     )
 
 
-def _pair(simulation: Simulation, place: int, other: int) -> Shown:
-    return cells.text("") if place == other else cells.count(int(simulation.tally.together[place, other]))
+def _pair(simulation: Simulation, index: int, other: int) -> Shown:
+    return cells.text("") if index == other else cells.count(int(simulation.tally.together[index, other]))
 
 
 def _counted(trials: int, of: int) -> list[Shown]:

@@ -78,8 +78,8 @@ def _line(name: str, found: Certainty) -> list[Shown]:
 def _write_own_ranges(page: Page, simulation: Simulation, trials: TrialsAt) -> None:
     """Write a line for each forecast that has a number on the sheet Trials; nothing where there is none."""
     found = [
-        (place, result, simulation.forecasts[name][: trials.shown])
-        for place, (name, result) in enumerate(simulation.results.items())
+        (index, result, simulation.forecasts[name][: trials.shown])
+        for index, (name, result) in enumerate(simulation.results.items())
     ]
     found = [each for each in found if not np.isnan(each[2]).all()]
     if not found:
@@ -91,8 +91,8 @@ def _write_own_ranges(page: Page, simulation: Simulation, trials: TrialsAt) -> N
     heads = ["Forecast", "Units", "From", "to", "Certainty", "Trials"]
     errors = simulation.plan.size == 0
     page.table([*heads[:5], "±", heads[5]] if errors else heads, [])
-    for place, result, values in found:
-        _write_line(page, result, values, xl_range_formula(*trials.column(place)), errors)
+    for index, result, values in found:
+        _write_line(page, result, values, xl_range_formula(*trials.column(index)), errors)
 
 
 def _said(simulation: Simulation, trials: TrialsAt) -> str:
@@ -117,8 +117,8 @@ def _write_line(page: Page, result: ForecastResult, values: NDArray[np.float64],
     known = values[~np.isnan(values)]
     share = proportion(int(np.count_nonzero((known >= spoken.low) & (known <= spoken.high))), known.size)
     page.line([cells.text(definition.name, "name"), cells.text(definition.units)])
-    for place, end in ((2, spoken.low), (3, spoken.high)):
-        page.put(row, place, Shown(end, "General", "typed"))
+    for column_of_end, end in ((2, spoken.low), (3, spoken.high)):
+        page.put(row, column_of_end, Shown(end, "General", "typed"))
     low, high = xl_rowcol_to_cell(row, 2), xl_rowcol_to_cell(row, 3)
     certainty, trials = xl_rowcol_to_cell(row, 4), xl_rowcol_to_cell(row, 6 if errors else 5)
     inside = f'ISNUMBER({column})*((({low}="")+({column}>={low}))>0)*((({high}="")+({column}<={high}))>0)'

@@ -53,18 +53,18 @@ def write_charts(
     book: Workbook,
     simulation: Simulation,
     figures: Sequence[Figure],
-    places: Sequence[BinsAt],
+    bins: Sequence[BinsAt],
     curves: Curves,
 ) -> None:
-    """Write the sheet with the charts; `places` are those of the figures' bins, `curves` takes the other numbers."""
+    """Write the sheet with the charts; `bins` says where those of the figures stand, `curves` takes the other numbers."""
     name = simulation.model.workbook.name
     page.title("Forecast charts of the accepted trials", f"{name}: {simulation.accepted:,} accepted trials")
     page.row = _FIRST
     if not figures:
         page.put(page.row, 0, cells.text("No forecast has a number in an accepted trial: nothing to draw.", "alarm"))
     drawings = [
-        Drawing(histogram_chart(book, place, figure.bins), figure.caption)
-        for figure, place in zip(figures, places, strict=True)
+        Drawing(histogram_chart(book, at, figure.bins), figure.caption)
+        for figure, at in zip(figures, bins, strict=True)
     ]
     breaks = place_drawings(page, drawings)
     others = [*_compared(book, curves, simulation, figures), *_cumulative(book, curves, simulation, figures)]
@@ -111,9 +111,9 @@ def _compared(book: Workbook, curves: Curves, simulation: Simulation, figures: S
 def _cumulative(book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]) -> Iterator[Drawing]:
     varied = varying(figures)
     first = len(figures) + 2 * len(alike(varied))
-    for place, figure in enumerate(varied):
+    for index, figure in enumerate(varied):
         charts = cumulative_charts(book, curves, simulation, figure)
-        share, number = percent(figure.answer.share), first + 2 * place
+        share, number = percent(figure.answer.share), first + 2 * index
         for offset, (chart, words) in enumerate(zip(charts, ("at most", "above"), strict=True), 1):
             caption = f"Figure {number + offset}. {figure.name}: share of the accepted trials {words} each value; "
             yield Drawing(chart, f"{caption}the central {share} range is dark.")

@@ -90,14 +90,14 @@ def write_acceptance(page: Page, limit: FilterLimit) -> TableAt:
 
 def _acceptance(point: LimitPoint, limit: FilterLimit) -> list[Shown]:
     return [
-        cells.text(_place(point.limit, limit), "name"),
+        cells.text(_tighter_or_looser(point.limit, limit), "name"),
         cells.exact(point.limit),
         cells.count(point.trials),
         *cells.share(point.acceptance),
     ]
 
 
-def _place(value: float, limit: FilterLimit) -> str:
+def _tighter_or_looser(value: float, limit: FilterLimit) -> str:
     if value == limit.limit:
         return "as it is"
     looser = (value < limit.limit) == (limit.relation in ("at least", "above"))
@@ -123,11 +123,11 @@ def write_answers(page: Page, limit: FilterLimit) -> list[TableAt]:
     ]
     page.table(headers, [])
     tables = []
-    for place, slope in enumerate(limit.slopes):
+    for index, slope in enumerate(limit.slopes):
         first = page.row
-        now = next(point.answers[place] for point in limit.points if point.limit == limit.limit)
+        now = next(point.answers[index] for point in limit.points if point.limit == limit.limit)
         for point in limit.points:
-            page.line(_answer(slope.forecast, point.limit, point.answers[place], now))
+            page.line(_answer(slope.forecast, point.limit, point.answers[index], now))
         tables.append(TableAt(page.sheet.get_name(), header, first, page.row - 1))
     return tables
 

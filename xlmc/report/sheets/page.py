@@ -56,11 +56,11 @@ class Page:
     def numbers(self, row: int, column: int, values: Iterable[float], number_format: str, look: str = "number") -> None:
         """Write a column of numbers that look alike, from a row on down: what `put` does for each, in less time."""
         style, write = self._styles(look, number_format), self.sheet.write_number
-        for place, value in enumerate(values, row):
+        for at, value in enumerate(values, row):
             if math.isfinite(value):
-                write(place, column, value, style)
+                write(at, column, value, style)
             else:
-                self.sheet.write_string(place, column, _in_words(value), style)
+                self.sheet.write_string(at, column, _in_words(value), style)
 
     def formula(self, row: int, column: int, formula: str, shown: Shown) -> None:
         """Write one cell whose value, shown until somebody changes what it depends on, is known."""

@@ -82,7 +82,7 @@ def write_pair_table(page: Page, pairs: Sequence[Pair]) -> None:
 def _line(pair: Pair) -> list[Shown]:
     greater = [cells.text(cells.NONE), BLANK] if pair.first_greater is None else cells.share(pair.first_greater)
     return [
-        *(cells.text(_limited(pair, place), "name") for place in (0, 1)),
+        *(cells.text(_limited(pair, index), "name") for index in (0, 1)),
         *cells.share(pair.both_above),
         *cells.interval(pair.both_above, percent=True),
         *cells.share(pair.either_above),
@@ -92,10 +92,10 @@ def _line(pair: Pair) -> list[Shown]:
     ]
 
 
-def _limited(pair: Pair, place: int) -> str:
-    forecast, limit = (pair.first, pair.second)[place], pair.limits[place]
+def _limited(pair: Pair, index: int) -> str:
+    forecast, limit = (pair.first, pair.second)[index], pair.limits[index]
     units = f" {forecast.units}" if forecast.units else ""
-    what = "threshold" if pair.thresholds[place] else "median"
+    what = "threshold" if pair.thresholds[index] else "median"
     return f"{forecast.name}, {what} {limit:.6g}{units}"
 
 
@@ -129,10 +129,10 @@ def _drawings(
     points = f"the first {known.size:,} accepted trials in which all of these forecasts are numbers"
     return [
         Drawing(
-            _scatter(book, found[pair.first.name], found[pair.second.name], titled, place),
-            f"Scatter chart {place + 1}. {titles[place]}: {points}.",
+            _scatter(book, found[pair.first.name], found[pair.second.name], titled, index),
+            f"Scatter chart {index + 1}. {titles[index]}: {points}.",
         )
-        for place, pair in enumerate(pairs)
+        for index, pair in enumerate(pairs)
     ]
 
 
@@ -149,8 +149,8 @@ def _points(
     values = simulation.forecasts[forecast.name][known]
     limits = bounds(float(values.min()), float(values.max()))
     if known[-1] < min(known.size, trials.shown):
-        place = simulation.model.forecasts.index(forecast)
-        return _Points(trials.heading(place), trials.column(place, known.size), limits)
+        index = simulation.model.forecasts.index(forecast)
+        return _Points(trials.heading(index), trials.column(index, known.size), limits)
     digits = cells.spread_format(float(values.max()) - float(values.min()))
     axis = f"{forecast.name} ({forecast.units})" if forecast.units else forecast.name
     rows = [[Shown(value, digits)] for value in values.tolist()]
@@ -158,7 +158,7 @@ def _points(
     return _Points(table.axis, table.column(0), limits)
 
 
-def _scatter(book: Workbook, first: _Points, second: _Points, titles: TableAt, place: int) -> ChartScatter:
+def _scatter(book: Workbook, first: _Points, second: _Points, titles: TableAt, index: int) -> ChartScatter:
     chart = straight(book.add_chart({"type": "scatter"}))
     chart.add_series(
         {
@@ -174,5 +174,5 @@ def _scatter(book: Workbook, first: _Points, second: _Points, titles: TableAt, p
     )
     chart.set_x_axis(across(first.axis, num_format=axis_format("General"), **first.limits))
     chart.set_y_axis(upwards(second.axis, "General", **second.limits))
-    finish(chart, titles.cell(place), legend=False)
+    finish(chart, titles.cell(index), legend=False)
     return chart

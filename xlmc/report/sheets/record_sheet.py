@@ -65,7 +65,7 @@ def _write_entry(page: Page, section: str, entry: Entry) -> None:
 
 def _write_table(page: Page, section: str, table: RecordTable) -> None:
     listed = section in _LISTED
-    starts, last = _placed([key for key, _ in table.columns])
+    starts, last = _column_starts([key for key, _ in table.columns])
     if listed:
         starts, last = list(range(_FIRST, _FIRST + len(table.columns))), _LAST
     page.spread([Shown(key, look="key") for key, _ in table.columns], starts, last)
@@ -85,13 +85,13 @@ def _write_listed(page: Page, values: Sequence[Value]) -> None:
     page.row += 1
 
 
-def _placed(keys: Sequence[str]) -> tuple[list[int], int]:
+def _column_starts(keys: Sequence[str]) -> tuple[list[int], int]:
     """Where each column of a table starts, and where the last one ends."""
-    starts, place = [], _FIRST
+    starts, column = [], _FIRST
     for key in keys:
-        starts.append(place)
-        place += _SPANS.get(key, 1)
-    return starts, place - 1
+        starts.append(column)
+        column += _SPANS.get(key, 1)
+    return starts, column - 1
 
 
 def _write_key(page: Page, row: int, key: str) -> None:

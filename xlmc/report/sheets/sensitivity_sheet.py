@@ -120,8 +120,8 @@ def _write_forecast(
         charts += move_charts(book, at, forecast)
         captions += move_captions(forecast)
     bottom, page.row = page.row, top
-    for place in range(0, len(charts), 2):
-        _write_pair(page, charts[place : place + 2], captions[place : place + 2])
+    for first in range(0, len(charts), 2):
+        _write_pair(page, charts[first : first + 2], captions[first : first + 2])
     page.row = bottom
 
 

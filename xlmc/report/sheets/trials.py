@@ -46,13 +46,13 @@ class TrialsAt:
     shown: int
     first_forecast: int
 
-    def heading(self, place: int) -> Reference:
+    def heading(self, index: int) -> Reference:
         """The heading of a forecast, its name and units."""
-        return [self.sheet, HEADER, self.first_forecast + place]
+        return [self.sheet, HEADER, self.first_forecast + index]
 
-    def column(self, place: int, most: int | None = None) -> Reference:
+    def column(self, index: int, most: int | None = None) -> Reference:
         """The cells of a forecast, or its first `most`; there is none without trials."""
-        column, rows = self.first_forecast + place, self.shown if most is None else most
+        column, rows = self.first_forecast + index, self.shown if most is None else most
         return [self.sheet, HEADER + 1, column, HEADER + rows, column]
 
 
@@ -66,8 +66,8 @@ def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> 
     columns = _columns(simulation, shown)
     page.sheet.set_column(1, max(1, len(columns)), _WIDTH)
     page.sheet.set_row(HEADER, 64)
-    for place, heading in enumerate([Shown("Trial", look="header"), *(heading for heading, _ in columns)]):
-        page.put(HEADER, place, heading)
+    for column, heading in enumerate([Shown("Trial", look="header"), *(heading for heading, _ in columns)]):
+        page.put(HEADER, column, heading)
     page.row = HEADER + 1
     _write_values(page, simulation.trial_index[:shown], [values for _, values in columns])
     page.sheet.freeze_panes(HEADER + 1, 1)
@@ -100,8 +100,8 @@ def _heading(name: str, units: str, look: str) -> Shown:
 
 def _write_values(page: Page, index: NDArray[np.int64], columns: list[NDArray[np.float64]]) -> None:
     page.numbers(page.row, 0, index.tolist(), "0", "trial")
-    for place, values in enumerate(columns, 1):
-        page.numbers(page.row, place, values.tolist(), cells.spread_format(_spread(values)))
+    for column, values in enumerate(columns, 1):
+        page.numbers(page.row, column, values.tolist(), cells.spread_format(_spread(values)))
     page.row += index.size
 
 

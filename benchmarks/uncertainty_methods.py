@@ -20,7 +20,7 @@ from tables import placed
 
 import xlmc
 from xlmc.cli.methods import study_json
-from xlmc.report.methods import save_methods, tables
+from xlmc.report.methods import methods_tables, save_methods
 from xlmc.studies.methods import STATISTICS, Rung, Study, recommendation, study
 from xlmc.studies.methods.curve import rung_of
 from xlmc.studies.methods.sampled import MONTE_CARLO
@@ -71,11 +71,11 @@ def _ratio(found: Study, rung: Rung, forecast: str, statistic: str) -> str:
 def filled(page: str, found: Study, rungs: Sequence[Rung]) -> str:
     """The page with its tables and words made anew."""
     made = {
-        "reference": tables.reference_table(found),
-        "bounds": tables.bounds_table(found),
-        "errors": tables.error_table(found),
-        "forecasts": tables.forecast_table(found),
-        "lengths": tables.rung_table(found),
+        "reference": methods_tables.reference_table(found),
+        "bounds": methods_tables.bounds_table(found),
+        "errors": methods_tables.error_table(found),
+        "forecasts": methods_tables.forecast_table(found),
+        "lengths": methods_tables.rung_table(found),
     }
     for name, table in made.items():
         page = placed(page, name, f"*{table.title}*\n\n{_markdown(table.headings, table.rows, table.right)}")

@@ -95,14 +95,14 @@ def methods(
 
 def _show(found: Study) -> None:
     from xlmc.cli.printing import table
-    from xlmc.report.methods import tables
+    from xlmc.report.methods import methods_tables
     from xlmc.studies.methods import recommendation
 
-    shown = tables.reference_table(found), tables.error_table(found), tables.bounds_table(found)
+    shown = methods_tables.reference_table(found), methods_tables.error_table(found), methods_tables.bounds_table(found)
     for each in shown:
         if each.rows:
             table(each.title, each.headings, each.rows, right=range(each.right, len(each.headings)))
-    for name, said in tables.cannot_lines(found):
+    for name, said in methods_tables.cannot_lines(found):
         say(paragraph(f"{name}: {said}.", hanging="    "))
     say()
     for advice in recommendation(found):
@@ -150,7 +150,7 @@ def study_json(found: Study) -> dict[str, Any]:
 
 
 def _curve(found: Study, curve: Curve) -> dict[str, Any]:
-    from xlmc.report.methods.tables import cannot
+    from xlmc.report.methods.methods_tables import cannot
     from xlmc.studies.methods import STATISTICS, need
     from xlmc.studies.methods.need import shortfall
 

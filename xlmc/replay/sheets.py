@@ -17,7 +17,7 @@ from xlmc.replay.closeness import Closeness, is_number
 from xlmc.replay.matching import matched
 from xlmc.replay.own_ranges import counted
 from xlmc.report.sheets.book import build_sheets
-from xlmc.report.sheets.trials import HEADER, TRIAL_ROWS
+from xlmc.report.sheets.trials_sheet import HEADER, TRIAL_ROWS
 from xlmc.workbook.model import CellContent, CellValue
 from xlmc.workbook.reader import read_workbook
 

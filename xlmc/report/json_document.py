@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.errors import WorkbookError
-from xlmc.report.conditioning import Marginal, conditioning
+from xlmc.report.filter_effect import Marginal, filter_effect_of
 from xlmc.report.summary import BaseCase, base_case
 from xlmc.results.record import make_record
 from xlmc.results.record.correlations_met import correlations_met
@@ -215,7 +215,7 @@ def _check(each: CheckResult) -> Json:
 
 
 def _assumption(simulation: Simulation, each: Assumption) -> Json:
-    told: Json = {
+    entry: Json = {
         "name": each.name,
         "cell": str(each.cell),
         "units": each.units,
@@ -230,12 +230,10 @@ def _assumption(simulation: Simulation, each: Assumption) -> Json:
         "shift": None,
         "narrowing": None,
     }
-    if each.name not in simulation.inputs:
-        return told
-    accepted, replicate = simulation.inputs[each.name], simulation.replicate
-    kept = None if replicate is None else replicate[: accepted.size]
-    found = conditioning(simulation.prior[each.name], accepted, kept)
-    return told | {
+    found = filter_effect_of(simulation, each.name)
+    if found is None:
+        return entry
+    return entry | {
         "prior": _marginal(found.prior),
         "accepted": _marginal(found.accepted),
         "shift": estimate_json(found.shift),

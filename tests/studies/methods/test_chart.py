@@ -12,9 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.report.methods.book import book
-from xlmc.report.methods.figure import STYLES, draw
-from xlmc.report.methods.picture import HOW_TO_READ, column_of, picture_of, spread
+from xlmc.report.methods.matplotlib_figure import STYLES, draw
+from xlmc.report.methods.methods_workbook import book
+from xlmc.report.methods.speed_chart import HOW_TO_READ, column_of, picture_of, spread
 from xlmc.studies.methods.choice import choice
 
 

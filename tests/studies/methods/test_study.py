@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from xlmc.errors import SimulationError
-from xlmc.report.methods import tables
+from xlmc.report.methods import methods_tables
 from xlmc.studies.methods import STATISTICS, recommendation, study
 from xlmc.studies.methods.curve import rung_of
 from xlmc.studies.methods.lockstep import in_step
@@ -94,16 +94,16 @@ def test_what_cannot_be_seen_is_said(small):
 
 
 def test_the_tables(small):
-    bounds = {row[0]: row[2:] for row in tables.bounds_table(small).rows}
+    bounds = {row[0]: row[2:] for row in methods_tables.bounds_table(small).rows}
     assert bounds["Chevrolet delta-V"][:2] == ("8.87 to 18.70", "8.85 to 15.88")
-    errors = {row[0]: row[1:] for row in tables.error_table(small).rows}
+    errors = {row[0]: row[1:] for row in methods_tables.error_table(small).rows}
     assert [*errors] == [curve.method.name for curve in small.every if curve.answers]
     assert errors["Monte Carlo"][0] == "8,192"
     assert errors["Taylor, first order"][-1] == "never"
     assert errors["Monte Carlo, engine formulas"][1].startswith("≈ ")
-    assert len(tables.forecast_table(small).rows) == 4 * (1 + len(errors))
-    assert {row[0] for row in tables.reference_table(small).rows} == set(small.varying)
-    said = dict(tables.cannot_lines(small))
+    assert len(methods_tables.forecast_table(small).rows) == 4 * (1 + len(errors))
+    assert {row[0] for row in methods_tables.reference_table(small).rows} == set(small.varying)
+    said = dict(methods_tables.cannot_lines(small))
     assert "does not see filters" in said["Taylor, second order"]
 
 
@@ -131,9 +131,9 @@ def test_without_filters_the_differential_method_may_do(straight):
 
 def test_nothing_is_said_of_filters_where_there_are_none(straight):
     found = study(straight, accuracy="2%", reference_trials=1 << 14, trials=1 << 10, replicates=2)
-    assert all("filters" not in said for _, said in tables.cannot_lines(found))
-    assert dict(tables.cannot_lines(found))["Taylor, first order"].startswith("takes every curve for straight")
-    assert not any(said.endswith(".") for _, said in tables.cannot_lines(found))
+    assert all("filters" not in said for _, said in methods_tables.cannot_lines(found))
+    assert dict(methods_tables.cannot_lines(found))["Taylor, first order"].startswith("takes every curve for straight")
+    assert not any(said.endswith(".") for _, said in methods_tables.cannot_lines(found))
 
 
 def test_independent_trials_are_carried_on_by_theory(straight):

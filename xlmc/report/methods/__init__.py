@@ -68,14 +68,14 @@ def _sealed(study: Study, ending: str) -> bytes:
 
 def _content(study: Study, ending: str) -> bytes:
     if ending == ".xlsx":
-        from xlmc.report.methods.book import book
+        from xlmc.report.methods.methods_workbook import book
 
         return book(study)
     if ending == ".html":
-        from xlmc.report.methods.page import page
+        from xlmc.report.methods.methods_page import page
 
         return page(study).encode()
-    from xlmc.report.methods.figure import draw
+    from xlmc.report.methods.matplotlib_figure import draw
 
     drawn = io.BytesIO()
     draw(study).savefig(drawn, format="png", dpi=130)

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from xlmc.report.page.page import check_page_path, page_text, save_page
+from xlmc.report.page.html_page import check_page_path, page_text, save_page
 
 __all__ = ["check_page_path", "page_text", "save_page"]

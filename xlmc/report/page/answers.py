@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from xlmc.report.page.element import EMPTY, Html, element
 from xlmc.report.page.flow import estimate_html, number, share_html
-from xlmc.report.sheets.results import base_sentences, opening_sentences, range_sentences
+from xlmc.report.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
 from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, range_heading, share_text, summarise
 from xlmc.results.record.sampling_words import sampling_sentence
 from xlmc.results.record.wording import limits_text

@@ -14,28 +14,29 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.report.figure import Figure, figures_of
 from xlmc.report.sheets import (
-    assumptions,
-    bins,
+    assumptions_sheet,
+    bins_sheet,
     certainty_sheet,
-    charts,
+    charts_sheet,
     limits_sheet,
     pairs_sheet,
     record_sheet,
-    results,
+    results_sheet,
     sensitivity_sheet,
     statistics_sheet,
-    trials,
+    trials_sheet,
 )
-from xlmc.report.sheets.bins import BinsAt
-from xlmc.report.sheets.curves import Curves
+from xlmc.report.sheets.bins_sheet import BinsAt
+from xlmc.report.sheets.curves_sheet import Curves
 from xlmc.report.sheets.page import Page
 from xlmc.report.sheets.styles import CREATED, Styles
-from xlmc.report.sheets.trials import TrialsAt
+from xlmc.report.sheets.trials_sheet import TrialsAt
 from xlmc.results.record import make_record
 from xlmc.studies.sensitivity import Sensitivities, sensitivities
 
 if TYPE_CHECKING:
     from xlsxwriter import Workbook
+    from xlsxwriter.worksheet import Worksheet
 
     from xlmc.run.simulation import Simulation
 
@@ -59,13 +60,11 @@ class Writing:
     bins: Sequence[BinsAt]
 
     def __init__(self, book: Workbook, simulation: Simulation, command: str | None, rows: int) -> None:
-        from xlmc.report.sheets.exact_sheet import ExactSheet
-
         self.book, self.simulation, self.command, self.rows = book, simulation, command, rows
         self.name = simulation.model.workbook.name
-        styles = Styles(book)
+        styles, exact_sheet = Styles(book), _exact_sheet()
         self.pages = {
-            sheet.name: Page(book.add_worksheet(sheet.name, ExactSheet), styles, sheet.widths)
+            sheet.name: Page(book.add_worksheet(sheet.name, exact_sheet), styles, sheet.widths)
             for sheet in SHEETS
             if sheet.wanted(self)
         }
@@ -106,7 +105,7 @@ class ResultSheet:
 
 
 def _charts(page: Page, run: Writing) -> None:
-    charts.write_charts(page, run.book, run.simulation, run.figures, run.bins, run.curves)
+    charts_sheet.write_charts(page, run.book, run.simulation, run.figures, run.bins, run.curves)
 
 
 def _pairs(page: Page, run: Writing) -> None:
@@ -128,11 +127,11 @@ def _has_limits(run: Writing) -> bool:
 
 
 def _trials(page: Page, run: Writing) -> None:
-    run.trials = trials.write_trials(page, run.simulation, run.rows)
+    run.trials = trials_sheet.write_trials(page, run.simulation, run.rows)
 
 
 def _bins(page: Page, run: Writing) -> None:
-    run.bins = bins.write_bins(page, run.figures, run.name)
+    run.bins = bins_sheet.write_bins(page, run.figures, run.name)
 
 
 def _record(page: Page, run: Writing) -> None:
@@ -140,8 +139,8 @@ def _record(page: Page, run: Writing) -> None:
 
 
 SHEETS: Final[tuple[ResultSheet, ...]] = (
-    ResultSheet("Results", lambda page, run: results.write_results(page, run.simulation), results.WIDTHS),
-    ResultSheet("Charts", _charts, charts.WIDTHS, after=("Bins",)),
+    ResultSheet("Results", lambda page, run: results_sheet.write_results(page, run.simulation), results_sheet.WIDTHS),
+    ResultSheet("Charts", _charts, charts_sheet.WIDTHS, after=("Bins",)),
     ResultSheet(
         "Statistics", lambda page, run: statistics_sheet.write_statistics(page, run.simulation), statistics_sheet.WIDTHS
     ),
@@ -153,11 +152,13 @@ SHEETS: Final[tuple[ResultSheet, ...]] = (
     ),
     ResultSheet("Pairs", _pairs, pairs_sheet.WIDTHS, after=("Charts", "Trials")),
     ResultSheet(
-        "Assumptions", lambda page, run: assumptions.write_assumptions(page, run.simulation), assumptions.WIDTHS
+        "Assumptions",
+        lambda page, run: assumptions_sheet.write_assumptions(page, run.simulation),
+        assumptions_sheet.WIDTHS,
     ),
     ResultSheet("Sensitivity", _sensitivity, sensitivity_sheet.WIDTHS),
     ResultSheet("Filter limits", _limits, limits_sheet.WIDTHS, wanted=_has_limits),
-    ResultSheet("Trials", _trials, trials.WIDTHS),
+    ResultSheet("Trials", _trials, trials_sheet.WIDTHS),
     ResultSheet("Bins", _bins),
     ResultSheet("Curves", lambda _, run: run.curves.finish(), after=("Charts", "Pairs")),
     ResultSheet("Record", _record, record_sheet.WIDTHS),
@@ -165,7 +166,7 @@ SHEETS: Final[tuple[ResultSheet, ...]] = (
 """In the order of their tabs."""
 
 
-def build_sheets(simulation: Simulation, *, command: str | None = None, rows: int = trials.TRIAL_ROWS) -> bytes:
+def build_sheets(simulation: Simulation, *, command: str | None = None, rows: int = trials_sheet.TRIAL_ROWS) -> bytes:
     """The result sheets of a run.
 
     Args:
@@ -186,3 +187,18 @@ def build_sheets(simulation: Simulation, *, command: str | None = None, rows: in
             sheet.write(run.pages[sheet.name], run)
             waiting.remove(sheet)
     return packed.getvalue()
+
+
+def _exact_sheet() -> type[Worksheet]:
+    """A worksheet whose numbers read back as the same numbers, so that a trial can be repeated to the last bit.
+
+    XlsxWriter writes 16 digits; a double needs up to 17.
+    """
+    from xlsxwriter.worksheet import Worksheet
+
+    class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
+        def _xml_number_element(self, number: float, attributes: Sequence[tuple[str, str]] = ()) -> None:
+            written = "".join([f' {key}="{value}"' for key, value in attributes])  # reference, style: nothing to escape
+            self.fh.write(f"<c{written}><v>{repr(float(number)).removesuffix('.0')}</v></c>")
+
+    return ExactSheet

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from xlmc.report.sheets.page import Page
-    from xlmc.report.sheets.trials import TrialsAt
+    from xlmc.report.sheets.trials_sheet import TrialsAt
     from xlmc.results.statements import Certainty
     from xlmc.run.simulation import ForecastResult, Simulation
 

@@ -25,7 +25,7 @@ from xlmc.report.figure import Figure
 from xlmc.report.histogram import Histogram, multiples
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
-from xlmc.report.sheets.curves import SHARE, Curves, TableAt
+from xlmc.report.sheets.curves_sheet import SHARE, Curves, TableAt
 from xlmc.report.sheets.styles import COLOURS, DARK, INK, LIGHT, across, axis_format, finish, straight, upwards
 from xlmc.report.summary import percent
 from xlmc.statistics import percentiles

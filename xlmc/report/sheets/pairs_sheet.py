@@ -10,8 +10,8 @@ import numpy as np
 
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import BLANK, Shown
-from xlmc.report.sheets.charts import Drawing, place_drawings
-from xlmc.report.sheets.curves import Curves, TableAt
+from xlmc.report.sheets.charts_sheet import Drawing, place_drawings
+from xlmc.report.sheets.curves_sheet import Curves, TableAt
 from xlmc.report.sheets.styles import DARK, Reference, across, axis_format, bounds, finish, straight, upwards
 from xlmc.results.statements import PAIRS, Pair, pairs_of
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from xlmc.definitions.model import Forecast
     from xlmc.report.sheets.page import Page
-    from xlmc.report.sheets.trials import TrialsAt
+    from xlmc.report.sheets.trials_sheet import TrialsAt
     from xlmc.run.simulation import Simulation
 
 __all__ = ["POINTS", "WIDTHS", "pair_sentences", "write_pair_table", "write_pairs"]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from xlmc.errors import WorkbookError
 from xlmc.report.sheets.book import build_sheets
-from xlmc.report.sheets.trials import TRIAL_ROWS
+from xlmc.report.sheets.trials_sheet import TRIAL_ROWS
 from xlmc.run.result_cells import filled_sheets
 from xlmc.workbook.inject import inject, result_sheets
 from xlmc.workbook.seal import sealed_parts

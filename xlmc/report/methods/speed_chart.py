@@ -13,7 +13,7 @@ from typing import Final, Literal
 
 import numpy as np
 
-from xlmc.report.methods.tables import near_text
+from xlmc.report.methods.methods_tables import near_text
 from xlmc.studies.methods import Curve, Study
 from xlmc.studies.methods.choice import Choice, choice
 from xlmc.studies.methods.law import law

@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING
 from xlmc.errors import WorkbookError
 from xlmc.report.figure import figures_of
 from xlmc.report.page.answers import answers
-from xlmc.report.page.dependence import dependence, limits
 from xlmc.report.page.element import EMPTY, Html, element, joined
-from xlmc.report.page.forecasts import charts, overlays
+from xlmc.report.page.forecast_charts import charts, overlays
 from xlmc.report.page.payload import payload_text
-from xlmc.report.page.sections import assumptions, certainty, checks, filters, notices, pairs, record, statistics
+from xlmc.report.page.sensitivity_sections import dependence, limits
+from xlmc.report.page.sheet_sections import assumptions, certainty, checks, filters, notices, pairs, record, statistics
 from xlmc.results.record import make_record
 from xlmc.studies.sensitivity import sensitivities
 from xlmc.workbook.seal import sealed_text

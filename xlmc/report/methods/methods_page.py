@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING, Final
 
-from xlmc.report.methods import tables
-from xlmc.report.methods.figure import draw
-from xlmc.report.methods.picture import HOW_TO_READ, Work
+from xlmc.report.methods import methods_tables
+from xlmc.report.methods.matplotlib_figure import draw
+from xlmc.report.methods.speed_chart import HOW_TO_READ, Work
 from xlmc.studies.methods import Study, recommendation
 
 if TYPE_CHECKING:
@@ -52,8 +52,8 @@ def page(study: Study) -> str:
     name = escape(study.model.workbook.name)
     words = "".join(f'<p class="said">{_text(each)}</p>\n' for each in recommendation(study))
     shown = (
-        tables.error_table(study), tables.bounds_table(study), tables.reference_table(study),
-        tables.forecast_table(study), tables.rung_table(study),
+        methods_tables.error_table(study), methods_tables.bounds_table(study), methods_tables.reference_table(study),
+        methods_tables.forecast_table(study), methods_tables.rung_table(study),
     )  # fmt: skip
     how = "".join(f'<p class="said">{escape(each)}</p>\n' for each in HOW_TO_READ) if study.varying else ""
     figures = "".join(
@@ -61,7 +61,7 @@ def page(study: Study) -> str:
         f"<figure>{_svg(draw(study, against, words=False))}</figure>\n"
         for against, what in _WORKS
     )
-    ends = tables.ends_lines(study)
+    ends = methods_tables.ends_lines(study)
     points = f"<h2>{ENDS}</h2>\n{_lines(ends)}" if ends else ""
     first, *rest = (_table(each) for each in shown if each.rows)
     return (
@@ -70,7 +70,7 @@ def page(study: Study) -> str:
         f"<style>{_STYLE}</style>\n</head>\n<body>\n"
         f'<h1>Methods of uncertainty analysis</h1>\n<p class="below">{name}</p>\n'
         f"{words}{figures}{first}"
-        f"<h2>What each method says of itself, and cannot do</h2>\n{_lines(tables.cannot_lines(study))}"
+        f"<h2>What each method says of itself, and cannot do</h2>\n{_lines(methods_tables.cannot_lines(study))}"
         f"{''.join(rest)}{points}</body>\n</html>\n"
     )
 
@@ -89,7 +89,7 @@ def _text(said: str) -> str:
     return "".join(f"<code>{part}</code>" if index % 2 else part for index, part in enumerate(parts))
 
 
-def _table(table: tables.Table) -> str:
+def _table(table: methods_tables.Table) -> str:
     head = "".join(
         f'<th class="left">{escape(each)}</th>' if index < table.right else f"<th>{escape(each)}</th>"
         for index, each in enumerate(table.headings)

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
-from xlmc.report.methods.figure import OTHER, STYLES, Style
-from xlmc.report.methods.picture import HOW_TO_READ, Line, Picture, column_of, guides_of, picture_of, spread
+from xlmc.report.methods.matplotlib_figure import OTHER, STYLES, Style
+from xlmc.report.methods.speed_chart import HOW_TO_READ, Line, Picture, column_of, guides_of, picture_of, spread
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.page import Page
 from xlmc.report.sheets.styles import FONT, GRID, INK, straight

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from xlmc.report.conditioning import Conditioning, Marginal, conditioning
+from xlmc.report.filter_effect import FilterEffect, Marginal, filter_effect_of
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.results.record.correlations_met import correlations_met
@@ -92,20 +92,18 @@ def _lines(simulation: Simulation) -> Iterator[list[Shown]]:
 
 def _statistics(simulation: Simulation, name: str, frozen: bool) -> tuple[list[Shown], list[Shown]]:
     """Of the draws before filtering, and of the accepted ones; or why it is not drawn."""
-    if name not in simulation.inputs:
+    found = filter_effect_of(simulation, name)
+    if found is None:
         why = cells.text(status(simulation.model, name, frozen))
         return [why, *_blank(_STATISTICS + 1)], _blank(_STATISTICS + 2, "second")
-    accepted, replicate = simulation.inputs[name], simulation.replicate
-    kept = None if replicate is None else replicate[: accepted.size]
-    found = conditioning(simulation.prior[name], accepted, kept)
     return _before(found), _accepted(found)
 
 
-def _before(found: Conditioning) -> list[Shown]:
+def _before(found: FilterEffect) -> list[Shown]:
     return [cells.text("before"), cells.count(found.prior.trials), *_marginal(found.prior), *_blank(4)]
 
 
-def _accepted(found: Conditioning) -> list[Shown]:
+def _accepted(found: FilterEffect) -> list[Shown]:
     return [
         cells.text("accepted", "second"),
         Shown(found.accepted.trials, cells.count(0).format, "second number"),

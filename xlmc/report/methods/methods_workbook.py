@@ -7,9 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.report.methods import tables
-from xlmc.report.methods.charts import DATA, write_charts
-from xlmc.report.methods.page import ENDS
+from xlmc.report.methods import methods_tables
+from xlmc.report.methods.excel_charts import DATA, write_charts
+from xlmc.report.methods.methods_page import ENDS
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.page import Page
@@ -62,14 +62,18 @@ def _write_words(page: Page, study: Study) -> None:
     page.row += 1
     for said in recommendation(study):
         page.wide(said.replace("`", ""), "paragraph", _LAST)
-    for table in (tables.error_table(study), tables.bounds_table(study), tables.reference_table(study)):
+    for table in (
+        methods_tables.error_table(study),
+        methods_tables.bounds_table(study),
+        methods_tables.reference_table(study),
+    ):
         if table.rows:
             page.heading(table.title)
             _texts(page, table)
     page.heading("What each method says of itself, and cannot do")
-    for method, said in tables.cannot_lines(study):
+    for method, said in methods_tables.cannot_lines(study):
         page.spread([cells.text(method, "name"), cells.text(said)], [0, 1], _LAST)
-    ends = tables.ends_lines(study)
+    ends = methods_tables.ends_lines(study)
     if ends:
         page.heading(ENDS)
     for bound, point in ends:
@@ -77,7 +81,7 @@ def _write_words(page: Page, study: Study) -> None:
     page.printed(name)
 
 
-def _texts(page: Page, table: tables.Table) -> None:
+def _texts(page: Page, table: methods_tables.Table) -> None:
     rows = [
         [
             cells.text(cell, "name" if index == 0 else "text" if index < table.right else "number")
@@ -130,7 +134,7 @@ def _rung_cells(study: Study, curve: Curve, rung: Rung) -> list[Shown]:
 def _floor(study: Study) -> list[Shown]:
     accepted = study.reference.acceptance
     share = None if accepted.error is None else 100.0 * accepted.error / accepted.value
-    return [*(_number(100.0 * tables.floor_of(study, each)) for each in STATISTICS), _number(share)]
+    return [*(_number(100.0 * methods_tables.floor_of(study, each)) for each in STATISTICS), _number(share)]
 
 
 def _number(value: float | None) -> Shown:
@@ -139,7 +143,7 @@ def _number(value: float | None) -> Shown:
 
 
 def _write_forecasts(page: Page, study: Study) -> None:
-    table = tables.forecast_table(study)
+    table = methods_tables.forecast_table(study)
     page.title("Forecast by forecast", f"{table.title}; ± is the standard error of a root mean square")
     page.row += 1
     _texts(page, table)

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 from xlmc.report.figure import Figure, varying
 from xlmc.report.sheets import cells
-from xlmc.report.sheets.bins import BinsAt, histogram_chart
+from xlmc.report.sheets.bins_sheet import BinsAt, histogram_chart
 from xlmc.report.sheets.curve_charts import MOST, alike, cumulative_charts, overlay_chart, trend_chart
-from xlmc.report.sheets.curves import Curves
+from xlmc.report.sheets.curves_sheet import Curves
 from xlmc.report.summary import percent
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def write_charts(
     bins: Sequence[BinsAt],
     curves: Curves,
 ) -> None:
-    """Write the sheet with the charts; `bins` says where those of the figures stand, `curves` takes the other numbers."""
+    """Write the sheet with the charts; `bins` says where their bins stand, `curves` takes the other numbers."""
     name = simulation.model.workbook.name
     page.title("Forecast charts of the accepted trials", f"{name}: {simulation.accepted:,} accepted trials")
     page.row = _FIRST

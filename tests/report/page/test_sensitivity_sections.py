@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.report.page.dependence import dependence, limits
 from xlmc.report.page.element import EMPTY
+from xlmc.report.page.sensitivity_sections import dependence, limits
 from xlmc.report.sheets.sensitivity_sheet import BARS
 from xlmc.studies.sensitivity import sensitivities
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from xlmc.definitions.model import Correlation
-from xlmc.report.conditioning import conditioning
-from xlmc.report.sheets.assumptions import HEADER
+from xlmc.report.filter_effect import filter_effect
+from xlmc.report.sheets.assumptions_sheet import HEADER
 from xlmc.statistics import rank_correlation
 
 
@@ -18,7 +18,7 @@ def lines(book, rows_of):
 
 def test_definition_and_draws_before_and_after_stand_together(run, lines):
     before, accepted = lines["width"]
-    found = conditioning(run.prior["width"], run.inputs["width"])
+    found = filter_effect(run.prior["width"], run.inputs["width"])
     assert before[:5] == ["width", "S!A1", "Uniform: Low 1, High 3", "before", run.prior["width"].size]
     assert accepted[:5] == ["ft", 2.0, "tape", "accepted", run.accepted]
     for line, part in ((before, found.prior), (accepted, found.accepted)):
@@ -85,8 +85,8 @@ def test_the_sheets_of_a_run_in_replicates(make, opened, rows_of):
     assert any("independent trials, which these samples hardly ever exceed" in str(text) for text in results)
     texts = [row[0] for row in rows_of(book["Assumptions"]) if row]
     assert any(str(text).startswith("Before filtering ± is that of independent trials") for text in texts)
-    found = conditioning(run.prior["b"], run.inputs["b"], run.replicate)
-    assert found.accepted.mean.error < conditioning(run.prior["b"], run.inputs["b"]).accepted.mean.error
+    found = filter_effect(run.prior["b"], run.inputs["b"], run.replicate)
+    assert found.accepted.mean.error < filter_effect(run.prior["b"], run.inputs["b"]).accepted.mean.error
     line = next(
         row
         for row in rows_of(book["Assumptions"])

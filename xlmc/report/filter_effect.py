@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,10 @@ from xlmc import statistics
 from xlmc.columns import numbers
 from xlmc.statistics import Estimate
 
-__all__ = ["PERCENTS", "Conditioning", "Marginal", "conditioning", "marginal"]
+if TYPE_CHECKING:
+    from xlmc.run.simulation import Simulation
+
+__all__ = ["PERCENTS", "FilterEffect", "Marginal", "filter_effect", "filter_effect_of", "marginal"]
 
 PERCENTS = (5.0, 50.0, 95.0)
 
@@ -33,7 +37,7 @@ class Marginal:
 
 
 @dataclass(frozen=True, slots=True)
-class Conditioning:
+class FilterEffect:
     """An assumption before and after filtering.
 
     Attributes:
@@ -59,16 +63,25 @@ def marginal(draws: NDArray[np.float64], replicate: NDArray[np.int64] | None = N
     )
 
 
-def conditioning(
+def filter_effect_of(simulation: Simulation, assumption: str) -> FilterEffect | None:
+    """What the filters of a run did to one of its assumptions; None where the assumption is not drawn."""
+    if assumption not in simulation.inputs:
+        return None
+    accepted, replicate = simulation.inputs[assumption], simulation.replicate
+    kept = None if replicate is None else replicate[: accepted.size]
+    return filter_effect(simulation.prior[assumption], accepted, kept)
+
+
+def filter_effect(
     prior: NDArray[np.float64], accepted: NDArray[np.float64], replicate: NDArray[np.int64] | None = None
-) -> Conditioning:
+) -> FilterEffect:
     """Compare `(n,)` draws before filtering with the `(m,)` accepted ones.
 
     Errors are those of independent samples; that the accepted draws may be among the others makes them a little
     large. With the `(m,)` replicates of the accepted draws, those of the accepted come from the replicates.
     """
     before, after = marginal(prior), marginal(accepted, replicate)
-    return Conditioning(before, after, _shift(before, after), _narrowing(before, after))
+    return FilterEffect(before, after, _shift(before, after), _narrowing(before, after))
 
 
 def _shift(before: Marginal, after: Marginal) -> Estimate:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
-from xlmc.report.methods.picture import HOW_TO_READ, Line, Picture, Work, column_of, guides_of, picture_of, spread
+from xlmc.report.methods.speed_chart import HOW_TO_READ, Line, Picture, Work, column_of, guides_of, picture_of, spread
 from xlmc.studies.methods import STATISTICS, Curve, Rung, Study
 from xlmc.studies.methods.rms import Rms
 

@@ -13,7 +13,7 @@ from openpyxl.utils import column_index_from_string, get_column_letter, range_bo
 from openpyxl.xml.functions import fromstring
 
 from xlmc.report.figure import figures_of
-from xlmc.report.sheets.bins import HEADER, TABLE
+from xlmc.report.sheets.bins_sheet import HEADER, TABLE
 from xlmc.report.sheets.book import build_sheets
 
 

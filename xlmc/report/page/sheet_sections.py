@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from xlmc.report.conditioning import PERCENTS, Conditioning, Marginal, conditioning
+from xlmc.report.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of
 from xlmc.report.page.element import EMPTY, Html, element
 from xlmc.report.page.flow import Flow, estimate_html, number
 from xlmc.report.sheets.accounting import write_accounting, write_checks
-from xlmc.report.sheets.assumptions import MEANING, MOVED, NARROWED, STRATIFIED, write_correlations
+from xlmc.report.sheets.assumptions_sheet import MEANING, MOVED, NARROWED, STRATIFIED, write_correlations
 from xlmc.report.sheets.cells import NONE
 from xlmc.report.sheets.certainty_sheet import write_ranges
 from xlmc.report.sheets.pairs_sheet import pair_sentences, write_pair_table
-from xlmc.report.sheets.results import LAST, write_counts
+from xlmc.report.sheets.results_sheet import LAST, write_counts
 from xlmc.report.sheets.statistics_sheet import write_forecast
 from xlmc.results.record import Entry, Record, RecordTable, Section, Value
 from xlmc.results.record.wording import distribution_text, number_text, status
@@ -120,12 +120,10 @@ def _remarks(simulation: Simulation) -> Iterator[str]:
 def _assumption(simulation: Simulation, assumption: Assumption) -> Html:
     """Its name above two rows, in a body of their own so that they stay together."""
     named = element("tr", element("th", *_named(assumption), scope="rowgroup", colspan=str(_COLUMNS)))
-    if assumption.name not in simulation.inputs:
+    found = filter_effect_of(simulation, assumption.name)
+    if found is None:
         why = element("td", status(simulation.model, assumption.name, assumption.frozen), colspan=str(_COLUMNS))
         return element("tbody", named, element("tr", why))
-    accepted, replicate = simulation.inputs[assumption.name], simulation.replicate
-    kept = None if replicate is None else replicate[: accepted.size]
-    found = conditioning(simulation.prior[assumption.name], accepted, kept)
     before = element("tr", *_marginal(found.prior, "before"), element("td"), element("td"))
     return element("tbody", named, before, element("tr", *_marginal(found.accepted, "accepted"), *_changes(found)))
 
@@ -144,7 +142,7 @@ def _marginal(found: Marginal, when: str) -> Iterator[Html]:
         yield element("td", estimate_html(estimate), class_="number")
 
 
-def _changes(found: Conditioning) -> Iterator[Html]:
+def _changes(found: FilterEffect) -> Iterator[Html]:
     yield _change(found.shift, abs(found.shift.value) >= MOVED)
     yield _change(found.narrowing, found.narrowing.value <= NARROWED)
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.report.sheets.trials import HEADER
+from xlmc.report.sheets.trials_sheet import HEADER
 
 FIRST = HEADER + 2  # as Excel counts
 

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
     from xlmc.run.simulation import Simulation
 
-__all__ = ["SHEETS", "ResultSheet", "Writing", "build_sheets"]
+__all__ = ["SHEETS", "ResultSheet", "Writing", "build_sheets", "exact_sheet"]
 
 
 class Writing:
@@ -62,9 +62,9 @@ class Writing:
     def __init__(self, book: Workbook, simulation: Simulation, command: str | None, rows: int) -> None:
         self.book, self.simulation, self.command, self.rows = book, simulation, command, rows
         self.name = simulation.model.workbook.name
-        styles, exact_sheet = Styles(book), _exact_sheet()
+        styles, kind = Styles(book), exact_sheet()
         self.pages = {
-            sheet.name: Page(book.add_worksheet(sheet.name, exact_sheet), styles, sheet.widths)
+            sheet.name: Page(book.add_worksheet(sheet.name, kind), styles, sheet.widths)
             for sheet in SHEETS
             if sheet.wanted(self)
         }
@@ -189,7 +189,7 @@ def build_sheets(simulation: Simulation, *, command: str | None = None, rows: in
     return packed.getvalue()
 
 
-def _exact_sheet() -> type[Worksheet]:
+def exact_sheet() -> type[Worksheet]:
     """A worksheet whose numbers read back as the same numbers, so that a trial can be repeated to the last bit.
 
     XlsxWriter writes 16 digits; a double needs up to 17.

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from xlmc.evaluation.graph.choices import CHOICES
+from xlmc.evaluation.graph.expressions import WRITTEN_OUT
 from xlmc.evaluation.graph.lambdas import LAMBDAS
-from xlmc.evaluation.graph.places import PLACES
-from xlmc.evaluation.graph.written_out import WRITTEN_OUT
+from xlmc.evaluation.graph.reference_functions import REFERENCE_FUNCTIONS
 from xlmc.functions.families import REGISTRY
 
 PAGE = Path(__file__).with_name("functions.md")
@@ -32,7 +32,7 @@ Excel File Format", section 3.2). The rows of the registry keep it too. What is 
 
 So `SUM(INDEX((C1:C3>3)*C1:C3,0))` and `MATCH(1,INDEX((A1:A3="x")*(B1:B3=3),0),0)` need no Ctrl-Shift-Enter, and
 `SUMPRODUCT(IF(C1:C3>3,C1:C3))` needs it. In `VLOOKUP`, `CHOOSE({1,2},A1:A3,B1:B3)` does not need it, and
-`CHOOSE({1,2},A1:A3&C1:C3,B1:B3)` does. `OFFSET` that leads to several places at once is refused. A row or column
+`CHOOSE({1,2},A1:A3&C1:C3,B1:B3)` does. `OFFSET` that leads to several ranges at once is refused. A row or column
 number 0 of `INDEX` gives the same whether it is typed or drawn.
 
 The functions of the former Analysis ToolPak, such as `EDATE`, `EOMONTH`, `WEEKNUM`, `YEARFRAC`, `NETWORKDAYS`,
@@ -150,7 +150,7 @@ The first limits count one trial. Where arrays are large, fewer trials are evalu
 def names() -> list[str]:
     """Every function of Excel that xlmc computes, in alphabetical order."""
     internal = {"SINGLE", "ANCHORARRAY"}
-    known = {*REGISTRY, *CHOICES, *PLACES, *LAMBDAS, *WRITTEN_OUT, "LET", "LAMBDA"} - internal
+    known = {*REGISTRY, *CHOICES, *REFERENCE_FUNCTIONS, *LAMBDAS, *WRITTEN_OUT, "LET", "LAMBDA"} - internal
     return sorted(name for name in known if name[0].isalpha() and name == name.upper())
 
 

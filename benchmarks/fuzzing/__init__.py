@@ -34,7 +34,7 @@ _WANTED: Final = (
     "scipy.optimize",
     "scipy.special",
     "xlmc.cli",
-    "xlmc.evaluation.reference.formulas_engine",
+    "xlmc.evaluation.formulas_engine",
     "xlmc.evaluation.llvm",
     "xlmc.functions.families",
     "xlmc.report.page",

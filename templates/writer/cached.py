@@ -10,8 +10,7 @@ from pathlib import Path
 
 from xlmc.address import Cell
 from xlmc.errors import ErrorCode
-from xlmc.evaluation.graph.lower import Lowering
-from xlmc.evaluation.graph.widening import widened
+from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.formula import Resolver, build_graph
 from xlmc.workbook.reader import read_workbook
 
@@ -40,7 +39,7 @@ def computed(path: Path) -> Values:
     def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
         return Lowering(build_graph(resolver, cells, frozenset(), more=more), {}, {})
 
-    lowering = widened(lower)
+    lowering = lower_until_complete(lower)
     return {(cell.sheet, cell.row - 1, cell.column - 1): _shown(lowering, cell) for cell in cells}
 
 

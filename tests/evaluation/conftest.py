@@ -12,8 +12,7 @@ from xlmc.address import parse_address
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT, Target
 from xlmc.evaluation.engines import ENGINES
-from xlmc.evaluation.graph.lower import Lowering
-from xlmc.evaluation.graph.widening import widened
+from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.evaluation.numpy import numpy_engine as module
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.formula import Resolver, build_graph
@@ -45,7 +44,7 @@ def _bits(column):
     return numbers.view(np.int64).tolist(), codes.tolist()
 
 
-def _evaluated(evaluator, draws, n):
+def _evaluate(evaluator, draws, n):
     filters = [(_bits(column), _objects(column)) for column in evaluator.filters(draws, n)]
     survivors = np.flatnonzero([all(objects[i] == 1.0 for _, objects in filters) for i in range(n)])
     late = evaluator.forecasts(survivors) if survivors.size else []
@@ -58,15 +57,15 @@ def lower(workbook):
 
     def make(cells, inputs, targets, held=None, **of_workbook):
         book = workbook(cells, **of_workbook)
-        places = {parse_address(address, "S"): address for address in inputs}
+        names = {parse_address(address, "S"): address for address in inputs}
         held = {parse_address(address, "S"): value for address, value in (held or {}).items()}
         found = [parse_address(address, "S") for address in targets]
 
         def lowered(more):
-            graph = build_graph(Resolver(book, places), found, frozenset(places), frozenset(held), more=more)
-            return Lowering(graph, places, held)
+            graph = build_graph(Resolver(book, names), found, frozenset(names), frozenset(held), more=more)
+            return Lowering(graph, names, held)
 
-        return widened(lowered), [Target(cell, cell) for cell in found]
+        return lower_until_complete(lowered), [Target(cell, cell) for cell in found]
 
     return make
 
@@ -85,11 +84,11 @@ def run(lower):
         first, late = targets[: len(filters)], targets[len(filters) :]
         program = NumpyProgram.of(lowering, first, late, frozenset(draws))
         evaluator = program.evaluator(n)
-        fast = _evaluated(evaluator, draws, n)
+        fast = _evaluate(evaluator, draws, n)
         nodes = [lowering.target(target) for target in targets]
         slow = module.TrackingEvaluator(lowering.dag, nodes[: len(filters)], nodes[len(filters) :])
-        assert fast == _evaluated(slow, draws, n)
-        left = evaluator._departed or bool(evaluator._tracking._values)
+        assert fast == _evaluate(slow, draws, n)
+        left = evaluator._left_fast_path or bool(evaluator._tracking._values)
         return Outcome([o for _, o in fast[0]], [o for _, o in fast[1]], left, program)
 
     return compare

@@ -11,7 +11,7 @@ from hypothesis import given, note, settings
 from hypothesis import strategies as st
 
 from xlmc.evaluation.engines import ENGINES
-from xlmc.evaluation.reference.tracking import TrackingEvaluator
+from xlmc.evaluation.tracking import TrackingEvaluator
 
 RELATIVE = 1e-12
 
@@ -172,8 +172,8 @@ def differences(lower):
         n = len(next(iter(draws.values())))
         lowering, targets = lower(cells, draws, [*filters, *forecasts], names=NAMES)
         split = targets[: len(filters)], targets[len(filters) :]
-        places = [[lowering.target(target) for target in part] for part in split]
-        expected = _columns(TrackingEvaluator(lowering.dag, *places), draws, n)
+        nodes = [[lowering.target(target) for target in part] for part in split]
+        expected = _columns(TrackingEvaluator(lowering.dag, *nodes), draws, n)
         program = ENGINES[engine].load()(lowering, *split, frozenset(may_err))
         return list(zip(_columns(program.evaluator(n), draws, n), expected, strict=True))
 
@@ -198,11 +198,11 @@ def test_every_engine_agrees_with_the_careful_path(differences, engine, formula)
 
 
 @OURS
-@pytest.mark.parametrize("place", ["filter", "forecast"])
+@pytest.mark.parametrize("role", ["filter", "forecast"])
 @pytest.mark.parametrize("formula", ODD)
-def test_errors_are_the_same_trial_by_trial(differences, engine, formula, place):
+def test_errors_are_the_same_trial_by_trial(differences, engine, formula, role):
     draws = {"A1": ODD_DRAWS, "A2": np.linspace(1, 2, len(ODD_DRAWS))}
-    above = "=Z9<1E300" if place == "filter" else "=A2<1.95"
+    above = "=Z9<1E300" if role == "filter" else "=A2<1.95"
     agree(differences(engine, a_book(formula, above), draws, ["Z9", "Z8", "A1"], ["D1"]))
 
 

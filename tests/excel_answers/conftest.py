@@ -28,8 +28,7 @@ from xlmc.address import Area, Cell, column_letters, parse_address
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import TEXT_RESULT, Column, Target
 from xlmc.evaluation.engines import ENGINES
-from xlmc.evaluation.graph.lower import Lowering
-from xlmc.evaluation.graph.widening import widened
+from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.formula import Resolver, build_graph
 from xlmc.workbook.model import CellContent, Formula, Sheet, Workbook
 
@@ -303,7 +302,7 @@ def _lowered(table: Table, numbers: Mapping[float, Cell]) -> tuple[Lowering, Map
         graph = build_graph(resolver, wanted, frozenset(inputs), more=more, strict=False)
         return Lowering(graph, inputs, {}, audit=True)
 
-    return widened(lower), {inputs[cell]: np.full(TRIALS, number) for number, cell in numbers.items()}
+    return lower_until_complete(lower), {inputs[cell]: np.full(TRIALS, number) for number, cell in numbers.items()}
 
 
 def _workbook(table: Table, numbers: Mapping[float, Cell]) -> Workbook:

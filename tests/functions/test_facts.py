@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 
+from xlmc.evaluation.graph.called_functions import SPECIAL
 from xlmc.evaluation.graph.choices import CHOICES
-from xlmc.evaluation.graph.counts import SPECIAL
+from xlmc.evaluation.graph.expressions import WRITTEN_OUT
 from xlmc.evaluation.graph.lambdas import LAMBDAS
-from xlmc.evaluation.graph.places import PLACES
+from xlmc.evaluation.graph.reference_functions import REFERENCE_FUNCTIONS
 from xlmc.evaluation.graph.references import REFERENCES
-from xlmc.evaluation.graph.running import FOLDS
-from xlmc.evaluation.graph.written_out import WRITTEN_OUT
+from xlmc.evaluation.graph.running_totals import FOLDS
 from xlmc.evaluation.passes.bounds import _OF_ONE
 from xlmc.evaluation.passes.derivatives.rules import RULES
 from xlmc.evaluation.passes.exact import EXACT
@@ -36,7 +36,7 @@ ROWS = {row.name: row for row in REGISTRY.values()}
 MADE = {"shown", "settled", *(row.name for row in SO_FAR.values())}
 """Rows that no formula calls by name."""
 
-OURS = {*REGISTRY, *CHOICES, *PLACES, *LAMBDAS, *WRITTEN_OUT, "LET", "LAMBDA"}
+OURS = {*REGISTRY, *CHOICES, *REFERENCE_FUNCTIONS, *LAMBDAS, *WRITTEN_OUT, "LET", "LAMBDA"}
 NAMES = {name for name in OURS if name.isupper()}
 
 _QUOTED = re.compile(r"[\"'](?:" + "|".join(map(re.escape, NAMES)) + r")[\"' ]")
@@ -44,22 +44,25 @@ _QUOTED = re.compile(r"[\"'](?:" + "|".join(map(re.escape, NAMES)) + r")[\"' ]")
 LISTS = {
     ("definitions/in_cells/random_functions.py", "INVERSES"): "any other function of RAND() is computed from its draw",
     ("evaluation/graph/choices.py", "CHOICES"): "any other function has all its arguments computed",
-    ("evaluation/graph/counts.py", "SPECIAL"): "any other function takes as many arguments as its row says",
+    ("evaluation/graph/called_functions.py", "SPECIAL"): "any other function takes as many arguments as its row says",
     ("evaluation/graph/lambdas.py", "LAMBDAS"): "any other function takes no LAMBDA",
-    ("evaluation/graph/one_cell.py", "_CHOICES"): "any other function that gives a range is asked for its cells",
-    ("evaluation/graph/places.py", "PLACES"): "any other function gets values, not places",
-    ("evaluation/graph/places.py", "_count"): "what PLACES has",
+    ("evaluation/graph/references.py", "_CHOOSING"): "any other function that gives a range is asked for its cells",
+    (
+        "evaluation/graph/reference_functions.py",
+        "REFERENCE_FUNCTIONS",
+    ): "any other function gets values",
+    ("evaluation/graph/reference_functions.py", "_count"): "what REFERENCE_FUNCTIONS has",
     ("evaluation/graph/references.py", "REFERENCES"): "any other function gives values, not references",
-    ("evaluation/graph/running.py", "FOLDS"): "any other function is computed of each range by itself",
-    ("evaluation/graph/running.py", "RunningTotals"): "what FOLDS has",
-    ("evaluation/graph/whole_columns.py", "_looked_up"): "any other lookup searches as MATCH does, or is refused",
-    ("evaluation/graph/whole_columns.py", "_searched"): "any other lookup searches in both directions alike",
+    ("evaluation/graph/running_totals.py", "FOLDS"): "any other function is computed of each range by itself",
+    ("evaluation/graph/running_totals.py", "RunningTotals"): "what FOLDS has",
+    ("evaluation/graph/whole_columns.py", "_look_up"): "any other lookup searches as MATCH does, or is refused",
+    ("evaluation/graph/whole_columns.py", "_reach"): "any other lookup searches in both directions alike",
     ("evaluation/llvm/operations.py", "_ROWS"): "any other function is computed by NumPy",
     ("evaluation/llvm/sets.py", "_ROWS"): "any other function is computed by NumPy",
     ("evaluation/numpy/sequence.py", "_sines_with_cosines"): "any other function is computed by itself",
     ("evaluation/passes/bounds.py", "_OF_ONE"): "of any other function no bounds are known but those of its row",
-    ("evaluation/passes/derivatives/rounding.py", "multiples"): "any other function is differentiated by differences",
-    ("evaluation/passes/derivatives/rounding.py", "steps"): "any other function is differentiated by differences",
+    ("evaluation/passes/derivatives/logical.py", "multiples"): "any other function is differentiated by differences",
+    ("evaluation/passes/derivatives/logical.py", "steps"): "any other function is differentiated by differences",
     ("evaluation/passes/derivatives/sums.py", "conditional"): "one rule's own",
     ("evaluation/passes/derivatives/sums.py", "variance"): "one rule's own",
     ("evaluation/passes/exact.py", "EXACT"): "any other function is computed as in the run, and told of as not checked",
@@ -177,9 +180,9 @@ def test_tables_of_formulas_have_all_names_of_a_row(table):
 
 def test_lists_of_choices_and_of_places_agree():
     assert CHOICES.keys() - {"SINGLE"} == _CHOOSING
-    assert set(LOOKED_AT) <= PLACES.keys()
-    assert REFERENCES.keys() <= PLACES.keys() | CHOICES.keys()
-    assert {*CHOICES, *PLACES, *LAMBDAS, *WRITTEN_OUT} - SPECIAL.keys() <= REGISTRY.keys()
+    assert set(LOOKED_AT) <= REFERENCE_FUNCTIONS.keys()
+    assert REFERENCES.keys() <= REFERENCE_FUNCTIONS.keys() | CHOICES.keys()
+    assert {*CHOICES, *REFERENCE_FUNCTIONS, *LAMBDAS, *WRITTEN_OUT} - SPECIAL.keys() <= REGISTRY.keys()
     assert set(PERIODIC) <= FUNCTIONS.keys()
 
 

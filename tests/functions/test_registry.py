@@ -17,7 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.evaluation.graph.settings import as_set
+from xlmc.evaluation.graph.called_functions import as_set
 from xlmc.functions import Function, Kind
 from xlmc.functions.denormals import flushed
 from xlmc.functions.families import REGISTRY, function_named

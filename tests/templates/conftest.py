@@ -16,8 +16,7 @@ from needed_programs import missing
 from xlmc.address import parse_address
 from xlmc.evaluation.engine import Target
 from xlmc.evaluation.engines import ENGINES
-from xlmc.evaluation.graph.lower import Lowering
-from xlmc.evaluation.graph.widening import widened
+from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.formula import Resolver, build_graph
 from xlmc.workbook.reader import read_workbook
 
@@ -95,7 +94,7 @@ def cells(book_path):
 
         n = max(np.size(values) for values in inputs.values())
         full = {s: np.ascontiguousarray(np.broadcast_to(np.asarray(v, float), (n,))) for s, v in inputs.items()}
-        program = ENGINES["numpy"].load()(widened(lower), targets, [], frozenset(inputs))
+        program = ENGINES["numpy"].load()(lower_until_complete(lower), targets, [], frozenset(inputs))
         columns = program.evaluator(n).filters(full, n)
         return {symbol: column.as_floats().copy() for symbol, column in zip(wanted, columns, strict=True)}
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.evaluation.graph.alignment import corner
+from xlmc.evaluation.graph.node_values import corner
 from xlmc.functions.values import BLANK, ERROR, TEXT, Bools, Codes, Floats, Value
 
 if TYPE_CHECKING:
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 __all__ = [
     "BLANK_RESULT",
     "TEXT_RESULT",
+    "BlockRunner",
     "Column",
     "Evaluator",
-    "Kept",
+    "KeptBlock",
     "Program",
-    "Sweeper",
-    "Sweeping",
+    "RunsWholeBlocks",
     "Target",
     "column_of",
 ]
@@ -70,7 +70,7 @@ class Evaluator(Protocol):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Kept:
+class KeptBlock:
     """A whole block without errors, evaluated and filtered.
 
     Attributes:
@@ -88,15 +88,15 @@ class Kept:
     only: NDArray[np.int64]
 
 
-Sweeper = Callable[[int, bool], Kept | None]
+BlockRunner = Callable[[int, bool], KeptBlock | None]
 """Takes a block's first trial and whether to keep draws; None where a trial needs care, and nothing is known then."""
 
 
 @runtime_checkable
-class Sweeping(Protocol):
+class RunsWholeBlocks(Protocol):
     """What an evaluator may do besides: run a whole block in one piece, which spares memory, calls and locks."""
 
-    def sweeper(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> Sweeper | None:
+    def block_runner(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> BlockRunner | None:
         """What runs whole blocks to the same numbers; None where the model is not of the kind.
 
         Args:

@@ -72,7 +72,7 @@ def _numpy() -> Callable[..., Program]:
 
 
 def _formulas() -> Callable[..., Program]:
-    from xlmc.evaluation.reference.formulas_engine import FormulasProgram
+    from xlmc.evaluation.formulas_engine import FormulasProgram
 
     return FormulasProgram
 

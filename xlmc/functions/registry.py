@@ -152,7 +152,7 @@ class Function:
         home: the module that registers it.
         takes_values, takes_sets: whether any argument is of `ANY` kind, or all are one set.
         on_numbers: with arguments that are all numbers, the ufunc alone may be run.
-        takes_plainly: how many arguments that ufunc takes, one or two; 0 where there is none or it takes more.
+        fast_arity: how many arguments that ufunc takes, one or two; 0 where there is none or it takes more.
     """
 
     name: str
@@ -169,7 +169,7 @@ class Function:
     takes_values: bool = field(init=False)
     takes_sets: bool = field(init=False)
     on_numbers: bool = field(init=False)
-    takes_plainly: int = field(init=False)
+    fast_arity: int = field(init=False)
 
     def __post_init__(self) -> None:
         """Answer once what is asked of every node.
@@ -182,7 +182,7 @@ class Function:
         kinds = {parameter.kind for parameter in self.parameters}
         numbers = self.ufunc is not None and not sets and kinds <= {Kind.NUMBER, Kind.ANY}
         plainly = self.ufunc.nin if numbers and self.ufunc is not None and self.ufunc.nin < 3 else 0
-        answers = {"takes_values": values, "takes_sets": sets, "on_numbers": numbers, "takes_plainly": plainly}
+        answers = {"takes_values": values, "takes_sets": sets, "on_numbers": numbers, "fast_arity": plainly}
         for name, found in answers.items():
             object.__setattr__(self, name, found)
         if self.facts.spills and (self.ufunc is not None or (self.parameters and not values)):

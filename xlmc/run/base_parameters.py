@@ -12,8 +12,7 @@ from xlmc.address import Cell, InFormula
 from xlmc.definitions.model import CUTOFFS, Assumption, Definitions, Parameter, name_key
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError, Notice
-from xlmc.evaluation.graph.lower import Lowering
-from xlmc.evaluation.graph.widening import widened
+from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.formula import Graph, Resolver, build_graph
 from xlmc.run.drawing import settled
 from xlmc.run.scene import upstream
@@ -86,7 +85,7 @@ class _Own:
             graph = build_graph(self._resolver, [cell], frozenset(drawn), frozenset(held), more=more)
             return Lowering(graph, drawn, held)
 
-        return settled(cell, widened(lower))
+        return settled(cell, lower_until_complete(lower))
 
 
 def _with_numbers(assumption: Assumption, numbers: Mapping[str, float]) -> Assumption:

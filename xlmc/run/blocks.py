@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
-from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT, Column, Evaluator, Kept, Sweeper, Sweeping
+from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT, BlockRunner, Column, Evaluator, KeptBlock, RunsWholeBlocks
 from xlmc.sampling.draws import Sampler
 
 __all__ = ["Block", "FilterTally", "ModelRunner", "Portable", "Runner", "Task", "fault_text"]
@@ -117,9 +117,9 @@ class ModelRunner:
         self._made_of = sampler, evaluator, block, forecasts, fallible
         self._sampler, self._evaluator, self._block = sampler, evaluator, block
         self._width, self._fallible = forecasts, fallible
-        self._sweep: Sweeper | None = None
-        if isinstance(evaluator, Sweeping) and not fallible:
-            self._sweep = evaluator.sweeper(sampler.draw, sampler.linear)
+        self._run_whole: BlockRunner | None = None
+        if isinstance(evaluator, RunsWholeBlocks) and not fallible:
+            self._run_whole = evaluator.block_runner(sampler.draw, sampler.linear)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return ModelRunner, self._made_of
@@ -130,10 +130,10 @@ class ModelRunner:
 
     def run(self, task: Task) -> Block:
         """See `Runner`."""
-        if self._sweep is not None and task.trials == self._block and not task.prior:
-            swept = self._sweep(task.start, task.inputs)
-            if swept is not None:
-                return _block_of(swept, task)
+        if self._run_whole is not None and task.trials == self._block and not task.prior:
+            whole = self._run_whole(task.start, task.inputs)
+            if whole is not None:
+                return _block_of(whole, task)
         start, trials = task.start, task.trials
         draws = self._sampler.draw(start)
         columns = self._evaluator.filters(draws, self._block)
@@ -168,7 +168,7 @@ class ModelRunner:
         return [Column(np.empty(0)) for _ in range(self._width)]
 
 
-def _block_of(kept: Kept, task: Task) -> Block:
+def _block_of(kept: KeptBlock, task: Task) -> Block:
     """A whole block without errors."""
     faults: list[Counter[str]] = [Counter() for _ in kept.forecasts]
     errors: list[Counter[str]] = [Counter() for _ in kept.only]

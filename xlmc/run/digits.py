@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.definitions.model import name_key
-from xlmc.evaluation.passes.replicas import Jitter, closure, evaluation, numbers, term_sizes
+from xlmc.evaluation.passes.random_rounding import RandomRounding, closure, evaluation, numbers, term_sizes
 from xlmc.functions.budget import TooLargeError
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def _lost(
     lost = {name: np.zeros(n, bool) for name in nodes}
     blurred: dict[str, int] = {}
     for replica in range(_REPLICAS):
-        found = evaluation(model.lowering.dag, places, draws, Jitter(replica))
+        found = evaluation(model.lowering.dag, places, draws, RandomRounding(replica))
         for name, node in nodes.items():
             one, other = numbers(plain[node], n), numbers(found[node], n)
             lost[name] |= _off(one, other)

@@ -17,8 +17,7 @@ from xlmc.definitions.reader import read_definitions
 from xlmc.errors import DefinitionError, Notice, SimulationError
 from xlmc.evaluation.engine import Evaluator, Program, Target
 from xlmc.evaluation.engines import ENGINES
-from xlmc.evaluation.graph.lower import Lowering
-from xlmc.evaluation.graph.widening import widened
+from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.run.base_parameters import with_base_parameters
 from xlmc.run.correlating import correlated_groups, repair_notices, tie_notices
@@ -80,7 +79,7 @@ def lowered(workbook: Workbook, definitions: Definitions) -> tuple[Scene, Loweri
         scenes.append(survey(workbook, definitions, more))
         return Lowering(scenes[-1].graph, inputs, held)
 
-    lowering = widened(lower)
+    lowering = lower_until_complete(lower)
     scene = scenes[-1]
     if lowering.led_to:
         named = {a.name: a for a in definitions.assumptions}

@@ -20,8 +20,7 @@ from xlmc.definitions.model import name_key
 from xlmc.definitions.unavailable import areas_text
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.arrays import size_of
-from xlmc.evaluation.graph.lower import Lowering
-from xlmc.evaluation.graph.widening import widened
+from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.formula.references import mentioned
 from xlmc.formula.substitute import substituted
@@ -154,7 +153,7 @@ class _Showing:
             graph = build_graph(resolver, cells, frozenset(), self._formulas - cells, more=more, strict=False)
             return _Watching(graph, self._saved(graph))
 
-        return widened(lower).looked_at
+        return lower_until_complete(lower).looked_at
 
     def _saved(self, graph: Graph) -> dict[Cell, float]:
         """What Excel saved in the formula cells that a graph takes as given; any value, whatever the type says."""
@@ -192,7 +191,7 @@ class _Showing:
 
         while True:
             try:
-                lowering = widened(lower)
+                lowering = lower_until_complete(lower)
             except FormulaError as error:  # Excel has saved no value that could stand in for it
                 found = [cell for cell in targets - stuck.keys() if str(cell) == error.where]
                 if not found:
@@ -214,9 +213,9 @@ class _Watching(Lowering):
         self._asking.add(cell)
         return super().awaits(cell)
 
-    def _resolved_cell(self, cell: Cell, tree: ir.Expression) -> int:
+    def lower_cell(self, cell: Cell, tree: ir.Expression) -> int:
         self._asking = self.looked_at.setdefault(cell, set())
-        return super()._resolved_cell(cell, tree)
+        return super().lower_cell(cell, tree)
 
 
 def _faults(lowering: Lowering) -> dict[Cell, str]:

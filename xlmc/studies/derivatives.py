@@ -10,12 +10,10 @@ from numpy.typing import ArrayLike
 
 from xlmc.address import Cell
 from xlmc.errors import SimulationError
-from xlmc.evaluation.graph.dag import Range
-from xlmc.evaluation.passes.derivatives.found import Derivative, Derivatives
+from xlmc.evaluation.graph.nodes import Range
+from xlmc.evaluation.passes.derivatives.findings import Derivative, Derivatives, Notes
 from xlmc.evaluation.passes.derivatives.jet import Jet
-from xlmc.evaluation.passes.derivatives.notes import Notes
-from xlmc.evaluation.passes.derivatives.owners import owners
-from xlmc.evaluation.passes.derivatives.sweep import Unequal, swept
+from xlmc.evaluation.passes.derivatives.sweep import UnequalSizes, owners, sweep_forward
 from xlmc.functions.values import BLANK, ERROR, TEXT, Floats, Value
 
 if TYPE_CHECKING:
@@ -61,7 +59,7 @@ def derivatives(
         part = {name: values[start : start + portion] for name, values in draws.items()}
         try:
             _sweep(lowering, found, part, order, notes, start)
-        except Unequal:
+        except UnequalSizes:
             for trial in range(start, min(start + portion, n)):
                 one = {name: values[trial : trial + 1] for name, values in draws.items()}
                 _sweep(lowering, found, one, order, notes, trial)
@@ -138,5 +136,5 @@ def _sweep(
     lowering: Lowering, found: _Found, draws: Mapping[str, Floats], order: int, notes: Notes, start: int
 ) -> None:
     stop = start + next((values.size for values in draws.values()), 1)
-    for place, value, jet in swept(lowering.dag, found.places, draws, order, notes, start):
+    for place, value, jet in sweep_forward(lowering.dag, found.places, draws, order, notes, start):
         found.add(place, value, jet, start, stop)

@@ -11,8 +11,7 @@ from xlmc.address import Cell
 from xlmc.definitions.in_cells.calls import holds_call
 from xlmc.definitions.model import Definitions
 from xlmc.errors import ErrorCode
-from xlmc.evaluation.graph.lower import Lowering
-from xlmc.evaluation.graph.widening import widened
+from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.formula import Resolver, build_graph
 from xlmc.formula.shape import shown_formula
 from xlmc.run.scene import targets_of
@@ -104,7 +103,7 @@ def _lowered(workbook: Workbook, wanted: Sequence[Cell]) -> Lowering:
     def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
         return Lowering(build_graph(resolver, wanted, frozenset(), more=more, strict=False), {}, {}, audit=True)
 
-    return widened(lower)
+    return lower_until_complete(lower)
 
 
 def _all_formulas(workbook: Workbook) -> list[Cell]:

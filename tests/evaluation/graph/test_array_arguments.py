@@ -158,7 +158,7 @@ ZERO = [
     ("IFERROR(INDEX(C1:C3,{}),7)", 7.0),
     ("IF(TRUE,INDEX(C1:C3,{}),7)", VALUE),
 ]
-"""With a 0 in the place of `{}`, or a cell that holds 0."""
+"""With a 0 instead of `{}`, or a cell that holds 0."""
 
 OUTSIDE = [
     ("INDEX(C1:C3,-1)", VALUE),
@@ -276,5 +276,5 @@ def test_every_class_of_arguments_is_in_a_row_of_the_registry():
 
 def test_offset_to_several_places_at_once_is_refused(lower):
     cells = CELLS | {"H9": "=D1+SUMPRODUCT(SUBTOTAL(9,OFFSET(C1,ROW(C1:C3)-1,0)))"}
-    with pytest.raises(FormulaError, match="several places at once"):
+    with pytest.raises(FormulaError, match="several ranges at once"):
         lower(cells, {"D1": [1.0]}, ["H9"])

@@ -11,7 +11,7 @@ import pytest
 
 from xlmc.errors import XlmcError
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
-from xlmc.evaluation.reference.tracking import TrackingEvaluator
+from xlmc.evaluation.tracking import TrackingEvaluator
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork and limits of memory")
 
@@ -113,7 +113,7 @@ def test_what_excel_computes_takes_bounded_memory(book, name):
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_is_too_large_is_refused_with_its_cell(book, name, monkeypatch):
-    monkeypatch.setattr("xlmc.evaluation.reference.recursive_calls.MOST_STEPS", 5_000)  # so that it takes a second
+    monkeypatch.setattr("xlmc.evaluation.graph.recursive_calls.MOST_STEPS", 5_000)  # so that it takes a second
     formula, said = REFUSED[name]
     message = outcome(lambda: answer(book, {"Z1": formula}))
     assert message.startswith("S!Z1: "), message
@@ -141,12 +141,12 @@ def test_the_values_of_large_constants(run):
 def test_portions_of_a_block_give_the_numbers_of_the_whole(lower, monkeypatch):
     cells = {"Z1": "=IF(A1>0.5,SUM(SEQUENCE(100,1,A1)),1/0)", "Z2": '=LEN(A1&"x")+Z1', "Z3": "=A1<0.9"}
     lowering, targets = lower(cells, ["A1"], ["Z3", "Z1", "Z2"])
-    places = [lowering.target(target) for target in targets]
+    nodes = [lowering.target(target) for target in targets]
     draws = {"A1": np.random.default_rng(3).uniform(size=200)}
     survivors = np.flatnonzero(draws["A1"] < 0.9)
 
     def columns():
-        evaluator = TrackingEvaluator(lowering.dag, places[:1], places[1:])
+        evaluator = TrackingEvaluator(lowering.dag, nodes[:1], nodes[1:])
         found = [*evaluator.filters(draws, 200), *evaluator.forecasts(survivors)]
         return [(c.values.tolist(), None if c.codes is None else c.codes.tolist()) for c in found], evaluator._portion
 

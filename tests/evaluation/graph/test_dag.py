@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from xlmc.errors import ErrorCode
-from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Input, Range, Rescue, Select, uses
+from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select, uses
 from xlmc.functions import Kind
 from xlmc.functions.families import REGISTRY
 from xlmc.functions.values import constant
@@ -21,8 +22,8 @@ def number(dag, item):
     return dag.constant(constant(item))
 
 
-def objects(dag, place):
-    return dag.nodes[place].value.objects().tolist()
+def objects(dag, node):
+    return dag.nodes[node].value.objects().tolist()
 
 
 def test_equal_nodes_are_one(dag):
@@ -49,17 +50,17 @@ def test_what_is_known_is_computed_at_once(dag):
 def test_nodes_come_after_those_they_use(dag):
     a = dag.input("a")
     root = dag.add(Apply(SQRT, (dag.add(Apply(ADD, (a, number(dag, 1.0)))),)))
-    assert all(used < place for place in range(root + 1) for used in uses(dag.nodes[place]))
+    assert all(used < node for node in range(root + 1) for used in uses(dag.nodes[node]))
 
 
 def test_types(dag):
     a = dag.input("a")
     equal, text = dag.add(Apply(EQUAL, (a, a))), dag.add(Apply(JOIN, (a, a)))
-    assert [dag.types[place] for place in (a, equal, text)] == [Kind.NUMBER, Kind.LOGICAL, Kind.TEXT]
+    assert [dag.types[node] for node in (a, equal, text)] == [Kind.NUMBER, Kind.LOGICAL, Kind.TEXT]
     assert dag.types[dag.add(Select(equal, a, a))] is Kind.NUMBER
     assert dag.types[dag.add(Select(equal, a, text))] is Kind.ANY
-    assert dag.types[dag.add(Rescue(a, number(dag, 0.0), False))] is Kind.NUMBER
-    assert dag.types[dag.add(Rescue(a, text, False))] is Kind.ANY
+    assert dag.types[dag.add(IfErrorNode(a, number(dag, 0.0), False))] is Kind.NUMBER
+    assert dag.types[dag.add(IfErrorNode(a, text, False))] is Kind.ANY
     assert dag.types[dag.add(Range(((a,),)))] is Kind.ANY
 
 
@@ -68,9 +69,9 @@ def test_types(dag):
     [(True, "yes"), (2.0, "yes"), (0.0, "no"), (None, "no"), (ErrorCode.NA, None), ("x", None)],
 )
 def test_an_if_whose_condition_is_known(dag, condition, taken):
-    places = {"yes": dag.input("yes"), "no": dag.input("no")}
-    made = dag.add(Select(number(dag, condition), places["yes"], places["no"]))
-    assert made == places.get(taken, len(dag.nodes) - 1)
+    inputs = {"yes": dag.input("yes"), "no": dag.input("no")}
+    made = dag.add(Select(number(dag, condition), inputs["yes"], inputs["no"]))
+    assert made == inputs.get(taken, len(dag.nodes) - 1)
     assert isinstance(dag.nodes[made], Input if taken else Select)
 
 
@@ -80,7 +81,7 @@ def test_an_if_whose_condition_is_known(dag, condition, taken):
 )
 def test_a_rescue_of_what_is_known(dag, value, only_na, given):
     instead = dag.input("instead")
-    made = dag.add(Rescue(number(dag, value), instead, only_na))
+    made = dag.add(IfErrorNode(number(dag, value), instead, only_na))
     assert made == instead if given == "instead" else objects(dag, made) == [given]
 
 
@@ -89,7 +90,7 @@ def test_sizes_follow_through(dag):
     column = dag.add(Range(((a,), (a,), (number(dag, 1.0),))))
     row = dag.add(Range(((number(dag, 1.0), number(dag, 2.0)),)))
     assert isinstance(dag.nodes[row], Constant)
-    assert [dag.sizes[place] for place in (a, column, row)] == [None, (3, 1), (1, 2)]
+    assert [dag.sizes[node] for node in (a, column, row)] == [None, (3, 1), (1, 2)]
     sum_of_both = dag.add(Apply(ADD, (column, row)))
     assert (dag.sizes[sum_of_both], dag.types[sum_of_both]) == ((3, 2), Kind.ANY)
     assert dag.sizes[dag.add(Apply(SUM, (sum_of_both,)))] is None
@@ -106,10 +107,10 @@ def test_upstream_is_what_varies_in_order(dag):
 
 
 def test_a_range_of_no_trials(dag):
-    from xlmc.evaluation.graph.dag import evaluated
+    from xlmc.evaluation.graph.node_values import evaluate_node
     from xlmc.functions.values import Value
 
     a = dag.input("a")
     node = dag.nodes[dag.add(Range(((a, number(dag, 1.0)),)))]
     values = {a: Value.of_numbers(np.empty(0)), number(dag, 1.0): constant(1.0)}
-    assert evaluated(node, values).shape == (0, 1, 2)
+    assert evaluate_node(node, values).shape == (0, 1, 2)

@@ -80,8 +80,7 @@ def test_the_loop_gives_up_no_small_numbers_of_others():
     pytest.importorskip("llvmlite")
     from llvmlite import ir
 
-    from xlmc.evaluation.llvm.flushing import while_flushing
-    from xlmc.evaluation.llvm.machine import this_machine
+    from xlmc.evaluation.llvm.machine import this_machine, while_flushing
 
     assert _product_in_native_code(ir, this_machine(), while_flushing) == 0.0
     assert np.array([1e-160]) * 1e-150 > 0.0
@@ -122,7 +121,7 @@ def test_the_instructions_are_those_of_the_processor(triple):
     pytest.importorskip("llvmlite")
     from llvmlite import binding, ir
 
-    from xlmc.evaluation.llvm.flushing import flushes, while_flushing
+    from xlmc.evaluation.llvm.machine import flushes, while_flushing
 
     module = ir.Module()
     function = ir.Function(module, ir.FunctionType(ir.VoidType(), []), "function")

@@ -256,7 +256,7 @@ def test_array_formulas_of_assumptions_stay_on_the_fast_path(book, monkeypatch):
     def careful(*_):
         raise AssertionError("the careful path was taken")
 
-    monkeypatch.setattr("xlmc.evaluation.reference.tracking.TrackingEvaluator.filters", careful)
+    monkeypatch.setattr("xlmc.evaluation.tracking.TrackingEvaluator.filters", careful)
     assert model.function({"a": [1.0, 2.0]})["answer"].tolist() == [140.0, 150.0]
 
 

@@ -13,7 +13,7 @@ import pytest
 
 from xlmc.errors import ErrorCode, XlmcError
 from xlmc.evaluation.engines import ENGINES
-from xlmc.evaluation.reference.tracking import TrackingEvaluator
+from xlmc.evaluation.tracking import TrackingEvaluator
 from xlmc.studies.verify import verify
 
 VALUE, CALC, NA = ErrorCode.VALUE, ErrorCode.CALC, ErrorCode.NA
@@ -182,8 +182,8 @@ def drawn(lower):
         draws = {name: np.asarray(values) for name, values in (draws or {}).items()}
         n = len(next(iter(draws.values())))
         lowering, targets = lower({**NUMBERS, "H9": formula}, draws, ["H9"], names=names, sheets=("Other",))
-        place = lowering.target(targets[0])
-        careful = TrackingEvaluator(lowering.dag, [], [place])
+        node = lowering.target(targets[0])
+        careful = TrackingEvaluator(lowering.dag, [], [node])
         careful.filters(draws, n)
         found = _shown(careful.forecasts(np.arange(n))[0])
         for engine in ["numpy", *(["jit"] if importlib.util.find_spec("llvmlite") else [])]:
@@ -236,7 +236,7 @@ def test_a_cell_that_shows_calc_is_read_as_such(workbook):
         ("Nowhere!Twice(2)", "there is no sheet 'Nowhere'"),
         ("Other!Nothing(2)", "there is no name 'Nothing'"),
         ("SUM(MAKEARRAY(A1,1,LAMBDA(r,c,r)))", "the size of an array must be a fixed number"),
-        ("SUM(B1:INDEX(B1:B3,A1))", "an end of a range must lie at one place"),
+        ("SUM(B1:INDEX(B1:B3,A1))", "an end of a range must be fixed"),
     ],
 )
 def test_what_is_refused_with_its_cell(book, formula, message):
@@ -353,7 +353,7 @@ def test_trials_that_never_end_are_num_and_the_others_are_not(drawn, monkeypatch
     ],
 )
 def test_calls_that_cannot_be_computed_are_refused_with_their_cell(drawn, formula, message, monkeypatch):
-    monkeypatch.setattr("xlmc.evaluation.reference.recursive_calls.MOST_STEPS", 100)
+    monkeypatch.setattr("xlmc.evaluation.graph.recursive_calls.MOST_STEPS", 100)
     with pytest.raises(XlmcError, match="S!H9") as refused:
         drawn(f"={formula}", {"A1": [1.5, 2.5]}, DEEP)
     assert message in str(refused.value)

@@ -4,7 +4,7 @@ import pytest
 
 from xlmc.address import parse_address
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.evaluation.graph.dag import Apply, Constant, Input, Range
+from xlmc.evaluation.graph.nodes import Apply, Constant, Input, Range
 
 
 @pytest.fixture
@@ -43,7 +43,7 @@ def names(found):
         ("IF(TRUE,A1,A2)", ["Input"]),  # the branch that is not taken is not looked at
         ("IF(B1=1,A1,1/A2)", ["Input"]),
         ("IF(B1=2,A1,NOSUCH(A2))", []),
-        ("IFERROR(A1+1,A2)", ["Input", "Input", "+", "Rescue"]),
+        ("IFERROR(A1+1,A2)", ["Input", "Input", "+", "IfErrorNode"]),
         ("SUM(A1:A2)", ["Input", "Input", "Range", "SUM"]),
         ("SUM((A1,A2))", ["Input", "Input", "Range", "Range", "SUM"]),
         ("POWER(A1,A2)", ["Input", "Input", "^"]),
@@ -61,8 +61,8 @@ def test_the_nodes_of_a_formula(nodes, formula, expected):
 def test_cells_that_are_used_twice_are_computed_once(lower):
     cells = {"B1": "=SQRT(A1)", "C1": "=B1*2", "C2": "=SQRT(A1)+1", "C3": "=B1*2"}
     lowering, targets = lower(cells, ["A1"], ["C1", "C2", "C3"])
-    places = [lowering.target(target) for target in targets]
-    assert places[0] == places[2]
+    nodes = [lowering.target(target) for target in targets]
+    assert nodes[0] == nodes[2]
     assert sum(isinstance(node, Apply) and node.function.name == "SQRT" for node in lowering.dag.nodes) == 1
 
 

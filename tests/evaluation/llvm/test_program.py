@@ -14,7 +14,7 @@ import xlmc
 from xlmc.evaluation.llvm import program as programs
 from xlmc.evaluation.llvm.machine import Machine
 from xlmc.evaluation.llvm.program import JitProgram
-from xlmc.evaluation.reference.tracking import TrackingEvaluator
+from xlmc.evaluation.tracking import TrackingEvaluator
 
 CASE_STUDY = Path(__file__).resolve().parents[3] / "examples" / "intersection.xlsx"
 

@@ -8,8 +8,8 @@ from hypothesis import event, given, note, settings
 from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode
-from xlmc.evaluation.numpy.buffers import Buffers
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
+from xlmc.evaluation.numpy.sequence import Buffers
 
 INPUTS = ("A1", "A2", "A3")
 HELD = {"B1": 2.0, "B2": "x", "B4": True, "B5": "2", "B6": -0.5}  # B3 is blank
@@ -77,10 +77,10 @@ def test_the_fast_path_equals_the_careful_one(run, seed):
 def test_values_do_not_depend_on_which_buffers_they_lie_in(run, seed, monkeypatch):
     case = a_book(seed)
     shared = run(*case)
-    monkeypatch.setattr(Buffers, "free", lambda self, places: [])
-    monkeypatch.setattr(Buffers, "exchange", lambda self, done, place, loose: self.take(place))
+    monkeypatch.setattr(Buffers, "free", lambda self, nodes: [])
+    monkeypatch.setattr(Buffers, "exchange", lambda self, done, node, loose: self.take(node))
     own = run(*case)
-    monkeypatch.setattr(Buffers, "take", lambda self, place: None)
+    monkeypatch.setattr(Buffers, "take", lambda self, node: None)
     none = run(*case)
     assert shared.filters == own.filters == none.filters
     assert shared.forecasts == own.forecasts == none.forecasts
@@ -120,10 +120,10 @@ def harmless():
 
 
 @pytest.mark.parametrize("formula", HARMLESS)
-@pytest.mark.parametrize("place", ["filter", "forecast"])
-def test_what_errs_nowhere_stays_on_the_fast_path(run, harmless, formula, place):
+@pytest.mark.parametrize("role", ["filter", "forecast"])
+def test_what_errs_nowhere_stays_on_the_fast_path(run, harmless, formula, role):
     cells = HELD | {"C1": f"={formula}", "D1": "=C1>-1E9"}
-    outcome = run(cells, harmless, ["C1"], ["D1"] if place == "filter" else [])
+    outcome = run(cells, harmless, ["C1"], ["D1"] if role == "filter" else [])
     assert not outcome.careful
     assert all(isinstance(value, float) for value in outcome.forecasts[0])
 

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.evaluation.graph.dag import Apply, Dag, Select
+from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.graph.nodes import Apply, Select
 from xlmc.evaluation.passes.bounds import bounds
 from xlmc.functions.families import REGISTRY
 from xlmc.functions.values import constant
@@ -23,17 +24,17 @@ def models(draw):
     rng = np.random.default_rng(draw(st.integers(0, 2**32)))
     ends = [sorted(draw(st.tuples(LIMITS, LIMITS))) for _ in range(2)]
     dag, number = Dag(), draw(LIMITS)
-    places = [dag.input("a"), dag.input("b"), dag.constant(constant(number))]
+    nodes = [dag.input("a"), dag.input("b"), dag.constant(constant(number))]
     values = [rng.uniform(low, high, 50).clip(low, high) for low, high in ends] + [np.full(50, number)]
     for _ in range(draw(st.integers(1, 6))):
         name = draw(st.sampled_from([*OPERATIONS, *OF_ONE]))
-        used = rng.integers(len(places), size=1 if name in OF_ONE else 2).tolist()
-        place = dag.add(Apply(REGISTRY[name], tuple(places[part] for part in used)))
-        if place not in places and place == len(dag.nodes) - 1:
+        used = rng.integers(len(nodes), size=1 if name in OF_ONE else 2).tolist()
+        node = dag.add(Apply(REGISTRY[name], tuple(nodes[part] for part in used)))
+        if node not in nodes and node == len(dag.nodes) - 1:
             with np.errstate(all="ignore"):
                 values.append((OPERATIONS | OF_ONE)[name](*(values[part] for part in used)))
-            places.append(place)
-    return dag, dict(zip(("a", "b"), map(tuple, ends), strict=True)), dict(zip(places, values, strict=True))
+            nodes.append(node)
+    return dag, dict(zip(("a", "b"), map(tuple, ends), strict=True)), dict(zip(nodes, values, strict=True))
 
 
 @given(models())
@@ -42,10 +43,10 @@ def test_values_lie_between_the_bounds(model):
     dag, ends, values = model
     found = bounds(dag, dag.upstream(list(values)), ends)
     reach = 1.0
-    for place, (low, high) in found.items():
-        if place in values:
+    for node, (low, high) in found.items():
+        if node in values:
             reach = max(reach, abs(low), abs(high), 1e6)
-            computed = values[place][np.isfinite(values[place])]  # no root of less than 0
+            computed = values[node][np.isfinite(values[node])]  # no root of less than 0
             assert (low - 1e-13 * reach <= computed).all()
             assert (computed <= high + 1e-13 * reach).all()
 
@@ -76,7 +77,7 @@ def test_what_is_known(dag):
     }
     unknown = [free, of("/", two, a), of("+", a, free), of("*", dag.constant(constant(0.0)), free), of("SQRT", free)]
     found = bounds(dag, dag.upstream([*wanted, *unknown]), {"a": (-1.0, 3.0), "b": (1.0, 4.0)})
-    assert {place: found.get(place) for place in wanted} == wanted
+    assert {node: found.get(node) for node in wanted} == wanted
     assert not set(unknown) & set(found)
 
 

@@ -8,7 +8,7 @@ from mpmath import mpf
 
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.passes.exact import Exact
-from xlmc.evaluation.passes.replicas import closure
+from xlmc.evaluation.passes.random_rounding import closure
 
 CELLS = {"A1": 1.0, "B1": 0.1, "B2": 270.0, "B3": "text", "B4": True, "C1": 3.0, "C2": 4.5}
 
@@ -19,9 +19,9 @@ def exact(book):
 
     def make(formula, x=0.75):
         model = book(CELLS | {"Z1": formula}, {"x": {"cell": "A1", "low": 0, "high": 9}}, {"f": "Z1", "x": "A1"})
-        place = model.lowering.cell(model.forecasts[0].cell)
-        found = Exact(model.lowering.dag, closure(model.lowering.dag, [place]))
-        return found.trial({"x": x})[place], not found.unchecked
+        node = model.lowering.cell(model.forecasts[0].cell)
+        found = Exact(model.lowering.dag, closure(model.lowering.dag, [node]))
+        return found.trial({"x": x})[node], not found.unchecked
 
     return make
 

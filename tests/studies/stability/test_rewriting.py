@@ -106,7 +106,7 @@ def test_a_filter_without_a_quotient_decides_alike(case, book):
     (filter_,) = made.model.filters
     better = without_quotient(made, filter_, made.lowering.graph.formulas[cell])
     place = made.lowering.target(Target(better, cell))
-    from xlmc.evaluation.passes.replicas import closure, evaluation, numbers
+    from xlmc.evaluation.passes.random_rounding import closure, evaluation, numbers
 
     found = numbers(evaluation(made.dag, closure(made.dag, [place]), made.draws)[place], made.n)
     e = made.number(made.node[cell])

@@ -2,47 +2,66 @@
 
 An array that varies is kept as a `Range` of single nodes wherever its size is known, so that array formulas run on the
 fast path like any other.
+
+A choice between values of different sizes is a node of its own: `IF(x>0,A1:A3,5)` is three cells in one trial and one
+in another. A function of it becomes the same choice between the function's two results, which for `SUM` and its like
+are single values again and run on the fast path; only what is left of it is computed trial by trial.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, partial
+from math import prod
 from typing import Final
 
 import numpy as np
 
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.evaluation.graph.dag import MANY, Constant, Dag, Range, Select
-from xlmc.evaluation.graph.dag import Apply as ApplyNode
-from xlmc.evaluation.graph.either import parts_of
+from xlmc.evaluation.graph.dag import MANY, Dag
+from xlmc.evaluation.graph.nodes import Apply, Constant, Range, Select
 from xlmc.functions import Function, Kind
-from xlmc.functions.registry import Cells
-from xlmc.functions.values import Value, constant
+from xlmc.functions.facts import Facts
+from xlmc.functions.registry import Anything, Cells
+from xlmc.functions.values import ShapeVaries, Value, constant
 
-__all__ = ["beside", "cell_by_cell", "element", "grid", "size_of", "spread"]
+__all__ = [
+    "MOST_WAYS",
+    "beside",
+    "cell_by_cell",
+    "either",
+    "element",
+    "grid",
+    "share_out",
+    "size_of",
+    "sizes_differ",
+    "spread",
+]
 
-LARGEST: Final = 10_000
+MOST_WAYS: Final = 256
+"""In how many ways choices may come out together in the arguments of a function that is still shared out."""
+
+_LARGEST: Final = 10_000
 """Cells of a varying array that are made nodes of their own; a larger one is computed as a whole."""
 
 
-def size_of(dag: Dag, place: int) -> tuple[int, int] | None:
+def size_of(dag: Dag, node: int) -> tuple[int, int] | None:
     """Rows and columns of a value of many cells; None for a single one.
 
     Raises:
         FormulaError: the size is not known before the run.
     """
-    size = dag.sizes[place]
+    size = dag.sizes[node]
     if size == MANY:
         raise FormulaError("the size of an array is known only during the run", hint="give it a fixed number of rows")
     return None if size is None else (size[0], size[1])
 
 
-def element(dag: Dag, place: int, row: int, column: int) -> int:
+def element(dag: Dag, node_id: int, row: int, column: int) -> int:
     """The node of one cell of a value, counted from 0; a single row, column or value repeats, beyond it is `#N/A`."""
-    node, size = dag.nodes[place], dag.sizes[place]
+    node, size = dag.nodes[node_id], dag.sizes[node_id]
     if size is None:
-        return place
+        return node_id
     if size != MANY:
         row, column = (0 if size[0] == 1 else row), (0 if size[1] == 1 else column)
         if row >= size[0] or column >= size[1]:
@@ -50,19 +69,19 @@ def element(dag: Dag, place: int, row: int, column: int) -> int:
     if isinstance(node, Range):
         return node.rows[row][column]
     if isinstance(node, Constant):
-        return dag.constant(_picked(node.value, row, column))
-    chosen = parts_of(dag, place)
+        return dag.constant(_pick(node.value, row, column))
+    chosen = _parts_of(dag, node_id)
     if chosen is not None:
         return dag.add(Select(chosen[0], *(element(dag, part, row, column) for part in chosen[1:])))
-    return dag.add(ApplyNode(_picker(row, column), (place,)))
+    return dag.add(Apply(_picker(row, column), (node_id,)))
 
 
 @cache
 def _picker(row: int, column: int) -> Function:
-    return Function(f"cell {row},{column}", (Cells,), partial(_picked, row=row, column=column), Kind.ANY)
+    return Function(f"cell {row},{column}", (Cells,), partial(_pick, row=row, column=column), Kind.ANY)
 
 
-def _picked(value: Value, row: int, column: int) -> Value:
+def _pick(value: Value, row: int, column: int) -> Value:
     """(n, r, c) -> (n,); as `element` for a size that is found out only now."""
     if value.numbers.ndim == 1:
         return value
@@ -74,31 +93,31 @@ def _picked(value: Value, row: int, column: int) -> Value:
     return Value(parts[0], parts[1], parts[2])  # type: ignore[arg-type]  # only texts may be None
 
 
-def beside(dag: Dag, place: int, row: int, column: int) -> int:
+def beside(dag: Dag, node: int, row: int, column: int) -> int:
     """The node of a single value of what may be a whole column or row of a range: its cell beside the formula.
 
     Args:
         dag: of the nodes.
-        place: a cell, column, row or all of a range.
+        node: a cell, column, row or all of a range.
         row: the formula's, counted from the first cell of the range.
         column: likewise.
     """
-    return place if dag.sizes[place] is None else dag.add(ApplyNode(_picker_beside(row, column), (place,)))
+    return node if dag.sizes[node] is None else dag.add(Apply(_picker_beside(row, column), (node,)))
 
 
 @cache
 def _picker_beside(row: int, column: int) -> Function:
-    body = partial(_picked_beside, row=row, column=column)
+    body = partial(_pick_beside, row=row, column=column)
     return Function(f"cell beside {row},{column}", (Cells,), body, Kind.ANY)
 
 
-def _picked_beside(value: Value, row: int, column: int) -> Value:
+def _pick_beside(value: Value, row: int, column: int) -> Value:
     """(n, r, c) -> (n,)."""
     rows, columns = value.shape[1:] or (1, 1)
     at = (0 if rows == 1 else row), (0 if columns == 1 else column)
     if (rows > 1 and columns > 1) or not (0 <= at[0] < rows and 0 <= at[1] < columns):
         return constant(ErrorCode.VALUE)
-    return _picked(value, *at)
+    return _pick(value, *at)
 
 
 def grid(dag: Dag, rows: int, columns: int, at: Callable[[int, int], int]) -> int:
@@ -115,16 +134,16 @@ def spread(dag: Dag, function: Function, loose: tuple[int, ...], apply: Callable
     """
     shaping = function.facts.sized_by_numbers
     if function.name == "INDEX":
-        zeros = [place for place in loose if _has_zero(dag, place)]
-        if any(dag.sizes[place] is None for place in zeros):
+        zeros = [node for node in loose if _has_zero(dag, node)]
+        if any(dag.sizes[node] is None for node in zeros):
             return None
         shaping = bool(zeros)
     return cell_by_cell(dag, loose, apply, constants=shaping)
 
 
-def _has_zero(dag: Dag, place: int) -> bool:
+def _has_zero(dag: Dag, node_id: int) -> bool:
     """Whether any cell of it is known to count as 0 where whole numbers are wanted."""
-    node = dag.nodes[place]
+    node = dag.nodes[node_id]
     if not isinstance(node, Constant):
         return False
     numbers, errors = node.value.to_numbers()
@@ -132,9 +151,9 @@ def _has_zero(dag: Dag, place: int) -> bool:
 
 
 def cell_by_cell(
-    dag: Dag, places: tuple[int, ...], apply: Callable[[tuple[int, ...]], int], *, constants: bool = False
+    dag: Dag, nodes: tuple[int, ...], apply: Callable[[tuple[int, ...]], int], *, constants: bool = False
 ) -> int | None:
-    """The array of what `apply` makes of the cells of each of `places`; None where that is not worth it.
+    """The array of what `apply` makes of the cells of each of `nodes`; None where that is not worth it.
 
     Nothing is gained for constants, which are computed at once unless `constants` is set, and nothing possible for
     unknown sizes. Where sizes do not fit each other, what has no partner is `#N/A`.
@@ -142,14 +161,81 @@ def cell_by_cell(
     Raises:
         FormulaError: `constants` is set, and there are too many cells.
     """
-    sizes = [size for place in places if (size := dag.sizes[place]) is not None]
+    sizes = [size for node in nodes if (size := dag.sizes[node]) is not None]
     if not sizes or MANY in sizes:
         return None
     rows, columns = max(size[0] for size in sizes), max(size[1] for size in sizes)
     fit = all(size[0] in (1, rows) and size[1] in (1, columns) for size in sizes)
-    constant_ = all(isinstance(dag.nodes[place], Constant) for place in places)
-    if constants and rows * columns > LARGEST:
+    constant_ = all(isinstance(dag.nodes[node], Constant) for node in nodes)
+    if constants and rows * columns > _LARGEST:
         raise FormulaError(f"{rows * columns:,} cells would each make an array", hint="give a single number for them")
-    if fit and ((constant_ and not constants) or rows * columns > LARGEST):
+    if fit and ((constant_ and not constants) or rows * columns > _LARGEST):
         return None
-    return grid(dag, rows, columns, lambda r, c: apply(tuple(element(dag, place, r, c) for place in places)))
+    return grid(dag, rows, columns, lambda r, c: apply(tuple(element(dag, node, r, c) for node in nodes)))
+
+
+def _either(condition: Value, yes: Value, no: Value) -> Value:
+    """One of two values whole, or the condition's error: (n,) and values of any size.
+
+    Raises:
+        ShapeVaries: not all trials choose alike, so that their results may differ in size.
+    """
+    truth, errors = condition.to_logicals()
+    outcome = np.unique(np.where(np.broadcast_to(errors, condition.shape) > 0, 2, truth))
+    if outcome.size > 1:
+        raise ShapeVaries
+    if outcome[0] == 2:
+        return Value.of_errors(np.broadcast_to(errors, condition.shape))
+    return yes if outcome[0] else no
+
+
+_EITHER: Final = Function("one of two sizes", (Anything, Cells, Cells), _either, Kind.ANY, facts=Facts(spills=True))
+
+
+def sizes_differ(dag: Dag, condition: int, yes: int, no: int) -> bool:
+    """Whether a single condition chooses between values of different, or of unknown, sizes."""
+    sizes = dag.sizes[yes], dag.sizes[no]
+    return dag.sizes[condition] is None and (sizes[0] != sizes[1] or MANY in sizes)
+
+
+def either(dag: Dag, condition: int, yes: int, no: int) -> int:
+    """The node of such a choice."""
+    return dag.add(Apply(_EITHER, (condition, yes, no)))
+
+
+def _parts_of(dag: Dag, node_id: int) -> tuple[int, int, int] | None:
+    """The condition and the two values of such a choice; None for any other node."""
+    node = dag.nodes[node_id]
+    if not isinstance(node, Apply) or node.function is not _EITHER:
+        return None
+    condition, yes, no = node.arguments
+    return condition, yes, no
+
+
+def _ways(dag: Dag, node: int) -> int:
+    """In how many ways choices within each other come out, counted up to `MOST_WAYS` and a little beyond."""
+    parts, ways = _parts_of(dag, node), 1
+    while parts is not None and ways <= MOST_WAYS:
+        ways += 1 + _ways(dag, parts[1])
+        parts = _parts_of(dag, parts[2])
+    return ways
+
+
+def share_out(
+    dag: Dag,
+    arguments: tuple[int, ...],
+    made: Callable[[tuple[int, ...]], int],
+    is_error: Callable[[int], int],
+    select: Callable[[int, int, int], int],
+) -> int | None:
+    """The choice between what `made` makes of the arguments, the first choice among them made both ways.
+
+    None where there is no such choice, or too many of them. A condition that is an error stands for its argument.
+    """
+    for position, node in enumerate(arguments):
+        parts = _parts_of(dag, node)
+        if parts is not None and prod(_ways(dag, each) for each in arguments) <= MOST_WAYS:
+            before, after = arguments[:position], arguments[position + 1 :]
+            wrong, yes, no = (made((*before, part, *after)) for part in parts)
+            return select(is_error(parts[0]), wrong, select(parts[0], yes, no))
+    return None

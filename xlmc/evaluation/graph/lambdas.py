@@ -3,26 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.evaluation.graph import choices
-from xlmc.evaluation.graph.alignment import single
 from xlmc.evaluation.graph.arrays import element, grid, size_of
-from xlmc.evaluation.graph.callees import Arguments, TooDeepError, bound, callee, check_depth, is_omitted, within
-from xlmc.evaluation.graph.counts import limits
-from xlmc.evaluation.graph.dag import MANY, Apply
+from xlmc.evaluation.graph.called_functions import limits
+from xlmc.evaluation.graph.callees import Arguments, bind, check_depth, find_callee, is_omitted, let_scope
+from xlmc.evaluation.graph.dag import MANY
+from xlmc.evaluation.graph.lowering import Callee, Closure, Fork, Native, Scope, Thunk, TooDeepError, TreeLowering
+from xlmc.evaluation.graph.node_values import single
+from xlmc.evaluation.graph.nodes import Apply
+from xlmc.evaluation.graph.recursion import call_recursive
 from xlmc.evaluation.graph.references import areas_of
-from xlmc.evaluation.graph.scope import Callee, Closure, Fork, Native, Scope, Thunk
 from xlmc.formula import ir
 from xlmc.functions import Function, Kind
 from xlmc.functions.budget import ask_for_cells
 from xlmc.functions.registry import Cells
 from xlmc.functions.values import Value, constant
-
-if TYPE_CHECKING:
-    from xlmc.evaluation.graph.lower import Lowering
 
 __all__ = ["LAMBDAS", "NothingCallsError", "lower"]
 
@@ -37,7 +35,7 @@ class NothingCallsError(FormulaError):
 
 
 def lower(
-    lowering: Lowering, tree: ir.Variable | ir.Let | ir.Lambda | ir.FunctionName | ir.Invoke, scope: Scope
+    lowering: TreeLowering, tree: ir.Variable | ir.Let | ir.Lambda | ir.FunctionName | ir.Invoke, scope: Scope
 ) -> int:
     """The node of a variable, a LET or a call.
 
@@ -48,17 +46,17 @@ def lower(
         case ir.Variable(name):
             return _variable(lowering, name, scope)
         case ir.Let(_, body):
-            return lowering.lower(body, within(tree, scope))
+            return lowering.lower(body, let_scope(tree, scope))
         case ir.Lambda() | ir.FunctionName():
             raise NothingCallsError
         case ir.Invoke(ir.ErrorLiteral(code), _):
             return lowering.error(code)
         case ir.Invoke(function, arguments):
-            found = tuple(bound(argument, scope) for argument in arguments)
-            return _called(lowering, callee(lowering, function, scope), found, scope)
+            found = tuple(bind(argument, scope) for argument in arguments)
+            return _call(lowering, find_callee(lowering, function, scope), found, scope)
 
 
-def _variable(lowering: Lowering, name: str, scope: Scope) -> int:
+def _variable(lowering: TreeLowering, name: str, scope: Scope) -> int:
     found = scope.variables[name]
     if isinstance(found, Closure):
         raise NothingCallsError
@@ -69,38 +67,38 @@ def _variable(lowering: Lowering, name: str, scope: Scope) -> int:
     return found
 
 
-def _called(lowering: Lowering, function: Callee, arguments: Arguments, scope: Scope) -> int:
+def _call(lowering: TreeLowering, function: Callee, arguments: Arguments, scope: Scope) -> int:
     """The node of a call; another number of arguments than there are parameters is `#VALUE!`."""
     if not _takes(function, len(arguments)):
         return lowering.error(ErrorCode.VALUE)
     match function:
         case Fork(condition, yes, no):
-            both = [_called(lowering, branch, arguments, scope) for branch in (yes, no)]
-            return choices.select(lowering, condition, both[0], both[1])
+            both = [_call(lowering, branch, arguments, scope) for branch in (yes, no)]
+            return lowering.select(condition, both[0], both[1])
         case Native(name):
             names = [f"={position}" for position in range(len(arguments))]
             inner = scope.bound(dict(zip(names, arguments, strict=True)))
             return lowering.lower(ir.Call(name, tuple(ir.Variable(each) for each in names)), inner)
         case Closure():
-            return _called_lambda(lowering, function, arguments, scope)
+            return _call_lambda(lowering, function, arguments, scope)
 
 
-def _called_lambda(lowering: Lowering, function: Closure, arguments: Arguments, scope: Scope) -> int:
+def _call_lambda(lowering: TreeLowering, function: Closure, arguments: Arguments, scope: Scope) -> int:
     """A call written out, unless the LAMBDA calls itself too deep for that."""
-    recursions = lowering.recursions
-    if recursions.is_open(function):
+    calls = lowering.lambda_calls
+    if calls.is_open(function):
         check_depth(scope)
-        return recursions.call(lowering, function, arguments, scope)
-    outermost = not recursions.is_called(function)
+        return call_recursive(lowering, function, arguments, scope)
+    outermost = not calls.is_called(function)
     try:
-        with recursions.calling(function):
+        with calls.calling(function):
             check_depth(scope)
             lowering.calls.add()
             return lowering.lower(function.function.body, function.inside(arguments, scope))
     except (TooDeepError, RecursionError) as error:
         if not outermost or (isinstance(error, TooDeepError) and function not in error.repeated):
             raise
-    return recursions.call(lowering, function, arguments, scope)
+    return call_recursive(lowering, function, arguments, scope)
 
 
 def _takes(function: Callee, count: int) -> bool:
@@ -114,35 +112,35 @@ def _takes(function: Callee, count: int) -> bool:
             return True
 
 
-def _array(lowering: Lowering, tree: ir.Expression, scope: Scope) -> int:
+def _array(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> int:
     return lowering.lower(tree, scope.over_arrays())
 
 
-def _one(lowering: Lowering, function: Callee, arguments: Arguments, scope: Scope) -> int:
+def _one(lowering: TreeLowering, function: Callee, arguments: Arguments, scope: Scope) -> int:
     """A call that must give a single value; an array is `#CALC!`, as Excel has no arrays of arrays."""
-    return _only(lowering, _called(lowering, function, arguments, scope.over_arrays()))
+    return _only(lowering, _call(lowering, function, arguments, scope.over_arrays()))
 
 
-def _ask_for_calls(lowering: Lowering, function: Callee, calls: int) -> None:
+def _ask_for_calls(lowering: TreeLowering, function: Callee, calls: int) -> None:
     """Ask for all calls of a LAMBDA over an array before the first; a function of Excel by its name makes none."""
     if not isinstance(function, Native):
         lowering.calls.ask_for(calls)
 
 
-def _only(lowering: Lowering, place: int) -> int:
-    size = lowering.dag.sizes[place]
+def _only(lowering: TreeLowering, node: int) -> int:
+    size = lowering.dag.sizes[node]
     if size == MANY:
-        return lowering.dag.add(Apply(_ONLY, (place,)))
-    return lowering.single(place) if size in (None, (1, 1)) else lowering.error(ErrorCode.CALC)
+        return lowering.dag.add(Apply(_ONLY, (node,)))
+    return lowering.first_cell(node) if size in (None, (1, 1)) else lowering.error(ErrorCode.CALC)
 
 
 _ONLY: Final = Function("only cell", (Cells,), single, Kind.ANY)
 
 
 class _Items:
-    """The cells of an array that a LAMBDA is called with: of a range, its cells, so that they know their place."""
+    """The cells of an array that a LAMBDA is called with: of a range, its cells, so that they know where they are."""
 
-    def __init__(self, lowering: Lowering, tree: ir.Expression, scope: Scope) -> None:
+    def __init__(self, lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> None:
         self._lowering, self._scope = lowering, scope
         self._area = _range_of(lowering, tree, scope)
         self._node = -1
@@ -179,18 +177,18 @@ class _Items:
         return Thunk(Area(self._area.sheet, top, left, top + rows - 1, left + columns - 1), self._scope)
 
 
-def _range_of(lowering: Lowering, tree: ir.Expression, scope: Scope) -> Area | None:
+def _range_of(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> Area | None:
     """The one range that a tree refers to; None where it is another value, or goes on beyond the filled cells."""
     areas = areas_of(lowering, tree, scope)
     return areas[0] if areas is not None and len(areas) == 1 and not areas[0].is_cut else None
 
 
-def _value(lowering: Lowering, item: int | Thunk) -> int:
+def _value(lowering: TreeLowering, item: int | Thunk) -> int:
     return item if isinstance(item, int) else lowering.lower(item.tree, item.scope.over_arrays())
 
 
-def _map(lowering: Lowering, arguments: Trees, scope: Scope) -> int:
-    function = callee(lowering, arguments[-1], scope)
+def _map(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int:
+    function = find_callee(lowering, arguments[-1], scope)
     arrays = [_Items(lowering, argument, scope) for argument in arguments[:-1]]
     rows, columns = max(array.rows for array in arrays), max(array.columns for array in arrays)
     if not _takes(function, len(arrays)):
@@ -203,38 +201,38 @@ def _map(lowering: Lowering, arguments: Trees, scope: Scope) -> int:
     return grid(lowering.dag, rows, columns, at)
 
 
-def _reduce(lowering: Lowering, arguments: Trees, scope: Scope) -> int:
-    found = _accumulated(lowering, arguments, scope)
+def _reduce(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int:
+    found = _accumulate(lowering, arguments, scope)
     return found if isinstance(found, int) else found[1]
 
 
-def _scan(lowering: Lowering, arguments: Trees, scope: Scope) -> int:
-    found = _accumulated(lowering, arguments, scope)
+def _scan(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int:
+    found = _accumulate(lowering, arguments, scope)
     return found if isinstance(found, int) else found[0]
 
 
-def _accumulated(lowering: Lowering, arguments: Trees, scope: Scope) -> int | tuple[int, int]:
+def _accumulate(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int | tuple[int, int]:
     """Every state, in the shape of the array, and the last one; an error alone where nothing can be called."""
     if len(arguments) == 2:  # the starting value may be left out
         arguments = (ir.Missing(), *arguments)
-    function, array = callee(lowering, arguments[2], scope), _Items(lowering, arguments[1], scope)
+    function, array = find_callee(lowering, arguments[2], scope), _Items(lowering, arguments[1], scope)
     if not _takes(function, 2):
         return lowering.error(ErrorCode.VALUE)
     _ask_for_calls(lowering, function, array.rows * array.columns - isinstance(arguments[0], ir.Missing))
-    state: int | Thunk | Closure = bound(arguments[0], scope)
+    state: int | Thunk | Closure = bind(arguments[0], scope)
     states: dict[tuple[int, int], int] = {}
     for r in range(array.rows):
         for c in range(array.columns):
             item = array.at(r, c)
             first = not states and isinstance(arguments[0], ir.Missing)
-            place = _value(lowering, item) if first else _called(lowering, function, (state, item), scope.over_arrays())
-            state = states[r, c] = place
-    return grid(lowering.dag, array.rows, array.columns, lambda r, c: _only(lowering, states[r, c])), place
+            node = _value(lowering, item) if first else _call(lowering, function, (state, item), scope.over_arrays())
+            state = states[r, c] = node
+    return grid(lowering.dag, array.rows, array.columns, lambda r, c: _only(lowering, states[r, c])), node
 
 
-def _by(rows: bool) -> Callable[[Lowering, Trees, Scope], int]:
-    def by(lowering: Lowering, arguments: Trees, scope: Scope) -> int:
-        function, array = callee(lowering, arguments[1], scope), _Items(lowering, arguments[0], scope)
+def _by(rows: bool) -> Callable[[TreeLowering, Trees, Scope], int]:
+    def by(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int:
+        function, array = find_callee(lowering, arguments[1], scope), _Items(lowering, arguments[0], scope)
         if not _takes(function, 1):
             return lowering.error(ErrorCode.VALUE)
         _ask_for_calls(lowering, function, array.rows if rows else array.columns)
@@ -245,9 +243,9 @@ def _by(rows: bool) -> Callable[[Lowering, Trees, Scope], int]:
     return by
 
 
-def _make_array(lowering: Lowering, arguments: Trees, scope: Scope) -> int:
+def _make_array(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int:
     sizes = [_known_size(lowering, argument, scope) for argument in arguments[:2]]
-    function = callee(lowering, arguments[2], scope)
+    function = find_callee(lowering, arguments[2], scope)
     wrong = next((size for size in sizes if isinstance(size, ErrorCode)), None)
     if wrong is not None or not _takes(function, 2):
         return lowering.error(wrong or ErrorCode.VALUE)
@@ -261,9 +259,9 @@ def _make_array(lowering: Lowering, arguments: Trees, scope: Scope) -> int:
     return grid(lowering.dag, rows, columns, at)
 
 
-def _known_size(lowering: Lowering, tree: ir.Expression, scope: Scope) -> float | ErrorCode:
+def _known_size(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> float | ErrorCode:
     """A number of rows or columns; below 1 it is `#VALUE!`."""
-    known: Value | None = lowering.known_single(lowering.call("TRUNC", (lowering.lower(tree, scope),)))
+    known: Value | None = lowering.lookup_constant(lowering.call("TRUNC", (lowering.lower(tree, scope),)))
     if known is None:
         hint = "SEQUENCE and TAKE take a size that varies"
         raise FormulaError("the size of an array must be a fixed number from 1 up", hint=hint)
@@ -272,11 +270,11 @@ def _known_size(lowering: Lowering, tree: ir.Expression, scope: Scope) -> float 
     return float(known.numbers[0]) if known.numbers[0] >= 1 else ErrorCode.VALUE
 
 
-def _is_omitted(lowering: Lowering, arguments: Trees, scope: Scope) -> int:
+def _is_omitted(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int:
     return lowering.dag.constant(constant(is_omitted(arguments[0], scope)))
 
 
-LAMBDAS: Mapping[str, Callable[[Lowering, Trees, Scope], int]] = {
+LAMBDAS: Mapping[str, Callable[[TreeLowering, Trees, Scope], int]] = {
     "MAP": _map,
     "REDUCE": _reduce,
     "SCAN": _scan,

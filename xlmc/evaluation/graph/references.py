@@ -7,25 +7,34 @@ beforehand; `NotYetNeeded` then asks for a wider graph.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.evaluation.graph import choices
-from xlmc.evaluation.graph.counts import check_count
-from xlmc.evaluation.graph.scope import Scope, Thunk
+from xlmc.evaluation.graph.called_functions import check_count
+from xlmc.evaluation.graph.lowering import Scope, Thunk, TreeLowering
 from xlmc.formula import ir, parse
 from xlmc.functions.budget import ask_for_reading
 from xlmc.functions.values import Codes
 
-if TYPE_CHECKING:
-    from xlmc.evaluation.graph.lower import Lowering
-
-__all__ = ["REFERENCES", "NoReference", "NotYetNeeded", "areas_of", "cut", "many_numbers", "needed"]
+__all__ = [
+    "REFERENCES",
+    "NoReference",
+    "NotYetNeeded",
+    "areas_of",
+    "cut",
+    "join_areas",
+    "many_numbers",
+    "of_one_cell",
+    "require",
+]
 
 Arguments = tuple[ir.Expression, ...]
+
+_NOT_ONE_CELL: Final = ir.ErrorLiteral(ErrorCode.VALUE)
+_CHOOSING: Final = ("IF", "CHOOSE")
 
 _R1C1: Final = re.compile(r"(?:(?P<sheet>.+)!)?R(?P<r>\[-?\d+\]|\d+)?C(?P<c>\[-?\d+\]|\d+)?", re.IGNORECASE)
 
@@ -38,7 +47,7 @@ class NotYetNeeded(Exception):  # noqa: N818 - it asks for more; nothing is wron
         self.cells = frozenset(cells)
 
 
-def areas_of(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
+def areas_of(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
     """The areas that a tree refers to; None where it is no reference.
 
     Raises:
@@ -53,7 +62,7 @@ def areas_of(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area
         case ir.Binary(",", _, _):
             return _union(lowering, tree, scope)
         case ir.Binary(":" | " " as operator, left, right):
-            return _combined(lowering, operator, left, right, scope)
+            return _combine(lowering, operator, left, right, scope)
         case ir.Call(name, arguments) if name in REFERENCES:
             check_count(name, arguments)
             return REFERENCES[name](lowering, arguments, scope)
@@ -64,30 +73,38 @@ def areas_of(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area
             return None
 
 
-def _union(lowering: Lowering, tree: ir.Binary, scope: Scope) -> list[Area] | None:
+def _union(lowering: TreeLowering, tree: ir.Binary, scope: Scope) -> list[Area] | None:
     first, rest = ir.chain(tree)
     found = [areas_of(lowering, part, scope) for part in (first, *(part for _, part in rest))]
     return None if any(areas is None for areas in found) else [area for areas in found for area in areas or ()]
 
 
-def _combined(
-    lowering: Lowering, operator: str, left: ir.Expression, right: ir.Expression, scope: Scope
+def join_areas(areas: Sequence[Area]) -> ir.Expression:
+    """The tree of areas joined by commas."""
+    tree: ir.Expression = areas[0]
+    for area in areas[1:]:
+        tree = ir.Binary(",", tree, area)
+    return tree
+
+
+def _combine(
+    lowering: TreeLowering, operator: str, left: ir.Expression, right: ir.Expression, scope: Scope
 ) -> list[Area] | None:
     found = _end(lowering, left, scope), _end(lowering, right, scope)
     if operator == ":" and any(_may_vary(part, areas) for part, areas in zip((left, right), found, strict=True)):
         hint = "TAKE and DROP give as much of a range as a value that varies says"
-        raise FormulaError("an end of a range must lie at one place, which no value that varies changes", hint=hint)
+        raise FormulaError("an end of a range must be fixed: no value that varies may change it", hint=hint)
     a, b = ([area.whole for area in areas] if areas else [] for areas in found)
     if len(a) != 1 or len(b) != 1 or a[0].sheet != b[0].sheet:
         raise FormulaError(f"the two sides of {operator!r} are not areas of one sheet")
     tops, lefts = (a[0].top, b[0].top), (a[0].left, b[0].left)
     bottoms, rights = (a[0].bottom, b[0].bottom), (a[0].right, b[0].right)
     if operator == " ":
-        return [cut(lowering, _shared(Area(a[0].sheet, max(tops), max(lefts), min(bottoms), min(rights))))]
+        return [cut(lowering, _intersect(Area(a[0].sheet, max(tops), max(lefts), min(bottoms), min(rights))))]
     return [cut(lowering, Area(a[0].sheet, min(tops), min(lefts), max(bottoms), max(rights)))]
 
 
-def _end(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
+def _end(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
     """The areas that one side refers to; INDEX of single numbers refers to a cell in array formulas, too."""
     if scope.array and isinstance(tree, ir.Call) and tree.name == "INDEX":
         numbers = [number for number in tree.arguments[1:] if not isinstance(number, ir.Missing)]
@@ -97,23 +114,23 @@ def _end(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area] | 
 
 
 def _may_vary(end: ir.Expression, areas: list[Area] | None) -> bool:
-    """Whether an end of a range is picked by a function, and does not lie at one place that is known."""
+    """Whether an end of a range is picked by a function, and may vary."""
     return areas is None and isinstance(end, ir.Call) and end.name in REFERENCES
 
 
-def _shared(area: Area) -> Area:
+def _intersect(area: Area) -> Area:
     """The cells that two areas share."""
     if area.top > area.bottom or area.left > area.right:
         raise NoReference(ErrorCode.NULL)
     return area
 
 
-def cut(lowering: Lowering, area: Area) -> Area:
+def cut(lowering: TreeLowering, area: Area) -> Area:
     """The area, up to the last filled cell where it goes on far beyond it, once everything in it is lowered."""
-    return needed(lowering, lowering.resolver.to_the_last_cell(area.whole))
+    return require(lowering, lowering.resolver.to_the_last_cell(area.whole))
 
 
-def needed(lowering: Lowering, area: Area) -> Area:
+def require(lowering: TreeLowering, area: Area) -> Area:
     """The area, once everything in it is lowered."""
     ask_for_reading(area.rows, area.columns)
     missing = [cell for cell in area.cells() if lowering.awaits(cell)]
@@ -140,14 +157,14 @@ def _stop_at_error(errors: Codes) -> None:
         raise NoReference(ErrorCode(int(errors.flat[0])))
 
 
-def _whole_number(lowering: Lowering, tree: ir.Expression, scope: Scope, function: str) -> int | None:
+def _whole_number(lowering: TreeLowering, tree: ir.Expression, scope: Scope, function: str) -> int | None:
     """A known argument, cut to a whole number; None where it is left out."""
     if isinstance(tree, ir.Missing):
         return None
-    place = lowering.lower(tree, scope.inside())
-    if lowering.dag.sizes[place] not in (None, (1, 1)) and scope.array:
-        raise FormulaError(f"{function} leads to several places at once")
-    known = lowering.known_single(lowering.single(place))
+    node = lowering.lower(tree, scope.inside())
+    if lowering.dag.sizes[node] not in (None, (1, 1)) and scope.array:
+        raise FormulaError(f"{function} leads to several ranges at once")
+    known = lowering.lookup_constant(lowering.first_cell(node))
     if known is None:
         hint = "INDEX or a lookup function does the same with arguments that vary"
         raise FormulaError(f"{function} depends on a value that varies; where it leads must be fixed", hint=hint)
@@ -156,7 +173,7 @@ def _whole_number(lowering: Lowering, tree: ir.Expression, scope: Scope, functio
     return int(numbers[0])
 
 
-def _offset(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+def _offset(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
     base = areas_of(lowering, arguments[0], scope)
     if base is None or len(base) != 1:
         raise FormulaError("OFFSET starts from a reference to one area")
@@ -184,23 +201,23 @@ def _on_the_sheet(area: Area) -> Area:
     return area
 
 
-def _indirect(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
-    known = lowering.known_single(lowering.single(lowering.lower(arguments[0], scope)))
+def _indirect(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    known = lowering.lookup_constant(lowering.first_cell(lowering.lower(arguments[0], scope)))
     if known is None:
         raise FormulaError("INDIRECT depends on a value that varies; where it leads must be fixed")
     texts, errors = known.to_texts()
     _stop_at_error(errors)
     a1 = len(arguments) < 2 or _is_true(lowering, arguments[1], scope)
     tree = _read(lowering, str(texts[0])) if a1 else _read_r1c1(str(texts[0]), scope.cell)
-    found = None if tree is None else _resolved(lowering, tree, scope)
+    found = None if tree is None else _resolve(lowering, tree, scope)
     if found is None:
         raise NoReference
-    return [needed(lowering, area) for area in found]
+    return [require(lowering, area) for area in found]
 
 
-def _is_true(lowering: Lowering, tree: ir.Expression, scope: Scope) -> bool:
+def _is_true(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
     """A known logical argument."""
-    known = lowering.known_single(lowering.single(lowering.lower(tree, scope)))
+    known = lowering.lookup_constant(lowering.first_cell(lowering.lower(tree, scope)))
     if known is None:
         raise FormulaError("INDIRECT depends on a value that varies; where it leads must be fixed")
     logicals, errors = known.to_logicals()
@@ -208,14 +225,14 @@ def _is_true(lowering: Lowering, tree: ir.Expression, scope: Scope) -> bool:
     return bool(logicals[0])
 
 
-def _read(lowering: Lowering, text: str) -> ir.Expression | None:
+def _read(lowering: TreeLowering, text: str) -> ir.Expression | None:
     try:
         return parse(text)
     except FormulaError:
         return None
 
 
-def _resolved(lowering: Lowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
+def _resolve(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
     """What a text refers to; None where it is no reference."""
     try:
         return areas_of(lowering, lowering.resolver.tree(tree, host_of(scope.cell)), scope)
@@ -237,14 +254,14 @@ def _step(text: str | None, base: int) -> int:
     return base + int(text[1:-1]) if text.startswith("[") else int(text)
 
 
-def many_numbers(lowering: Lowering, numbers: Arguments, scope: Scope) -> bool:
+def many_numbers(lowering: TreeLowering, numbers: Arguments, scope: Scope) -> bool:
     """Whether INDEX is given several numbers at once; of numbers in braces a plain formula takes the first."""
     computed = [tree for tree in numbers if not isinstance(tree, ir.Array | ir.Missing)]
     return any(lowering.dag.sizes[lowering.lower(tree, scope.plainly())] is not None for tree in computed)
 
 
-def _index(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
-    """INDEX of a reference at a known place; None leaves it to the function of values."""
+def _index(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    """INDEX of a reference of a known row and column; None leaves it to the function of values."""
     areas = areas_of(lowering, arguments[0], scope)
     if areas is None or scope.array or many_numbers(lowering, arguments[1:], scope):
         return None
@@ -269,26 +286,26 @@ def _index(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area]
     return [cut(lowering, Area(area.sheet, top, left, bottom, right))]
 
 
-def _chosen(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+def _choose(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
     """IF and CHOOSE of references, the choice being known."""
     if not any(isinstance(part, Cell | Area | ir.Call) for part in arguments[1:]):
         return None
-    known = lowering.known_single(lowering.lower(arguments[0], scope.plainly()))
+    known = lowering.lookup_constant(lowering.lower(arguments[0], scope.plainly()))
     if known is None or not known.plain:
         return None
-    place = int(known.numbers[0])
-    return areas_of(lowering, arguments[place], scope.branch()) if 0 < place < len(arguments) else None
+    which = int(known.numbers[0])
+    return areas_of(lowering, arguments[which], scope.branch()) if 0 < which < len(arguments) else None
 
 
-def _either(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
-    place = lowering.lower(arguments[0], scope.plainly()) if len(arguments) > 1 else None
-    condition = None if place is None else choices.decided(lowering, place)
+def _either(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+    node = lowering.lower(arguments[0], scope.plainly()) if len(arguments) > 1 else None
+    condition = None if node is None else lowering.lookup_condition(node)
     if condition is None or (not condition and len(arguments) < 3):
         return None
     return areas_of(lowering, arguments[1 if condition else 2], scope.branch())
 
 
-def _spilled(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+def _spill(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
     """`A1#`: the range that the file declares for the dynamic array in A1; None where its size varies, or is another,
     or where the file holds none of its values.
 
@@ -306,14 +323,45 @@ def _spilled(lowering: Lowering, arguments: Arguments, scope: Scope) -> list[Are
     declared = formula.array.rows, formula.array.columns
     in_file = all(lowering.graph.workbook.content(cell).value is not None for cell in formula.array.cells())
     taken = in_file and (size == declared or lowering.is_saved(cell))
-    return [needed(lowering, formula.array)] if taken else None
+    return [require(lowering, formula.array)] if taken else None
 
 
-REFERENCES: Mapping[str, Callable[[Lowering, Arguments, Scope], list[Area] | None]] = {
+REFERENCES: Mapping[str, Callable[[TreeLowering, Arguments, Scope], list[Area] | None]] = {
     "OFFSET": _offset,
     "INDIRECT": _indirect,
     "INDEX": _index,
     "IF": _either,
-    "CHOOSE": _chosen,
-    "ANCHORARRAY": _spilled,
+    "CHOOSE": _choose,
+    "ANCHORARRAY": _spill,
 }
+
+
+def of_one_cell(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> ir.Expression:
+    """The argument with `#VALUE!` for every range of several cells that it may come to; arrays are as they were.
+
+    Args:
+        lowering: of the workbook.
+        tree: the argument.
+        scope: of the argument.
+    """
+    match tree:
+        case ir.Call(name, (test, *branches)) if name in _CHOOSING:
+            check_count(name, tree.arguments)
+            if lowering.dag.sizes[lowering.lower(test, scope.inside())] is not None:
+                return tree  # a condition of many cells gives an array
+            return ir.Call(name, (test, *(of_one_cell(lowering, part, scope) for part in branches)))
+        case Area() | ir.Binary(",") | ir.Binary(":") | ir.Binary(" ") | ir.Variable():
+            return _NOT_ONE_CELL if _is_several(lowering, tree, scope) else tree
+        case ir.Call(name) if name in REFERENCES:
+            return _NOT_ONE_CELL if _is_several(lowering, tree, replace(scope, of_array=False, around=False)) else tree
+        case _:
+            return tree
+
+
+def _is_several(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
+    """Whether a tree refers to more cells than one."""
+    try:
+        areas = areas_of(lowering, tree, scope)
+    except NoReference:
+        return False
+    return areas is not None and sum(area.whole.rows * area.whole.columns for area in areas) > 1

@@ -6,14 +6,14 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.arrays import cell_by_cell
-from xlmc.evaluation.graph.dag import Range
+from xlmc.evaluation.graph.lowering import Scope, TreeLowering
+from xlmc.evaluation.graph.nodes import Range
 from xlmc.evaluation.graph.references import areas_of
-from xlmc.evaluation.graph.scope import Scope
 from xlmc.formula import ir
 from xlmc.functions import Function
 from xlmc.functions.budget import ask_for_reading
@@ -21,24 +21,21 @@ from xlmc.functions.families import function_named
 from xlmc.functions.math.subtotal import Skips, aggregate_skips, subtotal_skips
 from xlmc.functions.values import constant
 
-if TYPE_CHECKING:
-    from xlmc.evaluation.graph.lower import Lowering
-
 __all__ = ["without_totals"]
 
 Arguments = tuple[ir.Expression, ...]
 
 
-def without_totals(name: str) -> Callable[[Lowering, Arguments, Scope], int | None]:
+def without_totals(name: str) -> Callable[[TreeLowering, Arguments, Scope], int | None]:
     """SUBTOTAL and AGGREGATE leave out cells that are such totals themselves."""
     first = 1 if name == "SUBTOTAL" else 2
 
-    def lower(lowering: Lowering, arguments: Arguments, scope: Scope) -> int | None:
+    def lower(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int | None:
         function = function_named(name)
         if function is None or len(arguments) <= first:
             return None
         found = [lowering.lower(argument, scope) for argument in arguments[:first]]
-        skipped = _skipped(lowering, name, found)
+        skipped = _find_skips(lowering, name, found)
         nested = name == "SUBTOTAL" or (None if skipped is None else skipped.nested)
         ranked = name == "AGGREGATE" and _is_ranked(lowering, found[0])
         for position, argument in enumerate(arguments[first:]):
@@ -49,9 +46,9 @@ def without_totals(name: str) -> Callable[[Lowering, Arguments, Scope], int | No
             elif ranked and len(areas) > 1:
                 return lowering.error(ErrorCode.VALUE)
             else:
-                found += [_left_in(lowering, area, skipped, nested) for area in areas]
+                found += [_counting_cells(lowering, area, skipped, nested) for area in areas]
         by_rank = len(found) == 4 and name == "AGGREGATE" and lowering.dag.sizes[found[3]] not in (None, (1, 1))
-        return _of_ranks(lowering, function, found) if by_rank else lowering.made(function, tuple(found))
+        return _of_ranks(lowering, function, found) if by_rank else lowering.apply(function, tuple(found))
 
     return lower
 
@@ -60,23 +57,23 @@ _OF_A_RANK: Final = range(14, 20)
 """The numbers of AGGREGATE's functions, such as LARGE, that take a rank behind their array."""
 
 
-def _is_ranked(lowering: Lowering, number: int) -> bool | None:
+def _is_ranked(lowering: TreeLowering, number: int) -> bool | None:
     """Whether AGGREGATE's function takes a rank; None where it varies."""
-    known = lowering.known_single(number)
+    known = lowering.lookup_constant(number)
     return int(known.numbers[0]) in _OF_A_RANK if known is not None and known.plain else None
 
 
-def _of_ranks(lowering: Lowering, function: Function, found: Sequence[int]) -> int:
+def _of_ranks(lowering: TreeLowering, function: Function, found: Sequence[int]) -> int:
     """AGGREGATE of a range and many cells: where these are ranks, one result for each of them."""
     ranked = _is_ranked(lowering, found[0])
     if ranked is None:
-        return lowering.made(_spilling(function), tuple(found))
+        return lowering.apply(_spilling(function), tuple(found))
     if not ranked:
-        return lowering.made(function, tuple(found))
+        return lowering.apply(function, tuple(found))
     cells = cell_by_cell(
-        lowering.dag, (found[3],), lambda rank: lowering.made(function, (*found[:3], *rank)), constants=True
+        lowering.dag, (found[3],), lambda rank: lowering.apply(function, (*found[:3], *rank)), constants=True
     )
-    return lowering.made(_spilling(function), tuple(found)) if cells is None else cells
+    return lowering.apply(_spilling(function), tuple(found)) if cells is None else cells
 
 
 @cache
@@ -88,16 +85,16 @@ def _spilling(function: Function) -> Function:
 _TOTAL = re.compile(r"\b(SUBTOTAL|AGGREGATE)\(", re.IGNORECASE)
 
 
-def _skipped(lowering: Lowering, name: str, options: list[int]) -> Skips | None:
+def _find_skips(lowering: TreeLowering, name: str, options: list[int]) -> Skips | None:
     """What is left out of ranges; None where that varies."""
-    known = [lowering.known_single(option) for option in options]
+    known = [lowering.lookup_constant(option) for option in options]
     numbers = [int(value.numbers[0]) if value is not None and value.plain else None for value in known]
     if numbers[-1] is None:
         return None
     return subtotal_skips(numbers[-1]) if name == "SUBTOTAL" else aggregate_skips(numbers[-1])
 
 
-def _hidden_rows(lowering: Lowering, area: Area, skips: Skips | None) -> frozenset[int]:
+def _hidden_rows(lowering: TreeLowering, area: Area, skips: Skips | None) -> frozenset[int]:
     """The rows of an area that a total leaves out because they are hidden.
 
     Raises:
@@ -114,7 +111,7 @@ def _hidden_rows(lowering: Lowering, area: Area, skips: Skips | None) -> frozens
     return rows & lowering.graph.workbook.filtered_rows(sheet) if skips.filtered else frozenset()
 
 
-def _left_in(lowering: Lowering, area: Area, skips: Skips | None, nested: bool | None) -> int:
+def _counting_cells(lowering: TreeLowering, area: Area, skips: Skips | None, nested: bool | None) -> int:
     """The cells of an area that count; `nested` is whether totals are left out, None where that varies.
 
     Raises:

@@ -9,27 +9,40 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from xlmc.address import Area
 from xlmc.errors import FormulaError
-from xlmc.evaluation.graph.dag import Constant, Range, Rescue
-from xlmc.evaluation.graph.empty_cells import at_the_last, kept, refused
-from xlmc.evaluation.graph.exposed import Change, exposed, holds, is_spared, referred_areas
-from xlmc.evaluation.graph.extents import as_filled, by_halves, leveled, one_behind, one_further, sized
-from xlmc.evaluation.graph.references import needed
-from xlmc.evaluation.graph.row_numbers import CURVED, degree, is_numbered
-from xlmc.evaluation.graph.scope import Scope
+from xlmc.evaluation.graph.exposed_ranges import (
+    CURVED,
+    Change,
+    change_exposed,
+    degree,
+    find_areas,
+    has_exposed,
+    is_numbered,
+    is_spared,
+)
+from xlmc.evaluation.graph.further_cells import (
+    by_halves,
+    keep_within,
+    level,
+    one_behind,
+    one_further,
+    refusal,
+    resize,
+    to_filled,
+    to_the_last,
+)
+from xlmc.evaluation.graph.lowering import Scope, TreeLowering
+from xlmc.evaluation.graph.nodes import Constant, IfErrorNode, Range
+from xlmc.evaluation.graph.references import join_areas, require
 from xlmc.formula import ir
 from xlmc.functions import Function
 from xlmc.functions.facts import EmptyCells, Repeats
 from xlmc.functions.families import function_named
 from xlmc.functions.values import BLANK, ERROR, LOGICAL, NUMBER
 
-if TYPE_CHECKING:
-    from xlmc.evaluation.graph.lower import Lowering
-
-__all__ = ["lowered"]
+__all__ = ["lower_call"]
 
 Arguments = tuple[ir.Expression, ...]
 Make = Callable[[Arguments, Mapping[int, Function]], int]
@@ -42,7 +55,7 @@ class _Call:
     ranges cell by cell; the scope is that of these.
     """
 
-    lowering: Lowering
+    lowering: TreeLowering
     name: str
     function: Function
     arguments: Arguments
@@ -52,12 +65,12 @@ class _Call:
     mixed: tuple[int, ...]
 
     def refused(self) -> FormulaError:
-        return refused(self.name)
+        return refusal(self.name)
 
     def with_areas(self, areas: Mapping[int, Sequence[Area]]) -> Arguments:
         """The arguments with other areas, which are lowered by then."""
         return tuple(
-            _joined([needed(self.lowering, area.filled) for area in areas[i]]) if i in areas else argument
+            join_areas([require(self.lowering, area.filled) for area in areas[i]]) if i in areas else argument
             for i, argument in enumerate(self.arguments)
         )
 
@@ -67,10 +80,11 @@ class _Call:
         made = self.with_areas(direct)
 
         def read(area: Area) -> Area:
-            return needed(self.lowering, change(area).filled)
+            return require(self.lowering, change(area).filled)
 
         return tuple(
-            exposed(self.lowering, part, self.scope, read) if i in self.mixed else part for i, part in enumerate(made)
+            change_exposed(self.lowering, part, self.scope, read) if i in self.mixed else part
+            for i, part in enumerate(made)
         )
 
     def cut(self) -> list[Area]:
@@ -82,11 +96,13 @@ class _Call:
             return area
 
         for i in self.mixed:
-            exposed(self.lowering, self.arguments[i], self.scope, note)
+            change_exposed(self.lowering, self.arguments[i], self.scope, note)
         return found + [area for areas in self.direct.values() for area in areas if area.is_cut]
 
 
-def lowered(lowering: Lowering, name: str, function: Function, arguments: Arguments, scope: Scope, make: Make) -> int:
+def lower_call(
+    lowering: TreeLowering, name: str, function: Function, arguments: Arguments, scope: Scope, make: Make
+) -> int:
     """The node of a call, whichever whole columns it is given.
 
     Args:
@@ -102,10 +118,10 @@ def lowered(lowering: Lowering, name: str, function: Function, arguments: Argume
     """
     ranged = [i for i in range(len(arguments)) if function.parameter(i).ranged]
     scopes = {i: scope.of(function.parameter(i).ranges) for i in ranged}
-    found = {i: referred_areas(lowering, arguments[i], scopes[i]) for i in ranged}
+    found = {i: find_areas(lowering, arguments[i], scopes[i]) for i in ranged}
     direct = {i: areas for i, areas in found.items() if areas is not None}
     computed = [i for i in ranged if i not in direct and (scopes[i].array or _is_index(arguments[i]))]
-    mixed = tuple(i for i in computed if holds(lowering, arguments[i], scopes[i]))
+    mixed = tuple(i for i in computed if has_exposed(lowering, arguments[i], scopes[i]))
     if not mixed and not any(area.is_cut for areas in direct.values() for area in areas):
         return make(arguments, {})
     call = _Call(lowering, name, function, arguments, scope.over_arrays(), make, direct, mixed)
@@ -121,18 +137,18 @@ def _of_areas(call: _Call) -> int:
     """A call that is given whole columns as they are."""
     name, facts = call.name, call.function.facts
     if facts.mode_argument is not None:
-        return _looked_up(call, facts.mode_argument)
+        return _look_up(call, facts.mode_argument)
     if name == "INDEX":
-        return _picked(call)
+        return _pick(call)
     if name == "UNIQUE" and len(call.arguments) == 1:
         return call.make(call.changed(one_further), {})
     if facts.empty_cells is EmptyCells.PAIRED:
-        return call.make(call.with_areas(leveled(call.direct)), {})
+        return call.make(call.with_areas(level(call.direct)), {})
     cut = [i for i, areas in call.direct.items() if any(area.is_cut for area in areas)]
     texts = name == "TEXTJOIN" and call.arguments[1] == ir.Logical(True) and 0 not in cut
     in_first = facts.empty_cells is EmptyCells.IGNORED_IN_FIRST and cut == [0]
     if facts.empty_cells is EmptyCells.IGNORED or texts or in_first:
-        return call.make(call.changed(as_filled), {})
+        return call.make(call.changed(to_filled), {})
     raise call.refused()
 
 
@@ -140,10 +156,10 @@ def _of_expressions(call: _Call) -> int:
     """A call that is given something computed of whole columns, cell by cell."""
     facts = call.function.facts
     if facts.mode_argument is not None:
-        return _looked_up(call, facts.mode_argument)
-    filled, further, count = _parted(call)
+        return _look_up(call, facts.mode_argument)
+    filled, further, count = _part(call)
     if facts.repeats is Repeats.ADD_UP:
-        return _summed(call, filled, _ends(call, further), count)
+        return _add_up(call, filled, _ends(call, further), count)
     if facts.repeats is Repeats.ONCE:
         return call.make((*filled, *(part for end in _ends(call, further) for part in end)), {})
     if facts.repeats is Repeats.NUMBERS_COUNT and all(_is_ignored(call, further[i]) for i in call.mixed):
@@ -153,7 +169,7 @@ def _of_expressions(call: _Call) -> int:
     raise call.refused()
 
 
-def _parted(call: _Call) -> tuple[Arguments, Arguments, int]:
+def _part(call: _Call) -> tuple[Arguments, Arguments, int]:
     """The arguments up to the last filled row; those of one further row; and how many of these there are.
 
     Of arguments that are ranges, a function that adds up is told nothing new by empty cells.
@@ -164,7 +180,7 @@ def _parted(call: _Call) -> tuple[Arguments, Arguments, int]:
     if len(sizes) > 1 or any((area.further_rows if across else area.further_columns) for area in cut):
         raise call.refused()
     length = max(area.columns if across else area.rows for area in cut)
-    filled = call.changed(lambda area: sized(area, length, across))
+    filled = call.changed(lambda area: resize(area, length, across))
     further = call.changed(lambda area: one_behind(area, length, across))
     for i in range(len(call.arguments)):
         if i in call.mixed:
@@ -213,21 +229,21 @@ def _degree(call: _Call, position: int) -> int:
     return degree(call.arguments[position], taken) if position in call.mixed else 0
 
 
-def _summed(call: _Call, filled: Arguments, ends: Sequence[Arguments], count: int) -> int:
+def _add_up(call: _Call, filled: Arguments, ends: Sequence[Arguments], count: int) -> int:
     lowering = call.lowering
     if call.name == "SUMPRODUCT" and any(not area.is_cut for areas in call.direct.values() for area in areas):
         raise call.refused()
     share = lowering.number(count / len(ends))
-    place = call.make(filled, {})
+    node = call.make(filled, {})
     for end in ends:
         for part in [end] if call.name == "SUMPRODUCT" else [(end[i],) for i in call.mixed]:
             one = call.make(part, {})
             if one != lowering.number(0.0):
-                place = lowering.call("+", (place, lowering.call("*", (one, share))))
-    return place
+                node = lowering.call("+", (node, lowering.call("*", (one, share))))
+    return node
 
 
-def _looked_up(call: _Call, mode: int) -> int:
+def _look_up(call: _Call, mode: int) -> int:
     """Lookups from the first cell on find the first of the empty ones; those by halves step as over all of them."""
     name, arguments = call.name, call.arguments
     how = arguments[mode] if len(arguments) > mode else None
@@ -240,8 +256,8 @@ def _looked_up(call: _Call, mode: int) -> int:
         raise call.refused()
     exact = how is not None and (isinstance(how, ir.Missing) or how in (ir.Number(0.0), ir.Logical(False)))
     if call.mixed:
-        return _sought(call, exact)
-    made = call.changed(lambda area: _searched(area, name, exact))
+        return _search_computed(call, exact)
+    made = call.changed(lambda area: _reach(area, name, exact))
     return call.make(made, _beside(call))
 
 
@@ -258,16 +274,16 @@ def _from_behind(call: _Call) -> int:
         raise call.refused()
     across = area.further_columns > 0
     held, whole = (area.columns, area.whole.columns) if across else (area.rows, area.whole.rows)
-    return call.lowering.made(at_the_last(held, whole), (call.make(made, {}),))
+    return call.lowering.apply(to_the_last(held, whole), (call.make(made, {}),))
 
 
 def _is_not_found(call: _Call) -> bool:
     """Whether what is looked for is TRUE, exactly, and the further cells are not."""
     exact = len(call.arguments) < 5 or call.arguments[4] in (ir.Missing(), ir.Number(0.0))
-    return exact and call.arguments[0] == ir.Logical(True) and _is_false(call, _parted(call)[1][1])
+    return exact and call.arguments[0] == ir.Logical(True) and _is_false(call, _part(call)[1][1])
 
 
-def _searched(area: Area, name: str, exact: bool) -> Area:
+def _reach(area: Area, name: str, exact: bool) -> Area:
     """As far as a lookup comes in it; beside where it searches, one further column or row."""
     further = one_further(area)
     if exact:
@@ -275,13 +291,13 @@ def _searched(area: Area, name: str, exact: bool) -> Area:
     halved = by_halves(area)
     if name in ("VLOOKUP", "HLOOKUP"):
         across = name == "VLOOKUP"
-        return sized(halved, further.columns if across else further.rows, across)
+        return resize(halved, further.columns if across else further.rows, across)
     return halved
 
 
-def _sought(call: _Call, exact: bool) -> int:
+def _search_computed(call: _Call, exact: bool) -> int:
     """A lookup in something computed of whole columns."""
-    _, further, _ = _parted(call)
+    _, further, _ = _part(call)
     passed = 1 in call.mixed and _is_passed_over(call, further[1])
     if _degree(call, 1) and not passed:
         raise call.refused()
@@ -289,8 +305,8 @@ def _sought(call: _Call, exact: bool) -> int:
     cut = call.cut()
     across = cut[0].further_columns > 0
     length = max(area.columns if across else area.rows for area in map(one_further if exact else by_halves, cut))
-    place = call.make(call.changed(lambda area: sized(area, length, across)), {})
-    return place if passed else _at_the_end(call, further, place)
+    node = call.make(call.changed(lambda area: resize(area, length, across)), {})
+    return node if passed else _at_the_end(call, further, node)
 
 
 def _at_the_end(call: _Call, further: Arguments, otherwise: int) -> int:
@@ -306,20 +322,20 @@ def _at_the_end(call: _Call, further: Arguments, otherwise: int) -> int:
     there = call.make(_ends(call, further)[-1], {})
     if dag.sizes[there] is not None or dag.sizes[otherwise] is not None:
         raise call.refused()
-    return dag.add(Rescue(there, otherwise, True))
+    return dag.add(IfErrorNode(there, otherwise, True))
 
 
 def _beside(call: _Call) -> dict[int, Function]:
     """What keeps the number of the column of VLOOKUP, or the row of HLOOKUP, within what is read."""
     for area in call.direct.get(1, ()):
         if call.name == "VLOOKUP" and area.further_columns:
-            return {2: kept(area.columns + 1, area.whole.columns, False)}
+            return {2: keep_within(area.columns + 1, area.whole.columns, False)}
         if call.name == "HLOOKUP" and area.further_rows:
-            return {2: kept(area.rows + 1, area.whole.rows, False)}
+            return {2: keep_within(area.rows + 1, area.whole.rows, False)}
     return {}
 
 
-def _picked(call: _Call) -> int:
+def _pick(call: _Call) -> int:
     """INDEX: beyond what is read, a number leads to a further cell."""
     if len(call.direct[0]) > 1:
         raise call.refused()
@@ -333,29 +349,22 @@ def _picked(call: _Call) -> int:
         if one and not given and not (alone and area.whole.columns == 1):
             raise call.refused()
         if one and given:
-            within[i] = kept(getattr(area, axis) + 1, getattr(area.whole, axis), True)
+            within[i] = keep_within(getattr(area, axis) + 1, getattr(area.whole, axis), True)
     return call.make(call.changed(one_further), within)
 
 
 def _as_unequal(call: _Call) -> Arguments:
     """The arguments of XLOOKUP and XMATCH with one further cell; different sizes must stay different."""
     if call.mixed:
-        _parted(call)
+        _part(call)
         sizes = {(area.whole.rows, area.further_columns > 0) for area in call.cut()}
         if len(sizes) > 1 or any(not area.is_cut for areas in call.direct.values() for area in areas):
             raise call.refused()
         across = call.cut()[0].further_columns > 0
         length = max(area.columns if across else area.rows for area in call.cut()) + 1
-        return call.changed(lambda area: sized(area, length, across))
+        return call.changed(lambda area: resize(area, length, across))
     longer = {i: [one_further(area) if area.is_cut else area for area in areas] for i, areas in call.direct.items()}
-    return call.with_areas(leveled(longer))
-
-
-def _joined(areas: Sequence[Area]) -> ir.Expression:
-    tree: ir.Expression = areas[0]
-    for area in areas[1:]:
-        tree = ir.Binary(",", tree, area)
-    return tree
+    return call.with_areas(level(longer))
 
 
 def _kinds(call: _Call, tree: ir.Expression) -> set[tuple[int, float]] | None:

@@ -1,8 +1,8 @@
 """The fused engine: one compiled loop over the trials instead of one NumPy call a node. Optional: it needs llvmlite.
 
 The loop is LLVM code that is built instruction by instruction from the graph's nodes: no source text, no names of the
-workbook's. `recipes` says which nodes it can compute; the others are left to the functions' own bodies, block by block,
-between two loops (`stages`). A trial in which anything may be an error is computed again on the careful path.
+workbook's. `operations` says which nodes it can compute; the others are left to the functions' own bodies, block by
+block, between two loops (`phase`). A trial in which anything may be an error is computed again on the careful path.
 """
 
 from __future__ import annotations

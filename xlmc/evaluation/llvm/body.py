@@ -1,33 +1,53 @@
 """One trial's computation in a loop: values of nodes, and what went wrong so far, by context.
 
-What went wrong is kept in two ways. A number that may be infinite or NaN and is about to vanish (in a comparison, in a
-divisor, in memory) is multiplied by 0 and added to a running sum, which is NaN from then on: one fused instruction.
-What Excel minds and arithmetic does not is a flag.
+The loop computes both branches of every `IF`; what goes wrong in one counts only in the trials that take it. Those
+trials are the branch's context. A node that is needed in several contexts belongs to the innermost one around them all.
+
+What went wrong is kept in two ways. A number that may be infinite or NaN is multiplied by 0 and added to a running sum
+before its trace is lost (in a comparison, a divisor, in memory); if it was one, the sum is NaN from then on. That costs
+one fused instruction. An error of Excel that leaves no trace in arithmetic is a flag.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from llvmlite import ir
 
-from xlmc.evaluation.graph.dag import Constant, Dag, Select
-from xlmc.evaluation.llvm.arithmetic import Arithmetic, intrinsic
-from xlmc.evaluation.llvm.contexts import ROOT, Context, branch
+from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.graph.nodes import Constant, Select
+from xlmc.evaluation.llvm.arithmetic import Arithmetic, intrinsic, sine_and_cosine
+from xlmc.evaluation.llvm.loop_rules import Literal, LoopRule, Operand, literal, reads
 from xlmc.evaluation.llvm.machine import Machine
-from xlmc.evaluation.llvm.recipes import Literal, Operand, Recipe, literal
-from xlmc.evaluation.llvm.sine import sine_and_cosine
 from xlmc.functions import Kind
 from xlmc.functions.denormals import TINIEST
 
-__all__ = ["Body", "Loaded"]
+__all__ = ["Body", "Loaded", "contexts"]
 
 _BIT = ir.IntType(1)
 
-_LARGEST_ANGLE = 2.0**27
-"""That Excel takes."""
+_DEEPEST: Final = 8
+"""Branches within branches; what errs in deeper ones counts in all trials of the one around them."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Context:
+    """The trials in which an `IF`, the node `select` of the context `parent`, takes the branch: 1 yes, 0 no."""
+
+    parent: _Context | None
+    select: int = -1
+    branch: int = 1
+    depth: int = 0
+
+
+_ROOT: Final = _Context(None)
+
+
+def _branch(parent: _Context, select: int, taken: int) -> _Context:
+    """The context of a branch."""
+    return parent if parent.depth == _DEEPEST else _Context(parent, select, taken, parent.depth + 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +76,7 @@ class Body:
         dag: Dag,
         builder: Any,
         loaded: Mapping[Operand, Loaded],
-        contexts: Mapping[int, Context],
+        contexts: Mapping[int, _Context],
         machine: Machine,
     ) -> None:
         self.builder: Any = builder
@@ -64,11 +84,11 @@ class Body:
         self._dag, self._contexts, self._fused = dag, contexts, machine.fused
         self._flushes = machine.flushes
         self._known = dict(loaded)
-        self._checked: set[tuple[Operand, Context]] = set()
-        self._sums: dict[Context, Any] = {}
-        self._flags: dict[Context, Any] = {}
+        self._checked: set[tuple[Operand, _Context]] = set()
+        self._sums: dict[_Context, Any] = {}
+        self._flags: dict[_Context, Any] = {}
         self._turns: dict[int, tuple[Any, tuple[Any, Any]]] = {}
-        self._context = ROOT
+        self._context = _ROOT
 
     def number(self, value: float) -> Any:
         """A constant."""
@@ -86,11 +106,6 @@ class Body:
         """A function that is made of arithmetic."""
         return function(Arithmetic(self.builder, self._fused), *arguments)
 
-    @property
-    def largest_angle(self) -> float:
-        """Above it a sine is computed again: Excel refuses it."""
-        return _LARGEST_ANGLE
-
     def sine_and_cosine(self, angle: Any) -> tuple[Any, Any]:
         """Both, computed once for each angle."""
         if id(angle) not in self._turns:
@@ -102,52 +117,52 @@ class Body:
         so_far = self._flags.get(self._context)
         self._flags[self._context] = wrong if so_far is None else self.builder.or_(so_far, wrong)
 
-    def compute(self, place: int, recipe: Recipe) -> None:
+    def compute(self, node: int, rule: LoopRule) -> None:
         """Emit a node whose operands were emitted or loaded."""
-        self._context = self._contexts.get(place, ROOT)
-        values, fallible = [], recipe.makes
-        for position, part in enumerate(recipe.operands):
+        self._context = self._contexts.get(node, _ROOT)
+        values, fallible = [], rule.makes
+        for position, part in enumerate(rule.operands):
             if isinstance(part, Operand) and not self._is_constant(part):
-                if position in recipe.absorbs or self._is_truth_of_number(part):
+                if position in rule.absorbs or self._is_truth_of_number(part):
                     self._check(part)
                 else:
                     fallible = fallible or self._source(part)[1].fallible
             values.append(self._value(part))
-        value = self.flushed(recipe.emit(self, values))
-        own = Operand(place, self._dag.types[place])
+        value = self.flushed(rule.emit(self, values))
+        own = Operand(node, self._dag.types[node])
         self._known[own] = Loaded(value, fallible and own.kind is Kind.NUMBER)
-        if isinstance(self._dag.nodes[place], Select):
-            self._join(place, values[0])
+        if isinstance(self._dag.nodes[node], Select):
+            self._join(node, values[0])
 
     def flushed(self, value: Any) -> Any:
-        """0 in place of a number too small for Excel, where the processor does not see to it."""
+        """0 instead of a number too small for Excel, where the processor does not see to it."""
         if self._flushes or value.type != self.real:
             return value
         tiny = self.builder.fcmp_ordered("<", self.intrinsic("llvm.fabs", value), self.number(TINIEST))
         return self.builder.select(tiny, self.number(0.0), value)
 
-    def result(self, place: int) -> Any:
+    def result(self, node: int) -> Any:
         """A node's value as it leaves the loop."""
-        self._context = ROOT
-        own = Operand(place, self._dag.types[place])
+        self._context = _ROOT
+        own = Operand(node, self._dag.types[node])
         self._check(own)
         return self._value(own)
 
     def wrong(self) -> Any:
         """Whether the trial must be computed again; None where none ever needs to be."""
-        total, flag = self._sums.get(ROOT), self._flags.get(ROOT)
+        total, flag = self._sums.get(_ROOT), self._flags.get(_ROOT)
         if total is None:
             return flag
         lost = self.builder.fcmp_unordered("uno", total, total)
         return lost if flag is None else self.builder.or_(lost, flag)
 
     def _is_constant(self, part: Operand) -> bool:
-        return isinstance(self._dag.nodes[part.place], Constant)
+        return isinstance(self._dag.nodes[part.node], Constant)
 
     def _source(self, part: Operand) -> tuple[Operand, Loaded]:
         """Where the operand's value is, and the kind that it has there."""
         if part not in self._known:
-            part = Operand(part.place, self._dag.types[part.place])
+            part = Operand(part.node, self._dag.types[part.node])
         return part, self._known[part]
 
     def _value(self, part: Operand | Literal) -> Any:
@@ -168,11 +183,11 @@ class Body:
         return part.kind is Kind.LOGICAL and bool(self._source(part)[1].value.type == self.real)
 
     def _check(self, part: Operand) -> None:
-        """See the module."""
-        place, found = self._source(part)
-        if not found.fallible or any((place, context) in self._checked for context in _outwards(self._context)):
+        """Add a number that may be infinite or NaN to the running sum, once; see the module."""
+        node, found = self._source(part)
+        if not found.fallible or any((node, context) in self._checked for context in _outwards(self._context)):
             return
-        self._checked.add((place, self._context))
+        self._checked.add((node, self._context))
         self._add(found.value)
 
     def _add(self, value: Any) -> None:
@@ -184,9 +199,9 @@ class Body:
         else:
             self._sums[self._context] = self.builder.fadd(self.builder.fmul(value, zero), so_far)
 
-    def _join(self, place: int, condition: Any) -> None:
+    def _join(self, node: int, condition: Any) -> None:
         """What went wrong in a branch goes wrong in the context around it where the branch is taken."""
-        yes, no = (branch(self._context, place, taken) for taken in (1, 0))
+        yes, no = (_branch(self._context, node, taken) for taken in (1, 0))
         if yes == self._context:
             return
         if yes in self._sums or no in self._sums:
@@ -197,9 +212,39 @@ class Body:
             self.flag(self.builder.select(condition, self._flags.get(yes, none), self._flags.get(no, none)))
 
 
-def _outwards(context: Context | None) -> list[Context]:
+def _outwards(context: _Context | None) -> list[_Context]:
     found = []
     while context is not None:
         found.append(context)
         context = context.parent
     return found
+
+
+def contexts(dag: Dag, rules: Mapping[int, LoopRule], results: Sequence[int]) -> dict[int, _Context]:
+    """The context of every node that `rules` computes, `results` being needed in all trials."""
+    found: dict[int, _Context] = {node: _ROOT for node in results if node in rules}
+    for node in sorted(rules, reverse=True):
+        for used, context in _edges(dag, node, rules[node], found.get(node, _ROOT)):
+            if used in rules:
+                found[used] = _common(found[used], context) if used in found else context
+    return found
+
+
+def _edges(dag: Dag, node_id: int, rule: LoopRule, context: _Context) -> Iterator[tuple[int, _Context]]:
+    node = dag.nodes[node_id]
+    if isinstance(node, Select):
+        yield node.condition, context
+        yield node.yes, _branch(context, node_id, 1)
+        yield node.no, _branch(context, node_id, 0)
+    else:
+        for used in reads(dag, node_id, rule):
+            yield used, context
+
+
+def _common(a: _Context, b: _Context) -> _Context:
+    while a is not b and a != b:
+        if a.depth >= b.depth and a.parent is not None:
+            a = a.parent
+        elif b.parent is not None:
+            b = b.parent
+    return a

@@ -9,14 +9,12 @@ from typing import Any
 from llvmlite import ir
 
 from xlmc.evaluation.graph.dag import Dag
-from xlmc.evaluation.llvm.body import Body, Loaded
-from xlmc.evaluation.llvm.contexts import contexts
-from xlmc.evaluation.llvm.flushing import while_flushing
-from xlmc.evaluation.llvm.machine import Machine, NativeLoop
-from xlmc.evaluation.llvm.recipes import Operand, Recipe
+from xlmc.evaluation.llvm.body import Body, Loaded, contexts
+from xlmc.evaluation.llvm.loop_rules import LoopRule, Operand
+from xlmc.evaluation.llvm.machine import Machine, NativeLoop, while_flushing
 from xlmc.functions import Kind
 
-__all__ = ["Load", "compiled"]
+__all__ = ["Load", "compile_loop"]
 
 _NAME = "over_trials"
 _BYTE, _BIT, _LONG = ir.IntType(8), ir.IntType(1), ir.IntType(64)
@@ -40,20 +38,20 @@ class Load:
     fallible: bool
 
 
-def compiled(
+def compile_loop(
     dag: Dag,
     machine: Machine,
-    recipes: Mapping[int, Recipe],
+    rules: Mapping[int, LoopRule],
     loads: Sequence[Load],
     stores: Sequence[int],
 ) -> NativeLoop:
-    """The loop that computes the nodes of `recipes`, as native code.
+    """The loop that computes the nodes of `rules`, as native code.
 
     It takes the addresses of: the loads, the stores, the survivors (int64; not read where no load is picked), and one
     byte a trial, which it sets to 1 where the trial must be computed again.
     """
     module = ir.Module()
-    inner = _inner(dag, module, machine, recipes, loads, stores)
+    inner = _inner(dag, module, machine, rules, loads, stores)
     _entry(module, inner, machine)
     return machine.native(module, _NAME)
 
@@ -66,12 +64,12 @@ def _inner(
     dag: Dag,
     module: ir.Module,
     machine: Machine,
-    recipes: Mapping[int, Recipe],
+    rules: Mapping[int, LoopRule],
     loads: Sequence[Load],
     stores: Sequence[int],
 ) -> ir.Function:
     """The loop itself; its arrays do not overlap, which is what lets it run several trials at once."""
-    arrays = [*(load.stored for load in loads), *(dag.types[place] for place in stores)]
+    arrays = [*(load.stored for load in loads), *(dag.types[node] for node in stores)]
     types = [*map(_pointer_type, arrays), _LONG.as_pointer(), _BYTE.as_pointer(), _LONG]
     function = ir.Function(module, ir.FunctionType(_LONG, types), "loop")
     function.linkage = "internal"
@@ -87,21 +85,21 @@ def _inner(
     i, count = builder.phi(_LONG), builder.phi(_LONG)
     picked = builder.load(builder.gep(survivors, [i])) if any(load.picked for load in loads) else i
     loaded = {
-        load.operand: Loaded(_loaded(builder, pointer, picked if load.picked else i), load.fallible)
+        load.operand: Loaded(_load(builder, pointer, picked if load.picked else i), load.fallible)
         for load, pointer in zip(loads, pointers, strict=False)
     }
-    body = Body(dag, builder, loaded, contexts(dag, recipes, stores), machine)
-    for place, recipe in recipes.items():
-        body.compute(place, recipe)
-    for place, pointer in zip(stores, pointers[len(loads) :], strict=True):
-        result = body.result(place)
+    body = Body(dag, builder, loaded, contexts(dag, rules, stores), machine)
+    for node, rule in rules.items():
+        body.compute(node, rule)
+    for node, pointer in zip(stores, pointers[len(loads) :], strict=True):
+        result = body.result(node)
         stored = builder.zext(result, _BYTE) if result.type == _BIT else result
         builder.store(stored, builder.gep(pointer, [i]))
     wrong = body.wrong()
     counted = count
     if wrong is not None:
-        place = builder.gep(wrongs, [i])
-        builder.store(builder.or_(builder.load(place), builder.zext(wrong, _BYTE)), place)
+        flag = builder.gep(wrongs, [i])
+        builder.store(builder.or_(builder.load(flag), builder.zext(wrong, _BYTE)), flag)
         counted = builder.add(count, builder.zext(wrong, _LONG))
     following = builder.add(i, _LONG(1), flags=["nuw", "nsw"])
     i.add_incoming(_LONG(0), before)
@@ -118,7 +116,7 @@ def _inner(
     return function
 
 
-def _loaded(builder: ir.IRBuilder, pointer: Any, i: Any) -> Any:
+def _load(builder: ir.IRBuilder, pointer: Any, i: Any) -> Any:
     value = builder.load(builder.gep(pointer, [i]))
     return builder.icmp_unsigned("!=", value, _BYTE(0)) if value.type == _BYTE else value
 
@@ -129,8 +127,8 @@ def _entry(module: ir.Module, inner: ir.Function, machine: Machine) -> None:
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     addresses, n = function.args
     arguments = []
-    for place, argument in enumerate(inner.args[:-1]):
-        address = builder.load(builder.gep(addresses, [_LONG(place)]))
+    for position, argument in enumerate(inner.args[:-1]):
+        address = builder.load(builder.gep(addresses, [_LONG(position)]))
         arguments.append(builder.bitcast(address, argument.type))
 
     def loop() -> Any:

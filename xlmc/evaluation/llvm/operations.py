@@ -1,30 +1,75 @@
-"""Operators and functions of single values as instructions. What is not here has a body in NumPy, and runs there."""
+"""How the loop computes each node: operators and functions of single values as instructions, and choices.
+
+A function that is neither here nor in `sets` has a body in NumPy, and runs there. A comparison at 15 digits (see
+`functions.fifteen_digits`) with a constant is one with the last double that is equal to it; two numbers that vary and
+nearly agree are left to the careful path, trial by trial.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
-from xlmc.evaluation.graph.dag import Apply, Dag
-from xlmc.evaluation.llvm.arcsine import arccosine, arcsine
-from xlmc.evaluation.llvm.arctangent import arctangent, arctangent_of_two
-from xlmc.evaluation.llvm.fifteen_digits import at_15_digits, settled
-from xlmc.evaluation.llvm.recipes import PLAIN, Emit, Operand, Recipe, literal
+from llvmlite import ir
+
+from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Node, Select
+from xlmc.evaluation.llvm.arithmetic import arccosine, arcsine, arctangent, arctangent_of_two
+from xlmc.evaluation.llvm.loop_rules import PLAIN, Emit, Emitter, LoopRule, Operand, literal
+from xlmc.evaluation.llvm.sets import over_cells
 from xlmc.functions import Kind
-from xlmc.functions.fifteen_digits import SETTLED, Comparison
+from xlmc.functions.denormals import TINIEST
+from xlmc.functions.fifteen_digits import EIGHT_UNITS, NEAR, SETTLED, TWINS, Comparison, equals
 
-if TYPE_CHECKING:
-    from xlmc.evaluation.llvm.body import Body
+__all__ = ["loop_rule_of"]
 
-__all__ = ["operation"]
+_RELATIONS: Final = {"=": "==", "<>": "!=", "<": "<", "<=": "<=", ">": ">", ">=": ">="}
+
+_INTEGER: Final = ir.IntType(64)
+_EXPONENT: Final = 0x7FF << 52
+"""The bits of a double that hold its power of two."""
 
 _ALL: Final = range(255)
+
+_LARGEST_ANGLE: Final = 2.0**27
+"""Excel refuses the sine of a larger one: the trial is computed again."""
+
+
+def loop_rule_of(dag: Dag, node: int) -> LoopRule | None:
+    """How the loop computes a node; None where it cannot."""
+    kind = dag.types[node]
+    if dag.sizes[node] is not None or kind not in PLAIN:
+        return None
+    rule = _rule(dag, dag.nodes[node], kind)
+    if rule is None or not all(_readable(dag, part) for part in rule.operands if isinstance(part, Operand)):
+        return None
+    return rule
+
+
+def _rule(dag: Dag, node: Node, kind: Kind) -> LoopRule | None:
+    match node:
+        case Apply():
+            return _operation(dag, node) or over_cells(dag, node)
+        case Select(condition, yes, no):
+            operands = Operand(condition, Kind.LOGICAL), Operand(yes, kind), Operand(no, kind)
+            return LoopRule(operands, lambda body, parts: body.builder.select(*parts), makes=False)
+        case IfErrorNode(value) if dag.types[value] is kind:
+            # Where the value may be an error the trial is computed again: what stands in is never needed here.
+            return LoopRule((Operand(value, kind),), lambda body, parts: parts[0], makes=False)
+        case _:
+            return None
+
+
+def _readable(dag: Dag, operand: Operand) -> bool:
+    if isinstance(dag.nodes[operand.node], Constant):
+        return literal(dag, operand) is not None
+    return dag.sizes[operand.node] is None
 
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """See `Recipe`. `kinds` are the kinds that an argument of any kind may be of."""
+    """See `LoopRule`. `kinds` are the kinds that an argument of any kind may be of."""
 
     emit: Emit
     absorbs: Container[int] = ()
@@ -32,83 +77,83 @@ class _Row:
     kinds: Sequence[Kind] = (Kind.NUMBER,)
 
 
-def operation(dag: Dag, node: Apply) -> Recipe | None:
-    """The recipe of a function of single values; None where there is none."""
+def _operation(dag: Dag, node: Apply) -> LoopRule | None:
+    """The rule of a function of single values; None where there is none."""
     row = _row(dag, node)
     if row is None or len(node.arguments) != len(node.function.parameters):
         return None
     operands = []
-    for position, place in enumerate(node.arguments):
+    for position, node_id in enumerate(node.arguments):
         kind = node.function.parameter(position).kind
         if kind is Kind.ANY:
-            kind = dag.types[place]
+            kind = dag.types[node_id]
             if kind not in row.kinds:
                 return None
-        operands.append(Operand(place, kind))
-    return Recipe(tuple(operands), row.emit, row.absorbs, row.makes)
+        operands.append(Operand(node_id, kind))
+    return LoopRule(tuple(operands), row.emit, row.absorbs, row.makes)
 
 
 def _row(dag: Dag, node: Apply) -> _Row | None:
     function = node.function
     if isinstance(function.ufunc, Comparison):
-        return _Row(at_15_digits(dag, node, function.ufunc.symbol), _ALL)
+        return _Row(_compare(dag, node, function.ufunc.symbol), _ALL)
     return _power(dag, node) if function.name == "^" else _ROWS.get(function.name)
 
 
 def _instruction(name: str, *absorbs: int) -> _Row:
-    def emit(body: Body, parts: Sequence[Any]) -> Any:
+    def emit(body: Emitter, parts: Sequence[Any]) -> Any:
         return getattr(body.builder, name)(*parts)
 
     return _Row(emit, absorbs)
 
 
 def _comparison(relation: str) -> _Row:
-    def emit(body: Body, parts: Sequence[Any]) -> Any:
+    def emit(body: Emitter, parts: Sequence[Any]) -> Any:
         return body.builder.fcmp_ordered(relation, *parts)
 
     return _Row(emit, _ALL)
 
 
-def _known(answer: bool) -> _Row:
-    """What is asked of a value's kind, where that is certain: were it an error the trial would be computed again."""
+def _answer(answer: bool) -> _Row:
+    """The answer to a question about a value's kind, which is certain: of an error the trial is computed again."""
     return _Row(lambda body, parts: body.truth(answer), _ALL, kinds=PLAIN)
 
 
-def _sign(body: Body, parts: Sequence[Any]) -> Any:
+def _sign(body: Emitter, parts: Sequence[Any]) -> Any:
     zero = body.number(0.0)
     above, below = (body.builder.fcmp_ordered(relation, parts[0], zero) for relation in (">", "<"))
     negative = body.builder.select(below, body.number(-1.0), zero)
     return body.builder.select(above, body.number(1.0), negative)
 
 
-def _of_angle(body: Body, angle: Any) -> tuple[Any, Any]:
+def _of_angle(body: Emitter, angle: Any) -> tuple[Any, Any]:
     """Sine and cosine; angles too large are flagged, NaN among them."""
     size = body.intrinsic("llvm.fabs", angle)
-    body.flag(body.builder.fcmp_unordered(">=", size, body.number(body.largest_angle)))
+    body.flag(body.builder.fcmp_unordered(">=", size, body.number(_LARGEST_ANGLE)))
     return body.sine_and_cosine(angle)
 
 
-def _sine(body: Body, parts: Sequence[Any]) -> Any:
+def _sine(body: Emitter, parts: Sequence[Any]) -> Any:
     return _of_angle(body, parts[0])[0]
 
 
-def _cosine(body: Body, parts: Sequence[Any]) -> Any:
+def _cosine(body: Emitter, parts: Sequence[Any]) -> Any:
     return _of_angle(body, parts[0])[1]
 
 
-def _tangent(body: Body, parts: Sequence[Any]) -> Any:
+def _tangent(body: Emitter, parts: Sequence[Any]) -> Any:
     return body.builder.fdiv(*_of_angle(body, parts[0]))
 
 
-def _secant(body: Body, parts: Sequence[Any]) -> Any:
+def _secant(body: Emitter, parts: Sequence[Any]) -> Any:
     return body.builder.fdiv(body.number(1.0), _of_angle(body, parts[0])[1])
 
 
-def _cosecant(body: Body, parts: Sequence[Any]) -> Any:
+def _cosecant(body: Emitter, parts: Sequence[Any]) -> Any:
     return body.builder.fdiv(body.number(1.0), _of_angle(body, parts[0])[0])
 
 
-def _remainder(body: Body, parts: Sequence[Any]) -> Any:
+def _remainder(body: Emitter, parts: Sequence[Any]) -> Any:
     """Exact, then with the sign of the divisor, a zero too; NaN by zero."""
     builder, zero, divisor = body.builder, body.number(0.0), parts[1]
     rest = builder.frem(*parts)
@@ -122,16 +167,71 @@ def _of_doubles(function: Callable[..., Any], *absorbs: int, makes: bool) -> _Ro
     return _Row(lambda body, parts: body.of_doubles(function, *parts), absorbs, makes)
 
 
-def _root(body: Body, parts: Sequence[Any]) -> Any:
+def _root(body: Emitter, parts: Sequence[Any]) -> Any:
     return body.intrinsic("llvm.sqrt", parts[0])
 
 
-def _reciprocal(body: Body, parts: Sequence[Any]) -> Any:
+def _reciprocal(body: Emitter, parts: Sequence[Any]) -> Any:
     return body.builder.fdiv(body.number(1.0), parts[0])
 
 
-def _cube(body: Body, parts: Sequence[Any]) -> Any:
+def _cube(body: Emitter, parts: Sequence[Any]) -> Any:
     return body.builder.fmul(body.flushed(body.builder.fmul(parts[0], parts[0])), parts[0])
+
+
+def _compare(dag: Dag, node: Apply, symbol: str) -> Emit:
+    """How the loop compares two numbers."""
+    left, right = (literal(dag, Operand(node_id, Kind.NUMBER)) for node_id in node.arguments)
+    if right is not None:
+        return _with_constant(symbol, 0, float(right.value))
+    if left is not None:
+        return _with_constant(TWINS[symbol], 1, float(left.value))
+
+    def emit(body: Emitter, parts: Sequence[Any]) -> Any:
+        body.flag(_nearly_equal(body, *parts))
+        return body.builder.fcmp_ordered(_RELATIONS[symbol], *parts)
+
+    return emit
+
+
+def _nearly_equal(body: Emitter, x: Any, y: Any) -> Any:
+    """Whether two numbers differ by so little that their digits must be counted."""
+    builder = body.builder
+    apart = body.intrinsic("llvm.fabs", builder.fsub(x, y))
+    share = builder.fmul(body.intrinsic("llvm.fabs", x), body.number(NEAR))
+    near = builder.fcmp_ordered("<=", apart, builder.fadd(share, body.number(TINIEST)))
+    return builder.and_(near, builder.fcmp_ordered("!=", x, y))
+
+
+def _with_constant(symbol: str, varying: int, number: float) -> Emit:
+    """How the loop compares one of its operands with a constant."""
+    least, most = equals(number)
+
+    def emit(body: Emitter, parts: Sequence[Any]) -> Any:
+        def is_(relation: str, limit: float) -> Any:
+            return body.builder.fcmp_ordered(relation, parts[varying], body.number(limit))
+
+        match symbol:
+            case "<" | ">=":
+                return is_(symbol, least)
+            case "<=" | ">":
+                return is_(symbol, most)
+            case "=":
+                return body.builder.and_(is_(">=", least), is_("<=", most))
+            case _:
+                return body.builder.or_(is_("<", least), is_(">", most))
+
+    return emit
+
+
+def _last_sum(body: Emitter, parts: Sequence[Any]) -> Any:
+    """0 where a sum is within eight units in the last node of its first number, else the sum."""
+    total, first = parts
+    builder = body.builder
+    exponent = builder.and_(builder.bitcast(first, _INTEGER), ir.Constant(_INTEGER, _EXPONENT))
+    limit = builder.fmul(builder.bitcast(exponent, body.real), body.number(EIGHT_UNITS))
+    dust = builder.fcmp_ordered("<", body.intrinsic("llvm.fabs", total), limit)
+    return builder.select(dust, body.number(0.0), total)
 
 
 _POWERS: Final = {
@@ -161,7 +261,7 @@ _ROWS: Final[Mapping[str, _Row]] = {
     "<=": _comparison("<="),
     ">": _comparison(">"),
     ">=": _comparison(">="),
-    SETTLED.name: _Row(settled, makes=False),
+    SETTLED.name: _Row(_last_sum, makes=False),
     "NOT": _Row(lambda body, parts: body.builder.not_(parts[0])),
     "ABS": _Row(lambda body, parts: body.intrinsic("llvm.fabs", parts[0]), makes=False),
     "SQRT": _Row(_root),
@@ -176,10 +276,10 @@ _ROWS: Final[Mapping[str, _Row]] = {
     "ATAN2": _of_doubles(arctangent_of_two, 0, 1, makes=True),
     "ASIN": _of_doubles(arcsine, makes=True),
     "ACOS": _of_doubles(arccosine, makes=True),
-    "ISERROR": _known(False),
-    "ISERR": _known(False),
-    "ISNA": _known(False),
-    "ISTEXT": _known(False),
-    "ISBLANK": _known(False),
-    "ISNONTEXT": _known(True),
+    "ISERROR": _answer(False),
+    "ISERR": _answer(False),
+    "ISNA": _answer(False),
+    "ISTEXT": _answer(False),
+    "ISBLANK": _answer(False),
+    "ISNONTEXT": _answer(True),
 }

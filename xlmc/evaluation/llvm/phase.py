@@ -1,25 +1,94 @@
-"""The nodes that are computed on one set of trials: on all of them, or on the survivors of the filters."""
+"""The nodes that are computed on one set of trials: on all of them, or on the survivors of the filters.
+
+They are parted into stages: loops, and between them what the loops cannot compute.
+"""
 
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Iterable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Input, Range, Rescue, Select, evaluated
-from xlmc.evaluation.llvm.addresses import Addresses
-from xlmc.evaluation.llvm.loop import Load, compiled
+from xlmc.evaluation.engine import Column, column_of
+from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.graph.node_values import evaluate_node
+from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select
+from xlmc.evaluation.llvm.loop import Load, compile_loop
+from xlmc.evaluation.llvm.loop_rules import LoopRule, Operand, reads
 from xlmc.evaluation.llvm.machine import Machine, NativeLoop
-from xlmc.evaluation.llvm.recipes import Operand, Recipe, reads
-from xlmc.evaluation.llvm.stages import Stage, stages
-from xlmc.evaluation.llvm.trials import Trials
 from xlmc.functions import Kind
+from xlmc.functions.values import Floats, Value
 
-__all__ = ["Loop", "Memory", "Phase"]
+__all__ = ["Loop", "Memory", "Phase", "Trials"]
+
+_LONGEST: Final = 250
+"""Nodes of one loop; the time to compile grows faster than the loop."""
+
+
+class Trials:
+    """Values by node.
+
+    Args:
+        wider: the set that these trials were chosen from, by `survivors`: what was computed there is not again.
+
+    Attributes:
+        n: how many trials.
+        arrays: what loops read and write: doubles, and truth values for LOGICAL nodes, `(n,)`.
+        values: what was computed outside of loops.
+        wrong: `(n,)` 1 where the trial must be computed again.
+    """
+
+    def __init__(
+        self, dag: Dag, n: int, wrong: NDArray[np.uint8], wider: Trials | None, survivors: NDArray[np.intp]
+    ) -> None:
+        self.n, self.wrong, self.wider, self.survivors = n, wrong, wider, survivors
+        self.arrays: dict[int, NDArray[Any]] = {}
+        self.values: dict[int, Value] = {}
+        self._dag = dag
+        self._converted: dict[Operand, Floats] = {}
+
+    def array(self, operand: Operand) -> NDArray[Any]:
+        """What a loop reads of these trials: contiguous, `(n,)`; of a `Value` doubles, NaN for errors."""
+        if operand.node in self.arrays:
+            return self.arrays[operand.node]
+        if operand not in self._converted:
+            self._converted[operand] = self._as_doubles(operand)
+        return self._converted[operand]
+
+    def _as_doubles(self, operand: Operand) -> Floats:
+        value = self.values[operand.node]
+        numbers, errors = value.to_numbers() if operand.kind is Kind.NUMBER else value.to_logicals()
+        doubles = np.where(errors > 0, np.nan, numbers)
+        return np.ascontiguousarray(np.broadcast_to(doubles, (self.n,)), np.float64)
+
+    def value(self, node_id: int) -> Value:
+        """A node's value, whatever it is. In a trial that must be computed again it may be another error."""
+        node = self._dag.nodes[node_id]
+        if isinstance(node, Constant):
+            return node.value
+        if node_id not in self.values:
+            self.values[node_id] = self._as_value(node_id)
+        return self.values[node_id]
+
+    def _as_value(self, node: int) -> Value:
+        if node in self.arrays:
+            array = self.arrays[node]
+            return Value.of_logicals(array) if array.dtype == np.bool_ else Value.of_numbers(array)
+        assert self.wider is not None
+        return self.wider.value(node).take(self.survivors)
+
+    def column(self, node: int, fallible: bool) -> Column:
+        """A node as a result: numbers alone where it is a loop's, whose errors `wrong` marks, or sound draws."""
+        if not fallible and node in self.arrays:
+            return Column(self.arrays[node])
+        if not fallible and self.wider is not None and node in self.wider.arrays:
+            return Column(self.wider.arrays[node][self.survivors])
+        return column_of(self.value(node), self.n)
 
 
 class Memory:
@@ -29,14 +98,14 @@ class Memory:
         addresses: of the arrays that loops read and write.
     """
 
-    def __init__(self, dag: Dag, places: Iterable[int], block: int) -> None:
-        dtypes = {place: np.bool_ if dag.types[place] is Kind.LOGICAL else np.float64 for place in places}
-        self._arrays: dict[int, NDArray[Any]] = {place: np.empty(block, dtype) for place, dtype in dtypes.items()}
-        self.addresses = Addresses()
+    def __init__(self, dag: Dag, nodes: Iterable[int], block: int) -> None:
+        dtypes = {node: np.bool_ if dag.types[node] is Kind.LOGICAL else np.float64 for node in nodes}
+        self._arrays: dict[int, NDArray[Any]] = {node: np.empty(block, dtype) for node, dtype in dtypes.items()}
+        self.addresses = _Addresses()
 
-    def of(self, place: int, n: int) -> NDArray[Any]:
+    def of(self, node: int, n: int) -> NDArray[Any]:
         """The first `n` elements of a node's array."""
-        array = self._arrays[place]
+        array = self._arrays[node]
         return array if n == array.size else array[:n]
 
 
@@ -50,7 +119,7 @@ class Loop:
 
 
 class Phase:
-    """Computes the nodes of `places`.
+    """Computes the nodes of `nodes`.
 
     Args:
         keep: the nodes whose values are wanted afterwards.
@@ -65,51 +134,51 @@ class Phase:
         self,
         dag: Dag,
         machine: Machine,
-        recipes: Mapping[int, Recipe],
-        places: Sequence[int],
+        rules: Mapping[int, LoopRule],
+        nodes: Sequence[int],
         keep: Iterable[int],
         early: frozenset[int] | None,
         may_err: frozenset[str],
     ) -> None:
-        self._dag, self._machine, self._recipes, self._may_err = dag, machine, recipes, may_err
+        self._dag, self._machine, self._rules, self._may_err = dag, machine, rules, may_err
         self._early = early
-        parts = stages(dag, [place for place in places if not isinstance(dag.nodes[place], Input)], recipes)
+        parts = _stages(dag, [node for node in nodes if not isinstance(dag.nodes[node], Input)], rules)
         read = [self._read_from_outside(stage) for stage in parts]
         self._steps: list[Loop | tuple[int, ...]] = []
         for position, stage in enumerate(parts):
             wanted = set(keep).union(*(found for other, found in enumerate(read) if other != position))
-            self._steps.append(self._loop(stage, read[position], wanted) if stage.loop else stage.places)
-        self.stores = tuple(place for step in self._steps if isinstance(step, Loop) for place in step.stores)
+            self._steps.append(self._loop(stage, read[position], wanted) if stage.loop else stage.nodes)
+        self.stores = tuple(node for step in self._steps if isinstance(step, Loop) for node in step.stores)
 
-    def _read_from_outside(self, stage: Stage) -> set[int]:
-        read = {used for place in stage.places for used in reads(self._dag, place, self._recipes.get(place))}
-        return read - set(stage.places)
+    def _read_from_outside(self, stage: _LoopStage) -> set[int]:
+        read = {used for node in stage.nodes for used in reads(self._dag, node, self._rules.get(node))}
+        return read - set(stage.nodes)
 
-    def _loop(self, stage: Stage, read: set[int], wanted: set[int]) -> Loop:
-        recipes = {place: self._recipes[place] for place in stage.places}
+    def _loop(self, stage: _LoopStage, read: set[int], wanted: set[int]) -> Loop:
+        rules = {node: self._rules[node] for node in stage.nodes}
         loads: dict[Operand, Load] = {}
-        for recipe in recipes.values():
-            for part in recipe.operands:
-                if isinstance(part, Operand) and part.place in read:
+        for rule in rules.values():
+            for part in rule.operands:
+                if isinstance(part, Operand) and part.node in read:
                     load = self._load(part)
                     if load is not None:
                         loads[load.operand] = load
-        stores = tuple(place for place in stage.places if place in wanted)
+        stores = tuple(node for node in stage.nodes if node in wanted)
         found = tuple(loads.values())
-        return Loop(compiled(self._dag, self._machine, recipes, found, stores), found, stores)
+        return Loop(compile_loop(self._dag, self._machine, rules, found, stores), found, stores)
 
     def _load(self, part: Operand) -> Load | None:
         """How a node from outside is read; None for a constant."""
-        node = self._dag.nodes[part.place]
+        node = self._dag.nodes[part.node]
         if isinstance(node, Constant):
             return None
         is_input = isinstance(node, Input)
-        picked = self._early is not None and (is_input or part.place in self._early)
+        picked = self._early is not None and (is_input or part.node in self._early)
         if isinstance(node, Input):
-            return Load(Operand(part.place, Kind.NUMBER), Kind.NUMBER, picked, node.name in self._may_err)
-        if part.place in self._recipes:
-            own = self._dag.types[part.place]
-            return Load(Operand(part.place, own), own, picked, False)  # it was checked when it was written
+            return Load(Operand(part.node, Kind.NUMBER), Kind.NUMBER, picked, node.name in self._may_err)
+        if part.node in self._rules:
+            own = self._dag.types[part.node]
+            return Load(Operand(part.node, own), own, picked, False)  # it was checked when it was written
         return Load(part, Kind.NUMBER, picked, True)
 
     @property
@@ -129,22 +198,71 @@ class Phase:
         return wrong > 0
 
     def _run_loop(self, step: Loop, trials: Trials, memory: Memory) -> int:
-        address, places = memory.addresses.of, []
+        address, nodes = memory.addresses.of, []
         for load in step.loads:
             source = trials.wider if load.picked else trials
             assert source is not None
-            places.append(address(load.operand.place, source.array(load.operand)))
-        written = [memory.of(place, trials.n) for place in step.stores]
-        places += [address(place, array) for place, array in zip(step.stores, written, strict=True)]
-        places += [address("survivors", trials.survivors), address("wrong", trials.wrong)]
-        wrong = step.call((ctypes.c_void_p * len(places))(*places), trials.n)
+            nodes.append(address(load.operand.node, source.array(load.operand)))
+        written = [memory.of(node, trials.n) for node in step.stores]
+        nodes += [address(node, array) for node, array in zip(step.stores, written, strict=True)]
+        nodes += [address("survivors", trials.survivors), address("wrong", trials.wrong)]
+        wrong = step.call((ctypes.c_void_p * len(nodes))(*nodes), trials.n)
         trials.arrays.update(zip(step.stores, written, strict=True))
         return wrong
 
-    def _run_outside(self, places: Sequence[int], trials: Trials) -> None:
-        for place in places:
-            node = self._dag.nodes[place]
-            assert isinstance(node, Apply | Select | Rescue | Range)
-            needed = {used: trials.value(used) for used in reads(self._dag, place, None)}
+    def _run_outside(self, nodes: Sequence[int], trials: Trials) -> None:
+        for node_id in nodes:
+            node = self._dag.nodes[node_id]
+            assert isinstance(node, Apply | Select | IfErrorNode | Range)
+            needed = {used: trials.value(used) for used in reads(self._dag, node_id, None)}
             with np.errstate(all="ignore"):
-                trials.values[place] = evaluated(node, needed)
+                trials.values[node_id] = evaluate_node(node, needed)
+
+
+@dataclass(frozen=True, slots=True)
+class _LoopStage:
+    """Nodes that are computed together, in order; `loop` says how."""
+
+    nodes: tuple[int, ...]
+    loop: bool
+
+
+def _stages(dag: Dag, nodes: Sequence[int], rules: Mapping[int, LoopRule]) -> list[_LoopStage]:
+    """The nodes of `nodes`, in order, as stages in order; those without a rule stand outside of loops."""
+    levels: dict[int, int] = {}
+    for node in nodes:
+        in_loop = node in rules
+        levels[node] = 0 if in_loop else 1  # loops stand on even levels
+        for used in reads(dag, node, rules.get(node)):
+            if used in levels:
+                after = levels[used] + ((used in rules) != in_loop)
+                levels[node] = max(levels[node], after)
+    grouped: defaultdict[int, list[int]] = defaultdict(list)
+    for node in nodes:
+        grouped[levels[node]].append(node)
+    return [stage for level in sorted(grouped) for stage in _parts(grouped[level], loop=level % 2 == 0)]
+
+
+def _parts(nodes: Sequence[int], loop: bool) -> Iterable[_LoopStage]:
+    size = _LONGEST if loop else len(nodes)
+    for start in range(0, len(nodes), size):
+        yield _LoopStage(tuple(nodes[start : start + size]), loop)
+
+
+class _Addresses:
+    """Where arrays lie in memory, asked once of those that come again with every block: asking takes NumPy a while.
+
+    It holds the arrays last seen under each key, and keeps them alive. For one thread.
+    """
+
+    def __init__(self) -> None:
+        self._seen: dict[Hashable, tuple[NDArray[Any], int]] = {}
+
+    def of(self, key: Hashable, array: NDArray[Any]) -> int:
+        """The address of the first element."""
+        seen = self._seen.get(key)
+        if seen is not None and seen[0] is array:
+            return seen[1]
+        address: int = array.__array_interface__["data"][0]
+        self._seen[key] = array, address
+        return address

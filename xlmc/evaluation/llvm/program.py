@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import FormulaError
-from xlmc.evaluation.block_size import array_bytes, fitting_block
-from xlmc.evaluation.engine import Column, Evaluator, Sweeper, Target
-from xlmc.evaluation.graph.dag import Dag, Input
+from xlmc.evaluation.engine import BlockRunner, Column, Evaluator, Target
+from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.lower import Lowering
+from xlmc.evaluation.graph.nodes import Input
+from xlmc.evaluation.llvm.block_runner import NativeBlockRunner, block_parts
+from xlmc.evaluation.llvm.loop_rules import LoopRule, reads
 from xlmc.evaluation.llvm.machine import machine
-from xlmc.evaluation.llvm.phase import Memory, Phase
-from xlmc.evaluation.llvm.recipes import Recipe, reads, recipe_of
-from xlmc.evaluation.llvm.trials import Trials
-from xlmc.evaluation.llvm.whole import WholeBlocks, sweepable
-from xlmc.evaluation.reference.tracking import TrackingEvaluator
+from xlmc.evaluation.llvm.operations import loop_rule_of
+from xlmc.evaluation.llvm.phase import Memory, Phase, Trials
+from xlmc.evaluation.tracking import TrackingEvaluator, array_bytes, fitting_block
 from xlmc.functions.values import Floats
 
 if TYPE_CHECKING:
@@ -49,27 +49,27 @@ class JitProgram:
         may_err: frozenset[str],
     ) -> None:
         self.dag, self.may_err = lowering.dag, may_err
-        self.filter_places = [lowering.target(target) for target in filters]
-        self.forecast_places = [lowering.target(target) for target in forecasts]
-        recipes = _recipes(self.dag)
+        self.filter_nodes = [lowering.target(target) for target in filters]
+        self.forecast_nodes = [lowering.target(target) for target in forecasts]
+        rules = _rules(self.dag)
 
-        def needed(place: int) -> tuple[int, ...]:
-            return reads(self.dag, place, recipes.get(place))
+        def needed(node: int) -> tuple[int, ...]:
+            return reads(self.dag, node, rules.get(node))
 
-        first = self.dag.upstream(self.filter_places, needed)
+        first = self.dag.upstream(self.filter_nodes, needed)
         early = frozenset(first)
-        late = [place for place in self.dag.upstream(self.forecast_places, needed) if place not in early]
-        carried = {used for place in late for used in needed(place)} | set(self.forecast_places)
-        keep = {*self.filter_places, *(carried & early)}
-        self.first = Phase(self.dag, machine(), recipes, first, keep, None, may_err)
-        self.late = Phase(self.dag, machine(), recipes, late, set(self.forecast_places), early, may_err)
+        late = [node for node in self.dag.upstream(self.forecast_nodes, needed) if node not in early]
+        carried = {used for node in late for used in needed(node)} | set(self.forecast_nodes)
+        keep = {*self.filter_nodes, *(carried & early)}
+        self.first = Phase(self.dag, machine(), rules, first, keep, None, may_err)
+        self.late = Phase(self.dag, machine(), rules, late, set(self.forecast_nodes), early, may_err)
         self.inputs = _inputs(self.dag, [*first, *late])
-        self.careful_inputs = _inputs(self.dag, self.dag.upstream([*self.filter_places, *self.forecast_places]))
+        self.careful_inputs = _inputs(self.dag, self.dag.upstream([*self.filter_nodes, *self.forecast_nodes]))
         self.stores = (*self.first.stores, *self.late.stores)
         self.largest_block = _LARGEST_BLOCK
         while self.largest_block > _SMALLEST_BLOCK and self.largest_block * 8 * len(self.stores) > _MOST_MEMORY:
             self.largest_block //= 2
-        in_arrays = array_bytes(lowering, self.filter_places, self.forecast_places)
+        in_arrays = array_bytes(lowering, self.filter_nodes, self.forecast_nodes)
         self.largest_block = fitting_block(self.largest_block, in_arrays, 8 * len(self.stores))
 
     def evaluator(self, block: int) -> Evaluator:
@@ -77,21 +77,21 @@ class JitProgram:
         return _JitEvaluator(self, block)
 
 
-def _inputs(dag: Dag, places: Sequence[int]) -> dict[int, str]:
+def _inputs(dag: Dag, nodes: Sequence[int]) -> dict[int, str]:
     """The names of the inputs among the nodes."""
-    return {place: node.name for place in places if isinstance(node := dag.nodes[place], Input)}
+    return {node_id: node.name for node_id in nodes if isinstance(node := dag.nodes[node_id], Input)}
 
 
-def _recipes(dag: Dag) -> dict[int, Recipe]:
-    found = ((place, recipe_of(dag, place)) for place in range(len(dag.nodes)))
-    return {place: recipe for place, recipe in found if recipe is not None}
+def _rules(dag: Dag) -> dict[int, LoopRule]:
+    found = ((node, loop_rule_of(dag, node)) for node in range(len(dag.nodes)))
+    return {node: rule for node, rule in found if rule is not None}
 
 
 class _JitEvaluator:
     def __init__(self, program: JitProgram, block: int) -> None:
         self._program, self._block = program, block
         self._memory = Memory(program.dag, program.stores, block)
-        self._tracking = TrackingEvaluator(program.dag, program.filter_places, program.forecast_places)
+        self._tracking = TrackingEvaluator(program.dag, program.filter_nodes, program.forecast_nodes)
         self._all = np.empty(0, np.intp)
         self._trials = self._of_block({}, 0)
         self._draws: Mapping[str, Floats] = {}
@@ -100,17 +100,17 @@ class _JitEvaluator:
     def _of_block(self, inputs: Mapping[str, Floats], n: int) -> Trials:
         trials = Trials(self._program.dag, n, np.zeros(n, np.uint8), None, self._all)
         if n:
-            for place, name in self._program.inputs.items():
-                trials.arrays[place] = np.ascontiguousarray(inputs[name])
+            for node, name in self._program.inputs.items():
+                trials.arrays[node] = np.ascontiguousarray(inputs[name])
         return trials
 
-    def sweeper(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> Sweeper | None:
-        """See `Sweeping`."""
+    def block_runner(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> BlockRunner | None:
+        """See `RunsWholeBlocks`."""
         program = self._program
-        parts = sweepable(
-            program.dag, program.first, program.late, program.filter_places, program.forecast_places, self._block
+        parts = block_parts(
+            program.dag, program.first, program.late, program.filter_nodes, program.forecast_nodes, self._block
         )
-        return None if parts is None else WholeBlocks(parts, draw, linear, self._block)
+        return None if parts is None else NativeBlockRunner(parts, draw, linear, self._block)
 
     def filters(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:
         """See `Evaluator`."""
@@ -122,10 +122,10 @@ class _JitEvaluator:
             self._too_large = True
             return self._tracking.filters(inputs, n)
         self._too_large = False
-        columns = self._columns(self._trials, program.filter_places)
+        columns = self._columns(self._trials, program.filter_nodes)
         again = np.flatnonzero(self._trials.wrong)
         if again.size:
-            columns = _corrected(columns, again, self._tracking.filters(self._picked(again), again.size))
+            columns = _correct(columns, again, self._tracking.filters(self._picked(again), again.size))
         return columns
 
     def forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
@@ -140,27 +140,27 @@ class _JitEvaluator:
         except FormulaError:
             self._tracking.filters(self._draws, self._trials.wrong.size)
             return self._tracking.forecasts(survivors)
-        columns = self._columns(trials, program.forecast_places)
+        columns = self._columns(trials, program.forecast_nodes)
         again = np.flatnonzero(trials.wrong)
         if again.size:
             self._tracking.filters(self._picked(survivors[again]), again.size)
-            columns = _corrected(columns, again, self._tracking.forecasts(np.arange(again.size)))
+            columns = _correct(columns, again, self._tracking.forecasts(np.arange(again.size)))
         return columns
 
-    def _columns(self, trials: Trials, places: Sequence[int]) -> list[Column]:
+    def _columns(self, trials: Trials, nodes: Sequence[int]) -> list[Column]:
         """The results; of draws that may be errors the `Value`, for no loop has looked at them."""
         columns = []
-        for place in places:
-            node = self._program.dag.nodes[place]
+        for node_id in nodes:
+            node = self._program.dag.nodes[node_id]
             fallible = isinstance(node, Input) and node.name in self._program.may_err
-            columns.append(trials.column(place, fallible))
+            columns.append(trials.column(node_id, fallible))
         return columns
 
     def _picked(self, trials: NDArray[np.intp]) -> dict[str, Floats]:
         return {name: self._draws[name][trials] for name in self._program.careful_inputs.values()}
 
 
-def _corrected(columns: Sequence[Column], again: NDArray[np.intp], careful: Sequence[Column]) -> list[Column]:
+def _correct(columns: Sequence[Column], again: NDArray[np.intp], careful: Sequence[Column]) -> list[Column]:
     """The columns (n,) with the trials `again` (k,) as the careful path has them (k,)."""
     corrected = []
     for column, found in zip(columns, careful, strict=True):

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
-from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Range
-from xlmc.evaluation.llvm.recipes import Emit, Literal, Operand, Recipe
+from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.graph.nodes import Apply, Constant, Range
+from xlmc.evaluation.llvm.loop_rules import Emit, Emitter, Literal, LoopRule, Operand
 from xlmc.functions import Kind
 from xlmc.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value
-
-if TYPE_CHECKING:
-    from xlmc.evaluation.llvm.body import Body
 
 __all__ = ["over_cells"]
 
@@ -40,8 +38,8 @@ class _Members:
     beside: list[int]
 
 
-def over_cells(dag: Dag, node: Apply) -> Recipe | None:
-    """The recipe of a function of ranges; None where there is none."""
+def over_cells(dag: Dag, node: Apply) -> LoopRule | None:
+    """The rule of a function of ranges; None where there is none."""
     try:
         if node.function.name == "SUMPRODUCT":
             return _sum_of_products(dag, node)
@@ -53,16 +51,16 @@ def over_cells(dag: Dag, node: Apply) -> Recipe | None:
         return None
     if not row.fewest <= len(members.counting) <= _MOST:
         return None
-    return Recipe(tuple(members.counting), row.emit, row.absorbs, row.makes, tuple(members.beside))
+    return LoopRule(tuple(members.counting), row.emit, row.absorbs, row.makes, tuple(members.beside))
 
 
 def _members(dag: Dag, node: Apply) -> _Members:
     members = _Members([], [])
     kind = node.function.parameters[0].kind
-    for place in node.arguments:
-        cells = _cells(dag, place)
+    for node_id in node.arguments:
+        cells = _cells(dag, node_id)
         if cells is None:
-            members.counting.append(Operand(place, kind))
+            members.counting.append(Operand(node_id, kind))
             continue
         for cell in cells:
             found = _counted(dag, cell, kind)
@@ -73,19 +71,19 @@ def _members(dag: Dag, node: Apply) -> _Members:
     return members
 
 
-def _cells(dag: Dag, place: int) -> list[int | Value] | None:
-    """The cells of a range: their places, and the values of those that are constant. None for a single value."""
-    node = dag.nodes[place]
+def _cells(dag: Dag, node_id: int) -> list[int | Value] | None:
+    """The cells of a range: their nodes, and the values of those that are constant. None for a single value."""
+    node = dag.nodes[node_id]
     if isinstance(node, Range):
-        return [_value_or_place(dag, cell) for row in node.rows for cell in row]
-    if isinstance(node, Constant) and dag.sizes[place] is not None:
+        return [_value_or_node(dag, cell) for row in node.rows for cell in row]
+    if isinstance(node, Constant) and dag.sizes[node_id] is not None:
         return list(_each(node.value))
-    if dag.sizes[place] is not None:
+    if dag.sizes[node_id] is not None:
         raise _NotForTheLoopError
     return None
 
 
-def _value_or_place(dag: Dag, cell: int) -> int | Value:
+def _value_or_node(dag: Dag, cell: int) -> int | Value:
     node = dag.nodes[cell]
     return node.value if isinstance(node, Constant) else cell
 
@@ -118,12 +116,12 @@ def _counted_constant(cell: Value, kind: Kind) -> Literal | None:
     return Literal(number if kind is Kind.NUMBER else number != 0)
 
 
-def _sum_of_products(dag: Dag, node: Apply) -> Recipe | None:
+def _sum_of_products(dag: Dag, node: Apply) -> LoopRule | None:
     """`SUMPRODUCT`: cells that are no numbers are 0; of ranges of one size only."""
     columns, beside, shapes = [], [], set()
-    for place in node.arguments:
-        cells = _cells(dag, place)
-        shapes.add(dag.sizes[place])
+    for node_id in node.arguments:
+        cells = _cells(dag, node_id)
+        shapes.add(dag.sizes[node_id])
         if cells is None or len(shapes) > 1:
             return None
         parts: list[Part] = []
@@ -139,15 +137,15 @@ def _sum_of_products(dag: Dag, node: Apply) -> Recipe | None:
     if height * len(columns) > _MOST:
         return None
 
-    def emit(body: Body, parts: Parts) -> Any:
+    def emit(body: Emitter, parts: Parts) -> Any:
         products = [reduce(body.builder.fmul, parts[cell::height]) for cell in range(height)]
         return reduce(body.builder.fadd, products)
 
-    return Recipe(tuple(part for column in columns for part in column), emit, beside=tuple(beside))
+    return LoopRule(tuple(part for column in columns for part in column), emit, beside=tuple(beside))
 
 
 def _fold(instruction: str) -> Emit:
-    def emit(body: Body, parts: Parts) -> Any:
+    def emit(body: Emitter, parts: Parts) -> Any:
         return reduce(getattr(body.builder, instruction), parts)
 
     return emit
@@ -156,12 +154,12 @@ def _fold(instruction: str) -> Emit:
 _sum = _fold("fadd")
 
 
-def _product(body: Body, parts: Parts) -> Any:
+def _product(body: Emitter, parts: Parts) -> Any:
     return reduce(lambda so_far, part: body.flushed(body.builder.fmul(so_far, part)), parts)
 
 
 def _extreme(relation: str) -> Emit:
-    def emit(body: Body, parts: Parts) -> Any:
+    def emit(body: Emitter, parts: Parts) -> Any:
         def better(best: Any, part: Any) -> Any:
             return body.builder.select(body.builder.fcmp_ordered(relation, best, part), best, part)
 
@@ -170,18 +168,18 @@ def _extreme(relation: str) -> Emit:
     return emit
 
 
-def _mean(body: Body, parts: Parts) -> Any:
+def _mean(body: Emitter, parts: Parts) -> Any:
     return body.builder.fdiv(_sum(body, parts), body.number(float(len(parts))))
 
 
-def _sum_of_squares(body: Body, parts: Parts) -> Any:
+def _sum_of_squares(body: Emitter, parts: Parts) -> Any:
     return _sum(body, [body.builder.fmul(part, part) for part in parts])
 
 
 def _variance(lost: int) -> Emit:
     """Mean squared distance from the mean, by k - `lost`."""
 
-    def emit(body: Body, parts: Parts) -> Any:
+    def emit(body: Emitter, parts: Parts) -> Any:
         mean = _mean(body, parts)
         total = _sum_of_squares(body, [body.builder.fsub(part, mean) for part in parts])
         return body.builder.fdiv(total, body.number(float(len(parts) - lost)))
@@ -196,9 +194,9 @@ def _deviation(lost: int) -> Emit:
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """See `Recipe`; of fewer than so many cells the result is an error or another rule holds."""
+    """See `LoopRule`; of fewer than so many cells the result is an error or another rule holds."""
 
-    emit: Callable[[Body, Parts], Any]
+    emit: Callable[[Emitter, Parts], Any]
     fewest: int = 1
     absorbs: Container[int] = ()
     makes: bool = True

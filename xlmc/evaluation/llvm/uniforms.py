@@ -48,20 +48,20 @@ def filler(streams: Sequence[_Stream], maps: Sequence[tuple[float, float]], rows
     Args:
         streams: k of them; `beginning` gives the state before trial 0 and the increment.
         maps: the offset and the factor of each.
-        rows: filled in place.
+        rows: written to.
     """
     words = np.empty((len(streams), _WORDS), np.uint64)
     for word, stream in zip(words, streams, strict=True):
         word[:4] = [half for number in stream.beginning for half in halves(number)]
-    place = np.empty(4, np.uint64)
+    jump_words = np.empty(4, np.uint64)
     words[:, 4:] = np.array(maps, np.float64).reshape(-1, 2).view(np.uint64)
-    addresses = [array.__array_interface__["data"][0] for array in (*rows, *words, place)]
+    addresses = [array.__array_interface__["data"][0] for array in (*rows, *words, jump_words)]
     calls: list[tuple[NativeLoop, Any]] = []
     for first in range(0, len(streams), _SIDE_BY_SIDE):
         chosen = range(first, min(first + _SIDE_BY_SIDE, len(streams)))
         of_chosen = [addresses[i] for i in chosen] + [addresses[len(streams) + i] for i in chosen] + addresses[-1:]
         calls.append((_loop(len(chosen)), (ctypes.c_void_p * len(of_chosen))(*of_chosen)))
-    return Fill(calls, words, place, rows)
+    return Fill(calls, words, jump_words, rows)
 
 
 class Fill:
@@ -102,18 +102,18 @@ def jump(steps: int) -> tuple[int, int]:
     """
     factor, summand = 1, 0
     while steps:
-        power, total = _doubled(steps.bit_length() - 1)
+        power, total = _double(steps.bit_length() - 1)
         factor, summand = factor * power & _ALL_BITS, (summand * power + total) & _ALL_BITS
         steps ^= 1 << (steps.bit_length() - 1)
     return factor, summand
 
 
 @cache
-def _doubled(times: int) -> tuple[int, int]:
+def _double(times: int) -> tuple[int, int]:
     """The jump of 2^times steps."""
     if times == 0:
         return _MULTIPLIER, 1
-    factor, summand = _doubled(times - 1)
+    factor, summand = _double(times - 1)
     return factor * factor & _ALL_BITS, (factor + 1) * summand & _ALL_BITS
 
 
@@ -121,14 +121,14 @@ def _doubled(times: int) -> tuple[int, int]:
 def _loop(k: int) -> NativeLoop:
     """The loop over the trials of k streams; it takes the addresses of k rows, of k streams' words and of the jump."""
     module = ir.Module()
-    finished = _finished(module)
+    finished = _finish(module)
     function = ir.Function(module, ir.FunctionType(_LONG, [_BYTE.as_pointer().as_pointer(), _LONG]), _NAME)
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     addresses, n = function.args
-    arrays = [builder.load(builder.gep(addresses, [_LONG(place)])) for place in range(2 * k + 1)]
+    arrays = [builder.load(builder.gep(addresses, [_LONG(i)])) for i in range(2 * k + 1)]
     rows = [builder.bitcast(array, _DOUBLE.as_pointer()) for array in arrays[:k]]
     jump_ = _numbers(builder, arrays[-1])
-    held = [_held(builder, array, jump_) for array in arrays[k:-1]]
+    held = [_hold(builder, array, jump_) for array in arrays[k:-1]]
     buffers = [tuple(builder.alloca(_LONG, _TILE) for _ in range(2)) for _ in range(k)]
     before, body, after = builder.block, *(function.append_basic_block(name) for name in ("body", "after"))
     builder.cbranch(builder.icmp_signed("<", _LONG(0), n), body, after)
@@ -138,7 +138,7 @@ def _loop(k: int) -> NativeLoop:
     states = [builder.phi(_STATE) for _ in range(k)]
     left = builder.sub(n, first)
     size = builder.select(builder.icmp_signed("<", left, _LONG(_TILE)), left, _LONG(_TILE))
-    advanced = _advanced(builder, states, [increment for _, increment, _, _ in held], buffers, size)
+    advanced = _advance(builder, states, [increment for _, increment, _, _ in held], buffers, size)
     for row, halves_, (_, _, offset, factor) in zip(rows, buffers, held, strict=True):
         builder.call(finished, [*halves_, builder.gep(row, [first]), offset, factor, size])
     following = builder.add(first, size)
@@ -154,7 +154,7 @@ def _loop(k: int) -> NativeLoop:
     return machine().native(module, _NAME)
 
 
-def _advanced(
+def _advance(
     builder: ir.IRBuilder, states: Sequence[Any], increments: Sequence[Any], buffers: Sequence[Any], n: Any
 ) -> list[Any]:
     """The states `n` steps on; the states on the way are written down by halves, the upper first."""
@@ -178,7 +178,7 @@ def _advanced(
     return moved
 
 
-def _finished(module: ir.Module) -> ir.Function:
+def _finish(module: ir.Module) -> ir.Function:
     """States by halves to offset + factor·uniform, several at a time, for no number waits for another."""
     words, doubles = _LONG.as_pointer(), _DOUBLE.as_pointer()
     types = [words, words, doubles, _DOUBLE, _DOUBLE, _LONG]
@@ -208,17 +208,17 @@ def _finished(module: ir.Module) -> ir.Function:
 def _numbers(builder: ir.IRBuilder, words: Any) -> tuple[Any, Any]:
     """Two numbers of 128 bits, lower half first."""
     longs = builder.bitcast(words, _LONG.as_pointer())
-    parts = [builder.zext(builder.load(builder.gep(longs, [_LONG(place)])), _STATE) for place in range(4)]
+    parts = [builder.zext(builder.load(builder.gep(longs, [_LONG(i)])), _STATE) for i in range(4)]
     first, second = (builder.or_(low, builder.shl(high, _STATE(64))) for low, high in (parts[:2], parts[2:]))
     return first, second
 
 
-def _held(builder: ir.IRBuilder, words: Any, jump: tuple[Any, Any]) -> tuple[Any, Any, Any, Any]:
+def _hold(builder: ir.IRBuilder, words: Any, jump: tuple[Any, Any]) -> tuple[Any, Any, Any, Any]:
     """State after the jump, increment, offset and factor of a stream."""
     state, increment = _numbers(builder, words)
     state = builder.add(builder.mul(state, jump[0]), builder.mul(increment, jump[1]))
     doubles = builder.bitcast(words, _DOUBLE.as_pointer())
-    offset, factor = (builder.load(builder.gep(doubles, [_LONG(place)])) for place in (4, 5))
+    offset, factor = (builder.load(builder.gep(doubles, [_LONG(i)])) for i in (4, 5))
     return state, increment, offset, factor
 
 

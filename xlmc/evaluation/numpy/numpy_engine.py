@@ -1,6 +1,6 @@
-"""The fast path: plain float and bool arrays, one ufunc a node, results in buffers that are used again.
+"""The fast path: plain float and bool arrays, one ufunc a node, results in buffers that later nodes use again.
 
-A block runs with floating-point flags armed. Where one is raised, or a guard says that Excel and IEEE part, or a
+A block runs with floating-point flags armed. Where one is raised, or a guard says that Excel and IEEE part ways, or a
 node's value turns out not to be a plain number, the block is evaluated again by `TrackingEvaluator`: errors cost
 nothing where there are none. Nor do numbers too small for Excel: the step that raises their flag makes 0 of them.
 """
@@ -14,14 +14,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import FormulaError
-from xlmc.evaluation.block_size import array_bytes, fitting_block
-from xlmc.evaluation.engine import Column, Evaluator, Target
-from xlmc.evaluation.graph.dag import Dag
-from xlmc.evaluation.numpy.plan import Plan, Space
-from xlmc.evaluation.numpy.steps import Departure
-from xlmc.evaluation.passes.bounds import Bounds
-from xlmc.evaluation.reference.tracking import TrackingEvaluator
-from xlmc.functions.values import Floats
+from xlmc.evaluation.engine import Column, Evaluator, Target, column_of
+from xlmc.evaluation.graph.dag import Dag, constants
+from xlmc.evaluation.graph.nodes import Input
+from xlmc.evaluation.numpy.branches import ROOT, SURVIVORS, Context, Placement, branch_step
+from xlmc.evaluation.numpy.sequence import Buffers, Steps
+from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, plain_constant
+from xlmc.evaluation.passes.bounds import Bounds, bounds
+from xlmc.evaluation.tracking import TrackingEvaluator, array_bytes, fitting_block
+from xlmc.functions import Kind
+from xlmc.functions.denormals import Underflow
+from xlmc.functions.values import Floats, Value
 
 if TYPE_CHECKING:
     from xlmc.evaluation.graph.lower import Lowering
@@ -39,12 +42,13 @@ class NumpyProgram:
     """The graph of nodes, ready to run on NumPy. It can be pickled, and so can its evaluators, without their memory.
 
     Args:
-        filters, forecasts: the places of nodes.
+        filters, forecasts: nodes.
         may_err: the inputs whose draws may be errors (NaNs), which raise no flag.
         between: name of an input -> the bounds that it will be given within; none are known of the others.
         array_bytes: what arrays and texts take in a trial.
 
     Attributes:
+        may_err: of those inputs, the ones that it reads.
         largest_block: 32,768, or the largest power of two whose buffers take no more than 32 MB: they stay in caches.
             It is smaller where arrays or texts would take too much memory.
     """
@@ -59,14 +63,25 @@ class NumpyProgram:
         array_bytes: int = 0,
     ) -> None:
         self._made_of = dag, filters, forecasts, may_err, between, array_bytes
-        self._plan = Plan(dag, filters, forecasts, between)
-        self._may_err = may_err & self._plan.inputs
+        self._dag, self._filters, self._forecasts = dag, filters, forecasts
+        self._between = bounds(dag, dag.upstream([*filters, *forecasts]), between) if between else {}
+        self._placement = Placement(dag, filters, forecasts)
+        self._template: list[Any] = [None] * len(dag.nodes)
+        for node, value in constants(dag):
+            self._template[node] = plain_constant(value)
+        self._carried = self._placement.externals(SURVIVORS, forecasts)
+        self._early_inputs, self._late_inputs = self._inputs(ROOT), self._inputs(SURVIVORS)
+        inputs = frozenset(name for _, name in self._early_inputs + self._late_inputs)
+        self._buffers = Buffers(dag)
+        self._first = self._steps(ROOT, {*filters, *self._carried}, free_at_end=filters)
+        self._gathers = [(node, self._carry(node)) for node in self._carried]
+        self._buffers.free(self._carried)
+        self._late = self._steps(SURVIVORS, set(forecasts), free_at_end=())
+        self.may_err = may_err & inputs
         self.largest_block = _LARGEST_BLOCK
-        while (
-            self.largest_block > _SMALLEST_BLOCK and self.largest_block * self._plan.buffers.trial_bytes > _MOST_BYTES
-        ):
+        while self.largest_block > _SMALLEST_BLOCK and self.largest_block * self._buffers.trial_bytes > _MOST_BYTES:
             self.largest_block //= 2
-        self.largest_block = fitting_block(self.largest_block, array_bytes, self._plan.buffers.trial_bytes)
+        self.largest_block = fitting_block(self.largest_block, array_bytes, self._buffers.trial_bytes)
 
     @classmethod
     def of(
@@ -87,22 +102,82 @@ class NumpyProgram:
     def evaluator(self, block: int) -> Evaluator:
         """See `Program`."""
         dag, filters, forecasts, *_ = self._made_of
-        tracking = TrackingEvaluator(dag, filters, forecasts)
-        return _NumpyEvaluator(self, block, self._plan, tracking, self._may_err)
+        return _NumpyEvaluator(self, block, TrackingEvaluator(dag, filters, forecasts))
+
+    def allocate(self, block: int) -> list[NDArray[Any]]:
+        """The arrays that the steps write to, for blocks of up to `block` trials."""
+        return self._buffers.allocate(block)
+
+    def run_filters(self, space: _Space, inputs: Mapping[str, Floats], n: int) -> list[Column]:
+        """Evaluate what the filters need on all `n` trials.
+
+        Raises:
+            LeaveFastPath, FloatingPointError: the block is not for the fast path.
+        """
+        frame = space.frame(self._template, n)
+        for node, name in self._early_inputs:
+            frame.values[node] = inputs[name]
+        for step in self._first:
+            step(frame)
+        return [_column(frame.values[node], n) for node in self._filters]
+
+    def run_forecasts(self, space: _Space, inputs: Mapping[str, Floats], survivors: NDArray[np.intp]) -> list[Column]:
+        """Evaluate what the forecasts need beyond that, on the survivors of the same block.
+
+        Raises:
+            LeaveFastPath, FloatingPointError: the block is not for the fast path.
+        """
+        frame = space.survivors(survivors.size)
+        for node, buffer in self._gathers:
+            frame.values[node] = _gather(frame, node, buffer, survivors)
+        for node, name in self._late_inputs:
+            frame.values[node] = inputs[name][survivors]
+        for step in self._late:
+            step(frame)
+        return [_column(frame.values[node], survivors.size) for node in self._forecasts]
+
+    def _inputs(self, context: Context) -> list[tuple[int, str]]:
+        found = [(node, self._dag.nodes[node]) for node in self._placement.members(context)]
+        return [(node, input_.name) for node, input_ in found if isinstance(input_, Input)]
+
+    def _steps(self, context: Context, keep: set[int], free_at_end: Sequence[int]) -> list[Step]:
+        """The steps of one context; `keep` outlives them."""
+        nodes, branched = self._dag.nodes, self._placement.branched
+        computed = [node for node in self._placement.members(context) if type(nodes[node]) is not Input]
+        read = self._placement.reads | {node: self._reads(node) for node in computed if node in branched}
+        last = {needed: node for node in computed for needed in read[node]} | dict.fromkeys(keep, -1)
+        steps = Steps(self._dag, self._buffers, computed, self._between)
+        for node in computed:
+            done = [needed for needed in read[node] if last[needed] == node]
+            if node in branched:
+                steps.add_free(branch_step(self._dag, self._placement, node), done)
+            else:
+                steps.add(node, read[node], done)
+        self._buffers.free(node for node in free_at_end if node not in self._carried)
+        return steps.finish()
+
+    def _reads(self, node: int) -> tuple[int, ...]:
+        """What an `IF` needs, its branches included."""
+        branches = self._placement.branches(node)
+        inner = (read for branch in branches for read in self._placement.externals(branch, ()))
+        return (*self._placement.reads[node], *inner)
+
+    def _carry(self, node: int) -> int | None:
+        """A buffer for the survivors of a node that the first steps computed."""
+        kind = self._dag.types[node]
+        return self._buffers.take_for(kind) if kind in (Kind.NUMBER, Kind.LOGICAL) else None
 
 
 class _NumpyEvaluator:
-    def __init__(
-        self, program: NumpyProgram, block: int, plan: Plan, tracking: TrackingEvaluator, may_err: frozenset[str]
-    ) -> None:
+    def __init__(self, program: NumpyProgram, block: int, tracking: TrackingEvaluator) -> None:
         self._made_of = program, block
-        self._plan, self._space, self._tracking, self._may_err = plan, Space(plan, block), tracking, may_err
+        self._program, self._space, self._tracking = program, _Space(program, block), tracking
         self._inputs: Mapping[str, Floats] = {}
         self._n = 0
-        self._departed = False
+        self._left_fast_path = False
 
     def _armed(self) -> np.errstate:
-        """The state in which a block departs where a number is lost, and one too small for Excel is told of."""
+        """Where a number is lost the block leaves the fast path; one that is too small for Excel is reported."""
         return np.errstate(divide="raise", over="raise", invalid="raise", under="call", call=self._space.underflow)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -110,20 +185,58 @@ class _NumpyEvaluator:
 
     def filters(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:
         self._inputs, self._n = inputs, n
-        self._departed = not all(np.isfinite(inputs[name]).all() for name in self._may_err)
-        if not self._departed:
+        self._left_fast_path = not all(np.isfinite(inputs[name]).all() for name in self._program.may_err)
+        if not self._left_fast_path:
             try:
                 with self._armed():
-                    return self._plan.run_filters(self._space, inputs, n)
-            except (FloatingPointError, Departure, FormulaError):
-                self._departed = True
+                    return self._program.run_filters(self._space, inputs, n)
+            except (FloatingPointError, LeaveFastPath, FormulaError):
+                self._left_fast_path = True
         return self._tracking.filters(inputs, n)
 
     def forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
-        if not self._departed:
+        if not self._left_fast_path:
             try:
                 with self._armed():
-                    return self._plan.run_forecasts(self._space, self._inputs, survivors)
-            except (FloatingPointError, Departure, FormulaError):
+                    return self._program.run_forecasts(self._space, self._inputs, survivors)
+            except (FloatingPointError, LeaveFastPath, FormulaError):
                 self._tracking.filters(self._inputs, self._n)
         return self._tracking.forecasts(survivors)
+
+
+class _Space:
+    """The memory of one thread: buffers for blocks of up to `block` trials, and the frame of the block at hand.
+
+    Attributes:
+        underflow: to be told where NumPy raises that flag.
+    """
+
+    def __init__(self, program: NumpyProgram, block: int) -> None:
+        self._buffers = program.allocate(block)
+        self.underflow = Underflow()
+        self._frame = Frame([], [], 0, self.underflow)
+
+    def frame(self, template: list[Any], n: int) -> Frame:
+        """A fresh frame for `n` trials."""
+        self._frame = Frame(template.copy(), [buffer[:n] for buffer in self._buffers], n, self.underflow)
+        return self._frame
+
+    def survivors(self, m: int) -> Frame:
+        """The same values, for `m` of the trials."""
+        self._frame = Frame(self._frame.values, [buffer[:m] for buffer in self._buffers], m, self.underflow)
+        return self._frame
+
+
+def _gather(frame: Frame, node: int, buffer: int | None, survivors: NDArray[np.intp]) -> Any:
+    found = frame.values[node]
+    if isinstance(found, Value):
+        return found.take(survivors)
+    if buffer is None:
+        return found[survivors]
+    return np.take(found, survivors, out=frame.buffers[buffer], mode="clip")
+
+
+def _column(found: Any, n: int) -> Column:
+    if isinstance(found, Value):
+        return column_of(found, n)
+    return Column(np.broadcast_to(found, (n,)))

@@ -1,18 +1,20 @@
-"""The steps of a plan in a row. Nearly all are ufuncs of plain numbers, run in one loop from one table.
+"""The steps of a program in a row. Nearly all are ufuncs of plain numbers, run in one loop from one table.
 
 A line of the table costs little to make and to run; what does not fit one gets a step of its own.
 """
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
-from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Select, uses
-from xlmc.evaluation.numpy.buffers import Buffers
-from xlmc.evaluation.numpy.steps import Departure, Frame, Step, is_elementwise_ufunc, make_step
+from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Select, uses
+from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, is_elementwise_ufunc, make_step
 from xlmc.evaluation.passes.bounds import Bounds, of_constant
 from xlmc.functions import Kind
 from xlmc.functions.fifteen_digits import SETTLED, Settled, keep, never_cancels
@@ -20,13 +22,88 @@ from xlmc.functions.math.trigonometry import Within, sine_and_cosine
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.values import Value
 
-__all__ = ["Steps"]
+__all__ = ["Buffers", "Steps"]
 
+_CACHE_LINE: Final = 64
+"""Bytes of a line of the processor's caches."""
 
 _Line = tuple[Elementwise | Callable[..., Any] | None, int, int, int, int, Any]
-"""(ufunc, place, first, second, buffer, guard): the ufunc of `values[first]` and `values[second]` (-1 for none) goes to
-`values[place]`, in that buffer, where the guard, if any, holds. Without a ufunc it is the choice between `first` and
-`second` by the logical at the place that stands for the guard."""
+"""(ufunc, node, first, second, buffer, guard): the ufunc of `values[first]` and `values[second]` (-1 for none) goes to
+`values[node]`, in that buffer, where the guard, if any, holds. Without a ufunc it is the choice between `first` and
+`second` by the logical node that stands for the guard."""
+
+
+class Buffers:
+    """Assigns buffers to nodes while a program is made; `allocate` makes the arrays."""
+
+    def __init__(self, dag: Dag) -> None:
+        self._dag = dag
+        self._types: list[Kind] = []
+        self._idle: defaultdict[Kind, list[int]] = defaultdict(list)
+        self._held: dict[int, int] = {}
+
+    def take(self, node_id: int) -> int | None:
+        """A buffer for the node's value; None where it makes its own array."""
+        node, kind = self._dag.nodes[node_id], self._dag.types[node_id]
+        if isinstance(node, IfErrorNode):
+            self._held.pop(node.value, None)  # the value lives on under another name: its buffer is never given back
+            return None
+        if (kind is not Kind.NUMBER and kind is not Kind.LOGICAL) or not isinstance(node, (Apply, Select)):
+            return None
+        self._held[node_id] = buffer = self.take_for(kind)
+        return buffer
+
+    def take_for(self, kind: Kind) -> int:
+        """A buffer of that kind, until `give_back`."""
+        if self._idle[kind]:
+            return self._idle[kind].pop()
+        self._types.append(kind)
+        return len(self._types) - 1
+
+    def free(self, nodes: Iterable[int]) -> list[int]:
+        """Give back the buffers of values that nothing reads any more; those that are in no buffer."""
+        held, loose = self._held, []
+        for node in nodes:
+            buffer = held.pop(node, None)
+            if buffer is None:
+                loose.append(node)
+            else:
+                self._idle[self._types[buffer]].append(buffer)
+        return loose
+
+    def exchange(self, done: Iterable[int], node: int, loose: list[int]) -> int | None:
+        """`free`, what is in no buffer going to `loose`, and then `take` for a number or a logical."""
+        held, idle = self._held, self._idle
+        for gone in done:
+            buffer = held.pop(gone, None)
+            if buffer is None:
+                loose.append(gone)
+            else:
+                idle[self._types[buffer]].append(buffer)
+        kind = self._dag.types[node]
+        ready = idle[kind]
+        held[node] = taken = ready.pop() if ready else self.take_for(kind)
+        return taken
+
+    def give_back(self, buffer: int) -> None:
+        """A buffer that nothing reads any more."""
+        self._idle[self._types[buffer]].append(buffer)
+
+    @property
+    def trial_bytes(self) -> int:
+        """What one trial takes in all of them."""
+        return sum(1 if kind is Kind.LOGICAL else 8 for kind in self._types)
+
+    def allocate(self, block: int) -> list[NDArray[Any]]:
+        """The arrays, `(block,)` each, on cache lines of their own."""
+        return [_array(block, np.dtype(np.bool_ if kind is Kind.LOGICAL else np.float64)) for kind in self._types]
+
+
+def _array(block: int, dtype: np.dtype[Any]) -> NDArray[Any]:
+    size = block * dtype.itemsize
+    raw = np.empty(size + _CACHE_LINE, np.uint8)
+    start = -raw.ctypes.data % _CACHE_LINE
+    return raw[start : start + size].view(dtype)
 
 
 class Steps:
@@ -35,58 +112,58 @@ class Steps:
     Args:
         dag: of the nodes.
         buffers: to take from.
-        places: the nodes to come.
+        nodes: the nodes to come.
         between: node -> its bounds, where they are known: a guard that they answer is not asked.
     """
 
     def __init__(
-        self, dag: Dag, buffers: Buffers, places: Iterable[int], between: Mapping[int, Bounds] | None = None
+        self, dag: Dag, buffers: Buffers, nodes: Iterable[int], between: Mapping[int, Bounds] | None = None
     ) -> None:
         self._made: list[Step] = []
         self._dag, self._buffers = dag, buffers
         self._lines: list[_Line] = []
         self._loose: list[int] = []
-        self._pairs = _sines_with_cosines(dag, places)
+        self._pairs = _sines_with_cosines(dag, nodes)
         self._had: set[int] = set()
         self._between = between or {}
 
-    def add(self, place: int, read: Sequence[int], done: list[int]) -> None:
+    def add(self, node_id: int, read: Sequence[int], done: list[int]) -> None:
         """The step of a node.
 
         Args:
-            place: of the node.
+            node_id: of the node.
             read: what it reads.
             done: what nothing reads after it.
         """
-        node, types = self._dag.nodes[place], self._dag.types
-        if place in self._pairs:
-            if place not in self._had:
-                self._add_pair(*self._pairs[place])
+        node, types = self._dag.nodes[node_id], self._dag.types
+        if node_id in self._pairs:
+            if node_id not in self._had:
+                self._add_pair(*self._pairs[node_id])
             self._free(done)
             return
         if (
             type(node) is Apply
-            and node.function.takes_plainly == len(node.arguments)
+            and node.function.fast_arity == len(node.arguments)
             and (types[node.arguments[0]] is types[node.arguments[-1]] is Kind.NUMBER)
         ):
             function, used = node
             if function.name == SETTLED.name:
                 done.sort(key=used[0].__eq__)  # the memory that was given back last is taken: nothing is copied then
-            buffer = self._buffers.exchange(done, place, self._loose)  # it may write over what it reads
+            buffer = self._buffers.exchange(done, node_id, self._loose)  # it may write over what it reads
             if buffer is not None:
                 second = used[1] if len(used) == 2 else -1
-                ufunc = self._settled(node) if function.name == SETTLED.name else function.ufunc
-                self._lines.append((ufunc, place, used[0], second, buffer, self._guard(place)))
+                ufunc = self._last_sum(node) if function.name == SETTLED.name else function.ufunc
+                self._lines.append((ufunc, node_id, used[0], second, buffer, self._guard(node_id)))
                 return
-        elif is_elementwise_ufunc(self._dag, place):
+        elif is_elementwise_ufunc(self._dag, node_id):
             self._free(done)
-            buffer = self._buffers.take(place)
+            buffer = self._buffers.take(node_id)
         else:
-            buffer = self._buffers.take(place)
+            buffer = self._buffers.take(node_id)
             self._free(done)
-            if buffer is not None and self._tabled(place, read, buffer):
+            if buffer is not None and self._add_lines(node_id, read, buffer):
                 return
-        self._append(make_step(self._dag, place, buffer))
+        self._append(make_step(self._dag, node_id, buffer))
 
     def add_free(self, step: Step, done: Iterable[int]) -> None:
         """A step that has memory of its own; nothing reads `done` after it."""
@@ -94,15 +171,15 @@ class Steps:
         self._append(step)
 
     def _free(self, done: Iterable[int]) -> None:
-        """Give back buffers; let go, after the next step, of values that are in none."""
+        """Give back buffers; values that are in none are dropped after the next step."""
         self._loose += self._buffers.free(done)
 
     def _append(self, step: Step) -> None:
         self._close()
         self._made.append(step)
-        gone = [place for place in self._loose if type(self._dag.nodes[place]) is not Constant]
+        gone = [node for node in self._loose if type(self._dag.nodes[node]) is not Constant]
         if gone:
-            self._made.append(_letting_go(gone))
+            self._made.append(_let_go(gone))
         self._loose.clear()
 
     def finish(self) -> list[Step]:
@@ -110,15 +187,15 @@ class Steps:
         self._close()
         return self._made
 
-    def _tabled(self, place: int, read: Sequence[int], buffer: int) -> bool:
+    def _add_lines(self, node_id: int, read: Sequence[int], buffer: int) -> bool:
         """A choice between numbers, or a fold of numbers, as lines."""
-        node, types = self._dag.nodes[place], self._dag.types
-        if types[place] is not Kind.NUMBER:
+        node, types = self._dag.nodes[node_id], self._dag.types
+        if types[node_id] is not Kind.NUMBER:
             return False
         if type(node) is Select:
             plain = types[node.yes] is types[node.no] is Kind.NUMBER and types[node.condition] is Kind.LOGICAL
             if plain:
-                self._lines.append((None, place, node.yes, node.no, buffer, node.condition))
+                self._lines.append((None, node_id, node.yes, node.no, buffer, node.condition))
             return plain
         if type(node) is not Apply or not node.function.takes_sets or len(read) < 2:
             return False
@@ -127,8 +204,8 @@ class Steps:
             return False
         if not all(types[cell] is Kind.NUMBER for cell in read):
             return False
-        self._lines.append((ufunc, place, read[0], read[1], buffer, None))
-        self._lines += [(ufunc, place, place, cell, buffer, None) for cell in read[2:]]
+        self._lines.append((ufunc, node_id, read[0], read[1], buffer, None))
+        self._lines += [(ufunc, node_id, node_id, cell, buffer, None) for cell in read[2:]]
         return True
 
     def _add_pair(self, sine: int, cosine: int) -> None:
@@ -144,9 +221,9 @@ class Steps:
             self._append(_pair(angle, self._guard(sine), (sine, cosine), (first, second, work)))
         self._had |= {sine, cosine}
 
-    def _guard(self, place: int) -> Callable[..., bool] | None:
+    def _guard(self, node_id: int) -> Callable[..., bool] | None:
         """The guard of an `Apply`; None where there is none to ask."""
-        node = self._dag.nodes[place]
+        node = self._dag.nodes[node_id]
         assert type(node) is Apply
         guard = node.function.guard
         if guard is None or not isinstance(guard, Within):
@@ -154,8 +231,8 @@ class Steps:
         known = self._between.get(node.arguments[0])
         return None if known is not None and guard.surely(*known) else guard
 
-    def _settled(self, node: Apply) -> Callable[..., object]:
-        """What makes of a formula's last sum what Excel makes of it: nothing, where that is known to be the sum."""
+    def _last_sum(self, node: Apply) -> Callable[..., object]:
+        """What Excel makes of the last sum of a formula; a function that keeps it where that is known before."""
         total, first = node.arguments
         added = self._dag.nodes[total]
         second = self._bounds(added.arguments[1]) if type(added) is Apply and added.function.name == "+" else None
@@ -166,8 +243,8 @@ class Steps:
             return keep
         return Settled(max(abs(of_first[0]), abs(of_first[1])))
 
-    def _bounds(self, place: int) -> Bounds | None:
-        return self._between.get(place) or of_constant(self._dag, place)
+    def _bounds(self, node: int) -> Bounds | None:
+        return self._between.get(node) or of_constant(self._dag, node)
 
     def _close(self) -> None:
         if self._lines:
@@ -175,36 +252,34 @@ class Steps:
             self._lines = []
 
 
-def _sines_with_cosines(dag: Dag, places: Iterable[int]) -> dict[int, tuple[int, int]]:
-    """The sines and cosines of angles of which both are wanted: place -> (sine, cosine)."""
+def _sines_with_cosines(dag: Dag, nodes: Iterable[int]) -> dict[int, tuple[int, int]]:
+    """The sines and cosines of angles of which both are wanted: node_id -> (sine, cosine)."""
     found: dict[str, dict[int, int]] = {"SIN": {}, "COS": {}}
-    for place in places:
-        node = dag.nodes[place]
+    for node_id in nodes:
+        node = dag.nodes[node_id]
         if type(node) is Apply and node.function.name in found and dag.types[node.arguments[0]] is Kind.NUMBER:
-            found[node.function.name][node.arguments[0]] = place
+            found[node.function.name][node.arguments[0]] = node_id
     both = [(found["SIN"][angle], found["COS"][angle]) for angle in found["SIN"].keys() & found["COS"].keys()]
-    return {place: pair for pair in both for place in pair}
+    return {node_id: pair for pair in both for node_id in pair}
 
 
-def _pair(
-    angle: int, guard: Callable[..., bool] | None, places: tuple[int, int], buffers: tuple[int, int, int]
-) -> Step:
-    sine, cosine = places
+def _pair(angle: int, guard: Callable[..., bool] | None, nodes: tuple[int, int], buffers: tuple[int, int, int]) -> Step:
+    sine, cosine = nodes
 
     def step(frame: Frame) -> None:
         values = frame.values
         if guard is not None and not guard(values[angle]):
-            raise Departure
+            raise LeaveFastPath
         values[sine], values[cosine], work = (frame.buffers[buffer] for buffer in buffers)
         sine_and_cosine(values[angle], values[sine], values[cosine], work)
 
     return step
 
 
-def _letting_go(places: list[int]) -> Step:
+def _let_go(nodes: list[int]) -> Step:
     def step(frame: Frame) -> None:
-        for place in places:
-            found, frame.values[place] = frame.values[place], None
+        for node in nodes:
+            found, frame.values[node] = frame.values[node], None
             if isinstance(found, Value):
                 frame.live -= found.nbytes
 
@@ -214,21 +289,21 @@ def _letting_go(places: list[int]) -> Step:
 def _run(lines: list[_Line]) -> Step:
     def step(frame: Frame) -> None:
         values, buffers, underflow = frame.values, frame.buffers, frame.underflow
-        for ufunc, place, first, second, buffer, guard in lines:
+        for ufunc, node, first, second, buffer, guard in lines:
             if ufunc is None:
                 out = buffers[buffer]
                 np.copyto(out, values[second])
                 np.copyto(out, values[first], where=values[guard])
-                values[place] = out
+                values[node] = out
             elif second < 0:
                 if guard is not None and not guard(values[first]):
-                    raise Departure
-                values[place] = ufunc(values[first], out=buffers[buffer])
+                    raise LeaveFastPath
+                values[node] = ufunc(values[first], out=buffers[buffer])
             else:
                 if guard is not None and not guard(values[first], values[second]):
-                    raise Departure
-                values[place] = ufunc(values[first], values[second], out=buffers[buffer])
+                    raise LeaveFastPath
+                values[node] = ufunc(values[first], values[second], out=buffers[buffer])
             if underflow.raised:
-                frame.flush(place)
+                frame.flush(node)
 
     return step

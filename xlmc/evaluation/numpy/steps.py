@@ -1,6 +1,6 @@
 """One node as one step on plain arrays.
 
-A step reads and writes a `Frame`: a list of values by node place. A NUMBER node is a float array (or a float, when
+A step reads and writes a `Frame`: a list of values by node. A NUMBER node is a float array (or a float, when
 constant), a LOGICAL node a bool array (or a bool), any other node a `Value`.
 """
 
@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Range, Rescue, Select, evaluated, uses
-from xlmc.evaluation.graph.ragged import Ragged, by_trial
+from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.graph.node_values import Ragged, by_trial, evaluate_node
+from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Range, Select, uses
 from xlmc.functions import Function, Kind
 from xlmc.functions.budget import ask_for_live
 from xlmc.functions.denormals import Underflow, flush, flushed
@@ -22,11 +23,11 @@ from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value
 
-__all__ = ["Departure", "Frame", "Step", "is_elementwise_ufunc", "make_step", "plain_constant", "reads"]
+__all__ = ["Frame", "LeaveFastPath", "Step", "is_elementwise_ufunc", "make_step", "plain_constant", "reads"]
 
 
-class Departure(Exception):  # noqa: N818 - it is no error: the block leaves the fast path
-    """What this block holds is not for the fast path."""
+class LeaveFastPath(Exception):  # noqa: N818 - it is no error: another path takes over
+    """The block cannot be computed on the fast path."""
 
 
 @dataclass(slots=True)
@@ -44,10 +45,10 @@ class Frame:
     underflow: Underflow
     live: int = 0
 
-    def flush(self, place: int) -> None:
-        """0 in place of the node's numbers that are too small for Excel."""
+    def flush(self, node: int) -> None:
+        """0 instead of the node's numbers that are too small for Excel."""
         self.underflow.raised = False
-        flush(self.values[place])
+        flush(self.values[node])
 
 
 Step = Callable[[Frame], None]
@@ -64,61 +65,61 @@ def plain_constant(value: Value) -> Any:
     return value
 
 
-def reads(dag: Dag, place: int) -> tuple[int, ...]:
+def reads(dag: Dag, node_id: int) -> tuple[int, ...]:
     """The nodes whose values the step of a node needs.
 
-    Of a range that is folded these are its cells. Of a rescue it is what it rescues: where that turns out to be an
-    error the block departs, so that what stands in instead is never needed here.
+    Of a range that is folded these are its cells. Of an IFERROR it is the value: where that turns out to be an
+    error the block leaves the fast path, so that what would stand in is never needed here.
     """
-    node = dag.nodes[place]
+    node = dag.nodes[node_id]
     if isinstance(node, Apply) and not node.function.takes_sets:
         return node.arguments
-    if isinstance(node, Rescue) and dag.sizes[node.instead] is None:
+    if isinstance(node, IfErrorNode) and dag.sizes[node.instead] is None:
         return (node.value,)
-    if isinstance(node, Apply) and _folded(dag, node) is not None:
+    if isinstance(node, Apply) and _find_folded(dag, node) is not None:
         return tuple(cell for cell, _ in _cells(dag, node))  # also what does not count: it may turn out an error
     return uses(node)
 
 
-def make_step(dag: Dag, place: int, buffer: int | None) -> Step:
+def make_step(dag: Dag, node_id: int, buffer: int | None) -> Step:
     """The step of a node; it writes to that buffer where it is given one, else to fresh memory.
 
-    Whatever has no fast form runs as `Function` does, and departs when an error or a text comes of it.
+    Whatever has no fast form runs as `Function` does; where it gives an error or a text the block leaves the fast path.
     """
-    node = dag.nodes[place]
+    node = dag.nodes[node_id]
     match node:
         case Apply(function, arguments):
-            return _apply(dag, place, function, arguments, buffer)
-        case Select(condition, yes, no) if dag.types[place] is not Kind.ANY:
-            return _select(dag, place, (condition, yes, no), buffer)
-        case Rescue(value, instead) if dag.sizes[instead] is None:
-            return _rescue(dag, place, value)
-        case Select() | Rescue() | Range():
-            return _valued(dag, place)
+            return _apply(dag, node_id, function, arguments, buffer)
+        case Select(condition, yes, no) if dag.types[node_id] is not Kind.ANY:
+            return _select(dag, node_id, (condition, yes, no), buffer)
+        case IfErrorNode(value, instead) if dag.sizes[instead] is None:
+            return _if_error(dag, node_id, value)
+        case Select() | IfErrorNode() | Range():
+            return _careful_step(dag, node_id)
         case _:
             raise TypeError(f"{node} is no step")
 
 
-def is_elementwise_ufunc(dag: Dag, place: int) -> bool:
+def is_elementwise_ufunc(dag: Dag, node_id: int) -> bool:
     """Whether the step may write over its own arguments."""
-    node = dag.nodes[place]
+    node = dag.nodes[node_id]
     return isinstance(node, Apply) and not node.function.takes_sets and _fast_ufunc(dag, node)
 
 
-def _apply(dag: Dag, place: int, function: Function, arguments: tuple[int, ...], buffer: int | None) -> Step:
+def _apply(dag: Dag, node_id: int, function: Function, arguments: tuple[int, ...], buffer: int | None) -> Step:
     node = Apply(function, arguments)
     if function.takes_sets:
-        folded = _folded(dag, node)
+        folded = _find_folded(dag, node)
         if folded is None:
-            return _valued(dag, place)
-        return _fold(function, place, _readers(dag, folded, function.parameters[0].kind), buffer)
+            return _careful_step(dag, node_id)
+        return _fold(function, node_id, _readers(dag, folded, function.parameters[0].kind), buffer)
     readers = [_reader(dag, argument, _wanted(dag, function, p)) for p, argument in enumerate(arguments)]
     if any(reader is None for reader in readers):
-        return _valued(dag, place)
+        return _careful_step(dag, node_id)
     found = [reader for reader in readers if reader is not None]
     if _fast_ufunc(dag, node) and function.ufunc is not None:
-        return _ufunc(function.ufunc, function.guard, place, found, buffer)
-    return _valued(dag, place) if function.takes_values else _body(function, place, found)
+        return _ufunc(function.ufunc, function.guard, node_id, found, buffer)
+    return _careful_step(dag, node_id) if function.takes_values else _body(function, node_id, found)
 
 
 def _on_numbers(dag: Dag, function: Function, arguments: tuple[int, ...]) -> bool:
@@ -147,17 +148,17 @@ def _wanted(dag: Dag, function: Function, position: int) -> Kind:
 Reader = Callable[[list[Any]], Any]
 
 
-def _reader(dag: Dag, place: int, kind: Kind) -> Reader | None:
+def _reader(dag: Dag, node_id: int, kind: Kind) -> Reader | None:
     """How a step gets an argument as plain numbers or logicals; None where that takes more than a look."""
-    node, found = dag.nodes[place], dag.types[place]
+    node, found = dag.nodes[node_id], dag.types[node_id]
     if isinstance(node, Constant):
         return _constant_reader(node.value, kind)
     if found is kind and kind in (Kind.NUMBER, Kind.LOGICAL):
-        return lambda values: values[place]
+        return lambda values: values[node_id]
     if found is Kind.LOGICAL and kind is Kind.NUMBER:
-        return lambda values: values[place].astype(np.float64)
+        return lambda values: values[node_id].astype(np.float64)
     if found is Kind.NUMBER and kind is Kind.LOGICAL:
-        return lambda values: values[place] != 0
+        return lambda values: values[node_id] != 0
     return None
 
 
@@ -176,21 +177,21 @@ def _compares_unlike_kinds(dag: Dag, node: Apply) -> bool:
 
 
 def _ufunc(
-    ufunc: Elementwise, guard: Callable[..., bool] | None, place: int, readers: list[Reader], buffer: int | None
+    ufunc: Elementwise, guard: Callable[..., bool] | None, node: int, readers: list[Reader], buffer: int | None
 ) -> Step:
     def step(frame: Frame) -> None:
         arguments = [read(frame.values) for read in readers]
         if guard is not None and not guard(*arguments):
-            raise Departure
+            raise LeaveFastPath
         out = None if buffer is None else frame.buffers[buffer]
-        frame.values[place] = ufunc(*arguments, out=out)
+        frame.values[node] = ufunc(*arguments, out=out)
         if frame.underflow.raised:
-            frame.flush(place)
+            frame.flush(node)
 
     return step
 
 
-def _body(function: Function, place: int, readers: list[Reader]) -> Step:
+def _body(function: Function, node: int, readers: list[Reader]) -> Step:
     defaults = [p.default for p in function.parameters[len(readers) :] if not p.repeat]
     logical = function.returns is Kind.LOGICAL
 
@@ -201,13 +202,13 @@ def _body(function: Function, place: int, readers: list[Reader]) -> Step:
         if isinstance(result, Value):
             result = _plain(result, function.returns)
         elif not logical and not np.isfinite(result).all():
-            raise Departure
-        frame.values[place] = np.broadcast_to(result if logical else flushed(result), (frame.n,))
+            raise LeaveFastPath
+        frame.values[node] = np.broadcast_to(result if logical else flushed(result), (frame.n,))
 
     return step
 
 
-def _folded(dag: Dag, node: Apply) -> list[int] | None:
+def _find_folded(dag: Dag, node: Apply) -> list[int] | None:
     """What a set function folds, ranges flattened and what does not count left out; None for the careful way."""
     function = node.function
     if not function.takes_sets or function.ufunc is None:
@@ -229,14 +230,14 @@ def _cells(dag: Dag, node: Apply) -> Iterator[tuple[int, bool]]:
             yield argument, False
 
 
-def _foldable(dag: Dag, place: int, kind: Kind) -> bool:
-    if kind not in (Kind.NUMBER, Kind.LOGICAL) or dag.sizes[place] is not None:
+def _foldable(dag: Dag, node: int, kind: Kind) -> bool:
+    if kind not in (Kind.NUMBER, Kind.LOGICAL) or dag.sizes[node] is not None:
         return False
-    return dag.types[place] is kind or _reader(dag, place, kind) is not None
+    return dag.types[node] is kind or _reader(dag, node, kind) is not None
 
 
-def _readers(dag: Dag, places: Sequence[int], kind: Kind) -> list[Reader]:
-    return [reader for place in places if (reader := _reader(dag, place, kind)) is not None]
+def _readers(dag: Dag, nodes: Sequence[int], kind: Kind) -> list[Reader]:
+    return [reader for node in nodes if (reader := _reader(dag, node, kind)) is not None]
 
 
 def _counts(dag: Dag, cell: int, kind: Kind) -> bool:
@@ -253,7 +254,7 @@ def _counts(dag: Dag, cell: int, kind: Kind) -> bool:
     return not (kind is Kind.NUMBER and found is Kind.LOGICAL)
 
 
-def _fold(function: Function, place: int, operands: list[Reader], buffer: int | None) -> Step:
+def _fold(function: Function, node: int, operands: list[Reader], buffer: int | None) -> Step:
     ufunc = function.ufunc
     assert ufunc is not None
     dtype = np.bool_ if function.returns is Kind.LOGICAL else np.float64
@@ -267,16 +268,16 @@ def _fold(function: Function, place: int, operands: list[Reader], buffer: int | 
             if frame.underflow.raised:
                 frame.underflow.raised = False
                 flush(out)
-        frame.values[place] = out
+        frame.values[node] = out
 
     return step
 
 
-def _select(dag: Dag, place: int, parts: tuple[int, int, int], buffer: int | None) -> Step:
-    kind = dag.types[place]
+def _select(dag: Dag, node: int, parts: tuple[int, int, int], buffer: int | None) -> Step:
+    kind = dag.types[node]
     read = [_reader(dag, part, want) for part, want in zip(parts, (Kind.LOGICAL, kind, kind), strict=True)]
     if any(reader is None for reader in read):
-        return _valued(dag, place)
+        return _careful_step(dag, node)
     condition, yes, no = (reader for reader in read if reader is not None)
     dtype = np.bool_ if kind is Kind.LOGICAL else np.float64
 
@@ -284,13 +285,13 @@ def _select(dag: Dag, place: int, parts: tuple[int, int, int], buffer: int | Non
         out = np.empty(frame.n, dtype) if buffer is None else frame.buffers[buffer]
         np.copyto(out, no(frame.values))
         np.copyto(out, yes(frame.values), where=condition(frame.values))
-        frame.values[place] = out
+        frame.values[node] = out
 
     return step
 
 
-def _rescue(dag: Dag, place: int, value: int) -> Step:
-    """On the fast path nothing needs rescue; a blank is 0 all the same.
+def _if_error(dag: Dag, node: int, value: int) -> Step:
+    """On the fast path the value is no error; a blank is 0 all the same.
 
     Where many cells may stand in, there may be more of them than of the value, and it is evaluated whole.
     """
@@ -299,9 +300,9 @@ def _rescue(dag: Dag, place: int, value: int) -> Step:
         found = frame.values[value]
         if isinstance(found, Value):
             if found.has_errors:
-                raise Departure
+                raise LeaveFastPath
             found = _without_blanks(found)
-        frame.values[place] = found if dag.types[place] is dag.types[value] else as_value(found, dag.types[value])
+        frame.values[node] = found if dag.types[node] is dag.types[value] else as_value(found, dag.types[value])
 
     return step
 
@@ -312,21 +313,21 @@ def _without_blanks(value: Value) -> Value:
     return zero_if_blank(value)
 
 
-def _valued(dag: Dag, place: int) -> Step:
-    node = dag.nodes[place]
-    assert isinstance(node, Apply | Select | Rescue | Range)
-    kind = dag.types[place]
+def _careful_step(dag: Dag, node_id: int) -> Step:
+    node = dag.nodes[node_id]
+    assert isinstance(node, Apply | Select | IfErrorNode | Range)
+    kind = dag.types[node_id]
 
     def step(frame: Frame) -> None:
         arguments = {p: as_value(frame.values[p], dag.types[p]) for p in uses(node)}
         with np.errstate(all="ignore"):
-            result = evaluated(node, arguments)
+            result = evaluate_node(node, arguments)
         if isinstance(node, Apply):
             result = _in_own_memory(result, arguments.values())
         if kind in (Kind.NUMBER, Kind.LOGICAL):
-            frame.values[place] = np.broadcast_to(_plain(result, kind), (frame.n,))
+            frame.values[node_id] = np.broadcast_to(_plain(result, kind), (frame.n,))
         else:
-            frame.values[place] = result
+            frame.values[node_id] = result
             frame.live += result.nbytes
             ask_for_live(frame.live)
 
@@ -342,7 +343,7 @@ def _in_own_memory(result: Value, arguments: Iterable[Value]) -> Value:
 
 def _plain(value: Value, kind: Kind) -> NDArray[Any]:
     if not value.plain:
-        raise Departure
+        raise LeaveFastPath
     return value.numbers != 0 if kind is Kind.LOGICAL else value.numbers
 
 

@@ -1,4 +1,4 @@
-"""Between which numbers a node's values lie, as far as sums, products and choices tell."""
+"""Between which numbers the values of a node lie, as far as sums, products and choices tell."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Final
 
-from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Input, Select
+from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.graph.nodes import Apply, Constant, Input, Select
 from xlmc.functions.fifteen_digits import SETTLED
 from xlmc.functions.values import NUMBER
 
@@ -18,12 +19,12 @@ Bounds = tuple[float, float]
 _ANY: Final[Bounds] = (-math.inf, math.inf)
 
 
-def bounds(dag: Dag, places: Iterable[int], inputs: Mapping[str, Bounds]) -> dict[int, Bounds]:
-    """The finite bounds among the nodes at `places`, which come in order.
+def bounds(dag: Dag, nodes: Iterable[int], inputs: Mapping[str, Bounds]) -> dict[int, Bounds]:
+    """The finite bounds among the nodes at `nodes`, which come in order.
 
     Args:
         dag: of the nodes.
-        places: those that vary.
+        nodes: those that vary.
         inputs: name of an input -> its bounds, where it has any.
     """
     found: dict[int, Bounds] = {}
@@ -31,8 +32,8 @@ def bounds(dag: Dag, places: Iterable[int], inputs: Mapping[str, Bounds]) -> dic
     def of(node: int) -> Bounds:
         return found[node] if node in found else of_constant(dag, node) or _ANY
 
-    for place in places:
-        match dag.nodes[place]:
+    for node_id in nodes:
+        match dag.nodes[node_id]:
             case Input(name):
                 between = inputs.get(name, _ANY)
             case Select(_, yes, no):
@@ -48,7 +49,7 @@ def bounds(dag: Dag, places: Iterable[int], inputs: Mapping[str, Bounds]) -> dic
             case _:
                 continue
         if math.isfinite(between[0]) and math.isfinite(between[1]):
-            found[place] = between
+            found[node_id] = between
     return found
 
 
@@ -60,10 +61,10 @@ _OF_ONE: Final[Mapping[str, Callable[[float, float], Bounds]]] = {
 """Function of one number -> its bounds, from those of the number."""
 
 
-def of_constant(dag: Dag, place: int) -> Bounds | None:
-    """A number that is known, twice; None of all else."""
-    node = dag.nodes[place]
-    if isinstance(node, Constant) and dag.sizes[place] is None and int(node.value.kinds[0]) == NUMBER:
+def of_constant(dag: Dag, node_id: int) -> Bounds | None:
+    """A constant number as its own lower and upper bound; None of any other node."""
+    node = dag.nodes[node_id]
+    if isinstance(node, Constant) and dag.sizes[node_id] is None and int(node.value.kinds[0]) == NUMBER:
         number = float(node.value.numbers[0])
         return number, number
     return None
@@ -81,6 +82,6 @@ def _combined(operator: str, left: Bounds, right: Bounds) -> Bounds:
 
 
 def _around(numbers: Iterable[float]) -> Bounds:
-    """What holds all the numbers; where one is none, nothing is known."""
+    """The bounds that hold all the numbers; where one is NaN nothing is known."""
     numbers = tuple(numbers)
     return _ANY if any(math.isnan(number) for number in numbers) else (min(numbers), max(numbers))

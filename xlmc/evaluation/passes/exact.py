@@ -1,9 +1,9 @@
-"""A trial evaluated again with 50 digits: what the formulas say, rounding apart.
+"""A trial evaluated again with 50 digits: what the formulas mean, without the rounding of doubles.
 
 Numbers typed into cells count as the decimals that were typed, draws as the doubles they are, and π as π. A result that
 differs from 0 in the last digits alone is 0, as COS of 270° is. What Excel does about the last digits of doubles is
 left out: comparisons are exact, and the sum that a formula ends with is what it is. A function that is not known here
-is evaluated as in the run, on arguments rounded to doubles, and its cell is told of as not checked.
+is evaluated as in the run, on arguments rounded to doubles, and its cell is reported as not checked.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ import numpy as np
 from mpmath import mp, mpf
 
 from xlmc.errors import ErrorCode
-from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Input, Range, Rescue, Select
-from xlmc.evaluation.passes.replicas import formula_of
+from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select
+from xlmc.evaluation.passes.random_rounding import formula_of
 from xlmc.functions.fifteen_digits import SETTLED
 from xlmc.functions.values import ShapeVaries, Value, constant, from_objects
 
@@ -38,30 +39,30 @@ class Exact:
         unchecked: nodes of functions that are not known here.
     """
 
-    def __init__(self, dag: Dag, places: Sequence[int]) -> None:
-        self._dag, self._places = dag, places
+    def __init__(self, dag: Dag, nodes: Sequence[int]) -> None:
+        self._dag, self._nodes = dag, nodes
         self.unchecked: set[int] = set()
 
     def trial(self, draws: Mapping[str, float]) -> dict[int, Item]:
         """Every node's value."""
         found: dict[int, Item] = {}
         with mp.workdps(DIGITS):
-            for place in self._places:
-                found[place] = self._value(place, draws, found)
+            for node in self._nodes:
+                found[node] = self._value(node, draws, found)
         return found
 
-    def _value(self, place: int, draws: Mapping[str, float], found: Mapping[int, Item]) -> Item:
-        node = formula_of(self._dag, place)
+    def _value(self, node_id: int, draws: Mapping[str, float], found: Mapping[int, Item]) -> Item:
+        node = formula_of(self._dag, node_id)
         match node:
             case Input(name):
                 return mpf(float(draws[name]))
             case Constant(value):
-                return _known(value)
+                return _constant_items(value)
             case Range(rows):
                 return [[_single(found[part]) for part in row] for row in rows]
             case Select(condition, yes, no):
-                return _chosen(found[condition], found[yes], found[no])
-            case Rescue(value, instead, only_na):
+                return _choose(found[condition], found[yes], found[no])
+            case IfErrorNode(value, instead, only_na):
                 item = found[value]
                 lost = item is ErrorCode.NA if only_na else isinstance(item, ErrorCode)
                 return _zero_if_blank(found[instead] if lost else item)
@@ -69,12 +70,12 @@ class Exact:
                 items = [found[argument] for argument in arguments]
                 body = EXACT.get(function.name)
                 if body is not None:
-                    result = _applied(body, items)
+                    result = _apply(body, items)
                     if result is not NotImplemented:
                         return result
                 if function.facts.exact_steps:
                     return _decimal(_as_in_the_run(function, items))
-                self.unchecked.add(place)
+                self.unchecked.add(node_id)
                 return _as_in_the_run(function, items)
 
 
@@ -86,13 +87,13 @@ def exactly(value: Item) -> float:
     return float(value) if isinstance(value, mpf) else float("nan")
 
 
-def _known(value: Value) -> Item:
+def _constant_items(value: Value) -> Item:
     if value.numbers.ndim == 3:
-        return [[_typed(item) for item in row] for row in value.objects()[0]]
-    return _typed(value.objects()[0])
+        return [[_exact_item(item) for item in row] for row in value.objects()[0]]
+    return _exact_item(value.objects()[0])
 
 
-def _typed(item: object) -> Item:
+def _exact_item(item: object) -> Item:
     if isinstance(item, bool | np.bool_):
         return bool(item)
     if isinstance(item, float | int):
@@ -111,7 +112,7 @@ def _zero_if_blank(item: Item) -> Item:
     return mpf(0) if item is None else item
 
 
-def _chosen(condition: Item, yes: Item, no: Item) -> Item:
+def _choose(condition: Item, yes: Item, no: Item) -> Item:
     condition = _single(condition)
     if isinstance(condition, ErrorCode):
         return condition
@@ -120,7 +121,7 @@ def _chosen(condition: Item, yes: Item, no: Item) -> Item:
     return _zero_if_blank(yes if condition else no)
 
 
-def _applied(body: Callable[..., Item], items: Sequence[Item]) -> Item:
+def _apply(body: Callable[..., Item], items: Sequence[Item]) -> Item:
     try:
         return body(*items)
     except ZeroDivisionError:
@@ -163,7 +164,7 @@ def _of_numbers(function: Callable[..., mpf]) -> Callable[..., Item]:
     return body
 
 
-def _settled(result: mpf, size: mpf) -> mpf:
+def _dust_to_zero(result: mpf, size: mpf) -> mpf:
     """0 where it is so but for the last digits of numbers of that size."""
     return mpf(0) if abs(result) < size * mpf(10) ** (_NOTHING - DIGITS) else result
 
@@ -222,7 +223,7 @@ def _of_cells(function: Callable[[list[mpf]], mpf]) -> Callable[..., Item]:
 
 
 def _total(x: Sequence[mpf]) -> mpf:
-    return _settled(mp.fsum(x), mp.fsum(x, absolute=True))
+    return _dust_to_zero(mp.fsum(x), mp.fsum(x, absolute=True))
 
 
 def _spread(x: list[mpf], lost: int) -> mpf:
@@ -285,8 +286,8 @@ def _joined(decide: Callable[[list[bool]], bool]) -> Callable[..., Item]:
 _FROM_1 = _real(mp.acosh, 1)
 
 EXACT: Final[Mapping[str, Callable[..., Item]]] = {
-    "+": _of_numbers(lambda x, y: _settled(x + y, abs(x) + abs(y))),
-    "-": _of_numbers(lambda x, y: _settled(x - y, abs(x) + abs(y))),
+    "+": _of_numbers(lambda x, y: _dust_to_zero(x + y, abs(x) + abs(y))),
+    "-": _of_numbers(lambda x, y: _dust_to_zero(x - y, abs(x) + abs(y))),
     "*": _of_numbers(lambda x, y: x * y),
     "/": _of_numbers(lambda x, y: x / y),
     "^": _of_numbers(_power),
@@ -302,12 +303,12 @@ EXACT: Final[Mapping[str, Callable[..., Item]]] = {
     "LN": _of_numbers(lambda x: _log(x, mp.e)),
     "LOG10": _of_numbers(_log),
     "LOG": _of_numbers(_log),
-    "SIN": _real(lambda x: _settled(mp.sin(x), mpf(1))),
-    "COS": _real(lambda x: _settled(mp.cos(x), mpf(1))),
-    "TAN": _real(lambda x: _settled(mp.sin(x), mpf(1)) / _settled(mp.cos(x), mpf(1))),
-    "SEC": _real(lambda x: 1 / _settled(mp.cos(x), mpf(1))),
-    "CSC": _real(lambda x: 1 / _settled(mp.sin(x), mpf(1))),
-    "COT": _real(lambda x: _settled(mp.cos(x), mpf(1)) / _settled(mp.sin(x), mpf(1))),
+    "SIN": _real(lambda x: _dust_to_zero(mp.sin(x), mpf(1))),
+    "COS": _real(lambda x: _dust_to_zero(mp.cos(x), mpf(1))),
+    "TAN": _real(lambda x: _dust_to_zero(mp.sin(x), mpf(1)) / _dust_to_zero(mp.cos(x), mpf(1))),
+    "SEC": _real(lambda x: 1 / _dust_to_zero(mp.cos(x), mpf(1))),
+    "CSC": _real(lambda x: 1 / _dust_to_zero(mp.sin(x), mpf(1))),
+    "COT": _real(lambda x: _dust_to_zero(mp.cos(x), mpf(1)) / _dust_to_zero(mp.sin(x), mpf(1))),
     "ASIN": _real(mp.asin, -1, 1),
     "ACOS": _real(mp.acos, -1, 1),
     "ATAN": _real(mp.atan),
@@ -360,7 +361,7 @@ def _as_in_the_run(function: Any, items: Sequence[Item]) -> Item:
     arguments = [_boxed(item) for item in items]
     try:
         with np.errstate(all="ignore"):
-            return _known_result(function(arguments))
+            return _result_items(function(arguments))
     except ShapeVaries:  # of one trial there is but one shape
         return ErrorCode.VALUE
 
@@ -375,7 +376,7 @@ def _boxed(item: Item) -> Value:
     return constant(float(item) if isinstance(item, mpf) else item)
 
 
-def _known_result(value: Value) -> Item:
+def _result_items(value: Value) -> Item:
     objects = value.objects()
     if value.numbers.ndim == 3:
         return [[_double(cell) for cell in row] for row in objects[0]]

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.evaluation.passes.replicas import closure, follow, numbers
+from xlmc.evaluation.passes.random_rounding import closure, follow, numbers
 from xlmc.formula import ir
 from xlmc.functions.values import Value
 from xlmc.studies.stability.case import Case, Floats

@@ -15,10 +15,18 @@ from numpy.typing import NDArray
 from xlmc.address import Cell
 from xlmc.definitions.model import name_key
 from xlmc.evaluation.engine import Target
-from xlmc.evaluation.graph.dag import Apply, Input, uses
+from xlmc.evaluation.graph.nodes import Apply, Input, uses
 from xlmc.evaluation.passes.derivatives import Derivatives
 from xlmc.evaluation.passes.exact import Exact, exactly
-from xlmc.evaluation.passes.replicas import DOUBLE, Jitter, closure, evaluation, formula_of, numbers, term_sizes
+from xlmc.evaluation.passes.random_rounding import (
+    DOUBLE,
+    RandomRounding,
+    closure,
+    evaluation,
+    formula_of,
+    numbers,
+    term_sizes,
+)
 from xlmc.functions.values import Value
 from xlmc.run.model import Model
 from xlmc.run.scene import condition
@@ -123,9 +131,9 @@ class Case:
     @cached_property
     def errors(self) -> dict[int, Floats]:
         """Node of a cell -> the size of its error by rounding, `(n,)`, in the root mean square of the replicas."""
-        return self._spread(lambda replica: {"jitter": Jitter((self._seed, replica))})
+        return self._spread(lambda replica: {"rounding": RandomRounding((self._seed, replica))})
 
-    def _spread(self, how: Callable[[int], dict[str, Jitter]]) -> dict[int, Floats]:
+    def _spread(self, how: Callable[[int], dict[str, RandomRounding]]) -> dict[int, Floats]:
         """The root mean square of what differs in evaluations that move something."""
         squares: dict[int, Floats] = {}
         for replica in range(REPLICAS):
@@ -177,7 +185,7 @@ class Case:
     @cached_property
     def of_inputs(self) -> dict[int, Floats]:
         """Node of a cell -> by how much it moves with the last place of assumptions and typed numbers, `(n,)`."""
-        found = self._spread(lambda replica: {"of_inputs": Jitter((self._seed, REPLICAS, replica), _MOVE)})
+        found = self._spread(lambda replica: {"of_inputs": RandomRounding((self._seed, REPLICAS, replica), _MOVE)})
         return {place: spread * (2 * DOUBLE / _MOVE) for place, spread in found.items()}
 
     @cached_property

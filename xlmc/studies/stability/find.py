@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
-from xlmc.evaluation.graph.dag import Apply
-from xlmc.evaluation.passes.derivatives.owners import owners
+from xlmc.evaluation.graph.nodes import Apply
+from xlmc.evaluation.passes.derivatives.sweep import owners
 from xlmc.run.simulate import simulate
 from xlmc.run.simulation import Simulation
 from xlmc.studies.stability.angles import rounded_angles

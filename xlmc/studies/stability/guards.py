@@ -15,9 +15,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.evaluation.graph.dag import Apply, uses
-from xlmc.evaluation.graph.ragged import Ragged
-from xlmc.evaluation.passes.replicas import follow, formula_of
+from xlmc.evaluation.graph.node_values import Ragged
+from xlmc.evaluation.graph.nodes import Apply, uses
+from xlmc.evaluation.passes.random_rounding import follow, formula_of
 from xlmc.functions.values import TEXT, Value
 from xlmc.studies.stability.case import RELATIONS, Bools, Case, Floats
 

@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.evaluation.graph.dag import Constant, uses
-from xlmc.evaluation.passes.replicas import formula_of, numbers
+from xlmc.evaluation.graph.nodes import Constant, uses
+from xlmc.evaluation.passes.random_rounding import formula_of, numbers
 from xlmc.formula import ir
 from xlmc.functions.families import function_named
 from xlmc.studies.stability.case import Case, Floats

@@ -16,7 +16,7 @@ import numpy as np
 from xlmc.address import Cell
 from xlmc.definitions.model import Filter
 from xlmc.evaluation.passes.exact import Exact, exactly
-from xlmc.evaluation.passes.replicas import closure
+from xlmc.evaluation.passes.random_rounding import closure
 from xlmc.formula import ir
 from xlmc.formula.substitute import substituted
 from xlmc.run.scene import filter_limits

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.evaluation.passes.replicas import Jitter, closure, evaluation, numbers
+from xlmc.evaluation.passes.random_rounding import RandomRounding, closure, evaluation, numbers
 from xlmc.formula import ir
 from xlmc.studies.stability.case import Case, Floats
 from xlmc.studies.stability.polynomials import Polynomial, Polynomials
@@ -190,5 +190,5 @@ def _evaluated(case: Case, place: int, draws: Mapping[str, Floats], replicas: in
     """A node's numbers for some draws, plain and with roundings made at random, `(1 + replicas, m)`."""
     order = closure(case.dag, [place])
     count = next((draw.size for draw in draws.values()), 1)
-    jitters = [None, *(Jitter((_OTHERS, replica)) for replica in range(replicas))]
+    jitters = [None, *(RandomRounding((_OTHERS, replica)) for replica in range(replicas))]
     return np.array([numbers(evaluation(case.dag, order, draws, one)[place], count) for one in jitters])

@@ -9,8 +9,8 @@ from typing import Final
 
 from xlmc.address import Area, Cell, host_of
 from xlmc.errors import FormulaError
+from xlmc.evaluation.graph.lowering import Scope
 from xlmc.evaluation.graph.references import NotYetNeeded
-from xlmc.evaluation.graph.scope import Scope
 from xlmc.formula import ir
 from xlmc.formula.resolve import Resolver
 from xlmc.formula.substitute import substituted, unfolded
@@ -64,7 +64,7 @@ class Trees:
         formula = self._graph.workbook.content(host_of(cell)).formula
         array = formula is not None and (formula.array is not None or formula.dynamic)
         try:
-            return self.lowering.single(self.lowering.lower(tree, Scope(cell, array)))
+            return self.lowering.first_cell(self.lowering.lower(tree, Scope(cell, array)))
         except (FormulaError, NotYetNeeded):
             return None
 

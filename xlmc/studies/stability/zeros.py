@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.evaluation.graph.dag import Input
-from xlmc.evaluation.passes.replicas import closure, evaluation, formula_of, numbers
+from xlmc.evaluation.graph.nodes import Input
+from xlmc.evaluation.passes.random_rounding import closure, evaluation, formula_of, numbers
 from xlmc.studies.stability.case import Case
 
 __all__ = ["only_assumption", "zeros"]

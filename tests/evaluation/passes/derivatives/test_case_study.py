@@ -49,8 +49,8 @@ def differences(point):
 
     def at(*moves):
         moved = list(point)
-        for place, sign in moves:
-            moved[place] += sign * STEP
+        for index, sign in moves:
+            moved[index] += sign * STEP
         return equations(*moved)
 
     middle = at()

@@ -1,4 +1,4 @@
-"""What is found beside the numbers: places without a derivative and why, kinks, differences and their errors."""
+"""What is found beside the numbers: where there is no derivative and why, kinks, differences and their errors."""
 
 from __future__ import annotations
 

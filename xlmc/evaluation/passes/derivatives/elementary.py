@@ -1,4 +1,4 @@
-"""Roots, exponentials, logarithms, angles and hyperbolic functions, absolute values and remainders."""
+"""Operators, roots, exponentials, logarithms, angles and hyperbolic functions, absolute values and remainders."""
 
 from __future__ import annotations
 
@@ -6,14 +6,56 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from xlmc.evaluation.passes.derivatives.jet import Jet
-from xlmc.evaluation.passes.derivatives.rules import Operand, Outcome, elementwise, leveled, rule
+from xlmc.evaluation.passes.derivatives.jet import Jet, chain
+from xlmc.evaluation.passes.derivatives.rules import Operand, Outcome, elementwise, level_jets, rule
 from xlmc.functions import Function
+from xlmc.functions.fifteen_digits import SETTLED
 from xlmc.functions.values import Floats, Value
 
 __all__: list[str] = []
 
 _LN10 = np.log(10.0)
+
+elementwise("+", lambda y, a, b: (1.0, 1.0), lambda y, a, b: (0.0, 0.0, 0.0))
+elementwise("-", lambda y, a, b: (1.0, -1.0), lambda y, a, b: (0.0, 0.0, 0.0))
+elementwise("*", lambda y, a, b: (b, a), lambda y, a, b: (0.0, 1.0, 0.0))
+elementwise("/", lambda y, a, b: (1 / b, -y / b), lambda y, a, b: (0.0, -1 / b**2, 2 * y / b**2))
+elementwise("u-", lambda y, x: (-1.0,), lambda y, x: (0.0,))
+elementwise("%", lambda y, x: (0.01,), lambda y, x: (0.0,))
+elementwise("RADIANS", lambda y, x: (np.pi / 180,), lambda y, x: (0.0,))
+elementwise("DEGREES", lambda y, x: (180 / np.pi,), lambda y, x: (0.0,))
+
+
+@rule("u+", "shown", SETTLED.name)
+def same(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
+    """What gives a number as it is, or but for its last bits."""
+    return Outcome(operands[0].jet)
+
+
+def _log_of_base(x: Floats) -> Floats:
+    return np.where(x > 0, np.log(np.where(x > 0, x, 1.0)), np.nan)
+
+
+@rule("^", why="a negative base has whole powers only, and a root is vertical at 0")
+def power(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
+    """Power; the exponent of a base that is not above 0 may not vary."""
+    base, exponent = level_jets(operands)
+    x, p, y = base.x, exponent.x, result.numbers
+    by_x = np.where(p == 0, 0.0, p * np.power(x, p - 1))
+    if not exponent.active:
+        return Outcome(base.function(y, by_x, lambda: _second_power(x, p)))
+    log = _log_of_base(x)
+
+    def seconds() -> dict[tuple[int, int], Floats]:
+        mixed = np.power(x, p - 1) * (1 + p * log)
+        return {(0, 0): _second_power(x, p), (0, 1): mixed, (1, 1): y * log * log}
+
+    return Outcome(chain(y, [base, exponent], [by_x, y * log], seconds))
+
+
+def _second_power(x: Floats, p: Floats) -> Floats:
+    return np.where((p == 0) | (p == 1), 0.0, p * (p - 1) * np.power(x, p - 2))
+
 
 elementwise("SQRT", lambda y, x: (0.5 / y,), lambda y, x: (-0.25 / (x * y),), why="a root is vertical at 0")
 elementwise("SQRTPI", lambda y, x: (np.pi / (2 * y),), lambda y, x: (-np.pi / (4 * x * y),), why="vertical at 0")
@@ -91,7 +133,7 @@ elementwise(
 @rule("LOG")
 def log(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
     """Logarithm to a base, 10 unless it is given."""
-    jets = leveled(operands)
+    jets = level_jets(operands)
     x = jets[0].ln()
     base = jets[1].ln() if len(jets) > 1 else Jet.still(np.full((1,) * x.x.ndim, _LN10))
     return Outcome(x / base)
@@ -100,7 +142,7 @@ def log(function: Function, result: Value, operands: Sequence[Operand]) -> Outco
 @rule("MOD", why="the remainder jumps there", jumps=True)
 def mod(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
     """`x - d⌊x/d⌋`, the whole part standing still; it jumps where the remainder is 0."""
-    x, divisor = leveled(operands)
+    x, divisor = level_jets(operands)
     whole = np.floor(x.x / divisor.x)
     jet = (x - divisor.times(whole)).lost(result.numbers == 0)
     return Outcome(jet, whole)

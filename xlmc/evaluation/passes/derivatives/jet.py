@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.functions.values import Floats
+from xlmc.functions.values import Bools, Floats, Value
 
-__all__ = ["Jet", "aligned", "chained"]
+__all__ = ["Jet", "align", "by_value", "chain", "concatenate", "flat"]
 
 Seconds = Callable[[], Mapping[tuple[int, int], Any]]
 
@@ -96,25 +96,25 @@ class Jet:
 
     def function(self, x: Floats, first: Any, second: Callable[[], Any]) -> Jet:
         """A function of it: its value, derivative and second derivative here."""
-        return chained(x, [self], [first], lambda: {(0, 0): second()})
+        return chain(x, [self], [first], lambda: {(0, 0): second()})
 
     def __add__(self, other: Jet) -> Jet:
         """Sum."""
-        return chained(self.x + other.x, [self, other], [1.0, 1.0])
+        return chain(self.x + other.x, [self, other], [1.0, 1.0])
 
     def __sub__(self, other: Jet) -> Jet:
         """Difference."""
-        return chained(self.x - other.x, [self, other], [1.0, -1.0])
+        return chain(self.x - other.x, [self, other], [1.0, -1.0])
 
     def __mul__(self, other: Jet) -> Jet:
         """Product."""
-        return chained(self.x * other.x, [self, other], [other.x, self.x], lambda: {(0, 1): 1.0})
+        return chain(self.x * other.x, [self, other], [other.x, self.x], lambda: {(0, 1): 1.0})
 
     def __truediv__(self, other: Jet) -> Jet:
         """Quotient."""
         y = self.x / other.x
         inverse = 1 / other.x
-        return chained(
+        return chain(
             y, [self, other], [inverse, -y * inverse], lambda: {(0, 1): -(inverse**2), (1, 1): 2 * y * inverse**2}
         )
 
@@ -132,41 +132,41 @@ class Jet:
         return self.spread().each(lambda part, _: part.sum(axis=-1))
 
 
-def aligned(jets: Sequence[Jet]) -> list[Jet]:
+def align(jets: Sequence[Jet]) -> list[Jet]:
     """All with the same active assumptions."""
     active = tuple(sorted({number for jet in jets for number in jet.active}))
-    return [_widened(jet, active) for jet in jets]
+    return [_widen(jet, active) for jet in jets]
 
 
-def _widened(jet: Jet, active: tuple[int, ...]) -> Jet:
+def _widen(jet: Jet, active: tuple[int, ...]) -> Jet:
     if jet.active == active:
         return jet
-    places = [active.index(number) for number in jet.active]
+    rows = [active.index(number) for number in jet.active]
 
     def change(part: NDArray[Any], axes: int) -> NDArray[Any]:
         if not axes:
             return part
         wide = np.zeros((*(len(active),) * axes, *part.shape[axes:]))
-        wide[np.ix_(*[places] * axes)] = part
+        wide[np.ix_(*[rows] * axes)] = part
         return wide
 
     return replace(jet.each(change), active=active)
 
 
-def chained(x: Floats, jets: Sequence[Jet], firsts: Sequence[Any], seconds: Seconds | None = None) -> Jet:
+def chain(x: Floats, jets: Sequence[Jet], firsts: Sequence[Any], seconds: Seconds | None = None) -> Jet:
     """A function of several numbers.
 
     Args:
         x: its value.
         jets: what it is a function of; their values have the same number of axes.
         firsts: its derivative with respect to each.
-        seconds: makes its second derivatives, by pairs of places `i <= j`; those that are 0 may be left out.
+        seconds: makes its second derivatives, by pairs of indices `i <= j`; those that are 0 may be left out.
     """
-    live = [place for place, jet in enumerate(jets) if jet.active]
+    live = [index for index, jet in enumerate(jets) if jet.active]
     if not live:
         return Jet.still(x)
-    wide = dict(zip(live, aligned([jets[place] for place in live]), strict=True))
-    parts = [wide[place].times(firsts[place], x) for place in live]
+    wide = dict(zip(live, align([jets[index] for index in live]), strict=True))
+    parts = [wide[index].times(firsts[index], x) for index in live]
     order = wide[live[0]].order
     curves = _curves(wide, seconds()) if order > 1 and seconds is not None else []
     first, error = _sum([part.first for part in parts]), _sum_of_errors([part.error for part in parts])
@@ -211,3 +211,51 @@ def _sum(parts: Sequence[Floats]) -> Floats:
 def _sum_of_errors(parts: Sequence[Floats | None]) -> Floats | None:
     known = [part for part in parts if part is not None]
     return _sum(known) if known else None
+
+
+def flat(jet: Jet, value: Value) -> Jet:
+    """The cells of a value side by side, `(n, m)`."""
+    n, size = value.shape[0], int(np.prod(value.shape[1:]))
+
+    def change(part: NDArray[Any], axes: int) -> NDArray[Any]:
+        return np.broadcast_to(part, (*part.shape[:axes], *value.shape)).reshape(*part.shape[:axes], n, size)
+
+    return jet.each(change)
+
+
+def concatenate(jets: Sequence[Jet], n: int) -> Jet:
+    """Cells side by side."""
+
+    def side(name: str, axes: int) -> Any:
+        parts = [getattr(jet, name) for jet in jets]
+        if all(part is None for part in parts):
+            return None
+        lead = next(part.shape[:axes] for part in parts if part is not None)
+        full = [
+            np.broadcast_to(0.0 if part is None else part, (*lead, n, jet.x.shape[-1]))
+            for part, jet in zip(parts, jets, strict=True)
+        ]
+        return np.concatenate(full, axis=-1)
+
+    second = side("second", 2) if all(jet.second is not None for jet in jets if jet.active) else None
+    rest = side("first", 1), second, side("error", 1), side("second_error", 2)
+    return Jet(side("x", 0), jets[0].active, *rest)
+
+
+def by_value(cells: Jet, counts: Bools, wanted: NDArray[np.float64]) -> tuple[Jet, NDArray[np.intp]]:
+    """The first cell of each trial that has the wanted value, and its index.
+
+    Args:
+        cells: `(n, m)`.
+        counts: `(n, m)` which of them count.
+        wanted: `(n,)`. Where several cells have it and do not change alike, there is no derivative.
+    """
+    same = counts & (cells.x == wanted[:, None])
+    chosen = same.argmax(axis=1)
+    trials = np.arange(same.shape[0])
+    whole = cells.spread()
+    there = same.any(axis=1)
+    picked = whole.each(lambda part, _: np.where(there, part[..., trials, chosen], 0.0))
+    apart = (whole.first != picked.first[..., None]).any(axis=0) & same
+    alone = replace(picked, x=wanted).lost(apart.any(axis=1))
+    return alone, chosen

@@ -1,21 +1,26 @@
-"""Conditions stand still, except at their limits; a choice has the derivatives of the branch it takes."""
+"""Conditions stand still except at their limits, roundings except at their steps; a choice is like its branch."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
-from xlmc.evaluation.passes.derivatives.jet import Jet, aligned
-from xlmc.evaluation.passes.derivatives.rules import Operand, Outcome, leveled, rule
+from xlmc.evaluation.passes.derivatives.jet import Jet, align
+from xlmc.evaluation.passes.derivatives.rules import Operand, Outcome, level_jets, rule
 from xlmc.functions import Function
 from xlmc.functions.values import ERROR, TEXT, Bools, Value
 
-__all__ = ["condition", "rescued", "selected"]
+__all__ = ["hold_still", "if_", "if_error"]
+
+_STEP: Final = "the value jumps there"
+
+_NEAR: Final = 1e-14
+"""As a share of a number: within it, Excel may take two numbers for one (it shows 15 digits)."""
 
 
 @rule("<", "<=", ">", ">=", why="the two sides are equal there", jumps=True)
@@ -24,9 +29,9 @@ def ordered(function: Function, result: Value, operands: Sequence[Operand]) -> O
     ways = result.numbers
     if any((operand.value.kinds == TEXT).any() for operand in operands):
         return Outcome(Jet.still(result.numbers), ways)
-    left, right = leveled(operands)
+    left, right = level_jets(operands)
     equal: Bools = np.asarray(left.x == right.x)
-    return Outcome(condition(result, [left, right], equal), ways)
+    return Outcome(_condition(result, [left, right], equal), ways)
 
 
 @rule("=", "<>", why="one side has no derivative there", jumps=True)
@@ -34,11 +39,11 @@ def labels(function: Function, result: Value, operands: Sequence[Operand]) -> Ou
     """Whether two are equal: what is compared so is a label, which does not change little by little."""
     if any((operand.value.kinds == TEXT).any() for operand in operands):
         return Outcome(Jet.still(result.numbers), result.numbers)
-    return Outcome(condition(result, leveled(operands), np.zeros(1, bool)), result.numbers)
+    return Outcome(_condition(result, level_jets(operands), np.zeros(1, bool)), result.numbers)
 
 
-def condition(result: Value, jets: Sequence[Jet], edge: Bools) -> Jet:
-    """What stands still: derivatives of 0, and none where an operand has none or is on the edge with one that is not 0.
+def _condition(result: Value, jets: Sequence[Jet], edge: Bools) -> Jet:
+    """A condition: derivatives of 0; none where an operand has none, or is on the edge with a derivative that is not 0.
 
     Args:
         result: what it is.
@@ -73,9 +78,9 @@ def joined(function: Function, result: Value, operands: Sequence[Operand]) -> Ou
     return Outcome(replace(total.times(0.0), x=result.numbers), result.numbers)
 
 
-def selected(result: Value, operands: Sequence[Operand]) -> Outcome:
+def if_(result: Value, operands: Sequence[Operand]) -> Outcome:
     """`IF`: the branch taken, and the limit of the condition."""
-    test, yes, no = leveled(operands)
+    test, yes, no = level_jets(operands)
     truth, _ = operands[0].value.to_logicals()
     truth = truth.reshape(-1, 1, 1) if test.x.ndim > truth.ndim else truth
     jet = _either(truth, yes, no)
@@ -84,9 +89,9 @@ def selected(result: Value, operands: Sequence[Operand]) -> Outcome:
     return Outcome(replace(jet, x=result.numbers), truth)
 
 
-def rescued(result: Value, operands: Sequence[Operand], only_na: bool) -> Outcome:
+def if_error(result: Value, operands: Sequence[Operand], only_na: bool) -> Outcome:
     """`IFERROR`: the value, or the other one where it is an error."""
-    value, instead = leveled(operands)
+    value, instead = level_jets(operands)
     kinds = operands[0].value.kinds
     lost = kinds == ERROR + ErrorCode.NA if only_na else kinds >= ERROR
     lost = lost.reshape(-1, 1, 1) if value.x.ndim > lost.ndim else lost
@@ -99,7 +104,7 @@ def _either(truth: Bools, yes: Jet, no: Jet) -> Jet:
         return Jet.still(np.where(truth, yes.x, no.x))
     live = yes if yes.active else no
     yes, no = ((jet if jet.active else _like(live, jet)) for jet in (yes, no))
-    a, b = aligned([yes, no])
+    a, b = align([yes, no])
     parts = zip((a.first, a.second, a.error, a.second_error), (b.first, b.second, b.error, b.second_error), strict=True)
     chosen = [None if x is None and y is None else np.where(truth, _or_0(x), _or_0(y)) for x, y in parts]
     return Jet(np.where(truth, a.x, b.x), a.active, *chosen)  # type: ignore[arg-type]  # `first` is never None
@@ -112,3 +117,54 @@ def _like(live: Jet, still: Jet) -> Jet:
 
 def _or_0(part: Any) -> Any:
     return 0.0 if part is None else part
+
+
+def _find_nudged(function: Function, result: Value, operands: Sequence[Operand], index: int = 0) -> Bools:
+    """Where the result changes with the 15th digit of an operand, in the result's shape."""
+    changed = np.zeros(1, bool)
+    for nudge in (1 - _NEAR, 1 + _NEAR):
+        values = [operand.value for operand in operands]
+        values[index] = replace(values[index], numbers=values[index].numbers * nudge)
+        changed = changed | (function(values).numbers != result.numbers)
+    return changed
+
+
+@rule(
+    *("ROUND", "ROUNDUP", "ROUNDDOWN", "TRUNC", "INT", "EVEN", "ODD", "SIGN", "QUOTIENT", "FACT", "FACTDOUBLE"),
+    why=_STEP,
+    jumps=True,
+)
+def steps(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
+    """Steps: 0 in between."""
+    jets = level_jets(operands)
+    where = _find_nudged(function, result, operands)
+    if function.name == "SIGN":
+        where = where | (jets[0].x == 0)
+    return Outcome(hold_still(result, jets, where), result.numbers)
+
+
+@rule(
+    *("CEILING", "FLOOR", "CEILING.MATH", "FLOOR.MATH", "MROUND"),
+    *("CEILING.PRECISE", "FLOOR.PRECISE"),
+    why=_STEP,
+    jumps=True,
+)
+def multiples(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
+    """A multiple, the number of times standing still."""
+    jets = level_jets(operands)
+    where = _find_nudged(function, result, operands)
+    multiple = jets[1] if len(jets) > 1 else Jet.still(np.ones((1,) * result.numbers.ndim))
+    times = np.where(multiple.x == 0, 0.0, result.numbers / np.where(multiple.x == 0, 1.0, multiple.x))
+    still = hold_still(result, jets[:1] + jets[2:], where)
+    return Outcome(still + multiple.times(times), times)
+
+
+def hold_still(result: Value, jets: Sequence[Jet], where: Bools) -> Jet:
+    """A value that is constant between steps; no derivatives at a step, and where an operand has none."""
+    if not where.any() and all(np.isfinite(jet.first).all() for jet in jets):
+        return Jet.still(result.numbers)
+    total = jets[0].times(0.0, result.numbers)
+    for jet in jets[1:]:
+        total = total + jet.times(0.0)
+    steep = where & np.isfinite(total.first).all(axis=0)
+    return replace(total.lost(steep), x=result.numbers)

@@ -1,22 +1,25 @@
-"""Lookups: the derivatives of the cell found, and 0 in the key; and functions that only move cells about."""
+"""Lookups: the derivatives of the cell found, and 0 in the key; and functions that only move cells about.
+
+Which cells such a function picks is asked of the function itself, by numbering the cells.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from xlmc.evaluation.passes.derivatives.jet import Jet
-from xlmc.evaluation.passes.derivatives.picking import Drawer
-from xlmc.evaluation.passes.derivatives.rounding import standing
-from xlmc.evaluation.passes.derivatives.rules import RULES, Operand, Outcome, Rule, leveled, rule
+from xlmc.evaluation.passes.derivatives.jet import Jet, align, concatenate, flat
+from xlmc.evaluation.passes.derivatives.logical import hold_still
+from xlmc.evaluation.passes.derivatives.rules import RULES, DerivativeRule, Operand, Outcome, level_jets, rule
 from xlmc.functions import Function
 from xlmc.functions.lookup.picking import each_part, joined, transposed
-from xlmc.functions.values import ERROR, Bools, Value
+from xlmc.functions.values import ERROR, LOGICAL, NUMBER, Bools, Value
 
-__all__ = ["moved"]
+__all__ = ["Drawer"]
 
 _AT_A_STEP: Final = "the key lies where the lookup goes from one cell to the next"
 
@@ -25,11 +28,58 @@ _NEAR: Final = 1e-14
 Values = list[Value]
 
 
+class Drawer(NamedTuple):
+    """The cells of some operands in one row, numbered from 1; 0 stands for what is none of them.
+
+    Attributes:
+        cells: `(n, m)`, none of them active where `active` is empty.
+        tags: the operands with their numbers replaced by those of the cells.
+    """
+
+    cells: Jet
+    tags: list[Value]
+
+    @classmethod
+    def of(cls, operands: Sequence[Operand]) -> Drawer:
+        """The cells of these operands."""
+        jets = align([flat(operand.jet, operand.value) for operand in operands])
+        n = max(jet.x.shape[0] for jet in jets)
+        tags, count = [], 0
+        for operand in operands:
+            shape = operand.value.shape[1:]
+            size = int(np.prod(shape))
+            numbers = np.arange(count + 1.0, count + size + 1).reshape(1, *shape)
+            count += size
+            tags.append(_tag(operand.value, numbers))
+        return cls(concatenate(jets, n), tags)
+
+    def drawn(self, found: Value, result: Value) -> Jet:
+        """The cells that a function found among the tags, as its result."""
+        cells = np.where(found.kinds == NUMBER, found.numbers, 0.0)
+        cells = np.broadcast_to(cells, found.shape).astype(np.intp)
+        n = max(cells.shape[0], self.cells.x.shape[0])
+        trials = np.arange(n).reshape(n, *(1,) * (cells.ndim - 1))
+
+        def pick(part: NDArray[Any], axes: int) -> NDArray[Any]:
+            padded = np.concatenate([np.zeros((*part.shape[:-1], 1)), part], axis=-1)
+            wide = np.broadcast_to(padded, (*padded.shape[:axes], n, padded.shape[-1]))
+            return wide[..., trials, cells]
+
+        return self.cells.each(pick, result.numbers)
+
+
+def _tag(value: Value, numbers: NDArray[np.float64]) -> Value:
+    """Texts and errors stay what they are; logicals become numbers, that their tags are not cut to TRUE."""
+    kinds = np.where(value.kinds == LOGICAL, np.uint8(NUMBER), value.kinds)
+    shape = np.broadcast_shapes(kinds.shape, numbers.shape)
+    return Value(np.broadcast_to(numbers, shape), np.broadcast_to(kinds.astype(np.uint8), shape), value.texts)
+
+
 @rule("MATCH", "XMATCH", why=_AT_A_STEP, jumps=True)
 def match(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """A place, which stands still."""
+    """A position, which stands still."""
     step = _steps(function, result, [operand.value for operand in operands])
-    return Outcome(standing(result, leveled([operands[0]]), step), result.numbers)
+    return Outcome(hold_still(result, level_jets([operands[0]]), step), result.numbers)
 
 
 def _steps(call: Callable[[Values], Value], found: Value, values: Values) -> Bools:
@@ -42,7 +92,7 @@ def _steps(call: Callable[[Values], Value], found: Value, values: Values) -> Boo
     return step
 
 
-def _looked_up(call: Callable[[Values], Value], result: Value, operands: Sequence[Operand], drawer: Drawer) -> Outcome:
+def _look_up(call: Callable[[Values], Value], result: Value, operands: Sequence[Operand], drawer: Drawer) -> Outcome:
     """The cell that a call finds among tags, by the first operand as a key."""
     values = [operand.value for operand in operands]
     found = call(values)
@@ -50,12 +100,12 @@ def _looked_up(call: Callable[[Values], Value], result: Value, operands: Sequenc
     key = operands[0].jet
     if key.active:
         level = key.as_range() if jet.x.ndim == 3 else key
-        jet = replace(jet + standing(result, [level], _steps(call, found, values)), x=result.numbers)
+        jet = replace(jet + hold_still(result, [level], _steps(call, found, values)), x=result.numbers)
     return Outcome(_without(jet, operands[2:]), found.numbers)
 
 
 def _without(jet: Jet, operands: Sequence[Operand]) -> Jet:
-    """No derivatives where what decides on the place has none."""
+    """No derivatives where what decides on the cell has none."""
     for operand in operands:
         first = operand.jet.first
         if not np.isfinite(first).all():
@@ -77,7 +127,7 @@ def table_lookup(function: Function, result: Value, operands: Sequence[Operand])
         shifted = replace(column, numbers=column.numbers + width)
         return function([key, _beside(table, drawer.tags[0], axis), shifted, *near])
 
-    return _looked_up(call, result, operands, drawer)
+    return _look_up(call, result, operands, drawer)
 
 
 def _beside(table: Value, tags: Value, axis: int) -> Value:
@@ -92,7 +142,7 @@ def lookup(function: Function, result: Value, operands: Sequence[Operand]) -> Ou
     """The results are tagged; without them, the last row or column of the array."""
     if len(operands) > 2:
         drawer = Drawer.of([operands[2]])
-        return _looked_up(lambda values: function([*values[:2], *drawer.tags]), result, operands, drawer)
+        return _look_up(lambda values: function([*values[:2], *drawer.tags]), result, operands, drawer)
     drawer = Drawer.of([operands[1]])
 
     def call(values: Values) -> Value:
@@ -102,7 +152,7 @@ def lookup(function: Function, result: Value, operands: Sequence[Operand]) -> Ou
         first = each_part(grid, lambda part: part[:, :, :1])
         return function([values[0], first, each_part(tags, lambda part: part[:, :, -1:])])
 
-    return _looked_up(call, result, operands, drawer)
+    return _look_up(call, result, operands, drawer)
 
 
 @rule("XLOOKUP", why=_AT_A_STEP, jumps=True)
@@ -113,29 +163,29 @@ def xlookup(function: Function, result: Value, operands: Sequence[Operand]) -> O
     def call(values: Values) -> Value:
         return function([*values[:2], *drawer.tags, *values[2:]])
 
-    return _looked_up(call, result, [*operands[:2], *operands[4:]], drawer)
+    return _look_up(call, result, [*operands[:2], *operands[4:]], drawer)
 
 
-def moved(data: Callable[[int], Sequence[int]], *names: str, why: str = "", jumps: bool = False) -> None:
+def register_moving(data: Callable[[int], Sequence[int]], *names: str, why: str = "", jumps: bool = False) -> None:
     """Register functions that move cells about: the operands at `data(how many there are)` are the cells."""
 
     def apply(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-        places = [place for place in data(len(operands)) if place < len(operands)]
-        drawer = Drawer.of([operands[place] for place in places])
+        moving = [index for index in data(len(operands)) if index < len(operands)]
+        drawer = Drawer.of([operands[index] for index in moving])
         values = [operand.value for operand in operands]
-        for place, tags in zip(places, drawer.tags, strict=True):
-            values[place] = tags
+        for index, tags in zip(moving, drawer.tags, strict=True):
+            values[index] = tags
         found = function(values)
-        rest = [operand for place, operand in enumerate(operands) if place not in places]
+        rest = [operand for index, operand in enumerate(operands) if index not in moving]
         single = found.numbers.ndim == 1
         return Outcome(_without(drawer.drawn(found, result), rest), found.numbers if single else None)
 
     for name in names:
-        RULES[name] = Rule(apply, why, jumps)
+        RULES[name] = DerivativeRule(apply, why, jumps)
 
 
-moved(lambda _: (0,), "INDEX", why="the place has no derivative there", jumps=True)
-moved(lambda _: (0,), "TRANSPOSE", "TAKE", "DROP", "CHOOSEROWS", "CHOOSECOLS", "TOCOL", "TOROW", "SORTBY")
-moved(lambda _: (0, 2), "FILTER", "WRAPROWS", "WRAPCOLS")
-moved(lambda _: (0, 3), "EXPAND")
-moved(range, "VSTACK", "HSTACK")
+register_moving(lambda _: (0,), "INDEX", why="the row or column has no derivative there", jumps=True)
+register_moving(lambda _: (0,), "TRANSPOSE", "TAKE", "DROP", "CHOOSEROWS", "CHOOSECOLS", "TOCOL", "TOROW", "SORTBY")
+register_moving(lambda _: (0, 2), "FILTER", "WRAPROWS", "WRAPCOLS")
+register_moving(lambda _: (0, 3), "EXPAND")
+register_moving(range, "VSTACK", "HSTACK")

@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from xlmc.evaluation.passes.derivatives.jet import Jet, aligned, chained
+from xlmc.evaluation.passes.derivatives.jet import Jet, align, chain
 from xlmc.evaluation.passes.derivatives.rules import Operand, Outcome
 from xlmc.functions import Function
 from xlmc.functions.values import ERROR, TEXT, Floats, Value
@@ -40,9 +40,9 @@ Moved = Callable[[Sequence[Floats | None]], Floats]
 def by_differences(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
     """The derivatives of any function of numbers; none where it depends on texts that change."""
     jets = [operand.jet for operand in operands]
-    live = [place for place, jet in enumerate(jets) if jet.active]
-    if any((value.kinds == TEXT).any() for value in (result, *(operands[place].value for place in live))):
-        return Outcome(_through_text(result, [jets[place] for place in live]))
+    live = [index for index, jet in enumerate(jets) if jet.active]
+    if any((value.kinds == TEXT).any() for value in (result, *(operands[index].value for index in live))):
+        return Outcome(_through_text(result, [jets[index] for index in live]))
 
     def moved(steps: Sequence[Floats | None]) -> Floats:
         values = [_moved(operand, step) for operand, step in zip(operands, steps, strict=True)]
@@ -51,8 +51,8 @@ def by_differences(function: Function, result: Value, operands: Sequence[Operand
             return np.full(result.shape, np.nan)
         return np.where(found.kinds >= ERROR, np.nan, found.numbers)
 
-    single = [place for place in live if operands[place].value.numbers.ndim == 1]
-    active = {number for place in live for number in jets[place].active}
+    single = [index for index in live if operands[index].value.numbers.ndim == 1]
+    active = {number for index in live for number in jets[index].active}
     if single == live and result.numbers.ndim == 1 and len(live) <= len(active):
         return Outcome(_by_arguments(moved, result, jets, live), numerical=True)
     return Outcome(_by_assumptions(moved, result, operands), numerical=True)
@@ -103,14 +103,14 @@ def _by_arguments(moved: Moved, result: Value, jets: Sequence[Jet], live: Sequen
     """Differences by the arguments, then the chain rule."""
     order = jets[live[0]].order
 
-    def way(*places: int) -> _Way:
-        first = tuple(_scale(jet.x) if place in places else None for place, jet in enumerate(jets))
+    def way(*indices: int) -> _Way:
+        first = tuple(_scale(jet.x) if index in indices else None for index, jet in enumerate(jets))
         return _Way(first, (None,) * len(jets))
 
-    singles = {place: _along(moved, result, way(place)) for place in live}
-    sizes = {place: _scale(jets[place].x) for place in live}
-    firsts = [singles[place].first / sizes[place] if place in singles else 0.0 for place in range(len(jets))]
-    errors = {place: singles[place].first_error / sizes[place] for place in live}
+    singles = {index: _along(moved, result, way(index)) for index in live}
+    sizes = {index: _scale(jets[index].x) for index in live}
+    firsts = [singles[index].first / sizes[index] if index in singles else 0.0 for index in range(len(jets))]
+    errors = {index: singles[index].first_error / sizes[index] for index in live}
 
     seconds: dict[tuple[int, int], Floats] = {}
     second_errors: dict[tuple[int, int], Floats] = {}
@@ -122,8 +122,8 @@ def _by_arguments(moved: Moved, result: Value, jets: Sequence[Jet], live: Sequen
                 if j > i:
                     both = _along(moved, result, way(i, j))
                     seconds[i, j], second_errors[i, j] = _mixed(both, singles[i], singles[j], sizes[i] * sizes[j])
-    jet = chained(result.numbers, jets, firsts, lambda: seconds)
-    return _with_errors(jet, [jets[place] for place in live], list(errors.values()), live, second_errors)
+    jet = chain(result.numbers, jets, firsts, lambda: seconds)
+    return _with_errors(jet, [jets[index] for index in live], list(errors.values()), live, second_errors)
 
 
 def _with_errors(
@@ -134,7 +134,7 @@ def _with_errors(
     second_errors: dict[tuple[int, int], Floats],
 ) -> Jet:
     """With the errors of the partial derivatives added to those that came down."""
-    wide = aligned(jets)
+    wide = align(jets)
     own = sum((np.abs(part.first) * error for part, error in zip(wide, errors, strict=True)), np.zeros(1))
     second_error = jet.second_error
     if jet.second is not None:
@@ -142,9 +142,9 @@ def _with_errors(
         for part, error in zip(wide, errors, strict=True):
             assert part.second is not None
             more = more + np.abs(part.second) * error
-        by_place = dict(zip(live, wide, strict=True))
+        by_index = dict(zip(live, wide, strict=True))
         for (i, j), error in second_errors.items():
-            outer = np.abs(by_place[i].first)[:, None] * np.abs(by_place[j].first)[None, :] * error
+            outer = np.abs(by_index[i].first)[:, None] * np.abs(by_index[j].first)[None, :] * error
             more = more + (outer if i == j else outer + outer.swapaxes(0, 1))
         second_error = more if second_error is None else second_error + more
     error = own if jet.error is None else jet.error + own
@@ -153,28 +153,28 @@ def _with_errors(
 
 def _by_assumptions(moved: Moved, result: Value, operands: Sequence[Operand]) -> Jet:
     """Differences along what each assumption does to all cells of all operands: for ranges, of many cells."""
-    places = [place for place, operand in enumerate(operands) if operand.jet.active]
-    wide = dict(zip(places, aligned([operands[place].jet for place in places]), strict=True))
-    jets = {place: jet.spread() for place, jet in wide.items()}
-    x = [jets[place].x for place in places]
-    active = jets[places[0]].active
-    order = jets[places[0]].order
+    indices = [index for index, operand in enumerate(operands) if operand.jet.active]
+    wide = dict(zip(indices, align([operands[index].jet for index in indices]), strict=True))
+    jets = {index: jet.spread() for index, jet in wide.items()}
+    x = [jets[index].x for index in indices]
+    active = jets[indices[0]].active
+    order = jets[indices[0]].order
     a = range(len(active))
 
     def way(weights: dict[int, Floats]) -> _Way:
         """Along a sum of assumptions, each by a weight `(n,)`."""
         firsts: list[Floats | None] = [None] * len(operands)
         seconds: list[Floats | None] = [None] * len(operands)
-        for place, jet in jets.items():
+        for index, jet in jets.items():
             level = {i: w.reshape(-1, *(1,) * (jet.x.ndim - 1)) for i, w in weights.items()}
-            firsts[place] = sum((w * jet.first[i] for i, w in level.items()), np.zeros(1))
+            firsts[index] = sum((w * jet.first[i] for i, w in level.items()), np.zeros(1))
             if jet.second is not None:
                 curve = [v * w * jet.second[i, j] for i, v in level.items() for j, w in level.items()]
-                seconds[place] = sum(curve, np.zeros(1))
+                seconds[index] = sum(curve, np.zeros(1))
         return _Way(tuple(firsts), tuple(seconds))
 
     n = result.shape[0]
-    weight = [_weight([jets[place].first[i] for place in places], x, n) for i in a]
+    weight = [_weight([jets[index].first[i] for index in indices], x, n) for i in a]
     singles = [_along(moved, result, way({i: weight[i]})) for i in a]
     level = [w.reshape(-1, *(1,) * (result.numbers.ndim - 1)) for w in weight]
     first = np.stack([singles[i].first / level[i] for i in a])

@@ -12,11 +12,11 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.evaluation.passes.derivatives.jet import Jet, chained
+from xlmc.evaluation.passes.derivatives.jet import Jet, chain
 from xlmc.functions import Function
 from xlmc.functions.values import Floats, Value
 
-__all__ = ["RULES", "Operand", "Outcome", "Rule", "elementwise", "leveled", "rule"]
+__all__ = ["RULES", "DerivativeRule", "Operand", "Outcome", "elementwise", "level_jets", "rule"]
 
 Ways = NDArray[Any]
 
@@ -46,7 +46,7 @@ Apply = Callable[[Function, Value, Sequence[Operand]], Outcome]
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class DerivativeRule:
     """How derivatives pass a function.
 
     Attributes:
@@ -60,7 +60,7 @@ class Rule:
     jumps: bool = False
 
 
-RULES: Final[dict[str, Rule]] = {}
+RULES: Final[dict[str, DerivativeRule]] = {}
 
 
 def rule(*names: str, why: str = "", jumps: bool = False) -> Callable[[Apply], Apply]:
@@ -70,13 +70,13 @@ def rule(*names: str, why: str = "", jumps: bool = False) -> Callable[[Apply], A
         for name in names:
             if name in RULES:
                 raise ValueError(f"{name} has two rules")
-            RULES[name] = Rule(apply, why, jumps)
+            RULES[name] = DerivativeRule(apply, why, jumps)
         return apply
 
     return register
 
 
-def leveled(operands: Sequence[Operand]) -> list[Jet]:
+def level_jets(operands: Sequence[Operand]) -> list[Jet]:
     """The jets, all as ranges where one of them is one."""
     jets = [operand.jet for operand in operands]
     return [jet.as_range() for jet in jets] if any(jet.x.ndim == 3 for jet in jets) else jets
@@ -97,17 +97,17 @@ def elementwise(
         name: of its row.
         firsts: of (value, arguments): one derivative an argument.
         seconds: of the same: second derivatives in the order 11, 12, …, 22, 23, …
-        why: see `Rule`.
+        why: see `DerivativeRule`.
         ways: of (value, arguments): which way it takes.
-        jumps: see `Rule`.
+        jumps: see `DerivativeRule`.
     """
 
     def apply(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-        jets = leveled(operands)
+        jets = level_jets(operands)
         y: Floats = result.numbers
         x = [jet.x for jet in jets]
         pairs = [(i, j) for i in range(len(jets)) for j in range(i, len(jets))]
-        jet = chained(y, jets, list(firsts(y, *x)), lambda: dict(zip(pairs, seconds(y, *x), strict=True)))
+        jet = chain(y, jets, list(firsts(y, *x)), lambda: dict(zip(pairs, seconds(y, *x), strict=True)))
         return Outcome(jet, None if ways is None else np.asarray(ways(y, *x)))
 
     rule(name, why=why, jumps=jumps)(apply)

@@ -8,9 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.evaluation.passes.derivatives.jet import Jet, aligned, chained
+from xlmc.evaluation.passes.derivatives.jet import Jet, align, by_value, chain, concatenate, flat
 from xlmc.evaluation.passes.derivatives.numerical import by_differences
-from xlmc.evaluation.passes.derivatives.picking import by_value, flat, joined
 from xlmc.evaluation.passes.derivatives.rules import Operand, Outcome, rule
 from xlmc.functions import Function
 from xlmc.functions.values import ERROR, NUMBER, Bools, Floats, Value
@@ -30,7 +29,7 @@ def _counted(operands: Sequence[Operand]) -> tuple[list[Jet], list[Bools]]:
 
 
 def _only(jet: Jet, counts: Bools) -> Jet:
-    """The cells that count, 0 in place of the others."""
+    """The cells that count, 0 instead of the others."""
     return jet.each(lambda part, _: np.where(counts, part, 0.0))
 
 
@@ -104,9 +103,9 @@ def product(function: Function, result: Value, operands: Sequence[Operand]) -> O
     running = Jet.still(np.ones(1))
     for jet, counted in zip(jets, counts, strict=True):
         whole = jet.spread()
-        for place in range(counted.shape[1]):
-            one = whole.each(lambda part, _, place=place: part[..., place])  # type: ignore[misc]
-            factor = chained(np.where(counted[:, place], one.x, 1.0), [one], [np.where(counted[:, place], 1.0, 0.0)])
+        for column in range(counted.shape[1]):
+            one = whole.each(lambda part, _, column=column: part[..., column])  # type: ignore[misc]
+            factor = chain(np.where(counted[:, column], one.x, 1.0), [one], [np.where(counted[:, column], 1.0, 0.0)])
             running = running * factor
     return Outcome(running)
 
@@ -143,7 +142,7 @@ def _side_by_side(jets: Sequence[Jet], counts: Sequence[Bools]) -> tuple[Jet, Bo
     """All cells in one row, `(n, m)`."""
     n = max(jet.x.shape[0] for jet in jets)
     tall: list[NDArray[np.bool_]] = [np.broadcast_to(part, (n, part.shape[1])) for part in counts]
-    return joined(aligned(jets), n), np.concatenate(tall, axis=1)
+    return concatenate(align(jets), n), np.concatenate(tall, axis=1)
 
 
 @rule("SUMPRODUCT")

@@ -1,7 +1,7 @@
 """One sweep over the graph of nodes, forwards: every value, and its derivatives beside it.
 
-The values are those of the path that minds everything (`compile.tracking`), so that errors, texts and blanks are what
-they are in a run. A node's value is let go as soon as nothing reads it any more.
+The values are those of the careful path (`evaluation.tracking`), so that errors, texts and blanks are what they are in
+a run. A node's value is dropped as soon as nothing reads it any more.
 """
 
 from __future__ import annotations
@@ -11,29 +11,32 @@ from typing import Final
 
 import numpy as np
 
+from xlmc.address import Cell
 from xlmc.errors import ErrorCode
-from xlmc.evaluation.graph.dag import Apply, Constant, Dag, Input, Node, Range, Rescue, Select, evaluated, uses
-from xlmc.evaluation.graph.ragged import Ragged
-from xlmc.evaluation.passes.derivatives import arithmetic, elementary, lookup, rounding, sums  # noqa: F401 - they register their rules
-from xlmc.evaluation.passes.derivatives.jet import Jet, aligned
-from xlmc.evaluation.passes.derivatives.logical import rescued, selected
-from xlmc.evaluation.passes.derivatives.notes import Notes
+from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.graph.lower import Lowering
+from xlmc.evaluation.graph.node_values import Ragged, evaluate_node
+from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Node, Range, Select, uses
+from xlmc.evaluation.passes.derivatives import elementary, lookup, sums  # noqa: F401 - they register their rules
+from xlmc.evaluation.passes.derivatives.findings import Notes
+from xlmc.evaluation.passes.derivatives.jet import Jet, align
+from xlmc.evaluation.passes.derivatives.logical import if_, if_error
+from xlmc.evaluation.passes.derivatives.lookup import Drawer
 from xlmc.evaluation.passes.derivatives.numerical import by_differences
-from xlmc.evaluation.passes.derivatives.picking import Drawer
 from xlmc.evaluation.passes.derivatives.rules import RULES, Operand, Outcome
 from xlmc.functions import Kind
 from xlmc.functions.values import ERROR, TEXT, Bools, Floats, ShapeVaries, Value
 
-__all__ = ["Unequal", "swept"]
+__all__ = ["UnequalSizes", "owners", "sweep_forward"]
 
 _NO_DERIVATIVE: Final = "the function has none there"
 
 
-class Unequal(Exception):  # noqa: N818 - it asks for another way
+class UnequalSizes(Exception):  # noqa: N818 - it asks for another way
     """An array differs in size between trials: take them one by one."""
 
 
-def swept(
+def sweep_forward(
     dag: Dag, wanted: Collection[int], draws: Mapping[str, Floats], order: int, notes: Notes, start: int = 0
 ) -> Iterator[tuple[int, Value, Jet]]:
     """The value and the derivatives of the nodes wanted, in their order.
@@ -47,76 +50,76 @@ def swept(
         start: the number of the first trial, for the notes.
 
     Raises:
-        Unequal: see the class; not with a single trial.
+        UnequalSizes: see the class; not with a single trial.
     """
     numbers = {name: number for number, name in enumerate(draws)}
-    places = dag.upstream(sorted(wanted))
-    last = {used: place for place in places for used in uses(dag.nodes[place])}
-    valued = _read_as_values(dag, places)
+    nodes = dag.upstream(sorted(wanted))
+    last = {used: node_id for node_id in nodes for used in uses(dag.nodes[node_id])}
+    valued = _read_as_values(dag, nodes)
     values: dict[int, Value] = {}
     jets: dict[int, Jet] = {}
-    for place in sorted({*wanted} - {*places}):
-        node = dag.nodes[place]
+    for node_id in sorted({*wanted} - {*nodes}):
+        node = dag.nodes[node_id]
         assert isinstance(node, Constant)
-        yield place, node.value, Jet.still(node.value.numbers)
-    for place in places:
-        node = dag.nodes[place]
+        yield node_id, node.value, Jet.still(node.value.numbers)
+    for node_id in nodes:
+        node = dag.nodes[node_id]
         if isinstance(node, Input):
-            values[place] = Value.of_numbers(draws[node.name])
-            jets[place] = Jet.of_input(draws[node.name], numbers[node.name], order)
+            values[node_id] = Value.of_numbers(draws[node.name])
+            jets[node_id] = Jet.of_input(draws[node.name], numbers[node.name], order)
         else:
             operands = [_operand(dag, used, values, jets) for used in uses(node)]
             known = dict(zip(uses(node), (operand.value for operand in operands), strict=True))
-            values[place] = result = evaluated(node, known)  # type: ignore[arg-type]  # a constant is not upstream
+            values[node_id] = result = evaluate_node(node, known)  # type: ignore[arg-type]  # a constant is not upstream
             if isinstance(result, Ragged):
-                raise Unequal
+                raise UnequalSizes
             if any(operand.jet.active for operand in operands):
-                jets[place] = _passed(dag, place, result, operands, notes, start, place in valued)
+                jets[node_id] = _differentiate(dag, node_id, result, operands, notes, start, node_id in valued)
             else:
-                jets[place] = Jet.still(result.numbers)
-        if place in wanted:
-            yield place, values[place], jets[place]
+                jets[node_id] = Jet.still(result.numbers)
+        if node_id in wanted:
+            yield node_id, values[node_id], jets[node_id]
         for used in {*uses(node)}:
-            if last[used] == place:
+            if last[used] == node_id:
                 values.pop(used, None)
                 jets.pop(used, None)
 
 
-def _read_as_values(dag: Dag, places: Sequence[int]) -> set[int]:
+def _read_as_values(dag: Dag, nodes: Sequence[int]) -> set[int]:
     """The nodes that a function reads as values; conditions are mostly read by choices and other conditions."""
     found: set[int] = set()
-    for place in places:
-        node = dag.nodes[place]
+    for node_id in nodes:
+        node = dag.nodes[node_id]
         if isinstance(node, Apply) and node.function.returns is not Kind.LOGICAL:
             found.update(node.arguments)
     return found
 
 
-def _operand(dag: Dag, place: int, values: Mapping[int, Value], jets: Mapping[int, Jet]) -> Operand:
-    node = dag.nodes[place]
-    value = node.value if isinstance(node, Constant) else values[place]
-    jet = jets.get(place)
+def _operand(dag: Dag, node_id: int, values: Mapping[int, Value], jets: Mapping[int, Jet]) -> Operand:
+    node = dag.nodes[node_id]
+    value = node.value if isinstance(node, Constant) else values[node_id]
+    jet = jets.get(node_id)
     if jet is None or not jet.active:
         jet = Jet.still(value.to_numbers()[0])
     return Operand(value, jet)
 
 
-def _passed(
-    dag: Dag, place: int, result: Value, operands: Sequence[Operand], notes: Notes, start: int, valued: bool
+def _differentiate(
+    dag: Dag, node: int, result: Value, operands: Sequence[Operand], notes: Notes, start: int, valued: bool
 ) -> Jet:
     """The derivatives of a node, with notes taken."""
-    name, why, jumps = _described(dag, place)
+    name, why, jumps = _describe(dag, node)
     with np.errstate(all="ignore"):
         try:
-            outcome = _outcome(dag, place, result, operands)
+            outcome = _outcome(dag, node, result, operands)
         except ShapeVaries:
-            raise Unequal from None
-        jet = _defined(outcome.jet, result)
-    if outcome.ways is not None and (valued or not _is_condition(dag.nodes[place])):
-        notes.took(place, name, outcome.ways, jumps)
+            raise UnequalSizes from None
+        jet = _mask_undefined(outcome.jet, result)
+    if outcome.ways is not None and (valued or not _is_condition(dag.nodes[node])):
+        notes.took(node, name, outcome.ways, jumps)
     if outcome.numerical:
-        notes.differed(place, name, jet.first, jet.error)
-    _note_losses(place, name, why, result, jet, operands, notes, start)
+        notes.differed(node, name, jet.first, jet.error)
+    _note_losses(node, name, why, result, jet, operands, notes, start)
     return jet
 
 
@@ -124,26 +127,26 @@ def _is_condition(node: Node) -> bool:
     return isinstance(node, Apply) and node.function.facts.condition
 
 
-def _described(dag: Dag, place: int) -> tuple[str, str, bool]:
+def _describe(dag: Dag, node_id: int) -> tuple[str, str, bool]:
     """What the node is called, why it may have no derivative, and whether it jumps between its ways."""
-    node = dag.nodes[place]
+    node = dag.nodes[node_id]
     if isinstance(node, Apply):
         rule = RULES.get(node.function.name)
         why = (rule.why if rule else "") or _NO_DERIVATIVE
         return node.function.name, why, rule is not None and rule.jumps
     if isinstance(node, Select):
         return "IF", "the condition is at its limit there", True
-    return ("IFERROR" if isinstance(node, Rescue) else "a range"), _NO_DERIVATIVE, True
+    return ("IFERROR" if isinstance(node, IfErrorNode) else "a range"), _NO_DERIVATIVE, True
 
 
-def _outcome(dag: Dag, place: int, result: Value, operands: Sequence[Operand]) -> Outcome:
-    node = dag.nodes[place]
+def _outcome(dag: Dag, node_id: int, result: Value, operands: Sequence[Operand]) -> Outcome:
+    node = dag.nodes[node_id]
     if isinstance(node, Range):
-        return Outcome(_stacked(node, result, operands))
+        return Outcome(_stack(node, result, operands))
     if isinstance(node, Select):
-        return selected(result, operands)
-    if isinstance(node, Rescue):
-        return rescued(result, operands, node.only_na)
+        return if_(result, operands)
+    if isinstance(node, IfErrorNode):
+        return if_error(result, operands, node.only_na)
     assert isinstance(node, Apply)
     function = node.function
     if function.name.startswith("cell "):
@@ -156,9 +159,9 @@ def _outcome(dag: Dag, place: int, result: Value, operands: Sequence[Operand]) -
     return by_differences(function, result, operands)
 
 
-def _stacked(node: Range, result: Value, operands: Sequence[Operand]) -> Jet:
+def _stack(node: Range, result: Value, operands: Sequence[Operand]) -> Jet:
     """Cells `(n,)` side by side, `(n, r, c)`."""
-    jets = aligned([operand.jet for operand in operands])
+    jets = align([operand.jet for operand in operands])
     n, rows, columns = result.shape
     order = min(jet.order for jet in jets)
 
@@ -180,7 +183,7 @@ def _stacked(node: Range, result: Value, operands: Sequence[Operand]) -> Jet:
     return Jet(result.numbers, jets[0].active, first, second, *errors)
 
 
-def _defined(jet: Jet, result: Value) -> Jet:
+def _mask_undefined(jet: Jet, result: Value) -> Jet:
     """Derivatives that are not finite, and those of errors and texts, are NaN."""
     errors = np.asarray(result.kinds >= ERROR)
     first = np.where(errors | ~np.isfinite(jet.first), np.nan, jet.first)
@@ -193,7 +196,7 @@ def _defined(jet: Jet, result: Value) -> Jet:
 
 
 def _note_losses(
-    place: int,
+    node: int,
     name: str,
     why: str,
     result: Value,
@@ -217,12 +220,12 @@ def _note_losses(
     for code in np.unique(result.kinds[result.kinds >= ERROR]):
         here = _any_of_trial(np.asarray(result.kinds == code), n, 0) & ~wrong
         if here.any():
-            notes.lose(place, name, f"it is {ErrorCode(int(code) - ERROR).text}", here, start)
+            notes.lose(node, name, f"it is {ErrorCode(int(code) - ERROR).text}", here, start)
     if (result.kinds == TEXT).any():
         why = "its digits pass through a text"
     own = lost & ~before & ~failed
     if own.any():
-        notes.lose(place, name, why, own, start)
+        notes.lose(node, name, why, own, start)
 
 
 def _any_of_trial(part: Bools, n: int, axes: int) -> Bools:
@@ -230,3 +233,20 @@ def _any_of_trial(part: Bools, n: int, axes: int) -> Bools:
     whole: Bools = np.logical_or.reduce(part, axis=0) if axes else part
     rows: Bools = np.logical_or.reduce(whole.reshape(whole.shape[0], -1), axis=1)
     return np.array(np.broadcast_to(rows, (n,)))
+
+
+def owners(lowering: Lowering) -> dict[int, Cell]:
+    """Node -> the cell whose formula it is in, for every node that varies.
+
+    Nodes are shared: the first cell that needs one stands for all.
+    """
+    found: dict[int, Cell] = {lowering.cell(cell): cell for cell in lowering.inputs}
+    nodes = lowering.dag.nodes
+    for cell in lowering.graph.formulas:
+        open_ = [lowering.cell(cell)]
+        while open_:
+            node = open_.pop()
+            if node not in found:
+                found[node] = cell
+                open_ += uses(nodes[node])
+    return found

@@ -1,0 +1,94 @@
+"""Choices between ranges of different sizes: what varies gives, trial by trial, what it gives where it is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from xlmc.address import Area
+from xlmc.errors import ErrorCode, FormulaError
+from xlmc.evaluation.engines import ENGINES
+from xlmc.evaluation.graph.arrays import MOST_WAYS
+from xlmc.workbook.model import CellContent, Formula
+
+CELLS = {"B1": 1.0, "C1": 2.0, "D1": 3.0, "B2": 10.0, "C2": 20.0, "D2": 30.0}
+DRAWS = [-1.0, 0.0, 1.0, 2.0, 3.0, np.nan]
+
+FORMULAS = [
+    "SUM(IF(A1>0,5,B1:D1))",
+    "SUM(IF(A1>0,B1:D1,5))",
+    "SUM(IF(A1>0,B1:C1,B1:D2))",
+    "AVERAGE(IF(A1>0,B1:C1,B1:D2),IF(A1>1,B1:D1,7))",
+    "SUM(CHOOSE(A1,B1,B1:C1,B1:D2))",
+    "COUNT(CHOOSE(A1,B1,B1:C1,B1:D2))",
+    "SUM(IFS(A1>2,B1:C1,A1>0,B1:D2,TRUE,4))",
+    "SUM(SWITCH(A1,1,B1:C1,2,B1:D2,4))",
+    "SUM(IFERROR(1/A1,B1:D1))",
+    "SUM(IFNA(1/A1,B1:D1))",
+    "SUM(IF(A1>0,IF(A1>1,B1:D1,B1:C1),B1:D2))",
+    "IFERROR(SUM(IF(1/A1>0,B1:D1,7)),-1)",
+    "ISERROR(IF(1/A1>0,B1:D1,7))*1",
+    "SUM(IF(1/A1>0,B1:D1,7),1)",
+    "SUMPRODUCT(IF(A1>0,B1:D1,B1:C1),IF(A1>0,B2:D2,B2:C2))",
+    "INDEX(IF(A1>0,B1:D1,B2:C2),3)",
+    "MATCH(20,IF(A1>0,B1:C1,B2:D2),0)",
+    "LARGE(IF(A1>0,B1:C1,B2:D2),2)",
+    'TEXTJOIN(",",TRUE,IF(A1>0,B1:C1,B2:D2))="1,2"',
+]
+ARRAYS = [
+    "SUM(IF(A1>0,B1:D1,5)*2)",
+    "SUM(IF(A1>0,B1:D1,5)*B2:D2)",
+    "IF(A1>0,B1:D1,5)",
+    "COLUMNS(IF(A1>0,B1:D1,5)+{1;2})",
+    "SUM(TRANSPOSE(IF(A1>0,B1:D1,B1:C2)))",
+    "SUM(IF(IF(A1>0,B1:D1,5)>1,1,0))",
+    "SUM(IF(A1>0,FILTER(B1:D1,B1:D1>A1,9),4))",
+    "+".join(f"SUM(IF(A1>{i},B1:D1,{i})*IF(A1>{i + 1},B1:D1,B1:C1))" for i in range(3)),
+    "SUM(" + "+".join(f"IF(A1>{i % 3},B1:D1,{i})" for i in range(8)) + ")",
+]
+
+
+def known(lower, formula, draw):
+    cells = CELLS | {"A1": CellContent(ErrorCode.NUM if np.isnan(draw) else draw), "Z9": formula}
+    lowering, (target,) = lower(cells, {}, ["Z9"])
+    item = lowering.known(target).objects().ravel()[0]
+    return item.text if isinstance(item, ErrorCode) else float(item)
+
+
+def array(text):
+    return CellContent(None, Formula(text, 9, 26, Area("S", 9, 26, 9, 26)))
+
+
+@pytest.mark.parametrize("formula", [*(f"={text}" for text in FORMULAS), *map(array, ARRAYS)], ids=FORMULAS + ARRAYS)
+def test_each_trial_has_its_own_size(run, lower, formula):
+    outcome = run(CELLS | {"A1": 0.0, "Z9": formula}, {"A1": DRAWS}, ["Z9"])
+    assert outcome.forecasts[0] == [known(lower, formula, draw) for draw in DRAWS]
+
+
+@pytest.mark.parametrize("formula", [f"={text}" for text in FORMULAS], ids=FORMULAS)
+def test_the_compiled_engine_does_the_same(run, lower, formula):
+    cells = CELLS | {"A1": 0.0, "Z9": formula}
+    lowering, targets = lower(cells, {"A1": DRAWS}, ["Z9"])
+    (column,) = (
+        ENGINES["jit"].load()(lowering, targets, [], frozenset({"A1"})).evaluator(6).filters({"A1": np.array(DRAWS)}, 6)
+    )
+    codes = np.zeros(6, int) if column.codes is None else column.codes
+    seen = [ErrorCode(int(c)).text if c else float(v) for v, c in zip(column.values, codes, strict=True)]
+    assert seen == [known(lower, formula, draw) for draw in DRAWS]
+
+
+def test_sums_of_choices_stay_on_the_fast_path(run):
+    cells = CELLS | {"A1": 0.0, "Z9": "=SUM(IF(A1>0,B1:D1,5))"}
+    assert not run(cells, {"A1": DRAWS[:-1]}, ["Z9"]).careful
+
+
+def test_many_choices_together_are_not_written_out(lower):
+    text = "SUM(" + "+".join(f"IF(A1>{i},B1:D1,{i})" for i in range(40)) + ")"
+    lowering, _ = lower(CELLS | {"A1": 0.0, "Z9": array(text)}, ["A1"], ["Z9"])
+    assert len(lowering.dag.nodes) < 40 * MOST_WAYS
+
+
+@pytest.mark.parametrize("formula", ["=ISREF(INDEX(B1:D1,A1))", "=ISREF(IF(A1>0,B1,5))", "=ISREF(CHOOSE(A1,B1,5))"])
+def test_whether_a_varying_choice_is_a_reference_is_refused(lower, formula):
+    with pytest.raises(FormulaError, match="varies"):
+        lower(CELLS | {"A1": 0.0, "Z9": formula}, ["A1"], ["Z9"])

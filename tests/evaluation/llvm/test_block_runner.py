@@ -1,0 +1,126 @@
+"""Whole blocks in one native call give what blocks give step by step, to the last bit."""
+
+from __future__ import annotations
+
+import pytest
+from committed_books import BOOKS
+
+pytest.importorskip("llvmlite")
+
+import xlmc
+from xlmc.run.blocks import Task
+from xlmc.run.scheduling.run_spec import model_runner
+
+BLOCK = 4096
+UNIT = {"low": 0, "high": 1}
+GIVEN = {name: {"cell": name, **UNIT} for name in ("A1", "A2", "A3")}
+CELLS = {
+    "A1": 1.0,
+    "A2": 1.0,
+    "A3": 1.0,
+    "B1": "=A1*A2+SQRT(A3)",
+    "B2": "=IF(A1>0.5,A2,A3+1)",
+    "B3": "=B1^2-SIN(B2)",
+    "C1": "=B1>0.6",
+    "C2": "=A1-A2",
+    "C3": "=LN(A1+1)",
+    "C4": "=1/MAX(0,A1-0.00005)",
+    "C5": "=A1>0.9999",
+    "C6": "=1/(A1-2)>-1",
+    "C7": "=2>1",
+    "C8": "=2<1",
+    "C9": "=1-1.5",
+    "C10": "=1>0",
+}
+NORMAL = GIVEN | {"A2": {"cell": "A2", "distribution": "Normal", "mean": 0.5, "std_dev": 0.2}}
+BELOW = {"cell": "C2", "at_least": -0.5, "below": 0.5}
+
+MODELS = {
+    "forecasts late, early and drawn": (GIVEN, {"x": "B3", "y": "B1", "z": "A1"}, {"f": "C1", "g": BELOW}),
+    "other distributions": (NORMAL, {"x": "B3", "y": "B1", "z": "A2"}, {"f": "C1", "g": BELOW}),
+    "no filters": (GIVEN, {"x": "B3"}, {}),
+    "few accepted": (GIVEN, {"x": "B3"}, {"f": "C5"}),
+    "none rejected": (GIVEN, {"x": "B3"}, {"f": "C6"}),
+    "some always true": (GIVEN, {"x": "B3"}, {"t": "C7", "f": "C1", "u": "C10", "g": BELOW}),
+    "all always true": (GIVEN, {"x": "B3"}, {"t": "C7"}),
+    "some always the same": (GIVEN, {"c": "C9", "x": "B3", "d": "C9"}, {"f": "C1", "g": BELOW}),
+    "many filters": (GIVEN, {"x": "B3"}, {f"f{i}": {"cell": "C2", "at_least": i / 20 - 1} for i in range(16)}),
+}
+
+
+def ran(model, whole, blocks=range(5, 8), *, inputs=True, draws_given=False):
+    runner = model_runner(model, model.program("jit"), "jit", 7, BLOCK)
+    assert runner._run_whole is not None
+    if draws_given:
+        runner._run_whole = runner._evaluator.block_runner(runner._sampler.draw, None)
+    if not whole:
+        runner._run_whole = None
+    return [runner.run(Task(block * BLOCK, BLOCK, False, inputs)) for block in blocks]
+
+
+def bits(block):
+    tally = block.tally
+    counts = [counts.tolist() for counts in (tally.rejected, tally.only, tally.together)]
+    arrays = [block.accepted.tolist(), [v.tobytes() for v in block.forecasts]]
+    drawn = [(name, values.tobytes()) for name, values in block.draws.items()]
+    return block.trials, counts, arrays, drawn, block.faults, tally.errors, tally.by_error, block.invalid, block.lost
+
+
+@pytest.mark.parametrize("inputs", [True, False])
+@pytest.mark.parametrize("draws_given", [True, False])
+@pytest.mark.parametrize("name", MODELS)
+def test_a_whole_block_is_the_block(book, name, draws_given, inputs):
+    model = book(CELLS, *MODELS[name])
+    whole = ran(model, True, inputs=inputs, draws_given=draws_given)
+    assert list(map(bits, whole)) == list(map(bits, ran(model, False, inputs=inputs)))
+    assert all(bool(block.draws) is inputs for block in whole)
+
+
+@pytest.mark.parametrize("path", BOOKS.values(), ids=BOOKS)
+def test_examples_and_templates_in_whole_blocks(path):
+    """Some of their filters wait until they are needed: until then they are always true."""
+    model = xlmc.load(path)
+    assert list(map(bits, ran(model, True))) == list(map(bits, ran(model, False)))
+
+
+def test_correlated_draws(book):
+    model = book(CELLS, GIVEN, {"x": "B3"}, {"f": "C1"}, correlations={("A1", "A2"): 0.7})
+    assert list(map(bits, ran(model, True))) == list(map(bits, ran(model, False)))
+
+
+@pytest.mark.parametrize("filters", [{"f": "C1"}, {"f": {"cell": "C4", "at_least": 2}}])
+def test_a_block_in_which_a_trial_errs_is_the_block(book, filters):
+    """One trial in 20,000 divides by zero: some blocks are run whole, in others a filter or a forecast is an error."""
+    model = book(CELLS, GIVEN, {"x": "C4"}, filters)
+    runner = model_runner(model, model.program("jit"), "jit", 7, BLOCK)
+    whole = [runner.run(Task(block * BLOCK, BLOCK, False)) for block in range(24)]
+    assert 0 < runner._run_whole._careful < runner._run_whole._runs
+    assert list(map(bits, whole)) == list(map(bits, ran(model, False, range(24))))
+    assert sum(block.lost for block in whole) > 0
+
+
+def test_where_most_blocks_err_they_are_no_longer_tried(book):
+    model = book(CELLS | {"C4": "=1/MAX(0,A1-0.5)"}, GIVEN, {"x": "C4"}, {"f": "C1"})
+    runner = model_runner(model, model.program("jit"), "jit", 7, BLOCK)
+    for block in range(20):
+        runner.run(Task(block * BLOCK, BLOCK, False))
+    assert runner._run_whole._runs == 2
+
+
+@pytest.mark.parametrize(
+    ("given", "forecasts", "filters"),
+    [
+        (GIVEN, {"x": "C3"}, {"f": "C1"}),  # LN is NumPy's
+        (GIVEN, {"x": "B3"}, {"f": "C1", "g": "C8"}),  # nothing is accepted
+        (GIVEN | {"A2": {"cell": "A2", "low": 0, "high": "A1"}}, {"x": "B3"}, {"f": "C1"}),  # may err
+        (GIVEN, {"x": "B3"}, {f"f{i}": {"cell": "C2", "at_least": i / 20 - 1} for i in range(17)}),
+    ],
+)
+def test_what_is_not_run_in_whole_blocks(book, given, forecasts, filters):
+    model = book(CELLS, given, forecasts, filters)
+    assert model_runner(model, model.program("jit"), "jit", 7, BLOCK)._run_whole is None
+
+
+def test_the_other_engines_run_step_by_step(book):
+    model = book(CELLS, *MODELS["no filters"])
+    assert model_runner(model, model.program("numpy"), "numpy", 7, BLOCK)._run_whole is None

@@ -1,0 +1,39 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from xlmc.address import Area
+from xlmc.errors import FormulaError
+from xlmc.evaluation.formulas_engine import FormulasProgram
+from xlmc.workbook.model import CellContent, Formula
+
+
+def test_a_draw_that_is_an_error(lower):
+    lowering, (target,) = lower({"C1": "=IFERROR(A1,-1)"}, ["A1"], ["C1"])
+    evaluator = FormulasProgram(lowering, [target], [], frozenset({"A1"})).evaluator(2)
+    (column,) = evaluator.filters({"A1": np.array([np.nan, 3.0])}, 2)
+    assert column.as_floats().tolist() == [-1.0, 3.0]
+
+
+def test_saved_and_held_values_stand_in_here_too(lower):
+    cells = {"B1": ("=MYFUNC(2)", 42.0), "C1": "=B1+A1+A2"}
+    lowering, (target,) = lower(cells, ["A1"], ["C1"], held={"A2": 0.5})
+    (column,) = FormulasProgram(lowering, [target], [], frozenset()).evaluator(1).filters({"A1": np.array([1.0])}, 1)
+    assert column.as_floats().tolist() == [43.5]
+
+
+def test_what_formulas_cannot_compute_is_told_of_its_cell(lower):
+    lowering, (target,) = lower({"C1": "=SUM((A1,A2))"}, ["A1", "A2"], ["C1"])
+    draws = {"A1": np.array([2.0]), "A2": np.array([3.0])}
+    with pytest.raises(FormulaError, match="the engine `formulas` cannot compute this") as caught:
+        FormulasProgram(lowering, [target], [], frozenset()).evaluator(1).filters(draws, 1)
+    assert caught.value.where == "S!C1"
+
+
+def test_array_formulas_are_refused(lower):
+    anchor = CellContent(None, Formula("A1*{1;2}", 1, 3, Area("S", 1, 3, 2, 3)))
+    lowering, (target,) = lower({"C1": anchor, "C2": 4.0, "D1": "=C2+1"}, ["A1"], ["D1"])
+    with pytest.raises(FormulaError, match="no array formulas") as caught:
+        FormulasProgram(lowering, [target], [], frozenset())
+    assert caught.value.where == "S!C1"

@@ -1,0 +1,254 @@
+"""Runs whole blocks by one native call each: what the call takes from Python, and what it gives back.
+
+It does so only for models that consist of loops alone; a block in which a trial must be computed again is run in the
+usual way.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import gcd
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.evaluation.engine import KeptBlock
+from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.graph.nodes import Input
+from xlmc.evaluation.llvm.block_kernel import WORD, Layout, compile_kernel
+from xlmc.evaluation.llvm.loop_rules import Literal, Operand, literal
+from xlmc.evaluation.llvm.machine import machine
+from xlmc.evaluation.llvm.phase import Loop, Memory, Phase
+from xlmc.evaluation.llvm.uniforms import filler
+from xlmc.functions import Kind
+from xlmc.functions.values import Floats
+
+if TYPE_CHECKING:
+    from xlmc.sampling.draws import Linear
+
+__all__ = ["BlockParts", "NativeBlockRunner", "block_parts"]
+
+_CHUNK: Final = 2048
+"""Trials at a time: few enough for the second-level cache, enough that the calls of the loops cost nothing."""
+
+_MOST_FILTERS: Final = 16
+"""Every pair is counted."""
+
+_PATIENCE: Final = 4
+"""Where more than one block of so many needs care, whole blocks are a waste."""
+
+
+@dataclass(frozen=True, slots=True)
+class BlockParts:
+    """A model of loops alone: the loops on all trials and on the survivors, and the nodes that are its results.
+
+    Attributes:
+        filters: of each filter its node; None of one that keeps every trial.
+        forecasts: of each forecast its node, or the number that it always is.
+    """
+
+    dag: Dag
+    first: tuple[Loop, ...]
+    late: tuple[Loop, ...]
+    filters: tuple[int | None, ...]
+    forecasts: tuple[int | Literal, ...]
+
+    @property
+    def rejecting(self) -> dict[int, int]:
+        """Position of a filter that may reject trials -> its node."""
+        return {position: node for position, node in enumerate(self.filters) if node is not None}
+
+    @property
+    def computed_late(self) -> frozenset[int]:
+        """The nodes that are written on the survivors."""
+        return frozenset(node for loop in self.late for node in loop.stores)
+
+
+def block_parts(
+    dag: Dag, first: Phase, late: Phase, filters: Sequence[int], forecasts: Sequence[int], block: int
+) -> BlockParts | None:
+    """The parts of a model that can be run in whole blocks; None where it cannot."""
+    early_loops, late_loops = first.loops, late.loops
+    if early_loops is None or late_loops is None:
+        return None
+    if len(filters) > _MOST_FILTERS or block % WORD or sys.byteorder != "little":
+        return None
+    logical = {node for node in first.stores if dag.types[node] is Kind.LOGICAL}
+    numbers = {node for node in (*first.stores, *late.stores) if dag.types[node] is Kind.NUMBER}
+    numbers |= {node for node in forecasts if isinstance(dag.nodes[node], Input)}
+    asked = [None if _find_literal(dag, node, Kind.LOGICAL) == Literal(True) else node for node in filters]
+    given = [_find_literal(dag, node, Kind.NUMBER) or node for node in forecasts]
+    if not {*asked} <= {None, *logical} or not {each for each in given if isinstance(each, int)} <= numbers:
+        return None
+    return BlockParts(dag, early_loops, late_loops, tuple(asked), tuple(given))
+
+
+def _find_literal(dag: Dag, node: int, kind: Kind) -> Literal | None:
+    """What a node always is, if it is of that kind."""
+    return literal(dag, Operand(node, kind)) if dag.types[node] is kind else None
+
+
+class NativeBlockRunner:
+    """A `BlockRunner`, for one thread.
+
+    Args:
+        draw, linear: see `RunsWholeBlocks`; with `linear` the draws are made in the same call, a chunk at a time.
+        block: trials, a multiple of 64.
+    """
+
+    def __init__(
+        self, parts: BlockParts, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None, block: int
+    ) -> None:
+        self._parts, self._draw = parts, draw
+        self._chunk = gcd(_CHUNK, block)
+        self._chunks = block // self._chunk
+        self._runs = self._careful = 0
+        drawn = {} if linear is not None else draw(0)
+        self._names = tuple(drawn) if linear is None else linear.names
+        rows = np.empty((len(self._names), self._chunk + 8))[:, : self._chunk]  # apart, for the cache's sake
+        self._fill = None if linear is None else filler(linear.streams, linear.maps, rows)
+        self._rows = dict(zip(self._names, rows, strict=True))
+        self._memory = Memory(parts.dag, {s for loop in (*parts.first, *parts.late) for s in loop.stores}, self._chunk)
+        self._forecasts = {node: np.empty(block) for node in parts.forecasts if isinstance(node, int)}
+        self._kept = np.empty((len(self._names), block))
+        self._trials, self._survivors = np.empty(block, np.int64), np.empty(self._chunk, np.int64)
+        self._wrong = np.zeros((2, self._chunk), np.uint8)
+        f = len(parts.rejecting)
+        self._counts = np.zeros(f * (f + 1) // 2 + f, np.int64)
+        rows_of, columns_of = np.maximum(*np.indices((f, f))), np.minimum(*np.indices((f, f)))
+        self._pairs = rows_of * (rows_of + 1) // 2 + columns_of
+        self._write()
+
+    def __call__(self, start: int, inputs: bool) -> KeptBlock | None:
+        """See `BlockRunner`."""
+        if _PATIENCE * self._careful > max(self._runs, _PATIENCE):
+            return None
+        self._runs += 1
+        self._words[:] = self._table
+        if self._fill is not None:
+            self._fill.go_to(start)
+        else:
+            drawn = self._draw(start)
+            rows = [np.ascontiguousarray(drawn[name], np.float64) for name in self._names]
+            self._words[self._slots] = np.array([_start(row) for row in rows], np.uint64)[self._slot_rows]
+        if inputs:
+            self._words[self._gathers] += len(self._names)
+        self._counts.fill(0)
+        m = self._run(self._address, self._chunks)
+        if m < 0:
+            self._careful += 1
+            self._wrong.fill(0)
+            return None
+        return self._result(m, inputs)
+
+    def _result(self, m: int, inputs: bool) -> KeptBlock:
+        parts, alone = self._parts, self._counts[self._counts.size - len(self._parts.rejecting) :]
+        f, rejecting = len(parts.filters), list(parts.rejecting)
+        together, only = np.zeros((f, f), np.int64), np.zeros(f, np.int64)
+        together[np.ix_(rejecting, rejecting)], only[rejecting] = self._counts[self._pairs], alone
+        return KeptBlock(
+            self._trials[:m],
+            dict(zip(self._names, self._kept[:, :m].copy(), strict=True)) if inputs else {},
+            [
+                np.full(m, float(each.value)) if isinstance(each, Literal) else self._forecasts[each][:m].copy()
+                for each in parts.forecasts
+            ],
+            together,
+            only,
+        )
+
+    def _write(self) -> None:
+        """The argument table as every block finds it, and the code that reads it."""
+        parts, fill = self._parts, self._fill
+        table = _TableWriter()
+        fills = [table.add(call.address, _start(arguments)) for call, arguments in ([] if fill is None else fill.calls)]
+        jump = -1 if fill is None else table.add(_start(fill.jump))
+        first = [table.add(loop.call.address, 0) for loop in parts.first]
+        late = [table.add(loop.call.address, 0) for loop in parts.late]
+        filters = [table.add(_start(self._memory.of(node, self._chunk))) for node in parts.rejecting.values()]
+        survivors, trials, counts = (table.add(_start(a)) for a in (self._survivors, self._trials, self._counts))
+        lists = []
+        for at, loop, wrong in zip(
+            (*first, *late),
+            (*parts.first, *parts.late),
+            (*[self._wrong[0]] * len(first), *[self._wrong[1]] * len(late)),
+            strict=True,
+        ):
+            nodes = [*(load.operand.node for load in loop.loads), *loop.stores]
+            lists.append((at + 1, self._list(table, nodes, wrong)))
+        gathered = [node for node in self._forecasts if node not in parts.computed_late]
+        self._gathers = gathers = table.add(len(gathered))
+        for node in gathered:
+            self._point(table, node)
+            table.add(_start(self._forecasts[node]))
+        for name, kept in zip(self._names, self._kept, strict=True):
+            self._point_to_draw(table, name)
+            table.add(_start(kept))
+        self._table = np.array(table.words, np.uint64)
+        self._words = self._table.copy()
+        self._address = _start(self._words)
+        for at, begin in lists:
+            self._table[at] = self._address + 8 * begin
+        drawn = sorted(table.draws)
+        self._slots = np.array(drawn, np.intp)
+        self._slot_rows = np.array([self._names.index(table.draws[slot]) for slot in drawn], np.intp)
+        by_chunk = () if fill is not None else tuple(drawn)
+        self._run = compile_kernel(
+            machine(),
+            Layout(
+                *(self._chunk, tuple(fills), tuple(first), tuple(late), jump, tuple(filters)),
+                *(by_chunk, tuple(table.by_kept), survivors, trials, counts, gathers),
+            ),
+        )
+
+    def _list(self, table: _TableWriter, nodes: Iterable[int], wrong: NDArray[np.uint8]) -> int:
+        """The addresses that a loop takes; where they begin."""
+        begin = len(table.words)
+        for node in nodes:
+            self._point(table, node)
+        table.add(_start(self._survivors), _start(wrong))
+        return begin
+
+    def _point(self, table: _TableWriter, node_id: int) -> None:
+        """The address of a node's array."""
+        node = self._parts.dag.nodes[node_id]
+        if isinstance(node, Input):
+            self._point_to_draw(table, node.name)
+        elif node_id in self._forecasts and node_id in self._parts.computed_late:
+            table.by_kept.append(table.add(_start(self._forecasts[node_id])))
+        else:
+            table.add(_start(self._memory.of(node_id, self._chunk)))
+
+    def _point_to_draw(self, table: _TableWriter, name: str) -> None:
+        table.draws[table.add(_start(self._rows[name]))] = name
+
+
+class _TableWriter:
+    """The argument table while it is written.
+
+    Attributes:
+        draws: position -> the assumption whose draws are there.
+        by_kept: positions of results that are written one after another.
+    """
+
+    def __init__(self) -> None:
+        self.words: list[int] = []
+        self.draws: dict[int, str] = {}
+        self.by_kept: list[int] = []
+
+    def add(self, *words: int) -> int:
+        """Where the words begin."""
+        self.words += words
+        return len(self.words) - len(words)
+
+
+def _start(array: Any) -> int:
+    """The address of an array, NumPy's or of ctypes."""
+    if isinstance(array, ctypes.Array):
+        return ctypes.addressof(array)
+    address: int = array.__array_interface__["data"][0]
+    return address

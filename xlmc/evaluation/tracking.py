@@ -66,7 +66,7 @@ class TrackingEvaluator:
                 return _columns(self._values, self._filters, n)
             except TooLargeError as error:
                 self._shrink(n, error)
-        return self._by_portions(n, lambda at: _columns(self._early(_picked(inputs, at)), self._filters, at.size))
+        return self._by_portions(n, lambda at: _columns(self._early(_pick(inputs, at)), self._filters, at.size))
 
     def forecasts(self, survivors: Trials) -> list[Column]:
         """See `Evaluator`.
@@ -76,11 +76,13 @@ class TrackingEvaluator:
         """
         if self._values is not None:
             try:
-                return self._finished(self._values, survivors, self._inputs)
+                return self._finish(self._values, survivors, self._inputs)
             except TooLargeError as error:
                 self._shrink(survivors.size, error)
                 self._values = None
-        return self._by_portions(survivors.size, lambda at: self._again(_picked(self._inputs, survivors[at]), at.size))
+        return self._by_portions(
+            survivors.size, lambda at: self._repeat_forecasts(_pick(self._inputs, survivors[at]), at.size)
+        )
 
     def peak(self, inputs: Inputs) -> int:
         """The bytes that values take at a time, of the trials of these inputs.
@@ -90,7 +92,7 @@ class TrackingEvaluator:
         """
         early = self._early(inputs)
         (n,) = {column.size for column in inputs.values()} or {1}
-        self._finished(early, np.arange(n), inputs)
+        self._finish(early, np.arange(n), inputs)
         return max(self._first.peak, self._late.peak)
 
     def _early(self, inputs: Inputs) -> dict[int, Value]:
@@ -98,14 +100,14 @@ class TrackingEvaluator:
         self._first.run(values, inputs)
         return values
 
-    def _finished(self, early: Mapping[int, Value], survivors: Trials, inputs: Inputs) -> list[Column]:
+    def _finish(self, early: Mapping[int, Value], survivors: Trials, inputs: Inputs) -> list[Column]:
         values = self._constants | {node: early[node].take(survivors) for node in self._carried}
         self._late.run(values, {name: inputs[name][survivors] for name in self._late.inputs})
         return _columns(values, self._forecasts, survivors.size)
 
-    def _again(self, inputs: Inputs, n: int) -> list[Column]:
+    def _repeat_forecasts(self, inputs: Inputs, n: int) -> list[Column]:
         """The forecasts of a portion, whose filters are evaluated again for what they share."""
-        return self._finished(self._early(inputs), np.arange(n), inputs)
+        return self._finish(self._early(inputs), np.arange(n), inputs)
 
     def _by_portions(self, n: int, run: Callable[[Trials], list[Column]]) -> list[Column]:
         parts, start = [], 0
@@ -181,7 +183,7 @@ def _columns(values: Mapping[int, Value], nodes: Iterable[int], n: int) -> list[
     return [column_of(values[node], n) for node in nodes]
 
 
-def _picked(inputs: Inputs, at: Trials) -> dict[str, Floats]:
+def _pick(inputs: Inputs, at: Trials) -> dict[str, Floats]:
     return {name: column[at] for name, column in inputs.items()}
 
 

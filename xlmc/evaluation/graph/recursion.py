@@ -19,7 +19,7 @@ from xlmc.evaluation.graph.callees import Arguments, find_function, is_omitted
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.lowering import Closure, RecursiveLambda, Scope, Thunk, TreeLowering
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Node, Range, Select, uses
-from xlmc.evaluation.graph.recursive_calls import Body, SelfCall, Step, called
+from xlmc.evaluation.graph.recursive_calls import Body, SelfCall, Step, call_lambda
 from xlmc.evaluation.graph.references import areas_of, join_areas
 from xlmc.formula import ir
 from xlmc.functions import Function, Kind
@@ -89,7 +89,7 @@ def _define(
         raise
     deepest = DEEPEST // (len(given) + 1)
     body, found.taken = _body(dag, found, result, deepest)
-    found.function = Function("a LAMBDA that calls itself", (Cells(repeat=True),), partial(called, body), Kind.ANY)
+    found.function = Function("a LAMBDA that calls itself", (Cells(repeat=True),), partial(call_lambda, body), Kind.ANY)
     return found
 
 

@@ -22,7 +22,7 @@ from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.lookup.picking import each_part, joined
 from xlmc.functions.values import BLANK, ERROR, Codes, Value, constant
 
-__all__ = ["Body", "SelfCall", "called"]
+__all__ = ["Body", "SelfCall", "call_lambda"]
 
 
 class SelfCall(NamedTuple):
@@ -113,14 +113,14 @@ class _Round:
     """What came of one round of a call: results, and the arguments of the next round, each with their trials."""
 
     results: list[tuple[Trials, Value]]
-    again: list[tuple[_Frame, list[Value]]]
+    next_calls: list[tuple[_Frame, list[Value]]]
 
 
 Asking = Generator[tuple[_Frame, int], Value, Any]
 """Asks for values, by frame and slot, and gives one."""
 
 
-def called(body: Body, *values: Value) -> Value:
+def call_lambda(body: Body, *values: Value) -> Value:
     """What a call gives, (n,), of its arguments and of what it takes from outside.
 
     Raises:
@@ -191,9 +191,9 @@ class _Run:
                 self._waiting.pop()
                 answer = done.value
                 continue
-            answer = self._known(asked, slot)
+            answer = self._find(asked, slot)
             if answer is None:
-                self._waiting.append(self._worked_out(asked, slot))
+                self._waiting.append(self._work_out(asked, slot))
         found: Value = answer
         return found
 
@@ -207,18 +207,18 @@ class _Run:
             found = _Round(results, [])
             yield from self._round(frame, body.result, found, False)
             self.live -= frame.bytes
-            if not found.again:
+            if not found.next_calls:
                 return _together(trials.size, results)
-            frame = self._next(frame, found.again, taken)
+            frame = self._next(frame, found.next_calls, taken)
 
     def _round(self, frame: _Frame, slot: int, found: _Round, chosen: bool) -> Asking:
         """Follow the `IF`s to a result or to the next round. `chosen`: by an `IF`, which makes a blank 0."""
         step = self.body.steps.get(slot) if slot in self.body.last else None
         if isinstance(step, SelfCall):
-            found.again.append((frame, (yield from _asked(frame, step.arguments))))
+            found.next_calls.append((frame, (yield from _ask(frame, step.arguments))))
         elif isinstance(step, Select):
             condition = yield frame, step.condition
-            truth, errors = _decided(condition)
+            truth, errors = _decide(condition)
             wrong = _marked(errors > 0, frame)
             if wrong.size:
                 found.results.append(
@@ -234,12 +234,12 @@ class _Run:
             value = yield frame, slot
             found.results.append((frame.own_trials, zero_if_blank(value) if chosen else value))
 
-    def _next(self, frame: _Frame, again: list[tuple[_Frame, list[Value]]], taken: dict[int, Value]) -> _Frame:
+    def _next(self, frame: _Frame, next_calls: list[tuple[_Frame, list[Value]]], taken: dict[int, Value]) -> _Frame:
         """The next round of a call."""
-        frames = [each for each, _ in again]
-        arguments = again[0][1]
-        if len(again) > 1:
-            columns = zip(*(values for _, values in again), strict=True)
+        frames = [each for each, _ in next_calls]
+        arguments = next_calls[0][1]
+        if len(next_calls) > 1:
+            columns = zip(*(values for _, values in next_calls), strict=True)
             arguments = [_one_after_another(frames, column) for column in columns]
         own_trials = np.concatenate([each.own_trials for each in frames])
         self._count(np.concatenate([each.trials for each in frames]), frame.depth)
@@ -253,18 +253,18 @@ class _Run:
             raise _TooDeep(trials)
         self.work.add()
 
-    def _known(self, frame: _Frame, slot: int) -> Value | None:
+    def _find(self, frame: _Frame, slot: int) -> Value | None:
         return self.body.constants.get(slot) or frame.find(slot)
 
-    def _worked_out(self, frame: _Frame, slot: int) -> Asking:
+    def _work_out(self, frame: _Frame, slot: int) -> Asking:
         step = self.body.steps[slot]
         self.work.add()
         if isinstance(step, Select):
             found = yield from self._select(frame, step)
         elif isinstance(step, IfErrorNode):
-            found = yield from self._rescue(frame, step)
+            found = yield from self._if_error(frame, step)
         elif isinstance(step, SelfCall):
-            found = yield from self._again(frame, step)
+            found = yield from self._call_itself(frame, step)
         else:
             values = {}
             for used in uses(step):
@@ -276,21 +276,21 @@ class _Run:
         ask_for_live(self.live)
         return found
 
-    def _again(self, frame: _Frame, step: SelfCall) -> Asking:
-        arguments = yield from _asked(frame, step.arguments)
+    def _call_itself(self, frame: _Frame, step: SelfCall) -> Asking:
+        arguments = yield from _ask(frame, step.arguments)
         values = dict(enumerate(arguments))
         self._count(frame.trials, frame.depth)
         for slot in range(self.body.parameters, self.body.parameters + self.body.taken):
-            values[slot] = _given(frame, slot)
+            values[slot] = _find_taken(frame, slot)
         return (yield from self._call(values, frame.trials, frame.depth + 1))
 
     def _select(self, frame: _Frame, step: Select) -> Asking:
         condition = yield frame, step.condition
-        truth, errors = _decided(condition)
+        truth, errors = _decide(condition)
         found = yield from self._each(frame, [(step.yes, truth & (errors == 0)), (step.no, ~truth & (errors == 0))])
         return evaluate_node(Select(0, 1, 1), {0: condition, 1: found})
 
-    def _rescue(self, frame: _Frame, step: IfErrorNode) -> Asking:
+    def _if_error(self, frame: _Frame, step: IfErrorNode) -> Asking:
         value = yield frame, step.value
         lost = value.kinds == ERROR + ErrorCode.NA if step.only_na else value.kinds >= ERROR
         if lost.ndim == 3:
@@ -310,7 +310,7 @@ class _Run:
         return _together(frame.trials.size, parts)
 
 
-def _asked(frame: _Frame, slots: Sequence[int]) -> Asking:
+def _ask(frame: _Frame, slots: Sequence[int]) -> Asking:
     """The values of several slots."""
     found = []
     for slot in slots:
@@ -319,7 +319,7 @@ def _asked(frame: _Frame, slots: Sequence[int]) -> Asking:
     return found
 
 
-def _decided(condition: Value) -> tuple[NDArray[np.bool_], Codes]:
+def _decide(condition: Value) -> tuple[NDArray[np.bool_], Codes]:
     """Where a condition is true, and its errors."""
     if condition.numbers.ndim == 3:
         raise FormulaError("an array decides whether a LAMBDA calls itself", hint="use a single condition")
@@ -342,7 +342,7 @@ def _spread(value: Value, n: int) -> Value:
     return each_part(value, lambda part: np.broadcast_to(part, (n, *part.shape[1:])))
 
 
-def _given(frame: _Frame, slot: int) -> Value:
+def _find_taken(frame: _Frame, slot: int) -> Value:
     found = frame.find(slot)
     assert found is not None, "what is taken from outside was given to the first call"
     return found

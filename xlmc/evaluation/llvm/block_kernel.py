@@ -91,8 +91,10 @@ def compile_kernel(machine: Machine, layout: Layout) -> NativeLoop:
         _unless(builder, table.call(loop, kept), failed)
     trials = builder.gep(table.address(layout.trials, _LONG), [total])
     first_trial = builder.mul(chunk, _LONG(layout.chunk))
-    _counting(builder, kept, lambda i: _shifted(builder, survivors, trials, first_trial, i))
-    _counting(builder, table.word(layout.gathers), lambda i: table.gathered(gather, layout.gathers, i, survivors, kept))
+    _for_each(builder, kept, lambda i: _shift(builder, survivors, trials, first_trial, i))
+    _for_each(
+        builder, table.word(layout.gathers), lambda i: table.gather_column(gather, layout.gathers, i, survivors, kept)
+    )
     for position in layout.by_chunk:
         table.move(position, _LONG(8 * layout.chunk))
     for position in layout.by_kept:
@@ -130,7 +132,7 @@ class _ArgumentTable:
         code = self._builder.inttoptr(self.word(position), _LOOP.as_pointer())
         return self._builder.call(code, [self.address(position + 1, _BYTE.as_pointer()), n])
 
-    def gathered(self, gather: ir.Function, gathers: int, i: Any, survivors: Any, kept: Any) -> None:
+    def gather_column(self, gather: ir.Function, gathers: int, i: Any, survivors: Any, kept: Any) -> None:
         """Gather a column; the next chunk's follows."""
         builder = self._builder
         first = builder.add(builder.mul(i, _LONG(2)), _LONG(gathers + 1))
@@ -150,7 +152,7 @@ def _unless(builder: ir.IRBuilder, wrong: Any, failed: Any) -> None:
     builder.position_at_end(following)
 
 
-def _counting(builder: ir.IRBuilder, n: Any, do: Any) -> None:
+def _for_each(builder: ir.IRBuilder, n: Any, do: Any) -> None:
     """`do` for 0 to n - 1."""
     before = builder.block
     body, after = builder.append_basic_block("each"), builder.append_basic_block("done")
@@ -165,7 +167,7 @@ def _counting(builder: ir.IRBuilder, n: Any, do: Any) -> None:
     builder.position_at_end(after)
 
 
-def _shifted(builder: ir.IRBuilder, source: Any, target: Any, offset: Any, i: Any) -> None:
+def _shift(builder: ir.IRBuilder, source: Any, target: Any, offset: Any, i: Any) -> None:
     value = builder.add(builder.load(builder.gep(source, [i])), offset)
     builder.store(value, builder.gep(target, [i]))
 
@@ -195,9 +197,9 @@ def _gather(module: ir.Module, chunk: int) -> ir.Function:
 
     with builder.if_else(builder.icmp_signed("==", n, _LONG(chunk))) as (whole, some):
         with whole:
-            _counting(builder, _LONG(chunk), lambda i: copied(i, i))
+            _for_each(builder, _LONG(chunk), lambda i: copied(i, i))
         with some:
-            _counting(builder, n, lambda i: copied(i, builder.load(builder.gep(survivors, [i]))))
+            _for_each(builder, n, lambda i: copied(i, builder.load(builder.gep(survivors, [i]))))
     builder.ret_void()
     return function
 
@@ -214,7 +216,7 @@ def _sieve(module: ir.Module, filters: int, chunk: int) -> ir.Function:
 
     def word(w: Any) -> None:
         first = builder.mul(w, _LONG(WORD))
-        rejected = [_rejected(builder, answer, first) for answer in answers]
+        rejected = [_rejected_bits(builder, answer, first) for answer in answers]
         once, more = _LONG(0), _LONG(0)
         for bits in rejected:
             more = builder.or_(more, builder.and_(once, bits))
@@ -227,12 +229,12 @@ def _sieve(module: ir.Module, filters: int, chunk: int) -> ir.Function:
             builder.store(builder.add(builder.load(at), builder.ctpop(bits)), at)
         _list_bits(builder, builder.not_(once), first, survivors, kept)
 
-    _counting(builder, _LONG(chunk // WORD), word)
+    _for_each(builder, _LONG(chunk // WORD), word)
     builder.ret(builder.load(kept))
     return function
 
 
-def _rejected(builder: ir.IRBuilder, answers: Any, first: Any) -> Any:
+def _rejected_bits(builder: ir.IRBuilder, answers: Any, first: Any) -> Any:
     """A bit for each of the next trials, the first the lowest: set where the filter is FALSE."""
     vector = ir.VectorType(_BYTE, WORD)
     bytes_ = builder.load(builder.bitcast(builder.gep(answers, [first]), vector.as_pointer()), align=1)
@@ -245,7 +247,7 @@ def _list_bits(builder: ir.IRBuilder, bits: Any, first: Any, survivors: Any, kep
     target = builder.gep(survivors, [builder.load(kept)])
     with builder.if_else(builder.icmp_signed("==", bits, _LONG(-1))) as (whole, some):
         with whole:
-            _counting(builder, _LONG(WORD), lambda i: builder.store(builder.add(first, i), builder.gep(target, [i])))
+            _for_each(builder, _LONG(WORD), lambda i: builder.store(builder.add(first, i), builder.gep(target, [i])))
         with some:
             _list_some(builder, bits, first, target)
     builder.store(builder.add(builder.load(kept), builder.ctpop(bits)), kept)

@@ -125,7 +125,7 @@ class _JitEvaluator:
         columns = self._columns(self._trials, program.filter_nodes)
         again = np.flatnonzero(self._trials.wrong)
         if again.size:
-            columns = _correct(columns, again, self._tracking.filters(self._picked(again), again.size))
+            columns = _correct(columns, again, self._tracking.filters(self._pick(again), again.size))
         return columns
 
     def forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
@@ -143,7 +143,7 @@ class _JitEvaluator:
         columns = self._columns(trials, program.forecast_nodes)
         again = np.flatnonzero(trials.wrong)
         if again.size:
-            self._tracking.filters(self._picked(survivors[again]), again.size)
+            self._tracking.filters(self._pick(survivors[again]), again.size)
             columns = _correct(columns, again, self._tracking.forecasts(np.arange(again.size)))
         return columns
 
@@ -156,7 +156,7 @@ class _JitEvaluator:
             columns.append(trials.column(node_id, fallible))
         return columns
 
-    def _picked(self, trials: NDArray[np.intp]) -> dict[str, Floats]:
+    def _pick(self, trials: NDArray[np.intp]) -> dict[str, Floats]:
         return {name: self._draws[name][trials] for name in self._program.careful_inputs.values()}
 
 

@@ -82,7 +82,7 @@ class _Compiled:
     """A tree compiled by `formulas`, its references under plain addresses: how sheets are written is then no matter."""
 
     def __init__(self, tree: ir.Expression, cell: Cell) -> None:
-        self._cell = cell
+        self._cell, self._tree = cell, tree
         self._single = tree if isinstance(tree, Cell) else None
         self._names: dict[Cell | Area, str] = {}
         left = 1
@@ -94,7 +94,7 @@ class _Compiled:
         try:
             self._call = compile_with_formulas(formula_text(tree, self._names.__getitem__))
         except FormulaError as error:
-            raise error.at(cell) from None
+            raise self._told(error) from None
 
     def __call__(self, values: Cells, content: Callable[[Cell], object]) -> object:
         def value(cell: Cell) -> object:
@@ -105,7 +105,11 @@ class _Compiled:
         try:
             return self._call({name: _held(reference, value) for reference, name in self._names.items()})
         except FormulaError as error:
-            raise error.at(self._cell) from None
+            raise self._told(error) from None
+
+    def _told(self, error: FormulaError) -> FormulaError:
+        """The error of the cell, with the formula's own references."""
+        return FormulaError(error.message, where=self._cell, hint=error.hint, text=formula_text(self._tree))
 
 
 def _held(reference: Cell | Area, value: Callable[[Cell], object]) -> Any:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from xlmc.distributions import FAMILIES
-from xlmc.distributions.base import SMALLEST_U
+from xlmc.distributions.base import SMALLEST_U, Family
 
 GOOD = {
     "Uniform": (2.0, 6.0),
@@ -140,3 +140,8 @@ def test_zero_stands_for_half_a_step_where_the_quantile_is_infinite():
     normal = FAMILIES["Normal"]
     assert normal.ppf(0.0, 0, 1) == normal.ppf(SMALLEST_U, 0, 1) == pytest.approx(-8.2924, abs=1e-4)
     assert FAMILIES["Uniform"].ppf(0.0, 2, 6) == 2
+
+
+def test_a_family_without_an_upper_tail_is_refused_when_it_is_written():
+    with pytest.raises(TypeError, match="Half has no upper tail: write `_mirrored`, or both `_sf` and `_isf`"):
+        type("Half", (Family,), {"_sf": Family._cdf})

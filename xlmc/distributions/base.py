@@ -65,6 +65,16 @@ class Family(ABC):
     source: str = ""
     elsewhere: tuple[str, ...] = ()
 
+    def __init_subclass__(cls) -> None:
+        """Refuse a family whose upper tail nobody has written: cutoffs would meet it in the midst of a run.
+
+        Raises:
+            TypeError: it has neither `_mirrored` nor both `_sf` and `_isf`.
+        """
+        mirrored = cls._mirrored is not Family._mirrored
+        if not mirrored and (cls._sf is Family._sf or cls._isf is Family._isf):
+            raise TypeError(f"{cls.__name__} has no upper tail: write `_mirrored`, or both `_sf` and `_isf`")
+
     @property
     def keys(self) -> tuple[str, ...]:
         return tuple(spec.key for spec in self.parameters)

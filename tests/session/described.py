@@ -1,4 +1,7 @@
-"""What people can type or see, and whether a page describes it."""
+"""What people can type or see, and whether a page describes it.
+
+`python tests/session/described.py` prints what no page describes.
+"""
 
 from __future__ import annotations
 
@@ -42,3 +45,8 @@ def _expected() -> Iterator[tuple[str, str, str]]:
             yield "workbooks.md", setting.name, f"`{setting.name}`"
     for family in FAMILIES.values():
         yield "distributions.md", family.name, f"\n## {family.name}\n"
+
+
+if __name__ == "__main__":
+    for line in undescribed():
+        print(line)

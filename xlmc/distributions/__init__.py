@@ -1,7 +1,7 @@
 """Families of distributions, one file each, and how they are found by the name a person types.
 
 To add one, write a module beside this one with a subclass of `Family`, list it here, and write its page anew with
-`python docs/list_distributions.py`.
+`python docs/list_distributions.py`. docs/adding.md has an example.
 """
 
 from __future__ import annotations

@@ -108,6 +108,9 @@ class RunsWholeBlocks(Protocol):
 class Program(Protocol):
     """A compiled workbook. Evaluators are for one thread each.
 
+    `Engine.load` says what a program is made of: a `Lowering`, of which `dag` holds the nodes and `target` gives the
+    node of a `Target`; the targets of the filters and the forecasts; the inputs whose draws may be errors.
+
     Attributes:
         largest_block: more trials than these at once bring nothing.
     """

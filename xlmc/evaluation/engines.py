@@ -1,7 +1,8 @@
 """The engines, a row each: the command line, settings, records and runs know them from here.
 
-To add one, write a folder beside this module with its `Program` (see `engine.py`), and its row below; describe it in
-docs/engines.md. Nothing is imported before an engine computes, so that `--help` is quick.
+To add one, write a module or a folder beside this module with its `Program` (see `engine.py`), and its row below;
+describe it in docs/engines.md. docs/adding.md has an example. Nothing is imported before an engine computes, so that
+`--help` is quick.
 """
 
 from __future__ import annotations

@@ -10,12 +10,13 @@ body's values. That is what the fast engine runs.
 
 To add a function, write its body below `@excel("NAME", …)` in a file of the folder of its category: all files below
 `xlmc/functions` are imported, and no other is edited. The parameters say what the body gets; one that gives many cells
-takes `Anything`, `Cells` or `Arrays`, and its row says `facts=Facts(spills=True)`. Whatever else is known of the
-function goes into `facts`, where each fact is described, with what is assumed while it is not stated. The engines
-`numpy` and `jit` then compute it, `xlmc stability` says that it could not check it, derivatives are taken by
-differences: where that is not enough, give it a row in `evaluation/llvm/operations`, `evaluation/passes/exact` or
-`evaluation/passes/derivatives`. Test it in the folder of `tests/functions` of the same name, and write the list of
-functions anew: `python docs/list_functions.py`.
+takes `Anything`, `Cells` or `Arrays`, and its row says `facts=Facts(spills=True)`: `array_function`, in
+`functions/arrays`, writes that row. Whatever else is known of the function goes into `facts`, where each fact is
+described, with what is assumed while it is not stated. The engines `numpy` and `jit` then compute it, derivatives are
+taken by differences, and `xlmc stability`, where it computes a cell again with 50 digits, says that it could not do so
+with this function. Where that is not enough, give the function a row in `evaluation/llvm/operations`,
+`evaluation/passes/derivatives` or `evaluation/passes/exact`. Test it in the folder of `tests/functions` of the same
+name, and write the list of functions anew: `python docs/list_functions.py`. docs/adding.md has an example of each.
 """
 
 from __future__ import annotations

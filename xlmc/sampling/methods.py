@@ -1,7 +1,8 @@
 """The sampling methods, a row each: the command line, settings, records and `xlmc methods` know them from here.
 
 To add one, write a module beside this one with what draws the uniforms of one assumption (a `Margin`), and its row
-below; describe it in docs/sampling.md. Nothing is imported before a method draws, so that `--help` is quick.
+below; describe it in docs/sampling.md. docs/adding.md has an example. Nothing is imported before a method draws, so
+that `--help` is quick.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ class Margin(Protocol):
     """The uniforms of one assumption, in any order of blocks; for one thread."""
 
     def uniforms(self, start: int, out: NDArray[np.float64]) -> None:
-        """Fill `out` (n,) with the uniforms of trials `start` to `start + n - 1`, in [0, 1)."""
+        """Fill `out` (n,) with the uniforms of trials `start` to `start + n - 1`, multiples of 2⁻⁵³ in [0, 1)."""
 
 
 class SamplingMethod(NamedTuple):

@@ -21,7 +21,7 @@ MISTAKES = [
     ("Trials", "2e13", VALUE, "Trials must be a whole number from 1 to 1,000,000,000,000, not 2e+13", "Correct"),
     ("Trials", "9" * 100, VALUE, "Trials must be a whole number from 1", "Correct"),
     ("Until accepted", "1", VALUE, "Until accepted must be a whole number from 2", "Correct the number"),
-    ("Sampling", "dice", VALUE, "There is no sampling method 'dice'", "Use mc, lhs, lhs500 or sobol"),
+    ("Sampling", "dice", VALUE, "There is no sampling method 'dice'", "Use mc, "),
     ("Engine", "numpi", VALUE, "There is no engine 'numpi'", "Did you mean numpy?"),
     ("Until accepted", 1, VALUE, "Until accepted must be a whole number from 2", "Correct the number"),
     ("Until accepted", 2.5, VALUE, "Until accepted must be a whole number", "Correct the number"),

@@ -7,8 +7,8 @@ import openpyxl
 import pytest
 from xlsxwriter import Workbook
 
-from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.book import exact_sheet
+from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.page import LONGEST_TEXT, ROW, Page, cut
 from xlmc.report.sheets.styles import Styles
 

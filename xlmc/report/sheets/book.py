@@ -1,7 +1,7 @@
 """All result sheets as a workbook of their own, built in memory: the same run gives the same bytes.
 
 To add a sheet, write a module beside this one with a function that writes a `Page` of a run, and its row in `SHEETS`;
-describe it in docs/guide.md.
+describe it in docs/guide.md. docs/adding.md has an example.
 """
 
 from __future__ import annotations

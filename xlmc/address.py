@@ -179,10 +179,10 @@ def parse_address(text: str, sheet: str | None = None) -> Cell | Area:
     corners = [_A1.fullmatch(part) for part in tail.split(":")]
     if len(corners) > 2 or not all(corners):
         raise ValueError(f"{text!r} is not a cell or an area")
-    places = [(int(found[2]), column_number(found[1])) for found in corners if found]
-    if any(row > MAX_ROW or column > MAX_COLUMN for row, column in places):
+    positions = [(int(found[2]), column_number(found[1])) for found in corners if found]
+    if any(row > MAX_ROW or column > MAX_COLUMN for row, column in positions):
         raise ValueError(f"{text!r} lies outside the sheet")
-    if len(places) == 1:
-        return Cell(sheet, *places[0])
-    (r1, c1), (r2, c2) = places
+    if len(positions) == 1:
+        return Cell(sheet, *positions[0])
+    (r1, c1), (r2, c2) = positions
     return Area(sheet, min(r1, r2), min(c1, c2), max(r1, r2), max(c1, c2))

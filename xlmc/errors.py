@@ -98,8 +98,8 @@ class XlmcError(Exception):
         self.hint = hint
 
     def __str__(self) -> str:
-        place = f"{self.where}: " if self.where else ""
-        said = sentence(f"{place}{self.message}")
+        start = f"{self.where}: " if self.where else ""
+        said = sentence(f"{start}{self.message}")
         return sentence(f"{said} {_begun(self.hint)}") if self.hint else said
 
 

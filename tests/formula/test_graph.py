@@ -4,7 +4,7 @@ import pytest
 
 from xlmc.address import parse_address
 from xlmc.errors import FormulaError
-from xlmc.formula.references import references
+from xlmc.formula.precedents import references
 
 CELLS = {
     "A1": 1.0,

@@ -38,7 +38,7 @@ def test_faults_are_collected_and_the_rest_is_worked_out(tolerant):
     graph = tolerant(CELLS, ["C1", "C2", "C3", "C4", "B1"], inputs=["A1"], names={"Rate": "S!$A$1"})
     faults = {cell.a1: error.message for cell, error in graph.faults.items()}
     assert faults == {
-        "B2": "the formula cannot be read from the marked place on",
+        "B2": "the formula cannot be read from the marked character on",
         "B3": "there is no sheet 'Nothing'",
         "C3": "there is no name 'Rte'",
         "C4": "refers to another workbook",

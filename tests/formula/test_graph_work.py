@@ -89,9 +89,9 @@ def test_a_held_cell_is_not_read(workbook):
     read = []
 
     class Listening(Resolver):
-        def placed(self, cell, formula):
+        def tree_or_stencil(self, cell, formula):
             read.append(cell.a1)
-            return super().placed(cell, formula)
+            return super().tree_or_stencil(cell, formula)
 
     cells = {"A1": 1.0, "B1": "=Missing+", "B2": "=A1", "C1": "=B1+B2"}
     held = frozenset([Cell("S", 1, 2)])

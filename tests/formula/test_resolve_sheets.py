@@ -7,7 +7,7 @@ import pytest
 from xlmc.address import Cell
 from xlmc.errors import FormulaError
 from xlmc.formula import Resolver, ir
-from xlmc.formula.references import references
+from xlmc.formula.precedents import references
 from xlmc.workbook.model import Formula
 
 TABS = ("Mar", "Jan", "It's", "Dec", "Apr")

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.formula import Resolver, Stencil
-from xlmc.formula.references import references
+from xlmc.formula.precedents import references
 from xlmc.workbook.model import Formula
 
 HOME = Cell("S", 5, 5)
@@ -19,8 +19,8 @@ def stencil(workbook):
     def make(text, at=HOME):
         resolver = Resolver(workbook({"Z9": 1.0, "Data!Z9": 1.0}, names={"Rate": "S!$Z$9"}))
         formula = Formula(text, at.row, at.column)
-        resolver.placed(at, formula)
-        found = resolver.placed(at, formula)
+        resolver.tree_or_stencil(at, formula)
+        found = resolver.tree_or_stencil(at, formula)
         return found if isinstance(found, Stencil) else None
 
     return make

@@ -21,7 +21,7 @@ from xlmc.evaluation.passes.bounds import _OF_ONE
 from xlmc.evaluation.passes.derivatives.rules import RULES
 from xlmc.evaluation.passes.exact import EXACT
 from xlmc.formula.callables import _CHOOSING
-from xlmc.formula.references import LOOKED_AT
+from xlmc.formula.precedents import LOOKED_AT
 from xlmc.functions.facts import EmptyCells, Facts, Repeats
 from xlmc.functions.families import REGISTRY
 from xlmc.functions.math.aggregate import SO_FAR
@@ -67,7 +67,7 @@ LISTS = {
     ("evaluation/passes/derivatives/sums.py", "variance"): "one rule's own",
     ("evaluation/passes/exact.py", "EXACT"): "any other function is computed as in the run, and told of as not checked",
     ("formula/callables.py", "_CHOOSING"): "any other function gives no LAMBDA",
-    ("formula/references.py", "LOOKED_AT"): "any other function reads its arguments",
+    ("formula/precedents.py", "LOOKED_AT"): "any other function reads its arguments",
     ("formula/stencil.py", "_leaves"): "formulas without LET and LAMBDA are filled down by their shape",
     ("functions/math/rounding.py", "ceiling_precise"): "aliases of one row",
     ("functions/math/aggregate.py", "SO_FAR"): "any other function is computed of each range by itself",

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.functions.lookup.picking import by_portions, width_of
+from xlmc.functions.lookup.picked_cells import by_portions, width_of
 from xlmc.functions.values import TEXT, ShapeVaries, Value, constant, from_objects
 
 N = 1000

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.workbook.values import decode, run_text, shared_strings
+from xlmc.workbook.cell_values import decode, run_text, shared_strings
 
 MAIN = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
 

@@ -16,7 +16,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.columns.owners import new_folder_name, owned, remove_stray_folders
+from xlmc.columns.temporary_names import new_folder_name, owned, remove_stray_folders
 from xlmc.errors import SimulationError
 
 __all__ = ["IN_MEMORY", "Columns", "Folder", "Keeper", "mapped", "on_disk", "release"]

@@ -28,7 +28,7 @@ def parts(values: NDArray[Any], size: int = PART) -> Iterator[NDArray[Any]]:
 def pairwise_sum(term: Callable[[slice], NDArray[np.float64]], n: int) -> float:
     """The sum of n terms, which are made for a slice of them at a time.
 
-    To the bit what `np.sum` gives for all of them in one array: it halves in the same places.
+    To the bit what `np.sum` gives for all of them in one array: it halves at the same terms.
     """
     return float(_between(term, 0, n))
 
@@ -43,14 +43,14 @@ def _between(term: Callable[[slice], NDArray[np.float64]], start: int, stop: int
     return _between(term, start, start + half) + _between(term, start + half, stop)
 
 
-def picked(values: NDArray[Any], places: NDArray[np.intp]) -> NDArray[Any]:
-    """The values at `(m,)` places, in memory of their own."""
+def picked(values: NDArray[Any], indices: NDArray[np.intp]) -> NDArray[Any]:
+    """The values at `(m,)` indices, in memory of their own."""
     if not on_disk(values):
-        return np.asarray(values[places])
-    found = np.empty(places.size, values.dtype)
-    for start in range(0, places.size, _PICKED):
+        return np.asarray(values[indices])
+    found = np.empty(indices.size, values.dtype)
+    for start in range(0, indices.size, _PICKED):
         here = slice(start, start + _PICKED)
-        found[here] = values[places[here]]
+        found[here] = values[indices[here]]
         release(values)
     return found
 
@@ -98,14 +98,14 @@ def _merge(folder: Folder, runs: list[NDArray[np.float64]]) -> None:
     release(runs[0])
     first, last = np.zeros((len(runs), 1), np.intp), np.array([[run.size] for run in runs])
     begins, ends = np.hstack([first, after]), np.hstack([before, last])
-    for place in range(splitters.size + 1):
-        piece = np.concatenate([run[b:e] for run, b, e in zip(runs, begins[:, place], ends[:, place], strict=True)])
+    for index in range(splitters.size + 1):
+        piece = np.concatenate([run[b:e] for run, b, e in zip(runs, begins[:, index], ends[:, index], strict=True)])
         release(runs[0])
         piece.sort()
         folder.append("merged", [piece])
-        if place < splitters.size:
-            ties = int((after[:, place] - before[:, place]).sum())
-            _repeat(folder, splitters[place], ties)
+        if index < splitters.size:
+            ties = int((after[:, index] - before[:, index]).sum())
+            _repeat(folder, splitters[index], ties)
 
 
 def _splitters(runs: list[NDArray[np.float64]]) -> NDArray[np.float64]:

@@ -13,7 +13,7 @@ from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.engine import Column, Evaluator, Target, column_of
 from xlmc.evaluation.graph.lower import Lowering
 from xlmc.formula import compile_with_formulas, formula_text, ir
-from xlmc.formula.references import references
+from xlmc.formula.precedents import references
 from xlmc.functions.values import Floats, from_objects
 
 __all__ = ["FormulasProgram"]

@@ -16,7 +16,7 @@ import numpy as np
 from xlmc.address import Area, Cell, host_of
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
-from xlmc.formula.references import references
+from xlmc.formula.precedents import references
 from xlmc.formula.resolve import Resolver
 from xlmc.formula.stencil import Stencil
 from xlmc.formula.strips import Needs, Part, Stretch, Strips
@@ -38,18 +38,18 @@ class Filled(NamedTuple):
 class _Trees(Mapping[Cell, ir.Expression]):
     """The resolved trees of formula cells; those of a stencil are made when they are asked for."""
 
-    def __init__(self, placed: Mapping[Cell, ir.Expression | Filled]) -> None:
-        self.placed = placed
+    def __init__(self, ordered: Mapping[Cell, ir.Expression | Filled]) -> None:
+        self.ordered = ordered
 
     def __getitem__(self, cell: Cell) -> ir.Expression:
-        found = self.placed[cell]
+        found = self.ordered[cell]
         return found.stencil.at(cell) if isinstance(found, Filled) else found
 
     def __iter__(self) -> Iterator[Cell]:
-        return iter(self.placed)
+        return iter(self.ordered)
 
     def __len__(self) -> int:
-        return len(self.placed)
+        return len(self.ordered)
 
 
 @dataclass(frozen=True)
@@ -105,9 +105,9 @@ def build_graph(
         walk.upstream(target)
     if walk.circular:
         walk.faults.update(circular(walk.needs))
-    varying = _varying(walk.placed, walk.needs, walk.reached & inputs)
+    varying = _varying(walk.ordered, walk.needs, walk.reached & inputs)
     reached = frozenset(walk.reached)
-    return Graph(resolver.workbook, _Trees(walk.placed), walk.needs, varying, reached, walk.faults)
+    return Graph(resolver.workbook, _Trees(walk.ordered), walk.needs, varying, reached, walk.faults)
 
 
 class _Walk:
@@ -118,7 +118,7 @@ class _Walk:
     ) -> None:
         self._resolver, self._given, self._more, self._strict = resolver, given, more, strict
         self._workbook, self._spills = resolver.workbook, Spills(resolver.workbook)
-        self.placed: dict[Cell, ir.Expression | Filled] = {}
+        self.ordered: dict[Cell, ir.Expression | Filled] = {}
         self.needs = Needs()
         self._strips = Strips(self._counts, lambda area: _held(self._workbook, area, given), resolver.last_cell)
         self.reached: set[Cell] = set()
@@ -130,23 +130,23 @@ class _Walk:
         self._computed: dict[Cell, bool] = {}
 
     def upstream(self, target: Cell) -> None:
-        """Place a cell after all that it needs."""
-        trail, placed = self._trail, self.placed
+        """Put a cell after all that it needs."""
+        trail, ordered = self._trail, self.ordered
         self._enter(target)
         while trail:
             cell = next(reversed(trail))
             before = len(trail)
             for following in trail[cell]:
-                if following not in placed:
+                if following not in ordered:
                     self._enter(following)
                     if len(trail) > before:
                         break
             else:
-                placed[cell] = self._open.pop(cell)
+                ordered[cell] = self._open.pop(cell)
                 del trail[cell]
                 for part in self.needs.parts[cell]:
                     if isinstance(part, Stretch):
-                        part.is_placed()
+                        part.note_ordered()
                     elif len(part) > _MANY:
                         self._walked.add(id(part))
 
@@ -155,13 +155,13 @@ class _Walk:
             self.reached.add(cell)
         elif cell in self._trail:
             self._close_circle(cell)
-        elif cell not in self.placed and (found := self._rewritten(cell) or self._read(cell)) is not None:
+        elif cell not in self.ordered and (found := self._rewritten(cell) or self._read(cell)) is not None:
             self._open[cell] = found
             self.needs.parts[cell] = parts = self._precedents(cell, found)
             self._trail[cell] = self._waiting(parts)
 
     def _waiting(self, parts: tuple[Part, ...]) -> Iterator[Cell]:
-        """The cells of the parts, but for most of those that are placed."""
+        """The cells of the parts, but for most of those that are in order."""
         if len(parts) == 1 and type(parts[0]) is tuple and id(parts[0]) not in self._walked:
             return iter(parts[0])
         left = (part.waiting() if isinstance(part, Stretch) else part for part in parts if id(part) not in self._walked)
@@ -177,7 +177,7 @@ class _Walk:
         if formula is None:
             return self._spills.anchor(cell)
         try:
-            found = self._resolver.placed(cell, formula)
+            found = self._resolver.tree_or_stencil(cell, formula)
             return Filled(found, found.cells(cell)) if isinstance(found, Stencil) else found
         except FormulaError as error:
             if self._strict:
@@ -192,15 +192,15 @@ class _Walk:
             known = self._computed
             parts = [tuple([need for need in found.cells if (known[need] if need in known else self._counts(need))])]
         else:
-            places = dict.fromkeys(references(found))
-            parts = [part for place in places if isinstance(place, Area) for part in self._strips.of(place)]
-            parts.append(tuple([place for place in places if isinstance(place, Cell) and self._counts(place)]))
+            reads = dict.fromkeys(references(found))
+            parts = [part for read in reads if isinstance(read, Area) for part in self._strips.of(read)]
+            parts.append(tuple([read for read in reads if isinstance(read, Cell) and self._counts(read)]))
         if cell in self._more:
             parts.append(tuple(self._more[cell]))
         return tuple(parts)
 
     def _rewritten(self, cell: Cell) -> ir.Expression | None:
-        """What stands in place of a cell's own formula, if anything does."""
+        """What replaces a cell's own formula, if anything does."""
         found = self._resolver.rewritten.get(cell)
         if not isinstance(found, FormulaError):
             return found
@@ -279,8 +279,8 @@ def _groups(cells: Sequence[Cell], needs: Mapping[Cell, Sequence[Cell]]) -> dict
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    places = {cell: place for place, cell in enumerate(cells)}
-    edges = [(places[cell], places[need]) for cell in cells for need in needs[cell] if need in places]
+    numbers = {cell: number for number, cell in enumerate(cells)}
+    edges = [(numbers[cell], numbers[need]) for cell in cells for need in needs[cell] if need in numbers]
     rows, columns = np.array(edges, np.int64).T
     matrix = coo_array((np.ones(len(edges), np.int8), (rows, columns)), shape=(len(cells), len(cells)))
     _, labels = connected_components(matrix.tocsr(), connection="strong")
@@ -328,11 +328,11 @@ def _filled(sheet: Sheet) -> tuple[dict[Cell, Cell], list[tuple[Area, Cell]]]:
     """The anchors of the cells that array formulas fill, and large areas with theirs."""
     listed: dict[Cell, Cell] = {}
     large = []
-    for place, content in sheet.cells.items():
+    for position, content in sheet.cells.items():
         area = None if content.formula is None else content.formula.array
         if area is None or area.rows * area.columns == 1:
             continue
-        anchor = Cell(sheet.name, *place)
+        anchor = Cell(sheet.name, *position)
         if area.rows * area.columns > _MOST_LISTED:
             large.append((area, anchor))
         else:

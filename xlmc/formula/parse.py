@@ -32,18 +32,22 @@ from formulas.tokens.operator import Intersect, Operator, OperatorToken, Separat
 from formulas.tokens.parenthesis import Parenthesis, _update_n_args
 from schedula import EMPTY, DispatcherError
 
-from xlmc.address import MAX_COLUMN, MAX_ROW, column_number
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
-from xlmc.formula.table_reference import TABLE_REFERENCE, parse_table_reference
+from xlmc.formula.reference_text import (
+    CELL,
+    NAME,
+    PREFIX,
+    REFERENCE,
+    TABLE_REFERENCE,
+    corner,
+    is_on_the_sheet,
+    parse_table_reference,
+    prefix,
+)
 
 __all__ = ["compile_with_formulas", "parse", "parse_cell"]
 
-_SHEET = r"[^\W\d][\w.]*"
-_PREFIX = rf"(?:'(?P<quoted>(?:[^']|'')+)'|(?P<book>\[[^\[\]]+\])?(?P<sheet>{_SHEET}(?::{_SHEET})?)?)!"
-_CELL = r"\$?[A-Za-z]{1,3}\$?[1-9][0-9]{0,6}"
-_BODY = rf"(?P<name>{_CELL}(?::{_CELL})?|\$?[A-Za-z]{{1,3}}:\$?[A-Za-z]{{1,3}}|\$?[1-9][0-9]*:\$?[1-9][0-9]*)"
-_NAME = r"(?P<name>[^\W\d][\w.\\?]*|\\[\w.\\?]*)"
 _LINE_BREAK_IN_TEXT = "\0"  # no XML holds it, so no text of a workbook does
 _LONGEST = 4 * 8192
 """Characters of a formula in a file, where functions have prefixes and tables their long names."""
@@ -55,7 +59,6 @@ _QUOTED = re.compile(r""""(?:[^"]|"")*"|'(?:[^']|'')*'|\[(?:'.|[^\[\]']|\[(?:'.|
 """Texts, names of sheets in quotes, and what stands in square brackets."""
 
 _BLANKS = str.maketrans("\t\r\n", "   ")
-_CORNER = re.compile(r"(?P<cf>\$?)(?P<c>[A-Za-z]{1,3})?(?P<rf>\$?)(?P<r>[0-9]+)?")
 
 
 def _follow(tokens: list[Any], *, an_operand: bool) -> None:
@@ -107,7 +110,7 @@ class _Error(_Leaf):
     """Also `#REF!$B$7`, what is left of a reference whose sheet was deleted."""
 
     _names = r"#(?:NULL!|DIV/0!|VALUE!|REF!|NAME\?|NUM!|N/A|SPILL!|CALC!|GETTING_DATA)"
-    _re = re.compile(rf"\s*(?:{_PREFIX})?(?P<name>{_names})(?:(?<=#REF!)(?:#REF!|{_CELL}(?::{_CELL})?))?", re.I)
+    _re = re.compile(rf"\s*(?:{PREFIX})?(?P<name>{_names})(?:(?<=#REF!)(?:#REF!|{CELL}(?::{CELL})?))?", re.I)
 
     @property
     def node(self) -> ir.Expression:
@@ -115,27 +118,27 @@ class _Error(_Leaf):
 
 
 class _Reference(_Leaf):
-    _re = re.compile(rf"\s*(?:{_PREFIX})?{_BODY}(?![\w.(\[\\?])")
+    _re = re.compile(rf"\s*(?:{PREFIX})?{REFERENCE}(?![\w.(\[\\?])")
 
     @property
     def node(self) -> ir.Expression:
         text = self.attr["name"]
         first, _, last = text.partition(":")
-        corners = _corner(first), _corner(last) if last else None
-        if all(corner is None or _on_the_sheet(corner) for corner in corners):
-            return ir.Reference(*corners, *_place(self.attr))
+        corners = corner(first), corner(last) if last else None
+        if all(end is None or is_on_the_sheet(end) for end in corners):
+            return ir.Reference(*corners, *prefix(self.attr))
         if last or "$" in text:
             raise ForeignFormulaError
-        sheet, _, book = _place(self.attr)
+        sheet, _, book = prefix(self.attr)
         return ir.Name(text, sheet, book)  # no cell, so a name may look like it: `YAW1`
 
 
 class _Name(_Leaf):
-    _re = re.compile(rf"\s*(?:{_PREFIX})?{_NAME}(?![\w.(\[!])")
+    _re = re.compile(rf"\s*(?:{PREFIX})?{NAME}(?![\w.(\[!])")
 
     @property
     def node(self) -> ir.Expression:
-        sheet, _, book = _place(self.attr)
+        sheet, _, book = prefix(self.attr)
         return ir.Name(self.attr["name"], sheet, book)
 
 
@@ -200,7 +203,7 @@ class _Separator(Separator):  # type: ignore[misc]
 
 
 class _Function(FunctionToken):  # type: ignore[misc]
-    _re = re.compile(rf"\s*(?:{_PREFIX})?(?P<name>[^\W\d][\w.]*)\(\s*(?P<call>\))?")
+    _re = re.compile(rf"\s*(?:{PREFIX})?(?P<name>[^\W\d][\w.]*)\(\s*(?P<call>\))?")
 
     def ast(self, tokens: list[Any], stack: list[Any], builder: Any, *rest: Any) -> None:
         _follow(tokens, an_operand=False)
@@ -260,7 +263,7 @@ def _refuse_open_operator(tokens: list[Any]) -> None:
 
 def _within_array(stack: list[Any]) -> bool:
     """Whether the innermost open bracket is a `{`, which `formulas` makes a call of its own class."""
-    opened = [place for place, token in enumerate(stack) if isinstance(token, Parenthesis)]
+    opened = [index for index, token in enumerate(stack) if isinstance(token, Parenthesis)]
     return bool(opened and opened[-1] and _opens_array(stack[opened[-1] - 1]))
 
 
@@ -272,31 +275,6 @@ def _ends_an_operand(token: Any) -> bool:
     if isinstance(token, Parenthesis):
         return bool(token.has_end)
     return isinstance(token, Operand) or (isinstance(token, Operator) and token.name in "%#")
-
-
-def _place(groups: dict[str, str]) -> tuple[str | None, str | None, str | None]:
-    """Sheet, last sheet and external book of a reference's prefix."""
-    text = groups["quoted"].replace("''", "'") if "quoted" in groups else groups.get("sheet", "")
-    book = groups.get("book")
-    if "quoted" in groups and "]" in text:
-        book, _, text = text.rpartition("]")
-        book += "]"
-    first, _, last = text.partition(":")
-    return first or None, last or None, book
-
-
-def _corner(text: str) -> ir.Corner:
-    found = _CORNER.fullmatch(text)
-    if found is None:
-        raise TokenError(text)
-    row, column = found["r"], found["c"]
-    if column is None:  # a whole row, `$3`: the `$` was read as the column's
-        return ir.Corner(int(row), None, bool(found["cf"] or found["rf"]), False)
-    return ir.Corner(int(row) if row else None, column_number(column), bool(found["rf"]), bool(found["cf"]))
-
-
-def _on_the_sheet(corner: ir.Corner) -> bool:
-    return (corner.row or 1) <= MAX_ROW and (corner.column or 1) <= MAX_COLUMN
 
 
 class _TreeBuilder:
@@ -342,7 +320,7 @@ class _TreeBuilder:
 def _call(token: Any, arguments: tuple[ir.Expression, ...]) -> ir.Expression:
     if not _opens_array(token):
         name = re.sub(r"^(_xlfn\.|_xlws\.|_xll\.|_xludf\.)+", "", token.name, flags=re.IGNORECASE)
-        sheet, _, book = _place(token.attr)
+        sheet, _, book = prefix(token.attr)
         if sheet is not None and not name.upper().startswith(_ADD_INS):
             return ir.Invoke(ir.Name(name, sheet, book), arguments)
         elsewhere = book not in (None, "[0]")  # [0] is this book
@@ -408,7 +386,7 @@ def parse(text: str) -> ir.Expression:
     """The tree of a formula, given without its leading `=`.
 
     Raises:
-        FormulaError: the text is not a formula; the error carries the place of the faulty part.
+        FormulaError: the text is not a formula; the error says where the faulty part is.
     """
     if len(text) > _LONGEST:
         raise FormulaError(
@@ -432,7 +410,7 @@ def parse(text: str) -> ir.Expression:
 
 def _unread(text: str, start: int) -> FormulaError:
     return FormulaError(
-        "the formula cannot be read from the marked place on",
+        "the formula cannot be read from the marked character on",
         hint="check brackets, separators and quotes there",
         text=text,
         span=(start, start + 1),
@@ -442,7 +420,7 @@ def _unread(text: str, start: int) -> FormulaError:
 def _closes_too_early(text: str) -> int | None:
     """Where a bracket is closed that nothing opened: `formulas` reads `A1)-(B1` as if brackets stood around it."""
     depths = _depths(_QUOTED.sub(lambda quoted: " " * len(quoted[0]), text))
-    return next((place for place, depth in enumerate(depths) if depth < 0), None)
+    return next((index for index, depth in enumerate(depths) if depth < 0), None)
 
 
 def _depths(signs: str) -> Iterator[int]:

@@ -15,6 +15,7 @@ from typing import Final, assert_never
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
+from xlmc.formula.areas import cells_of, combine, is_far, seen_from, table_rows
 from xlmc.formula.callables import calls_function, function_named_by, stands_for_function
 from xlmc.formula.linked import COPY, linked_name, linked_sheet, meant_book
 from xlmc.formula.parse import parse
@@ -24,8 +25,6 @@ from xlmc.workbook.model import Formula, Table, Workbook
 
 __all__ = ["Resolver"]
 
-_REF = ir.ErrorLiteral(ErrorCode.REF)
-_NULL = ir.ErrorLiteral(ErrorCode.NULL)
 
 _PARAMETER: Final = re.compile(r"_xl[po][mp]\.", re.IGNORECASE)
 _OPTIONAL: Final = "_xlop."
@@ -45,7 +44,7 @@ class Resolver:
         inputs: cells that count as used although the file may hold nothing there.
         strict: whether a name that is not there is a mistake to tell of, unless Excel saved `#NAME?` in the cell too;
             `#NAME?` otherwise, as in Excel.
-        rewritten: resolved trees that stand in place of cells' formulas, or why a cell cannot be computed.
+        rewritten: resolved trees that replace cells' formulas, or why a cell cannot be computed.
     """
 
     def __init__(
@@ -74,10 +73,10 @@ class Resolver:
         Raises:
             FormulaError: told of the cell; the formula cannot be read, or names something that is not there.
         """
-        found = self.placed(cell, formula)
+        found = self.tree_or_stencil(cell, formula)
         return found.at(cell) if isinstance(found, Stencil) else found
 
-    def placed(self, cell: Cell, formula: Formula) -> ir.Expression | Stencil:
+    def tree_or_stencil(self, cell: Cell, formula: Formula) -> ir.Expression | Stencil:
         """The same; or, of a formula that was filled into many cells, what these have in common.
 
         Raises:
@@ -185,7 +184,7 @@ class Resolver:
         first, rest = ir.chain(tree)
         resolved = self._resolve(first, host, origin)
         for operator, right in rest:
-            combined = _combined(operator, resolved, self._resolve(right, host, origin))
+            combined = combine(operator, resolved, self._resolve(right, host, origin))
             resolved = self._cut(combined) if isinstance(combined, Area) else combined
         return ir.marked_as(resolved, tree)
 
@@ -196,15 +195,7 @@ class Resolver:
                 raise FormulaError("refers to several sheets of another workbook", hint=COPY)
             return self._over_sheets(tree, host, origin)
         sheet = self._sheet(tree.sheet, host) if book is None else linked_sheet(self.workbook, book, tree.sheet, host)
-        first, last = (_place(corner, host, origin) for corner in (tree.first, tree.last or tree.first))
-        if self._open_names:  # in a name, relative references go around the edge of the sheet
-            first, last = _wrapped(first), _wrapped(last)
-        if not (_inside(first) and _inside(last)):
-            return _REF
-        rows, columns = _sorted(first[0], last[0]), _sorted(first[1], last[1])
-        top, bottom = rows or (1, MAX_ROW)
-        left, right = columns or (1, MAX_COLUMN)
-        found = _area(sheet, top, left, bottom, right)
+        found = seen_from(tree, sheet, host, origin, wraps=bool(self._open_names))
         return self._cut(found) if isinstance(found, Area) else found
 
     def _over_sheets(self, tree: ir.Reference, host: Cell, origin: tuple[int, int]) -> ir.Expression:
@@ -242,8 +233,8 @@ class Resolver:
     def to_the_last_cell(self, area: Area) -> Area:
         """The area, ended with the cells that are filled where it goes on far beyond them; the rest is counted."""
         used = self.last_cell(area.sheet)
-        bottom = max(area.top, used[0]) if _is_far(area.bottom, used[0], MAX_ROW) else area.bottom
-        right = max(area.left, used[1]) if _is_far(area.right, used[1], MAX_COLUMN) else area.right
+        bottom = max(area.top, used[0]) if is_far(area.bottom, used[0], MAX_ROW) else area.bottom
+        right = max(area.left, used[1]) if is_far(area.right, used[1], MAX_COLUMN) else area.right
         return Area(area.sheet, area.top, area.left, bottom, right, area.bottom - bottom, area.right - right)
 
     def last_cell(self, sheet: str) -> tuple[int, int]:
@@ -252,7 +243,7 @@ class Resolver:
 
     def _cut(self, area: Area) -> Cell | Area:
         cut = self.to_the_last_cell(area.whole)
-        return cut if cut.is_cut else _area(cut.sheet, cut.top, cut.left, cut.bottom, cut.right)
+        return cut if cut.is_cut else cells_of(cut.sheet, cut.top, cut.left, cut.bottom, cut.right)
 
     def _used_range(self, sheet: str) -> tuple[int, int]:
         """Last row and column that hold anything: a whole column ends there."""
@@ -306,12 +297,12 @@ class Resolver:
 
     def _table(self, tree: ir.TableReference, host: Cell) -> ir.Expression:
         table = self._named_table(tree.table, host)
-        rows = _table_rows(table, tree.items, host)
+        rows = table_rows(table, tree.items, host)
         if rows is None:
             return ir.ErrorLiteral(ErrorCode.VALUE if "#this row" in tree.items else ErrorCode.REF)
         left = _table_column(table, tree.first) if tree.first else table.area.left
         right = _table_column(table, tree.last) if tree.last else (left if tree.first else table.area.right)
-        return _area(table.area.sheet, rows[0], min(left, right), rows[1], max(left, right))
+        return cells_of(table.area.sheet, rows[0], min(left, right), rows[1], max(left, right))
 
     def _named_table(self, name: str | None, host: Cell) -> Table:
         if name is None:
@@ -362,97 +353,6 @@ def _about(error: FormulaError, text: str) -> FormulaError:
 def _did_you_mean(name: str, known: object) -> str | None:
     close = get_close_matches(name, list(known), n=1)  # type: ignore[call-overload]
     return f"did you mean {close[0]!r}?" if close else None
-
-
-_Place = tuple[int | None, int | None]
-
-
-def _place(corner: ir.Corner, host: Cell, origin: tuple[int, int]) -> _Place:
-    """Row and column of a corner as the host sees it; it may lie off the sheet."""
-    row, column = corner.row, corner.column
-    if row is not None and not corner.row_fixed:
-        row += host.row - origin[0]
-    if column is not None and not corner.column_fixed:
-        column += host.column - origin[1]
-    return row, column
-
-
-def _inside(place: _Place) -> bool:
-    row, column = place
-    return (row is None or 1 <= row <= MAX_ROW) and (column is None or 1 <= column <= MAX_COLUMN)
-
-
-def _wrapped(place: _Place) -> _Place:
-    row, column = place
-    return (
-        None if row is None else (row - 1) % MAX_ROW + 1,
-        None if column is None else (column - 1) % MAX_COLUMN + 1,
-    )
-
-
-def _sorted(first: int | None, last: int | None) -> tuple[int, int] | None:
-    return None if first is None or last is None else (min(first, last), max(first, last))
-
-
-_FAR: Final = 10_000
-"""Empty rows at the end of a range that are counted instead of read."""
-
-
-def _is_far(end: int, used: int, most: int) -> bool:
-    return end > used and (end == most or end - used > _FAR)
-
-
-def _area(sheet: str, top: int, left: int, bottom: int, right: int) -> Cell | Area:
-    if top == bottom and left == right:
-        return Cell(sheet, top, left)
-    return Area(sheet, top, left, bottom, right)
-
-
-def _combined(operator: str, left: ir.Expression, right: ir.Expression) -> ir.Expression:
-    if operator not in (":", " "):
-        return ir.Binary(operator, left, right)
-    for part in (left, right):
-        if isinstance(part, ir.ErrorLiteral):
-            return part
-    if not isinstance(left, Cell | Area) or not isinstance(right, Cell | Area):
-        if all(isinstance(part, Cell | Area | ir.Call | ir.Variable) for part in (left, right)):
-            return ir.Binary(operator, left, right)  # OFFSET(…):B9 is known only when its arguments are
-        name = "range (:)" if operator == ":" else "intersection (a blank)"
-        raise FormulaError(f"the {name} operator needs references on both sides", hint="is an operator missing?")
-    a, b = _as_area(left).whole, _as_area(right).whole
-    if a.sheet != b.sheet:
-        return ir.ErrorLiteral(ErrorCode.VALUE)
-    if operator == ":":
-        top, start = min(a.top, b.top), min(a.left, b.left)
-        return _area(a.sheet, top, start, max(a.bottom, b.bottom), max(a.right, b.right))
-    top, start, bottom, end = max(a.top, b.top), max(a.left, b.left), min(a.bottom, b.bottom), min(a.right, b.right)
-    return _area(a.sheet, top, start, bottom, end) if top <= bottom and start <= end else _NULL
-
-
-def _as_area(place: Cell | Area) -> Area:
-    if isinstance(place, Area):
-        return place
-    return Area(place.sheet, place.row, place.column, place.row, place.column)
-
-
-def _table_rows(table: Table, items: tuple[str, ...], host: Cell) -> tuple[int, int] | None:
-    """First and last row that the items name; None where the table has no such row."""
-    area, body = table.area, table.body
-    if "#this row" in items:
-        inside = host.sheet == body.sheet and body.top <= host.row <= body.bottom
-        return (host.row, host.row) if inside else None
-    spans = {
-        "#all": (area.top, area.bottom),
-        "#data": (body.top, body.bottom),
-        "#headers": (area.top, body.top - 1),
-        "#totals": (body.bottom + 1, area.bottom),
-    }
-    unknown = [item for item in items if item not in spans]
-    if unknown:
-        raise FormulaError(f"a table has no part {unknown[0]!r}")
-    named = [spans[item] for item in items or ("#data",)]
-    top, bottom = min(span[0] for span in named), max(span[1] for span in named)
-    return (top, bottom) if top <= bottom else None
 
 
 def _table_column(table: Table, name: str) -> int:

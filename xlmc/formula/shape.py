@@ -46,19 +46,19 @@ def shape_of(text: str, row: int, column: int) -> str:
             return f"\1{_step(row_fixed, down, row)},{_step(column_fixed, right, column)}\1"
         if found["c1"] is not None:
             ends = ["$" if end[0] == "$" else "" for end in (found["c1"], found["c2"])]
-            places = [column_number(end.lstrip("$")) for end in (found["c1"], found["c2"])]
-            return "\2" + ":".join(str(_step(f, p, column)) for f, p in zip(ends, places, strict=True)) + "\2"
+            numbers = [column_number(end.lstrip("$")) for end in (found["c1"], found["c2"])]
+            return "\2" + ":".join(str(_step(f, p, column)) for f, p in zip(ends, numbers, strict=True)) + "\2"
         if found["r1"] is not None:
             ends = [end[:1].strip("0123456789") for end in (found["r1"], found["r2"])]
-            places = [int(end.lstrip("$")) for end in (found["r1"], found["r2"])]
-            return "\3" + ":".join(str(_step(f, p, row)) for f, p in zip(ends, places, strict=True)) + "\3"
+            numbers = [int(end.lstrip("$")) for end in (found["r1"], found["r2"])]
+            return "\3" + ":".join(str(_step(f, p, row)) for f, p in zip(ends, numbers, strict=True)) + "\3"
         return found[0]
 
     return _TOKEN.sub(relative, text)
 
 
-def _step(fixed: str, place: int, base: int) -> str | int:
-    return f"${place}" if fixed else place - base
+def _step(fixed: str, number: int, base: int) -> str | int:
+    return f"${number}" if fixed else number - base
 
 
 def text_at(text: str, down: int, right: int) -> str:

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.formula import ir
-from xlmc.formula.references import LOOKED_AT
+from xlmc.formula.precedents import LOOKED_AT
 
 __all__ = ["Stencil", "stencil"]
 
@@ -40,7 +40,7 @@ class Stencil:
 
     def __init__(self, home: Cell, tree: ir.Expression, moves: list[tuple[Cell | Area, int, int]]) -> None:
         self.home, self.tree = home, tree
-        self._moves = {id(place): (down, right) for place, down, right in moves}
+        self._moves = {id(target): (down, right) for target, down, right in moves}
         spots = (
             _Spot(cell.sheet, cell.row, down, cell.column, right) for p, down, right in moves for cell in _cells(p)
         )
@@ -72,25 +72,27 @@ class Stencil:
             return self.tree
         down, right = host.row - self.home.row, host.column - self.home.column
 
-        def moved(place: Cell | Area) -> Cell | Area:
-            rows, columns = self._moves[id(place)]
-            return _shifted(place, down * rows, right * columns)
+        def moved(target: Cell | Area) -> Cell | Area:
+            rows, columns = self._moves[id(target)]
+            return _shifted(target, down * rows, right * columns)
 
         return _rebuilt(self.tree, moved)
 
 
-def _cells(place: Cell | Area) -> Iterator[Cell]:
-    if isinstance(place, Cell):
-        yield place
+def _cells(target: Cell | Area) -> Iterator[Cell]:
+    if isinstance(target, Cell):
+        yield target
     else:
-        yield from place.cells()
+        yield from target.cells()
 
 
-def _shifted(place: Cell | Area, down: int, right: int) -> Cell | Area:
-    if isinstance(place, Cell):
-        return Cell(place.sheet, place.row + down, place.column + right)
-    ends = place.bottom + down, place.right + right
-    return Area(place.sheet, place.top + down, place.left + right, *ends, place.further_rows, place.further_columns)
+def _shifted(target: Cell | Area, down: int, right: int) -> Cell | Area:
+    if isinstance(target, Cell):
+        return Cell(target.sheet, target.row + down, target.column + right)
+    ends = target.bottom + down, target.right + right
+    return Area(
+        target.sheet, target.top + down, target.left + right, *ends, target.further_rows, target.further_columns
+    )
 
 
 def stencil(written: ir.Expression, resolved: ir.Expression, home: Cell) -> Stencil | None:
@@ -99,16 +101,16 @@ def stencil(written: ir.Expression, resolved: ir.Expression, home: Cell) -> Sten
     if before is None or after is None or len(before) != len(after):
         return None
     moves: list[tuple[Cell | Area, int, int]] = []
-    for reference, place in zip(before, after, strict=True):
+    for reference, target in zip(before, after, strict=True):
         steps = _steps(reference)
-        if steps is None or not isinstance(place, Cell | Area):
+        if steps is None or not isinstance(target, Cell | Area):
             return None
-        if isinstance(place, Area) and (steps[0] * place.further_rows or steps[1] * place.further_columns):
+        if isinstance(target, Area) and (steps[0] * target.further_rows or steps[1] * target.further_columns):
             return None  # one that moves ends with the last filled cell all the same
-        moves.append((place, *steps))
+        moves.append((target, *steps))
     if sum(p.rows * p.columns for p, _, _ in moves if isinstance(p, Area)) > _MOST_CELLS:
         return None
-    if len({id(place) for place, _, _ in moves}) < len(moves):
+    if len({id(target) for target, _, _ in moves}) < len(moves):
         return None
     return Stencil(home, resolved, moves)
 
@@ -117,7 +119,7 @@ _Leaf = ir.Reference | Cell | Area
 
 
 def _leaves(tree: ir.Expression) -> list[_Leaf] | None:
-    """The references from left to right; None where the tree holds names or what binds or asks for places."""
+    """The references from left to right; None where the tree holds names, binds variables or asks where cells are."""
     match tree:
         case ir.Reference() | Cell() | Area():
             return [tree]

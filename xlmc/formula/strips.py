@@ -1,8 +1,8 @@
 """What the formulas of a workbook need, cell by cell, without a list of its own for each range.
 
 Many formulas read one column: all of it, or down to their own row. A `Strip` lists what counts in a column or row once,
-and a range of it is a `Stretch`: two places in that list. A range of a few columns is a stretch of each; larger tables
-are listed once each.
+and a range of it is a `Stretch`: from one index of that list to another. A range of a few columns is a stretch of each;
+larger tables are listed once each.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ _NARROW = 8
 
 @dataclass(eq=False, slots=True)
 class _Span:
-    """Places that have a property which they do not lose: the longest run of them that is known."""
+    """Indices that have a property which they do not lose: the longest run of them that is known."""
 
     start: int = 0
     stop: int = 0
 
     def outside(self, start: int, stop: int) -> tuple[range, range]:
-        """The places from `start` to before `stop` that are not known to have it."""
+        """The indices from `start` to before `stop` that are not known to have it."""
         if self.stop <= start or stop <= self.start:
             return range(start, stop), range(0)
         return range(start, self.start), range(max(start, self.stop), stop)
@@ -50,7 +50,7 @@ class _Strip:
 
     cells: list[Cell]
     at: list[int]
-    placed: _Span = field(default_factory=_Span)
+    ordered: _Span = field(default_factory=_Span)
     constant: _Span = field(default_factory=_Span)
 
 
@@ -66,20 +66,20 @@ class Stretch:
         return map(self.strip.cells.__getitem__, range(self.start, self.stop))
 
     def waiting(self) -> Iterator[Cell]:
-        """Those that were not placed yet when this was asked, and maybe some that were."""
-        places = chain(*self.strip.placed.outside(self.start, self.stop))
-        return map(self.strip.cells.__getitem__, places)
+        """Those that were not in order yet when this was asked, and maybe some that were."""
+        indices = chain(*self.strip.ordered.outside(self.start, self.stop))
+        return map(self.strip.cells.__getitem__, indices)
 
-    def is_placed(self) -> None:
-        """Note that all of them are placed."""
-        self.strip.placed.add(self.start, self.stop)
+    def note_ordered(self) -> None:
+        """Note that all of them are in order."""
+        self.strip.ordered.add(self.start, self.stop)
 
     def varies(self, varying: Set[Cell]) -> bool:
         """Whether any is among the cells that vary; that is settled of all of them."""
         cells, constant = self.strip.cells, self.strip.constant
-        for places in constant.outside(self.start, self.stop):
-            found = next((place for place in places if cells[place] in varying), None)
-            constant.add(places.start, places.stop if found is None else found)
+        for indices in constant.outside(self.start, self.stop):
+            found = next((index for index in indices if cells[index] in varying), None)
+            constant.add(indices.start, indices.stop if found is None else found)
             if found is not None:
                 return True
         return False

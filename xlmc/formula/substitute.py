@@ -16,7 +16,7 @@ def substituted(tree: ir.Expression, change: Callable[[ir.Expression], ir.Expres
 
     Args:
         tree: resolved.
-        change: takes a part and gives what stands in its place, whole; None to look into the part instead.
+        change: takes a part and gives what replaces it, whole; None to look into the part instead.
     """
     changed = change(tree)
     if changed is not None:

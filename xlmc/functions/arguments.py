@@ -83,7 +83,7 @@ def direct_errors(cells: Value, like: Value | None = None) -> Codes:
 
 
 def refused(like: Value, code: int, errors: Codes) -> Value:
-    """One error in place of every result, in the shape of `like`; but these errors where there are any."""
+    """One error instead of every result, in the shape of `like`; but these errors where there are any."""
     shape = np.broadcast_shapes(like.shape, errors.shape)
     kinds = np.where(errors > 0, errors, np.uint8(code)) + np.uint8(ERROR)
     return Value(np.zeros(shape), np.broadcast_to(kinds, shape))

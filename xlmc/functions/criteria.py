@@ -76,12 +76,12 @@ def _parsed(criterion: Value, plain: str, read: _Read) -> tuple[Objects, Value]:
         return np.full(1, "=", object), operand
     written = criterion.texts.tolist()
     pairs = {text: _split(text, plain, read) for text in dict.fromkeys(written)}
-    place_of = {text: place for place, text in enumerate(pairs)}
-    places = np.array([place_of[text] for text in written])
+    index_of = {text: index for index, text in enumerate(pairs)}
+    indices = np.array([index_of[text] for text in written])
     operators, items = np.empty((2, len(pairs)), object)
     operators[:], items[:] = zip(*pairs.values(), strict=True)
     is_text = operand.kinds == TEXT
-    return np.where(is_text, operators[places], "="), choose(is_text, from_objects(items).take(places), operand)
+    return np.where(is_text, operators[indices], "="), choose(is_text, from_objects(items).take(indices), operand)
 
 
 def _split(text: str, plain: str, read: _Read) -> tuple[str, object]:
@@ -121,11 +121,11 @@ def _equal(wanted: Ordered, found: Ordered, begins: bool, read: _Read | None) ->
     is_number, is_text = wanted.kinds == NUMBER, wanted.kinds == TEXT
     if read is not None and is_number.any() and (found.kinds == TEXT).any():
         result = result | (is_number & (_text_numbers(found, read) == wanted.order))
-    for place in np.unique(wanted.order[is_text]).astype(np.intp):
-        text = wanted.texts[place]
+    for index in np.unique(wanted.order[is_text]).astype(np.intp):
+        text = wanted.texts[index]
         if not text or begins or is_pattern(text):
             fitting = found.kinds == BLANK if not text else _fitting(found, text, begins)
-            result = np.where(is_text & (wanted.order == place), result | fitting if not text else fitting, result)
+            result = np.where(is_text & (wanted.order == index), result | fitting if not text else fitting, result)
     return np.asarray(result)
 
 
@@ -139,7 +139,7 @@ def _text_numbers(found: Ordered, read: _Read) -> Floats:
 def _fitting(found: Ordered, pattern: str, begins: bool) -> Bools:
     fits = pattern_of(pattern, begins).fits
     present = set(np.unique(found.order[found.kinds == TEXT]).astype(np.intp).tolist())
-    table = np.array([place in present and fits(text) for place, text in enumerate(found.texts)])
+    table = np.array([index in present and fits(text) for index, text in enumerate(found.texts)])
     return np.asarray(_by_text(found, table, False))
 
 
@@ -170,14 +170,14 @@ class _Pattern:
             return False
         return self._rest_fits(folded, length) if len(self.pieces) > 1 else len(folded) == length
 
-    def _rest_fits(self, text: str, place: int) -> bool:
+    def _rest_fits(self, text: str, start: int) -> bool:
         for piece, _ in self.pieces[1:-1]:
-            found = piece.search(text, place)
+            found = piece.search(text, start)
             if found is None:
                 return False
-            place = found.end()
+            start = found.end()
         tail, length = self.pieces[-1]
-        return len(text) - length >= place and tail.match(text, len(text) - length) is not None
+        return len(text) - length >= start and tail.match(text, len(text) - length) is not None
 
 
 def is_pattern(text: str) -> bool:

@@ -17,7 +17,7 @@ from xlmc.functions.arguments import direct_errors, earliest, refused, where_wro
 from xlmc.functions.criteria import met
 from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.logical import choose
-from xlmc.functions.lookup.picking import Places, by_portions, cell_of, each_part, picked, side_by_side
+from xlmc.functions.lookup.picked_cells import Indices, by_portions, cell_of, each_part, picked, side_by_side
 from xlmc.functions.math import aggregate
 from xlmc.functions.math.conditional import Reduce, numbers_held
 from xlmc.functions.ordering import ordered
@@ -44,16 +44,16 @@ def _meets_cell(database: Value, name: Value, criterion: Value, date1904: bool) 
     empty = np.asarray(criterion.kinds == BLANK)
     if criterion.texts is not None:
         empty = empty | ((criterion.kinds == TEXT) & (criterion.texts == ""))
-    place = _field_named(database, name)
-    if ((place < 0) & ~empty).any():
+    index = _field_named(database, name)
+    if ((index < 0) & ~empty).any():
         raise FormulaError(
             "a criterion stands under a heading that is no field of the database",
             hint="computed criteria are not supported; compute them in a column of the database",
         )
     result = empty[:, None]
-    for field in np.unique(place[place >= 0]):
+    for field in np.unique(index[index >= 0]):
         held = met(criterion, _records(database, field), begins=True, date1904=date1904)
-        result = result | ((place == field)[:, None] & held)
+        result = result | ((index == field)[:, None] & held)
     return result
 
 
@@ -61,18 +61,18 @@ def _records(database: Value, field: int) -> Value:
     return each_part(database, lambda part: part[:, 1:, field : field + 1])
 
 
-def _field_named(database: Value, name: Value) -> Places:
+def _field_named(database: Value, name: Value) -> Indices:
     """The first column with that heading, counted from 0, or -1: (n,)."""
     wanted, headings = ordered(name, each_part(database, lambda part: part[:, :1]))
     same = (headings.kinds == wanted.kinds) & (headings.order == wanted.order) & (wanted.kinds != BLANK)
     return np.where(same.any(axis=1), same.argmax(axis=1), -1)
 
 
-def _field(database: Value, field: Value) -> tuple[Places, Bools]:
+def _field(database: Value, field: Value) -> tuple[Indices, Bools]:
     """The field's column, counted from 0, and whether there is one: by its name or its number."""
-    place = np.where(field.kinds == TEXT, _field_named(database, field), np.trunc(field.numbers) - 1)
-    known = (place >= 0) & (place < database.shape[2])
-    return np.where(known, place, 0).astype(np.intp), known
+    index = np.where(field.kinds == TEXT, _field_named(database, field), np.trunc(field.numbers) - 1)
+    known = (index >= 0) & (index < database.shape[2])
+    return np.where(known, index, 0).astype(np.intp), known
 
 
 def _of_records(database: Value, field: Value, criteria: Value, reduce: Reduce, date1904: bool) -> Value:
@@ -88,14 +88,14 @@ def _of_records(database: Value, field: Value, criteria: Value, reduce: Reduce, 
     width = cells.shape[1] * cells.shape[2]
     if field.numbers.ndim == 1:
         return with_errors(by_portions(compute, [cells, field, conditions], width), errors)
-    places = np.ndindex(*field.shape[1:])
-    results = [by_portions(compute, [cells, cell_of(field, *place), conditions], width) for place in places]
+    shape = np.ndindex(*field.shape[1:])
+    results = [by_portions(compute, [cells, cell_of(field, *each), conditions], width) for each in shape]
     return with_errors(side_by_side(results, *field.shape[1:]), errors.reshape(-1, 1, 1))
 
 
 def _reduced(cells: Value, field: Value, reduce: Reduce, held: Bools) -> Value:
-    place, known = _field(cells, field)
-    column = picked(cells, np.arange(1, cells.shape[1])[None, :, None], place[:, None, None])
+    index, known = _field(cells, field)
+    column = picked(cells, np.arange(1, cells.shape[1])[None, :, None], index[:, None, None])
     return with_errors(reduce(column, held), where_wrong(~known, ErrorCode.VALUE))
 
 

@@ -38,7 +38,7 @@ class Underflow:
 
 
 def flushed(x: Any) -> Any:
-    """Numbers of any shape, 0 in place of those that are too small; the same array where there are none.
+    """Numbers of any shape, 0 instead of those that are too small; the same array where there are none.
 
     >>> flushed(np.array([1.0, 5e-324, 0.0, -1e-310])).tolist()
     [1.0, 0.0, 0.0, 0.0]
@@ -51,6 +51,6 @@ def flushed(x: Any) -> Any:
 
 
 def flush(x: NDArray[Any]) -> None:
-    """Write 0 in place of numbers that are too small; truth values stay."""
+    """Write 0 instead of numbers that are too small; truth values stay."""
     if x.dtype == np.float64:
         x[np.abs(x) < TINIEST] = 0.0

@@ -11,7 +11,7 @@ tells that they are not equal.
 
 Of the `+` or `-` that a formula ends with, Excel makes 0 where the result cancels but for the last bits:
 
-    0 where |result| < 8 units in the last place of the first number
+    0 where |result| < 8 units in the last digit of the first number
 
 It was found by trying numbers in Excel: `n` units with n from 1 to 7 give 0, 8 do not, at sizes from 1E-7 to 1E308
 (joeu2004 and J. W. Lewis, microsoft.public.excel.worksheet.functions, April 2009; S. Byrne, Stack Overflow 40293983,
@@ -87,10 +87,10 @@ def equals(number: float) -> tuple[float, float]:
 
 def _end(number: float, way: int) -> float:
     """The last double above, or below, that is equal to a positive number."""
-    (place,) = struct.unpack("<q", struct.pack("<d", number))  # doubles are in the order of their bits
+    (bits,) = struct.unpack("<q", struct.pack("<d", number))  # doubles are in the order of their bits
 
     def at(steps: int) -> float:
-        (found,) = struct.unpack("<d", struct.pack("<q", place + way * steps))
+        (found,) = struct.unpack("<d", struct.pack("<q", bits + way * steps))
         return float(found)
 
     near, far = 0, _FARTHEST
@@ -157,10 +157,10 @@ def _nearly_equal(x: Floats, y: Floats) -> tuple[NDArray[np.intp], ...] | None:
     if not near.any():
         return None
     x, y = np.broadcast_arrays(x, y)
-    places = np.nonzero(near & (x != y))
-    pairs = zip(x[places].tolist(), y[places].tolist(), strict=True)
+    indices = np.nonzero(near & (x != y))
+    pairs = zip(x[indices].tolist(), y[indices].tolist(), strict=True)
     alike = np.array([abs(a - b) <= NEAR * abs(a) + TINIEST and _alike(a, b) for a, b in pairs], bool)
-    return tuple(place[alike] for place in places) if alike.any() else None
+    return tuple(index[alike] for index in indices) if alike.any() else None
 
 
 def _apart(x: Floats, y: Floats) -> Floats:
@@ -186,7 +186,7 @@ COMPARISONS: Final[Mapping[str, Comparison]] = {
 
 
 EIGHT_UNITS: Final = 2.0**-49
-"""Eight units in the last place, as a share of a power of two."""
+"""Eight units in the last digit, as a share of a power of two."""
 
 _SURELY: Final = 2.0**-30
 """The share above which a result is no matter of the last bits, even where its bounds are rounded."""

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.functions.lookup.picking import Places, flattened
+from xlmc.functions.lookup.picked_cells import Indices, flattened
 from xlmc.functions.values import ERROR, TEXT, Codes, Floats, Objects, Value
 
 __all__ = ["Ordered", "order_key", "ordered", "searched"]
@@ -28,16 +28,16 @@ class Ordered:
     Attributes:
         kinds: (n, k).
         order: (n, k); 0 for blanks and errors.
-        texts: folded, each once, in rising order; a text's `order` is its place here.
+        texts: folded, each once, in rising order; a text's `order` is its index here.
     """
 
     kinds: Codes
     order: Floats
     texts: tuple[str, ...]
 
-    def column(self, place: int, n: int) -> Ordered:
-        """The values at one place, in n trials: (n, 1)."""
-        kinds, order = self.kinds[:, place : place + 1], self.order[:, place : place + 1]
+    def column(self, index: int, n: int) -> Ordered:
+        """The values at one index, in n trials: (n, 1)."""
+        kinds, order = self.kinds[:, index : index + 1], self.order[:, index : index + 1]
         return Ordered(np.broadcast_to(kinds, (n, 1)), np.broadcast_to(order, (n, 1)), self.texts)
 
     def flat(self) -> Ordered:
@@ -50,12 +50,12 @@ def ordered(*values: Value) -> list[Ordered]:
     arrays = [value.texts for value in values if value.texts is not None]
     written = dict.fromkeys(text for array in arrays for text in array.ravel().tolist())
     texts = tuple(sorted({text.casefold() for text in written}, key=order_key))
-    places = {text: float(place) for place, text in enumerate(texts)}
-    ranks = {text: places[text.casefold()] for text in written}
+    indices = {text: float(index) for index, text in enumerate(texts)}
+    ranks = {text: indices[text.casefold()] for text in written}
     return [_ordered(value, ranks, texts) for value in values]
 
 
-def searched(keys: Value, vector: Value, find: Callable[[Ordered, Ordered], Places]) -> Places:
+def searched(keys: Value, vector: Value, find: Callable[[Ordered, Ordered], Indices]) -> Indices:
     """Where each key stands in the vector of its trial.
 
     Args:
@@ -87,7 +87,7 @@ def _looked_up(texts: Objects, ranks: dict[str, float]) -> Floats:
 
 _SYMBOLS: Final = '\t\n\r !"#$%&()*,./:;?@[\\]^_`{|}~+<=>'
 _WEIGHTS: Final[dict[int, str | None]] = {
-    **{ord(symbol): chr(place + 1) for place, symbol in enumerate(_SYMBOLS)},
+    **{ord(symbol): chr(index + 1) for index, symbol in enumerate(_SYMBOLS)},
     ord("-"): None,
     ord("'"): None,
 }

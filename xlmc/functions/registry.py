@@ -375,7 +375,7 @@ def row_of(name: str, module: str = _FAMILIES) -> Function:
         name: in capitals.
         module: where it is likely to be registered.
     """
-    for place in (module, _FAMILIES):
+    for home in (module, _FAMILIES):
         if name not in REGISTRY:
-            import_module(place)
+            import_module(home)
     return REGISTRY[name]

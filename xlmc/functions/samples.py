@@ -1,6 +1,6 @@
 """The numbers that ranges hold, and bodies made of functions of such numbers.
 
-Letters: n trials, k cells of a range, m places that a function is asked at (1, but for array formulas).
+Letters: n trials, k cells of a range, m points that a function is asked at (1, but for array formulas).
 In a range only numbers count; what is given directly is taken as arithmetic takes it.
 """
 
@@ -13,7 +13,7 @@ from functools import wraps
 import numpy as np
 
 from xlmc.functions.arguments import direct_errors, earliest, first_errors, leveled
-from xlmc.functions.lookup.picking import flattened
+from xlmc.functions.lookup.picked_cells import flattened
 from xlmc.functions.values import NA, NUMBER, Bools, Codes, Floats, Value
 
 __all__ = [
@@ -23,7 +23,7 @@ __all__ = [
     "mean_of",
     "of_pairs",
     "pairs_of",
-    "places_of",
+    "points_of",
     "row_sums",
     "sample_of",
     "spread_of",
@@ -85,9 +85,9 @@ class Sample:
         """The numbers of each trial in rising order, infinities behind them: (n, k)."""
         return np.sort(np.where(self.counts, self.x, np.inf), axis=1)
 
-    def how_many(self, relation: Callable[[Floats, Floats], Bools], places: Floats) -> Floats:
-        """How many numbers of each trial stand in a relation to each place: (n, m) -> (n, m)."""
-        found = [(relation(self.x, column[:, None]) & self.counts).sum(axis=1) for column in places.T]
+    def how_many(self, relation: Callable[[Floats, Floats], Bools], points: Floats) -> Floats:
+        """How many numbers of each trial stand in a relation to each point: (n, m) -> (n, m)."""
+        found = [(relation(self.x, column[:, None]) & self.counts).sum(axis=1) for column in points.T]
         return np.stack(found, axis=1).astype(np.float64)
 
 
@@ -125,7 +125,7 @@ def of_pairs(body: Callable[[Floats, Floats, Bools], Floats]) -> Callable[[Value
     return apply
 
 
-def places_of(*values: Value) -> tuple[list[Floats], list[Codes], tuple[int, ...]]:
+def points_of(*values: Value) -> tuple[list[Floats], list[Codes], tuple[int, ...]]:
     """Single arguments as numbers (n, m) and errors (n, m), and the shape, (n,) or (n, r, c), that they have in all."""
     level = leveled(*values)
     shape = np.broadcast_shapes(*(value.shape for value in level))
@@ -135,22 +135,22 @@ def places_of(*values: Value) -> tuple[list[Floats], list[Codes], tuple[int, ...
 
 
 def laid_out(result: Floats, errors: Codes, shape: tuple[int, ...]) -> Value:
-    """A result (n, m) or (1, m) in the shape of the places it is for."""
+    """A result (n, m) or (1, m) in the shape of the points it is for."""
     full = np.broadcast_shapes(result.shape, errors.shape)
     back = (full[0], *shape[1:])
     return Value.of_numbers(*(np.broadcast_to(array, full).reshape(back) for array in (result, errors)))
 
 
 def at_each(position: int = 0) -> Callable[[Callable[..., Floats]], Callable[..., Value]]:
-    """A body from a function of the `Sample` of the argument at `position` and of places (n, m), which gives (n, m)."""
+    """A body from a function of the `Sample` of the argument at `position` and of points (n, m), which gives (n, m)."""
 
     def decorate(body: Callable[..., Floats]) -> Callable[..., Value]:
         @wraps(body)
         def apply(*arguments: Value) -> Value:
             sample = sample_of(arguments[position])
-            places, codes, shape = places_of(*arguments[:position], *arguments[position + 1 :])
+            points, codes, shape = points_of(*arguments[:position], *arguments[position + 1 :])
             codes.insert(position, sample.errors[:, None])
-            return laid_out(body(sample, *places), earliest(*codes), shape)
+            return laid_out(body(sample, *points), earliest(*codes), shape)
 
         return apply
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, leveled
 from xlmc.functions.dates.calendar import in_calendar
-from xlmc.functions.lookup.picking import flattened as in_rows
+from xlmc.functions.lookup.picked_cells import flattened as in_rows
 from xlmc.functions.registry import Anything, Kind, Parameter, Ranges, excel
 from xlmc.functions.values import LOGICAL, NUM, Bools, Codes, Floats, Value, from_objects, parse_number
 
@@ -151,10 +151,10 @@ def per_object(function: Callable[..., object]) -> Callable[..., Value]:
         shape = np.broadcast_shapes(*(items.shape for items in arguments))
         spread = [np.broadcast_to(items, shape) for items in arguments]
         out = np.empty(shape, object)
-        for place in np.ndindex(*shape):
-            items = [array[place] for array in spread]
+        for index in np.ndindex(*shape):
+            items = [array[index] for array in spread]
             error = next((item for item in items if isinstance(item, ErrorCode)), None)
-            out[place] = function(*items) if error is None else error
+            out[index] = function(*items) if error is None else error
         return from_objects(out)
 
     return body

@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Cell
-from xlmc.formula.references import mentioned
+from xlmc.formula.precedents import mentioned
 from xlmc.replay.closeness import Closeness, is_number
 from xlmc.replay.matching import matched
 from xlmc.replay.own_ranges import counted

@@ -22,9 +22,9 @@ from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.arrays import size_of
 from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.formula import Graph, Resolver, build_graph, ir
-from xlmc.formula.references import mentioned
+from xlmc.formula.precedents import mentioned
 from xlmc.formula.substitute import substituted
-from xlmc.workbook.injection.cached_values import with_values
+from xlmc.workbook.injection.formula_values import with_values
 from xlmc.workbook.model import CellValue, Workbook
 
 if TYPE_CHECKING:

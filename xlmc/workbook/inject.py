@@ -25,8 +25,8 @@ from xlmc.workbook.injection.book_edit import (
     sheet_list,
     without_sheets,
 )
-from xlmc.workbook.injection.cached_values import without_formula_values
 from xlmc.workbook.injection.content_types import CONTENT_TYPES, Roles, add_types, drop_types, roles, types_of
+from xlmc.workbook.injection.formula_values import without_formula_values
 from xlmc.workbook.injection.part_numbers import free_names, free_part_names, free_tables, reached
 from xlmc.workbook.injection.result_sheet import BuiltBook, BuiltSheet, Carrier, Renames, read_built, relative_target
 from xlmc.workbook.injection.splice import MAIN, OFFICE_RELATIONSHIPS, Element, SplicedXml, as_utf8, parse_spans
@@ -64,9 +64,9 @@ def inject(host: Mapping[str, bytes], sheets: bytes, *, replace: bool = True) ->
     built = read_built(read_parts(sheets))
     names = free_names([sheet.name for sheet in built.sheets], user.sheets)
     styles = _Styles.merged(user, built)
-    carrier = _carrier(user, built, names, styles.places)
+    carrier = _carrier(user, built, names, styles.numbers)
     rels, pointers = add_pointers(user.parts[user.role.rels], user.role.rels, _targets(user, carrier, styles))
-    added = [_placed(*found, names, carrier.renames) for found in zip(built.sheets, pointers, strict=False)]
+    added = [_new_sheet(*found, names, carrier.renames) for found in zip(built.sheets, pointers, strict=False)]
     carried = carrier.parts()
     changed = {
         CONTENT_TYPES: add_types(user.parts[CONTENT_TYPES], _types(carrier, carried, styles)),
@@ -109,7 +109,7 @@ class _Styles:
 
     part: str
     xml: bytes
-    places: StyleMap
+    numbers: StyleMap
     new: bool
 
     @classmethod
@@ -142,7 +142,7 @@ def _targets(user: _User, carrier: Carrier, styles: _Styles) -> list[tuple[str, 
     return [*found, (_STYLES_POINTER, relative_target(workbook, styles.part))] if styles.new else found
 
 
-def _placed(sheet: BuiltSheet, pointer: str, names: Mapping[str, str], renames: Renames) -> NewSheet:
+def _new_sheet(sheet: BuiltSheet, pointer: str, names: Mapping[str, str], renames: Renames) -> NewSheet:
     own = [dataclasses.replace(name, text=renames.formula(name.text)) for name in sheet.names]
     return NewSheet(names[sheet.name], pointer, sheet.state, (*own, mark(names[sheet.name])))
 
@@ -175,7 +175,7 @@ def remove_result_sheets(parts: Mapping[str, bytes]) -> dict[str, bytes]:
         return dict(parts)
     sheets = document.root.find("sheets")
     assert sheets is not None  # it holds the marked ones
-    marked = [sheets.children[place] for place in gone]
+    marked = [sheets.children[index] for index in gone]
     pointers = relationships(parts, role.workbook)
     ids = {sheet.foreign("id") or "" for sheet in marked} | _stale_chains(parts, pointers, marked)
     kept = {
@@ -201,7 +201,7 @@ def result_sheets(parts: Mapping[str, bytes]) -> list[str]:
     role = roles(parts)
     root = parse_spans(as_utf8(parts[role.workbook], role.workbook), role.workbook)
     sheets, pointers = sheet_list(root, role.workbook).children, relationships(parts, role.workbook)
-    return [pointers[sheets[place].foreign("id") or ""].target for place in marked_sheets(root, role.workbook)]
+    return [pointers[sheets[index].foreign("id") or ""].target for index in marked_sheets(root, role.workbook)]
 
 
 def original_hash(parts: Mapping[str, bytes]) -> str:

@@ -8,11 +8,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
 from xlmc.errors import WorkbookError
+from xlmc.workbook.cell_values import CellContext, shared_strings
 from xlmc.workbook.model import DataTable, Sheet
 from xlmc.workbook.safe_xml import is_true, tree
 from xlmc.workbook.sheet import parse_sheet
 from xlmc.workbook.structure import Structure
-from xlmc.workbook.values import CellContext, shared_strings
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -127,7 +127,7 @@ def _spills(block: Element) -> bool:
 
 @contextmanager
 def told_of(file: str) -> Iterator[None]:
-    """Complaints from within that name no place of their own are told of `file`."""
+    """Complaints from within that say not where are told of `file`."""
     try:
         yield
     except WorkbookError as error:

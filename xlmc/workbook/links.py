@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.address import column_number
 from xlmc.errors import WorkbookError
+from xlmc.workbook.cell_values import CellContext, convert, decode
 from xlmc.workbook.model import CellContent, CellValue, DefinedName, LinkedBook, Sheet
 from xlmc.workbook.package import relationships
 from xlmc.workbook.safe_xml import REPAIR, tree, whole_number
 from xlmc.workbook.structure import Structure
-from xlmc.workbook.values import CellContext, convert, decode
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -89,10 +89,10 @@ def _of_id(titles: list[str], sheet_id: str | None) -> str | None:
 
 def _cells(data: Element, part: str) -> Iterator[tuple[tuple[int, int], CellContent]]:
     for cell in data.findall("{*}row/{*}cell"):
-        place = _A1.fullmatch(cell.get("r", ""))
-        if place is None:
+        corner = _A1.fullmatch(cell.get("r", ""))
+        if corner is None:
             raise WorkbookError(f"{part} holds a value of the cell {cell.get('r')!r}, which is none", hint=REPAIR)
-        yield (int(place[2]), column_number(place[1])), CellContent(_value(cell, part))
+        yield (int(corner[2]), column_number(corner[1])), CellContent(_value(cell, part))
 
 
 def _value(cell: Element, part: str) -> CellValue:

@@ -31,7 +31,7 @@ class Formula:
 
     Attributes:
         text: the formula without its leading `=`.
-        row, column: the cell `text` is written for. A shared formula's children carry their master's text and place,
+        row, column: the cell `text` is written for. A shared formula's children carry their master's text and position,
             and mean it shifted to themselves.
         array: the area an array formula (`t="array"`) fills; None for a plain formula.
         dynamic: a dynamic-array formula (`cm` names the XLDAPR metadata): it spills.

@@ -37,11 +37,11 @@ def read_workbook(source: str | Path | bytes, name: str | None = None) -> Workbo
     return _read(_file_bytes(Path(source)), name or Path(source).name, str(source))
 
 
-def _read(data: bytes, name: str, place: str) -> Workbook:
-    with told_of(place):
+def _read(data: bytes, name: str, where: str) -> Workbook:
+    with told_of(where):
         parts = read_parts(data)
         structure = read_structure(parts)
-        sheets = LazySheets(place, parts, structure)
+        sheets = LazySheets(where, parts, structure)
         tables = [table for sheet in structure.worksheets for table in tables_of(parts, sheet.part, sheet.name)]
         return Workbook(
             name=label(name),

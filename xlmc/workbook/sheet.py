@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_number
 from xlmc.errors import WorkbookError
+from xlmc.workbook.cell_values import CellContext, convert, decode, run_text
 from xlmc.workbook.model import CellContent, CellValue, DataTable, Formula, Sheet
 from xlmc.workbook.safe_xml import REPAIR, expat_parser, feed, is_true
 from xlmc.workbook.structure import SheetEntry, area_of
-from xlmc.workbook.values import CellContext, convert, decode, run_text
 
 __all__ = ["parse_sheet"]
 
@@ -106,10 +106,10 @@ class _Pass:
             raise WorkbookError(f"a cell of sheet {self._sheet!r} lies outside the sheet", hint=REPAIR)
 
     def end_cell(self) -> None:
-        place = (self._row, self._column)
+        position = (self._row, self._column)
         if self._raw is None and self._formula is None:
             return  # a blank cell with a style
-        if place in self.cells:
+        if position in self.cells:
             raise self._faulty("stands in the file twice")
         value: CellValue = None
         if self._raw is not None:
@@ -117,7 +117,7 @@ class _Pass:
                 value = convert(self._cell.get("t", "n"), self._raw, self._context)
             except ValueError as error:
                 raise self._faulty(str(error)) from None
-        self.cells[place] = CellContent(value, self._formula)
+        self.cells[position] = CellContent(value, self._formula)
 
     def end_value(self) -> None:
         self._raw = "".join(self.text)

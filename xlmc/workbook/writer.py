@@ -18,7 +18,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from xlmc.columns.owners import new_file_name, owned, remove_stray_files
+from xlmc.columns.temporary_names import new_file_name, owned, remove_stray_files
 from xlmc.errors import WorkbookError
 
 __all__ = [
@@ -62,7 +62,7 @@ def package_bytes(parts: Mapping[str, bytes]) -> bytes:
 
 
 def write_workbook(path: str | os.PathLike[str], data: bytes, check: Callable[[], None] | None = None) -> None:
-    """Write the file whole or not at all: beside its place first, onto the disk, then renamed into place.
+    """Write the file whole or not at all: first beside it, onto the disk, then renamed.
 
     An existing file keeps its permissions; a link keeps pointing at the file it names.
 
@@ -81,7 +81,7 @@ def write_workbook(path: str | os.PathLike[str], data: bytes, check: Callable[[]
 
 @contextmanager
 def whole_file(path: str | os.PathLike[str], check: Callable[[], None] | None = None) -> Iterator[BinaryIO]:
-    """A file to write piece by piece, which takes its place when all is written, and not at all after an exception.
+    """A file to write piece by piece, which gets its name when all is written, and not at all after an exception.
 
     An existing file keeps its permissions; a link keeps pointing at the file it names.
 
@@ -196,7 +196,7 @@ def _new_file_beside(target: Path) -> Iterator[Path]:
 
 
 def _publish(temporary: Path, target: Path, check: Callable[[], None] | None) -> None:
-    """Give the finished file its name: in place of the old one, or only while there is still none."""
+    """Give the finished file its name: instead of the old one, or only while there is still none."""
     for _ in range(_ATTEMPTS):
         replaces = os.path.lexists(target)  # known before it is checked: what appears later was not
         if check is not None:

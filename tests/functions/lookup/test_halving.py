@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.functions.lookup.searching import last_not_beyond
+from xlmc.functions.lookup.vector_search import last_not_beyond
 from xlmc.functions.values import from_objects
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.functions.lookup.searching import EXACT, LARGER, SMALLER, nearest
+from xlmc.functions.lookup.vector_search import EXACT, LARGER, SMALLER, nearest
 from xlmc.functions.values import from_objects
 
 cells = st.sampled_from([0.0, 1.0, 2.0, 3.0, "a", "b", "bc", True, False, None])

@@ -75,7 +75,7 @@ class Lowering(ExpressionLowering):
         self, graph: Graph, inputs: Mapping[Cell, str], held: Mapping[Cell, float], *, audit: bool = False
     ) -> None:
         dag = Dag()
-        trees = (placed for placed in graph.formulas.placed.values() if not isinstance(placed, Filled))
+        trees = (placed for placed in graph.formulas.ordered.values() if not isinstance(placed, Filled))
         super().__init__(graph, dag, RunningTotals(dag, trees, self.cell), audit=audit)
         self.inputs, self.held = inputs, held
         self.notices: list[Notice] = []
@@ -89,7 +89,7 @@ class Lowering(ExpressionLowering):
         self._cells: dict[Cell, int] = {cell: dag.input(name) for cell, name in inputs.items()}
         self._cells |= {cell: dag.constant(constant(value)) for cell, value in held.items()}
         self._fill_down = FillDownCache(dag)
-        for cell, placed in graph.formulas.placed.items():
+        for cell, placed in graph.formulas.ordered.items():
             self._computed[cell] = node = self._lower_placed(cell, placed)
             dag.host_ends(cell)
             self.calls.next_formula()

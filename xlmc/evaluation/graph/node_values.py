@@ -17,7 +17,7 @@ from xlmc.evaluation.graph.nodes import Apply, IfErrorNode, Range, Select, uses
 from xlmc.functions import Function
 from xlmc.functions.budget import ask_for_cells, ask_for_live
 from xlmc.functions.logical import if_, if_error, if_na
-from xlmc.functions.lookup.picking import joined
+from xlmc.functions.lookup.picked_cells import joined
 from xlmc.functions.values import ERROR, ShapeVaries, Value, constant
 
 __all__ = ["Ragged", "align", "by_trial", "corner", "evaluate_node", "single"]

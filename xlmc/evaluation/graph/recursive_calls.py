@@ -19,7 +19,7 @@ from xlmc.evaluation.graph.node_values import Ragged, corner, evaluate_node
 from xlmc.evaluation.graph.nodes import Apply, IfErrorNode, Range, Select, uses
 from xlmc.functions.budget import MOST_STEPS, ask_for_live
 from xlmc.functions.logical import zero_if_blank
-from xlmc.functions.lookup.picking import each_part, joined
+from xlmc.functions.lookup.picked_cells import each_part, joined
 from xlmc.functions.values import BLANK, ERROR, Codes, Value, constant
 
 __all__ = ["Body", "SelfCall", "call_lambda"]

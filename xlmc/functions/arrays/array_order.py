@@ -21,7 +21,7 @@ from xlmc.functions.arguments import (
     whole_numbers,
 )
 from xlmc.functions.arrays.array_shapes import Refusal, array_function, decided, grid_of, kept, refuse_errors
-from xlmc.functions.lookup.picking import Places, by_portions, flattened, picked, transposed
+from xlmc.functions.lookup.picked_cells import Indices, by_portions, flattened, picked, transposed
 from xlmc.functions.ordering import ordered
 from xlmc.functions.registry import Anything, Arrays, Logical, Number
 from xlmc.functions.values import BLANK, ERROR, Bools, Codes, Floats, Value, constant
@@ -54,8 +54,8 @@ def _is_blank(value: Value) -> bool:
     return bool(same_in_all_trials(np.asarray(flattened(value.kinds == BLANK, value).all(axis=1))))
 
 
-def _rows(grid: Value, rows: Places) -> Value:
-    """Rows by their places, (n, m)."""
+def _rows(grid: Value, rows: Indices) -> Value:
+    """Rows by their indices, (n, m)."""
     return picked(grid, rows[:, :, None], np.arange(grid.shape[2])[None, None, :])
 
 
@@ -108,8 +108,8 @@ _GROUPS: Final = np.array([0.0, 2.0, 1.0, np.inf])
 """Numbers, logicals, texts, blanks."""
 
 
-def _in_order(keys: Sequence[Value], signs: Sequence[Floats]) -> Places:
-    """The places of rows in the order of keys (n, r, 1), the first before the next; a sign (n,) of -1 turns one."""
+def _in_order(keys: Sequence[Value], signs: Sequence[Floats]) -> Indices:
+    """The indices of rows in the order of keys (n, r, 1), the first before the next; a sign (n,) of -1 turns one."""
     least_first: list[Floats] = []
     for key, sign in zip(keys, signs, strict=True):
         (by,) = ordered(key)
@@ -140,13 +140,13 @@ def _is_new(grid: Value, once: bool) -> Bools:
     """Which rows occur not before, or nowhere else: (n, r). Equal rows stand together once they are in order."""
     (cells,) = ordered(grid)
     columns = [part.reshape(grid.shape)[:, :, c] for part in (cells.kinds, cells.order) for c in range(grid.shape[2])]
-    places = np.lexsort(columns, axis=-1)
-    differs = np.zeros((places.shape[0], places.shape[1] - 1), bool)
+    indices = np.lexsort(columns, axis=-1)
+    differs = np.zeros((indices.shape[0], indices.shape[1] - 1), bool)
     for column in columns:
-        in_order = np.take_along_axis(column, places, axis=1)
+        in_order = np.take_along_axis(column, indices, axis=1)
         differs |= in_order[:, 1:] != in_order[:, :-1]
-    edge = np.ones((places.shape[0], 1), bool)
+    edge = np.ones((indices.shape[0], 1), bool)
     first, last = np.concatenate([edge, differs], axis=1), np.concatenate([differs, edge], axis=1)
-    result = np.empty(places.shape, bool)
-    np.put_along_axis(result, places, first & last if once else first, axis=1)
+    result = np.empty(indices.shape, bool)
+    np.put_along_axis(result, indices, first & last if once else first, axis=1)
     return result

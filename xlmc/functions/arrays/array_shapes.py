@@ -25,7 +25,7 @@ from xlmc.functions.arguments import (
 from xlmc.functions.budget import ask_for_cells
 from xlmc.functions.facts import Facts
 from xlmc.functions.logical import choose
-from xlmc.functions.lookup.picking import Places, each_part, flattened, joined, picked, transposed
+from xlmc.functions.lookup.picked_cells import Indices, each_part, flattened, joined, picked, transposed
 from xlmc.functions.registry import Anything, Arrays, Kind, Logical, Number, Parameter, excel
 from xlmc.functions.values import BLANK, ERROR, Bools, Codes, Floats, Value, constant
 
@@ -89,8 +89,8 @@ def decided(value: Value | None, default: float | None = None) -> int | None:
     return int(np.trunc(same_in_all_trials(flattened(numbers, value))[0]))
 
 
-def kept(mask: Bools) -> Places:
-    """The places that are kept: (n, k) -> (n, as many as are TRUE).
+def kept(mask: Bools) -> Indices:
+    """The indices that are kept: (n, k) -> (n, as many as are TRUE).
 
     Raises:
         ShapeVaries: as many differ between trials.
@@ -176,18 +176,18 @@ def choose_columns(array: Value, *numbers: Value) -> Value:
     return picked(grid, np.arange(grid.shape[1])[None, :, None], columns[:, None, :])
 
 
-def _chosen(numbers: tuple[Value, ...], size: int) -> Places:
-    """Places counted from 0: (n, m) of m numbers in any number of arguments."""
+def _chosen(numbers: tuple[Value, ...], size: int) -> Indices:
+    """Indices counted from 0: (n, m) of m numbers in any number of arguments."""
     n = max(value.shape[0] for value in numbers)
     wholes, errors = [], []
     for value in numbers:
         whole, found = whole_numbers(value)
         wholes.append(np.broadcast_to(whole, (n, *value.shape[1:])).reshape(n, -1))
         errors.append(np.broadcast_to(found, (n, *value.shape[1:])).reshape(n, -1))
-    places = np.concatenate(wholes, axis=1)
-    off = where_wrong((places == 0) | (np.abs(places) > size), ErrorCode.VALUE)
+    wanted = np.concatenate(wholes, axis=1)
+    off = where_wrong((wanted == 0) | (np.abs(wanted) > size), ErrorCode.VALUE)
     refuse_errors(earliest(first_errors(np.concatenate(errors, axis=1)), first_errors(off)))
-    return np.where(places > 0, places - 1, places + size).astype(np.intp)
+    return np.where(wanted > 0, wanted - 1, wanted + size).astype(np.intp)
 
 
 @array_function("EXPAND", Arrays, Number, Number(default=None), Anything(default=None), sized_by_numbers=True)
@@ -253,8 +253,8 @@ def wrap_rows(vector: Value, count: Value, pad: Value | None = None) -> Value:
         raise Refusal(ErrorCode.NUM)
     row = each_part(grid, lambda part: part.reshape(part.shape[0], 1, -1))
     size = min(size, row.shape[2])
-    places = np.arange(-(-row.shape[2] // size) * size).reshape(1, -1, size)
-    return _padded(row, np.zeros((1, 1, 1), np.intp), places, pad)
+    indices = np.arange(-(-row.shape[2] // size) * size).reshape(1, -1, size)
+    return _padded(row, np.zeros((1, 1, 1), np.intp), indices, pad)
 
 
 @array_function("WRAPCOLS", Arrays, Number, Anything(default=None), sized_by_numbers=True)
@@ -263,8 +263,8 @@ def wrap_columns(vector: Value, count: Value, pad: Value | None = None) -> Value
     return transposed(wrap_rows(vector, count, pad))
 
 
-def _padded(cells: Value, rows: Places, columns: Places, pad: Value | None) -> Value:
-    """The cells at these places, (1, r, c) together; the pad, or `#N/A`, where a place lies outside."""
+def _padded(cells: Value, rows: Indices, columns: Indices, pad: Value | None) -> Value:
+    """The cells at these indices, (1, r, c) together; the pad, or `#N/A`, where an index lies outside."""
     inside = (rows < cells.shape[1]) & (columns < cells.shape[2])
     found = picked(cells, np.minimum(rows, cells.shape[1] - 1), np.minimum(columns, cells.shape[2] - 1))
     missing = pad is None or bool((pad.kinds == BLANK).all())

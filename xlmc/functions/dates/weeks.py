@@ -83,16 +83,16 @@ def worked_days(weekend: Value) -> tuple[Bools, Codes]:
     known: dict[object, tuple[bool, ...] | ErrorCode] = {}
     items = weekend.objects()
     worked, errors = np.ones((*items.shape, 7), bool), np.zeros(items.shape, np.uint8)
-    for place in np.ndindex(*items.shape):
-        item = items[place]
+    for index in np.ndindex(*items.shape):
+        item = items[index]
         key = (type(item), item)
         if key not in known:
             known[key] = _pattern(item)
         found = known[key]
         if isinstance(found, ErrorCode):
-            errors[place] = found
+            errors[index] = found
         else:
-            worked[place] = found
+            worked[index] = found
     return worked, errors
 
 
@@ -144,11 +144,11 @@ class Weeks:
         return _picked(self.worked, np.mod(day - _A_MONDAY, 7)).astype(bool)
 
 
-def _picked(table: NDArray[Any], place: Floats) -> NDArray[Any]:
-    """From tables (n, m, 7) the entry at a place (n, m)."""
-    shape = np.broadcast_shapes(table.shape[:-1], place.shape)
+def _picked(table: NDArray[Any], weekday: Floats) -> NDArray[Any]:
+    """From tables (n, m, 7) the entry of a day of the week (n, m)."""
+    shape = np.broadcast_shapes(table.shape[:-1], weekday.shape)
     spread = np.broadcast_to(table, (*shape, 7))
-    return np.take_along_axis(spread, np.broadcast_to(place, shape)[..., None].astype(np.intp), axis=-1)[..., 0]
+    return np.take_along_axis(spread, np.broadcast_to(weekday, shape)[..., None].astype(np.intp), axis=-1)[..., 0]
 
 
 def _holidays(value: Value | None, date1904: bool) -> tuple[Floats, Codes]:

@@ -40,19 +40,19 @@ def _whole(item: object) -> int | ErrorCode:
     return number if isinstance(number, ErrorCode) else int(number)
 
 
-def _length(places: object) -> int | ErrorCode | None:
+def _length(digits_wanted: object) -> int | ErrorCode | None:
     """How many digits are asked for; None if none are; `#NUM!` for fewer than 1 or more than 10."""
-    if places is _ANY_LENGTH:
+    if digits_wanted is _ANY_LENGTH:
         return None
-    length = _whole(places)
+    length = _whole(digits_wanted)
     if isinstance(length, ErrorCode) or 1 <= length <= _MOST_DIGITS:
         return length
     return ErrorCode.NUM
 
 
-def _written(number: int | ErrorCode, base: int, places: object) -> str | ErrorCode:
+def _written(number: int | ErrorCode, base: int, digits_wanted: object) -> str | ErrorCode:
     """The digits, up to the length asked for; a negative number always has ten. The length is looked at first."""
-    length = _length(places)
+    length = _length(digits_wanted)
     if isinstance(length, ErrorCode) or isinstance(number, ErrorCode):
         return length if isinstance(length, ErrorCode) else ErrorCode(number)
     most = base**_MOST_DIGITS // 2
@@ -67,8 +67,8 @@ def _written(number: int | ErrorCode, base: int, places: object) -> str | ErrorC
 
 
 def _between(source: int, target: int) -> Callable[..., str | ErrorCode]:
-    def convert(digits: object, places: object = _ANY_LENGTH) -> str | ErrorCode:
-        return _written(_read(digits, source), target, places)
+    def convert(digits: object, digits_wanted: object = _ANY_LENGTH) -> str | ErrorCode:
+        return _written(_read(digits, source), target, digits_wanted)
 
     return convert
 
@@ -82,8 +82,8 @@ def _to_decimal(source: int) -> Callable[..., float | ErrorCode]:
 
 
 def _from_decimal(target: int) -> Callable[..., str | ErrorCode]:
-    def convert(number: object, places: object = _ANY_LENGTH) -> str | ErrorCode:
-        return _written(_whole(number), target, places)
+    def convert(number: object, digits_wanted: object = _ANY_LENGTH) -> str | ErrorCode:
+        return _written(_whole(number), target, digits_wanted)
 
     return convert
 
@@ -127,19 +127,19 @@ _register_bits("BITXOR", "Bits that only one of the numbers has.", np.bitwise_xo
 
 
 @excel("BITLSHIFT", Number, Number)
-def shifted_left(x: Floats, places: Floats) -> Floats:
-    """Bits moved left by up to 53 places, or right by a negative number; what falls off on the right is lost.
+def shifted_left(x: Floats, count: Floats) -> Floats:
+    """Bits moved left by up to 53 bits, or right by a negative number; what falls off on the right is lost.
 
     `#NUM!` where the result has more than 48 bits.
     """
-    shift = np.trunc(places)
+    shift = np.trunc(count)
     fit = _has_bits(x) & (np.abs(shift) <= _FURTHEST_SHIFT)
     moved = np.floor(np.ldexp(np.where(fit, x, 0.0), np.where(fit, shift, 0.0).astype(np.intc)))
     return np.where(fit & (moved < _END_OF_BITS), moved, NUM)
 
 
 @excel("BITRSHIFT", Number, Number)
-def shifted_right(x: Floats, places: Floats) -> Floats:
-    """Bits moved right by up to 53 places, or left by a negative number."""
-    result: Floats = shifted_left(x, -places)
+def shifted_right(x: Floats, count: Floats) -> Floats:
+    """Bits moved right by up to 53 bits, or left by a negative number."""
+    result: Floats = shifted_left(x, -count)
     return result

@@ -145,8 +145,8 @@ def _units(value: Value) -> NDArray[Any]:
     """The unit that each text names, `_UNKNOWN` where it names none."""
     names, _ = value.to_texts()
     units = np.empty(names.shape, object)
-    for place in np.ndindex(*names.shape):
-        units[place] = unit_named(str(names[place])) or _UNKNOWN
+    for index in np.ndindex(*names.shape):
+        units[index] = unit_named(str(names[index])) or _UNKNOWN
     return units
 
 

@@ -134,7 +134,7 @@ class _Declining:
         """The first end of a period from which on equal losses are more than declining ones; the end of life if none.
 
         With V(t) the declining value, equal losses are more where factor·(1 - t/L) + S/V(t) < 1. The left side is
-        convex in t, so that up to its lowest point it falls, and halving finds the place.
+        convex in t, so that up to its lowest point it falls, and halving finds that period.
         """
         last = np.clip(np.ceil(self._life - self._part) - 1, 0.0, _MOST_PERIODS)
         lowest = np.minimum(self._lowest(), last)
@@ -160,8 +160,8 @@ class _Declining:
         pace = -np.log1p(-np.minimum(self._rate, 1 - np.finfo(float).epsneg))
         value, some = self._after_part, (self._salvage > 0) & (self._after_part > 0)
         ratio = np.where(some, value, 1.0) * self._rate / (np.where(some, self._salvage, 1.0) * pace)
-        place = np.floor(np.log(np.maximum(ratio, 1.0)) / pace)
-        return np.where(some, place, np.where(self._salvage > 0, 0.0, np.inf))
+        period_before = np.floor(np.log(np.maximum(ratio, 1.0)) / pace)
+        return np.where(some, period_before, np.where(self._salvage > 0, 0.0, np.inf))
 
 
 def _refused_french(cost: Any, salvage: Any, bought: Any, first: Any, period: Any, rate: Any, basis: Any) -> Bools:

@@ -1,4 +1,4 @@
-"""Lookups: a key's place in a vector, and what stands at that place elsewhere.
+"""Lookups: a key's position in a vector, and what stands at that position elsewhere.
 
 Keys and tables may differ between trials. Errors of arguments go before `#N/A`, and `#N/A` before a column that the
 table does not have. An empty cell found stays one: formulas take it for 0 or "".
@@ -22,8 +22,8 @@ from xlmc.functions.arguments import (
     with_errors,
 )
 from xlmc.functions.facts import Facts
-from xlmc.functions.lookup.picking import Places, by_portions, each_part, picked, transposed, width_of
-from xlmc.functions.lookup.searching import EXACT, last_not_beyond, nearest
+from xlmc.functions.lookup.picked_cells import Indices, by_portions, each_part, picked, transposed, width_of
+from xlmc.functions.lookup.vector_search import EXACT, last_not_beyond, nearest
 from xlmc.functions.registry import Anything, Arrays, Cells, Kind, Logical, Number, Ranges, excel
 from xlmc.functions.values import Codes, Floats, Value, constant
 
@@ -43,7 +43,7 @@ def _is_vector(cells: Value) -> bool:
     return 1 in cells.shape[1:]
 
 
-def _classic_place(key: Value, vector: Value, order: Floats) -> Places:
+def _classic_index(key: Value, vector: Value, order: Floats) -> Indices:
     """As MATCH searches: `order` is 1 for rising values, -1 for falling ones, 0 for the first equal one of any."""
     key = if_blank(key)
     result = np.full(1, -1)
@@ -58,9 +58,9 @@ def _classic_place(key: Value, vector: Value, order: Floats) -> Places:
 
 @excel("MATCH", Anything, Cells, Number(default=1.0), facts=Facts(mode_argument=2, finds=True, exact_steps=True))
 def match(key: Value, cells: Value, order: Value | None = None) -> Value:
-    """Place of the key, or of the last value before it, in a row or column in rising order (1) or falling order (-1).
+    """Position of the key, or of the last value before it, in a row or column in rising (1) or falling order (-1).
 
-    These are searched by halves, see `halving`. With `order` 0 the first equal value; then wildcards hold.
+    These are searched by halves, see `vector_search`. With `order` 0 the first equal value; then wildcards hold.
     """
     return by_portions(_match, [key, cells, constant(1) if order is None else order], width_of(cells))
 
@@ -71,11 +71,11 @@ def _match(key: Value, cells: Value, order: Value) -> Value:
     errors = earliest(key.errors, direct_errors(cells, key), wrong)
     if not _is_vector(cells.as_range()):
         return refused(key, _NOT_FOUND, errors)
-    return _counted_from_1(_classic_place(key, cells.as_range(), np.sign(numbers)), errors)
+    return _counted_from_1(_classic_index(key, cells.as_range(), np.sign(numbers)), errors)
 
 
-def _counted_from_1(places: Places, errors: Codes) -> Value:
-    return Value.of_numbers((places + 1).astype(np.float64), earliest(errors, where_wrong(places < 0, _NOT_FOUND)))
+def _counted_from_1(indices: Indices, errors: Codes) -> Value:
+    return Value.of_numbers((indices + 1).astype(np.float64), earliest(errors, where_wrong(indices < 0, _NOT_FOUND)))
 
 
 @excel("VLOOKUP", *_IN_A_TABLE, returns=Kind.ANY, facts=Facts(mode_argument=3, finds=True))
@@ -95,7 +95,7 @@ def _vlookup(key: Value, table: Value, column: Value, near: Value) -> Value:
     key, column, near = leveled(key, column, near)
     close, unclear = near.to_logicals()
     cells = table.as_range()
-    rows = _classic_place(key, each_part(cells, lambda part: part[:, :, :1]), close.astype(np.float64))
+    rows = _classic_index(key, each_part(cells, lambda part: part[:, :, :1]), close.astype(np.float64))
     columns, wrong = whole_numbers(column)
     errors = earliest(
         *(key.errors, direct_errors(table, key), unclear),
@@ -140,7 +140,7 @@ def _as_column(part: Floats) -> Floats:
 
 
 def _beside(key: Value, vector: Value, results: Value, errors: Codes) -> Value:
-    """The result, (n, k, 1), at the place of the last value up to the key."""
-    places = last_not_beyond(if_blank(key), vector)
-    errors = earliest(errors, where_wrong((places < 0) | (places >= results.shape[1]), _NOT_FOUND))
-    return with_errors(picked(results, np.where(errors == 0, places, 0), np.zeros(1, np.intp)), errors)
+    """The result, (n, k, 1), at the index of the last value up to the key."""
+    indices = last_not_beyond(if_blank(key), vector)
+    errors = earliest(errors, where_wrong((indices < 0) | (indices >= results.shape[1]), _NOT_FOUND))
+    return with_errors(picked(results, np.where(errors == 0, indices, 0), np.zeros(1, np.intp)), errors)

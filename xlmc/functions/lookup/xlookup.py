@@ -24,8 +24,8 @@ from xlmc.functions.arguments import (
 )
 from xlmc.functions.facts import Facts
 from xlmc.functions.logical import choose
-from xlmc.functions.lookup.picking import Places, by_portions, each_part, picked, transposed, width_of
-from xlmc.functions.lookup.searching import EXACT, LARGER, SMALLER, last_not_beyond, nearest
+from xlmc.functions.lookup.picked_cells import Indices, by_portions, each_part, picked, transposed, width_of
+from xlmc.functions.lookup.vector_search import EXACT, LARGER, SMALLER, last_not_beyond, nearest
 from xlmc.functions.ordering import ordered
 from xlmc.functions.registry import Anything, Arrays, Kind, Number, excel
 from xlmc.functions.values import BLANK, Codes, Value, constant
@@ -39,27 +39,27 @@ _DIRECTIONS: Final = (1, _FROM_THE_END, _RISING, _FALLING)
 """From end to end either way, or by halves of values in order."""
 
 
-def _places(key: Value, vector: Value, mode: Value, direction: Value) -> tuple[Places, Codes]:
-    """The key's place, counted from 0, or -1; and the errors of the last two arguments."""
+def _indices(key: Value, vector: Value, mode: Value, direction: Value) -> tuple[Indices, Codes]:
+    """The key's index, counted from 0, or -1; and the errors of the last two arguments."""
     (modes, wrong), (directions, wrong_too) = whole_numbers(if_blank(mode)), whole_numbers(if_blank(direction, 1.0))
     result = np.full(key.shape, -1)
     known = np.zeros(1, bool)
     for wanted, towards in product(_MODES, _DIRECTIONS):
         chosen = (modes == wanted) & (directions == towards)
         if chosen.any() and not (wanted == _WILDCARDS and abs(towards) == _RISING):
-            result = np.where(chosen, _found_place(key, vector, wanted, towards), result)
+            result = np.where(chosen, _found_at(key, vector, wanted, towards), result)
             known = known | chosen
     return result, earliest(wrong, wrong_too, where_wrong(~known, ErrorCode.VALUE))
 
 
-def _found_place(key: Value, vector: Value, mode: int, direction: int) -> Places:
+def _found_at(key: Value, vector: Value, mode: int, direction: int) -> Indices:
     if abs(direction) == _RISING:
         return _by_halves(key, vector, mode, direction == _FALLING)
     by_pattern = mode == _WILDCARDS
     return nearest(key, vector, EXACT if by_pattern else mode, last=direction == _FROM_THE_END, wildcards=by_pattern)
 
 
-def _by_halves(key: Value, vector: Value, side: int, falling: bool) -> Places:
+def _by_halves(key: Value, vector: Value, side: int, falling: bool) -> Indices:
     """As MATCH searches; a neighbour that is asked for may be of any kind."""
     before = last_not_beyond(key, vector, falling=falling)
     if side == (LARGER if falling else SMALLER):
@@ -80,7 +80,7 @@ def _by_halves(key: Value, vector: Value, side: int, falling: bool) -> Places:
     facts=Facts(mode_argument=3, finds=True, exact_steps=True),
 )
 def xmatch(key: Value, cells: Value, mode: Value | None = None, direction: Value | None = None) -> Value:
-    """Place of the key in a row or column: its equal, or the next smaller (-1) or larger (1); 2 for wildcards."""
+    """Position of the key in a row or column: its equal, or the next smaller (-1) or larger (1); 2 for wildcards."""
     modes, directions = constant(None) if mode is None else mode, constant(None) if direction is None else direction
     return by_portions(_xmatch, [key, cells, modes, directions], width_of(cells))
 
@@ -91,9 +91,9 @@ def _xmatch(key: Value, cells: Value, mode: Value, direction: Value) -> Value:
     vector = cells.as_range()
     if 1 not in vector.shape[1:]:
         return refused(key, ErrorCode.VALUE, errors)
-    places, wrong = _places(key, vector, mode, direction)
+    indices, wrong = _indices(key, vector, mode, direction)
     return Value.of_numbers(
-        (places + 1).astype(np.float64), earliest(errors, wrong, where_wrong(places < 0, ErrorCode.NA))
+        (indices + 1).astype(np.float64), earliest(errors, wrong, where_wrong(indices < 0, ErrorCode.NA))
     )
 
 
@@ -149,11 +149,11 @@ def _found(
     key: Value, vector: Value, results: Value, instead: Value, mode: Value, direction: Value, errors: Codes
 ) -> Value:
     """A single key finds a whole row of `results`, keys in an array formula the first cell of theirs."""
-    places, wrong = _places(key, vector, mode, direction)
+    indices, wrong = _indices(key, vector, mode, direction)
     errors = earliest(errors, wrong)
-    found = (places >= 0) & (errors == 0)
-    rows = np.where(found, places, 0)
-    if results.shape[2] == 1 or places.ndim == 3:
+    found = (indices >= 0) & (errors == 0)
+    rows = np.where(found, indices, 0)
+    if results.shape[2] == 1 or indices.ndim == 3:
         return choose(found, picked(results, rows, np.zeros(1, np.intp)), with_errors(instead, errors))
     if not same_in_all_trials(found):
         return with_errors(instead, errors)

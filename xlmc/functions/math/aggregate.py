@@ -23,7 +23,7 @@ from xlmc.functions.values import BLANK, DIV0, ERROR, NUM, NUMBER, TEXT, Bools, 
 
 __all__ = ["SO_FAR"]
 
-Places = NDArray[np.intp]
+Indices = NDArray[np.intp]
 
 
 def _total(x: Floats) -> Floats:
@@ -95,18 +95,18 @@ def average(x: Floats, counts: Bools) -> Floats:
 def median(x: Floats, counts: Bools) -> Floats:
     """Middle number, or mean of the two in the middle; `#NUM!` of nothing."""
     ordered, k = _ordered(x, counts)
-    low, high = (_picked(ordered, place[:, None])[:, 0] for place in ((k - 1) // 2, k // 2))
+    low, high = (_picked(ordered, index[:, None])[:, 0] for index in ((k - 1) // 2, k // 2))
     return np.where(k > 0, (low + high) / 2, NUM)
 
 
-def _ordered(x: Floats, counts: Bools) -> tuple[Floats, Places]:
+def _ordered(x: Floats, counts: Bools) -> tuple[Floats, Indices]:
     """The numbers of each trial in rising order, what does not count behind them, and how many do: (n, k), (n,)."""
     return np.sort(np.where(counts, x, np.inf), axis=1), counts.sum(axis=1)
 
 
-def _picked(ordered: Floats, places: Places) -> Floats:
-    """The numbers at `places` (n, m) of each trial; at some place where there is none."""
-    return np.asarray(np.take_along_axis(ordered, np.clip(places, 0, ordered.shape[1] - 1), axis=1))
+def _picked(ordered: Floats, indices: Indices) -> Floats:
+    """The numbers at `indices` (n, m) of each trial; any number where there is none."""
+    return np.asarray(np.take_along_axis(ordered, np.clip(indices, 0, ordered.shape[1] - 1), axis=1))
 
 
 def _variance(x: Floats, counts: Bools, lost: int) -> tuple[Floats, Bools]:
@@ -170,7 +170,7 @@ def _rows(array: NDArray[Any], value: Value) -> NDArray[Any]:
 
 
 def _numbers(value: Value) -> tuple[Floats, Bools, Codes]:
-    """The numbers of a range, or what is given directly as one; which places count; their errors: (n, k) each."""
+    """The numbers of a range, or what is given directly as one; which cells count; their errors: (n, k) each."""
     in_range = value.numbers.ndim == 3
     x, errors = (value.numbers, value.errors) if in_range else value.to_numbers()
     counts = value.kinds == NUMBER if in_range else errors == 0
@@ -178,7 +178,7 @@ def _numbers(value: Value) -> tuple[Floats, Bools, Codes]:
 
 
 def _how_many(parts: Iterable[Bools]) -> Floats:
-    """In how many places each trial counts: (n, k), (n, k'), … -> (n,)."""
+    """How many cells count in each trial: (n, k), (n, k'), … -> (n,)."""
     total = np.zeros(1)
     for counts in parts:
         total = total + counts.sum(axis=1)
@@ -229,7 +229,7 @@ def _first(errors: Iterable[Codes]) -> Codes:
     facts=Facts(empty_cells=EmptyCells.PAIRED, repeats=Repeats.ADD_UP, ends_tell=True, measures=True),
 )
 def sum_product(*values: Value) -> Value:
-    """Sum of the products of the cells in one place; what is not a number is 0; `#VALUE!` for unequal shapes.
+    """Sum of the products of the cells in one position; what is not a number is 0; `#VALUE!` for unequal shapes.
 
     Where the ranges are of one cell each, a text is `#VALUE!`, as Excel has it.
     """
@@ -246,14 +246,14 @@ def sum_product(*values: Value) -> Value:
     return Value.of_numbers(_total(products.reshape(products.shape[0], -1)), _first(errors))
 
 
-def _ranked(values: Value, rank: Value, place: Callable[[Floats, Places], Floats]) -> Value:
-    """The numbers at `place(rank, k)` in rising order, in the shape of `rank`; `#NUM!` where there is none."""
+def _ranked(values: Value, rank: Value, index_of: Callable[[Floats, Indices], Floats]) -> Value:
+    """The numbers at `index_of(rank, k)` in rising order, in the shape of `rank`; `#NUM!` where there is none."""
     x, counts, own = _numbers(values)
     ordered, k = _ordered(x, counts)
     ranks, errors = (_rows(array, rank) for array in rank.to_numbers())
-    places = place(ranks, k[:, None])
-    inside = (places >= 0) & (places < k[:, None])
-    result = np.where(inside, _picked(ordered, np.where(inside, places, 0).astype(np.intp)), NUM)
+    indices = index_of(ranks, k[:, None])
+    inside = (indices >= 0) & (indices < k[:, None])
+    result = np.where(inside, _picked(ordered, np.where(inside, indices, 0).astype(np.intp)), NUM)
     first = _first([own])[:, None]
     errors = np.broadcast_to(np.where(first > 0, first, errors), result.shape)
     shape = (result.shape[0], *rank.shape[1:])

@@ -15,7 +15,7 @@ from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import direct_errors, earliest, first_errors, with_errors
 from xlmc.functions.criteria import met
 from xlmc.functions.facts import EmptyCells, Facts
-from xlmc.functions.lookup.picking import by_portions, cell_of, each_part, flattened, side_by_side
+from xlmc.functions.lookup.picked_cells import by_portions, cell_of, each_part, flattened, side_by_side
 from xlmc.functions.math.aggregate import average, maximum, minimum, sum_
 from xlmc.functions.registry import Anything, Cells, excel
 from xlmc.functions.values import BLANK, NUMBER, Bools, Floats, Value, constant
@@ -55,7 +55,7 @@ def _conditional(values: Value, pairs: Sequence[Value], reduce: Reduce, date1904
     errors = earliest(*(direct_errors(value) for value in everything))
     if len({value.shape[1:] for value in cells}) > 1 or len(pairs) % 2:
         return with_errors(constant(ErrorCode.VALUE), errors)
-    places = np.broadcast_shapes(*(criterion.shape[1:] for criterion in criteria))
+    shape = np.broadcast_shapes(*(criterion.shape[1:] for criterion in criteria))
     width = cells[0].shape[1] * cells[0].shape[2]
 
     def compute(values: Value, *others: Value) -> Value:
@@ -65,13 +65,13 @@ def _conditional(values: Value, pairs: Sequence[Value], reduce: Reduce, date1904
             held = held & met(criterion, cells_, date1904=date1904)
         return reduce(values, held)
 
-    if not places:
+    if not shape:
         return with_errors(by_portions(compute, [*cells, *criteria], width), errors)
     results = [
-        by_portions(compute, [*cells, *(cell_of(criterion, *place) for criterion in criteria)], width)
-        for place in np.ndindex(*places)
+        by_portions(compute, [*cells, *(cell_of(criterion, *index) for criterion in criteria)], width)
+        for index in np.ndindex(*shape)
     ]
-    return with_errors(side_by_side(results, *places), errors.reshape(-1, 1, 1))
+    return with_errors(side_by_side(results, *shape), errors.reshape(-1, 1, 1))
 
 
 def _beside(values: Value | None, cells: Value, criterion: Value, reduce: Reduce, date1904: bool) -> Value:
@@ -104,7 +104,7 @@ def count_if(cells: Value, criterion: Value, *, date1904: bool = False) -> Value
 
 @excel("COUNTIFS", Cells(repeat=True), Anything(repeat=True), dated=True, facts=Facts(exact_steps=True))
 def count_ifs(*pairs: Value, date1904: bool = False) -> Value:
-    """In how many places all ranges meet the criteria behind them."""
+    """In how many positions all ranges meet the criteria behind them."""
     return _conditional(pairs[0], pairs, _count, date1904)
 
 

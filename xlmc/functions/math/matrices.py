@@ -23,7 +23,7 @@ from xlmc.functions.arguments import (
 )
 from xlmc.functions.budget import ask_for_cells, ask_for_work
 from xlmc.functions.facts import EmptyCells, Facts
-from xlmc.functions.lookup.picking import cell_of, flattened, transposed
+from xlmc.functions.lookup.picked_cells import cell_of, flattened, transposed
 from xlmc.functions.registry import Anything, Arrays, Cells, Kind, Ranges, excel
 from xlmc.functions.toolpak import OneCell, strict_numbers
 from xlmc.functions.values import BLANK, DIV0, ERROR, NUM, NUMBER, Codes, Floats, Value, constant
@@ -132,7 +132,7 @@ def _cells(value: Value) -> tuple[Floats, Codes]:
 
 
 def _over_pairs(x: Value, y: Value, term: Callable[[Floats, Floats], Floats]) -> Value:
-    """Sum of `term` over the places where both are numbers; `#N/A` for unequal counts, `#DIV/0!` of no pair."""
+    """Sum of `term` over the pairs in which both are numbers; `#N/A` for unequal counts, `#DIV/0!` of no pair."""
     (left, left_kinds), (right, right_kinds) = _cells(x), _cells(y)
     if left.shape[1] != right.shape[1]:
         return with_errors(constant(ErrorCode.NA), earliest(direct_errors(x), direct_errors(y)))

@@ -10,7 +10,7 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import first_errors
-from xlmc.functions.lookup.picking import flattened as in_rows
+from xlmc.functions.lookup.picked_cells import flattened as in_rows
 from xlmc.functions.registry import Cells, Kind, Number, excel
 from xlmc.functions.toolpak import OneCell, flattened, numbers_only
 from xlmc.functions.values import BLANK, NUM, Bools, Codes, Floats, Value
@@ -50,7 +50,7 @@ def gcd(*values: Value) -> Value:
 
 
 def _without_blanks(values: Sequence[Value], x: Floats) -> Floats:
-    """1 in the place of each empty cell, which changes no multiple, unless there is nothing else: (n, k)."""
+    """1 for each empty cell, which changes no multiple, unless there is nothing else: (n, k)."""
     empty = [
         in_rows((value.kinds == BLANK) & (value.numbers.ndim == 3), value)  # what is left out of a call is 0
         for value in values

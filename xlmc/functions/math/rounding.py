@@ -26,8 +26,8 @@ _DECADES: Final = np.array([float(f"1e{n}") for n in range(-290, 309)])
 _HALF_OF_15TH_DIGIT: Final = np.array([0.0, *(float(f"5e{n - 15}") for n in range(-290, 309))])
 
 _SHOWN: Final = Context(prec=15, rounding=ROUND_HALF_UP)
-_LAST_PLACE: Final = 2.3e-16
-"""More than a last place of a double is of the double; less than half of what a unit of the 15th digit is of it."""
+_LAST_BIT: Final = 2.3e-16
+"""As a share of a double: more than its last bit, less than half a unit of its 15th digit."""
 
 _FIFTEEN_DIGITS: Final = 1e14
 _HALF: Final = np.asarray(0.5)
@@ -53,9 +53,9 @@ class _Grid:
         self._size, self._digits = size, whole
         seen = _HALF_OF_15TH_DIGIT[np.searchsorted(_DECADES, size, side="right")]
         self._tolerance = np.minimum(seen, self.multiple(_HALF))
-        place = size * self._up / self._down
-        self.coarse, self.fine = place < _FIFTEEN_DIGITS, place >= _NO_FRACTION
-        self.n = np.floor(place)
+        steps = size * self._up / self._down
+        self.coarse, self.fine = steps < _FIFTEEN_DIGITS, steps >= _NO_FRACTION
+        self.n = np.floor(steps)
         self.n = np.where(self.reaches(self.n + 1), self.n + 1, self.n)
 
     def multiple(self, n: Floats) -> Floats:
@@ -73,15 +73,15 @@ class _Grid:
         return self._told(gap >= self._tolerance, gap, self.n, above=True) & (self._size > 0)
 
     def _told(self, told: Bools, gap: Floats, n: Floats, *, above: bool) -> Bools:
-        """What the gap to the n-th multiple tells; where it is within a last place of the tolerance, decimals do."""
-        near = np.abs(gap - self._tolerance) < _LAST_PLACE * self._size
+        """What the gap to the n-th multiple tells; where it is within the last bit of the tolerance, decimals do."""
+        near = np.abs(gap - self._tolerance) < _LAST_BIT * self._size
         if not near.any():
             return np.asarray(told)
         near = near & (self._tolerance < self.multiple(_HALF))
         told, n, size, digits = (part.copy() for part in np.broadcast_arrays(told, n, self._size, self._digits))
-        for place in zip(*np.nonzero(near), strict=True):
-            steps = _SHOWN.scaleb(_SHOWN.plus(Decimal(float(size[place]))), int(digits[place]))
-            told[place] = steps > float(n[place]) if above else steps >= float(n[place])
+        for index in zip(*np.nonzero(near), strict=True):
+            steps = _SHOWN.scaleb(_SHOWN.plus(Decimal(float(size[index]))), int(digits[index]))
+            told[index] = steps > float(n[index]) if above else steps >= float(n[index])
         return np.asarray(told)
 
 

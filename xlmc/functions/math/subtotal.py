@@ -15,7 +15,7 @@ import numpy as np
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions.arguments import leveled, refused, whole_numbers
 from xlmc.functions.logical import choose
-from xlmc.functions.lookup.picking import each_part, flattened
+from xlmc.functions.lookup.picked_cells import each_part, flattened
 from xlmc.functions.registry import Arrays, Cells, Number, excel, row_of
 from xlmc.functions.values import BLANK, ERROR, ShapeVaries, Value, constant
 
@@ -101,7 +101,7 @@ def _ranges(values: Sequence[Value]) -> list[Value]:
 
 
 def _without_errors(value: Value) -> Value:
-    """Blanks in place of errors."""
+    """Blanks instead of errors."""
     kinds = np.where(value.kinds >= ERROR, np.uint8(BLANK), value.kinds)
     return Value(value.numbers, kinds.astype(np.uint8), value.texts)
 

@@ -1,7 +1,7 @@
 """Angles and hyperbolic functions. Angles are in radians.
 
 NumPy computes the tangent of eight numbers at a time on processors with AVX-512, the sine and the cosine one by one.
-There both are made of tangents here, within 4 units in the last place of the exact values; elsewhere NumPy's own are
+There both are made of tangents here, within 4 units in the last digit of the exact values; elsewhere NumPy's own are
 used, within 1. Which it is depends on the processor alone, never on how many angles there are.
 
     T = tan(x/2), sin x = 2T / (1 + T²), cos x = sin x / tan x

@@ -1,8 +1,9 @@
 """Excel's number formats: `#,##0.00;[Red](#,##0.00)`, `# ?/?`, `0.0E+00`, `yyyy-mm-dd hh:mm`.
 
 A format text becomes tokens (`tokens`), these become up to four sections (`sections`), and each section becomes one
-layout: `decimals`, `exponents`, `fractions`, `moments` or `plain`. A layout writes a number without its sign; which
-section writes it, and whether a minus goes before, is for the format to say (`choice`).
+layout: of numbers (`numbers`), of dates and times (`date_times`), or of what needs no digit placeholders
+(`placeholders`). A layout writes a number without its sign; which section writes it, and whether a minus goes before,
+is for the format to say (`sections`).
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ class MomentLayout:
     tokens: tuple[Token, ...]
 
     @cached_property
-    def _places(self) -> int:
+    def _decimals(self) -> int:
         """Decimals of a second: the number is rounded to the last of them, to a whole second if there are none."""
         return max((len(t.text) - 1 for t in self.tokens if t.mark is Mark.PART and t.text[0] == "."), default=0)
 
@@ -52,7 +52,7 @@ class MomentLayout:
         return all(token.mark in (Mark.ELAPSED, Mark.LITERAL) for token in self.tokens)
 
     def write(self, size: float, date1904: bool) -> Written:
-        clock = _Clock(min(size, _FAR), self._places, date1904, self._half_days)
+        clock = _Clock(min(size, _FAR), self._decimals, date1904, self._half_days)
         if clock.day > last_serial(date1904):
             raise FormatError("a date after 9999")
         return "".join(clock.written(token) for token in self.tokens), False
@@ -76,7 +76,7 @@ def moment_layout(tokens: Sequence[Token]) -> MomentLayout:
     """The layout of a section with parts of dates or times.
 
     Raises:
-        FormatError: it has places for digits as well.
+        FormatError: it has digit placeholders as well.
         UnknownFormat: it asks for names in another language than English.
     """
     for token in tokens:
@@ -84,7 +84,7 @@ def moment_layout(tokens: Sequence[Token]) -> MomentLayout:
             return moment_layout(tokenise(_SYSTEM[token.text])[0])
     parts = _with_minutes(_with_fractions(_with_years(tokens)))
     if any(token.mark in (Mark.DIGIT, Mark.AT, Mark.PERCENT, Mark.EXPONENT) for token in parts):
-        raise FormatError("parts of a date stand beside places for digits")
+        raise FormatError("parts of a date stand beside digit placeholders")
     if any(_has_name(t) for t in parts) and any(_is_foreign(t) for t in parts):
         raise UnknownFormat("the names of months and days are known in English only")
     return MomentLayout(tuple(_settled(token) for token in parts if token.mark is not Mark.LANGUAGE))
@@ -118,10 +118,10 @@ def _with_fractions(tokens: Sequence[Token]) -> list[Token]:
 def _with_minutes(tokens: Sequence[Token]) -> list[Token]:
     """`m` and `mm` after hours or before seconds are minutes: `n` here."""
     parts = list(tokens)
-    places = [i for i, t in enumerate(parts) if t.mark is Mark.ELAPSED or (t.mark is Mark.PART and t.text[0] != ".")]
-    for position, index in enumerate(places):
-        before = parts[places[position - 1]].text[0] if position else ""
-        after = parts[places[position + 1]].text[0] if position + 1 < len(places) else ""
+    numbered = [i for i, t in enumerate(parts) if t.mark is Mark.ELAPSED or (t.mark is Mark.PART and t.text[0] != ".")]
+    for position, index in enumerate(numbered):
+        before = parts[numbered[position - 1]].text[0] if position else ""
+        after = parts[numbered[position + 1]].text[0] if position + 1 < len(numbered) else ""
         if parts[index] in (Token(Mark.PART, "m"), Token(Mark.PART, "mm")) and (before == "h" or after == "s"):
             parts[index] = Token(Mark.PART, "n" * len(parts[index].text))
     return parts
@@ -151,12 +151,12 @@ _SECONDS: Final = {"h": 3600, "m": 60, "s": 1}
 class _Clock:
     """A serial date and time, rounded, and its parts."""
 
-    def __init__(self, serial: float, places: int, date1904: bool, half_days: bool) -> None:
-        self._unit = 10**places
+    def __init__(self, serial: float, decimals: int, date1904: bool, half_days: bool) -> None:
+        self._unit = 10**decimals
         self._ticks = math.floor(serial * SECONDS_A_DAY * self._unit + 0.5)
         self.day, ticks = divmod(self._ticks, SECONDS_A_DAY * self._unit)
         self._second = ticks // self._unit
-        self._fraction = f"{ticks % self._unit:0{places}d}" if places else ""
+        self._fraction = f"{ticks % self._unit:0{decimals}d}" if decimals else ""
         self._date1904, self._half_days = date1904, half_days
 
     def written(self, token: Token) -> str:

@@ -20,7 +20,7 @@ _WIDE: Final = Context(prec=1000, rounding=ROUND_HALF_UP)
 
 @dataclass(frozen=True, slots=True)
 class _DecimalLayout:
-    """Places for digits.
+    """Digit placeholders, with a point or without.
 
     Attributes:
         before: the tokens up to the point.
@@ -43,7 +43,7 @@ class _DecimalLayout:
         return self.filled(whole.lstrip("0"), decimals), not number
 
     def filled(self, whole: str, decimals: str) -> str:
-        """The digits in their places; without a place before the point, whole digits stand before it all the same."""
+        """The digits in their placeholders; without one before the point, whole digits stand before it all the same."""
         text = fill_whole(self.before, whole, self.grouped)
         if self.after is None:
             return text
@@ -51,7 +51,7 @@ class _DecimalLayout:
 
 
 def decimal_layout(tokens: Sequence[Token]) -> _DecimalLayout:
-    """The layout of a section with places for digits."""
+    """The layout of a section with digit placeholders."""
     settled, grouped, thousands = settle_commas(tokens)
     percents = sum(token.mark is Mark.PERCENT for token in tokens)
     points = [index for index, token in enumerate(settled) if token.mark is Mark.POINT]
@@ -62,7 +62,7 @@ def decimal_layout(tokens: Sequence[Token]) -> _DecimalLayout:
 
 @dataclass(frozen=True, slots=True)
 class _ExponentLayout:
-    """A mantissa and an exponent, which is a multiple of the count of places before the point.
+    """A mantissa and an exponent, which is a multiple of the count of digit placeholders before the point.
 
     Attributes:
         mark: `E+` or `E-`, as written; the latter writes no plus.
@@ -109,7 +109,7 @@ def exponent_layout(tokens: Sequence[Token]) -> _ExponentLayout:
     """The layout of a section with an exponent.
 
     Raises:
-        FormatError: a place for a digit is missing before or behind the `E`.
+        FormatError: there is no digit placeholder before or behind the `E`.
     """
     split = next(index for index, token in enumerate(tokens) if token.mark is Mark.EXPONENT)
     mantissa, power = tokens[:split], settle_commas(tokens[split + 1 :])[0]
@@ -160,11 +160,11 @@ class _FractionLayout:
         return units * self.fixed + math.floor((size - units) * self.fixed + 0.5), self.fixed
 
     def _mixed(self, whole: tuple[Token, ...], units: int, n: int, d: int) -> str:
-        if n == 0 and "0" not in _places(self.numerator):
+        if n == 0 and "0" not in _placeholders(self.numerator):
             return self._whole(whole, str(units)) + self._no_fraction(whole)
-        if units == 0 and n > 0 and "0" not in _places(whole):
+        if units == 0 and n > 0 and "0" not in _placeholders(whole):
             return f"{self._whole(whole, '')}{self._narrowed_gap(whole)}{self._fraction(n, d)}"
-        if units == 0 and n == 0 and not set(_places(whole)) & {"0", "?"}:
+        if units == 0 and n == 0 and not set(_placeholders(whole)) & {"0", "?"}:
             return f"{self._whole(whole, '')}{self._narrowed_gap(whole)}{self._fraction(n, d)}"
         return f"{self._whole(whole, str(units))}{self.gap}{self._fraction(n, d)}"
 
@@ -175,29 +175,29 @@ class _FractionLayout:
         return f"{fill_whole(self.numerator, str(n))}{self.stroke}{self._denominator(d)}"
 
     def _denominator(self, d: int) -> str:
-        """Digits to the left, then the empty places; with zeros first if the format has them."""
-        places = _places(self.denominator)
+        """Digits to the left, then what the empty placeholders write; with zeros first if the format has them."""
+        placeholders = _placeholders(self.denominator)
         digits = str(d)
-        if places[:1] == "0":
-            return digits.zfill(len(places))
-        return digits + places[len(digits) :].replace("?", " ").replace("#", "")
+        if placeholders[:1] == "0":
+            return digits.zfill(len(placeholders))
+        return digits + placeholders[len(digits) :].replace("?", " ").replace("#", "")
 
     def _no_fraction(self, whole: tuple[Token, ...]) -> str:
         """A fraction of 0 is left out; where anything is aligned by `?`, it leaves its room."""
         room = len(self.gap) + len(self.numerator) + len(self.stroke) + len(self.denominator)
-        aligned = "?" in _places(whole) + _places(self.numerator) + _places(self.denominator)
+        aligned = "?" in _placeholders(whole) + _placeholders(self.numerator) + _placeholders(self.denominator)
         return " " * room if aligned else ""
 
     def _narrowed_gap(self, whole: tuple[Token, ...]) -> str:
         """The gap behind a whole number that is left out."""
-        return " " * len(self.gap) if "?" in _places(whole) + _places(self.numerator) else ""
+        return " " * len(self.gap) if "?" in _placeholders(whole) + _placeholders(self.numerator) else ""
 
     def _rest(self) -> str:
         return fill_whole(self.rest, "")
 
 
-def _places(tokens: Sequence[Token]) -> str:
-    return "".join(token.text for token in tokens if _is_place(token))
+def _placeholders(tokens: Sequence[Token]) -> str:
+    return "".join(token.text for token in tokens if _is_placeholder(token))
 
 
 def approximated(x: float, largest: int) -> tuple[int, int]:
@@ -218,7 +218,7 @@ def approximated(x: float, largest: int) -> tuple[int, int]:
 
 
 def fraction_layout(tokens: Sequence[Token]) -> _FractionLayout:
-    """The layout of a section with places for digits and a stroke.
+    """The layout of a section with digit placeholders and a stroke.
 
     Raises:
         FormatError: the numerator or the denominator is missing.
@@ -239,18 +239,18 @@ def fraction_layout(tokens: Sequence[Token]) -> _FractionLayout:
         numerator=tuple(tokens[start:top]),
         stroke=f"{_text(tokens[top:slash])}/{_text(between)}",
         denominator=tuple(bottom),
-        fixed=int(_places(bottom)) if bottom[0].mark is Mark.NUMERAL else None,
+        fixed=int(_placeholders(bottom)) if bottom[0].mark is Mark.NUMERAL else None,
         rest=tuple(rest),
     )
 
 
 def _end_of_digits(tokens: Sequence[Token]) -> int:
-    """Where the last place for a digit ends; 0 without one."""
+    """Where the last digit placeholder ends; 0 without one."""
     return max((index + 1 for index, token in enumerate(tokens) if token.mark is Mark.DIGIT), default=0)
 
 
 def _start_of_run(tokens: Sequence[Token]) -> int:
-    """Where the run of places for digits at the end starts."""
+    """Where the run of digit placeholders at the end starts."""
     start = len(tokens)
     while start and tokens[start - 1].mark is Mark.DIGIT:
         start -= 1
@@ -258,17 +258,17 @@ def _start_of_run(tokens: Sequence[Token]) -> int:
 
 
 def _denominator(tokens: Sequence[Token]) -> tuple[list[Token], list[Token]]:
-    """The first run of places, or the first number, and what stands behind it."""
-    start = next((index for index, token in enumerate(tokens) if _is_place(token)), len(tokens))
+    """The first run of digit placeholders, or the first number, and what stands behind it."""
+    start = next((index for index, token in enumerate(tokens) if _is_placeholder(token)), len(tokens))
     fixed = start < len(tokens) and tokens[start].mark is Mark.NUMERAL
     end = start
     wanted = "0123456789" if fixed else "0#?"
-    while end < len(tokens) and _is_place(tokens[end]) and tokens[end].text in wanted:
+    while end < len(tokens) and _is_placeholder(tokens[end]) and tokens[end].text in wanted:
         end += 1
     return list(tokens[start:end]), list(tokens[end:])
 
 
-def _is_place(token: Token) -> bool:
+def _is_placeholder(token: Token) -> bool:
     return token.mark in (Mark.DIGIT, Mark.NUMERAL)
 
 

@@ -1,6 +1,6 @@
-"""What the layouts of numbers are made of: `General`, `@`, bare texts, and places for digits.
+"""What the layouts of numbers are made of: `General`, `@`, bare texts, and digit placeholders.
 
-Digits are put into the places `0`, `#` and `?`: an unused `0` writes 0, `?` a space, `#` nothing.
+Digits go into the placeholders `0`, `#` and `?`: an unused `0` writes 0, `?` a space, `#` nothing.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Layout(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class BareLayout:
-    """A section without any place for the number; it may be empty."""
+    """A section without any placeholder for the number; it may be empty."""
 
     text: str
 
@@ -70,7 +70,7 @@ class TextLayout:
     tokens: tuple[Token, ...]
 
     def write_text(self, text: str) -> str:
-        """The text in its place or places."""
+        """The text in its placeholder or placeholders."""
         return "".join(text if t.mark in (Mark.AT, Mark.GENERAL) else t.text for t in self.tokens)
 
 
@@ -78,10 +78,10 @@ def text_layout(tokens: Sequence[Token]) -> TextLayout:
     """The layout of the section for texts.
 
     Raises:
-        FormatError: it has a place for a digit, or a part of a date.
+        FormatError: it has a digit placeholder, or a part of a date.
     """
     if any(t.mark in (Mark.DIGIT, Mark.PART, Mark.ELAPSED, Mark.HALF, Mark.EXPONENT) for t in tokens):
-        raise FormatError("a section for texts holds places for digits or parts of a date")
+        raise FormatError("a section for texts holds digit placeholders or parts of a date")
     return TextLayout(tuple(t for t in tokens if t.mark is not Mark.LANGUAGE))
 
 
@@ -116,40 +116,40 @@ _UNUSED: Final = {"0": "0", "?": " ", "#": ""}
 
 
 def count_digits(tokens: Sequence[Token]) -> int:
-    """How many places for digits there are."""
+    """How many digit placeholders there are."""
     return sum(token.mark is Mark.DIGIT for token in tokens)
 
 
 def fill_whole(tokens: Sequence[Token], digits: str, grouped: bool = False) -> str:
-    """Whole digits, from the right; what the places do not hold goes before the first of them."""
+    """Whole digits, from the right; what the placeholders do not hold goes before the first of them."""
     written: list[str] = []
-    unwritten, place, places = list(digits), 0, count_digits(tokens)
+    unwritten, index, count = list(digits), 0, count_digits(tokens)
     for token in reversed(tokens):
         if token.mark is not Mark.DIGIT:
             written.append(token.text)
             continue
         glyphs = [unwritten.pop()] if unwritten else [_UNUSED[token.text]]
-        while unwritten and place == places - 1:
+        while unwritten and index == count - 1:
             glyphs.append(unwritten.pop())
-        written += [glyph + _separator(glyph, place + i) * grouped for i, glyph in enumerate(glyphs)]
-        place += 1
+        written += [glyph + _separator(glyph, index + i) * grouped for i, glyph in enumerate(glyphs)]
+        index += 1
     return "".join(reversed(written))
 
 
-def _separator(glyph: str, place: int) -> str:
-    """What stands to the right of every third place: a comma, a space if the place is empty."""
-    if place == 0 or place % 3 or not glyph:
+def _separator(glyph: str, index: int) -> str:
+    """What stands to the right of every third placeholder: a comma, a space if that is empty."""
+    if index == 0 or index % 3 or not glyph:
         return ""
     return " " if glyph == " " else ","
 
 
 def fill_decimals(tokens: Sequence[Token], digits: str) -> str:
-    """Decimals, as many as there are places; zeros at the end are not used."""
-    used, place, written = digits.rstrip("0"), 0, []
+    """Decimals, as many as there are placeholders; zeros at the end are not used."""
+    used, index, written = digits.rstrip("0"), 0, []
     for token in tokens:
         if token.mark is Mark.DIGIT:
-            written.append(used[place] if place < len(used) else _UNUSED[token.text])
-            place += 1
+            written.append(used[index] if index < len(used) else _UNUSED[token.text])
+            index += 1
         else:
             written.append(token.text)
     return "".join(written)
@@ -158,8 +158,8 @@ def fill_decimals(tokens: Sequence[Token], digits: str) -> str:
 def settle_commas(tokens: Sequence[Token]) -> tuple[list[Token], bool, int]:
     """The tokens without commas that mean something, whether thousands are set apart, and how often to divide by 1000.
 
-    A comma means something right after a digit's place: between the places of the whole part it sets thousands apart,
-    behind the last place it divides, between decimals it is ignored. Any other stands for itself.
+    A comma means something right after a digit placeholder: between those of the whole part it sets thousands apart,
+    behind the last one it divides, between decimals it is ignored. Any other stands for itself.
     """
     kept: list[Token] = []
     grouped, thousands, after_digit, in_whole = False, 0, False, True
@@ -178,7 +178,7 @@ def settle_commas(tokens: Sequence[Token]) -> tuple[list[Token], bool, int]:
 
 
 def _digits_follow(tokens: Sequence[Token], in_whole: bool) -> bool:
-    """Whether a place for a digit comes, in the whole part only if this is it."""
+    """Whether a digit placeholder comes, in the whole part only if this is it."""
     for token in tokens:
         if token.mark is Mark.DIGIT:
             return True

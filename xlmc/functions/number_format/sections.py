@@ -195,9 +195,9 @@ def _layout(tokens: Sequence[Token]) -> Layout:
 
 def _general(tokens: Sequence[Token]) -> Layout:
     plain = [token for token in tokens if token.mark is not Mark.LANGUAGE]
-    place = next(index for index, token in enumerate(plain) if token.mark is Mark.GENERAL)
-    rest = plain[:place] + plain[place + 1 :]
+    start = next(index for index, token in enumerate(plain) if token.mark is Mark.GENERAL)
+    rest = plain[:start] + plain[start + 1 :]
     if any(token.mark in (Mark.GENERAL, Mark.DIGIT, Mark.PART, Mark.AT, Mark.EXPONENT) for token in rest):
-        raise FormatError("General stands beside other places for the number")
-    before, after = ("".join(token.text for token in part) for part in (rest[:place], rest[place:]))
+        raise FormatError("General stands beside other placeholders")
+    before, after = ("".join(token.text for token in part) for part in (rest[:start], rest[start:]))
     return GeneralLayout(before, after)

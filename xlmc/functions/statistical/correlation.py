@@ -1,6 +1,6 @@
 """Pairs of numbers and the line through them. Letters: n trials, k pairs of a trial.
 
-Of two ranges, only those places count where both hold numbers.
+Of two ranges, only those pairs count in which both hold numbers.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import numpy as np
 from xlmc.functions.arguments import earliest
 from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.registry import Arrays, Number, excel
-from xlmc.functions.samples import laid_out, mean_of, of_pairs, pairs_of, places_of, row_sums
+from xlmc.functions.samples import laid_out, mean_of, of_pairs, pairs_of, points_of, row_sums
 from xlmc.functions.values import DIV0, NA, Bools, Floats, Value
 
 __all__: list[str] = []
@@ -95,12 +95,12 @@ def standard_error(y: Floats, x: Floats, counts: Bools) -> Floats:
 
 @excel("FORECAST.LINEAR", Number, Arrays, Arrays, aliases=("FORECAST",), facts=Facts(empty_cells=EmptyCells.PAIRED))
 def forecast(at: Value, ys: Value, xs: Value) -> Value:
-    """The line of least squares at a place; `#DIV/0!` where x does not vary, `#N/A` for ranges of unequal size."""
-    (places,), codes, shape = places_of(at)
+    """The line of least squares at a point; `#DIV/0!` where x does not vary, `#N/A` for ranges of unequal size."""
+    (points,), codes, shape = points_of(at)
     pairs = pairs_of(ys, xs)
     if pairs is None:
         return laid_out(np.full((1, 1), NA), codes[0], shape)
     y, x, counts, errors = pairs
     mean_x, mean_y, steepness, varies = (part[:, None] for part in _line(y, x, counts))
-    result = np.where(varies, mean_y + steepness * (places - mean_x), DIV0)
+    result = np.where(varies, mean_y + steepness * (points - mean_x), DIV0)
     return laid_out(result, earliest(codes[0], errors[:, None]), shape)

@@ -11,7 +11,7 @@ import numpy as np
 
 from xlmc.functions.arguments import earliest, first_errors
 from xlmc.functions.facts import EmptyCells, Facts, Repeats
-from xlmc.functions.lookup.picking import flattened
+from xlmc.functions.lookup.picked_cells import flattened
 from xlmc.functions.math.rounding import int_
 from xlmc.functions.registry import Cells, Number, Numbers, excel
 from xlmc.functions.samples import Sample, at_each, mean_of, row_sums, spread_of
@@ -94,13 +94,13 @@ def trimmed_mean(sample: Sample, share: Floats) -> Floats:
     """Mean without a share of the numbers, half of it at either end, whole numbers of them; `#NUM!` of nothing."""
     inside = (share >= 0) & (share < 1) & (sample.size > 0)
     cut = int_(sample.size * np.where(inside, share, 0.0) / 2)
-    ordered, place = sample.ordered(), np.arange(float(sample.x.shape[1]))
-    columns = [_mean_between(ordered, place, gone[:, None], sample.size) for gone in cut.T]
+    ordered, index = sample.ordered(), np.arange(float(sample.x.shape[1]))
+    columns = [_mean_between(ordered, index, gone[:, None], sample.size) for gone in cut.T]
     return np.where(inside, np.stack(columns, axis=1), NUM)
 
 
-def _mean_between(ordered: Floats, place: Floats, cut: Floats, size: Floats) -> Floats:
-    kept = (place >= cut) & (place < size - cut)
+def _mean_between(ordered: Floats, index: Floats, cut: Floats, size: Floats) -> Floats:
+    kept = (index >= cut) & (index < size - cut)
     return row_sums(np.where(kept, ordered, 0.0)) / np.maximum(row_sums(kept.astype(np.float64)), 1.0)
 
 

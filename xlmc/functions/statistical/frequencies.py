@@ -1,4 +1,4 @@
-"""How often numbers occur. Letters: n trials, k numbers of a trial, b bins, m places that a function is asked at."""
+"""How often numbers occur. Letters: n trials, k numbers of a trial, b bins, m points that a function is asked at."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong
 from xlmc.functions.facts import EmptyCells, Facts
-from xlmc.functions.lookup.picking import Places, flattened
+from xlmc.functions.lookup.picked_cells import Indices, flattened
 from xlmc.functions.registry import Arrays, Kind, Number, excel
-from xlmc.functions.samples import laid_out, pairs_of, places_of, row_sums, sample_of
+from xlmc.functions.samples import laid_out, pairs_of, points_of, row_sums, sample_of
 from xlmc.functions.values import ERROR, NA, NUM, NUMBER, Bools, Codes, Floats, Value
 
 __all__: list[str] = []
@@ -27,14 +27,14 @@ class _Modes:
 
     Attributes:
         x: all numbers, (n, k).
-        places: where the modes first stand in it, in that order, and k behind them: (n, k).
+        indices: where the modes first stand in it, in that order, and k behind them: (n, k).
         how_many: modes of each trial, (n,).
         errors: (n,).
     """
 
     x: Floats
-    places: Places
-    how_many: Places
+    indices: Indices
+    how_many: Indices
     errors: Codes
 
 
@@ -43,9 +43,9 @@ def _modes_of(values: tuple[Value, ...]) -> _Modes:
     n = max(x.shape[0] for x, _, _ in parts)
     x = np.concatenate([np.broadcast_to(x, (n, x.shape[1])) for x, _, _ in parts], axis=1)
     counts = np.concatenate([np.broadcast_to(counts, (n, counts.shape[1])) for _, counts, _ in parts], axis=1)
-    places = _places_of_modes(x, counts)
+    indices = _first_indices(x, counts)
     errors = earliest(*(first_errors(codes) for _, _, codes in parts))
-    return _Modes(x, places, (places < x.shape[1]).sum(axis=1), np.broadcast_to(errors, (n,)))
+    return _Modes(x, indices, (indices < x.shape[1]).sum(axis=1), np.broadcast_to(errors, (n,)))
 
 
 def _listed(value: Value) -> tuple[Floats, Bools, Codes]:
@@ -56,7 +56,7 @@ def _listed(value: Value) -> tuple[Floats, Bools, Codes]:
     return flattened(value.numbers, value), kinds == NUMBER, earliest(flattened(value.errors, value), wrong)
 
 
-def _places_of_modes(x: Floats, counts: Bools) -> Places:
+def _first_indices(x: Floats, counts: Bools) -> Indices:
     """See `_Modes`: equal numbers side by side form runs, the longest of which, if of two at least, are the modes."""
     k = x.shape[1]
     order = np.argsort(np.where(counts, x, np.inf), axis=1, kind="stable")
@@ -72,7 +72,7 @@ def _places_of_modes(x: Floats, counts: Bools) -> Places:
 def mode(*values: Value) -> Value:
     """The most frequent number, the first of several; `#N/A` where none occurs twice."""
     modes = _modes_of(values)
-    first = np.minimum(modes.places[:, :1], modes.x.shape[1] - 1)
+    first = np.minimum(modes.indices[:, :1], modes.x.shape[1] - 1)
     found = np.take_along_axis(modes.x, first, axis=1)[:, 0]
     return Value.of_numbers(np.where(modes.how_many > 0, found, NA), modes.errors)
 
@@ -86,7 +86,7 @@ def modes_in_a_column(*values: Value) -> Value:
     """
     modes = _modes_of(values)
     rows = int(same_in_all_trials(np.where(modes.errors > 0, 1, np.maximum(modes.how_many, 1))))
-    found = np.take_along_axis(modes.x, np.minimum(modes.places[:, :rows], modes.x.shape[1] - 1), axis=1)
+    found = np.take_along_axis(modes.x, np.minimum(modes.indices[:, :rows], modes.x.shape[1] - 1), axis=1)
     found = np.where(modes.how_many[:, None] > 0, found, NA)
     return Value.of_numbers(found[:, :, None], modes.errors.reshape(-1, 1, 1))
 
@@ -120,13 +120,13 @@ def probability_between(values: Value, shares: Value, low: Value, high: Value | 
     `#NUM!` for probabilities that are not above 0 and at most 1, or do not add up to 1; `#N/A` for unequal sizes.
     """
     pairs = pairs_of(values, shares)
-    places, codes, shape = places_of(low, low if high is None else high)
+    points, codes, shape = points_of(low, low if high is None else high)
     if pairs is None:
         return laid_out(np.full((1, 1), NA), earliest(*codes), shape)
     x, p, counts, errors = pairs
     p = np.where(counts, p, 0.0)
     proper = ((p > 0) & (p <= 1) | ~counts).all(axis=1) & (np.abs(row_sums(p) - 1) < _WHOLE)
-    columns = zip(*(place.T for place in places), strict=True)
+    columns = zip(*(point.T for point in points), strict=True)
     sums = [row_sums(np.where((x >= a[:, None]) & (x <= b[:, None]), p, 0.0)) for a, b in columns]
     result = np.where(proper[:, None], np.stack(sums, axis=1), NUM)
     return laid_out(result, earliest(errors[:, None], *codes), shape)

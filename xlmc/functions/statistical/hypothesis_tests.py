@@ -13,7 +13,7 @@ from xlmc.functions.samples import (
     laid_out,
     mean_of,
     pairs_of,
-    places_of,
+    points_of,
     row_sums,
     sample_of,
 )
@@ -75,7 +75,7 @@ def t_test(first: Value, second: Value, tails: Value, kind: Value) -> Value:
     `#N/A` for pairs from ranges of unequal size, `#DIV/0!` of fewer than two numbers or where nothing varies.
     """
     one, other = sample_of(first), sample_of(second)
-    (sides, kinds), codes, shape = places_of(tails, kind)
+    (sides, kinds), codes, shape = points_of(tails, kind)
     sides, kinds = np.floor(sides), np.floor(kinds)
     result = np.full((1, 1), NUM)
     for number, found in enumerate((_paired(first, second), _pooled(one, other), _unpooled(one, other)), start=1):

@@ -19,7 +19,7 @@ import numpy as np
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong
 from xlmc.functions.facts import Facts
-from xlmc.functions.lookup.picking import flattened
+from xlmc.functions.lookup.picked_cells import flattened
 from xlmc.functions.registry import Anything, Arrays, Kind, Ranges, excel
 from xlmc.functions.samples import mean_of, row_sums
 from xlmc.functions.values import BLANK, ERROR, NA, NUM, NUMBER, Bools, Codes, Floats, Value, constant

@@ -61,13 +61,13 @@ def dollar(number: float, decimals: float) -> object:
 
 def _rounded(number: float, decimals: float, whole: str, negative: str) -> object:
     """The number in the format `whole` with decimals; if negative, with what goes around it."""
-    places = math.trunc(max(decimals, -400.0))
-    if places > _MOST_DECIMALS:
+    digits = math.trunc(max(decimals, -400.0))
+    if digits > _MOST_DECIMALS:
         return ErrorCode.VALUE
-    size = float(shown(number).quantize(Decimal(1).scaleb(-places), context=_WIDE))
+    size = float(shown(number).quantize(Decimal(1).scaleb(-digits), context=_WIDE))
     if math.isinf(size):
         return ErrorCode.NUM
-    text = parse_format(whole + "." * (places > 0) + "0" * places).number(abs(size))
+    text = parse_format(whole + "." * (digits > 0) + "0" * digits).number(abs(size))
     return negative.format(text) if size < 0 else text
 
 

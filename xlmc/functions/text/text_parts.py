@@ -1,6 +1,6 @@
-"""Parts of texts by place and length, texts found in texts, and what is found replaced.
+"""Parts of texts by position and length, texts found in texts, and what is found replaced.
 
-Places count from 1; fractions are dropped. Excel counts texts in UTF-16 units, two for a character beyond the first
+Positions count from 1; fractions are dropped. Excel counts texts in UTF-16 units, two for a character beyond the first
 65,536.
 """
 
@@ -85,7 +85,7 @@ def right(text: str, count: float) -> object:
 @per_element
 @in_units
 def middle(text: str, start: float, count: float) -> object:
-    """So many characters from a place on."""
+    """So many characters from a position on."""
     if start < 1 or count < 0:
         return ErrorCode.VALUE
     first = math.trunc(start) - 1
@@ -96,7 +96,7 @@ def middle(text: str, start: float, count: float) -> object:
 @per_element
 @in_units
 def replace(text: str, start: float, count: float, new: str) -> object:
-    """The text with so many characters from a place on replaced."""
+    """The text with so many characters from a position on replaced."""
     if start < 1 or count < 0:
         return ErrorCode.VALUE
     first = math.trunc(start) - 1
@@ -122,7 +122,7 @@ _WILDCARD: Final = re.compile(r"~[*?~]|.", re.DOTALL)
 @per_element
 @in_units
 def find(wanted: str, text: str, start: float) -> object:
-    """Where a text first stands in another from a place on; capitals count."""
+    """Where a text first stands in another from a position on; capitals count."""
     first = math.trunc(start) - 1
     found = text.find(wanted, first) if 0 <= first <= len(text) else -1
     return ErrorCode.VALUE if found < 0 else found + 1.0
@@ -139,21 +139,21 @@ def search(wanted: str, text: str, start: float) -> object:
 
 
 def _first_fit(wanted: str, text: str, start: int) -> int | None:
-    """The first place where the pattern fits.
+    """The first position where the pattern fits.
 
-    Its pieces between stars follow each other at their first places: if they do not do so from the first place of the
-    first piece, they do so from no later one.
+    Its pieces between stars follow each other at their first positions: if they do not do so from the first position of
+    the first piece, they do so from no later one.
     """
     pieces = _pieces(wanted)
     head = pieces[0].search(text, start)
     if head is None:
         return None
-    place = head.end()
+    position = head.end()
     for piece in pieces[1:]:
-        found = piece.search(text, place)
+        found = piece.search(text, position)
         if found is None:
             return None
-        place = found.end()
+        position = found.end()
     return head.start()
 
 
@@ -182,10 +182,10 @@ def substitute(text: str, old: str, new: str, which: float | None) -> object:
             return ErrorCode.VALUE
         return _unless_too_long(text.replace(old, new))
     parts = text.split(old)
-    place = math.trunc(which)
-    if place >= len(parts):
+    count = math.trunc(which)
+    if count >= len(parts):
         return text
-    return _unless_too_long(old.join(parts[:place]) + new + old.join(parts[place:]))
+    return _unless_too_long(old.join(parts[:count]) + new + old.join(parts[count:]))
 
 
 def _unless_too_long(text: str) -> object:

@@ -91,12 +91,12 @@ def _occurrence(text: str, marks: list[str], number: int, fold: bool, at_end: bo
     far_end = (len(text), len(text)) if number > 0 else (0, 0)
     if "" in marks:
         return (0, 0) if number > 0 else (len(text), len(text))
-    places = [match.span() for match in _delimiter(marks, fold).finditer(text)]
+    spans = [match.span() for match in _delimiter(marks, fold).finditer(text)]
     if at_end:
-        places = [*places, far_end] if number > 0 else [far_end, *places]
-    if abs(number) > len(places):
+        spans = [*spans, far_end] if number > 0 else [far_end, *spans]
+    if abs(number) > len(spans):
         return None
-    return places[number - 1 if number > 0 else number]
+    return spans[number - 1 if number > 0 else number]
 
 
 def _delimiter(marks: Iterable[str], fold: bool) -> re.Pattern[str]:

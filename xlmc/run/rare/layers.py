@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from xlmc.address import Cell
 from xlmc.definitions.model import name_key
 from xlmc.formula import ir
-from xlmc.formula.references import references
+from xlmc.formula.precedents import references
 from xlmc.run.rare.inverting import Inverting, Region, conjuncts
 from xlmc.run.rare.preimage import TURNS
 from xlmc.run.rare.rearranged import Rearranged

@@ -71,7 +71,7 @@ def add_pointers(xml: bytes, part: str, targets: Sequence[tuple[str, str]]) -> t
     document = SplicedXml(xml, part)
     present = [element.attributes.get("Id", "") for element in document.root.children]
     last = max((int(i[3:]) for i in present if i[:3].casefold() == "rid" and i[3:].isdecimal()), default=0)
-    ids = [f"rId{last + 1 + place}" for place in range(len(targets))]
+    ids = [f"rId{last + 1 + index}" for index in range(len(targets))]
     tag = document.prefix(document.root) + "Relationship"
     for pointer, (kind, target) in zip(ids, targets, strict=True):
         document.append(document.root, render(tag, {"Id": pointer, "Type": kind, "Target": target}))
@@ -133,16 +133,16 @@ def _keep_strays_astray(document: SplicedXml, present: int, added: int) -> None:
     """A damaged book may have names of a sheet that does not exist: they must not become names of a new one."""
     holder = document.root.find("definedNames")
     for name in holder.children if holder else ():
-        place = name.attributes.get("localSheetId", "")
-        if place.isdecimal() and int(place) >= present:
-            document.set(name, "localSheetId", int(place) + added)
+        index = name.attributes.get("localSheetId", "")
+        if index.isdecimal() and int(index) >= present:
+            document.set(name, "localSheetId", int(index) + added)
 
 
 def _add_names(document: SplicedXml, new: Iterable[tuple[int, SheetName]]) -> None:
     """Put each name where Excel's order wants it: alphabetical, then by sheet."""
     holder = document.root.find("definedNames")
     present = [(_order(element.attributes), element) for element in (holder.children if holder else ())]
-    names = sorted((_attributes(place, name) for place, name in new), key=lambda found: _order(found[0]))
+    names = sorted((_attributes(index, name) for index, name in new), key=lambda found: _order(found[0]))
     tag = document.prefix(document.root) + "definedName"
     loose = []
     for attributes, text in names:
@@ -163,14 +163,14 @@ def _add_holder(document: SplicedXml, content: str) -> None:
     document.after(before[-1], render(document.prefix(document.root) + "definedNames", {}, content))
 
 
-def _attributes(place: int, name: SheetName) -> tuple[dict[str, str], str]:
-    attributes = {"name": name.name, "localSheetId": str(place)}
+def _attributes(index: int, name: SheetName) -> tuple[dict[str, str], str]:
+    attributes = {"name": name.name, "localSheetId": str(index)}
     return (attributes | {"hidden": "1"} if name.hidden else attributes), name.text
 
 
 def _order(attributes: Mapping[str, str]) -> tuple[str, int]:
-    place = attributes.get("localSheetId", "")
-    return attributes.get("name", "").removeprefix("_xlnm.").casefold(), int(place) if place.isdecimal() else -1
+    index = attributes.get("localSheetId", "")
+    return attributes.get("name", "").removeprefix("_xlnm.").casefold(), int(index) if index.isdecimal() else -1
 
 
 _MARK = "_xlmc_result"
@@ -193,7 +193,7 @@ def marked_sheets(root: Element, part: str) -> list[int]:
         if element.attributes.get("name") == _MARK
     }
     sheets = enumerate(sheet_list(root, part).children)
-    return [place for place, sheet in sheets if (str(place), _text(sheet.attributes.get("name", ""))) in marks]
+    return [index for index, sheet in sheets if (str(index), _text(sheet.attributes.get("name", ""))) in marks]
 
 
 def marked_names(names: Iterable[DefinedName]) -> list[str]:
@@ -205,10 +205,10 @@ def marked_names(names: Iterable[DefinedName]) -> list[str]:
 def without_sheets(document: SplicedXml, gone: Sequence[int]) -> bytes:
     """The workbook part without the sheets at these positions and without their names; other positions close up."""
     sheets = _children(document.root, "sheets")
-    left = [place for place in range(len(sheets)) if place not in gone]
-    visible = next((place for place in left if sheets[place].attributes.get("state", "visible") == "visible"), None)
-    for place in gone:
-        document.remove(sheets[place])
+    left = [index for index in range(len(sheets)) if index not in gone]
+    visible = next((index for index in left if sheets[index].attributes.get("state", "visible") == "visible"), None)
+    for index in gone:
+        document.remove(sheets[index])
     _close_up_names(document, gone)
     _close_up_views(document, gone, shown=left.index(visible) if visible is not None else 0)
     return document.result()
@@ -216,16 +216,16 @@ def without_sheets(document: SplicedXml, gone: Sequence[int]) -> bytes:
 
 def _close_up_names(document: SplicedXml, gone: Sequence[int]) -> None:
     holder, names = document.root.find("definedNames"), _children(document.root, "definedNames")
-    lost = [name for name in names if _place(name) in gone]
+    lost = [name for name in names if _index_of(name) in gone]
     if holder is not None and len(lost) == len(names):
         document.remove(holder)
         return
     for name in names:
-        place = _place(name)
+        index = _index_of(name)
         if name in lost:
             document.remove(name)
-        elif place is not None:
-            _change(document, name, "localSheetId", place - bisect_left(gone, place))
+        elif index is not None:
+            _change(document, name, "localSheetId", index - bisect_left(gone, index))
 
 
 def _close_up_views(document: SplicedXml, gone: Sequence[int], shown: int) -> None:
@@ -233,16 +233,16 @@ def _close_up_views(document: SplicedXml, gone: Sequence[int], shown: int) -> No
     for view in _children(document.root, "bookViews"):
         for attribute in ("activeTab", "firstSheet"):
             text = view.attributes.get(attribute, "0")
-            place = int(text) if text.isdecimal() else 0
-            _change(document, view, attribute, shown if place in gone else place - bisect_left(gone, place))
+            index = int(text) if text.isdecimal() else 0
+            _change(document, view, attribute, shown if index in gone else index - bisect_left(gone, index))
 
 
-def _change(document: SplicedXml, element: Element, attribute: str, place: int) -> None:
-    if element.attributes.get(attribute, "0") != str(place):
-        document.set(element, attribute, place)
+def _change(document: SplicedXml, element: Element, attribute: str, index: int) -> None:
+    if element.attributes.get(attribute, "0") != str(index):
+        document.set(element, attribute, index)
 
 
-def _place(name: Element) -> int | None:
+def _index_of(name: Element) -> int | None:
     text = name.attributes.get("localSheetId", "")
     return int(text) if text.isdecimal() else None
 

@@ -45,7 +45,7 @@ _ITEM = re.compile(rb"<si>(.*?)</si>", re.DOTALL)
 _FORMULA = re.compile(
     rb"(<(?:\w+:)?(?:f|formula|formula1|formula2|calculatedColumnFormula|totalsRowFormula)(?: [^>]*)?>)([^<]*)(?=</)"
 )
-_PLACE = re.compile(rb'(<(?:hyperlink|xdr:sp)\b[^>]*? (?:location|textlink)=")([^"]*)')
+_LOCATION = re.compile(rb'(<(?:hyperlink|xdr:sp)\b[^>]*? (?:location|textlink)=")([^"]*)')
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,12 +100,12 @@ def renamed_in(xml: bytes, renames: Renames) -> bytes:
         text = renames.formula(unescape(match[2].decode()))
         return match[1] + escape(text, quote=False).replace('"', "&quot;").encode()
 
-    return _PLACE.sub(new, _FORMULA.sub(new, xml))
+    return _LOCATION.sub(new, _FORMULA.sub(new, xml))
 
 
 def _cells(body: bytes, strings: Sequence[bytes], cells: Sequence[int]) -> bytes:
     # A cell without a style has the built workbook's first one, which need not be the user's first.
-    style = [b' s="%d"' % place if place else b"" for place in cells]
+    style = [b' s="%d"' % number if number else b"" for number in cells]
 
     def new(match: re.Match[bytes]) -> bytes:
         reference, old, shared, index = match.groups()
@@ -115,8 +115,8 @@ def _cells(body: bytes, strings: Sequence[bytes], cells: Sequence[int]) -> bytes
     return _CELL.sub(new, body)
 
 
-def _numbered(places: Sequence[int]) -> Callable[[re.Match[bytes]], bytes]:
-    return lambda match: match[1] + b"%d" % places[int(match[2])]
+def _numbered(numbers: Sequence[int]) -> Callable[[re.Match[bytes]], bytes]:
+    return lambda match: match[1] + b"%d" % numbers[int(match[2])]
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,26 +165,26 @@ def read_built(parts: Mapping[str, bytes]) -> BuiltBook:
     strings = next((parts[pointer.target] for pointer in pointers.values() if pointer.kind == "sharedStrings"), None)
     return BuiltBook(
         parts=parts,
-        sheets=tuple(_sheet(element, place, names, pointers) for place, element in enumerate(sheets.children)),
+        sheets=tuple(_sheet(element, index, names, pointers) for index, element in enumerate(sheets.children)),
         styles=parts[role.styles],
         strings=tuple(shared_items(strings)),
     )
 
 
-def _sheet(element: Element, place: int, names: Element | None, pointers: Mapping[str, Relationship]) -> BuiltSheet:
+def _sheet(element: Element, index: int, names: Element | None, pointers: Mapping[str, Relationship]) -> BuiltSheet:
     name, pointer = element.attributes["name"], pointers[element.foreign("id") or ""]
     if pointer.kind != "worksheet":
         raise ValueError(f"the result sheet {name!r} must be a worksheet")
     state = element.attributes.get("state")
-    return BuiltSheet(name, pointer.target, pointer.type, state, tuple(_names_of(names, place)))
+    return BuiltSheet(name, pointer.target, pointer.type, state, tuple(_names_of(names, index)))
 
 
-def _names_of(names: Element | None, place: int) -> Iterator[SheetName]:
+def _names_of(names: Element | None, index: int) -> Iterator[SheetName]:
     for element in names.children if names else ():
         attributes = element.attributes
         if "localSheetId" not in attributes:
             raise ValueError(f"the name {attributes['name']!r} must belong to one result sheet")
-        if attributes["localSheetId"] == str(place):
+        if attributes["localSheetId"] == str(index):
             yield SheetName(attributes["name"], element.text, hidden=attributes.get("hidden") == "1")
 
 
@@ -241,7 +241,7 @@ class Carrier:
         for element in document.root.children:
             target = targets[element.attributes["Id"]].target
             raw = element.attributes["Target"]
-            if raw.startswith("#"):  # a link to a place in the workbook
+            if raw.startswith("#"):  # a link within the workbook
                 document.set(element, "Target", "#" + self.renames.formula(raw[1:]))
             elif target in self.names:
                 document.set(element, "Target", relative_target(self.names[part], self.names[target]))

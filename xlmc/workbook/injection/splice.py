@@ -1,4 +1,4 @@
-"""Change a part's XML at named places and leave every other byte as it is.
+"""Change a part's XML where it is told to, and leave every other byte as it is.
 
 Parsing a part and writing it anew loses what xlmc does not know: prefixes, `mc:Ignorable`, extensions, the order of
 attributes. So `parse_spans` finds where each element stands, in bytes, and `SplicedXml` puts changes between them.
@@ -166,7 +166,7 @@ class SplicedXml:
         self._edits.append((element.inner, element.close, escape(text, quote=False).encode()))
 
     def set(self, element: Element, attribute: str, value: object) -> None:
-        """Give an attribute without a prefix a value, in place or as a new last attribute."""
+        """Give an attribute without a prefix a value, where it stands or as a new last attribute."""
         quoted = _quoted(value).encode()
         for match in self._attributes(element):
             if match["name"] == attribute.encode():

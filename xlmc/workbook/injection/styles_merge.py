@@ -1,6 +1,6 @@
 """Add the styles of a built workbook to those of the user's, whose own keep their numbers.
 
-A cell's style is a number: its place in `cellXfs`, an entry of which again names places in `fonts`, `fills`,
+A cell's style is a number: its index in `cellXfs`, an entry of which again gives indices in `fonts`, `fills`,
 `borders` and a number format. In each of these lists an entry is found, or added behind the others. What the user's
 workbook has already is used again, so repeated runs add nothing.
 """
@@ -46,28 +46,28 @@ def merge_styles(styles: bytes, part: str, built: bytes) -> tuple[bytes, StyleMa
     document, source = SplicedXml(styles, part), parse_spans(built, "styles of the result sheets")
     formats = _NumberFormats(document, source)
     lists = {name: _StyleList(document, name) for name in (*_PARTS_OF_A_STYLE.values(), "cellXfs", "dxfs")}
-    places = {name: _place_all(lists[name], source) for name in _PARTS_OF_A_STYLE.values()}
+    indices = {name: _indices(lists[name], source) for name in _PARTS_OF_A_STYLE.values()}
     normal = _normal(document.root)
-    cells = [_cell_style(style, places, formats, normal) for style in _style_entries(source, "cellXfs")]
+    cells = [_cell_style(style, indices, formats, normal) for style in _style_entries(source, "cellXfs")]
     differential = [_differential(style, formats) for style in _style_entries(source, "dxfs")]
     found = StyleMap(
-        cells=tuple(lists["cellXfs"].place(entry) for entry in cells),
-        differential=tuple(lists["dxfs"].place(entry) for entry in differential),
+        cells=tuple(lists["cellXfs"].index_of(entry) for entry in cells),
+        differential=tuple(lists["dxfs"].index_of(entry) for entry in differential),
     )
     for numbered in (formats.list, *lists.values()):  # in the schema's order
         numbered.write()
     return document.result(), found
 
 
-def _place_all(numbered: _StyleList, source: Element) -> list[int]:
-    return [numbered.place(_StyleEntry.of(entry)) for entry in _style_entries(source, numbered.name)]
+def _indices(numbered: _StyleList, source: Element) -> list[int]:
+    return [numbered.index_of(_StyleEntry.of(entry)) for entry in _style_entries(source, numbered.name)]
 
 
 @dataclass(frozen=True, slots=True)
 class _Normal:
-    """The user's style `Normal`: its place (None in a part without styles) and its attributes."""
+    """The user's style `Normal`: its index (None in a part without styles) and its attributes."""
 
-    place: str | None
+    index: str | None
     attributes: Mapping[str, str]
 
 
@@ -75,24 +75,24 @@ def _normal(root: Element) -> _Normal:
     styles = _style_entries(root, "cellStyleXfs")
     # Its name is in the user's language; its built-in number is not.
     named = [style for style in _style_entries(root, "cellStyles") if style.attributes.get("builtinId") == "0"]
-    place = named[0].attributes.get("xfId", "0") if named else "0"
-    if not place.isdecimal() or int(place) >= len(styles):
+    index = named[0].attributes.get("xfId", "0") if named else "0"
+    if not index.isdecimal() or int(index) >= len(styles):
         return _Normal(None, {})
-    return _Normal(place, styles[int(place)].attributes)
+    return _Normal(index, styles[int(index)].attributes)
 
 
 def _cell_style(
-    built: Element, places: Mapping[str, list[int]], formats: _NumberFormats, normal: _Normal
+    built: Element, indices: Mapping[str, list[int]], formats: _NumberFormats, normal: _Normal
 ) -> _StyleEntry:
     """A built cell style in the user's numbers, resting on the user's Normal and saying where it departs from it."""
     entry = _StyleEntry.of(built)
     attributes = dict(entry.attributes)
     attributes["numFmtId"] = formats.number(attributes["numFmtId"])
     for name, numbered in _PARTS_OF_A_STYLE.items():
-        attributes[name] = str(places[numbered][int(attributes[name])])
+        attributes[name] = str(indices[numbered][int(attributes[name])])
     del attributes["xfId"]
-    if normal.place is not None:
-        attributes["xfId"] = normal.place
+    if normal.index is not None:
+        attributes["xfId"] = normal.index
     differs = (flag for name, flag in _FLAGS.items() if attributes[name] != normal.attributes.get(name, "0"))
     return _StyleEntry(entry.local, attributes | dict.fromkeys(differs, "1"), entry.children)
 
@@ -156,15 +156,15 @@ class _StyleList:
         self._new: list[_StyleEntry] = []
         entries = _style_entries(document.root, name)
         self._size = len(entries)
-        self._places = {_StyleEntry.of(entry).key(): place for place, entry in enumerate(entries)}
+        self._known = {_StyleEntry.of(entry).key(): index for index, entry in enumerate(entries)}
 
-    def place(self, entry: _StyleEntry) -> int:
+    def index_of(self, entry: _StyleEntry) -> int:
         """Where the entry is, added if it is new."""
-        place = self._places.setdefault(entry.key(), self._size)
-        if place == self._size:
+        index = self._known.setdefault(entry.key(), self._size)
+        if index == self._size:
             self._new.append(entry)
             self._size += 1
-        return place
+        return index
 
     def write(self) -> None:
         """Splice the new entries in, in a list of their own where the part has none."""
@@ -208,7 +208,7 @@ class _NumberFormats:
         code = code or self._codes[built]
         if code not in self._numbers:
             self._numbers[code] = self._next
-            self.list.place(_StyleEntry("numFmt", {"numFmtId": str(self._next), "formatCode": code}))
+            self.list.index_of(_StyleEntry("numFmt", {"numFmtId": str(self._next), "formatCode": code}))
             self._next += 1
         return str(self._numbers[code])
 

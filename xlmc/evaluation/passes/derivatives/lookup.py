@@ -16,7 +16,7 @@ from xlmc.evaluation.passes.derivatives.jet import Jet, align, concatenate, flat
 from xlmc.evaluation.passes.derivatives.logical import hold_still
 from xlmc.evaluation.passes.derivatives.rules import RULES, DerivativeRule, Operand, Outcome, level_jets, rule
 from xlmc.functions import Function
-from xlmc.functions.lookup.picking import each_part, joined, transposed
+from xlmc.functions.lookup.picked_cells import each_part, joined, transposed
 from xlmc.functions.values import ERROR, LOGICAL, NUMBER, Bools, Value
 
 __all__ = ["Drawer"]

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.functions.lookup.picking import cell_of, flattened, joined, picked, side_by_side, transposed
+from xlmc.functions.lookup.picked_cells import cell_of, flattened, joined, picked, side_by_side, transposed
 from xlmc.functions.values import Value, constant, from_objects
 
 ROWS = [[1.0, "b", True], [None, 5.0, "f"]]

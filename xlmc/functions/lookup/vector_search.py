@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.functions.criteria import is_pattern, pattern_of
-from xlmc.functions.lookup.picking import Places
+from xlmc.functions.lookup.picked_cells import Indices
 from xlmc.functions.ordering import Ordered, searched
 from xlmc.functions.values import ERROR, LOGICAL, NUMBER, TEXT, Bools, Floats, Value
 
@@ -28,7 +28,7 @@ EXACT: Final = 0
 LARGER: Final = 1
 
 
-def nearest(keys: Value, vector: Value, side: int = EXACT, *, last: bool = False, wildcards: bool = False) -> Places:
+def nearest(keys: Value, vector: Value, side: int = EXACT, *, last: bool = False, wildcards: bool = False) -> Indices:
     """Where each key stands in the vector, counted from 0; -1 where nothing is found.
 
     Args:
@@ -42,60 +42,60 @@ def nearest(keys: Value, vector: Value, side: int = EXACT, *, last: bool = False
         The shape of `keys`, with the trials of both.
     """
 
-    def find(keys: Ordered, vector: Ordered) -> Places:
+    def find(keys: Ordered, vector: Ordered) -> Indices:
         result = _in_one(keys, vector, side, last) if len(vector.order) == 1 else _in_many(keys, vector, side, last)
         return _patterns_over(result, keys, vector, last) if wildcards else result
 
     return searched(keys, vector, find)
 
 
-def _in_one(keys: Ordered, vector: Ordered, side: int, last: bool) -> Places:
+def _in_one(keys: Ordered, vector: Ordered, side: int, last: bool) -> Indices:
     """(m, 1) keys in (1, k) values -> (m,): by bisection of the values in order."""
     result = np.full(keys.order.shape[0], -1)
     kinds, order = vector.kinds[0], vector.order[0]
     for kind in np.unique(kinds[kinds < ERROR]):
-        places = np.flatnonzero(kinds == kind)
-        places = places[np.argsort(order[places], kind="stable")]
+        indices = np.flatnonzero(kinds == kind)
+        indices = indices[np.argsort(order[indices], kind="stable")]
         mine = keys.kinds[:, 0] == kind
-        result[mine] = _bisected(order[places], places, keys.order[mine, 0], side, last)
+        result[mine] = _bisected(order[indices], indices, keys.order[mine, 0], side, last)
     return result
 
 
-def _bisected(rising: Floats, places: Places, keys: Floats, side: int, last: bool) -> Places:
-    """The places of the values that the keys find among `rising` ones."""
+def _bisected(rising: Floats, indices: Indices, keys: Floats, side: int, last: bool) -> Indices:
+    """The indices of the values that the keys find among `rising` ones."""
     at = np.searchsorted(rising, keys, "right") - 1 if side == SMALLER else np.searchsorted(rising, keys, "left")
     inside = (at >= 0) & (at < rising.size)
     value = rising[np.where(inside, at, 0)]
     if side == EXACT:
         inside &= value == keys
     chosen = np.searchsorted(rising, value, "right") - 1 if last else np.searchsorted(rising, value, "left")
-    return np.where(inside, places[chosen], -1)
+    return np.where(inside, indices[chosen], -1)
 
 
-def _in_many(keys: Ordered, vector: Ordered, side: int, last: bool) -> Places:
+def _in_many(keys: Ordered, vector: Ordered, side: int, last: bool) -> Indices:
     """(m, 1) keys, each in its own row of (m, k) values -> (m,)."""
     same_kind = (vector.kinds == keys.kinds) & (vector.kinds < ERROR)
     if side == EXACT:
-        return _place_of(same_kind & (vector.order == keys.order), last)
+        return _index_of(same_kind & (vector.order == keys.order), last)
     allowed = same_kind & (vector.order <= keys.order if side == SMALLER else vector.order >= keys.order)
     worst = -np.inf if side == SMALLER else np.inf
     within = np.where(allowed, vector.order, worst)
     best = within.max(axis=1, keepdims=True) if side == SMALLER else within.min(axis=1, keepdims=True)
-    return _place_of(allowed & (vector.order == best), last)
+    return _index_of(allowed & (vector.order == best), last)
 
 
-def _place_of(hits: Bools, last: bool) -> Places:
+def _index_of(hits: Bools, last: bool) -> Indices:
     """The first hit of each row, or the last; -1 where there is none."""
-    place = hits.shape[1] - 1 - hits[:, ::-1].argmax(axis=1) if last else hits.argmax(axis=1)
-    return np.where(hits.any(axis=1), place, -1)
+    index = hits.shape[1] - 1 - hits[:, ::-1].argmax(axis=1) if last else hits.argmax(axis=1)
+    return np.where(hits.any(axis=1), index, -1)
 
 
-def _patterns_over(result: Places, keys: Ordered, vector: Ordered, last: bool) -> Places:
+def _patterns_over(result: Indices, keys: Ordered, vector: Ordered, last: bool) -> Indices:
     """What keys with wildcards find, over what they found as plain texts: (m,)."""
     is_text, order = keys.kinds[:, 0] == TEXT, keys.order[:, 0]
     for rank in np.unique(order[is_text]).astype(np.intp):
         if is_pattern(keys.texts[rank]):
-            found = _place_of(_fitting(vector, keys.texts[rank]), last)
+            found = _index_of(_fitting(vector, keys.texts[rank]), last)
             result = np.where(is_text & (order == rank), found, result)
     return result
 
@@ -107,7 +107,7 @@ def _fitting(vector: Ordered, pattern: str) -> Bools:
     return np.asarray(is_text & np.isin(vector.order, fitting))
 
 
-def last_not_beyond(keys: Value, vector: Value, *, falling: bool = False) -> Places:
+def last_not_beyond(keys: Value, vector: Value, *, falling: bool = False) -> Indices:
     """Where each key, or else what comes before it, stands in a vector in order; -1 for nowhere.
 
     Args:
@@ -120,7 +120,7 @@ def last_not_beyond(keys: Value, vector: Value, *, falling: bool = False) -> Pla
     """
     sign = -1.0 if falling else 1.0
 
-    def find(keys: Ordered, vector: Ordered) -> Places:
+    def find(keys: Ordered, vector: Ordered) -> Indices:
         result = np.full(len(keys.order), -1)
         for kind in (NUMBER, TEXT, LOGICAL):
             mine = np.flatnonzero(keys.kinds[:, 0] == kind)
@@ -134,8 +134,8 @@ def last_not_beyond(keys: Value, vector: Value, *, falling: bool = False) -> Pla
     return searched(keys, vector, find)
 
 
-def _halved(keys: Floats, comparable: Bools, order: Floats) -> Places:
-    """The places of keys (m,) in values of (m, k) or, for all keys, (1, k)."""
+def _halved(keys: Floats, comparable: Bools, order: Floats) -> Indices:
+    """The indices of keys (m,) in values of (m, k) or, for all keys, (1, k)."""
     if len(order) == 1 and comparable.all() and (order[0, :-1] <= order[0, 1:]).all():
         return np.searchsorted(order[0], keys, side="right") - 1  # what halving comes to where all is in order
     return _Values.of(comparable, order).halved(keys)
@@ -147,13 +147,13 @@ class _Values:
 
     Attributes:
         order: what to compare with the keys.
-        ahead: the first place, from here on, of a value of the keys' kind; k where there is none.
-        run_end: the last place of the equal values side by side that begin here.
+        ahead: the first index, from here on, of a value of the keys' kind; k where there is none.
+        run_end: the last index of the equal values side by side that begin here.
     """
 
     order: Floats
-    ahead: Places
-    run_end: Places
+    ahead: Indices
+    run_end: Indices
 
     @classmethod
     def of(cls, comparable: Bools, order: Floats) -> _Values:
@@ -162,27 +162,27 @@ class _Values:
         goes_on[:, :-1] = both & (order[:, :-1] == order[:, 1:])
         return cls(order, _next(comparable), _next(~goes_on))
 
-    def halved(self, keys: Floats) -> Places:
-        """The place of each key, (m,). Between `low`, not beyond the key, and `high`, beyond it, all is open."""
+    def halved(self, keys: Floats) -> Indices:
+        """The index of each key, (m,). Between `low`, not beyond the key, and `high`, beyond it, all is open."""
         k = self.order.shape[1]
         rows = np.arange(len(keys)) if len(self.order) > 1 else np.zeros(1, np.intp)
         low, high = np.full(keys.shape, -1), np.full(keys.shape, k)
         while (open_ := high - low > 1).any():
             middle = np.where(open_, (low + high) // 2, 0)
-            place = self.ahead[rows, middle]
-            inside = open_ & (place < high)
-            value = self.order[rows, np.where(inside, place, 0)]
+            index = self.ahead[rows, middle]
+            inside = open_ & (index < high)
+            value = self.order[rows, np.where(inside, index, 0)]
             equal, below = inside & (value == keys), inside & (value < keys)
             above = open_ & ~equal & ~below
-            stepped = np.where(inside & (place < high - 1), place, middle)
-            run_end = np.minimum(self.run_end[rows, np.where(inside, place, 0)], high - 1)
-            low = np.where(equal, run_end, np.where(below, place, low))
+            stepped = np.where(inside & (index < high - 1), index, middle)
+            run_end = np.minimum(self.run_end[rows, np.where(inside, index, 0)], high - 1)
+            low = np.where(equal, run_end, np.where(below, index, low))
             high = np.where(equal, low + 1, np.where(above, stepped, high))
         return low
 
 
-def _next(wanted: Bools) -> Places:
-    """The first wanted place of each row from every place on; the row's length where there is none."""
+def _next(wanted: Bools) -> Indices:
+    """The first wanted index of each row from every index on; the row's length where there is none."""
     k = wanted.shape[1]
-    places = np.where(wanted, np.arange(k), k)
-    return np.asarray(np.minimum.accumulate(places[:, ::-1], axis=1)[:, ::-1])
+    indices = np.where(wanted, np.arange(k), k)
+    return np.asarray(np.minimum.accumulate(indices[:, ::-1], axis=1)[:, ::-1])

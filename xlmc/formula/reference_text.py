@@ -1,15 +1,35 @@
-"""Structured references, `Table1[[#This Row],[a]:[b]]`: the text between the outer brackets to a node.
+"""How formulas write references: cells and names with their sheets, and columns of tables.
 
-A `'` escapes `[ ] # '` and `@` in column names.
+In a structured reference, `Table1[[#This Row],[a]:[b]]`, a `'` escapes `[ ] # '` and `@` in column names.
 """
 
 from __future__ import annotations
 
 import re
 
+from xlmc.address import MAX_COLUMN, MAX_ROW, column_number
 from xlmc.formula import ir
 
-__all__ = ["TABLE_REFERENCE", "parse_table_reference"]
+__all__ = [
+    "CELL",
+    "NAME",
+    "PREFIX",
+    "REFERENCE",
+    "TABLE_REFERENCE",
+    "corner",
+    "is_on_the_sheet",
+    "parse_table_reference",
+    "prefix",
+]
+
+_SHEET = r"[^\W\d][\w.]*"
+PREFIX = rf"(?:'(?P<quoted>(?:[^']|'')+)'|(?P<book>\[[^\[\]]+\])?(?P<sheet>{_SHEET}(?::{_SHEET})?)?)!"
+"""Matches a sheet, or the first and the last of several, with the workbook's number before it; see `prefix`."""
+
+CELL = r"\$?[A-Za-z]{1,3}\$?[1-9][0-9]{0,6}"
+REFERENCE = rf"(?P<name>{CELL}(?::{CELL})?|\$?[A-Za-z]{{1,3}}:\$?[A-Za-z]{{1,3}}|\$?[1-9][0-9]*:\$?[1-9][0-9]*)"
+NAME = r"(?P<name>[^\W\d][\w.\\?]*|\\[\w.\\?]*)"
+_CORNER = re.compile(r"(?P<cf>\$?)(?P<c>[A-Za-z]{1,3})?(?P<rf>\$?)(?P<r>[0-9]+)?")
 
 _PLAIN = r"(?:'.|[^\[\]'])*"
 _INNER = rf"(?:{_PLAIN}(?:\[{_PLAIN}\]{_PLAIN})*)"
@@ -20,6 +40,32 @@ _PIECE = re.compile(rf"\s*(?:\[(?P<name>{_PLAIN})\]|(?P<sign>[,:]))\s*", re.DOTA
 _ORDER = re.compile(r"(?:i(?:,i)*(?:,c(?::c)?)?|c(?::c)?)?")
 _ORDER_OF_THIS_ROW = re.compile(r"(?:c(?::c)?)?")
 """How items (`i`, with a `#`) and columns (`c`) may follow each other."""
+
+
+def prefix(groups: dict[str, str]) -> tuple[str | None, str | None, str | None]:
+    """Sheet, last sheet and external book of a reference, from the groups of `PREFIX`."""
+    text = groups["quoted"].replace("''", "'") if "quoted" in groups else groups.get("sheet", "")
+    book = groups.get("book")
+    if "quoted" in groups and "]" in text:
+        book, _, text = text.rpartition("]")
+        book += "]"
+    first, _, last = text.partition(":")
+    return first or None, last or None, book
+
+
+def corner(text: str) -> ir.Corner:
+    """The cell `$A$1`, column `A` or row `1` of a matched `REFERENCE`, as one of its ends."""
+    found = _CORNER.fullmatch(text)
+    assert found is not None  # `REFERENCE` matches nothing else
+    row, column = found["r"], found["c"]
+    if column is None:  # a whole row, `$3`: the `$` was read as the column's
+        return ir.Corner(int(row), None, bool(found["cf"] or found["rf"]), False)
+    return ir.Corner(int(row) if row else None, column_number(column), bool(found["rf"]), bool(found["cf"]))
+
+
+def is_on_the_sheet(end: ir.Corner) -> bool:
+    """Whether Excel's sheets have such a row and column."""
+    return (end.row or 1) <= MAX_ROW and (end.column or 1) <= MAX_COLUMN
 
 
 def parse_table_reference(table: str | None, inner: str) -> ir.TableReference:

@@ -1,6 +1,6 @@
-"""Quantiles and ranks. Letters: n trials, m places that are asked for.
+"""Quantiles and ranks. Letters: n trials, m ranks that are asked for.
 
-The numbers of a sample in rising order stand at whole places; between them Excel goes straight.
+The numbers of a sample in rising order stand at whole ranks; between them Excel goes straight.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ _THREE: Final = np.full((1, 1), 3.0)
 _FALLING: Final = np.zeros((1, 1))
 
 
-def _between(sample: Sample, places: Floats) -> Floats:
-    """What stands at places (n, m), counted from 0; any number where they lie outside."""
+def _between(sample: Sample, ranks: Floats) -> Floats:
+    """What stands at ranks (n, m), counted from 0; any number where they lie outside."""
     last = np.maximum(sample.size - 1, 0.0)
-    low = np.floor(np.clip(places, 0.0, last))
+    low = np.floor(np.clip(ranks, 0.0, last))
     ordered = np.where(np.isinf(ordered := sample.ordered()), 0.0, ordered)
-    start, end = (_taken(ordered, np.minimum(place, last)) for place in (low, low + 1))
-    return start + (np.clip(places, 0.0, last) - low) * (end - start)
+    start, end = (_taken(ordered, np.minimum(rank, last)) for rank in (low, low + 1))
+    return start + (np.clip(ranks, 0.0, last) - low) * (end - start)
 
 
-def _taken(ordered: Floats, places: Floats) -> Floats:
-    return np.asarray(np.take_along_axis(ordered, places.astype(np.intp), axis=1))
+def _taken(ordered: Floats, ranks: Floats) -> Floats:
+    return np.asarray(np.take_along_axis(ordered, ranks.astype(np.intp), axis=1))
 
 
 def _inclusive(sample: Sample, share: Floats) -> Floats:
@@ -41,10 +41,10 @@ def _inclusive(sample: Sample, share: Floats) -> Floats:
 
 
 def _exclusive(sample: Sample, share: Floats) -> Floats:
-    """Excel counts the places from 1, of n numbers, and gives 0 and n + 1 to the ends that no sample reaches."""
-    place = share * (sample.size + 1)
-    inside = (place >= 1) & (place <= sample.size)
-    return np.where(inside, _between(sample, np.where(inside, place, 1.0) - 1), NUM)
+    """Excel counts the ranks from 1, of n numbers, and gives 0 and n + 1 to the ends that no sample reaches."""
+    rank = share * (sample.size + 1)
+    inside = (rank >= 1) & (rank <= sample.size)
+    return np.where(inside, _between(sample, np.where(inside, rank, 1.0) - 1), NUM)
 
 
 @excel(
@@ -87,8 +87,8 @@ def quartile_exclusive(sample: Sample, quarters: Floats) -> Floats:
     return _exclusive(sample, np.floor(quarters) / 4)
 
 
-def _place_of(sample: Sample, x: Floats) -> tuple[Floats, Bools]:
-    """The place of numbers (n, m) in the sample, counted from 0, and whether they lie inside it."""
+def _rank_of(sample: Sample, x: Floats) -> tuple[Floats, Bools]:
+    """The rank of numbers (n, m) in the sample, counted from 0, and whether they lie inside it."""
     below, equal = sample.how_many(np.less, x), sample.how_many(np.equal, x)
     inside = (equal > 0) | ((below > 0) & (below < sample.size))
     ordered = np.where(np.isinf(ordered := sample.ordered()), 0.0, ordered)
@@ -120,8 +120,8 @@ def _rank_errors(sample: Sample, inside: Bools, digits: Floats, share: Floats) -
 @at_each()
 def percent_rank(sample: Sample, x: Floats, digits: Floats = _THREE) -> Floats:
     """The share of the sample below a number, 0 to 1, cut to so many digits; `#N/A` outside the sample."""
-    place, inside = _place_of(sample, x)
-    share = np.where(sample.size > 1, place / np.maximum(sample.size - 1, 1.0), 1.0)
+    rank, inside = _rank_of(sample, x)
+    share = np.where(sample.size > 1, rank / np.maximum(sample.size - 1, 1.0), 1.0)
     return _rank_errors(sample, inside, digits, np.where(inside, share, 0.0))
 
 
@@ -129,8 +129,8 @@ def percent_rank(sample: Sample, x: Floats, digits: Floats = _THREE) -> Floats:
 @at_each()
 def percent_rank_exclusive(sample: Sample, x: Floats, digits: Floats = _THREE) -> Floats:
     """The share of the sample below a number, ends excluded, cut to so many digits; `#N/A` outside the sample."""
-    place, inside = _place_of(sample, x)
-    return _rank_errors(sample, inside, digits, np.where(inside, (place + 1) / (sample.size + 1), 0.0))
+    rank, inside = _rank_of(sample, x)
+    return _rank_errors(sample, inside, digits, np.where(inside, (rank + 1) / (sample.size + 1), 0.0))
 
 
 def _rank(x: Floats, sample: Sample, rising: Floats) -> tuple[Floats, Floats]:

@@ -1,7 +1,7 @@
 import pytest
 
 from xlmc.errors import ErrorCode
-from xlmc.workbook.values import CellContext, convert
+from xlmc.workbook.cell_values import CellContext, convert
 
 CONTEXT = CellContext(strings=("zero", "one"))
 

@@ -22,7 +22,7 @@ _FORMULA_CELL: Final = re.compile(
 _DATA_TABLE: Final = re.compile(rb"""<(?:\w+:)?f\b[^>]*\bt\s*=\s*["']dataTable["'][^>]*>""")
 _REFERENCE: Final = re.compile(rb"""\bref\s*=\s*(["'])(.*?)\1""")
 _VALUE_CELL: Final = re.compile(
-    rb"""(?P<cell><(?:\w+:)?c\b[^>]*?\br\s*=\s*["'](?P<place>[A-Z]{1,3}[1-9][0-9]*)["'][^>]*>)"""
+    rb"""(?P<cell><(?:\w+:)?c\b[^>]*?\br\s*=\s*["'](?P<position>[A-Z]{1,3}[1-9][0-9]*)["'][^>]*>)"""
     rb"(?:<(?:\w+:)?v\b(?:[^>]*/>|[^>]*>[^<]*</(?:\w+:)?v>))"
 )
 _TYPE: Final = re.compile(rb"""\s+t\s*=\s*(?:"[^"]*"|'[^']*')""")
@@ -40,9 +40,9 @@ def with_values(xml: bytes, part: str, values: Mapping[tuple[int, int], CellValu
         WorkbookError: the part is not XML.
     """
     document = SplicedXml(xml, part)
-    for place, cell in _cells(document.root):
-        if place in values:
-            _put(document, cell, values[place])
+    for position, cell in _cells(document.root):
+        if position in values:
+            _put(document, cell, values[position])
     return document.result()
 
 
@@ -72,7 +72,7 @@ def _without_tables(xml: bytes) -> bytes:
         return xml
 
     def bare(found: re.Match[bytes]) -> bytes:
-        cell = parse_address(found["place"].decode(), "-")
+        cell = parse_address(found["position"].decode(), "-")
         inside = isinstance(cell, Cell) and any(cell in area for area in areas)
         return _TYPE.sub(b"", found["cell"]) if inside else found[0]
 
@@ -92,7 +92,7 @@ def _bare(found: re.Match[bytes]) -> bytes:
 
 
 def _cells(root: Element) -> Iterator[tuple[tuple[int, int], Element]]:
-    """Every cell with its place; rows and cells that name none follow the one before."""
+    """Every cell with its position; rows and cells that name none follow the one before."""
     data = root.find("sheetData")
     row_number = 0
     for row in data.find_all("row") if data is not None else ():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.errors import ErrorCode
-from xlmc.workbook.injection.cached_values import with_values, without_formula_values
+from xlmc.workbook.injection.formula_values import with_values, without_formula_values
 
 SHEET = "<worksheet xmlns='m'><sheetData><row r='2'>{}</row></sheetData></worksheet>"
 

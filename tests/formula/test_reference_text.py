@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.formula.ir import TableReference
-from xlmc.formula.table_reference import parse_table_reference
+from xlmc.formula.reference_text import parse_table_reference
 
 
 @pytest.mark.parametrize(

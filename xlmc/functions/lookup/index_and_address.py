@@ -20,7 +20,7 @@ from xlmc.functions.arguments import (
     with_errors,
 )
 from xlmc.functions.facts import Facts
-from xlmc.functions.lookup.picking import Places, cell_of, picked
+from xlmc.functions.lookup.picked_cells import Indices, cell_of, picked
 from xlmc.functions.per_element import per_element
 from xlmc.functions.registry import Anything, Arrays, Cells, Kind, Number, Ranges, Text, excel
 from xlmc.functions.values import Codes, Floats, Value, constant
@@ -52,13 +52,13 @@ def index(cells: Value, row: Value, column: Value | None = None, area: Value | N
     row, column = (row, column) if column is not None else _alone(row, grid)
     row, column, area = leveled(row, column, constant(1) if area is None else area)
     (rows, wrong_row), (columns, wrong_column), (areas, wrong_area) = map(whole_numbers, (row, column, area))
-    row_places, off_rows = _places(rows, wrong_row, grid.shape[1], axis=1)
-    column_places, off_columns = _places(columns, wrong_column, grid.shape[2], axis=2)
+    row_indices, off_rows = _indices(rows, wrong_row, grid.shape[1], axis=1)
+    column_indices, off_columns = _indices(columns, wrong_column, grid.shape[2], axis=2)
     no_area = earliest(where_wrong(areas < 1, ErrorCode.VALUE), where_wrong(areas > 1, ErrorCode.REF))
     codes = (direct_errors(cells), wrong_row, wrong_column, wrong_area, off_rows, off_columns, no_area)
-    many = max(row_places.ndim, column_places.ndim) == 3
-    places = [_spread(places, many) for places in (row_places, column_places)]
-    found = with_errors(picked(grid, *places), earliest(*(_spread(part, many) for part in codes)))
+    many = max(row_indices.ndim, column_indices.ndim) == 3
+    indices = [_spread(indices, many) for indices in (row_indices, column_indices)]
+    found = with_errors(picked(grid, *indices), earliest(*(_spread(part, many) for part in codes)))
     return cell_of(found, 0, 0) if cells.numbers.ndim == 1 else found
 
 
@@ -70,8 +70,8 @@ def _alone(number: Value, grid: Value) -> tuple[Value, Value]:
     return number, constant(1 if columns == 1 else 0)
 
 
-def _places(numbers: Floats, errors: Codes, size: int, axis: int) -> tuple[Places, Codes]:
-    """Places counted from 0, and where they are off the range; all places along the axis if the number is 0."""
+def _indices(numbers: Floats, errors: Codes, size: int, axis: int) -> tuple[Indices, Codes]:
+    """Indices counted from 0, and where they are off the range; all along the axis if the number is 0."""
     if numbers.ndim == 1 and same_in_all_trials((numbers == 0) & (errors == 0)):
         return np.arange(size).reshape(1, *(size if a == axis else 1 for a in (1, 2))), np.zeros(1, np.uint8)
     off = earliest(where_wrong(numbers < 1, ErrorCode.VALUE), where_wrong(numbers > size, ErrorCode.REF))
@@ -138,10 +138,10 @@ def _address(row: float, column: float, fixed: float, a1: bool, sheet: str | Non
         return ErrorCode.VALUE
     row_fixed, column_fixed = fixed in (1, 2), fixed in (1, 3)
     if a1:
-        place = f"{'$' * column_fixed}{column_letters(column)}{'$' * row_fixed}{row}"
+        written = f"{'$' * column_fixed}{column_letters(column)}{'$' * row_fixed}{row}"
     else:
-        place = f"R{row if row_fixed else f'[{row}]'}C{column if column_fixed else f'[{column}]'}"
-    return place if sheet is None else f"{_quoted(sheet)}!{place}"
+        written = f"R{row if row_fixed else f'[{row}]'}C{column if column_fixed else f'[{column}]'}"
+    return written if sheet is None else f"{_quoted(sheet)}!{written}"
 
 
 def _quoted(sheet: str) -> str:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from xlmc.functions.values import Objects, ShapeVaries, Value
 
 __all__ = [
-    "Places",
+    "Indices",
     "by_portions",
     "cell_of",
     "each_part",
@@ -26,7 +26,7 @@ __all__ = [
     "width_of",
 ]
 
-Places = NDArray[np.intp]
+Indices = NDArray[np.intp]
 
 
 def each_part(value: Value, change: Callable[[NDArray[Any]], NDArray[Any]]) -> Value:
@@ -46,8 +46,8 @@ def transposed(cells: Value) -> Value:
     return each_part(cells, lambda part: part.swapaxes(1, 2))
 
 
-def picked(cells: Value, rows: Places, columns: Places) -> Value:
-    """The cell at a row and a column, counted from 0, of each trial; all places must lie inside.
+def picked(cells: Value, rows: Indices, columns: Indices) -> Value:
+    """The cell at a row and a column, counted from 0, of each trial; all must lie inside.
 
     `rows` and `columns`, (n,) or (n, r, c) each, broadcast to the result's shape.
     """
@@ -61,7 +61,7 @@ def cell_of(values: Value, row: int, column: int) -> Value:
     """One cell of a range: (n, r, c) -> (n,). A single row, column or value stands for all of them."""
     if values.numbers.ndim == 1:
         return values
-    row, column = (min(place, size - 1) for place, size in zip((row, column), values.shape[1:], strict=True))
+    row, column = (min(index, size - 1) for index, size in zip((row, column), values.shape[1:], strict=True))
     return each_part(values, lambda part: part[:, row, column])
 
 

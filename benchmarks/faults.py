@@ -114,7 +114,7 @@ def fill_columns(folder: Path, values: int) -> None:
     before, tempfile.tempdir = tempfile.tempdir, str(folder)
     limits, column_store.IN_MEMORY, column_store.WRITTEN = (column_store.IN_MEMORY, column_store.WRITTEN), 0, 0  # type: ignore[misc]
     try:
-        keeper = column_store.Keeper({"a": np.dtype(np.float64)})
+        keeper = column_store.ColumnStore({"a": np.dtype(np.float64)})
         for _ in range(values // 1_000):
             keeper.add("a", np.ones(1_000))
             keeper.settle()

@@ -3,14 +3,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.columns import Keeper, column_store, on_disk
+from xlmc.columns import ColumnStore, column_store, on_disk
 
 TYPES = {"x": np.dtype(np.float64), "n": np.dtype(np.int64), "never": np.dtype(np.float64)}
 NAMES = {"speed": "x", "trial": "n", "none": "never"}
 
 
 def filled(blocks):
-    keeper, expected = Keeper(TYPES), {"speed": [], "trial": [], "none": []}
+    keeper, expected = ColumnStore(TYPES), {"speed": [], "trial": [], "none": []}
     rng = np.random.default_rng(1)
     for _ in range(blocks):
         size = int(rng.integers(0, 400))
@@ -38,7 +38,7 @@ def test_columns_are_what_was_added(monkeypatch, blocks, in_memory):
 
 
 def test_every_column_of_a_keeper_may_be_asked_for_twice():
-    keeper = Keeper(TYPES)
+    keeper = ColumnStore(TYPES)
     keeper.add("x", np.ones(3))
     keeper.add("x", np.zeros(1))
     assert keeper.columns({"a": "x"})["a"].tolist() == keeper.columns({"b": "x"})["b"].tolist() == [1, 1, 1, 0]

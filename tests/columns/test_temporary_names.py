@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import pytest
 
 from xlmc.columns import temporary_names
-from xlmc.columns.column_store import Keeper
+from xlmc.columns.column_store import ColumnStore
 from xlmc.columns.temporary_names import new_file_name, new_folder_name, owned, remove_stray_files, remove_stray_folders
 
 
@@ -64,7 +64,7 @@ def test_folders_of_dead_processes_go_with_the_next_run(tmp_path, monkeypatch, d
     for name in (stray, living, "xlmc-notes"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "0.column").write_bytes(b"123")
-    Keeper({})
+    ColumnStore({})
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([living, "xlmc-notes"])
 
 

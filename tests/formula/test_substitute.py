@@ -7,7 +7,7 @@ import pytest
 from xlmc.address import Cell, InFormula, host_of
 from xlmc.formula import formula_text, ir, parse
 from xlmc.formula.resolve import Resolver
-from xlmc.formula.substitute import is_bound, substituted
+from xlmc.formula.substitute import is_bound, substitute
 
 HOST = Cell("S", 1, 1)
 
@@ -33,7 +33,7 @@ def test_every_part_is_found(resolved, text):
     def change(part):
         return ir.Number(7.0) if isinstance(part, ir.Call) and part.name == "X" else None
 
-    assert formula_text(substituted(resolved(text), change)) == REPLACED[text]
+    assert formula_text(substitute(resolved(text), change)) == REPLACED[text]
 
 
 def test_the_order_is_from_without_and_from_the_left(resolved):
@@ -43,12 +43,12 @@ def test_the_order_is_from_without_and_from_the_left(resolved):
         if isinstance(part, ir.Call):
             asked.append(part.name)
 
-    substituted(resolved("F(G(1),H(2))+K(3)*L(4)"), look)
+    substitute(resolved("F(G(1),H(2))+K(3)*L(4)"), look)
     assert asked == list("FGHKL")
 
 
 def test_a_long_sum(resolved):
-    tree = substituted(resolved("+".join(["X()"] * 500)), lambda p: ir.Number(1.0) if p == ir.Call("X", ()) else None)
+    tree = substitute(resolved("+".join(["X()"] * 500)), lambda p: ir.Number(1.0) if p == ir.Call("X", ()) else None)
     assert formula_text(tree).count("1.0") == 500
 
 

@@ -4,14 +4,14 @@ Flat files rather than Parquet: they need no further library, any rank of a colu
 column is an ordinary array to whoever reads it. Parquet is a format to hand results on in, not to work in.
 """
 
-from xlmc.columns.column_store import Columns, Folder, Keeper, on_disk, release
+from xlmc.columns.column_store import Columns, ColumnStore, Folder, on_disk, release
 from xlmc.columns.passes import PART, ascending, numbers, pairwise_sum, parts, picked
 
 __all__ = [
     "PART",
+    "ColumnStore",
     "Columns",
     "Folder",
-    "Keeper",
     "ascending",
     "numbers",
     "on_disk",

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from xlmc.columns.temporary_names import new_folder_name, owned, remove_stray_folders
 from xlmc.errors import SimulationError
 
-__all__ = ["IN_MEMORY", "Columns", "Folder", "Keeper", "mapped", "on_disk", "release"]
+__all__ = ["IN_MEMORY", "ColumnStore", "Columns", "Folder", "mapped", "on_disk", "release"]
 
 
 class _Mapping(mmap.mmap):
@@ -70,7 +70,7 @@ class Folder:
     """
 
     def __init__(self) -> None:
-        with _told(None):
+        with _naming_folder(None):
             self.path = Path(tempfile.gettempdir(), new_folder_name())
             kept = ExitStack()
             kept.enter_context(owned(self.path.name))
@@ -83,7 +83,7 @@ class Folder:
         Raises:
             SimulationError: the disk is full, or the folder cannot be written to.
         """
-        with _told(self.path), (self.path / name).open("ab") as file:
+        with _naming_folder(self.path), (self.path / name).open("ab") as file:
             for array in arrays:
                 file.write(array.data)
 
@@ -93,12 +93,12 @@ class Folder:
         Raises:
             SimulationError: the file cannot be read.
         """
-        with _told(self.path):
+        with _naming_folder(self.path):
             return mapped(self.path / name, dtype)
 
     def remove(self, name: str) -> None:
         """Delete a file, if it is there; where an open file cannot be deleted, it goes with the folder."""
-        with _told(self.path):
+        with _naming_folder(self.path):
             try:
                 (self.path / name).unlink(missing_ok=True)
             except PermissionError:  # Windows, while an array is mapped
@@ -112,7 +112,7 @@ def _remove(path: Path, owner: int, kept: ExitStack) -> None:
 
 
 @contextmanager
-def _told(path: Path | None) -> Iterator[None]:
+def _naming_folder(path: Path | None) -> Iterator[None]:
     """Failures of the disk in words."""
     try:
         yield
@@ -152,7 +152,7 @@ class Columns(Mapping[str, Array]):
         return len(self._files)
 
 
-class Keeper:
+class ColumnStore:
     """Collects columns; the arrays it is given are its own from then on. Folders that killed runs left are removed.
 
     Args:
@@ -196,11 +196,11 @@ class Keeper:
             SimulationError: there is no room on the disk.
         """
         if self._folder is None:
-            return {name: self._joined(key) for name, key in keys.items()}
+            return {name: self._join(key) for name, key in keys.items()}
         self._write()
         return Columns(self._folder, {name: (self._files[key], self._types[key]) for name, key in keys.items()})
 
-    def _joined(self, key: Hashable) -> Array:
+    def _join(self, key: Hashable) -> Array:
         if len(self._waiting[key]) != 1:
             self._waiting[key] = [np.concatenate([np.empty(0, self._types[key]), *self._waiting[key]])]
         return self._waiting[key][0]

@@ -35,7 +35,7 @@ def seen_from(
     """
     first, last = (_position(corner, host, origin) for corner in (tree.first, tree.last or tree.first))
     if wraps:
-        first, last = _wrapped(first), _wrapped(last)
+        first, last = _wrap(first), _wrap(last)
     if not (_inside(first) and _inside(last)):
         return _REF
     top, bottom = _sorted(first[0], last[0]) or (1, MAX_ROW)
@@ -58,7 +58,7 @@ def _inside(position: _Position) -> bool:
     return (row is None or 1 <= row <= MAX_ROW) and (column is None or 1 <= column <= MAX_COLUMN)
 
 
-def _wrapped(position: _Position) -> _Position:
+def _wrap(position: _Position) -> _Position:
     row, column = position
     return (
         None if row is None else (row - 1) % MAX_ROW + 1,

@@ -47,7 +47,7 @@ def linked_sheet(workbook: Workbook, book: str, name: str | None, host: Cell) ->
     sheets = {title.casefold(): title for title in linked.sheets}
     found = sheets.get((host.sheet if name is None else f"{book}{name}").casefold())
     if found is None:
-        raise FormulaError(f"refers to {_told(linked)}, of which no values are stored", hint=COPY)
+        raise FormulaError(f"refers to {_name_of(linked)}, of which no values are stored", hint=COPY)
     return found
 
 
@@ -63,9 +63,9 @@ def linked_name(workbook: Workbook, book: str, name: ir.Name) -> DefinedName:
     only = next(iter(named.values())) if len(named) == 1 and scope is None else None
     found = named.get(scope) or named.get(None) or only
     if found is None:
-        raise FormulaError(f"refers to {name.name!r} of {_told(linked)}, which is not stored", hint=COPY)
+        raise FormulaError(f"refers to {name.name!r} of {_name_of(linked)}, which is not stored", hint=COPY)
     return found
 
 
-def _told(linked: LinkedBook) -> str:
+def _name_of(linked: LinkedBook) -> str:
     return linked.file or "another workbook"

@@ -113,11 +113,11 @@ class Resolver:
         if self._depth > _DEEPEST or self._parts > _LONGEST:
             size = f"nested deeper than {_DEEPEST} levels" if self._depth > _DEEPEST else "too long"
             raise FormulaError(f"with its names written out, the formula is {size}", hint="split it over several cells")
-        resolved = self._resolved(tree, host, origin)
+        resolved = self._resolve_node(tree, host, origin)
         self._depth -= 1
         return resolved
 
-    def _resolved(self, tree: ir.Expression, host: Cell, origin: tuple[int, int]) -> ir.Expression:
+    def _resolve_node(self, tree: ir.Expression, host: Cell, origin: tuple[int, int]) -> ir.Expression:
         match tree:
             case ir.Reference():
                 return self._reference(tree, host, origin)

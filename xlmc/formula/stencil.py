@@ -74,9 +74,9 @@ class Stencil:
 
         def moved(target: Cell | Area) -> Cell | Area:
             rows, columns = self._moves[id(target)]
-            return _shifted(target, down * rows, right * columns)
+            return _shift(target, down * rows, right * columns)
 
-        return _rebuilt(self.tree, moved)
+        return _rebuild(self.tree, moved)
 
 
 def _cells(target: Cell | Area) -> Iterator[Cell]:
@@ -86,7 +86,7 @@ def _cells(target: Cell | Area) -> Iterator[Cell]:
         yield from target.cells()
 
 
-def _shifted(target: Cell | Area, down: int, right: int) -> Cell | Area:
+def _shift(target: Cell | Area, down: int, right: int) -> Cell | Area:
     if isinstance(target, Cell):
         return Cell(target.sheet, target.row + down, target.column + right)
     ends = target.bottom + down, target.right + right
@@ -129,14 +129,14 @@ def _leaves(tree: ir.Expression) -> list[_Leaf] | None:
             return _leaves(operand)
         case ir.Binary(operator) if operator not in (":", " ", ","):
             first, rest = ir.chain(tree)
-            return _joined([first, *(part for _, part in rest)])
+            return _join([first, *(part for _, part in rest)])
         case ir.Call(name, arguments) if name not in LOOKED_AT and name not in ("LET", "LAMBDA"):
-            return _joined(arguments)
+            return _join(arguments)
         case _:
             return None
 
 
-def _joined(parts: list[ir.Expression] | tuple[ir.Expression, ...]) -> list[_Leaf] | None:
+def _join(parts: list[ir.Expression] | tuple[ir.Expression, ...]) -> list[_Leaf] | None:
     found: list[_Leaf] = []
     for part in parts:
         leaves = _leaves(part)
@@ -158,19 +158,19 @@ def _steps(reference: _Leaf) -> tuple[int, int] | None:
     return int(not first.row_fixed), int(not first.column_fixed)
 
 
-def _rebuilt(tree: ir.Expression, moved: Callable[[Cell | Area], Cell | Area]) -> ir.Expression:
+def _rebuild(tree: ir.Expression, moved: Callable[[Cell | Area], Cell | Area]) -> ir.Expression:
     match tree:
         case Cell() | Area():
             return moved(tree)
         case ir.Unary(_, operand):
-            return replace(tree, operand=_rebuilt(operand, moved))
+            return replace(tree, operand=_rebuild(operand, moved))
         case ir.Binary():
             first, rest = ir.chain(tree)
-            built = _rebuilt(first, moved)
+            built = _rebuild(first, moved)
             for operator, right in rest:
-                built = ir.Binary(operator, built, _rebuilt(right, moved))
+                built = ir.Binary(operator, built, _rebuild(right, moved))
             return ir.marked_as(built, tree)
         case ir.Call(_, arguments):
-            return replace(tree, arguments=tuple(_rebuilt(part, moved) for part in arguments))
+            return replace(tree, arguments=tuple(_rebuild(part, moved) for part in arguments))
         case _:
             return tree

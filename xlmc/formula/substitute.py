@@ -8,10 +8,10 @@ from typing import Final
 
 from xlmc.formula import ir
 
-__all__ = ["is_bound", "substituted", "unfolded"]
+__all__ = ["is_bound", "substitute", "unfold"]
 
 
-def substituted(tree: ir.Expression, change: Callable[[ir.Expression], ir.Expression | None]) -> ir.Expression:
+def substitute(tree: ir.Expression, change: Callable[[ir.Expression], ir.Expression | None]) -> ir.Expression:
     """The tree with every part replaced for which `change` gives another; outer parts are asked first, then left ones.
 
     Args:
@@ -23,19 +23,19 @@ def substituted(tree: ir.Expression, change: Callable[[ir.Expression], ir.Expres
         return changed
     match tree:
         case ir.Unary(_, operand):
-            return replace(tree, operand=substituted(operand, change))
+            return replace(tree, operand=substitute(operand, change))
         case ir.Binary():
             return _chain(tree, change)
         case ir.Call(_, arguments):
-            return replace(tree, arguments=tuple(substituted(part, change) for part in arguments))
+            return replace(tree, arguments=tuple(substitute(part, change) for part in arguments))
         case ir.Let(bindings, body):
-            bound = tuple((name, substituted(value, change)) for name, value in bindings)
-            return replace(tree, bindings=bound, body=substituted(body, change))
+            bound = tuple((name, substitute(value, change)) for name, value in bindings)
+            return replace(tree, bindings=bound, body=substitute(body, change))
         case ir.Lambda(_, body):
-            return replace(tree, body=substituted(body, change))
+            return replace(tree, body=substitute(body, change))
         case ir.Invoke(function, arguments):
-            called = substituted(function, change)
-            return ir.Invoke(called, tuple(substituted(part, change) for part in arguments))
+            called = substitute(function, change)
+            return ir.Invoke(called, tuple(substitute(part, change) for part in arguments))
         case _:
             return tree
 
@@ -43,9 +43,9 @@ def substituted(tree: ir.Expression, change: Callable[[ir.Expression], ir.Expres
 def _chain(tree: ir.Binary, change: Callable[[ir.Expression], ir.Expression | None]) -> ir.Expression:
     """Each operand of a long sum, from the left; partial sums are not asked about."""
     first, rest = ir.chain(tree)
-    built = substituted(first, change)
+    built = substitute(first, change)
     for operator, right in rest:
-        built = ir.Binary(operator, built, substituted(right, change))
+        built = ir.Binary(operator, built, substitute(right, change))
     return ir.marked_as(built, tree)
 
 
@@ -57,7 +57,7 @@ def is_bound(tree: ir.Expression) -> bool:
         if isinstance(part, ir.Variable):
             found.append(part)
 
-    substituted(tree, look)
+    substitute(tree, look)
     return bool(found)
 
 
@@ -65,7 +65,7 @@ _MOST: Final = 2000
 """Parts of a formula: variables of variables can double it on."""
 
 
-def unfolded(tree: ir.Expression) -> ir.Expression:
+def unfold(tree: ir.Expression) -> ir.Expression:
     """A resolved formula without LET: every variable as the formula that it stands for.
 
     A formula with a LAMBDA in it, or one that would become very long, is left as it is.
@@ -76,7 +76,7 @@ def unfolded(tree: ir.Expression) -> ir.Expression:
         return tree
     room = _Room()
     try:
-        return _written_out(tree, {}, room)
+        return _write_out(tree, {}, room)
     except OverflowError:
         return tree
 
@@ -88,7 +88,7 @@ def _look_for_let(tree: ir.Expression, found: list[ir.Expression]) -> None:
         if isinstance(part, ir.Let | ir.Lambda | ir.Invoke | ir.FunctionName):
             found.append(part)
 
-    substituted(tree, look)
+    substitute(tree, look)
 
 
 class _Room:
@@ -107,13 +107,13 @@ class _Room:
         def count(_: ir.Expression) -> None:
             self.left -= 1
 
-        substituted(tree, count)
+        substitute(tree, count)
         if self.left < 0:
             raise OverflowError
         return tree
 
 
-def _written_out(tree: ir.Expression, known: Mapping[str, ir.Expression], room: _Room) -> ir.Expression:
+def _write_out(tree: ir.Expression, known: Mapping[str, ir.Expression], room: _Room) -> ir.Expression:
     def change(part: ir.Expression) -> ir.Expression | None:
         match part:
             case ir.Variable(name) if name in known:
@@ -121,9 +121,9 @@ def _written_out(tree: ir.Expression, known: Mapping[str, ir.Expression], room: 
             case ir.Let(bindings, body):
                 inner = dict(known)
                 for name, value in bindings:
-                    inner[name] = _written_out(value, inner, room)
-                return _written_out(body, inner, room)
+                    inner[name] = _write_out(value, inner, room)
+                return _write_out(body, inner, room)
             case _:
                 return None
 
-    return substituted(tree, change)
+    return substitute(tree, change)

@@ -34,7 +34,7 @@ from xlmc.run.simulate import simulate
 from xlmc.run.simulation import KEPT_INPUTS
 from xlmc.run.version import __version__
 from xlmc.sampling.methods import METHODS
-from xlmc.workbook.lazy_sheets import told_of
+from xlmc.workbook.lazy_sheets import naming_file
 from xlmc.workbook.reader import read_workbook
 from xlmc.workbook.seal import read_seal
 
@@ -123,7 +123,7 @@ def replay(path: str | Path, *, jobs: int = 1, progress: Progress | None = None)
     if path.suffix.casefold() == SUFFIX or is_saved_run(path):
         run = open_run(path)
         return _replayed(run.model.workbook, make_record(run), run.model, jobs, progress)
-    with told_of(str(path)):
+    with naming_file(str(path)):
         workbook = read_workbook(path)
         return _replayed(workbook, read_record(workbook), None, jobs, progress, path)
 

@@ -23,7 +23,7 @@ from xlmc.evaluation.graph.arrays import size_of
 from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.formula.precedents import mentioned
-from xlmc.formula.substitute import substituted
+from xlmc.formula.substitute import substitute
 from xlmc.workbook.injection.formula_values import with_values
 from xlmc.workbook.model import CellValue, Workbook
 
@@ -237,7 +237,7 @@ def _with_numbers(cell: Cell, simulation: Simulation) -> ir.Expression:
     workbook = simulation.model.workbook
     formula = workbook.content(cell).formula
     assert formula is not None  # a call was found in it
-    return substituted(
+    return substitute(
         Resolver(workbook).formula(cell, formula),
         lambda part: _answer(asked_for(part), simulation) if isinstance(part, ir.Call) and is_result(part) else None,
     )

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.columns import Keeper
+from xlmc.columns import ColumnStore
 from xlmc.definitions.model import name_key
 from xlmc.definitions.stopping import LIMIT, MOST_TRIALS, NO_GOAL, Stopping
 from xlmc.errors import SimulationError
@@ -208,7 +208,7 @@ class _Gathered:
         self._prior = {a.name: ("prior", key) for a, key in zip(model.live, keys, strict=True)}
         self._forecasts = {f.name: ("forecast", place) for place, f in enumerate(model.forecasts)}
         columns = (*self._inputs.values(), *self._prior.values(), *self._forecasts.values())
-        self._keeper = Keeper({("trial", 0): whole, **dict.fromkeys(columns, real)})
+        self._keeper = ColumnStore({("trial", 0): whole, **dict.fromkeys(columns, real)})
         self._tally = FilterTally.empty(len(model.filters))
         self._invalid: Counter[str] = Counter()
         self._faults: list[Counter[str]] = [Counter() for _ in model.forecasts]

@@ -73,7 +73,7 @@ def inject(host: Mapping[str, bytes], sheets: bytes, *, replace: bool = True) ->
         user.role.workbook: add_sheets(user.parts[user.role.workbook], user.role.workbook, added),
         user.role.rels: rels,
         styles.part: styles.xml,
-        **_listed(user, list(names.values())),
+        **_list_names(user, list(names.values())),
     }
     return {**user.parts, **changed, **carried}
 
@@ -153,7 +153,7 @@ def _types(carrier: Carrier, carried: Mapping[str, bytes], styles: _Styles) -> d
     return types | {styles.part: _TYPES_OF_OUR_OWN["styles"]} if styles.new else types
 
 
-def _listed(user: _User, added: Sequence[str]) -> dict[str, bytes]:
+def _list_names(user: _User, added: Sequence[str]) -> dict[str, bytes]:
     part = user.role.properties
     return {} if part is None else {part: list_sheets(user.parts[part], part, user.sheets, added)}
 

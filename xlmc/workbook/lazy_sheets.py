@@ -17,7 +17,7 @@ from xlmc.workbook.structure import Structure
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
-__all__ = ["LazySheets", "dynamic_array_marks", "told_of"]
+__all__ = ["LazySheets", "dynamic_array_marks", "naming_file"]
 
 _T = TypeVar("_T")
 
@@ -43,7 +43,7 @@ class LazySheets(Mapping[str, Sheet]):
     def __getitem__(self, name: str) -> Sheet:
         if name not in self._parsed:
             entry = self._entries[name]
-            with told_of(self._file):
+            with naming_file(self._file):
                 self._parsed[name] = parse_sheet(self._parts[entry.part], entry, self._context)
         return self._parsed[name]
 
@@ -126,7 +126,7 @@ def _spills(block: Element) -> bool:
 
 
 @contextmanager
-def told_of(file: str) -> Iterator[None]:
+def naming_file(file: str) -> Iterator[None]:
     """Complaints from within that say not where are told of `file`."""
     try:
         yield

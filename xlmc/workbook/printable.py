@@ -29,7 +29,7 @@ def printable(text: str) -> str:
     >>> printable("Speed\x1b[2J")
     'Speed\\x1b[2J'
     """
-    return _STEERING.sub(_written, text)
+    return _STEERING.sub(_escape, text)
 
 
 def label(text: str) -> str:
@@ -41,6 +41,6 @@ def label(text: str) -> str:
     return printable(text.replace("\r\n", "\n"))
 
 
-def _written(found: re.Match[str]) -> str:
+def _escape(found: re.Match[str]) -> str:
     code = ord(found[0])
     return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"

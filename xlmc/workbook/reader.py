@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from xlmc.errors import Notice, WorkbookError
-from xlmc.workbook.lazy_sheets import LazySheets, told_of
+from xlmc.workbook.lazy_sheets import LazySheets, naming_file
 from xlmc.workbook.links import Links, linked_files
 from xlmc.workbook.model import Workbook
 from xlmc.workbook.package import LIMITS, SMALLER, read_parts, relationships
@@ -38,7 +38,7 @@ def read_workbook(source: str | Path | bytes, name: str | None = None) -> Workbo
 
 
 def _read(data: bytes, name: str, where: str) -> Workbook:
-    with told_of(where):
+    with naming_file(where):
         parts = read_parts(data)
         structure = read_structure(parts)
         sheets = LazySheets(where, parts, structure)

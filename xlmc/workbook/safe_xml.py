@@ -32,7 +32,7 @@ def tree(xml: bytes, part: str) -> ElementTree.Element:
         WorkbookError: the part is not XML, or declares a document type.
     """
     parser = ElementTree.XMLParser(target=_Builder())
-    with _told_of(part):
+    with _naming_part(part):
         for start in range(0, len(xml), _PIECE):
             parser.feed(xml[start : start + _PIECE])
         root: ElementTree.Element = parser.close()
@@ -55,7 +55,7 @@ def feed(parser: expat.XMLParserType, xml: bytes, part: str) -> None:
     Raises:
         WorkbookError: the part is not XML, or declares a document type.
     """
-    with _told_of(part):
+    with _naming_part(part):
         for start in range(0, len(xml), _PIECE):
             parser.Parse(xml[start : start + _PIECE])
         parser.Parse(b"", True)
@@ -86,7 +86,7 @@ def _refuse(*_: object) -> NoReturn:
 
 
 @contextmanager
-def _told_of(part: str) -> Iterator[None]:
+def _naming_part(part: str) -> Iterator[None]:
     try:
         yield
     except WorkbookError as error:

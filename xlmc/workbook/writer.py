@@ -75,7 +75,7 @@ def write_workbook(path: str | os.PathLike[str], data: bytes, check: Callable[[]
         TakenError: another program holds the file, or it is something else than a file.
         WorkbookError: the folder is missing, the file may not be written, or the disk is full.
     """
-    with _written_whole(path, check) as temporary:
+    with _write_whole(path, check) as temporary:
         _write_synced(temporary, data)
 
 
@@ -88,16 +88,16 @@ def whole_file(path: str | os.PathLike[str], check: Callable[[], None] | None = 
     Raises:
         WorkbookError: as for `write_workbook`.
     """
-    with _written_whole(path, check) as temporary, temporary.open("w+b") as file:
+    with _write_whole(path, check) as temporary, temporary.open("w+b") as file:
         yield file
         file.flush()
         os.fsync(file.fileno())
 
 
 @contextmanager
-def _written_whole(path: str | os.PathLike[str], check: Callable[[], None] | None) -> Iterator[Path]:
+def _write_whole(path: str | os.PathLike[str], check: Callable[[], None] | None) -> Iterator[Path]:
     """A file beside the target, to be written and synced; then it is renamed."""
-    with _told_of(path):
+    with _naming_file(path):
         target = _meant(path)
         _refuse_protected(target)
         remove_stray_files(target.parent)
@@ -114,7 +114,7 @@ def check_folder(path: str | os.PathLike[str]) -> None:
         TakenError: it is a folder, a device, a link to nothing, or read-only.
         WorkbookError: there is no folder, or the folder may not be written to.
     """
-    with _told_of(path):
+    with _naming_file(path):
         target = _meant(path)
         _refuse_protected(target)
         if not target.parent.is_dir():
@@ -277,17 +277,17 @@ def _sync_folder(folder: Path) -> None:
 
 
 @contextmanager
-def _told_of(path: str | os.PathLike[str]) -> Iterator[None]:
+def _naming_file(path: str | os.PathLike[str]) -> Iterator[None]:
     """Failures in words, with the path as the person wrote it."""
     try:
         yield
     except TakenError as error:
         raise TakenError(error.message, where=path, hint=error.hint) from error.__cause__
     except OSError as error:
-        raise _told(error, path) from error
+        raise _explain(error, path) from error
 
 
-def _told(error: OSError, path: str | os.PathLike[str]) -> WorkbookError:
+def _explain(error: OSError, path: str | os.PathLike[str]) -> WorkbookError:
     if _passing(error):
         return TakenError("another program holds the file", where=path, hint=_CLOSE)
     if isinstance(error, FileNotFoundError | NotADirectoryError):

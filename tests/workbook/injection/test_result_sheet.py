@@ -7,7 +7,7 @@ from xlmc.workbook.injection.result_sheet import (
     Renames,
     at_home,
     relative_target,
-    renamed_in,
+    rename_in_xml,
     shared_items,
     with_differential,
 )
@@ -92,8 +92,8 @@ def test_shared_items():
 )
 def test_names_change_in_formulas_links_and_text_boxes_only(built, home):
     renames = Renames({"r": "R 2"}, {"t": "U"})
-    assert renamed_in(built.encode(), renames) == home.encode()
-    assert renamed_in(built.encode(), Renames()) == built.encode()
+    assert rename_in_xml(built.encode(), renames) == home.encode()
+    assert rename_in_xml(built.encode(), Renames()) == built.encode()
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.workbook.injection.part_numbers import free_names, free_table_name, quoted, renamed
+from xlmc.workbook.injection.part_numbers import free_names, free_table_name, quoted, rename_in_formula
 
 SHEETS = {"results": "Results (2)", "o'hara": "O'Hara (2)", "résumé": "Neu"}
 TABLES = {"trials": "Trials_2"}
@@ -32,7 +32,7 @@ TABLES = {"trials": "Trials_2"}
     ],
 )
 def test_names_change_in_formulas(formula, expected):
-    assert renamed(formula, SHEETS, TABLES) == expected
+    assert rename_in_formula(formula, SHEETS, TABLES) == expected
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from xlmc.definitions.tables.tables import as_text, is_blank
 from xlmc.distributions import FAMILIES
 from xlmc.errors import FormulaError
 from xlmc.formula import formula_text, ir
-from xlmc.formula.substitute import is_bound, substituted
+from xlmc.formula.substitute import is_bound, substitute
 from xlmc.workbook.model import Workbook
 
 __all__ = ["CellReading", "Output"]
@@ -75,7 +75,7 @@ class CellReading:
             FormulaError: a call is not supported or not what it must be, or shows results of the run.
         """
         self._find_results(tree)
-        return substituted(tree, self._changed)
+        return substitute(tree, self._changed)
 
     def _find_results(self, tree: ir.Expression) -> None:
         calls: list[ir.Call] = []
@@ -84,7 +84,7 @@ class CellReading:
             if isinstance(part, ir.Call) and (is_result(part) or not_computed(part)):
                 calls.append(part)
 
-        substituted(tree, look)
+        substitute(tree, look)
         if not calls:
             return
         self._take_asked(tree, calls)
@@ -132,7 +132,7 @@ class CellReading:
         """What stands in place of a call of Crystal Ball or @RISK."""
         number = self._next()
         self._depth += 1
-        rewritten = ir.Call(call.name, tuple(substituted(argument, self._changed) for argument in call.arguments))
+        rewritten = ir.Call(call.name, tuple(substitute(argument, self._changed) for argument in call.arguments))
         self._depth -= 1
         drawn = crystal_ball_draw(rewritten) or risk_draw(rewritten, self._lognorm)
         if drawn is None:
@@ -145,7 +145,7 @@ class CellReading:
         return self._count
 
     def _each_rewritten(self, trees: Mapping[str, ir.Expression]) -> dict[str, ir.Expression]:
-        return {key: substituted(tree, self._changed) for key, tree in trees.items()}
+        return {key: substitute(tree, self._changed) for key, tree in trees.items()}
 
     def _take_output(self, call: ir.Call) -> None:
         name = units = None
@@ -305,7 +305,7 @@ def _draws(tree: ir.Expression) -> bool:
         if _is_draw_of_a_program(part) or random_draw(part) is not None:
             found.append(part)
 
-    substituted(tree, look)
+    substitute(tree, look)
     return bool(found)
 
 

@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.columns import Keeper, parts
+from xlmc.columns import ColumnStore, parts
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError, WorkbookError, XlmcError
 from xlmc.results.record.settings_table import FLOAT64, in_float32
@@ -162,7 +162,7 @@ class _Columns:
         types: dict[Hashable, np.dtype[Any]] = {
             self._key(each): np.dtype(_KINDS[each.kind]).newbyteorder("=") for each in listed
         }
-        self._keeper = Keeper(types)
+        self._keeper = ColumnStore(types)
 
     @staticmethod
     def _key(about: _Column) -> tuple[str, str]:

@@ -18,7 +18,7 @@ from xlmc.definitions.model import Filter
 from xlmc.evaluation.passes.exact import Exact, exactly
 from xlmc.evaluation.passes.random_rounding import closure
 from xlmc.formula import ir
-from xlmc.formula.substitute import substituted
+from xlmc.formula.substitute import substitute
 from xlmc.run.scene import filter_limits
 from xlmc.studies.stability.case import Case
 from xlmc.studies.stability.momentum import angle_of, components, sine, spin, times
@@ -107,7 +107,7 @@ def angles_in_degrees(tree: ir.Expression) -> ir.Expression | None:
             return _difference(part.left, part.right)
         return None
 
-    changed = substituted(tree, change)
+    changed = substitute(tree, change)
     return None if changed == tree else changed
 
 
@@ -123,7 +123,7 @@ def with_quadrant(
         below: x.
     """
     angle = ir.Call("ATAN2", (below, above))
-    changed = substituted(tree, lambda one: angle if one == part else None)
+    changed = substitute(tree, lambda one: angle if one == part else None)
     degrees = ir.Call("DEGREES", (angle,))
     if any(term == degrees for _, term in terms(changed)) and len(terms(changed)) > 1:
         half = ir.Number(180.0)

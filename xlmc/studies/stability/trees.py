@@ -13,7 +13,7 @@ from xlmc.evaluation.graph.lowering import Scope
 from xlmc.evaluation.graph.references import NotYetNeeded
 from xlmc.formula import ir
 from xlmc.formula.resolve import Resolver
-from xlmc.formula.substitute import substituted, unfolded
+from xlmc.formula.substitute import substitute, unfold
 from xlmc.formula.text import formula_text
 from xlmc.run.model import Model
 from xlmc.studies.stability.naming import Naming
@@ -44,7 +44,7 @@ class Trees:
     def formula(self, cell: Cell) -> ir.Expression:
         """The formula of a cell, the same object whenever it is asked for; variables of LET are written out."""
         if cell not in self._formulas:
-            self._formulas[cell] = unfolded(self._graph.formulas[cell])
+            self._formulas[cell] = unfold(self._graph.formulas[cell])
         return self._formulas[cell]
 
     def title(self, cell: Cell) -> str:
@@ -96,7 +96,7 @@ class Trees:
             formula = graph.workbook.content(part).formula
             return None if formula is None or formula.array is not None or formula.dynamic else self.formula(part)
 
-        return substituted(tree, change)
+        return substitute(tree, change)
 
     def text(self, tree: ir.Expression, host: Cell) -> str:
         """A formula, without `=`, with defined names, and brackets only where they are needed."""

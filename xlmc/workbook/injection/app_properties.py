@@ -70,7 +70,7 @@ def unlist_sheets(xml: bytes, part: str, present: Collection[str], removed: Coll
 
 def _unlist(document: SplicedXml, group: _Group, removed: Collection[str], *, is_sheets: bool) -> int:
     """How many of the group's titles stay; a group that loses its last goes with its heading."""
-    names = _folded(removed)
+    names = _fold(removed)
     scopes = tuple(f"{form}!".casefold() for name in removed for form in (name, quoted(name)))
     gone = [
         title
@@ -105,8 +105,8 @@ def _groups(root: Element) -> list[_Group]:
 
 
 def _sheet_group(groups: Iterable[_Group], sheets: Collection[str]) -> _Group | None:
-    names = _folded(sheets)
-    return next((g for g in groups if not names.isdisjoint(_folded(title.text for title in g.titles))), None)
+    names = _fold(sheets)
+    return next((g for g in groups if not names.isdisjoint(_fold(title.text for title in g.titles))), None)
 
 
 def _resize(document: SplicedXml, headings: int, titles: int) -> None:
@@ -121,5 +121,5 @@ def _vector(root: Element, local: str) -> Element | None:
     return next((child for child in holder.children if child.local == "vector"), None) if holder else None
 
 
-def _folded(names: Iterable[str]) -> set[str]:
+def _fold(names: Iterable[str]) -> set[str]:
     return {name.casefold() for name in names}

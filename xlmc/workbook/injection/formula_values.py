@@ -105,7 +105,7 @@ def _cells(root: Element) -> Iterator[tuple[tuple[int, int], Element]]:
 
 
 def _put(document: SplicedXml, cell: Element, value: CellValue) -> None:
-    kind, text = _written(value)
+    kind, text = _write(value)
     if cell.attributes.get("t", "n") != kind:
         document.set(cell, "t", kind)
     old = cell.find("v")
@@ -119,7 +119,7 @@ def _put(document: SplicedXml, cell: Element, value: CellValue) -> None:
         document.after(formula, new)
 
 
-def _written(value: CellValue) -> tuple[str, str]:
+def _write(value: CellValue) -> tuple[str, str]:
     """The type of a cell that holds the value, and its text as XML."""
     match value:
         case bool():
@@ -127,12 +127,12 @@ def _written(value: CellValue) -> tuple[str, str]:
         case ErrorCode():
             return "e", value.text
         case str():
-            return "str", _escaped(value)
+            return "str", _escape(value)
         case None:
             return "str", ""
         case _:
             return "n", repr(float(value)).removesuffix(".0")
 
 
-def _escaped(text: str) -> str:
+def _escape(text: str) -> str:
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -21,7 +21,7 @@ __all__ = [
     "free_tables",
     "quoted",
     "reached",
-    "renamed",
+    "rename_in_formula",
 ]
 
 _LONGEST = 31  # characters in a sheet name, Excel's limit
@@ -58,7 +58,7 @@ def quoted(name: str) -> str:
     return "'" + name.replace("'", "''") + "'"
 
 
-def renamed(formula: str, sheets: Mapping[str, str], tables: Mapping[str, str]) -> str:
+def rename_in_formula(formula: str, sheets: Mapping[str, str], tables: Mapping[str, str]) -> str:
     """The formula with sheets and tables called by their new names; strings and other workbooks' sheets stay.
 
     Keys of both mappings are folded old names.

@@ -15,7 +15,7 @@ from html import escape, unescape
 from typing import Final
 
 from xlmc.workbook.injection.content_types import roles
-from xlmc.workbook.injection.part_numbers import TableNumbers, renamed
+from xlmc.workbook.injection.part_numbers import TableNumbers, rename_in_formula
 from xlmc.workbook.injection.splice import Element, SplicedXml, parse_spans
 from xlmc.workbook.injection.styles_merge import StyleMap
 from xlmc.workbook.package import Relationship, relationships, rels_part
@@ -29,7 +29,7 @@ __all__ = [
     "at_home",
     "read_built",
     "relative_target",
-    "renamed_in",
+    "rename_in_xml",
     "shared_items",
     "with_differential",
 ]
@@ -57,7 +57,7 @@ class Renames:
 
     def formula(self, text: str) -> str:
         """The formula, or link target, with the new names."""
-        return renamed(text, self.sheets, self.tables)
+        return rename_in_formula(text, self.sheets, self.tables)
 
 
 def at_home(xml: bytes, strings: Sequence[bytes], styles: StyleMap) -> bytes:
@@ -75,14 +75,14 @@ def at_home(xml: bytes, strings: Sequence[bytes], styles: StyleMap) -> bytes:
         raise ValueError("result sheets must not hold dynamic array formulas or pictures in cells")
     head, data, rest = xml.partition(b"<sheetData")
     body, end, tail = rest.partition(b"</sheetData>")
-    head = _COLUMN_STYLE.sub(_numbered(styles.cells), _SELECTED.sub(rb"\1", head))
-    body = _cells(_ROW_STYLE.sub(_numbered(styles.cells), body), strings, styles.cells)
+    head = _COLUMN_STYLE.sub(_put_number(styles.cells), _SELECTED.sub(rb"\1", head))
+    body = _cells(_ROW_STYLE.sub(_put_number(styles.cells), body), strings, styles.cells)
     return b"".join([head, data, body, end, with_differential(tail, styles)])
 
 
 def with_differential(xml: bytes, styles: StyleMap) -> bytes:
     """The XML with every `dxfId`, `dataDxfId`, … in the user's numbers."""
-    number = _numbered(styles.differential)
+    number = _put_number(styles.differential)
     return _TAG.sub(lambda tag: _DIFFERENTIAL.sub(number, tag[0]) if b"xfId=" in tag[0] else tag[0], xml)
 
 
@@ -91,7 +91,7 @@ def shared_items(xml: bytes | None) -> list[bytes]:
     return [] if xml is None else _ITEM.findall(xml)
 
 
-def renamed_in(xml: bytes, renames: Renames) -> bytes:
+def rename_in_xml(xml: bytes, renames: Renames) -> bytes:
     """A built part with the new names of sheets and tables in its formulas, links and text boxes."""
     if not renames.sheets and not renames.tables:
         return xml
@@ -115,7 +115,7 @@ def _cells(body: bytes, strings: Sequence[bytes], cells: Sequence[int]) -> bytes
     return _CELL.sub(new, body)
 
 
-def _numbered(numbers: Sequence[int]) -> Callable[[re.Match[bytes]], bytes]:
+def _put_number(numbers: Sequence[int]) -> Callable[[re.Match[bytes]], bytes]:
     return lambda match: match[1] + b"%d" % numbers[int(match[2])]
 
 
@@ -208,22 +208,22 @@ class Carrier:
         """The new parts, each followed by its rels part."""
         carried = {}
         for old, new in self.names.items():
-            carried[new] = self._rewritten(old)
+            carried[new] = self._rewrite(old)
             if rels_part(old) in self.built.parts:
                 carried[rels_part(new)] = self._pointers(old)
         return carried
 
-    def _rewritten(self, part: str) -> bytes:
+    def _rewrite(self, part: str) -> bytes:
         xml = self.built.parts[part]
         match self.types[part].rpartition(".")[2]:
             case "worksheet+xml":
-                return renamed_in(at_home(xml, self.built.strings, self.styles), self.renames)
+                return rename_in_xml(at_home(xml, self.built.strings, self.styles), self.renames)
             case "table+xml":
-                return renamed_in(with_differential(self._table(part), self.styles), self.renames)
+                return rename_in_xml(with_differential(self._table(part), self.styles), self.renames)
             case "chart+xml":
-                return renamed_in(_with_axis_format(xml), self.renames)
+                return rename_in_xml(_with_axis_format(xml), self.renames)
             case "drawing+xml":
-                return renamed_in(xml, self.renames)
+                return rename_in_xml(xml, self.renames)
             case _:
                 return xml
 
@@ -258,10 +258,10 @@ def _with_axis_format(xml: bytes) -> bytes:
 
     Only the axes are looked at: a chart is one of XlsxWriter's, and mostly numbers.
     """
-    return _AXIS.sub(lambda axis: _formatted(axis[0]), xml)
+    return _AXIS.sub(lambda axis: _format_axis(axis[0]), xml)
 
 
-def _formatted(axis: bytes) -> bytes:
+def _format_axis(axis: bytes) -> bytes:
     if b"<c:numFmt " in axis:
         return axis
     return _BEHIND_AXIS_FORMAT.sub(lambda behind: _GENERAL + behind[0], axis, count=1)

@@ -167,7 +167,7 @@ class SplicedXml:
 
     def set(self, element: Element, attribute: str, value: object) -> None:
         """Give an attribute without a prefix a value, where it stands or as a new last attribute."""
-        quoted = _quoted(value).encode()
+        quoted = _quote(value).encode()
         for match in self._attributes(element):
             if match["name"] == attribute.encode():
                 self._edits.append((*match.span("quoted"), quoted))
@@ -216,9 +216,9 @@ class SplicedXml:
 
 def render(tag: str, attributes: Mapping[str, object], content: str | None = None) -> bytes:
     """An element as text: `tag` with its prefix, attributes in order, `content` XML already (None: self-closed)."""
-    pairs = "".join(f" {name}={_quoted(value)}" for name, value in attributes.items())
+    pairs = "".join(f" {name}={_quote(value)}" for name, value in attributes.items())
     return (f"<{tag}{pairs}/>" if content is None else f"<{tag}{pairs}>{content}</{tag}>").encode()
 
 
-def _quoted(value: object) -> str:
+def _quote(value: object) -> str:
     return '"' + escape(str(value), quote=False).translate(_IN_ATTRIBUTES) + '"'

@@ -28,7 +28,7 @@ def work(monkeypatch, workbook):
 
         monkeypatch.setattr(owner, name, call)
 
-    counted(Resolver, "placed")
+    counted(Resolver, "tree_or_stencil")
     counted(Resolver, "_resolve")
     counted(Workbook, "content")
     counted(Spills, "anchor")
@@ -60,7 +60,7 @@ def ladder(n):
 def test_the_work_grows_with_the_cells(work, cells):
     _, once = work(cells(500), Cell("S", 501, 1), [Cell("S", 1, 1)])
     graph, twice = work(cells(1000), Cell("S", 1001, 1), [Cell("S", 1, 1)])
-    assert twice["placed"] == len(graph.formulas)
+    assert twice["tree_or_stencil"] == len(graph.formulas)
     for name in once:
         assert twice[name] <= 2 * once[name] + 10, name
 
@@ -68,7 +68,7 @@ def test_the_work_grows_with_the_cells(work, cells):
 def test_each_cell_is_read_once_however_many_need_it(work):
     cells = {"A1": 1.0} | {f"B{row}": "=SUM(A$1:A$9)" for row in range(1, 200)} | {"C1": "=SUM(B1:B199)*SUM(B1:B199)"}
     graph, counts = work(cells, Cell("S", 1, 3))
-    assert counts["placed"] == len(graph.formulas) == 200
+    assert counts["tree_or_stencil"] == len(graph.formulas) == 200
 
 
 def test_an_area_far_larger_than_the_sheet_is_not_walked_cell_by_cell(work):
@@ -82,7 +82,7 @@ def test_what_no_target_needs_is_not_read(work):
     needed = {"A1": 1.0, "B1": "=A1"}
     beside = {f"C{row}": f"=Missing{row}+" for row in range(1, 100)}
     graph, counts = work(needed | beside, Cell("S", 1, 2))
-    assert counts["placed"] == len(graph.formulas) == 1
+    assert counts["tree_or_stencil"] == len(graph.formulas) == 1
 
 
 def test_a_held_cell_is_not_read(workbook):
@@ -111,7 +111,7 @@ def test_cells_that_spill_need_their_anchor_and_not_each_other(work, array):
     assert {graph.needs[Cell("S", row, 2)] for row in range(2, n + 1)} == {(anchor,)}
     assert next(iter(graph.formulas)) == anchor
     assert isinstance(graph.formulas[anchor], ir.Binary)
-    assert counts["placed"] == 2
+    assert counts["tree_or_stencil"] == 2
     assert counts["anchor"] < 3 * n
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from xlmc.evaluation.engines import ENGINES
+
 pytestmark = pytest.mark.usefixtures("short_books")
 
 BOOK = "case.xlsx"
@@ -60,7 +62,7 @@ def test_a_number_out_of_range(one_line, typed, said):
         (("--seed", 3), "there is no option --seed. See xlmc --help."),
         (
             ("simulate", BOOK, "--engine", "nmpy"),
-            "--engine: 'nmpy' is none of numpy, jit, formulas. Did you ",
+            f"--engine: 'nmpy' is none of {', '.join(ENGINES)}. Did you ",
         ),
         (("simulate",), "BOOK is missing. Type: xlmc simulate BOOK"),
         (("fit",), "SOURCE is missing. Type: xlmc fit SOURCE [RANGE]"),

@@ -6,6 +6,7 @@ import pytest
 from xlmc.api import load
 from xlmc.definitions.model import Settings
 from xlmc.errors import DefinitionError, FormulaError, SimulationError
+from xlmc.evaluation.engines import ENGINES
 
 CELLS = {"A1": 1.0, "A2": 2.0, "A3": 3.0, "B1": "=A1+A2", "B2": "=SQRT(A1)", "B3": '=IF(A1>0,"x",A1)', "C1": "=B1>0"}
 GIVEN = {"Mass": {"cell": "A1", "low": 0, "high": 1}, "speed": {"cell": "A2", "low": 0, "high": 1}}
@@ -137,7 +138,7 @@ def test_an_unknown_engine(model):
         model.program("jax")
     assert (caught.value.message, caught.value.hint) == (
         "there is no engine 'jax'",
-        "choose one of numpy, jit, formulas",
+        f"choose one of {', '.join(ENGINES)}",
     )
 
 

@@ -1,6 +1,6 @@
-"""What people hold: the model of a workbook, its runs, and all that can be asked of either.
+"""What people use in Python: the model of a workbook, its runs, and all that can be asked of either.
 
-What a model and a run *are* is `xlmc.run`; what can be done with them is a thin door here to the room that does it.
+What a model and a run *are* is in `xlmc.run`; the methods here call the rooms that do the work.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ __all__ = ["Model", "Simulation", "load", "open_run"]
 
 
 class Simulation(simulation.Simulation):
-    """A finished run, with doors to files and figures: see `xlmc.run.simulation.Simulation` for what it holds."""
+    """A finished run that can write files and draw figures: `xlmc.run.simulation.Simulation` says what it holds."""
 
     model: Model
 
     @classmethod
     def of(cls, run: simulation.Simulation) -> Simulation:
-        """The same run, and its model, with the doors."""
+        """The same run, and its model, with the methods of this module."""
         found = cls.__new__(cls)
         found.__dict__.update(run.__dict__, model=Model.of(run.model))
         return found
@@ -92,7 +92,7 @@ class Simulation(simulation.Simulation):
         return save_json(self, Path(path), overwrite=overwrite)
 
     def plot(self) -> Figure:
-        """A figure of matplotlib: every forecast's histogram and cumulative share, with the central range shaded.
+        """A matplotlib figure: every forecast's histogram and cumulative share, with the central range shaded.
 
         Raises:
             SimulationError: matplotlib is not installed, or there is nothing to draw.
@@ -107,7 +107,7 @@ class Model(model.Model):
 
     @classmethod
     def of(cls, known: model.Model) -> Model:
-        """The same model, with the doors."""
+        """The same model, with the methods of this module."""
         if isinstance(known, cls):
             return known
         found = cls.__new__(cls)

@@ -31,9 +31,9 @@ _MOST_CELLS = 12
 @click.command()
 @click.argument("book", type=click.Path(path_type=Path))
 def check(book: Path) -> None:
-    """Show the assumptions, forecasts and filters of BOOK as understood, and every problem with its cell.
+    """Show the assumptions, forecasts and filters of BOOK as xlmc understands them, and every problem with its cell.
 
-    Checks that fail and cells in error at the base case stand first.
+    Checks that fail at the base case, and cells in error there, stand first.
     """
     from xlmc.cli.printing import notices
     from xlmc.definitions.reader import read_definitions
@@ -82,7 +82,7 @@ def _show_base_case(model: Model) -> list[str]:
     lines = [sentence(f"{fault[0].upper()}{fault[1:]}") for fault in failing]
     lines += _error_lines(model, errors)
     if lines:
-        say(f"{model.workbook.name}: at the base case, every assumption at its cell's own value\n")
+        say(f"{model.workbook.name}: at the base case, with every assumption at the value in its cell\n")
     for line in lines:
         say(paragraph(line, hanging="  "))
     if lines:
@@ -101,11 +101,11 @@ def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
     for cell, code in list(errors.roots.items())[:_MOST_CELLS]:
         yield f"{cell} {code.text}{handled}: {content_text(model.workbook, cell)}"
     if len(errors.roots) > _MOST_CELLS:
-        yield f"… and {len(errors.roots) - _MOST_CELLS:,} more cells in error of themselves"
+        yield f"… and {len(errors.roots) - _MOST_CELLS:,} more cells with an error of their own"
     if errors.others:
         named = ", ".join(f"{cell} {code.text}" for cell, code in list(errors.others.items())[:_MOST_CELLS])
         more = f" and {len(errors.others) - _MOST_CELLS:,} more" if len(errors.others) > _MOST_CELLS else ""
-        yield f"Cells that have their error from these: {named}{more}."
+        yield f"Cells that are in error because of these: {named}{more}."
 
 
 def _show_definitions(definitions: Definitions, model: Model | None) -> None:
@@ -147,7 +147,7 @@ def _show_need(model: Model, workbook: Workbook) -> None:
     said = f"Of {formulas} formula cells the forecasts and filters need {len(needed)}; {count} vary with an assumption."
     say(paragraph(said))
     if model.scene.idle:
-        say(paragraph("Not needed by the scene: " + ", ".join(a.name for a in model.scene.idle) + "."))
+        say(paragraph("No forecast or filter needs: " + ", ".join(a.name for a in model.scene.idle) + "."))
 
 
 def show_first(run: Simulation) -> None:

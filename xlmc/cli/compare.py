@@ -1,4 +1,4 @@
-"""`xlmc compare`: do two models of a scene give the same answer?"""
+"""`xlmc compare`: do two models of a crash give the same answer?"""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ UNDECIDED = 1
 @click.option(
     "--chance",
     type=float,
-    help="What difference of P(forecast > its threshold) counts as none, in percentage points.  [default: a tenth of it"
-    " or of its complement, at least 0.1]",
+    help="What difference of the probability above a forecast's threshold counts as none, in percentage points."
+    "  [default: a tenth of it or of the probability below, at least 0.1]",
 )
 @click.option("--pair", multiple=True, help="'A=B': forecast A of the first book is forecast B of the second.")
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials of each run.  [default: the books' larger number]")
@@ -64,7 +64,7 @@ def compare(
     as_json: bool,
     quiet: bool,
 ) -> None:
-    """Run FIRST and SECOND over the same trials, and say whether the simpler one is enough."""
+    """Run the workbooks FIRST and SECOND over the same trials, and say whether the simpler one is enough."""
     from xlmc.cli.printing import warnings
     from xlmc.cli.progress import step_line
     from xlmc.report.study_report import Files
@@ -147,7 +147,9 @@ def _sentences(found: Comparison) -> Iterator[str]:
 
 _MEANING = (
     "± is the standard error of each number (Monte Carlo error). That of a difference allows for the draws that both "
-    "books share. A verdict clears the tolerance by three errors. It says that two models agree, not that either fits "
+    "books share. The last two lines of a table compare the answers as a whole: the average difference of all "
+    "percentiles (Wasserstein's distance), and the largest difference of the cumulative curves (Kolmogorov's "
+    "distance). A verdict clears the tolerance by three errors. It says that two models agree, not that either fits "
     "the crash."
 )
 
@@ -172,8 +174,8 @@ def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
         else:
             values = [estimate_text(estimate) for estimate in (change.first, change.second, change.difference)]
             rows.append((label, *values, "" if isnan(each.tolerance) else f"{each.tolerance:.4g}"))
-    rows.append(("Wasserstein-1", "", "", estimate_text(found.wasserstein), ""))
-    rows.append(("Kolmogorov", "", "", estimate_text(found.kolmogorov), ""))
+    rows.append(("percentiles, on average", "", "", estimate_text(found.wasserstein), ""))
+    rows.append(("cumulative curves, at most", "", "", estimate_text(found.kolmogorov), ""))
     return rows
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.options import OneOf
-from xlmc.cli.terminal import say, say_json
+from xlmc.cli.terminal import paragraph, say, say_json
 
 if TYPE_CHECKING:
     from xlmc.studies.fitting import Fitted, Fitting
@@ -18,6 +18,11 @@ if TYPE_CHECKING:
 __all__ = ["fit"]
 
 TOO_FEW = 1
+
+_BY = (
+    "What ranks them: aic or bic, how probable the values are, less for every parameter; ad (Anderson-Darling) or ks"
+    " (Kolmogorov-Smirnov), how far the distribution is from the values."
+)
 _BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm))!(?P<range>.+)", re.IGNORECASE)
 
 
@@ -27,9 +32,9 @@ _BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm))!(?P<range>.
 @click.option(
     "--kind",
     type=OneOf("continuous", "counts"),
-    help="What the values are.  [default: counts where all are whole numbers from 0 up]",
+    help="What the values are.  [default: counts if all are whole numbers, 0 or more]",
 )
-@click.option("--by", type=OneOf("aic", "bic", "ad", "ks"), default="aic", show_default=True, help="What ranks them.")
+@click.option("--by", type=OneOf("aic", "bic", "ad", "ks"), default="aic", show_default=True, help=_BY)
 @click.option("--name", default="", help="Name of the assumption, for the row to paste.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def fit(source: str, cells: str | None, kind: str | None, by: str, name: str, as_json: bool) -> None:
@@ -153,15 +158,16 @@ def _show(found: Fitting, source: str, blank: int, row: dict[str, str]) -> None:
         say(f"Not fitted: {name}: {reason}.")
     for source_of_errors, names in _sources(found).items():
         say(f"Standard errors of {', '.join(names)}: {source_of_errors}.")
-    say(_MEANING)
+    say(paragraph(_MEANING))
     say("\nThe first as a row of xlmc_assumptions, to paste under these headings:\n")
     say("\t".join(row))
     say("\t".join(row.values()))
 
 
 _MEANING = (
-    "A² (Anderson-Darling) and D (Kolmogorov-Smirnov) are distances, smaller is better; no p-values are given,\n"
-    "because the usual ones hold only for distributions that were not fitted to the same values."
+    "Smaller is better in all four. AIC and BIC weigh how probable the values are against the number of parameters "
+    "that were estimated. A² (Anderson-Darling) and D (Kolmogorov-Smirnov) are distances from the values; no p-values "
+    "are given, because the usual ones hold only for distributions that were not fitted to the same values."
 )
 
 

@@ -26,13 +26,14 @@ NOT_TO_BE_USED = 1
     "--accuracy",
     default="1%",
     show_default=True,
-    help="What is asked of mean, standard deviation and both ends of the central range, in 95 of 100 runs: 1% of each"
-    " forecast's range from 5 % to 95 %, or 0.1 in the forecasts' units.",
+    help="The accuracy wanted of mean, standard deviation and both ends of the central range, in 95 of 100 runs: 1% of"
+    " each forecast's range from 5 % to 95 %, or 0.1 in the forecasts' units.",
 )
 @click.option(
     "--reference-trials",
     type=WholeNumber(1_024),
-    help="Trials of the reference.  [default: what takes about eight seconds, 33554432 at most]",
+    help="Trials of the reference, the long run that errors are measured against.  [default: what takes about eight"
+    " seconds, 33554432 at most]",
 )
 @click.option(
     "-n",
@@ -41,7 +42,7 @@ NOT_TO_BE_USED = 1
     help="Trials of the longest runs; others have a fourth of them, a sixteenth, and so on.  [default: 16384 times as"
     " many as the shortest runs, or what takes two seconds]",
 )
-@click.option("--replicates", type=WholeNumber(2), help="Runs of each length.  [default: 24]")
+@click.option("--replicates", type=WholeNumber(2), help="How many runs of each length.  [default: 24]")
 @click.option("--quick", is_flag=True, help="Few and short runs: a first look, in about half a minute.")
 @click.option("--seed", type=WholeNumber(0), help="Seed of the reference; runs follow it.  [default: the book's]")
 @click.option(

@@ -1,4 +1,4 @@
-"""The options that several commands share (who computes a run, when it ends), and what options take."""
+"""Options that several commands share, and the kinds of values that options take."""
 
 from __future__ import annotations
 
@@ -70,7 +70,12 @@ class OneOf(click.Choice):  # type: ignore[type-arg]
 
 
 jobs_option = click.option(
-    "-j", "--jobs", type=WholeNumber(1, _MOST_JOBS), default=1, show_default=True, help="Threads or processes."
+    "-j",
+    "--jobs",
+    type=WholeNumber(1, _MOST_JOBS),
+    default=1,
+    show_default=True,
+    help="How many threads or processes compute.",
 )
 """Who computes; the result does not depend on it."""
 
@@ -91,15 +96,22 @@ _OPTIONS = (
     click.option(
         "--rare",
         type=OneOf(*RARE),
-        help="Find rare accepted trials by learning where they are.  [default: auto: where -n would not be enough]",
+        help="Where accepted trials are rare, learn where they are and draw there.  [default: auto: if -n would not be"
+        " enough]",
     ),
-    click.option("--for", "forecasts", multiple=True, metavar="FORECAST", help="Whose.  [default: every forecast's]"),
+    click.option(
+        "--for",
+        "forecasts",
+        multiple=True,
+        metavar="FORECAST",
+        help="The forecast whose precision or digits count; may be given several times.  [default: all]",
+    ),
     click.option("--time-limit", metavar="TIME", help="End the run after 60s, 5m or 1h30m."),
 )
 
 
 def stopping_options(command: F) -> F:
-    """Adds the options, under the names that `Model.simulate` has for them."""
+    """Add the options, under the names that `Model.simulate` has for them."""
     for option in reversed(_OPTIONS):
         command = option(command)
     return command

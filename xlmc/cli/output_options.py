@@ -1,4 +1,4 @@
-"""The files that a run can be written to: one list for `simulate` and `report`."""
+"""The files that `simulate` and `report` can write a run to: their options, the checks before the run, the writing."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NOT_WRITTEN = 2
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-_PATH = click.Path(readable=False, path_type=Path)  # whether it may be read is said with the cure
+_PATH = click.Path(readable=False, path_type=Path)  # a file that may not be read is refused later, with a hint
 _OPTIONS = (
     click.option("--html", type=_PATH, metavar="PAGE.html", help="Write the results as one web page."),
     click.option("--json", "json_path", type=_PATH, metavar="FILE.json", help="Write all results as JSON."),
@@ -30,18 +30,19 @@ _OPTIONS = (
         type=_PATH,
         multiple=True,
         metavar="FILE.csv|FILE.parquet",
-        help="Write the accepted trials; may be given again.",
+        help="Write the accepted trials; may be given several times.",
     ),
     click.option(
         "--overwrite",
         is_flag=True,
-        help="Replace existing files, whoever wrote them; else only xlmc's own, of BOOK and untouched.",
+        help="Replace existing files, whoever wrote them. Without it only files that xlmc wrote for BOOK, and"
+        " that nobody has changed since.",
     ),
 )
 
 
 def output_options(command: F) -> F:
-    """Adds the options; the command is given `html`, `json_path`, `extract` and `overwrite`."""
+    """Add the options; the command is given `html`, `json_path`, `extract` and `overwrite`."""
     for option in reversed(_OPTIONS):
         command = option(command)
     return command
@@ -74,10 +75,10 @@ class Outputs(NamedTuple):
     in_place: bool = False
     named: bool = True
 
-    def checked(self, like: Path) -> Outputs:
-        """The files as they can be written, before a run: what could not be written after it is refused.
+    def check(self, like: Path) -> Outputs:
+        """The files as they will be written; a file that could not be written after the run is refused before it.
 
-        A result workbook without a name of its own gets a free one where its name is taken, which is said.
+        A result workbook that the person did not name gets a free name where its own is taken, and a note says so.
 
         Args:
             like: a workbook whose ending the result workbook must have.
@@ -157,10 +158,10 @@ class Outputs(NamedTuple):
     def write(self, run: Simulation) -> tuple[bool, list[str]]:
         """Write them all: whether all could be, and what to say of where they are when the answer has been printed.
 
-        One that cannot be written is told of, and the others are written all the same: the run may have taken hours.
+        If one cannot be written, that is said, and the others are written all the same: the run may have taken hours.
         Where a name was taken since the run began, or a program holds the file, a free name beside it is used.
         """
-        written, told = True, []
+        written, lines = True, []
         for path, said, write in self._files(run):
             try:
                 found = self._write_beside(path, write)
@@ -168,12 +169,12 @@ class Outputs(NamedTuple):
                 say(f"xlmc: {error}", err=True)
                 written = False
             else:
-                told.append(f"{said} {found}")
+                lines.append(f"{said} {found}")
         if self.extract and run.kept_inputs < run.accepted:
-            kept = f"draws of {run.kept_inputs:,} of {run.accepted:,} accepted trials were kept"
+            kept = f"the draws of {run.kept_inputs:,} of {run.accepted:,} accepted trials were kept"
             for path in self.extract:
                 say(f"note: {path}: {kept}; the others are blank", err=True)
-        return written, told
+        return written, lines
 
     def _write_beside(self, path: Path, write: _Write) -> Path:
         from xlmc.workbook.target import free_target

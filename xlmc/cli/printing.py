@@ -108,7 +108,7 @@ def table_lines(
             for index in range(len(rows)):
                 yield from _lines([column.cells[index] for column in columns], columns, widths, gap)
             return
-    yield from _listed(headings, rows, width)
+    yield from _list_rows(headings, rows, width)
 
 
 def _widths(columns: Sequence[_Column], width: int, gap: str) -> list[int] | None:
@@ -125,26 +125,26 @@ def _widths(columns: Sequence[_Column], width: int, gap: str) -> list[int] | Non
 
 
 def _lines(cells: Sequence[list[str]], columns: Sequence[_Column], widths: Sequence[int], gap: str) -> Iterator[str]:
-    wrapped = [_wrapped(pieces, width) for pieces, width in zip(cells, widths, strict=True)]
+    wrapped = [_wrap(pieces, width) for pieces, width in zip(cells, widths, strict=True)]
     for parts in zip_longest(*wrapped, fillvalue=""):
-        filled = (_filled(part, width, column) for part, width, column in zip(parts, widths, columns, strict=True))
+        filled = (_pad(part, width, column) for part, width, column in zip(parts, widths, columns, strict=True))
         yield f" {gap.join(filled)}".rstrip()
 
 
-def _filled(text: str, width: int, column: _Column) -> str:
+def _pad(text: str, width: int, column: _Column) -> str:
     blank = " " * (width - _wide(text))
     return blank + text if column.right else text + blank
 
 
-def _listed(headings: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> Iterator[str]:
+def _list_rows(headings: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> Iterator[str]:
     """Each row as lines of heading and cell."""
     longest = max((_wide(heading) for heading in headings[1:]), default=0)
     for row in rows:
-        for part in _wrapped(_words(row[0]), width - 1):
+        for part in _wrap(_words(row[0]), width - 1):
             yield f" {part}"
         for heading, cell in zip(headings[1:], row[1:], strict=True):
             start = f"   {heading}{' ' * (longest - _wide(heading))}  "
-            for part in _wrapped(_words(cell), max(_LEAST, width - len(start))) if cell else ():
+            for part in _wrap(_words(cell), max(_LEAST, width - len(start))) if cell else ():
                 yield start + part
                 start = " " * len(start)
 
@@ -160,18 +160,18 @@ def _words(text: str) -> list[str]:
     return text.split() or [""]
 
 
-def _wrapped(pieces: Sequence[str], width: int) -> list[str]:
+def _wrap(pieces: Sequence[str], width: int) -> list[str]:
     lines: list[str] = []
     for piece in pieces:
         if lines and _wide(lines[-1]) + 1 + _wide(piece) <= width:
             lines[-1] += f" {piece}"
         else:
-            *full, last = _folded(piece, width)
+            *full, last = _fold(piece, width)
             lines += [*full, last]
     return lines
 
 
-def _folded(word: str, width: int) -> list[str]:
+def _fold(word: str, width: int) -> list[str]:
     """A word that is longer than a line, on several."""
     parts = [""]
     for letter in word:

@@ -61,10 +61,10 @@ def _lines(found: Replayed, path: Path) -> Iterator[str]:
     if found.fault is not None:
         yield f"The workbook cannot be run any more: {found.fault}"
     yield from _numbers(found.numbers)
-    yield from _shown(found)
+    yield from _sheet_lines(found)
     if found.of_this_version and not found.changes and not found.identical:
         yield from _unexplained(found)
-    yield from _changes(found.environment, "Other software or another processor than then:")
+    yield from _changes(found.environment, "Software or a processor that is not the same as then:")
 
 
 def _other_version(found: Replayed) -> Iterator[str]:
@@ -72,13 +72,13 @@ def _other_version(found: Replayed) -> Iterator[str]:
     from xlmc.replay.versions import install
     from xlmc.run.version import __version__
 
-    made = f"xlmc {found.version}" if found.version else "An xlmc that did not record its version"
+    made = f"xlmc {found.version}" if found.version else "A version of xlmc that did not record its number"
     yield f"{made} made this run, and this is xlmc {__version__}."
     if found.rules:
-        yield "What has changed since, and may concern its formulas:"
+        yield "Rules that have changed since, and that its formulas may depend on:"
         yield from (f"  {rule.said} ({rule.since})" for rule in found.rules)
     elif not found.identical:
-        yield "No rule is listed that has changed since and that concerns its formulas."
+        yield "No rule that its formulas depend on is known to have changed since."
     if found.version:
         yield "To repeat it as it was made, install that version beside this one, in a clone of xlmc's repository:"
         yield f"  {install(found.version)}"
@@ -107,14 +107,14 @@ def _changes(changes: Sequence[Change], heading: str) -> Iterator[str]:
 
 def _numbers(numbers: Sequence[NumberChange]) -> Iterator[str]:
     if numbers:
-        yield "Numbers that the repeat gives otherwise:"
+        yield "Numbers that are different in the repeated run:"
     for number in numbers[:_MOST]:
         yield f"  {number.name}: recorded {_figure(number.recorded)}, repeated {_figure(number.repeated)}"
     yield from _rest(numbers)
 
 
-def _shown(found: Replayed) -> Iterator[str]:
-    """What the result sheets show otherwise than the repeated run."""
+def _sheet_lines(found: Replayed) -> Iterator[str]:
+    """What the result sheets show that the repeated run does not give."""
     differences = found.shown.differences
     if differences:
         count = len(differences)
@@ -139,7 +139,7 @@ def _value(value: CellValue) -> str:
     return repr(float(value)).removesuffix(".0") if isinstance(value, int | float) else value.text
 
 
-def _as_shown(difference: CellDifference) -> dict[str, object]:
+def _difference_json(difference: CellDifference) -> dict[str, object]:
     says, gives = (
         value if value is None or isinstance(value, str | bool | int | float) else value.text
         for value in (difference.says, difference.gives)
@@ -162,11 +162,11 @@ def _unexplained(found: Replayed) -> Iterator[str]:
     if found.same_bits and not found.numbers:
         return
     if found.same_bits:
-        yield "The numbers in the record were edited: nothing that the run depends on has changed."
+        yield "Somebody edited the numbers in the record: nothing that the run depends on has changed."
     elif not found.environment:
         yield (
             "Every recorded cell, definition and setting is as it was, and so are the software and the processor: "
-            "the record was edited, or the run depends on something that xlmc does not record."
+            "either somebody edited the record, or the run depends on something that xlmc does not record."
         )
 
 
@@ -184,7 +184,7 @@ def _as_json(found: Replayed) -> dict[str, object]:
         ],
         "result_sheets": {
             "compared": list(found.shown.sheets),
-            "differences": [_as_shown(each) for each in found.shown.differences],
+            "differences": [_difference_json(each) for each in found.shown.differences],
             "missing": list(found.shown.missing),
             "not_compared": list(found.shown.left_out),
         },

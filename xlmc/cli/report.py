@@ -33,7 +33,7 @@ def report(
     overwrite: bool,
     quiet: bool,
 ) -> None:
-    """Write the results of a saved run again, without simulating: the same as when it was run."""
+    """Write the results of a saved run, without simulating again: the same as when it was run."""
     from xlmc.api import open_run
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.simulate import show_run
@@ -46,10 +46,10 @@ def report(
         target = results_beside(run, found.model.path.suffix)
     name, named = found.model.workbook.name, output is not None
     asked = Outputs(run, name, target, None, html, json_path, extract, overwrite, named=named)
-    outputs = asked.checked(found.model.path)
-    written, told = outputs.write(found)  # before the answer is printed, so that no terminal can cost a run
+    outputs = asked.check(found.model.path)
+    written, lines = outputs.write(found)  # before the answer is printed, so that no terminal can cost a run
     show_run(found)
-    for line in told:
+    for line in lines:
         say(line)
     warnings(found.warnings)
     if not written:

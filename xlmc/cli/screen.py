@@ -33,8 +33,8 @@ NOT_TO_BE_USED = 1
 @click.option(
     "--chance",
     type=float,
-    help="What difference of P(forecast > its threshold) counts as none, in percentage points.  [default: a tenth of it"
-    " or of its complement, at least 0.1]",
+    help="What difference of the probability above a forecast's threshold counts as none, in percentage points."
+    "  [default: a tenth of it or of the probability below, at least 0.1]",
 )
 @click.option(
     "--acceptance",
@@ -46,8 +46,8 @@ NOT_TO_BE_USED = 1
 @click.option(
     "--freeze",
     multiple=True,
-    help="Also say what holding these assumptions at once costs: names joined by commas, * for any letters; may be"
-    " given several times.",
+    help="Also say what holding all of these assumptions at once costs: names joined by commas, * for any letters;"
+    " may be given several times.",
 )
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials of each run.  [default: the book's, else 200000]")
 @click.option("--seed", type=WholeNumber(0), help="Seed of each run.  [default: the book's, else 999]")
@@ -72,7 +72,9 @@ def screen(
     as_json: bool,
     quiet: bool,
 ) -> None:
-    """Find which assumptions of BOOK may be held, and which filters left out, without moving its answers."""
+    """Find which assumptions of BOOK may be held at their base values, and which filters left out, without moving its
+    answers.
+    """
     from xlmc.cli.printing import warnings
     from xlmc.cli.progress import step_line
     from xlmc.report.study_report import Files
@@ -227,7 +229,7 @@ def _verdicts(found: Screening) -> Iterable[str]:
             "forecasts need is not known."
         )
     if found.baseless:
-        yield f"Not screened, for their cells are blank: {'; '.join(found.baseless)}."
+        yield f"Not screened, because their cells are blank: {'; '.join(found.baseless)}."
     if found.reduced:
         yield (
             f"Filters that then decide nothing here: {'; '.join(found.reduced.names)}. Without them no number moves by "

@@ -27,16 +27,20 @@ INTERRUPTED = 130
 @click.argument("book", type=click.Path(readable=False, path_type=Path))
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials to run.  [default: the book's, else 200000]")
 @stopping_options
-@click.option("--seed", type=WholeNumber(0), help="Seed of the random streams.  [default: the book's, else 999]")
+@click.option(
+    "--seed",
+    type=WholeNumber(0),
+    help="Seed: the number that the random draws start from.  [default: the book's, else 999]",
+)
 @engine_option
 @sampling_option
 @jobs_option
 @click.option(
     "--scheduler",
-    help="threads, processes, local (a Dask cluster here), or a Dask scheduler's address; same result."
+    help="threads, processes, local (a Dask cluster on this machine), or a Dask scheduler's address; same result."
     "  [default: processes for long runs with -j, else threads]",
 )
-@click.option("--workers", type=WholeNumber(1), help="Workers of --scheduler local.  [default: one a processor]")
+@click.option("--workers", type=WholeNumber(1), help="Workers of --scheduler local.  [default: one for each processor]")
 @click.option(
     "-o",
     "--output",
@@ -78,14 +82,14 @@ def simulate(
     from xlmc.run.simulation import KEPT_INPUTS
 
     if in_place and output is not None:
-        raise click.UsageError("--in-place and --output exclude each other.")
+        raise click.UsageError("--in-place and --output cannot both be given.")
     if os.path.isdir(book):
         load(book)  # says so
     target = book if in_place else output or results_beside(book)
     asked = Outputs(
         book, book.name, target, save_run, html, json_path, extract, overwrite, in_place, output is not None
     )
-    outputs = asked.checked(book) if os.path.exists(book) else asked  # `load` says that there is no book
+    outputs = asked.check(book) if os.path.exists(book) else asked  # `load` says that there is no book
     model = load(book)
     if not quiet:
         notices([*model.notices, *_hints(model, trials, engine)])
@@ -103,9 +107,9 @@ def simulate(
             keep_interrupted=True,
             progress=progress,
         )
-    written, told = outputs.write(run)  # before the answer is printed, so that no terminal can cost a run
+    written, lines = outputs.write(run)  # before the answer is printed, so that no terminal can cost a run
     show_run(run)
-    for line in told:
+    for line in lines:
         say(line)
     warnings(run.warnings)
     if run.stopped.interrupted:
@@ -141,11 +145,11 @@ def show_run(run: Simulation) -> None:
     show_first(run)
     headings, rows = summary_text(summarise(run))
     table(f"{run.model.workbook.name}: accepted trials", headings, rows, right=range(2, len(headings)))
-    say(f"{_accepted(run)}; seed {run.settings.seed}.")
+    say(f"{_acceptance_sentence(run)}; seed {run.settings.seed}.")
     ended = "" if run.stopped == ALL_TRIALS else f"Ended when {run.stopped.sentence}.\n"
     say(ended + paragraph(sampling_sentence(run)) + "\n")
     if run.model.filters:
-        of = "Trials rejected" if run.rare is None else f"Trials rejected of {run.trials:,} drawn plainly"
+        of = "Trials rejected" if run.rare is None else f"Trials rejected of {run.trials:,} drawn before the search"
         table(of, ("Filter", "Keeps", "Rejected", "Only by it"), _rejections(run), right=(2, 3))
     check_table(run)
     say(paragraph(ERROR_SENTENCE))
@@ -153,7 +157,7 @@ def show_run(run: Simulation) -> None:
         say(paragraph(f"{notice}."))
 
 
-def _accepted(run: Simulation) -> str:
+def _acceptance_sentence(run: Simulation) -> str:
     from xlmc.results.record.errors_met import rest_sentences
     from xlmc.statistics import format_estimate
 
@@ -161,7 +165,7 @@ def _accepted(run: Simulation) -> str:
     if run.rare is not None:
         from xlmc.run.rare.account import probability_text
 
-        return f"{run.accepted:,} accepted trials; one is accepted with probability {probability_text(run.rare)}"
+        return f"{run.accepted:,} accepted trials; a trial is accepted with probability {probability_text(run.rare)}"
     percent = format_estimate(100 * share.value, 100 * (share.error or 0))
     if any(errors.total() for errors in run.faults.values()):
         kept = [f"the filters kept {run.accepted:,}, {percent} %"] if run.accepted < run.trials else []

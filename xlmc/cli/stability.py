@@ -23,7 +23,7 @@ NOT_TO_BE_USED = 1
 
 @click.command()
 @click.argument("book", type=click.Path(path_type=Path))
-@click.option("--cells", "all_cells", is_flag=True, help="List every needed cell, not forecasts and filters alone.")
+@click.option("--cells", "all_cells", is_flag=True, help="List every needed cell, not only forecasts and filters.")
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials of the run.  [default: the book's, else 200000]")
 @click.option("--seed", type=WholeNumber(0), help="Seed of the run.  [default: the book's, else 999]")
 @jobs_option
@@ -86,8 +86,8 @@ def _count(findings: Sequence[Finding]) -> str:
 
 
 def _show_finding(number: int, finding: Finding) -> None:
-    say(_headed(number, finding, _cut(finding.formula)))
-    for text in _said(finding):
+    say(_finding_heading(number, finding, _cut(finding.formula)))
+    for text in _finding_sentences(finding):
         say(paragraph(text, indent="   "))
     if finding.instead:
         say(f"   Instead: {finding.instead}")
@@ -117,18 +117,18 @@ def _report(found: Stability, all_cells: bool) -> StudyReport:
 
 
 def _finding_texts(number: int, finding: Finding) -> Iterator[str]:
-    yield _headed(number, finding, finding.formula)
-    yield from _said(finding)
+    yield _finding_heading(number, finding, finding.formula)
+    yield from _finding_sentences(finding)
     if finding.instead:
         yield f"Instead: {finding.instead}"
 
 
-def _headed(number: int, finding: Finding, formula: str) -> str:
+def _finding_heading(number: int, finding: Finding, formula: str) -> str:
     name = f" {finding.name}" if finding.name else ""
     return f"{number}. {_LEVELS[finding.level.name]}: {finding.cell}{name}   {formula}"
 
 
-def _said(finding: Finding) -> Iterator[str]:
+def _finding_sentences(finding: Finding) -> Iterator[str]:
     yield from (f"{text[0].upper()}{text[1:]}." for text in (finding.what, finding.effect))
     if finding.where:
         yield f"Where: {'; '.join(map(str, finding.where))}"

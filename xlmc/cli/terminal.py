@@ -1,4 +1,7 @@
-"""The one way to stdout and stderr. No character costs a run, none steers the terminal, and a closed pipe is quiet."""
+"""The only module that writes to stdout and stderr.
+
+A character that the terminal cannot show ends no run, none is taken for a command, and a closed pipe is no error.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,7 @@ from xlmc.workbook.printable import printable
 __all__ = ["degraded", "on_terminal", "paragraph", "prepare", "put", "say", "say_json", "width"]
 
 PIPE_WIDTH: Final = 100
-"""Of text in a pipe or a file."""
+"""Columns of text in a pipe or a file."""
 
 _NARROWEST: Final = 20
 
@@ -52,7 +55,7 @@ _INSTEAD: Final[Mapping[str, str]] = {
 
 _HANDLER: Final = "xlmc"
 _READER_GONE: Final = (errno.EPIPE, errno.EINVAL)
-"""How Linux and macOS, and how Windows says that nobody reads a pipe any more: there is nobody to tell."""
+"""The errors by which Linux and macOS, and Windows, say that nobody reads a pipe any more."""
 
 
 def prepare() -> None:
@@ -71,11 +74,11 @@ def say(text: object = "", *, err: bool = False) -> None:
     """
     shown = printable(str(text))
     if err and on_terminal(err=True):
-        shown = "\n".join(_wrapped_note(line) for line in shown.split("\n"))
+        shown = "\n".join(_wrap_note(line) for line in shown.split("\n"))
     put(f"{shown}\n", err=err)
 
 
-def _wrapped_note(line: str) -> str:
+def _wrap_note(line: str) -> str:
     """A line as wide as the terminal, words whole: a path or an address can be copied."""
     line = degraded(line, err=True)
     wide = _columns(sys.stderr)
@@ -131,7 +134,7 @@ def width() -> int:
 
 
 def _columns(stream: TextIO) -> int:
-    """Of the terminal behind a stream; `COLUMNS` where that is set."""
+    """Columns of the terminal behind a stream; `COLUMNS` where that is set."""
     try:
         own = os.get_terminal_size(stream.fileno()).columns or PIPE_WIDTH
     except (OSError, ValueError):
@@ -170,7 +173,7 @@ def _is_unicode(stream: TextIO | None) -> bool:
 
 
 def _silence(stream: TextIO) -> None:
-    """Send what is still to come nowhere, also what Python flushes when it ends."""
+    """Discard all further output, also what Python flushes when it ends."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     try:
         os.dup2(nowhere, stream.fileno())
@@ -186,7 +189,7 @@ def _readable_instead(error: UnicodeError) -> tuple[str, int]:
 
 
 def _readable(character: str) -> str:
-    r"""Letters of xlmc's own and Greek ones by name, letters with marks without them, others as `\u4e2d`."""
+    r"""What to write for a character: our spelling, a Greek letter's name, a letter without its marks, or `\u4e2d`."""
     if character in _INSTEAD:
         return _INSTEAD[character]
     words = unicodedata.name(character, "").split()

@@ -1,4 +1,4 @@
-"""`xlmc verify`: recomputed values against the ones Excel saved."""
+"""`xlmc verify`: recomputed values beside those that Excel saved."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SHOWN = 50
 @click.option("--all", "everything", is_flag=True, help="Check every formula cell, not only the needed ones.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def verify(book: Path, everything: bool, as_json: bool) -> None:
-    """Recompute the formulas of BOOK at their base values and compare with the values Excel saved."""
+    """Recompute the formulas of BOOK at the base case and compare with the values that Excel saved."""
     from xlmc.definitions.reader import read_definitions
     from xlmc.evaluation.engines import ENGINES
     from xlmc.studies.verify import Status

@@ -1,7 +1,8 @@
-"""What the filters did to an assumption: its accepted draws beside those it began with.
+"""What the filters did to an assumption: its accepted draws beside those before filtering.
 
-Filtering is conditioning: only the combinations that agree with the evidence are left, so an input that the evidence
-speaks about is distributed differently afterwards, though its range has not changed.
+Filters keep only the combinations that agree with the evidence, so an input that the evidence bears on is distributed
+differently afterwards, although its range has not changed. (In statistics: conditioning; the draws before filtering are
+the prior, and an assumption's draws on their own its marginal distribution.)
 """
 
 from __future__ import annotations
@@ -41,8 +42,10 @@ class FilterEffect:
     """An assumption before and after filtering.
 
     Attributes:
-        shift: of the mean, in standard deviations of the prior.
-        narrowing: the accepted standard deviation over that of the prior.
+        prior: before filtering.
+        accepted: after it.
+        shift: of the mean, in standard deviations before filtering.
+        narrowing: the accepted standard deviation over that before filtering.
     """
 
     prior: Marginal
@@ -77,8 +80,8 @@ def filter_effect(
 ) -> FilterEffect:
     """Compare `(n,)` draws before filtering with the `(m,)` accepted ones.
 
-    Errors are those of independent samples; that the accepted draws may be among the others makes them a little
-    large. With the `(m,)` replicates of the accepted draws, those of the accepted come from the replicates.
+    Errors are those of independent samples; they are a little too large, because accepted draws may be among the
+    others. With the `(m,)` replicates of the accepted draws, those of the accepted come from the replicates.
     """
     before, after = marginal(prior), marginal(accepted, replicate)
     return FilterEffect(before, after, _shift(before, after), _narrowing(before, after))

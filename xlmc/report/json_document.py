@@ -297,10 +297,10 @@ def estimate_json(found: Estimate) -> _EstimateJson:
     """
     low, high = found.interval or (None, None)
     numbers = [number_json(number) for number in (found.value, found.error, low, high)]
-    told: _EstimateJson = dict(zip(("value", "error", "low", "high"), numbers, strict=True))
+    entry: _EstimateJson = dict(zip(("value", "error", "low", "high"), numbers, strict=True))
     if None in numbers:
-        told["reason"] = _reason(numbers[0], numbers[1], found.interval is not None)
-    return told
+        entry["reason"] = _reason(numbers[0], numbers[1], found.interval is not None)
+    return entry
 
 
 def _reason(value: float | None, error: float | None, interval: bool) -> str:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["plot"]
 
 _WIDTH, _HEIGHT, _HEAD = 10.0, 2.9, 0.75
-"""Inches: of the figure, of a forecast, of the title."""
+"""In inches: the width of the figure, the heights of a forecast and of the title."""
 
 _POINTS: Final = 1_001
 """Of a cumulative curve: a tenth of a percent each, finer than a line is thick."""
@@ -106,7 +106,7 @@ def _ends(each: Drawn) -> tuple[float, float]:
 
 
 def _near(each: Drawn, values: Floats) -> Floats:
-    """The values no farther outside the axis than it is long: matplotlib loses its way among the largest doubles."""
+    """The values, moved to at most the axis's own length outside it: matplotlib fails with the largest doubles."""
     low, high = _ends(each)
     return values.clip(low - (high - low), high + (high - low))
 

@@ -1,4 +1,7 @@
-"""What a study found, as paragraphs and tables of texts: one content for the terminal, a page and a sheet."""
+"""What `xlmc compare`, `screen` or `stability` found, as paragraphs and tables of texts.
+
+The terminal, a page and a sheet show the same content.
+"""
 
 from __future__ import annotations
 
@@ -63,7 +66,7 @@ class StudyReport:
 
 
 class Files:
-    """The workbook and the page that are asked for; either may be None.
+    """The workbook and the page that a report is written to; either may be None.
 
     Args:
         output: the workbook, which must end in .xlsx.
@@ -81,8 +84,8 @@ class Files:
 
         Raises:
             TakenError: a file is not ours to replace, or a program has it open.
-            WorkbookError: an ending is another, a folder is not there, a file is a workbook that is studied, or is
-                named twice.
+            WorkbookError: a file has the wrong ending, its folder is not there, it is a workbook that is studied, or it
+                is named twice.
         """
         refuse_same_file([path for path, _ in self._endings])
         for path, ending in self._endings:
@@ -117,7 +120,7 @@ class Files:
 
 
 def _page(report: StudyReport) -> str:
-    """As one HTML page that needs nothing else."""
+    """The report as one HTML page that needs no other file."""
     body = "".join(_table(each) if isinstance(each, Table) else f"<p>{escape(each)}</p>\n" for each in report.blocks)
     return (
         "<!DOCTYPE html>\n"
@@ -143,7 +146,7 @@ def _table(table: Table) -> str:
 
 
 def _book(report: StudyReport, sheet: str) -> bytes:
-    """As a workbook of one sheet."""
+    """The report as a workbook of one sheet."""
     from xlsxwriter import Workbook
 
     packed = io.BytesIO()
@@ -159,7 +162,7 @@ def _book(report: StudyReport, sheet: str) -> bytes:
                 written.row += 1
             else:
                 written.wide(each, "paragraph", _LAST)
-        written.printed(report.title)
+        written.set_up_printing(report.title)
     return packed.getvalue()
 
 

@@ -5,7 +5,7 @@ from html.parser import HTMLParser
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.report.page.element import EMPTY, Html, element, joined, void
+from xlmc.report.page.element import EMPTY, Html, element, join, void
 
 
 def read(source):
@@ -32,8 +32,8 @@ def test_no_text_is_markup(text, value):
 def test_what_is_html_stays_so():
     inner = element("b", "a & b")
     assert element("p", inner, " < ", inner).source == "<p><b>a &amp; b</b> &lt; <b>a &amp; b</b></p>"
-    assert joined([Html("<i></i>"), "<"]) == Html("<i></i>&lt;")
-    assert joined([]) == EMPTY
+    assert join([Html("<i></i>"), "<"]) == Html("<i></i>&lt;")
+    assert join([]) == EMPTY
 
 
 def test_attributes():

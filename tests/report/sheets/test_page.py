@@ -81,12 +81,12 @@ def test_spread_merges_up_to_the_next_start(written):
 
 
 def test_pages_print_fitted_to_their_width_or_at_a_scale_with_breaks(written):
-    fitted = written(lambda page: page.printed("a & b.xlsx", repeat=3))
+    fitted = written(lambda page: page.set_up_printing("a & b.xlsx", repeat=3))
     assert fitted.sheet_properties.pageSetUpPr.fitToPage
     assert (fitted.page_setup.fitToWidth or 1, fitted.page_setup.fitToHeight) == (1, 0)
     assert fitted.page_setup.orientation == "landscape"
     assert fitted.print_title_rows == "$4:$4"
     assert fitted.oddFooter.left.text == "a && b.xlsx"
-    broken = written(lambda page: page.printed("b.xlsx", scale=70, breaks=[5, 9]))
+    broken = written(lambda page: page.set_up_printing("b.xlsx", scale=70, breaks=[5, 9]))
     assert broken.page_setup.scale == 70
     assert [brk.id for brk in broken.row_breaks.brk] == [5, 9]

@@ -160,7 +160,12 @@ def test_the_command_line_says_so(tmp_path):
 def test_the_sheets_say_so(run):
     with ZipFile(BytesIO(build_sheets(run))) as package:
         written = "".join(package.read(name).decode() for name in package.namelist() if name.endswith(".xml"))
-    for said in ("Evaluated in all", "Drawn plainly", "which were drawn plainly", "Search for rare accepted trials"):
+    for said in (
+        "Evaluated in all",
+        "Drawn before the search",
+        "drawn before the search for accepted ones began",
+        "Search for rare accepted trials",
+    ):
         assert said in written
     assert f"{run.rare.evaluations:,} trials" in written
 
@@ -168,8 +173,8 @@ def test_the_sheets_say_so(run):
 def test_the_command_line_tells_what_was_done(run, capsys):
     show_run(run)
     shown = capsys.readouterr().out
-    assert "2,000 accepted trials; one is accepted with probability" in shown
-    assert f"Trials rejected of {run.trials:,} drawn plainly" in shown
+    assert "2,000 accepted trials; a trial is accepted with probability" in shown
+    assert f"Trials rejected of {run.trials:,} drawn before the search" in shown
     assert "learned proposal" in shown
 
 

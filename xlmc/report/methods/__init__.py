@@ -1,4 +1,4 @@
-"""What `xlmc methods` measured, as tables, a figure, a page and a workbook."""
+"""What `xlmc methods` measured, written to files: a picture, a page or a workbook, by their endings."""
 
 from __future__ import annotations
 
@@ -52,11 +52,11 @@ def save_methods(study: Study, path: Path, *, overwrite: bool = False) -> Path:
     """
     check_targets([path], study.model.path, overwrite=overwrite)
     target = Target(path, study.model.path.name, overwrite)
-    write_workbook(path, _sealed(study, path.suffix.casefold()), target.check)
+    write_workbook(path, _content_with_seal(study, path.suffix.casefold()), target.check)
     return path
 
 
-def _sealed(study: Study, ending: str) -> bytes:
+def _content_with_seal(study: Study, ending: str) -> bytes:
     """The content with its seal; a picture has none."""
     content, name = _content(study, ending), study.model.path.name
     if ending == ".html":

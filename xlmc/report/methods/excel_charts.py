@@ -1,4 +1,4 @@
-"""The charts of a study in its workbook: speed against accuracy, and a small one for each number."""
+"""The charts of a study of methods in its workbook: speed against accuracy, and a small chart for each number."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def write_charts(
         chart = _small(made, study, title, column, curve_rows)
         if chart is not None:
             page.sheet.insert_chart(top, 0, chart, {"object_position": 1, "x_offset": number * _SMALL[0]})
-    page.printed(study.model.workbook.name, scale=_SCALE)
+    page.set_up_printing(study.model.workbook.name, scale=_SCALE)
 
 
 def _main(made: Workbook, data: _Data, picture: Picture) -> ChartScatter:
@@ -124,7 +124,7 @@ def _main(made: Workbook, data: _Data, picture: Picture) -> ChartScatter:
     chart.set_x_axis({**axis, "name": f"{picture.across} ({_SIGNS})", "min": start, "max": end, "crossing": start})
     up = {"name": picture.upwards, "min": bottom, "max": top, "crossing": bottom, "major_gridlines": _GRIDLINES}
     chart.set_y_axis({**axis, **up})
-    return _finished(chart, _MAIN)
+    return _finish(chart, _MAIN)
 
 
 def _ring(x: float, y: float, across: float, upwards: float) -> list[tuple[float, float]]:
@@ -232,7 +232,7 @@ def _small(
     chart.set_title({"name": title, "name_font": {"size": 8, "bold": True, "color": INK}, "overlay": False})
     chart.set_x_axis({**axis, "name": "trials of a run", "num_format": "#,##0"})
     chart.set_y_axis({**axis, "num_format": "General", "major_gridlines": _GRIDLINES})
-    return _finished(chart, _SMALL) if drawn else None
+    return _finish(chart, _SMALL) if drawn else None
 
 
 def _has(curve: Curve, column: int) -> bool:
@@ -243,7 +243,7 @@ def _has(curve: Curve, column: int) -> bool:
     return any(rung.shares[[*STATISTICS][index]] > 0.0 for rung in curve.rungs)
 
 
-def _finished(chart: ChartScatter, size: tuple[int, int]) -> ChartScatter:
+def _finish(chart: ChartScatter, size: tuple[int, int]) -> ChartScatter:
     chart.set_legend({"none": True})
     chart.set_size({"width": size[0], "height": size[1]})
     chart.set_chartarea({"border": {"color": GRID}})

@@ -1,4 +1,4 @@
-"""The figure of a study: speed against accuracy in one panel, and five small ones for each number apart."""
+"""The figure of a study of methods, drawn with matplotlib: speed against accuracy, and a panel for each number."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def _main(axis: Axes, picture: Picture) -> None:
         axis.plot(picture.chosen[0], picture.chosen[1], "o", ms=15, mfc="none", mec=_INK, mew=1.8, zorder=6)
     axis.set_xlabel(picture.across)
     axis.set_ylabel(picture.upwards)
-    _dressed(axis)
+    _style_axes(axis)
     axis.set_xticks([tick for tick in axis.get_xticks() if left * 0.999 <= tick <= right * 1.001])
 
 
@@ -203,7 +203,7 @@ def _small(axis: Axes, study: Study, title: str, get: Callable[[Rung], tuple[flo
     axis.set_xlabel("trials", fontsize=8)
     axis.tick_params(labelsize=7.5)
     if drawn:
-        _dressed(axis)
+        _style_axes(axis)
         _half(axis)
     else:
         axis.set_axis_off()
@@ -241,7 +241,7 @@ def _half(axis: Axes) -> None:
                   fontsize=7.5, color=_GREY, ha="right")  # fmt: skip
 
 
-def _dressed(axis: Axes) -> None:
+def _style_axes(axis: Axes) -> None:
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     axis.grid(which="major", color=_LINES, lw=0.7)

@@ -1,4 +1,4 @@
-"""A study as one HTML page that needs nothing else: the recommendation, the figures as SVG, the tables."""
+"""A study of methods as one HTML page that needs no other file: the recommendation, the figures as SVG, the tables."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tables of a study, as texts: the same for the terminal, the page and the workbook."""
+"""The tables of a study of methods, as texts: the same for the terminal, the page and the workbook."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A study as a workbook: the words, the tables as numbers, and native charts in logarithms."""
+"""A study of methods as a workbook: the words, the tables as numbers, and Excel charts with logarithmic axes."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def _write_words(page: Page, study: Study) -> None:
         page.heading(ENDS)
     for bound, point in ends:
         page.spread([cells.text(bound, "name"), cells.text(point)], [0, 1], _LAST)
-    page.printed(name)
+    page.set_up_printing(name)
 
 
 def _texts(page: Page, table: methods_tables.Table) -> None:
@@ -108,7 +108,7 @@ def _write_runs(page: Page, study: Study) -> list[tuple[Curve, int, int]]:
             page.line(_rung_cells(study, curve, rung))
         curve_rows.append((curve, first, page.row - 1))
     page.line([cells.text("The reference's own error", "label"), *[cells.BLANK] * 4, *_floor(study)])
-    page.printed(study.model.workbook.name)
+    page.set_up_printing(study.model.workbook.name)
     return curve_rows
 
 
@@ -147,4 +147,4 @@ def _write_forecasts(page: Page, study: Study) -> None:
     page.title("Forecast by forecast", f"{table.title}; ± is the standard error of a root mean square")
     page.row += 1
     _texts(page, table)
-    page.printed(study.model.workbook.name)
+    page.set_up_printing(study.model.workbook.name)

@@ -1,7 +1,8 @@
-"""What the chart of speed against accuracy shows, whoever draws it: matplotlib on the page, Excel in the workbook.
+"""What the chart of speed against accuracy shows; matplotlib draws it on the page, Excel in the workbook.
 
 Across: the work of a run, seconds or evaluations. Upwards: what 95 of 100 runs keep within, in the number that a method
-has most trouble with; in % of the forecast's 5–95 % range, or over the accuracy where that was given in units.
+has most trouble with; in % of the forecast's 5–95 % range, or as a multiple of the accuracy where that was given in
+units. At the right, words at the ends of the lines stand in a column, apart from each other, in the lines' order.
 """
 
 from __future__ import annotations

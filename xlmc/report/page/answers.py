@@ -1,4 +1,4 @@
-"""The page's first part, which can be read alone: what was asked, the answers, and what they mean."""
+"""The first section of the page, which can be read alone: what was asked, the answers, and what they mean."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def answers(simulation: Simulation) -> Html:
         element("h2", "The answer"),
         *map(_warning, opening_sentences(simulation)),
         element("p", *_question(simulation)),
-        element("ul", *(element("li", *_said(each)) for each in statements(simulation)), class_="statements"),
+        element("ul", *(element("li", *_statement(each)) for each in statements(simulation)), class_="statements"),
         element("p", MEANING, class_="remark"),
         _table(rows),
         element("p", ERROR_SENTENCE, class_="meaning"),
@@ -70,7 +70,7 @@ def _counted(count: int, one: str, several: str) -> str:
     return f"{count} {one if count == 1 else several}"
 
 
-def _said(statement: Statement) -> Iterator[Html | str]:
+def _statement(statement: Statement) -> Iterator[Html | str]:
     """The sentence, with the name before its colon in bold."""
     name = f"{statement.forecast}: "
     if statement.text.startswith(name):

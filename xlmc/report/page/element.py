@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from html import escape
 
-__all__ = ["EMPTY", "Html", "element", "joined", "void"]
+__all__ = ["EMPTY", "Html", "element", "join", "void"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,19 +29,19 @@ def element(name: str, /, *children: Html | str, **attributes: str | None) -> Ht
     >>> element("b", "a < b", class_="x").source
     '<b class="x">a &lt; b</b>'
     """
-    return Html(f"<{name}{_written(attributes)}>{joined(children).source}</{name}>")
+    return Html(f"<{name}{_attributes(attributes)}>{join(children).source}</{name}>")
 
 
 def void(name: str, /, **attributes: str | None) -> Html:
     """An element that holds nothing and has no end: `input`."""
-    return Html(f"<{name}{_written(attributes)}>")
+    return Html(f"<{name}{_attributes(attributes)}>")
 
 
-def joined(children: tuple[Html | str, ...] | list[Html]) -> Html:
+def join(children: tuple[Html | str, ...] | list[Html]) -> Html:
     """One after the other."""
     return Html("".join(each.source if isinstance(each, Html) else escape(each) for each in children))
 
 
-def _written(attributes: dict[str, str | None]) -> str:
+def _attributes(attributes: dict[str, str | None]) -> str:
     found = ((key.rstrip("_").replace("_", "-"), value) for key, value in attributes.items() if value is not None)
     return "".join(f' {key}="{escape(value)}"' for key, value in found)

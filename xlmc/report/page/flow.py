@@ -1,6 +1,7 @@
 """What the result sheets say, on the page: their writers write onto a `Flow` as they do onto a sheet.
 
-Places, widths and heights mean nothing here: sections, tables and paragraphs follow each other.
+Rows, columns, widths and heights mean nothing here: sections, tables and paragraphs follow each other. Numbers look as
+in Excel, by the number formats that `xlmc.report.sheets.cells` makes.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from xlmc.report.page.element import Html, element, joined
+from xlmc.report.page.element import Html, element, join
 from xlmc.report.sheets.cells import NOISE, NONE, Shown
 from xlmc.report.sheets.page import Page
 from xlmc.report.summary import estimate_text, share_text
@@ -30,7 +31,7 @@ _LONGEST = 11
 
 
 class Flow(Page):
-    """A result sheet's writing as HTML, from the top down."""
+    """A result sheet as HTML, from the top down."""
 
     def __init__(self) -> None:
         self.row, self.sheet = 0, _Nothing()
@@ -41,34 +42,34 @@ class Flow(Page):
     def html(self) -> Html:
         """All that was written so far."""
         self._close()
-        return joined(self._found)
+        return join(self._found)
 
     def put(self, row: int, column: int, shown: Shown) -> None:
-        """A single cell is a paragraph."""
+        """Write a single cell, which becomes a paragraph."""
         self.wide(str(shown.value or ""), shown.look, column, column)
 
     def spread(self, cells: Sequence[Shown], starts: Sequence[int], last: int) -> None:
-        """A row of the table that is being written, or the first of another."""
+        """Write a row of the table that is being written, or the first of another."""
         if self._open and (len(self._open[-1]) != len(cells) or _heads(cells)):
             self._close()
         self._open.append(list(cells))
         self.row += 1
 
     def wide(self, value: str, look: str, last: int, first: int = 0) -> None:
-        """A paragraph."""
+        """Write a paragraph."""
         self._add(element("p", value, class_=look))
 
     def title(self, value: str, below: str, column: int = 0) -> None:
-        """The heading of the whole, and the line below it."""
+        """Write the heading of the whole, and the line below it."""
         self._add(element("h2", value))
         self._add(element("p", below, class_="subtitle"))
 
     def heading(self, value: str, column: int = 0) -> None:
-        """The heading of a section."""
+        """Write the heading of a section."""
         self._add(element("h3", value))
 
-    def printed(self, name: str, **options: Any) -> None:
-        """Nothing: the page has a print style of its own."""
+    def set_up_printing(self, name: str, **options: Any) -> None:
+        """Do nothing: the page has a print style of its own."""
 
     def _add(self, found: Html) -> None:
         self._close()
@@ -87,7 +88,7 @@ def _heads(cells: Sequence[Shown]) -> bool:
 
 
 def _table(headers: Sequence[str], rows: Sequence[Sequence[Shown]]) -> Html:
-    """A table of a sheet's cells, which can be pushed aside where it is wider than the page."""
+    """A table of a sheet's cells, which scrolls where it is wider than the page."""
     numbers = {index for row in rows for index, shown in enumerate(row) if shown.look in _NUMBERS}
     heads = (_head(text, index in numbers) for index, text in enumerate(headers))
     body = [element("tr", *(_cell(shown, index) for index, shown in enumerate(row))) for row in rows]
@@ -107,7 +108,7 @@ def _cell(shown: Shown, index: int) -> Html:
 
 
 class _Nothing:
-    """What is asked of a sheet alone: widths, heights, panes."""
+    """Stands for the worksheet; what only a worksheet has (widths, heights, panes) is ignored."""
 
     def __getattr__(self, name: str) -> Any:
         return lambda *args, **options: None
@@ -126,7 +127,7 @@ def shown_text(shown: Shown) -> str:
         return value
     if not math.isfinite(value):
         return NONE if math.isnan(value) else "∞" if value > 0 else "−∞"
-    return _general(value) if shown.format == "General" else _formatted(value, shown.format)
+    return _general(value) if shown.format == "General" else _format_number(value, shown.format)
 
 
 def shown_html(shown: Shown) -> Html:
@@ -156,7 +157,7 @@ def _general(value: float) -> str:
     return text if len(text) <= _LONGEST else f"{value:.9g}"
 
 
-def _formatted(value: float, number_format: str) -> str:
+def _format_number(value: float, number_format: str) -> str:
     if number_format == NOISE:
         return "noise"
     found = _FORMAT.fullmatch(number_format)
@@ -166,10 +167,10 @@ def _formatted(value: float, number_format: str) -> str:
     if ending == "E+00":
         return f"{value:.{decimals}e}"
     if ending == "%":
-        return f"{_rounded(100.0 * value, decimals):.{decimals}f} %"
-    value = _rounded(value, decimals)
+        return f"{_round(100.0 * value, decimals):.{decimals}f} %"
+    value = _round(value, decimals)
     return f"{value:,.{decimals}f}" if found["grouped"] else f"{value:.{decimals}f}"
 
 
-def _rounded(value: float, decimals: int) -> float:
+def _round(value: float, decimals: int) -> float:
     return round(value, decimals) + 0.0  # no negative zero

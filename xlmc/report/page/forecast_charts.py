@@ -1,6 +1,6 @@
-"""The charts of the page: one a forecast with its grabbers and boxes, and one for forecasts to be laid over each other.
+"""The charts of the page: one for each forecast with its two grabbers and boxes, and one that shows several forecasts.
 
-What is written here is the frame; `panel.js` draws into it and counts.
+The frame is written here; `panel.js` draws into it and counts.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from xlmc.report.figure import Figure
-from xlmc.report.page.element import EMPTY, Html, element, joined, void
+from xlmc.report.page.element import EMPTY, Html, element, join, void
 from xlmc.report.page.payload import most_values, overlays_of
 from xlmc.report.summary import percent
 
@@ -118,7 +118,7 @@ def overlays(figures: Sequence[Figure]) -> Html:
     groups = overlays_of(figures)
     if not groups:
         return EMPTY
-    return element("section", element("h2", "Overlay"), joined(_overlays(figures, groups)), id="overlay")
+    return element("section", element("h2", "Overlay"), join(_overlays(figures, groups)), id="overlay")
 
 
 def _overlays(figures: Sequence[Figure], groups: Sequence[Sequence[int]]) -> list[Html]:

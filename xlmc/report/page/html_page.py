@@ -1,6 +1,6 @@
-"""The whole page: one file that asks for nothing else, with its own style, scripts and data in it.
+"""The whole page: one file with its own style, scripts and data, which loads nothing else.
 
-A Content-Security-Policy allows the scripts and styles that are in it, by their hashes, and nothing from anywhere.
+A Content-Security-Policy allows the scripts and styles that are in it, by their hashes, and no others.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from xlmc.errors import WorkbookError
 from xlmc.report.figure import figures_of
 from xlmc.report.page.answers import answers
-from xlmc.report.page.element import EMPTY, Html, element, joined
+from xlmc.report.page.element import EMPTY, Html, element, join
 from xlmc.report.page.forecast_charts import charts, overlays
 from xlmc.report.page.payload import payload_text
 from xlmc.report.page.sensitivity_sections import dependence, limits
@@ -94,7 +94,7 @@ def save_page(simulation: Simulation, path: Path, *, command: str | None = None,
 
 
 def check_page_path(path: Path) -> None:
-    """Refuse, before a long run, what no page can be written to: another kind of file, and what `check_folder` refuses.
+    """Refuse, before a long run, a file of another kind, or one that `check_folder` refuses.
 
     Raises:
         WorkbookError: it is one of these.
@@ -136,7 +136,7 @@ def page_text(simulation: Simulation, *, command: str | None = None) -> str:
         licence=_asset(_LICENCE),
         styles="".join(f"<style>{style}</style>\n" for style in styles),
         header=_header(simulation, [key for key, part in parts.items() if part != EMPTY]).source,
-        sections=joined(list(parts.values())).source,
+        sections=join(list(parts.values())).source,
         data=payload_text(simulation, figures),
         scripts="".join(f"<script>{script}</script>\n" for script in scripts),
     )

@@ -1,8 +1,13 @@
 """What the page's charts are drawn and counted from, as JSON inside the page.
 
-`forecasts`: for each its trials (`xlmc.report.page.ranks`; `counts` null where all are 1, `gaps` null where all are 0),
-its own central range, its bins as the sheet Bins has them, and the values to be marked. `overlays`: the numbers of
-forecasts in one unit. `z`: the quantile of the normal distribution that 95 % intervals are made with.
+`forecasts`: for each its trials (a `RankTable`; `counts` null where all are 1, `gaps` null where all are 0), its own
+central range, its bins as the sheet Bins has them, and the values to be marked. `overlays`: the numbers of forecasts in
+one unit. `z`: the quantile of the normal distribution that 95 % intervals are made with.
+
+A page has room for a limited number of trials. Of a forecast with no more than `most` trials every one is there, and
+every count is exact. Of one with more, the trials of `most` ranks at equal distances are there, each with how many
+trials lie between it and the next: a count is then exact where an end is one of the values given, and elsewhere its
+error at each end is less than the trials of one such gap.
 """
 
 from __future__ import annotations
@@ -90,8 +95,8 @@ def _forecast(simulation: Simulation, figure: Figure, most: int) -> dict[str, An
             "said": percent(answer.share),
             "low": low,
             "high": high,
-            "lowText": _alone(answer.low),
-            "highText": _alone(answer.high),
+            "lowText": _value_text(answer.low),
+            "highText": _value_text(answer.high),
         },
         "bins": _bins(figure),
         "marks": [{"label": label, "value": value, "text": text} for label, value, text in _marks(figure)],
@@ -102,7 +107,7 @@ def _unless_all(usual: int, numbers: NDArray[np.int64]) -> list[int] | None:
     return None if bool(np.all(numbers == usual)) else numbers.tolist()
 
 
-def _alone(found: Estimate) -> str:
+def _value_text(found: Estimate) -> str:
     """The value in the digits that its error supports, without the error."""
     return format_estimate(found.value, found.error).partition(" ± ")[0]
 
@@ -121,7 +126,7 @@ def _bins(figure: Figure) -> dict[str, Any]:
 
 def _marks(figure: Figure) -> Iterator[tuple[str, float, str]]:
     answer = figure.answer
-    yield "Mean", answer.mean.value, _alone(answer.mean)
+    yield "Mean", answer.mean.value, _value_text(answer.mean)
     for label, value in (("Base case", answer.base), ("Threshold", answer.threshold)):
         if value is not None:
             yield label, value, f"{value:.6g}"

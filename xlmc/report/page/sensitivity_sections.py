@@ -1,4 +1,4 @@
-"""What the answers depend on: influences, tornado, and how the answers move with each filter's limit."""
+"""The sections Sensitivity and Filter limits of the page: influences, tornado, how the answers move with a limit."""
 
 from __future__ import annotations
 

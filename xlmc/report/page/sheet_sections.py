@@ -1,4 +1,4 @@
-"""The sections of the page that say what the result sheets say, and the record."""
+"""The sections of the page that say what the result sheets say, from certainty to the record."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def _remarks(simulation: Simulation) -> Iterator[str]:
 
 def _assumption(simulation: Simulation, assumption: Assumption) -> Html:
     """Its name above two rows, in a body of their own so that they stay together."""
-    named = element("tr", element("th", *_named(assumption), scope="rowgroup", colspan=str(_COLUMNS)))
+    named = element("tr", element("th", *_name_line(assumption), scope="rowgroup", colspan=str(_COLUMNS)))
     found = filter_effect_of(simulation, assumption.name)
     if found is None:
         why = element("td", status(simulation.model, assumption.name, assumption.frozen), colspan=str(_COLUMNS))
@@ -128,7 +128,7 @@ def _assumption(simulation: Simulation, assumption: Assumption) -> Html:
     return element("tbody", named, before, element("tr", *_marginal(found.accepted, "accepted"), *_changes(found)))
 
 
-def _named(assumption: Assumption) -> Iterator[Html | str]:
+def _name_line(assumption: Assumption) -> Iterator[Html | str]:
     base = NONE if assumption.base is None else f"{assumption.base:.9g}"
     yield element("b", assumption.name, f", {assumption.units}" if assumption.units else "")
     yield " "
@@ -182,19 +182,19 @@ def _record_section(section: Section) -> Html:
 
 
 def _record_entry(section: str, entry: Entry) -> tuple[Html, Html]:
-    said = _said(entry.value)
+    said = _value_text(entry.value)
     shown = element("code", said) if entry.key in _CODE else element("span", said)
     return element("dt", entry.label), element("dd", shown, data_key=f"{section}.{entry.key}")
 
 
 def _record_table(table: RecordTable) -> Html:
     heads = element("tr", *(element("th", label, scope="col") for _, label in table.columns))
-    rows = (element("tr", *(element("td", _said(value)) for value in row)) for row in table.rows)
+    rows = (element("tr", *(element("td", _value_text(value)) for value in row)) for row in table.rows)
     inner = element("table", element("thead", heads), element("tbody", *rows))
     return element("div", inner, class_="wide-table record")
 
 
-def _said(value: Value) -> str:
+def _value_text(value: Value) -> str:
     if value is None or value == "":
         return NONE
     if isinstance(value, bool):

@@ -1,4 +1,4 @@
-"""Still drawings for the page, as SVG: bars an assumption each, and lines over a filter's limit."""
+"""Drawings for the page as SVG: bars, one for each assumption, and lines over the limit of a filter."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from xlmc.report.page.element import Html, element, joined
+from xlmc.report.page.element import Html, element, join
 
 __all__ = ["Bar", "Line", "Scale", "bars", "lines", "scale_of"]
 
@@ -67,7 +67,7 @@ def _bar(bar: Bar, top: float, scale: Scale) -> list[Html]:
 
 
 def lines(drawn: Sequence[Line], title: str, across: str, upwards: str, now: float) -> Html:
-    """Lines with points, told apart by a number at their ends; a dashed line upright at `now`."""
+    """Lines with points, each with its number at the end; a dashed upright line at `now`."""
     left, bottom = 64, _HEIGHT - _BELOW
     points = [point for line in drawn for point in line.points if math.isfinite(point[1])]
     reach = [value for _, y, error in points for value in (y - (error or 0.0), y + (error or 0.0))]
@@ -106,9 +106,9 @@ def _across(scale: Scale, top: float, bottom: float, axis: str) -> list[Html]:
     return [*found, _text((scale.start + scale.stop) / 2, bottom + 36, axis, "tick")]
 
 
-def _drawing(found: Sequence[Html], height: float, told: str) -> Html:
+def _drawing(found: Sequence[Html], height: float, label: str) -> Html:
     return element(
-        "svg", joined(list(found)), viewBox=f"0 0 {_WIDTH} {height:g}", role="img", aria_label=told, class_="drawn"
+        "svg", join(list(found)), viewBox=f"0 0 {_WIDTH} {height:g}", role="img", aria_label=label, class_="drawn"
     )
 
 
@@ -127,7 +127,7 @@ def _stroke(x1: float, y1: float, x2: float, y2: float, look: str) -> Html:
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """From `low` at `start` to `high` at `stop`; `step` is between ticks."""
+    """A straight axis from `low` at `start` to `high` at `stop`, with round ticks `step` apart."""
 
     low: float
     high: float
@@ -136,7 +136,7 @@ class Scale:
     step: float
 
     def __call__(self, value: float) -> float:
-        """Where a number stands."""
+        """The coordinate of a number."""
         return self.start + (self.stop - self.start) * (value - self.low) / (self.high - self.low)
 
     @property

@@ -44,7 +44,8 @@ def write_accounting(page: Page, simulation: Simulation, last: int) -> None:
         page.heading("Trials rejected by the filters")
         _write_rejections(page, simulation)
         if simulation.rare is not None:
-            said = f"Counted among the first {simulation.trials:,} trials, which were drawn plainly, before the search."
+            of = f"the first {simulation.trials:,} trials"
+            said = f"Counted among {of}, drawn before the search for accepted ones began."
             page.wide(said, "remark", last)
         if simulation.plan.size:
             page.wide(REJECTED_SENTENCE, "remark", last)
@@ -70,8 +71,8 @@ def _write_rejections(page: Page, simulation: Simulation) -> None:
             [
                 cells.text(f"{index + 1}. {filter_.name}", "name"),
                 cells.count(sum(tally.errors[index].values())),
-                *_counted(int(tally.rejected[index]), simulation.trials),
-                *_counted(int(tally.only[index]), simulation.trials),
+                *_count_and_share(int(tally.rejected[index]), simulation.trials),
+                *_count_and_share(int(tally.only[index]), simulation.trials),
                 *(_pair(simulation, index, other) for other in range(pairs)),
             ]
             for index, filter_ in enumerate(filters)
@@ -83,7 +84,7 @@ def _pair(simulation: Simulation, index: int, other: int) -> Shown:
     return cells.text("") if index == other else cells.count(int(simulation.tally.together[index, other]))
 
 
-def _counted(trials: int, of: int) -> list[Shown]:
+def _count_and_share(trials: int, of: int) -> list[Shown]:
     return [cells.count(trials), *cells.share(proportion(trials, of))]
 
 
@@ -100,7 +101,7 @@ def _write_errors(page: Page, simulation: Simulation) -> None:
                 cells.text(met.kind),
                 cells.text(str(met.cell)),
                 cells.text(met.error),
-                *_counted(met.trials, _among(simulation, met)),
+                *_count_and_share(met.trials, _among(simulation, met)),
             ]
             for met in found
         ],
@@ -108,7 +109,7 @@ def _write_errors(page: Page, simulation: Simulation) -> None:
 
 
 def _among(simulation: Simulation, met: ErrorMet) -> int:
-    """The trials that an error was counted in: those of forecasts, where accepted ones were searched for, in these."""
+    """How many trials an error was counted in; after a search, forecasts were computed in accepted trials alone."""
     return simulation.accepted if simulation.rare is not None and met.kind == "forecast" else simulation.trials
 
 

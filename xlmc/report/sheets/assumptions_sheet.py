@@ -34,21 +34,21 @@ _READABLE = 10
 MOVED, NARROWED = 0.5, 0.8
 
 MEANING = (
-    "Filters keep only the combinations that agree with the evidence. That is conditioning: an assumption that the "
-    "evidence speaks about is distributed differently among the accepted trials, although its range is the same. "
+    "Filters keep only the combinations that agree with the evidence. So an assumption that the evidence bears on is "
+    "distributed differently among the accepted trials, although its range is the same. "
     f"Marked: a mean that moved by {MOVED:g} standard deviations or more; a standard deviation that shrank to "
     f"{NARROWED:g} of what it was or less."
 )
 
 STRATIFIED = (
-    "Before filtering ± is that of independent trials: the draws of these samples are more even than that. Of the "
-    "accepted draws it comes from the differences between replicates."
+    "Before filtering, ± is that of independent trials; the draws of this run are more even, so it is rather too "
+    "large. Of the accepted draws, ± comes from the differences between the independent parts of the run (replicates)."
 )
 
 _CORRELATIONS = (
-    "Asked for and drawn with: before filtering. They differ where the correlations that were asked for cannot all "
-    "be drawn at once, or where one takes so few values that ties allow less. Filters change correlations as they "
-    "change assumptions: beside them stand those of the accepted trials."
+    "Asked for, and drawn with: before filtering. They differ where the correlations that were asked for are not "
+    "possible all at once, or where an assumption takes so few different values that only less is possible. Filters "
+    "change correlations as they change assumptions: those of the accepted trials stand beside them."
 )
 
 
@@ -70,7 +70,7 @@ def write_assumptions(page: Page, simulation: Simulation) -> None:
     if simulation.kept_inputs < simulation.accepted:
         kept = f"Accepted: the first {simulation.kept_inputs:,} of {simulation.accepted:,} accepted trials."
         page.wide(kept, "paragraph", _READABLE)
-    page.printed(name, repeat=HEADER)
+    page.set_up_printing(name, repeat=HEADER)
 
 
 def _headers() -> list[str]:

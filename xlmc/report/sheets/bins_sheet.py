@@ -64,7 +64,7 @@ def write_bins(page: Page, figures: Sequence[Figure], name: str) -> list[BinsAt]
     tables = [_write_table(page, figure) for figure in figures]
     page.sheet.freeze_panes(HEADER + 1, 0)
     breaks = [table.left for table in tables[_ON_A_PAGE::_ON_A_PAGE]]
-    page.printed(name, repeat=HEADER, repeat_from=HEADER - 2, scale=_SCALE, columns=breaks)
+    page.set_up_printing(name, repeat=HEADER, repeat_from=HEADER - 2, scale=_SCALE, columns=breaks)
     return tables
 
 

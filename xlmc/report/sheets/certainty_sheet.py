@@ -1,6 +1,9 @@
 """The sheet Certainty: results in words, how certain their ranges are, and cells that count any other range.
 
-*Certainty* is Crystal Ball's word for the share of the trials in a range.
+*Certainty* is Crystal Ball's word for the share of the trials in a range. Where a person types the ends of a range,
+formulas count the trials on the sheet Trials, and so the first ones alone where not all are there. The numbers that the
+formulas show at first are counted here, over the same trials. The formulas compare numbers with `>=` and `<=`, which is
+exact; a criterion of COUNTIFS is a text of 15 digits.
 """
 
 from __future__ import annotations
@@ -52,7 +55,7 @@ def write_certainty(page: Page, simulation: Simulation, trials: TrialsAt) -> Non
     start = page.row
     _write_own_ranges(page, simulation, trials)
     apart = start // _ON_A_PAGE != page.row // _ON_A_PAGE
-    page.printed(name, scale=_SCALE, breaks=[start] if apart else [])
+    page.set_up_printing(name, scale=_SCALE, breaks=[start] if apart else [])
 
 
 def write_ranges(page: Page, simulation: Simulation) -> None:
@@ -87,7 +90,7 @@ def _write_own_ranges(page: Page, simulation: Simulation, trials: TrialsAt) -> N
     from xlsxwriter.utility import xl_range_formula
 
     page.heading("Certainty of a range of your own")
-    page.wide(_said(simulation, trials), "paragraph", LAST)
+    page.wide(_instructions(simulation, trials), "paragraph", LAST)
     heads = ["Forecast", "Units", "From", "to", "Certainty", "Trials"]
     errors = simulation.plan.size == 0
     page.table([*heads[:5], "±", heads[5]] if errors else heads, [])
@@ -95,16 +98,16 @@ def _write_own_ranges(page: Page, simulation: Simulation, trials: TrialsAt) -> N
         _write_line(page, result, values, xl_range_formula(*trials.column(index)), errors)
 
 
-def _said(simulation: Simulation, trials: TrialsAt) -> str:
+def _instructions(simulation: Simulation, trials: TrialsAt) -> str:
     which = f"all {trials.shown:,} accepted trials"
     if trials.shown < simulation.accepted:
         which = f"the first {trials.shown:,} of {simulation.accepted:,} accepted trials, which stand"
     else:
         which += ", which stand"
-    said = f"Type the ends of a range into the yellow cells; an empty one is no end. Formulas count {which} on the "
+    said = f"Type the ends of a range into the yellow cells; an empty cell is no limit. Formulas count {which} on the "
     said += "sheet Trials; both ends belong to the range."
     if simulation.plan.size:
-        return f"{said} These trials depend on each other within their replicates, so no error is given."
+        return f"{said} These trials depend on each other (see Sampling in the Record), so no error is given."
     return said
 
 
@@ -131,5 +134,5 @@ def _write_line(page: Page, result: ForecastResult, values: NDArray[np.float64],
 
 
 def _error(share: float, trials: int) -> float:
-    """As the formula has it, with 1.96 for the quantile of the normal distribution."""
+    """The standard error as the formula has it: 1.96 is the 97.5th percentile of the normal distribution."""
     return max(math.sqrt(share * (1.0 - share) / trials), 1.96 / (2.0 * (trials + 1.96**2)))

@@ -1,6 +1,6 @@
-"""The sheet Charts: forecast charts (frequency, cumulative, reverse cumulative), overlay and trend charts.
+"""The sheet Charts: histograms, cumulative charts, overlay and trend charts.
 
-Frequency comes first, like the paper's Figures 12 to 15; then what compares forecasts; then the cumulative charts.
+Histograms come first, like the paper's Figures 12 to 15; then what compares forecasts; then the cumulative charts.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from xlmc.report.figure import Figure, varying
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.bins_sheet import BinsAt, histogram_chart
-from xlmc.report.sheets.curve_charts import MOST, alike, cumulative_charts, overlay_chart, trend_chart
+from xlmc.report.sheets.curve_charts import MOST, cumulative_charts, group_by_units, overlay_chart, trend_chart
 from xlmc.report.sheets.curves_sheet import Curves
 from xlmc.report.summary import percent
 
@@ -67,10 +67,13 @@ def write_charts(
         for figure, at in zip(figures, bins, strict=True)
     ]
     breaks = place_drawings(page, drawings)
-    others = [*_compared(book, curves, simulation, figures), *_cumulative(book, curves, simulation, figures)]
+    others = [
+        *_comparison_drawings(book, curves, simulation, figures),
+        *_cumulative_drawings(book, curves, simulation, figures),
+    ]
     if others:
         breaks += [page.row, *place_drawings(page, others)]
-    page.printed(name, scale=_SCALE, breaks=breaks)
+    page.set_up_printing(name, scale=_SCALE, breaks=breaks)
 
 
 def place_drawings(page: Page, drawings: Sequence[Drawing]) -> list[int]:
@@ -96,9 +99,11 @@ def _place_row(page: Page, drawings: Sequence[Drawing]) -> None:
     page.row += 1
 
 
-def _compared(book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]) -> Iterator[Drawing]:
+def _comparison_drawings(
+    book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]
+) -> Iterator[Drawing]:
     number = len(figures)
-    for group in alike(varying(figures)):
+    for group in group_by_units(varying(figures)):
         units, few = group[0].answer.units, f" (at most {MOST} in a chart)" if len(group) == MOST else ""
         caption = f"Figure {number + 1}. Overlay chart: the forecasts in {units} as frequency curves{few}."
         yield Drawing(overlay_chart(book, curves, group), caption)
@@ -108,9 +113,11 @@ def _compared(book: Workbook, curves: Curves, simulation: Simulation, figures: S
         number += 2
 
 
-def _cumulative(book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]) -> Iterator[Drawing]:
+def _cumulative_drawings(
+    book: Workbook, curves: Curves, simulation: Simulation, figures: Sequence[Figure]
+) -> Iterator[Drawing]:
     varied = varying(figures)
-    first = len(figures) + 2 * len(alike(varied))
+    first = len(figures) + 2 * len(group_by_units(varied))
     for index, figure in enumerate(varied):
         charts = cumulative_charts(book, curves, simulation, figure)
         share, number = percent(figure.answer.share), first + 2 * index

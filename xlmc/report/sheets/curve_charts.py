@@ -1,13 +1,12 @@
 """The charts that are drawn from the sheet Curves: cumulative charts of one forecast, and charts of several.
 
-A cumulative curve is made of exact shares of the trials at closely spaced values: at each, the share of trials at most
-there is counted, not summed from bins. The values divide the bins of the histogram, so that both charts have the same
-axis. Trials that the histogram does not draw count below and above.
+A cumulative curve shows the share of trials at most at each of many values, counted exactly and not summed from bins.
+The values divide the bins of the histogram, so that both charts have the same axis. Trials that the histogram does not
+draw count below and above.
 
 Crystal Ball's overlay and trend charts show forecasts of the same units, as frequency curves or as ranges. A frequency
-curve is that of the histogram, its bars' middles joined, each share divided
-by the width of its bar: so curves from bars of different width compare, and each has an area of 1 but for what the
-histogram leaves out.
+curve joins the middles of a histogram's bars, each share divided by the width of its bar: so curves from bars of
+different width compare, and each has an area of 1 but for what the histogram leaves out.
 """
 
 from __future__ import annotations
@@ -39,7 +38,7 @@ if TYPE_CHECKING:
 
     from xlmc.run.simulation import Simulation
 
-__all__ = ["MOST", "alike", "cumulative_charts", "overlay_chart", "trend_chart"]
+__all__ = ["MOST", "cumulative_charts", "group_by_units", "overlay_chart", "trend_chart"]
 
 
 MOST: Final = len(COLOURS)
@@ -137,7 +136,7 @@ def _cumulative(sample: Sample, bins: Histogram, low: float, high: float) -> _Cu
     )
 
 
-def alike(figures: Sequence[Figure]) -> list[list[Figure]]:
+def group_by_units(figures: Sequence[Figure]) -> list[list[Figure]]:
     """Figures by their units, in their order, at most `MOST` together; those that share theirs with no other left out.
 
     Forecasts without units are taken for numbers of different kinds.

@@ -102,4 +102,4 @@ class Curves:
         """Say so where there is nothing, and set it up for printing."""
         if not self._left:
             self._page.put(HEADER - 1, 0, cells.text("No forecast has a number in an accepted trial.", "alarm"))
-        self._page.printed(self._name, repeat=HEADER, repeat_from=_TITLES, scale=_SCALE, columns=self._breaks)
+        self._page.set_up_printing(self._name, repeat=HEADER, repeat_from=_TITLES, scale=_SCALE, columns=self._breaks)

@@ -1,4 +1,4 @@
-"""The sheet Filter limits: how the answers move as each limit of each filter moves, a page a limit."""
+"""The sheet Filter limits: how the answers move as each limit of each filter moves, one page for each limit."""
 
 from __future__ import annotations
 
@@ -37,25 +37,25 @@ def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) ->
         if number:
             breaks.append(page.row)
         _write_limit(page, book, limit, {f.forecast: f.units for f in found.forecasts})
-    page.printed(name, breaks=breaks, scale=_SCALE)
+    page.set_up_printing(name, breaks=breaks, scale=_SCALE)
 
 
 def limit_sentences(found: Sensitivities) -> list[str]:
-    """What moving a limit means."""
-    told = [
+    """Sentences that say what moving a limit means."""
+    said = [
         "One limit is moved, all others stay. Tightened, it keeps some of the accepted trials. Loosened, it lets in "
-        "trials that nothing else rejects, found among the run's first ones, so their errors are larger. The errors of "
-        "changes and slopes are those of differences between runs with common trials. A limit is evidence: what is "
+        "trials that nothing else rejects, found among the run's first ones, so their errors are larger. Changes and "
+        "slopes compare runs that share trials, and their errors allow for that. A limit is evidence: what is "
         "shown is how much its exact value matters, not which value is right."
     ]
     if found.varying_limits:
-        told.append(f"Not moved, because the limit varies with the assumptions: {', '.join(found.varying_limits)}.")
+        said.append(f"Not moved, because the limit varies with the assumptions: {', '.join(found.varying_limits)}.")
     if found.omitted_limits:
-        told.append(
-            f"{found.omitted_limits:,} further limits were left out: of very many the last, and all of them where "
-            "accepted trials are rare, for those near a limit are not among the plain trials."
+        said.append(
+            f"{found.omitted_limits:,} further limits were left out: the last of very many, or all of them where "
+            "accepted trials are rare, because trials near a limit are then not among those drawn before the search."
         )
-    return told
+    return said
 
 
 def _write_limit(page: Page, book: Workbook, limit: FilterLimit, units: dict[str, str]) -> None:
@@ -80,7 +80,7 @@ def write_acceptance(page: Page, limit: FilterLimit) -> TableAt:
     page.table(["Limit", "Value", "Trials", "Share", "±"], [_acceptance(point, limit) for point in limit.points])
     bottom, page.row = page.row, header
     starts, last = (_RIGHT, 12, 13), 13
-    headers = ("Slope: the mean of …, per unit of the limit", "Slope", "±")
+    headers = ("Slope: change of the mean of …, per unit of the limit", "Slope", "±")
     page.spread([cells.text(header, "header left") for header in headers], starts, last)
     for slope in limit.slopes:
         page.spread([cells.text(slope.forecast, "name"), *cells.estimate(slope.mean)], starts, last)

@@ -1,4 +1,4 @@
-"""A result sheet being written, from the top down. It writes no number that is none, and texts are never formulas."""
+"""A result sheet as it is written, from the top down. Texts never become formulas; what is no number becomes a text."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Page:
             self.put(self.row, first, shown)
             if isinstance(shown.value, str):
                 lines = max(lines, self._lines(shown, first, end))
-        # Said for every row, or LibreOffice finds heights of its own.
+        # Set for every row, or LibreOffice chooses heights of its own.
         self.sheet.set_row(self.row, ROW if lines == 1 else min(_LINE * lines + 3.0, _HIGHEST))
         self.row += 1
 
@@ -109,7 +109,7 @@ class Page:
         self.put(self.row + 1, column, Shown(value, look="heading"))
         self.row += 2
 
-    def printed(
+    def set_up_printing(
         self,
         name: str,
         *,
@@ -119,7 +119,7 @@ class Page:
         breaks: Sequence[int] = (),
         columns: Sequence[int] = (),
     ) -> None:
-        """Make it print, one page wide unless it is told the columns to break at.
+        """Set up how the sheet prints: one page wide, unless columns are given to break at.
 
         Args:
             name: of the workbook, for the foot of the page.

@@ -57,7 +57,7 @@ def write_pairs(page: Page, book: Workbook, simulation: Simulation, curves: Curv
         page.wide(
             "There are no two forecasts that vary and have numbers in the same accepted trials.", "paragraph", _LAST
         )
-        page.printed(name, scale=_SCALE)
+        page.set_up_printing(name, scale=_SCALE)
         return
     page.heading("Joint probability and rank correlation")
     write_pair_table(page, pairs)
@@ -66,7 +66,7 @@ def write_pairs(page: Page, book: Workbook, simulation: Simulation, curves: Curv
     page.row += 1
     breaks = [page.row] if len(pairs) > 2 else []
     breaks += place_drawings(page, _drawings(book, curves, simulation, pairs, trials))
-    page.printed(name, scale=_SCALE, breaks=breaks)
+    page.set_up_printing(name, scale=_SCALE, breaks=breaks)
 
 
 def write_pair_table(page: Page, pairs: Sequence[Pair]) -> None:
@@ -82,7 +82,7 @@ def write_pair_table(page: Page, pairs: Sequence[Pair]) -> None:
 def _line(pair: Pair) -> list[Shown]:
     greater = [cells.text(cells.NONE), BLANK] if pair.first_greater is None else cells.share(pair.first_greater)
     return [
-        *(cells.text(_limited(pair, index), "name") for index in (0, 1)),
+        *(cells.text(_name_and_limit(pair, index), "name") for index in (0, 1)),
         *cells.share(pair.both_above),
         *cells.interval(pair.both_above, percent=True),
         *cells.share(pair.either_above),
@@ -92,7 +92,7 @@ def _line(pair: Pair) -> list[Shown]:
     ]
 
 
-def _limited(pair: Pair, index: int) -> str:
+def _name_and_limit(pair: Pair, index: int) -> str:
     forecast, limit = (pair.first, pair.second)[index], pair.limits[index]
     units = f" {forecast.units}" if forecast.units else ""
     what = "threshold" if pair.thresholds[index] else "median"
@@ -120,7 +120,7 @@ def _drawings(
     """A scatter chart a pair, from the first trials in which all forecasts of these pairs are numbers."""
     names = {forecast.name for pair in pairs for forecast in (pair.first, pair.second)}
     forecasts = [forecast for forecast in simulation.model.forecasts if forecast.name in names]
-    known = _known([simulation.forecasts[each.name] for each in forecasts])
+    known = _trials_with_numbers([simulation.forecasts[each.name] for each in forecasts])
     if not known.size:
         return []
     found = {each.name: _points(curves, simulation, trials, each, known) for each in forecasts}
@@ -136,7 +136,7 @@ def _drawings(
     ]
 
 
-def _known(columns: Sequence[NDArray[np.float64]]) -> NDArray[np.intp]:
+def _trials_with_numbers(columns: Sequence[NDArray[np.float64]]) -> NDArray[np.intp]:
     """The first trials in which all are numbers: a text among the points would turn a chart's axis into 1, 2, 3."""
     early = [column[: 20 * POINTS] for column in columns]
     return np.flatnonzero(~np.any([np.isnan(column) for column in early], axis=0))[:POINTS]

@@ -1,4 +1,4 @@
-"""The sheet Record: what the run was a function of, for people to read and programs to read back.
+"""The sheet Record: all that the run depends on, for people to read and for programs to read back.
 
 Column A, folded away, holds the keys of `Record`: `file.sha256` beside an entry, `forecasts` beside a section's title,
 `forecasts[0]` beside the first row of its table. The hidden row above a table's headings holds the columns' keys.
@@ -40,7 +40,7 @@ def write_record(page: Page, record: Record, name: str) -> None:
         _write_section(page, section)
         printed = printed if section.key in _LISTED else page.row
     page.sheet.print_area(0, _FIRST, printed, _LAST)
-    page.printed(name)
+    page.set_up_printing(name)
 
 
 def _write_section(page: Page, section: Section) -> None:
@@ -60,7 +60,7 @@ def _write_entry(page: Page, section: str, entry: Entry) -> None:
         _write_listed(page, (entry.label, entry.value))
         return
     look = "code" if entry.key in _CODE else "text"
-    page.spread([Shown(entry.label, look="label"), _shown(entry.value, look)], (_FIRST, _FIRST + 1), _LAST)
+    page.spread([Shown(entry.label, look="label"), _cell(entry.value, look)], (_FIRST, _FIRST + 1), _LAST)
 
 
 def _write_table(page: Page, section: str, table: RecordTable) -> None:
@@ -76,12 +76,12 @@ def _write_table(page: Page, section: str, table: RecordTable) -> None:
         if listed:
             _write_listed(page, row)
             continue
-        page.spread([_shown(value, "text") for value in row], starts, last)
+        page.spread([_cell(value, "text") for value in row], starts, last)
 
 
 def _write_listed(page: Page, values: Sequence[Value]) -> None:
     for column, value in enumerate(values, _FIRST):
-        page.put(page.row, column, _shown(value, "listed"))
+        page.put(page.row, column, _cell(value, "listed"))
     page.row += 1
 
 
@@ -98,7 +98,7 @@ def _write_key(page: Page, row: int, key: str) -> None:
     page.put(row, 0, Shown(key, look="key"))
 
 
-def _shown(value: Value, look: str) -> Shown:
+def _cell(value: Value, look: str) -> Shown:
     if value is None or value == "":
         return Shown(NONE, look=look)
     return Shown(value, look=look)

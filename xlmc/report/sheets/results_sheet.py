@@ -42,9 +42,9 @@ def write_results(page: Page, simulation: Simulation) -> None:
     _write_notices(page, simulation)
     if simulation.checks:  # so that no table is cut in two
         wide = any(forecast.threshold is not None for forecast in simulation.model.forecasts)
-        page.printed(book, scale=_SCALE_WITH_THRESHOLDS if wide else _SCALE, breaks=[checks_from])
+        page.set_up_printing(book, scale=_SCALE_WITH_THRESHOLDS if wide else _SCALE, breaks=[checks_from])
     else:
-        page.printed(book)
+        page.set_up_printing(book)
 
 
 def opening_sentences(simulation: Simulation) -> list[str]:
@@ -131,8 +131,12 @@ def write_counts(page: Page, simulation: Simulation) -> None:
     starts = (0, 2, 3, 4, 5, 6)
     page.spread([cells.text(header, "header") for header in headers], starts, 6)
     for line in (
-        *_searched(simulation),
-        [cells.text("Run" if rare is None else "Drawn plainly", "name"), cells.count(total), *[cells.BLANK] * 4],
+        *_search_lines(simulation),
+        [
+            cells.text("Run" if rare is None else "Drawn before the search", "name"),
+            cells.count(total),
+            *[cells.BLANK] * 4,
+        ],
         [
             cells.text("Accepted" if rare is None or not rare.at_least else "Accepted, at least", "name"),
             cells.count(simulation.accepted),
@@ -146,7 +150,7 @@ def write_counts(page: Page, simulation: Simulation) -> None:
         page.wide(f"The run ended when {simulation.stopped.sentence}.", "remark", LAST)
 
 
-def _searched(simulation: Simulation) -> list[list[Shown]]:
+def _search_lines(simulation: Simulation) -> list[list[Shown]]:
     """What was evaluated where accepted trials are rare."""
     if simulation.rare is None:
         return []

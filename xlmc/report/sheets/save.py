@@ -61,10 +61,10 @@ def save(
 
 
 def check_ending(path: Path, source: Path) -> None:
-    """Refuse another ending than the workbook's, and results of a workbook without one.
+    """Refuse an ending that is not the workbook's, and results of a workbook without an ending.
 
     Raises:
-        WorkbookError: so it is.
+        WorkbookError: the ending is another, or there is none.
     """
     if not source.suffix:
         hint = f"Rename it, such as {source.name.strip('.') + '.xlsx'!r}: Excel opens no result without an ending"
@@ -76,7 +76,7 @@ def check_ending(path: Path, source: Path) -> None:
 
 
 def _check(simulation: Simulation, path: Path, *, overwrite: bool) -> None:
-    """Refuse what must not be replaced: somebody's file, or the workbook as it was read by one changed meanwhile."""
+    """Refuse to replace somebody's file, or the workbook itself where it has changed since it was read."""
     if not _is_source(simulation, path):
         Target(path, simulation.model.workbook.name, overwrite).check()
         return

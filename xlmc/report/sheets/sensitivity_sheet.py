@@ -1,4 +1,7 @@
-"""The sheet Sensitivity: what each forecast depends on, two pages a forecast: charts, then their numbers."""
+"""The sheet Sensitivity: what each forecast depends on.
+
+Each forecast has two pages: the charts, then the tables of influences and of moves that they are drawn from.
+"""
 
 from __future__ import annotations
 
@@ -73,24 +76,24 @@ def write_sensitivity(page: Page, book: Workbook, found: Sensitivities, name: st
         if number:
             breaks.append(page.row)
         _write_forecast(page, book, forecast, found, breaks)
-    page.printed(name, breaks=breaks, scale=_SCALE)
+    page.set_up_printing(name, breaks=breaks, scale=_SCALE)
 
 
 def sensitivity_sentences(found: Sensitivities) -> list[str]:
     """What the numbers are, and rest on."""
-    told = [
+    said = [
         "Influences are those among the accepted trials: filters change which assumptions matter. ± is the standard "
-        "error from a limited number of trials; no sensitivity says that the model fits the crash."
+        "error that comes from a limited number of trials. No sensitivity says whether the model fits the crash."
     ]
     if found.sobol_reason:
-        told.append(f"{found.sobol_reason}.")
+        said.append(f"{found.sobol_reason}.")
     if found.examined < found.accepted:
-        told.append(f"Influences rest on {found.examined:,} of the {found.accepted:,} accepted trials.")
+        said.append(f"Influences rest on {found.examined:,} of the {found.accepted:,} accepted trials.")
     if found.omitted:
-        told.append(f"{found.omitted:,} assumptions with less influence in a first, coarse look were left out.")
+        said.append(f"{found.omitted:,} assumptions with less influence in a first, coarse look were left out.")
     if found.medians:
-        told.append(f"Held at their medians, for their cells are blank: {', '.join(found.medians)}.")
-    return told
+        said.append(f"Held at their medians, because their cells are blank: {', '.join(found.medians)}.")
+    return said
 
 
 def _write_forecast(
@@ -194,7 +197,9 @@ def influence_charts(book: Workbook, at: TableAt, found: ForecastSensitivity, so
             book, at, "Total effect (Sobol)", "Share of the variance, alone and with others", _TOTAL, _TOTAL + 1, lone
         )
         if sobol
-        else bar_chart(book, at, "Dependence", "Cramér–von Mises index", _DEPENDENCE, _DEPENDENCE + 1, unseen)
+        else bar_chart(
+            book, at, "Dependence", "0 %: none; 100 %: nothing else matters", _DEPENDENCE, _DEPENDENCE + 1, unseen
+        )
     )
     rank = "Rank correlation with the forecast (Spearman)"
     share = "Squared rank correlations, scaled to 100 %, with their sign"
@@ -214,14 +219,14 @@ def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
         "add up to 100 %. Pale, and the word noise in the table: no more than trials alone would show."
     )
     dependence = (
-        "Dependence: 0 only if no part of the forecast's distribution depends on the assumption, 100 % if nothing else "
-        "matters. Unlike variance explained it also sees what widens the forecast or acts only together with others; "
-        "it is not a share of the variance."
+        "Dependence (index of Cramér and von Mises): 0 only if no part of the forecast's distribution depends on the "
+        "assumption, 100 % if nothing else matters. Unlike variance explained it also sees what widens the forecast "
+        "or acts only together with others; it is not a share of the variance."
     )
     total = (
         f"Total effect (Sobol), from {pairs:,} pairs of trials of their own: the variance that would be left, on "
         "average, if all other assumptions were known. It counts what the assumption does together with others, so the "
-        "effects add up to 100 % or more."
+        "effects add up to 100 % or more. (Sobol's total index; first order is the part that it explains alone.)"
     )
     rank = (
         f"Rank correlation on {found.trials:,} accepted trials: whether the forecast rises or falls with the "
@@ -237,7 +242,7 @@ def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
 
 def write_moves(page: Page, found: ForecastSensitivity) -> TableAt:
     """Write the table; where its rows to draw stand is returned."""
-    headers = ["Assumption, moved alone", "Units", "Base value", "10 % point", "90 % point"]
+    headers = ["Assumption, moved alone", "Units", "Base value", "10th percentile", "90th percentile"]
     headers += [
         "at 10 %",
         "at 25 %",
@@ -282,16 +287,16 @@ def move_captions(found: ForecastSensitivity) -> list[str]:
     at = "" if found.base is None else f" of {found.base:.6g} {found.units}".rstrip()
     bent = any(bar.monotonic is False for bar in found.bars[:BARS])
     tornado = (
-        f"Tornado: how far the forecast moves from its base case{at} when one assumption goes to its 10 % or 90 % "
-        "point and all others stay at their base values. No trial is behind it: no probability, no filter, no "
-        "correlation."
+        f"Tornado: how far the forecast moves from its base case{at} when one assumption goes to its 10th or 90th "
+        "percentile and all others stay at their base values. No trials are behind it: it knows no probability, no "
+        "filter and no correlation."
     )
     if bent:
         tornado += " Where the table says that it does not only rise or fall, the bar hides what lies between."
     lines = min(MOST_LINES, len(found.bars))
     spider = (
         f"Spider: the same over five points of each assumption's own distribution before filtering, for the {lines} "
-        "that move it most; a bent line is an effect that a correlation describes badly. Steep is not likely: it shows "
-        "how the model answers, not what is probable."
+        "that move it most; a bent line is an effect that a correlation describes badly. A steep line is not a "
+        "likely one: it shows how the model answers, not what is probable."
     )
     return [tornado, spider]

@@ -36,7 +36,7 @@ def write_statistics(page: Page, simulation: Simulation) -> None:
         if number:
             breaks.append(page.row)
         write_forecast(page, result)
-    page.printed(name, breaks=breaks, scale=_SCALE)
+    page.set_up_printing(name, breaks=breaks, scale=_SCALE)
 
 
 def write_forecast(page: Page, result: ForecastResult) -> None:

@@ -61,7 +61,7 @@ def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> 
     shown = max(0, min(rows, simulation.kept_inputs, MOST_ROWS))
     name = simulation.model.workbook.name
     page.title("Accepted trials", f"{name}, seed {simulation.settings.seed}. Trials are numbered from 0.")
-    page.put(page.row, 0, _said(shown, simulation.accepted))
+    page.put(page.row, 0, _count_line(shown, simulation.accepted))
     page.row = HEADER
     columns = _columns(simulation, shown)
     page.sheet.set_column(1, max(1, len(columns)), _WIDTH)
@@ -72,11 +72,11 @@ def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> 
     _write_values(page, simulation.trial_index[:shown], [values for _, values in columns])
     page.sheet.freeze_panes(HEADER + 1, 1)
     page.sheet.autofilter(HEADER, 0, HEADER + shown, len(columns))
-    page.printed(name, repeat=HEADER)
+    page.set_up_printing(name, repeat=HEADER)
     return TrialsAt(page.sheet.get_name(), shown, 1 + len(simulation.model.live))
 
 
-def _said(shown: int, accepted: int) -> Shown:
+def _count_line(shown: int, accepted: int) -> Shown:
     if shown == accepted:
         return Shown(f"All {accepted:,} accepted trials." if accepted else "No trial was accepted.", look="subtitle")
     return Shown(f"Only the first {shown:,} of {accepted:,} accepted trials stand here.", look="alarm")

@@ -160,7 +160,7 @@ class Model(model.Model):
             jobs: threads or processes.
             scheduler: `threads`; `processes`; `local`, a Dask cluster of this machine; or the address of a Dask
                 scheduler. By default processes for a long run with several jobs, else threads.
-            workers: of the local cluster; by default one a processor.
+            workers: of the local cluster; by default one for each processor.
             keep_inputs: of how many accepted trials, from the first on, the draws are kept; None for all.
             keep_interrupted: end the run with what it has when Ctrl-C is pressed, rather than raise KeyboardInterrupt.
             progress: called with a `Standing` (trials, accepted, share done, means) after every block.

@@ -160,7 +160,7 @@ def show_first(run: Simulation) -> None:
 
 
 def failing_lines(run: Simulation) -> list[str]:
-    """One line a check that fails, at the base case or in too many accepted trials."""
+    """One line for each check that fails, at the base case or in too many accepted trials."""
     return [sentence(f"{warning[0].upper()}{warning[1:]}") for check in run.checks for warning in check.warnings]
 
 

@@ -40,7 +40,7 @@ def _usage(context: click.Context) -> str:
 
 
 def _name(param: click.Parameter) -> str:
-    """An option by its longest name, an argument as the usage line writes it."""
+    """The longest name of an option; of an argument what the usage line writes."""
     if isinstance(param, click.Option):
         return max(param.opts, key=len)
     return (param.metavar or (param.name or "").upper()).strip("[]")

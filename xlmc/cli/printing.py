@@ -112,7 +112,7 @@ def table_lines(
 
 
 def _widths(columns: Sequence[_Column], width: int, gap: str) -> list[int] | None:
-    """Of each column; None where they cannot be made narrow enough."""
+    """The width of each column; None where they cannot be made narrow enough."""
     widths = [column.natural for column in columns]
     room = width - 2 - len(gap) * (len(columns) - 1)
     least = [column.least for column in columns]
@@ -172,7 +172,7 @@ def _wrap(pieces: Sequence[str], width: int) -> list[str]:
 
 
 def _fold(word: str, width: int) -> list[str]:
-    """A word that is longer than a line, on several."""
+    """The parts of a word that is longer than a line."""
     parts = [""]
     for letter in word:
         if parts[-1] and _wide(parts[-1]) + _wide(letter) > width:

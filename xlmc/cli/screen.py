@@ -149,12 +149,12 @@ def _table(title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]])
 
 
 def _size(tolerances: float) -> str:
-    """A move in tolerances: infinite beside the tolerance of a forecast that does not vary."""
+    """A move, counted in tolerances; infinite where the forecast does not vary and so has no tolerance."""
     return f"{tolerances:.2g}" if isfinite(tolerances) else "infinite"
 
 
 def _of_forecast(found: Screening, name: str) -> Table:
-    """Of every change, the number of a forecast that it moves most, measured in its tolerance."""
+    """A table of the number of a forecast that each change moves most, measured in its tolerance."""
     from xlmc.report.study_report import Table
     from xlmc.studies.comparison.wording import amount
 
@@ -187,7 +187,7 @@ def _most_moved(found: Screening, cost: Cost, name: str) -> tuple[str, float]:
 
 
 def _tolerance(found: Screening, name: str) -> str:
-    """In words: `1 mph, and P(> 18) 1.2 points`."""
+    """The tolerance of a forecast in words: `1 mph, and P(> 18) 1.2 points`."""
     from xlmc.studies.comparison.wording import is_chance, points
 
     value, stated = found.tolerances[name]

@@ -79,7 +79,7 @@ def say(text: object = "", *, err: bool = False) -> None:
 
 
 def _wrap_note(line: str) -> str:
-    """A line as wide as the terminal, words whole: a path or an address can be copied."""
+    """A line wrapped to the terminal's width; words stay whole, so that a path or an address can be copied."""
     line = degraded(line, err=True)
     wide = _columns(sys.stderr)
     return fill(line, wide, subsequent_indent="  ", break_on_hyphens=False, break_long_words=False)

@@ -29,7 +29,7 @@ __all__ = ["check_extract_path", "extract", "safe_heading"]
 
 
 _STARTS_A_FORMULA: Final = ("=", "+", "-", "@", "\t", "\r", "\n", "\uff1d", "\uff0b", "\uff0d", "\uff20")
-"""With which spreadsheets take the text of a CSV field for a formula; the last four in East Asian editions."""
+"""Characters that make a spreadsheet take a CSV field for a formula; the last four in East Asian editions."""
 
 _BEHIND_A_SEPARATOR: Final = re.compile('([;|\t\n]["\\s]*)([=+\\-@\uff1d\uff0b\uff0d\uff20])')
 
@@ -54,7 +54,7 @@ class Column:
 
 
 def extract(simulation: Simulation, path: Path, *, command: str | None = None, overwrite: bool = False) -> Path:
-    """Write the accepted trials, one a row: the trial's number, the assumptions, the forecasts.
+    """Write the accepted trials, one in each row: the trial's number, the assumptions, the forecasts.
 
     Args:
         simulation: the finished run.
@@ -80,7 +80,7 @@ def extract(simulation: Simulation, path: Path, *, command: str | None = None, o
 
 
 def check_extract_path(path: Path) -> None:
-    """Refuse what cannot be written, before a run rather than after it.
+    """Refuse, before a run, a file that could not be written after it.
 
     Raises:
         WorkbookError: the ending is neither `.csv` nor `.parquet`.

@@ -63,5 +63,5 @@ def figures_of(simulation: Simulation) -> list[Figure]:
 
 
 def varying(figures: Sequence[Figure]) -> list[Figure]:
-    """Without forecasts that are the same in all trials, whose curve would be a step."""
+    """The figures, without forecasts that are the same in all trials: their curve would be a step."""
     return [figure for figure in figures if figure.answer.standard_deviation.value > 0.0]

@@ -37,10 +37,10 @@ _LINE, _POWER = 84, 7
 
 _FENCE, _VAST = 5.0, 1e300
 _MOST_DECIMALS, _LONGEST = 6, 1e7
-"""Beyond these a label has a power of ten."""
+"""A label with more decimals, or of a larger number, has a power of ten."""
 
 _FINEST = 1e-9
-"""Of the largest value: a finer bin would show rounding."""
+"""The narrowest bin, as a share of the largest value: a finer one would show rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +139,7 @@ def _sane(value: float) -> float:
 
 
 def _quartiles(x: Floats) -> tuple[float, float]:
-    """Of ascending values, by straight lines between them."""
+    """The quartiles of ascending values, by straight lines between them."""
     lower, upper = Sample(x).quantile(np.array([0.25, 0.75]))
     return _sane(lower), _sane(upper)
 

@@ -27,7 +27,7 @@ _WIDTH, _HEIGHT, _HEAD = 10.0, 2.9, 0.75
 """In inches: the width of the figure, the heights of a forecast and of the title."""
 
 _POINTS: Final = 1_001
-"""Of a cumulative curve: a tenth of a percent each, finer than a line is thick."""
+"""Points of a cumulative curve: one for each tenth of a percent, finer than a line is thick."""
 
 _LONGEST: Final = 55
 
@@ -35,7 +35,7 @@ Floats = NDArray[np.float64]
 
 
 def plot(simulation: Simulation) -> Figure:
-    """The figure, one row a forecast that has a number in an accepted trial: histogram and cumulative share.
+    """The figure, one row for each forecast that has a number in an accepted trial: histogram and cumulative share.
 
     It belongs to no window: `figure.savefig("run.png")` writes it, and a notebook shows it.
 

@@ -167,7 +167,7 @@ def _book(report: StudyReport, sheet: str) -> bytes:
 
 
 def _cells(row: Sequence[str], right: Sequence[int]) -> list[Shown]:
-    """A text that is a number becomes one; a number with its error stays as it is printed."""
+    """The cells of a row: a text that is a number becomes one; a number with its error stays text."""
     return [_cell(text, index, index in right) for index, text in enumerate(row)]
 
 

@@ -65,7 +65,7 @@ class SummaryRow:
 
 
 def summarise(simulation: Simulation) -> list[SummaryRow]:
-    """One row a forecast, in the order of the workbook."""
+    """One row for each forecast, in the order of the workbook."""
     base = base_case(simulation)
     return [
         SummaryRow(

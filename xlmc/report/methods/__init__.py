@@ -40,7 +40,7 @@ def check_targets(paths: Sequence[Path], source: Path, *, overwrite: bool = Fals
         Target(path, source.name, overwrite).check()
         if ending != ".xlsx" and find_spec("matplotlib") is None:
             hint = "Install it with `pip install 'xlmc[plots]'`, or ask for .xlsx"
-            raise WorkbookError("there is no matplotlib here to draw with", where=path, hint=hint)
+            raise WorkbookError("drawing needs matplotlib, which is not installed", where=path, hint=hint)
 
 
 def save_methods(study: Study, path: Path, *, overwrite: bool = False) -> Path:

@@ -49,7 +49,7 @@ _ASKED: Final = "#B00020"
 _SIZE: Final = (12.4, 10.2)
 _LETTERS: Final = 9.2
 _APART: Final = 0.047
-"""Of the panel's height: from label to label."""
+"""The distance from label to label, as a share of the panel's height."""
 
 
 def draw(study: Study, against: Work = "seconds", *, words: bool = True) -> Figure:

@@ -100,7 +100,7 @@ def _cells(study: Study, curve: Curve) -> Iterator[str]:
 
 
 def near_text(study: Study, curve: Curve) -> str:
-    """Of an answer that was given once: whether it is near enough."""
+    """Whether the answer of a method that gives only one is near enough."""
     if not study.varying:
         return _NONE
     return {"yes": "near enough", "no": "never", "unknown": "cannot tell"}[shortfall(study, curve).reaches]

@@ -49,7 +49,7 @@ FINER: Final = 10.0
 """The second accuracy that is marked, over the one asked for."""
 
 _WORDS: Final = 0.033
-"""Of the panel's height: a line of words."""
+"""The height of a line of words, as a share of the panel's."""
 
 _NAMED: Final = 3
 """Methods that tie, by name; the others are counted."""
@@ -348,7 +348,7 @@ def spread(heights: Sequence[float], apart: float, bottom: float, top: float) ->
         heights: falling, or in the order in which labels shall stand from the top.
         apart: the least distance; less where there is not room enough.
         bottom: of the column.
-        top: likewise.
+        top: of the column.
 
     >>> spread([5.0, 5.0, 1.0], 1.0, 0.0, 10.0)
     [5.5, 4.5, 1.0]
@@ -368,7 +368,7 @@ def spread(heights: Sequence[float], apart: float, bottom: float, top: float) ->
 
 
 def _inside(heights: list[float], step: float, bottom: float, top: float) -> list[float]:
-    """The same, pushed back from both ends."""
+    """The heights, pushed back from both ends."""
     found = []
     limit = top
     for height in heights:

@@ -38,7 +38,7 @@ def void(name: str, /, **attributes: str | None) -> Html:
 
 
 def join(children: tuple[Html | str, ...] | list[Html]) -> Html:
-    """One after the other."""
+    """The children as HTML, one after the other."""
     return Html("".join(each.source if isinstance(each, Html) else escape(each) for each in children))
 
 

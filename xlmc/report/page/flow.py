@@ -131,14 +131,14 @@ def shown_text(shown: Shown) -> str:
 
 
 def shown_html(shown: Shown) -> Html:
-    """The same; a number carries its full value with it."""
+    """What the sheet shows, as HTML; a number carries its full value with it."""
     if isinstance(shown.value, str) or shown.value is None or not math.isfinite(shown.value):
         return element("span", shown_text(shown))
     return number(shown.value, shown_text(shown))
 
 
 def number(value: float, shown: str) -> Html:
-    """A number as it is shown, with its full value for whoever reads the page with a program."""
+    """A number as it is shown, with its full value for programs that read the page."""
     return element("data", shown, value=number_text(value))
 
 
@@ -148,7 +148,7 @@ def estimate_html(found: Estimate) -> Html:
 
 
 def share_html(found: Estimate) -> Html:
-    """`12.3 ± 0.5 %`, likewise."""
+    """`12.3 ± 0.5 %` with the full value; a dash where there is no number."""
     return number(found.value, share_text(found)) if math.isfinite(found.value) else element("span", NONE)
 
 

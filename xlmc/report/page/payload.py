@@ -44,10 +44,10 @@ __all__ = [
 CONFIDENCE = 0.95
 
 ALL_VALUES = 50_000
-"""On a page, of all its forecasts: some 1.2 MB."""
+"""Values on a page, of all its forecasts together: some 1.2 MB."""
 
 MOST_VALUES, _FEWEST = 20_000, 200
-"""Of a forecast."""
+"""Values of one forecast."""
 
 Floats = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ def payload_text(simulation: Simulation, figures: Sequence[Figure]) -> str:
 
 
 def payload(simulation: Simulation, figures: Sequence[Figure]) -> dict[str, Any]:
-    """The same as plain values."""
+    """The payload as plain values."""
     most = most_values(len(figures))
     return {
         "z": t_quantile(math.inf, CONFIDENCE),

@@ -1,6 +1,6 @@
 """The sheet Assumptions: what each one is and why, and beside it how the filters changed it.
 
-Two lines each: name, cell, distribution and the draws before filtering; below them units, base case, source and the
+Each has two lines: name, cell, distribution and the draws before filtering; below them units, base case, source and the
 accepted draws.
 """
 
@@ -80,7 +80,7 @@ def _headers() -> list[str]:
 
 
 def _lines(simulation: Simulation) -> Iterator[list[Shown]]:
-    """Two for each assumption."""
+    """The lines, two for each assumption."""
     for assumption in simulation.model.assumptions:
         before, accepted = _statistics(simulation, assumption.name, assumption.frozen)
         words = distribution_text(assumption)
@@ -91,7 +91,7 @@ def _lines(simulation: Simulation) -> Iterator[list[Shown]]:
 
 
 def _statistics(simulation: Simulation, name: str, frozen: bool) -> tuple[list[Shown], list[Shown]]:
-    """Of the draws before filtering, and of the accepted ones; or why it is not drawn."""
+    """The cells of the draws before filtering, and of the accepted ones; or why the assumption is not drawn."""
     found = filter_effect_of(simulation, name)
     if found is None:
         why = cells.text(status(simulation.model, name, frozen))

@@ -163,7 +163,7 @@ SHEETS: Final[tuple[ResultSheet, ...]] = (
     ResultSheet("Curves", lambda _, run: run.curves.finish(), after=("Charts", "Pairs")),
     ResultSheet("Record", _record, record_sheet.WIDTHS),
 )
-"""In the order of their tabs."""
+"""The sheets in the order of their tabs."""
 
 
 def build_sheets(simulation: Simulation, *, command: str | None = None, rows: int = trials_sheet.TRIAL_ROWS) -> bytes:

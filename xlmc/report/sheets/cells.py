@@ -32,7 +32,7 @@ NONE = "–"
 """Where there is no number to show."""
 
 NOISE = '"noise";"noise";"noise"'
-"""Of a number that is no more than noise: the word stands for it."""
+"""The format of a number that is no more than noise: it shows the word."""
 
 _COUNT = "#,##0"
 
@@ -43,7 +43,7 @@ _ROOM = 9
 """Characters that columns have room for; fewer decimals are shown rather than `###`."""
 
 _LARGEST, _SMALLEST = 1e7, 1e-4
-"""Beyond these a number is shown with a power of ten."""
+"""A number outside these limits is shown with a power of ten."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ def _error(value: float | None, digits: str, look: str) -> Shown:
 
 
 def paired_format(estimate: Estimate) -> str:
-    """For a value with its error in a cell of its own: two digits of the error."""
+    """The format of a value whose error stands in a cell of its own: two digits of the error."""
     if estimate.error == 0.0:
         return "General"
     return _format(estimate.value, _paired_decimals(estimate))
@@ -112,7 +112,7 @@ def share_format(estimate: Estimate) -> str:
 
 
 def spread_format(spread: float) -> str:
-    """For single trials: four digits of their spread."""
+    """The format of single trials: four digits of their spread."""
     return _format(spread, 3 - _exponent(spread)) if _usable(spread) else "General"
 
 

@@ -34,7 +34,7 @@ _ON_A_PAGE, _SCALE = 2, 60
 
 _CHART_ROWS = 16
 _OFFSET = 3
-"""In pixels, so that no chart's frame is drawn on the page before."""
+"""Pixels above a chart, so that its frame is not drawn on the page before."""
 
 _FIRST = 3
 WIDTHS = (8.43,) * (ACROSS * _COLUMNS)

@@ -203,7 +203,7 @@ def trend_chart(book: Workbook, curves: Curves, simulation: Simulation, group: S
 
 
 def _ranges(simulation: Simulation, group: Sequence[Figure]) -> Iterator[list[Shown]]:
-    """In the order of a stock chart: open, high, low, close."""
+    """The ranges in the order of a stock chart: open, high, low, close."""
     for figure in group:
         low, high = (each.value for each in percentiles(simulation.results[figure.answer.name].sample, _TAILS).values())
         digits = cells.paired_format(figure.answer.mean)

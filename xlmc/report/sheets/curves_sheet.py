@@ -25,7 +25,7 @@ _ON_A_PAGE, _SCALE = 14, 66
 """Columns, and the percentage at which so many fit."""
 
 _HEAD_HEIGHT = 48
-"""In points: headings of three lines, in whichever table they stand."""
+"""The height of the headings in points: three lines, in whichever table."""
 
 
 @dataclass(frozen=True, slots=True)

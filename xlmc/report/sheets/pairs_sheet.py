@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["POINTS", "WIDTHS", "pair_sentences", "write_pair_table", "write_pairs"]
 
 POINTS: Final = 1_000
-"""In a scatter chart: more hide each other and make the file slow to open."""
+"""Points in a scatter chart: more would hide each other and make the file slow to open."""
 
 WIDTHS = (*[8.43] * 14, 11.5, *[8.43] * 3)
 _LAST = 17
@@ -117,7 +117,7 @@ def pair_sentences(simulation: Simulation, pairs: Sequence[Pair]) -> list[str]:
 def _drawings(
     book: Workbook, curves: Curves, simulation: Simulation, pairs: Sequence[Pair], trials: TrialsAt
 ) -> list[Drawing]:
-    """A scatter chart a pair, from the first trials in which all forecasts of these pairs are numbers."""
+    """A scatter chart for each pair, from the first trials in which all forecasts of these pairs are numbers."""
     names = {forecast.name for pair in pairs for forecast in (pair.first, pair.second)}
     forecasts = [forecast for forecast in simulation.model.forecasts if forecast.name in names]
     known = _trials_with_numbers([simulation.forecasts[each.name] for each in forecasts])

@@ -27,7 +27,7 @@ _SPANS = {"limits": 2, "because": 5, "parameters": 2, "source": 3, "notes": 2, "
 _CODE = frozenset({"repeat", "command", "fingerprint", "sha256", "original_sha256"})
 
 _LISTED = frozenset({"structure", "cells"})
-"""Sections whose tables are as long as the model, at the end: one line a row, however long its text, not printed."""
+"""Sections as long as the model, at the end: each row takes one line, however long its text, and is not printed."""
 
 
 def write_record(page: Page, record: Record, name: str) -> None:

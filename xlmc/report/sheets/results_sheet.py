@@ -24,7 +24,7 @@ WIDTHS = (30, 9, *[10] * 16)
 LAST = 11
 
 _SCALE, _SCALE_WITH_THRESHOLDS = 60, 45
-"""In percent: as wide as a page."""
+"""The percentages at which the sheet is as wide as a page."""
 
 
 def write_results(page: Page, simulation: Simulation) -> None:

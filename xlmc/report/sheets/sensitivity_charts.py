@@ -33,7 +33,7 @@ CHART_ROWS: Final = 13
 """Rows of a sheet that a chart covers."""
 
 _SIZE: Final = (620, 23 * CHART_ROWS)
-"""In pixels."""
+"""The size of a chart in pixels."""
 
 MOST_LINES: Final = 6
 """More cannot be told apart in a spider."""
@@ -81,7 +81,7 @@ class TableAt:
         return [self.sheet, self.first + index, column]
 
     def formula(self, column: int) -> str:
-        """As `column`, in text: what error bars take."""
+        """The numbers of a column as the text of a formula, which error bars take."""
         from xlsxwriter.utility import xl_range_formula
 
         return f"={xl_range_formula(self.sheet, self.first, column, self.last, column)}"
@@ -197,7 +197,7 @@ def limit_chart(
     *,
     ends: Mapping[str, float] | None = None,
 ) -> ChartScatter:
-    """Lines over the limit, with standard errors, one a table.
+    """Lines over the limit, with standard errors, one for each table.
 
     Args:
         book: that the chart belongs to.

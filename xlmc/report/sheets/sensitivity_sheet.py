@@ -54,10 +54,10 @@ _SCALE: Final = 51
 """The percentage at which six charts fit on a page."""
 
 BARS: Final = 10
-"""On a chart: as many as have readable names."""
+"""Bars on a chart: more would not have readable names."""
 
 ROWS: Final = 40
-"""In a table."""
+"""Rows in a table."""
 
 _EXPLAINED, _DEPENDENCE, _RANK, _CONTRIBUTION, _FIRST, _TOTAL = 2, 5, 8, 10, 12, 14
 """The columns of the values; their errors follow them."""
@@ -212,7 +212,7 @@ def influence_charts(book: Workbook, at: TableAt, found: ForecastSensitivity, so
 
 
 def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
-    """One a chart: what it is and what it is not."""
+    """A caption for each chart: what it is and what it is not."""
     explained = (
         "Variance explained: how much of the forecast's variance would go, on average, if the assumption's true value "
         "were known. From the accepted trials as they are, so it holds with filters and correlations; shares need not "
@@ -272,7 +272,7 @@ def _move_row(bar: Bar, base: float, widest: float) -> list[Shown]:
 
 
 def move_charts(book: Workbook, at: TableAt, found: ForecastSensitivity) -> list[Any]:
-    """Tornado and spider."""
+    """The charts: tornado and spider."""
     units = f" ({found.units})" if found.units else ""
     axis = f"Change of the forecast from its base case{units}"
     first, last = _CHANGES, _CHANGES + 4
@@ -283,7 +283,7 @@ def move_charts(book: Workbook, at: TableAt, found: ForecastSensitivity) -> list
 
 
 def move_captions(found: ForecastSensitivity) -> list[str]:
-    """One a chart: what it is and what it is not."""
+    """A caption for each chart: what it is and what it is not."""
     at = "" if found.base is None else f" of {found.base:.6g} {found.units}".rstrip()
     bent = any(bar.monotonic is False for bar in found.bars[:BARS])
     tornado = (

@@ -38,7 +38,7 @@ __all__ = [
 
 
 CREATED = datetime(2000, 1, 1)
-"""Of every workbook: no clock. XlsxWriter would write today's date."""
+"""The date of creation of every workbook: XlsxWriter would write today's, and no two files would be the same."""
 
 INK = "#1F3044"
 
@@ -51,14 +51,14 @@ LIGHT = "#BCD3E8"
 """Bars outside it."""
 
 COLOURS: Final = ("#2F6DA8", "#D1662B", "#4D8B4A", "#8659A5", "#B5912B", "#3B9C9C", "#B04A66", "#5B6470")
-"""Of curves in one chart; apart also for most of those who do not see red and green."""
+"""Colours of curves in one chart; most people who do not see red and green can tell them apart."""
 
 AXIS: Final[dict[str, Any]] = {"color": "#8994A1", "width": 0.75}
 
 FONT: Final[dict[str, Any]] = {"size": 9, "color": INK}
 
 SIZE: Final = (560, 360)
-"""In pixels."""
+"""The size of a chart in pixels."""
 
 _MOST_STEPS = 10
 

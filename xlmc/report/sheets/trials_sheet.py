@@ -1,4 +1,4 @@
-"""The sheet Trials: accepted trials, one a row, with every assumption and forecast, to be checked or keyed in again."""
+"""The sheet Trials: accepted trials, one in each row, with all assumptions and forecasts, to check or key in again."""
 
 from __future__ import annotations
 

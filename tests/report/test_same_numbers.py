@@ -91,7 +91,7 @@ def test_certainty(told):
     area = document["forecasts"][0]
     expected = of_python(run["area"].statistics.probability_above)
     assert of_json(area["certainty"]["probability_above"]) == expected
-    assert block(book["Statistics"], "area")["P(> 20)"] == expected
+    assert block(book["Statistics"], "area")["Above 20"] == expected
 
 
 def test_answers_on_the_first_sheet(told):

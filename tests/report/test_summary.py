@@ -33,7 +33,7 @@ def test_rows_are_the_simulations_own_numbers(run):
 
 def test_the_text_prints_each_number_with_its_error(run):
     headings, lines = summary_text(summarise(run))
-    assert headings == ["Forecast", "Units", "Mean", "SD", "51 % range", "Base case", "Threshold", "P(above)"]
+    assert headings == ["Forecast", "Units", "Mean", "SD", "51 % range", "Base case", "Threshold", "Above threshold"]
     found = run["area"].statistics
     low, high = (format_estimate(end.value, end.error) for end in found.central)
     above = found.probability_above

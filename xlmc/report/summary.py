@@ -48,7 +48,7 @@ class SummaryRow:
         trials: accepted trials in which it is a number.
         share: of the trials, held by the central range from `low` to `high`.
         base: at the assumptions' base values; None where that is no number.
-        threshold, above: P(forecast > threshold), where one was asked for.
+        threshold, above: the probability above the threshold, where one was asked for.
     """
 
     name: str
@@ -108,7 +108,7 @@ def _line(row: SummaryRow, heading: str) -> dict[str, str]:
         "Range": "" if heading != MIXED else percent(row.share),
         "Base case": "" if row.base is None else f"{row.base:.6g}",
         "Threshold": threshold,
-        "P(above)": "" if row.above is None else share_text(row.above),
+        "Above threshold": "" if row.above is None else share_text(row.above),
     }
 
 

@@ -49,7 +49,7 @@ def test_percentiles_and_the_central_range_stand_beside(run, book, row_of):
         assert row_of(sheet, f"{percent:g} %", RIGHT + 1)[RIGHT + 2 :] == _expected(estimate)
     for end, estimate in zip(("from", "to"), found.central, strict=True):
         assert row_of(sheet, f"51 % range {end}", RIGHT + 1)[RIGHT + 2 :] == _expected(estimate)
-    assert row_of(sheet, "P(> 16)", RIGHT + 1)[RIGHT + 2 :] == _expected(found.probability_above)
+    assert row_of(sheet, "Above 16", RIGHT + 1)[RIGHT + 2 :] == _expected(found.probability_above)
 
 
 def test_extremes_show_the_digits_of_the_mean(book):

@@ -84,7 +84,7 @@ def _table(rows: Sequence[SummaryRow]) -> Html:
     thresholds = any(row.threshold is not None for row in rows)
     mixed = len({row.share for row in rows}) > 1
     heads = ["Forecast", "Units", "Mean", "Standard deviation", f"{range_heading(rows)} from", "to", "Base case"]
-    heads += ["Range holds"] * mixed + ["Threshold", "P(above)"] * thresholds
+    heads += ["Range holds"] * mixed + ["Threshold", "Above threshold"] * thresholds
     return element(
         "div",
         element(

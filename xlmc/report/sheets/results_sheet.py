@@ -75,7 +75,7 @@ def _headers(rows: Sequence[SummaryRow]) -> list[str]:
     heads = ["Forecast", "Units", "Accepted trials", "Mean", "±", "Standard deviation", "±"]
     heads += [f"{range_heading(rows)} from", "±", "to", "±", "Base case"]
     if any(row.threshold is not None for row in rows):
-        heads += ["Threshold", "P(above threshold)", "±", "95 % from", "to"]
+        heads += ["Threshold", "Above threshold", "±", "95 % from", "to"]
     return heads if len({row.share for row in rows}) < 2 else [*heads, "Range holds"]
 
 

@@ -28,7 +28,8 @@ _ENDS = ["Value", "±", "95 % from", "to"]
 def write_statistics(page: Page, simulation: Simulation) -> None:
     """Write the sheet."""
     name = simulation.model.workbook.name
-    page.title("Statistics of the accepted trials", f"{name}: {simulation.accepted:,} accepted trials")
+    below = f"{name}: {simulation.accepted:,} accepted trials. From … to: the 95 % interval of each number"
+    page.title("Statistics of the accepted trials", below)
     page.row += 1
     page.wide(ERROR_SENTENCE, "remark", _LAST)
     breaks = []
@@ -79,7 +80,7 @@ def _percentiles(result: ForecastResult) -> list[list[Shown]]:
     if found.probability_above is not None:
         above = found.probability_above
         shown = [*cells.share(above), *cells.interval(above, percent=True)]
-        rows.append([cells.text(f"P(> {definition.threshold:g})", "name"), *shown])
+        rows.append([cells.text(f"Above {definition.threshold:g}", "name"), *shown])
     return rows
 
 

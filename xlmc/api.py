@@ -146,7 +146,7 @@ class Model(model.Model):
             trials: how many, 1 or more; with a goal the most, by default 10⁹.
             seed: 0 or more.
             until_accepted: accepted trials, of which the last ends the run; 2 or more.
-            rare: `auto`, where accepted trials are so rare that plain ones would reach their limit before
+            rare: `auto`, where accepted trials are so rare that the limit of trials would come before
                 `until_accepted`, learn where they are and draw there; `never`; or `always`.
             precision: largest half width of intervals, of the number itself (`"1%"`) or in its units (`0.1`).
             precision_of: of which numbers: `mean`, `sd`, `range`, percentiles such as `p75.5`; by default `mean,range`.
@@ -156,7 +156,8 @@ class Model(model.Model):
             time_limit: seconds, or such as `5m`, after which the run ends with the block of trials it is in.
             engine: `numpy`, `jit`, compiled for long runs, or `formulas`, the slow reference.
             sampling: `mc`, Monte Carlo; `lhs`, Latin hypercube; `lhs500`, the same in blocks of 500; or `sobol`,
-                scrambled Sobol. All but the first run whole replicates, and so sometimes a few more trials.
+                scrambled Sobol. All but the first run whole replicates (independent parts of the run), and so
+                sometimes a few more trials.
             jobs: threads or processes.
             scheduler: `threads`; `processes`; `local`, a Dask cluster of this machine; or the address of a Dask
                 scheduler. By default processes for a long run with several jobs, else threads.

@@ -95,7 +95,7 @@ def test_draws_that_were_not_kept_are_blank(model, tmp_path, ending, read, kept)
     run = model.simulate(keep_inputs=kept)
     run.extract(tmp_path / f"trials.{ending}")
     found = read(tmp_path / f"trials.{ending}")
-    assert found["width"].notna().tolist() == [place < kept for place in range(run.accepted)]
+    assert found["width"].notna().tolist() == [index < kept for index in range(run.accepted)]
     assert np.array_equal(found["area"], run.forecasts["area"])
 
 

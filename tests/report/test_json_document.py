@@ -93,10 +93,10 @@ def changes():
 @pytest.mark.parametrize(("path", "value"), changes())
 def test_the_schema_refuses_what_is_no_document(run, validator, path, value):
     found = json.loads(json.dumps(document(run)))
-    place = found
+    inner = found
     for key in path[:-1]:
-        place = place[key]
-    place[path[-1]] = value
+        inner = inner[key]
+    inner[path[-1]] = value
     with pytest.raises(jsonschema.ValidationError):
         validator.validate(found)
 

@@ -33,8 +33,8 @@ def test_the_curve_and_the_shade_are_the_runs(run, figure):
     for axes, result in zip(figure.axes[1::2], run.results.values(), strict=True):
         values, share = axes.lines[0].get_data()
         for percent, estimate in result.statistics.percentiles.items():
-            place = round(10 * percent)
-            assert (values[place], share[place]) == pytest.approx((estimate.value, percent), rel=1e-12)
+            index = round(10 * percent)
+            assert (values[index], share[index]) == pytest.approx((estimate.value, percent), rel=1e-12)
         low, high = result.central()
         [shade] = axes.patches
         assert (shade.get_x(), shade.get_x() + shade.get_width()) == pytest.approx((low.value, high.value))

@@ -117,8 +117,8 @@ def test_every_sheet_has_a_page_with_something_on_it(pages):
 def test_every_chart_draws_something_above_its_caption(pages, word, count):
     found = captions(pages, word)
     assert sorted(found) == list(range(1, count + 1))
-    for number, place in found.items():
-        assert coloured(*place) > 0.004, f"{word} {number}"
+    for number, at in found.items():
+        assert coloured(*at) > 0.004, f"{word} {number}"
 
 
 def test_charts_show_their_titles_and_axes(pages, case):

@@ -48,7 +48,7 @@ def block(sheet, name):
     found = {}
     for row in range(top + 2, top + 30):
         for label, first in ((1, 3), (8, 9)):
-            numbers = tuple(plain(sheet.cell(row, first + place).value) for place in range(4))
+            numbers = tuple(plain(sheet.cell(row, first + index).value) for index in range(4))
             if sheet.cell(row, label).value is not None:
                 found.setdefault(sheet.cell(row, label).value, numbers)
     return found

@@ -27,9 +27,9 @@ def many(make):
 class Chart:
     """One forecast on the page."""
 
-    def __init__(self, browser, place=0):
+    def __init__(self, browser, index=0):
         self.browser = browser
-        self.root = self.all("article.forecast", browser)[place]
+        self.root = self.all("article.forecast", browser)[index]
 
     def all(self, selector, within=None):
         return (within or self.root).find_elements("css selector", selector)
@@ -94,8 +94,8 @@ def check(chart, values):
 
 def test_it_opens_at_the_central_range(shown, run):
     browser = shown(run)
-    for place, result in enumerate(run.results.values()):
-        chart = Chart(browser, place)
+    for index, result in enumerate(run.results.values()):
+        chart = Chart(browser, index)
         assert chart.ends == tuple(end.value for end in result.central())
         check(chart, result.values)
         assert chart.box("share") == "51"
@@ -228,8 +228,8 @@ def test_another_chart_leaves_the_grabbers_where_they_are(shown, run, view):
 
 def test_many_trials_are_counted_to_within_what_is_said(shown, many):
     browser = shown(many)
-    for place, result in enumerate(many.results.values()):
-        chart, values = Chart(browser, place), result.values
+    for index, result in enumerate(many.results.values()):
+        chart, values = Chart(browser, index), result.values
         check(chart, values)  # the forecast's own range is exact
         for step in (35, -61, 17):
             chart.drag("low", step)

@@ -64,8 +64,8 @@ def test_a_large_run_has_gaps_but_exact_ends(make, payload_of):
     assert len(each["values"]) == 20_003
     assert max(each["gaps"]) <= 2
     for end in (each["range"]["low"], each["range"]["high"], 0.3):
-        place = each["values"].index(end)
-        upto = sum(each["gaps"][:place]) + sum(each["counts"][: place + 1])
+        index = each["values"].index(end)
+        upto = sum(each["gaps"][:index]) + sum(each["counts"][: index + 1])
         assert upto == np.count_nonzero(result.values <= end)
 
 

@@ -84,7 +84,7 @@ def test_the_sheets_of_a_run_in_replicates(make, opened, rows_of):
     assert any(str(text).startswith(sentence) for text in results)
     assert any("independent trials, which these samples hardly ever exceed" in str(text) for text in results)
     texts = [row[0] for row in rows_of(book["Assumptions"]) if row]
-    assert any(str(text).startswith("Before filtering ± is that of independent trials") for text in texts)
+    assert any(str(text).startswith("Before filtering, ± is that of independent trials") for text in texts)
     found = filter_effect(run.prior["b"], run.inputs["b"], run.replicate)
     assert found.accepted.mean.error < filter_effect(run.prior["b"], run.inputs["b"]).accepted.mean.error
     line = next(

@@ -123,8 +123,8 @@ def test_a_forecast_that_does_not_vary_has_a_histogram_and_no_curve(make):
 
 def test_bins_hold_every_trial_once(run, book):
     sheet = book["Bins"]
-    for place, result in enumerate(run.results.values()):
-        left = place * (TABLE + 1) + 1
+    for index, result in enumerate(run.results.values()):
+        left = index * (TABLE + 1) + 1
         rows = sheet.iter_rows(min_row=HEADER + 2, min_col=left, max_col=left + TABLE - 1, values_only=True)
         table = [row for row in rows if row[5] is not None]
         bins, (below, above, everything) = table[:-3], table[-3:]
@@ -165,7 +165,7 @@ def test_a_formula_like_name_is_a_title_and_a_long_one_is_shortened(make):
     )
     packed = build_sheets(run)
     book = openpyxl.load_workbook(io.BytesIO(packed))
-    titles = [book["Bins"].cell(HEADER - 1, 1 + place * (TABLE + 1)) for place in range(2)]
+    titles = [book["Bins"].cell(HEADER - 1, 1 + index * (TABLE + 1)) for index in range(2)]
     assert [title.data_type for title in titles] == ["s", "s"]
     assert titles[0].value == "=HYPERLINK(1)"
     assert titles[1].value == "x" * 89 + "…"

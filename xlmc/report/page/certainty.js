@@ -58,7 +58,7 @@ class Trials {
   }
 }
 
-/** The last place in an ascending list whose number is no larger; -1 where all are. */
+/** The last index in an ascending list whose number is no larger; -1 where all are. */
 function lastUpTo(list, number) {
   let low = 0;
   let high = list.length;

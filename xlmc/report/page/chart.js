@@ -6,28 +6,28 @@ const MARKS = { "Mean": [], "Base case": [7, 4], "Threshold": [2, 3] }; // dashe
 const FONT = "12px system-ui, sans-serif";
 const WIDEST = 660, HIGHEST = 300, POINTS = 600;
 
-/** How wide a chart is: what its place has room for, but never wider than a printed page. */
-function widthOf(place) {
-  return Math.max(260, Math.min(WIDEST, Math.floor(place.clientWidth)));
+/** How wide a chart is: what its element has room for, but never wider than a printed page. */
+function widthOf(element) {
+  return Math.max(260, Math.min(WIDEST, Math.floor(element.clientWidth)));
 }
 
 /**
- * Draw a forecast with its bars into `place`; `state` has `view`, `low`, `high` and is read whenever the chart is drawn
+ * Draw a forecast with its bars into `element`; `state` has `view`, `low`, `high` and is read whenever the chart is drawn
  * again. `drawn()` is called then, and `pointed(value)` when the pointer is somewhere else; null when it has left.
  */
-function drawForecast(place, forecast, trials, bins, state, { drawn, pointed }) {
+function drawForecast(element, forecast, trials, bins, state, { drawn, pointed }) {
   const { edges, counts } = bins;
   const ends = [edges[0], edges[edges.length - 1]];
   const top = state.view === "frequency" ? Math.max(...counts) * 1.08 : 100;
   const shape = state.view === "frequency" ? bars(edges, counts) : curve(trials, ends, state.view);
-  const options = chartOptions(widthOf(place), ends, top, forecast.units, state.view);
+  const options = chartOptions(widthOf(element), ends, top, forecast.units, state.view);
   if (bins.whole) options.axes[0].incrs = [1, 2, 5, 10, 20, 50, 100];
   options.hooks = {
     drawClear: [(chart) => band(chart, forecast.range)],
     draw: [(chart) => paint(chart, shape, forecast.marks, bins.covered(state.low, state.high)), drawn],
     setCursor: [(chart) => pointed(chart.cursor.left < 0 ? null : chart.posToVal(chart.cursor.left, "x"))],
   };
-  return new uPlot(options, [ends, [0, top]], place);
+  return new uPlot(options, [ends, [0, top]], element);
 }
 
 /**

@@ -6,20 +6,20 @@ const COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00
 const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3]];
 
 class Overlay {
-  constructor(place, panels) {
-    this.place = place.querySelector(".chart");
+  constructor(element, panels) {
+    this.element = element.querySelector(".chart");
     this.panels = panels;
     this.view = "frequency";
-    for (const radio of place.querySelectorAll(".views input")) {
+    for (const radio of element.querySelectorAll(".views input")) {
       radio.addEventListener("change", () => {
         this.view = radio.value;
         this.draw();
       });
     }
-    place.querySelector(".legend").replaceChildren(...panels.map(({ forecast }, i) => legendEntry(forecast.name, i)));
+    element.querySelector(".legend").replaceChildren(...panels.map(({ forecast }, i) => legendEntry(forecast.name, i)));
     new ResizeObserver(() => {
-      if (this.chart.width !== widthOf(this.place)) this.draw();
-    }).observe(this.place);
+      if (this.chart.width !== widthOf(this.element)) this.draw();
+    }).observe(this.element);
     this.draw();
   }
 
@@ -30,13 +30,13 @@ class Overlay {
     const shapes = this.panels.map((panel) => this.shape(panel, ends));
     const top = this.view === "frequency" ? 1.08 * Math.max(...shapes.flat().map(([, y]) => y)) : 100;
     const { units } = this.panels[0].forecast;
-    const options = chartOptions(widthOf(this.place), ends, top, units, this.view);
+    const options = chartOptions(widthOf(this.element), ends, top, units, this.view);
     if (this.view === "frequency") {
       options.axes[1].label = `Accepted trials, % per ${units || "unit"}`;
       options.axes[1].values = (_, splits) => splits.map((split) => String(Number(split.toPrecision(6))));
     }
     options.hooks = { draw: [(chart) => shapes.forEach((shape, i) => stroke(chart, shape, i))] };
-    this.chart = new uPlot(options, [ends, [0, top]], this.place);
+    this.chart = new uPlot(options, [ends, [0, top]], this.element);
   }
 
   /** Bars as a share of the trials for each unit, so that forecasts with other bars compare; or the curve. */

@@ -2,23 +2,23 @@
 // One forecast: its chart, its grabbers, its boxes and its certainty, which always say the same.
 
 class Panel {
-  constructor(place, forecast, z) {
+  constructor(element, forecast, z) {
     this.forecast = forecast;
     this.z = z;
     this.trials = new Trials(forecast);
     this.bins = barsOf(forecast);
     this.step = stepOf(this.bins);
     this.decimals = Math.max(0, -Math.round(Math.log10(this.step)));
-    this.find = (selector) => place.querySelector(selector);
-    this.box = (key) => place.querySelector(`.boxes .${key}`);
+    this.find = (selector) => element.querySelector(selector);
+    this.box = (key) => element.querySelector(`.boxes .${key}`);
     this.state = { view: "frequency" };
-    this.listen(place);
+    this.listen(element);
     this.draw();
     this.toOwnRange();
   }
 
-  listen(place) {
-    for (const radio of place.querySelectorAll(".views input")) {
+  listen(element) {
+    for (const radio of element.querySelectorAll(".views input")) {
       radio.addEventListener("change", () => {
         this.state.view = radio.value;
         this.draw();
@@ -37,7 +37,7 @@ class Panel {
   draw() {
     this.chart?.destroy();
     this.chart = drawForecast(this.find(".chart"), this.forecast, this.trials, this.bins, this.state, {
-      drawn: () => this.place(),
+      drawn: () => this.element(),
       pointed: (value) => this.read(value),
     });
     const { step, state, bins } = this;
@@ -115,7 +115,7 @@ class Panel {
   }
 
   /** Put the grabbers where the chart, which is drawn a moment later than asked, has room for them. */
-  place() {
+  element() {
     const { low, high, lowText, highText } = this.state;
     if (low === undefined) return;
     this.grabbers.low(low, lowText);
@@ -132,7 +132,7 @@ class Panel {
   say({ count, doubt, share, text }) {
     const { low, high, lowText, highText } = this.state;
     const { units, trials } = this.forecast;
-    const place = this.find(".certainty");
+    const element = this.find(".certainty");
     const decimals = Math.max(0, 1 - exponentOf(100 * share.error));
     const ends = [share.low, share.high].map((end) => (100 * end).toFixed(decimals));
     const about = doubt ? `about ${countText(count)}` : countText(count);
@@ -144,10 +144,10 @@ class Panel {
     const detail = document.createElement("span");
     const counted = `${about} of ${countText(trials)}${off}`;
     detail.textContent = `of the accepted trials lie ${range}: ${counted}; 95 % interval ${ends.join(" to ")} %.`;
-    place.replaceChildren(main, " ", detail);
-    place.dataset.count = String(count);
-    place.dataset.low = String(low);
-    place.dataset.high = String(high);
+    element.replaceChildren(main, " ", detail);
+    element.dataset.count = String(count);
+    element.dataset.low = String(low);
+    element.dataset.high = String(high);
   }
 
   /** What the pointer is at. */

@@ -77,7 +77,7 @@ def run(enlarged):
         done = subprocess.run(
             command, env=variables, cwd=folder or enlarged, capture_output=True, text=True, encoding="utf-8"
         )
-        assert not done.stderr, done.stderr
+        assert not done.stderr, f"if names have changed, change docs/adding.md, too:\n{done.stderr}"
         return done
 
     return run

@@ -23,7 +23,7 @@ from tables import placed
 
 import xlmc
 from xlmc.studies.methods import study
-from xlmc.studies.methods.choice import choice
+from xlmc.studies.methods.need import choice
 
 __all__ = ["BOOKS", "PAGE", "RESULTS", "SEEDS", "advice", "faults", "table"]
 

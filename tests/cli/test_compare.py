@@ -66,7 +66,7 @@ def test_beyond_is_a_verdict_with_its_cause(xlmc, books):
     assert outcome.code == 0
     text = " ".join(outcome.out.split())
     assert "is not enough for Speed to 0.1 mph" in text
-    assert "because the filter 'fast' of rich.xlsx conditions it; without it" in text
+    assert "because the filter 'fast' of rich.xlsx moves it; without it" in text
 
 
 def test_no_causes_makes_no_further_runs(xlmc, books):
@@ -134,5 +134,5 @@ def test_the_case_study_on_two_rungs(xlmc):
     assert outcome.code == 0
     text = " ".join(outcome.out.split())
     assert "is enough for Chevrolet delta-V to 1.5 mph, Nissan delta-V to 1.5 mph and Chevrolet impact speed" in text
-    assert "because the filter 'Restitution, tangential' of intersection.xlsx conditions it" in text
-    assert "they give one number: only what they accept differs" in text
+    assert "because the filter 'Restitution, tangential' of intersection.xlsx moves it" in text
+    assert "they give the same number: they differ only in which trials they accept" in text

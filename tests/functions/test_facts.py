@@ -77,7 +77,7 @@ LISTS = {
     ("run/rare/preimage.py", "FUNCTIONS"): "any other function is not undone: its filter is searched for",
     ("run/rare/preimage.py", "PERIODIC"): "what FUNCTIONS has",
     ("run/rare/switches.py", "_OF_AREAS"): "any other function of an area makes no ways to be told apart",
-    ("studies/stability/digits.py", "_STEEP"): "of any other function it is said that its argument is rounded",
+    ("studies/stability/rounding_errors.py", "_STEEP"): "of any other function it is said that its argument is rounded",
     ("studies/stability/momentum.py", "_arm"): "one form of a formula",
     ("studies/stability/momentum.py", "components"): "one form of a formula",
     ("studies/stability/rarer_forms.py", "_great_circle"): "one form of a formula",

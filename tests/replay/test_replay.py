@@ -250,7 +250,7 @@ def test_a_formula_that_was_filled_down_reads_as_it_does_in_its_cell(tmp_path, s
     cells[2, 1] = replace(cells[2, 1], formula=replace(cells[2, 1].formula, text="B4+C4", row=5, column=2))
     sheets = {name: workbook.sheets[name] for name in workbook.sheets}
     sheets["Model"] = replace(sheets["Model"], cells=cells)
-    found = repeating._replayed(replace(workbook, sheets=sheets), old, None, 1, None, path)
+    found = repeating._replay(replace(workbook, sheets=sheets), old, None, 1, None, path)
     assert found.to_the_last_bit
 
 
@@ -284,7 +284,7 @@ def against(run):
     """`against(changes)`: a repeat compared with a record in which some values are others."""
 
     def compare(changes):
-        return repeating._replayed(run.model.workbook, altered(make_record(run), changes), run.model, 1, None)
+        return repeating._replay(run.model.workbook, altered(make_record(run), changes), run.model, 1, None)
 
     return compare
 

@@ -8,7 +8,7 @@ import xlmc.statistics as xs
 from xlmc.address import Cell
 from xlmc.definitions.model import Correlation
 from xlmc.distributions import FAMILIES
-from xlmc.results.record.correlations_met import correlations_met
+from xlmc.results.record.definition_tables import correlations_met
 from xlmc.run.correlating import correlated_groups, repair_notices, used
 from xlmc.sampling.copula import GaussianCopula
 from xlmc.sampling.draws import Draw

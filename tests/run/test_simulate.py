@@ -10,7 +10,7 @@ import pytest
 from xlmc.api import Model
 from xlmc.columns import column_store, on_disk
 from xlmc.errors import FormulaError, SimulationError
-from xlmc.results.record.fingerprint import fingerprint
+from xlmc.results.record.make import fingerprint
 from xlmc.run import simulate as module
 from xlmc.run.simulation import KEPT_INPUTS
 

@@ -13,7 +13,7 @@ import pytest
 from xlmc.api import Model
 from xlmc.errors import SimulationError
 from xlmc.studies.comparison import Verdict, compare
-from xlmc.studies.comparison.wording import undecided_text
+from xlmc.studies.comparison.verdicts import undecided_text
 from xlmc.studies.screening import screen
 
 SIZE = {"trials": 20_000, "seed": 1}

@@ -95,7 +95,7 @@ def _show_base_case(model: Model) -> list[str]:
 
 def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
     """The cells that errors come from with their formulas, then the cells that have theirs from these."""
-    from xlmc.results.record.cells import content_text
+    from xlmc.results.record.recorded_cells import content_text
 
     handled = "" if errors.answers else " (handled: no forecast, filter or check is an error)"
     for cell, code in list(errors.roots.items())[:_MOST_CELLS]:
@@ -111,7 +111,7 @@ def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
 def _show_definitions(definitions: Definitions, model: Model | None) -> None:
     from xlmc.cli.printing import table
     from xlmc.report.summary import percent
-    from xlmc.results.record.wording import distribution_text, limits_text
+    from xlmc.results.record.in_words import distribution_text, limits_text
 
     table(
         "Assumptions",

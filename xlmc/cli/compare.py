@@ -70,7 +70,7 @@ def compare(
     from xlmc.report.study_report import Files
     from xlmc.run.model import load
     from xlmc.studies import comparison
-    from xlmc.studies.comparison.wording import book_names
+    from xlmc.studies.comparison.verdicts import book_names
 
     books = load(first), load(second)
     files = Files(output, html, [first, second], overwrite=overwrite)
@@ -122,7 +122,7 @@ def _pairs(given: tuple[str, ...]) -> dict[str, str]:
 
 def _report(found: Comparison) -> StudyReport:
     from xlmc.report.study_report import StudyReport, Table
-    from xlmc.studies.comparison.wording import book_names, verdict_text
+    from xlmc.studies.comparison.verdicts import book_names, verdict_text
 
     books = book_names(found)
     headings = ("", "First", "Second", "Difference", "Tolerance")
@@ -133,7 +133,7 @@ def _report(found: Comparison) -> StudyReport:
 
 def _sentences(found: Comparison) -> Iterator[str]:
     from xlmc.report.summary import estimate_text
-    from xlmc.studies.comparison.wording import book_names, inputs_text
+    from xlmc.studies.comparison.verdicts import book_names, inputs_text
 
     books, accepted, trials = book_names(found), found.acceptance, found.first.trials
     yield (
@@ -161,7 +161,7 @@ def _title(each: ForecastComparison) -> str:
 
 def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
     from xlmc.report.summary import estimate_text, percent
-    from xlmc.studies.comparison.wording import amount, is_chance
+    from xlmc.studies.comparison.verdicts import amount, is_chance
 
     found = each.difference
     rows = []
@@ -181,7 +181,7 @@ def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
 
 def _as_json(found: Comparison) -> dict[str, object]:
     from xlmc.cli.study_output import acceptance_json
-    from xlmc.studies.comparison.wording import book_names, verdict_text
+    from xlmc.studies.comparison.verdicts import book_names, verdict_text
 
     books, inputs = book_names(found), found.inputs
     return {

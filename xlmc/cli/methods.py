@@ -114,7 +114,7 @@ def _show(found: Study) -> None:
 def study_json(found: Study) -> dict[str, Any]:
     """Everything that was measured, as JSON holds it."""
     from xlmc.studies.methods import STATISTICS, recommendation
-    from xlmc.studies.methods.choice import choice
+    from xlmc.studies.methods.need import choice
 
     reference = found.reference
     best = choice(found) if found.varying else None

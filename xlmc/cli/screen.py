@@ -156,7 +156,7 @@ def _size(tolerances: float) -> str:
 def _of_forecast(found: Screening, name: str) -> Table:
     """A table of the number of a forecast that each change moves most, measured in its tolerance."""
     from xlmc.report.study_report import Table
-    from xlmc.studies.comparison.wording import amount
+    from xlmc.studies.comparison.verdicts import amount
 
     units = found.run[name].definition.units
     rows = []
@@ -188,7 +188,7 @@ def _most_moved(found: Screening, cost: Cost, name: str) -> tuple[str, float]:
 
 def _tolerance(found: Screening, name: str) -> str:
     """The tolerance of a forecast in words: `1 mph, and P(> 18) 1.2 points`."""
-    from xlmc.studies.comparison.wording import is_chance, points
+    from xlmc.studies.comparison.verdicts import is_chance, points
 
     value, stated = found.tolerances[name]
     text = f"{value:.3g} {found.run[name].definition.units}".rstrip() + ("" if stated else " (a tenth of the SD)")
@@ -210,7 +210,7 @@ def _percent(cost: Cost) -> str:
 
 
 def _verdicts(found: Screening) -> Iterable[str]:
-    from xlmc.studies.comparison.wording import undecided_text
+    from xlmc.studies.comparison.verdicts import undecided_text
 
     if found.joint:
         yield (

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 from xlmc.replay.closeness import Closeness
 from xlmc.results.record import Record, Value
-from xlmc.results.record.cells import SAVED, content_text, definition_cells
+from xlmc.results.record.recorded_cells import SAVED, content_text, definition_cells
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
@@ -26,7 +26,7 @@ __all__ = [
     "structure_changes",
 ]
 
-SAME: Final = 1e-12
+_SAME: Final = 1e-12
 """How far numbers from another processor may be off, relative to them or to their standard deviation."""
 
 _DEFINITIONS: Final = (
@@ -55,8 +55,8 @@ class Change:
     Attributes:
         kind: `cell`, `defined name`, `table`, `assumption`, `software` and so on.
         where: which one.
-        old: None where the record does not have it: a cell was blank, or was not needed.
-        new: None where it is not there any more.
+        old: what it was; None where the record does not have it, because a cell was blank or was not needed.
+        new: what it is now; None where it is not there any more.
     """
 
     kind: str
@@ -115,7 +115,7 @@ def structure_changes(recorded: Record, found: Record) -> list[Change]:
 
 
 def definition_changes(recorded: Record, found: Record) -> list[Change]:
-    """The definitions that are understood otherwise than they were."""
+    """The definitions that are not as they were."""
     changes: list[Change] = []
     for section, kind, naming, keys in _DEFINITIONS:
         old, new = (_rows(record, section, naming) for record in (recorded, found))
@@ -130,7 +130,7 @@ def definition_changes(recorded: Record, found: Record) -> list[Change]:
 
 
 def environment_changes(recorded: Record, found: Record) -> list[Change]:
-    """The versions and the processor that are others than they were."""
+    """The versions and the processor that are not as they were."""
     changes: list[Change] = []
     for section in ("software", "processor"):
         old, new = (
@@ -156,7 +156,7 @@ def number_changes(recorded: Record, found: Record) -> list[NumberChange]:
                     f"{name}: {key.replace('_', ' ')}",
                     old[name].get(key),
                     new[name].get(key),
-                    0.0 if key in counted else SAME,
+                    0.0 if key in counted else _SAME,
                     scale,
                 )
                 for key in (*counted, *measured)

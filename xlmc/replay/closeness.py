@@ -1,4 +1,4 @@
-"""When a value in a file is the one that the repeated run gives."""
+"""Whether a value in a file is the one that the repeated run gives."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["Closeness", "is_number"]
 
 _ROUNDING: Final = 1e-12
 _OTHER_PROGRAM: Final = 1e-9
-"""How far another program's value of a formula may be off."""
+"""How far another program's value of a formula may differ, relative to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,8 +20,8 @@ class Closeness:
     """How far numbers may be apart.
 
     Attributes:
-        rewritten: another program has saved the file; some write 15 digits, and have line ends of their own.
-        elsewhere: the run was made with other software or on another processor, which may round otherwise.
+        rewritten: another program has saved the file; some write only 15 digits, and other line ends.
+        elsewhere: the run was made with other software or on another processor, which may round differently.
     """
 
     rewritten: bool = False
@@ -34,7 +34,7 @@ class Closeness:
             says: what the file holds.
             gives: what the run gives.
             scale: the largest number beside it, from which it may have been computed.
-            computed: the file holds a formula, whose value another program may have computed anew.
+            computed: the file holds a formula, whose value another program may have computed again.
         """
         if is_number(says) and is_number(gives):
             apart = abs(says - gives)
@@ -52,7 +52,7 @@ class Closeness:
 
 
 def _with_fewer_digits(number: float) -> set[float]:
-    """The number as programs write it: of its shortest decimal, or of its exact one, 15 or 16 digits, or cut off."""
+    """The number as programs write it: 15 or 16 digits of its shortest or its exact decimal, rounded or cut off."""
     shortest, exact = Decimal(repr(float(number))), Decimal(float(number))
     rules = [(15, ROUND_DOWN), *((digits, rule) for digits in (15, 16) for rule in (ROUND_HALF_UP, ROUND_HALF_EVEN))]
     return {
@@ -61,5 +61,5 @@ def _with_fewer_digits(number: float) -> set[float]:
 
 
 def is_number(value: CellValue) -> TypeGuard[int | float]:
-    """Whether a value is a number, and no logical."""
+    """Whether a value is a number, and not a logical."""
     return isinstance(value, int | float) and not isinstance(value, bool)

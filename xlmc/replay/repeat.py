@@ -20,13 +20,12 @@ from xlmc.replay.changes import (
     structure_changes,
 )
 from xlmc.replay.closeness import Closeness
-from xlmc.replay.restored import restored
 from xlmc.replay.sheets import SheetComparison
-from xlmc.replay.shown import compare_shown
+from xlmc.replay.shown_results import as_recorded, compare_shown
 from xlmc.replay.versions import Rule, recorded_version, rules_since
 from xlmc.results.record import Record, make_record
-from xlmc.results.record.cells import needed_contents, recorded_cells
 from xlmc.results.record.read import read_record
+from xlmc.results.record.recorded_cells import needed_contents, recorded_cells
 from xlmc.results.record.settings_table import recorded_settings
 from xlmc.results.saved import SUFFIX, is_saved_run, open_run
 from xlmc.run.model import understood
@@ -56,7 +55,7 @@ _NEEDED: Final = (
     "counts.inputs_kept",
     "end.by",
 )
-"""Entries that the repeat, or what is said of it, cannot do without."""
+"""Entries that the repeat, or the report on it, needs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,14 +65,14 @@ class Replayed:
     Attributes:
         record: of the run.
         repeated: the run again, from the workbook as it is now; None where it cannot be run any more.
-        fault: why it cannot.
-        changes: what is not as the record says: cells, names, tables, definitions.
-        environment: the versions and the processor that are others.
-        numbers: of the record that the repeat did not give to the last bit.
+        fault: why it cannot be run.
+        changes: what is not as the record has it: cells, names, tables, definitions.
+        environment: the versions and the processor that differ.
+        numbers: numbers of the record that the repeat did not give to the last bit.
         same_bits: the accepted trials are the same to the last bit.
         shown: the result sheets, and the workbook's own cells that show results, beside those of the repeat.
         version: the xlmc that made the run.
-        rules: what this xlmc computes otherwise than that one, where the recorded cells hold something of it.
+        rules: what this xlmc computes differently from that one, where the recorded cells hold something of it.
     """
 
     record: Record
@@ -94,7 +93,7 @@ class Replayed:
 
     @property
     def to_the_last_bit(self) -> bool:
-        """Whether nothing differs at all, but perhaps for versions."""
+        """Whether nothing differs at all, except perhaps versions."""
         return self.same_bits and self.shown.same and not (self.changes or self.numbers or self.fault)
 
     @property
@@ -122,13 +121,13 @@ def replay(path: str | Path, *, jobs: int = 1, progress: Progress | None = None)
     path = Path(path)
     if path.suffix.casefold() == SUFFIX or is_saved_run(path):
         run = open_run(path)
-        return _replayed(run.model.workbook, make_record(run), run.model, jobs, progress)
+        return _replay(run.model.workbook, make_record(run), run.model, jobs, progress)
     with naming_file(str(path)):
         workbook = read_workbook(path)
-        return _replayed(workbook, read_record(workbook), None, jobs, progress, path)
+        return _replay(workbook, read_record(workbook), None, jobs, progress, path)
 
 
-def _replayed(
+def _replay(
     workbook: Workbook,
     record: Record,
     model: Model | None,
@@ -136,13 +135,13 @@ def _replayed(
     progress: Progress | None,
     path: Path | None = None,
 ) -> Replayed:
-    cells, settings = _recorded(record, path)
+    cells, settings = _read_recorded(record, path)
     version = recorded_version(record)
     rules = rules_since(version, cells.values())
     _refuse_incomplete(record, settings, version, path)
     try:
         model = model or understood(workbook, path or Path(workbook.name))
-        repeated = _repeated(model, record, settings, jobs, progress)
+        repeated = _repeat(model, record, settings, jobs, progress)
     except XlmcError as fault:
         changes = tuple(cell_changes(cells, contents_now(workbook, cells)))
         if not changes and version == __version__:
@@ -155,7 +154,7 @@ def _replayed(
         of_the_model = (*structure_changes(record, found), *definition_changes(record, found))
         environment = tuple(environment_changes(record, found))
     except KeyError as error:
-        raise _lacking(repr(error.args[0]), version, path) from error
+        raise _lacking_error(repr(error.args[0]), version, path) from error
     changes = (*cell_changes(cells, contents_now(workbook, cells) | needed_contents(model)), *of_the_model)
     shown = SheetComparison()
     if path is not None:
@@ -164,7 +163,7 @@ def _replayed(
         # Numbers with fewer digits beside the model move the last digits of what is computed from the base case.
         closeness = Closeness(rewritten=rewritten, elsewhere=bool(environment) or len(told) < len(changes))
         changes, same_run = told, same_bits or not told
-        shown = compare_shown(workbook, restored(repeated, record, settings), record, closeness, same_run=same_run)
+        shown = compare_shown(workbook, as_recorded(repeated, record, settings), record, closeness, same_run=same_run)
     return Replayed(
         record=record,
         repeated=repeated,
@@ -186,7 +185,7 @@ def _is_untouched(path: Path) -> bool:
     return seal is not None and seal.whole
 
 
-def _recorded(record: Record, path: Path | None) -> tuple[dict[Cell, str], Settings]:
+def _read_recorded(record: Record, path: Path | None) -> tuple[dict[Cell, str], Settings]:
     """The cells and the settings of the record.
 
     Raises:
@@ -211,17 +210,17 @@ def _refuse_incomplete(record: Record, settings: Settings, version: str, path: P
         try:
             record[key]
         except KeyError as error:
-            raise _lacking(repr(key), version, path) from error
+            raise _lacking_error(repr(key), version, path) from error
     by = str(record["end.by"])
     reached = GOALS.get(AcceptedTrials.key if by == "search" else by)
     if reached is not None and not isinstance(settings.stopping.goal, reached):
-        raise _lacking(repr(f"settings.{reached.labels[0][0]}"), version, path)
+        raise _lacking_error(repr(f"settings.{reached.labels[0][0]}"), version, path)
     words = next((entry.value for entry in record.section("end").entries if entry.key == "goal"), None)
     if words and not settings.stopping.has_goal:
-        raise _lacking(f"the setting that asked for its goal, {words}", version, path)
+        raise _lacking_error(f"the setting that asked for its goal, {words}", version, path)
 
 
-def _lacking(what: str, version: str, path: Path | None) -> WorkbookError:
+def _lacking_error(what: str, version: str, path: Path | None) -> WorkbookError:
     edited = "It was edited" if version in ("", __version__) else f"xlmc {version} made it"
     return WorkbookError(f"the record lacks {what}", where=path, hint=f"{edited}: run the workbook again")
 
@@ -233,7 +232,7 @@ def _repeat_command(record: Record) -> str:
         return ""
 
 
-def _repeated(model: Model, record: Record, settings: Settings, jobs: int, progress: Progress | None) -> Simulation:
+def _repeat(model: Model, record: Record, settings: Settings, jobs: int, progress: Progress | None) -> Simulation:
     """The run again: up to the trial that ended it, whatever did.
 
     One that waited for an accepted trial waits again; methods whose trials belong together run all of them.

@@ -1,23 +1,25 @@
 """Compare the result sheets of a workbook with those that the repeated run writes, cell by cell.
 
-The run's sheets are built anew in memory, and read as the file's are.
+The run's sheets are built again in memory, and read in the same way as those of the file. A sheet of the file is found
+by xlmc's mark and its name, or by what it holds.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Cell
+from xlmc.evaluation.graph.lower import Lowering
+from xlmc.formula import Resolver, build_graph
 from xlmc.formula.precedents import mentioned
 from xlmc.replay.closeness import Closeness, is_number
-from xlmc.replay.matching import matched
-from xlmc.replay.own_ranges import counted
 from xlmc.report.sheets.book import build_sheets
 from xlmc.report.sheets.trials_sheet import HEADER, TRIAL_ROWS
+from xlmc.workbook.inject import marked_names
 from xlmc.workbook.model import CellContent, CellValue
 from xlmc.workbook.reader import read_workbook
 
@@ -35,13 +37,20 @@ _COMPARED_ELSEWHERE: Final = re.compile(
 
 _ONLY_FIRST: Final = re.compile(r"Only the first ([\d,]+) of [\d,]+ accepted trials stand here\.")
 _BLANK: Final = CellContent()
+_RowColumn = tuple[int, int]
+_NUMBERED: Final = re.compile(r" \(\d+\)$")
+_SAMPLE: Final = 400
+"""Cells of a sheet that are looked at to find it again."""
 
-_Place = tuple[int, int]
+_ENOUGH: Final = 0.5
+"""The share of them that must be the same on a sheet of another name."""
+
+_REWRITTEN: Final = Closeness(rewritten=True)
 
 
 @dataclass(frozen=True, slots=True)
 class CellDifference:
-    """A cell that shows something else than the repeated run gives.
+    """A cell that does not show what the repeated run gives.
 
     Attributes:
         says: what the file holds; the formula, with `=`, where it holds one that is not the run's.
@@ -55,7 +64,7 @@ class CellDifference:
 
 @dataclass(frozen=True, slots=True)
 class SheetComparison:
-    """What a file shows of its run, beside what the repeated run gives.
+    """What a file shows of its run, compared with what the repeated run gives.
 
     Attributes:
         sheets: the names, in the file, of the result sheets that were compared.
@@ -84,11 +93,11 @@ def compare_sheets(workbook: Workbook, run: Simulation, command: str | None, clo
         command: what the person typed, as recorded.
         closeness: how far numbers may be apart.
     """
-    built = _built(run, command, TRIAL_ROWS)
-    found = matched(workbook, built)
+    built = _build(run, command, TRIAL_ROWS)
+    found = _match_sheets(workbook, built)
     rows = _trial_rows(found["Trials"]) if "Trials" in found else TRIAL_ROWS
     if rows != TRIAL_ROWS:
-        built = _built(run, command, rows)
+        built = _build(run, command, rows)
     pairs = [_Pair(built, built.sheets[name], found[name], closeness) for name in built.sheets if name in found]
     return SheetComparison(
         sheets=tuple(pair.sheet.name for pair in pairs),
@@ -98,12 +107,12 @@ def compare_sheets(workbook: Workbook, run: Simulation, command: str | None, clo
     )
 
 
-def _built(run: Simulation, command: str | None, rows: int) -> Workbook:
+def _build(run: Simulation, command: str | None, rows: int) -> Workbook:
     return read_workbook(build_sheets(run, command=command, rows=rows), "the result sheets")
 
 
 def _trial_rows(trials: Sheet) -> int:
-    """How many trials were to be written at most, by what the sheet says, or else by its rows."""
+    """The most trials that were to be written, as the sheet says, or else as its rows show."""
     said = _ONLY_FIRST.fullmatch(str(trials.cells.get((HEADER, 1), _BLANK).value))
     if said is not None:
         return int(said[1].replace(",", ""))
@@ -122,39 +131,39 @@ class _Pair:
 
     def differences(self) -> Iterator[CellDifference]:
         """The cells that show something else, from the top down."""
-        for place in sorted(self.expected.cells.keys() | self.sheet.cells.keys()):
-            if self._is_compared(place) and not self._same(place):
-                yield CellDifference(Cell(self.sheet.name, *place), self._says(place), self._expected(place).value)
+        for at in sorted(self.expected.cells.keys() | self.sheet.cells.keys()):
+            if self._is_compared(at) and not self._same(at):
+                yield CellDifference(Cell(self.sheet.name, *at), self._says(at), self._expected(at).value)
 
     def left_out(self) -> Iterator[str]:
-        """The lines in which a person has typed a range of their own."""
+        """The rows in which a person has typed a range of their own."""
         for row in sorted(self._own_rows):
-            where = Cell(self.sheet.name, row, min(column for line, column in self._typed if line == row))
-            yield f"{where} holds a range that somebody typed, as they may, and its certainty is counted by formulas"
+            where = Cell(self.sheet.name, row, min(column for line, column in self._fillable if line == row))
+            yield f"{where} holds a range that a person typed, as people may; formulas count its certainty"
 
-    def _is_compared(self, place: _Place) -> bool:
+    def _is_compared(self, at: _RowColumn) -> bool:
         if self.expected.name == _RECORD:
-            return _COMPARED_ELSEWHERE.match(self._keys.get(place[0], "")) is None
-        return place not in self._typed
+            return _COMPARED_ELSEWHERE.match(self._keys.get(at[0], "")) is None
+        return at not in self._fillable
 
-    def _same(self, place: _Place) -> bool:
-        says, gives = self._found(place), self._expected(place)
+    def _same(self, at: _RowColumn) -> bool:
+        says, gives = self._content(at), self._expected(at)
         if says.formula is not None and gives.formula is None:
             return False
         if says.formula is not None and gives.formula is not None and says.value is None:
             # A program that does not compute has saved it: what it will show is known by the formula alone.
             return _bare(says.formula.text) == _bare(gives.formula.text)
-        scale = self._scale(place[0]) if self.closeness.elsewhere else 0.0
+        scale = self._scale(at[0]) if self.closeness.elsewhere else 0.0
         return self.closeness.equal(says.value, gives.value, scale, computed=says.formula is not None)
 
-    def _says(self, place: _Place) -> CellValue:
-        content = self._found(place)
-        shows_formula = content.formula is not None and (content.value is None or self._expected(place).formula is None)
+    def _says(self, at: _RowColumn) -> CellValue:
+        content = self._content(at)
+        shows_formula = content.formula is not None and (content.value is None or self._expected(at).formula is None)
         return f"={content.formula.text}" if shows_formula and content.formula is not None else content.value
 
     @cached_property
     def _keys(self) -> dict[int, str]:
-        """Row of the Record -> its key; the section's where the row has none, as the headings of a table."""
+        """Row of the Record -> its key, or its section's key where the row has none, as the headings of a table."""
         found, section = {}, ""
         for row in range(1, max((row for row, _ in {**self.expected.cells, **self.sheet.cells}), default=0) + 1):
             key = self._expected((row, 1)).value
@@ -175,7 +184,7 @@ class _Pair:
         return found
 
     @cached_property
-    def _typed(self) -> frozenset[_Place]:
+    def _fillable(self) -> frozenset[_RowColumn]:
         """The cells that a person may fill in: the formulas beside them read them."""
         found = set()
         for (row, column), content in self.expected.cells.items():
@@ -183,32 +192,95 @@ class _Pair:
                 host = Cell(self.expected.name, row, column)
                 areas = mentioned(content.formula, host, self.built)
                 found |= {cell[1:] for area in areas if area.sheet == self.expected.name for cell in area.cells()}
-        return frozenset(
-            place for place in found if place in self.expected.cells and self.expected.cells[place].formula is None
-        )
+        return frozenset(at for at in found if at in self.expected.cells and self.expected.cells[at].formula is None)
 
     @cached_property
     def _own_rows(self) -> frozenset[int]:
-        """The rows of those that are filled in otherwise."""
+        """The rows in which such a cell holds something else than the run gives."""
         return frozenset(
-            place[0]
-            for place in self._typed
-            if not self.closeness.equal(self._found(place).value, self.expected.cells[place].value)
+            at[0]
+            for at in self._fillable
+            if not self.closeness.equal(self._content(at).value, self.expected.cells[at].value)
         )
 
-    def _expected(self, place: _Place) -> CellContent:
-        return self._counted.get(place) or self.expected.cells.get(place, _BLANK)
+    def _expected(self, at: _RowColumn) -> CellContent:
+        return self._recomputed.get(at) or self.expected.cells.get(at, _BLANK)
 
     @cached_property
-    def _counted(self) -> dict[_Place, CellContent]:
-        """The formulas of the rows that are filled in otherwise, with what they give then."""
-        found = {place: self.sheet.cells.get(place, _BLANK) for place in self._typed}
-        return counted(self.built, self.expected, found, self._own_rows) if self._own_rows else {}
+    def _recomputed(self) -> dict[_RowColumn, CellContent]:
+        """The formulas of these rows, with what they give then."""
+        found = {at: self.sheet.cells.get(at, _BLANK) for at in self._fillable}
+        return _count_formulas(self.built, self.expected, found, self._own_rows) if self._own_rows else {}
 
-    def _found(self, place: _Place) -> CellContent:
-        return self.sheet.cells.get(place, _BLANK)
+    def _content(self, at: _RowColumn) -> CellContent:
+        return self.sheet.cells.get(at, _BLANK)
 
 
 def _bare(formula: str) -> str:
-    """A formula without what programs write each in their own way: spaces, quotes, the names of sheets."""
+    """A formula without what each program writes in its own way: spaces, quotes, the names of sheets."""
     return re.sub(r"(?:'[^']*'|[\w.]+)!|\s+", "", formula).upper()
+
+
+def _match_sheets(workbook: Workbook, built: Workbook) -> dict[str, Sheet]:
+    """The sheets of a file that are those the run writes, by the names that the run gives them.
+
+    Args:
+        workbook: the file.
+        built: the result sheets of the run, and nothing else.
+    """
+    found = _by_mark(workbook, built)
+    for name in built.sheets:
+        if name not in found:
+            taken = {sheet.name for sheet in found.values()}
+            likest = _likest(built.sheets[name], workbook, taken)
+            if likest is not None:
+                found[name] = likest
+    return found
+
+
+def _by_mark(workbook: Workbook, built: Workbook) -> dict[str, Sheet]:
+    """The sheets with a mark; `Results (2)` is Results in a workbook that had a sheet of that name already."""
+    marked = [name for name in marked_names(workbook.names) if name in workbook.sheets]
+    names = {name if name in built.sheets else _NUMBERED.sub("", name): name for name in marked}
+    return {name: workbook.sheets[names[name]] for name in built.sheets if name in names}
+
+
+def _likest(expected: Sheet, workbook: Workbook, taken: Collection[str]) -> Sheet | None:
+    """The sheet that shares most cells with the expected one; a sheet of the same name may share fewer than half."""
+    shares = {name: _share(expected, workbook.sheets[name]) for name in workbook.sheets if name not in taken}
+    best = max(shares, key=lambda name: (shares[name], name == expected.name), default=None)
+    if best is not None and shares[best] > _ENOUGH:
+        return workbook.sheets[best]
+    return workbook.sheets[expected.name] if shares.get(expected.name, 0.0) > 0.0 else None
+
+
+def _share(expected: Sheet, sheet: Sheet) -> float:
+    """The share of the expected sheet's cells, some hundreds of them, that another sheet holds where they stand."""
+    filled = [at for at, content in expected.cells.items() if content.value is not None]
+    filled = filled[:: max(1, len(filled) // _SAMPLE)]
+    same = sum(at in sheet.cells and _REWRITTEN.equal(sheet.cells[at].value, expected.cells[at].value) for at in filled)
+    return same / len(filled) if filled else 0.0
+
+
+def _count_formulas(
+    built: Workbook, sheet: Sheet, typed: Mapping[_RowColumn, CellContent], rows: Collection[int]
+) -> dict[_RowColumn, CellContent]:
+    """The formulas of these rows, with their values computed anew.
+
+    Args:
+        built: the result sheets of the run.
+        sheet: the one among them with the formulas.
+        typed: what the file holds in the cells that a person may fill in.
+        rows: that are looked at.
+    """
+    filled = replace(sheet, cells={**sheet.cells, **typed})
+    workbook = replace(built, sheets={**built.sheets, sheet.name: filled})
+    formulas_at = [at for at, content in sheet.cells.items() if content.formula is not None and at[0] in rows]
+    cells = {at: Cell(sheet.name, *at) for at in formulas_at}
+    lowering = Lowering(build_graph(Resolver(workbook), [*cells.values()], frozenset()), {}, {})
+    found = {}
+    for at, cell in cells.items():
+        value = lowering.value(cell)
+        assert value is not None  # nothing that it reads is drawn
+        found[at] = replace(sheet.cells[at], value=value.objects().ravel()[0])
+    return found

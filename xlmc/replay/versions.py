@@ -1,4 +1,4 @@
-"""What a newer xlmc computes otherwise than the one that made a run, and how to have the older one again."""
+"""What a newer xlmc computes differently from the one that made a run, and how to install the older one."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ class Rule:
     """One way in which results changed.
 
     Attributes:
-        since: the version that computes otherwise than those before.
+        since: the first version that computes so.
         said: what it does now, in words.
-        met: what a formula or another content of a cell looks like that it may concern.
-        beside: what another cell's content must look like, too; None where one is enough.
+        met: the pattern of a formula, or of another content of a cell, that it may concern.
+        beside: a pattern that another cell must match, too; None where one is enough.
     """
 
     since: str
@@ -102,7 +102,7 @@ RULES: Final = (
             ("FORMULATEXT shows the formula of its own cell, as Excel does", _calls("FORMULATEXT")),
             ("PERCENTOF and ASC give what Excel gives", _calls("PERCENTOF", "ASC")),
             ("functions that xlmc has no body for, such as FORECAST.ETS and REGEXTEST, are refused", _calls(*_REFUSED)),
-            ("OFFSET that leads to several places at once is refused", _calls("OFFSET")),
+            ("OFFSET that leads to several ranges at once is refused", _calls("OFFSET")),
             ("ISREF of a choice that varies between cells is refused", _calls("ISREF")),
             ("CB.GetCertaintyFN gives percent", _calls("CB.GetCertaintyFN")),
             (

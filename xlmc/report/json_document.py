@@ -15,9 +15,9 @@ from xlmc.errors import WorkbookError
 from xlmc.report.filter_effect import Marginal, filter_effect_of
 from xlmc.report.summary import BaseCase, base_case
 from xlmc.results.record import make_record
-from xlmc.results.record.correlations_met import correlations_met
+from xlmc.results.record.definition_tables import correlations_met
 from xlmc.results.record.errors_met import errors_met, lost_sentences
-from xlmc.results.record.wording import cutoffs_text, limits_text, parameters_text, status
+from xlmc.results.record.in_words import cutoffs_text, limits_text, parameters_text, status
 from xlmc.results.statements import certainties, pairs_of, statements
 from xlmc.statistics import Estimate, proportion
 from xlmc.studies.sensitivity import sensitivities
@@ -27,7 +27,7 @@ from xlmc.workbook.writer import write_workbook
 
 if TYPE_CHECKING:
     from xlmc.definitions.model import Assumption, Filter
-    from xlmc.results.record.correlations_met import CorrelationMet
+    from xlmc.results.record.definition_tables import CorrelationMet
     from xlmc.results.statements import Pair
     from xlmc.run.checking import CheckResult
     from xlmc.run.simulation import ForecastResult, Simulation

@@ -49,11 +49,11 @@ def derivatives(
     draws, n = model.points(inputs)
     lowering = model.lowering
     more = list(dict.fromkeys(cells))
-    places = {cell: _place(lowering, cell) for cell in more}
+    nodes = {cell: _node_of(lowering, cell) for cell in more}
     targets = [*(f.cell for f in model.forecasts), *(f.cell for f in model.filters)]
-    places |= {cell: lowering.cell(cell) for cell in targets}
+    nodes |= {cell: lowering.cell(cell) for cell in targets}
     notes = Notes()
-    found = _Found(n, len(draws), order, set(places.values()))
+    found = _Found(n, len(draws), order, set(nodes.values()))
     portion = _portion(lowering, len(draws), order)
     for start in range(0, n, portion):
         part = {name: values[start : start + portion] for name, values in draws.items()}
@@ -63,7 +63,7 @@ def derivatives(
             for trial in range(start, min(start + portion, n)):
                 one = {name: values[trial : trial + 1] for name, values in draws.items()}
                 _sweep(lowering, found, one, order, notes, trial)
-    by_cell = {cell: found.derivative(cell, place) for cell, place in places.items()}
+    by_cell = {cell: found.derivative(cell, node) for cell, node in nodes.items()}
     concerned = np.flatnonzero(np.any([np.isnan(d.gradient).any(axis=1) for d in by_cell.values()], axis=0))
     whose = owners(lowering)
     return Derivatives(
@@ -78,7 +78,7 @@ def derivatives(
     )
 
 
-def _place(lowering: Lowering, cell: Cell) -> int:
+def _node_of(lowering: Lowering, cell: Cell) -> int:
     if cell not in lowering.graph.formulas and cell not in lowering.inputs:
         raise SimulationError(f"no forecast or filter needs {cell}, or it holds no formula", hint="ask for one they do")
     return lowering.cell(cell)
@@ -94,23 +94,23 @@ def _portion(lowering: Lowering, k: int, order: int) -> int:
 class _Found:
     """Arrays for the derivatives of the nodes wanted, filled portion by portion."""
 
-    def __init__(self, n: int, k: int, order: int, places: Iterable[int]) -> None:
-        self.places = set(places)
+    def __init__(self, n: int, k: int, order: int, nodes: Iterable[int]) -> None:
+        self.nodes = set(nodes)
         self._order = order
-        self._values = {place: np.full(n, np.nan) for place in self.places}
-        self._first = {place: np.zeros((2, n, k)) for place in self.places}
-        self._second = {place: np.zeros((2, n, k, k)) for place in self.places} if order > 1 else {}
+        self._values = {node: np.full(n, np.nan) for node in self.nodes}
+        self._first = {node: np.zeros((2, n, k)) for node in self.nodes}
+        self._second = {node: np.zeros((2, n, k, k)) for node in self.nodes} if order > 1 else {}
 
-    def add(self, place: int, value: Value, jet: Jet, start: int, stop: int) -> None:
+    def add(self, node: int, value: Value, jet: Jet, start: int, stop: int) -> None:
         """What a sweep found in the trials from `start` to `stop`."""
         here = slice(start, stop)
-        self._values[place][here] = np.where((value.kinds >= TEXT) & (value.kinds != BLANK), np.nan, value.numbers)
+        self._values[node][here] = np.where((value.kinds >= TEXT) & (value.kinds != BLANK), np.nan, value.numbers)
         lost = np.asarray((value.kinds >= ERROR) | (value.kinds == TEXT))
         columns = list(jet.active)
-        self._first[place][:, here] = np.where(lost, np.nan, 0.0)[None, :, None]
+        self._first[node][:, here] = np.where(lost, np.nan, 0.0)[None, :, None]
         if not columns:
             return
-        first, second = self._first[place], self._second.get(place)
+        first, second = self._first[node], self._second.get(node)
         for kind, part in enumerate((jet.first, jet.error)):
             if part is not None:
                 first[kind, here][:, columns] = np.broadcast_to(part, (len(columns), stop - start)).T
@@ -120,15 +120,15 @@ class _Found:
         for kind, part in enumerate((jet.second, jet.second_error)):
             if part is not None:
                 full = np.broadcast_to(part, (len(columns), len(columns), stop - start))
-                places = np.ix_(np.arange(start, stop), *[np.array(columns)] * 2)
-                second[kind][places] = full.transpose(2, 0, 1)
+                block = np.ix_(np.arange(start, stop), *[np.array(columns)] * 2)
+                second[kind][block] = full.transpose(2, 0, 1)
         second[1][np.isnan(second[0])] = np.nan
 
-    def derivative(self, cell: Cell, place: int) -> Derivative:
-        first = self._first[place]
-        second = self._second.get(place)
+    def derivative(self, cell: Cell, node: int) -> Derivative:
+        first = self._first[node]
+        second = self._second.get(node)
         return Derivative(
-            cell, self._values[place], first[0], first[1], *((None, None) if second is None else (second[0], second[1]))
+            cell, self._values[node], first[0], first[1], *((None, None) if second is None else (second[0], second[1]))
         )
 
 
@@ -136,5 +136,5 @@ def _sweep(
     lowering: Lowering, found: _Found, draws: Mapping[str, Floats], order: int, notes: Notes, start: int
 ) -> None:
     stop = start + next((values.size for values in draws.values()), 1)
-    for place, value, jet in sweep_forward(lowering.dag, found.places, draws, order, notes, start):
-        found.add(place, value, jet, start, stop)
+    for node, value, jet in sweep_forward(lowering.dag, found.nodes, draws, order, notes, start):
+        found.add(node, value, jet, start, stop)

@@ -30,7 +30,7 @@ from xlmc.run.simulate import simulate
 from xlmc.run.simulation import Simulation
 from xlmc.statistics import Estimate
 from xlmc.studies.comparison.differences import Acceptance, Difference, acceptance, difference
-from xlmc.studies.comparison.influences import Accepted
+from xlmc.studies.comparison.paired_statistics import Accepted
 from xlmc.studies.comparison.tolerances import (
     Judgement,
     Tolerances,
@@ -41,7 +41,7 @@ from xlmc.studies.comparison.tolerances import (
     judge,
     read_tolerances,
 )
-from xlmc.studies.comparison.variations import plainly_sampled, varied
+from xlmc.studies.comparison.variations import with_changes, with_plain_sampling
 
 __all__ = ["ACCEPTANCE_TOLERANCE", "Cost", "Expected", "Screening", "screen"]
 
@@ -194,7 +194,7 @@ def screen(
     wanted = [_names_of(pattern, model) for pattern in sets]
     tell = told or (lambda _: None)
     tell("the book as it is")
-    run = simulate(plainly_sampled(model), trials=trials, seed=seed, engine=engine, jobs=jobs)
+    run = simulate(with_plain_sampling(model), trials=trials, seed=seed, engine=engine, jobs=jobs)
     if run.accepted < 2:
         message = f"{run.accepted} of {run.trials:,} trials were accepted, too few to compare anything with"
         raise SimulationError(message, hint="run more trials, or see whether the filters contradict the assumptions")
@@ -228,19 +228,19 @@ class _Screen:
     def screening(self, sets: Sequence[tuple[str, ...]]) -> Screening:
         model = self._run.model
         held = [a for a in model.live if a.base is not None]
-        expected = sorted((Expected(a.name, self._expected(a)) for a in held), key=lambda each: each.size)
-        single = tuple(self._held([each.name]) for each in expected)
-        joint = self._together(single, self._held)
+        expected = sorted((Expected(a.name, self._expect_cost(a)) for a in held), key=lambda each: each.size)
+        single = tuple(self._hold([each.name]) for each in expected)
+        joint = self._together(single, self._hold)
         frozen = joint.names if joint else ()
 
         def left_out(names: Sequence[str]) -> Cost:
-            return self._cost(names, frozen, names, f"without {_listed(names)}")
+            return self._cost(names, frozen, names, f"without {_names_text(names)}")
 
         filters = tuple(left_out([f.name]) for f in model.filters)
         reduced = self._together(filters, left_out)
         without = [*map(name_key, reduced.names if reduced else ())]
         before = model.scene.graph
-        after = varied(model, frozen=[*map(name_key, frozen)], without=without).scene.graph
+        after = with_changes(model, frozen=[*map(name_key, frozen)], without=without).scene.graph
         return Screening(
             run=self._run,
             tolerances=self._tolerances,
@@ -252,7 +252,7 @@ class _Screen:
             expected=tuple(expected),
             single=single,
             joint=joint,
-            sets=tuple(self._held(names) for names in sets),
+            sets=tuple(self._hold(names) for names in sets),
             filters=filters,
             reduced=reduced,
             constant=tuple(c for c in sorted(after.formulas) if c in before.varying and c not in after.varying),
@@ -262,21 +262,21 @@ class _Screen:
             runs=self._runs,
         )
 
-    def _held(self, names: Sequence[str]) -> Cost:
-        return self._cost(names, names, (), f"{_listed(names)} held")
+    def _hold(self, names: Sequence[str]) -> Cost:
+        return self._cost(names, names, (), f"{_names_text(names)} held")
 
     def _cost(self, names: Sequence[str], frozen: Sequence[str], without: Sequence[str], purpose: str) -> Cost:
         """Run the book with a change, over the same trials."""
         self._tell(purpose)
         self._runs += 1
-        model = varied(self._run.model, frozen=[*map(name_key, frozen)], without=[*map(name_key, without)])
+        model = with_changes(self._run.model, frozen=[*map(name_key, frozen)], without=[*map(name_key, without)])
         settings = self._run.settings
         run = simulate(
             model, trials=settings.trials, seed=settings.seed, engine=self._engine, jobs=self._jobs, keep_inputs=0
         )
-        return self._compared(tuple(names), run)
+        return self._compare(tuple(names), run)
 
-    def _compared(self, names: tuple[str, ...], run: Simulation) -> Cost:
+    def _compare(self, names: tuple[str, ...], run: Simulation) -> Cost:
         accepted = acceptance(self._run, run)
         found = {
             f.name: difference(
@@ -318,7 +318,7 @@ class _Screen:
                 best = cost
         return best
 
-    def _expected(self, assumption: Assumption) -> float:
+    def _expect_cost(self, assumption: Assumption) -> float:
         """The expected cost of holding an assumption, from the accepted trials near its base value."""
         drawn, prior = self._run.inputs[assumption.name], self._run.prior[assumption.name]
         base = assumption.base or 0.0
@@ -330,11 +330,11 @@ class _Screen:
         sizes = [abs(share - 1.0) / self._acceptance_tolerance]
         for forecast in self._judged:
             values, tolerance = self._run.forecasts[forecast.name][: drawn.size], self._tolerances[forecast.name][0]
-            sizes.append(_moved(values, near, forecast, tolerance, self._chance))
+            sizes.append(_largest_move(values, near, forecast, tolerance, self._chance))
         return max(sizes)
 
 
-def _moved(
+def _largest_move(
     values: Floats, near: NDArray[np.bool_], forecast: Forecast, tolerance: float, chance: float | None
 ) -> float:
     """The largest move of mean, SD, central range and P(> threshold) from all values to those near, in tolerances."""
@@ -360,7 +360,7 @@ def _deviation(accepted: Accepted) -> float:
     return statistics.standard_deviation(accepted.sample).value
 
 
-def _listed(names: Sequence[str]) -> str:
+def _names_text(names: Sequence[str]) -> str:
     return names[0] if len(names) == 1 else f"{len(names)} at once"
 
 

@@ -92,12 +92,12 @@ def verify(workbook: Workbook, definitions: Definitions | None = None) -> Verifi
         definitions: checks only what its forecasts and filters need; every formula cell when None.
     """
     wanted = _all_formulas(workbook) if definitions is None else targets_of(definitions.forecasts, definitions.filters)
-    lowering = _lowered(workbook, wanted)
+    lowering = _lower(workbook, wanted)
     checked = sorted(wanted if definitions is None else lowering.graph.formulas)
-    return Verification(tuple(_checked(lowering, cell) for cell in checked if _has_formula(workbook, cell)))
+    return Verification(tuple(_check(lowering, cell) for cell in checked if _has_formula(workbook, cell)))
 
 
-def _lowered(workbook: Workbook, wanted: Sequence[Cell]) -> Lowering:
+def _lower(workbook: Workbook, wanted: Sequence[Cell]) -> Lowering:
     resolver = Resolver(workbook, strict=False)
 
     def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
@@ -119,8 +119,8 @@ def _has_formula(workbook: Workbook, cell: Cell) -> bool:
     return workbook.content(cell).formula is not None
 
 
-def _checked(lowering: Lowering, cell: Cell) -> CellCheck:
-    check = _checked_cell(lowering, cell)
+def _check(lowering: Lowering, cell: Cell) -> CellCheck:
+    check = _check_cell(lowering, cell)
     others = _filled_by(lowering, cell) if check.status is Status.MATCHED else ()
     return next((found for found in others if found.status is Status.DIFFERING), check)
 
@@ -140,26 +140,26 @@ def _filled_by(lowering: Lowering, anchor: Cell) -> Iterator[CellCheck]:
             yield CellCheck(cell, shown_formula(formula, anchor), status, expected.value, got, anchor=anchor)
 
 
-def _checked_cell(lowering: Lowering, cell: Cell) -> CellCheck:
+def _check_cell(lowering: Lowering, cell: Cell) -> CellCheck:
     content = lowering.graph.workbook.content(cell)
     text, shown = ("", "") if content.formula is None else (content.formula.text, shown_formula(content.formula, cell))
 
-    def made(status: Status, got: object = None, reason: str = "") -> CellCheck:
+    def check(status: Status, got: object = None, reason: str = "") -> CellCheck:
         return CellCheck(cell, shown, status, content.value, got, reason)
 
     if holds_call(text):
-        return made(Status.VOLATILE, reason=NOT_COMPARABLE)
+        return check(Status.VOLATILE, reason=NOT_COMPARABLE)
     fault = lowering.faults.get(cell)
     if fault is not None:
-        return made(Status.UNSUPPORTED, reason=fault.message)
+        return check(Status.UNSUPPORTED, reason=fault.message)
     value = lowering.value(cell)
     if value is None:
-        return made(Status.VOLATILE)
+        return check(Status.VOLATILE)
     got = value.objects().ravel()[0]
     if content.value is None:
-        return made(Status.NOT_CACHED, got)
+        return check(Status.NOT_CACHED, got)
     same = _same(content.value, got) or _is_sine_of_32_bits(lowering, cell, content.value, got)
-    return made(Status.MATCHED if same else Status.DIFFERING, got)
+    return check(Status.MATCHED if same else Status.DIFFERING, got)
 
 
 def _same(expected: CellValue, got: object) -> bool:

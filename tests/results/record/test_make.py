@@ -1,17 +1,38 @@
 from __future__ import annotations
 
+import hashlib
 import json
+import shlex
+import struct
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import xlmc
+from xlmc.definitions.model import Settings
 from xlmc.results.record import make_record
 from xlmc.results.record.errors_met import errors_met
+from xlmc.results.record.make import fingerprint, quoted_argument, repeat_command
+from xlmc.run.stopping.stopped import ALL_TRIALS
 from xlmc.statistics import rank_correlation
 from xlmc.workbook.inject import original_hash
 
 EXAMPLE = Path(__file__).resolve().parents[3] / "examples/intersection.xlsx"
+
+QUOTED = [
+    ("book.xlsx", "book.xlsx"),
+    ("my book.xlsx", '"my book.xlsx"'),
+    ("O'Hara (2).xlsx", '"O\'Hara (2).xlsx"'),
+    ("Größe.xlsx", "Größe.xlsx"),
+    ("100% $a.xlsx", "'100% $a.xlsx'"),
+    ('a"b.xlsx', "'a\"b.xlsx'"),
+    ("a;b&c.xlsx", '"a;b&c.xlsx"'),
+]
 
 
 @pytest.fixture(scope="session")
@@ -152,3 +173,57 @@ def test_a_file_is_known_by_two_hashes():
     record = make_record(model.simulate(100))
     assert record["file.sha256"] == model.workbook.sha256
     assert record["file.original_sha256"] == original_hash(model.workbook.parts)
+
+
+def _run(index, inputs, forecasts):
+    return SimpleNamespace(
+        trial_index=np.array(index),
+        inputs={str(n): np.array(values) for n, values in enumerate(inputs)},
+        forecasts={str(n): np.array(values) for n, values in enumerate(forecasts)},
+    )
+
+
+def test_it_is_the_hash_of_indices_inputs_and_forecasts():
+    expected = hashlib.sha256(struct.pack("<2q", 3, 8) + struct.pack("<4d", 0.5, 1.5, -1.0, np.nan)).hexdigest()
+    assert fingerprint(_run([3, 8], [[0.5, 1.5]], [[-1.0, np.nan]])) == expected
+
+
+def test_every_missing_number_counts_the_same():
+    other = struct.unpack("<d", struct.pack("<Q", 0xFFF8_0000_0000_0001))[0]
+    assert fingerprint(_run([1], [[other]], [[0.0]])) == fingerprint(_run([1], [[np.nan]], [[0.0]]))
+
+
+def test_it_depends_on_the_seed_and_not_on_the_threads(model, run):
+    assert fingerprint(model.simulate(jobs=2)) == fingerprint(run)
+    assert fingerprint(model.simulate(seed=6)) != fingerprint(run)
+
+
+def test_one_bit_changes_it():
+    assert fingerprint(_run([1], [[1.0]], [])) != fingerprint(_run([1], [[np.nextafter(1.0, 2.0)]], []))
+
+
+@pytest.mark.parametrize(("text", "expected"), QUOTED)
+def test_quoting(text, expected):
+    assert quoted_argument(text) == expected
+
+
+@given(st.text(min_size=1))
+def test_a_shell_reads_one_argument_the_same_as_written(text):
+    assert shlex.split(quoted_argument(text)) == [text]
+
+
+def test_trials_and_seed_are_always_said(run):
+    assert repeat_command(run) == 'xlmc simulate "my book.xlsx" --trials 4000 --seed 5'
+
+
+def test_other_settings_are_said_where_the_workbook_does_not_say_them():
+    own = Settings(trials=10, seed=1, sampling="mc", engine="numpy")
+    model = SimpleNamespace(definitions=SimpleNamespace(settings=own), workbook=SimpleNamespace(name="-b.xlsx"))
+    used = replace(own, sampling="lhs", engine="jit")
+    simulation = SimpleNamespace(settings=used, model=model, trials=20, stopped=ALL_TRIALS)
+    command = "xlmc simulate ./-b.xlsx --trials 20 --seed 1 --sampling lhs --engine jit"
+    assert repeat_command(simulation) == command
+
+
+def test_the_settings_of_a_run_by_another_engine_are_said(model):
+    assert repeat_command(model.simulate(10, engine="formulas")).endswith("--trials 10 --seed 5 --engine formulas")

@@ -9,7 +9,7 @@ import pytest
 import xlmc
 from xlmc.definitions.stopping import stopping
 from xlmc.errors import WorkbookError
-from xlmc.results.record.model import Entry, Record, Section
+from xlmc.results.record.record_parts import Entry, Record, Section
 from xlmc.results.record.settings_table import recorded_settings, settings_section
 
 LABELS = {

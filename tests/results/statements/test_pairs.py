@@ -83,7 +83,7 @@ def test_forecasts_that_are_never_numbers_together_make_no_pair():
 
 
 def test_the_correlation_takes_the_first_trials_and_says_how_many(columns, monkeypatch):
-    monkeypatch.setattr(pairs, "RANKED", 500)
+    monkeypatch.setattr(pairs, "_RANKED", 500)
     (pair,) = pairs_of(run_of(columns))
     a, b = columns["a"][:500], columns["b"][:500]
     known = ~np.isnan(a) & ~np.isnan(b)

@@ -9,8 +9,7 @@ import pytest
 
 from xlmc.address import Cell
 from xlmc.definitions.model import Forecast
-from xlmc.results.statements.certainty import certainties
-from xlmc.results.statements.sentences import statements
+from xlmc.results.statements.sentences import certainties, statements
 from xlmc.run.simulation import ForecastResult
 
 
@@ -37,7 +36,7 @@ def test_a_range_that_is_surely_more_probable_than_not_is_called_so():
 
 def test_one_that_may_be_even_odds_is_not():
     (text,) = sentences(GRID[::100], units="mph")
-    assert text.endswith("; too few trials to call it more probable than not")
+    assert text.endswith("; there are too few trials to call it more probable than not")
     (text,) = sentences(GRID, units="mph", central=0.4)
     assert text == "speed: 40.0 % ± 0.2 % between 30.0 and 70.0 mph"
 

@@ -17,7 +17,7 @@ from xlmc.columns import column_store, on_disk
 from xlmc.definitions.stopping import LIMIT, stopping
 from xlmc.errors import SimulationError
 from xlmc.results.record import make_record
-from xlmc.results.record.fingerprint import fingerprint
+from xlmc.results.record.make import fingerprint
 from xlmc.run import simulate as module
 
 CELLS = {"A1": 1.0, "A2": 1.0, "B1": "=A1+SQRT(A2-0.001)", "B2": "=5+A1*A2", "C1": "=A1*A2>0.5"}

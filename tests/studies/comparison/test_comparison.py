@@ -14,7 +14,7 @@ import pytest
 from xlmc.api import Model
 from xlmc.errors import SimulationError
 from xlmc.studies.comparison import Verdict, compare
-from xlmc.studies.comparison.wording import book_names, inputs_text, verdict_text
+from xlmc.studies.comparison.verdicts import book_names, inputs_text, verdict_text
 
 SIZE = {"trials": 20_000, "seed": 1}
 
@@ -57,7 +57,7 @@ def test_a_shift_in_the_formulas_is_exact_and_nothing_else_accounts_for_it(linea
     assert only(found).difference.mean.difference.error < 1e-12
     assert only(found).judgement.verdict is Verdict.BEYOND
     assert only(found).cause.steps == ()
-    assert "it lies in the formulas or in values that are held" in verdict_text(found)[0]
+    assert "the cause is in the formulas or in values that are held" in verdict_text(found)[0]
 
 
 def test_an_assumption_that_only_one_book_draws(linear):
@@ -83,8 +83,8 @@ def test_a_filter_that_only_one_book_has(linear):
     assert (step.kind, step.side, step.name) == ("filter", 0, "fast")
     assert found.inputs.filters == (("fast", "idle"), ())
     (sentence,) = verdict_text(found)
-    assert "because the filter 'fast' of x.xlsx conditions it; without it the mean differs by 0 ± 0" in sentence
-    assert "they give one number: only what they accept differs" in sentence
+    assert "because the filter 'fast' of x.xlsx moves it; without it the mean differs by 0 ± 0" in sentence
+    assert "they give the same number: they differ only in which trials they accept" in sentence
 
 
 def test_two_filters_that_are_both_needed_are_both_named(linear):
@@ -169,7 +169,7 @@ def test_nothing_accepted_is_undecided(linear):
     found = compare(linear(), impossible, "0.1", **SIZE)
     assert only(found).judgement.verdict is Verdict.UNDECIDED
     assert found.trials_needed is None
-    assert "too few are accepted" in verdict_text(found)[0]
+    assert "too few of them are accepted" in verdict_text(found)[0]
 
 
 def test_a_forecast_without_numbers_is_not_called_a_want_of_accepted_trials(book):

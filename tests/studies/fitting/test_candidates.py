@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from xlmc.studies.fitting import KINDS
-from xlmc.studies.fitting.information import standard_errors
+from xlmc.studies.fitting.candidate import standard_errors
 
 CANDIDATES = {candidate.name: candidate for kind in KINDS.values() for candidate in kind}
 SIGMA = float(np.sqrt(np.log1p(0.25)))

@@ -10,6 +10,7 @@ from xlmc.distributions import FAMILIES
 from xlmc.distributions.naming import plain
 from xlmc.errors import SimulationError
 from xlmc.studies.fitting import CRITERIA, KINDS, fit
+from xlmc.studies.fitting.fit import anderson_darling, cautions, kolmogorov_smirnov, kolmogorov_smirnov_of_counts
 
 N = 4000
 TRUTHS = {
@@ -37,6 +38,8 @@ TRUTHS = {
     "Negbin": (stats.nbinom(4, 0.3), {"Probability": 0.3, "Shape": 4}),
     "Discrete Uniform": (stats.randint(3, 12), {"Low": 3, "High": 11}),
 }
+
+X = np.sort(np.random.default_rng(1).normal(0.1, 1.1, 50))
 
 
 def test_every_family_is_tried():
@@ -143,3 +146,43 @@ def test_headings_are_those_of_the_families():
             assert {plain(heading) for heading in candidate.headings} <= known, candidate.name
             checked.add(candidate.name)
     assert checked >= {"Normal", "Uniform", "Triangular", *(candidate.name for candidate in KINDS["counts"])}
+
+
+@pytest.mark.parametrize(
+    ("n", "words"),
+    [(2, "2 values cannot tell"), (14, "cannot tell"), (15, "only roughly"), (29, "only roughly"), (30, None)],
+)
+def test_few_values(n, words):
+    said = cautions(n, ["Normal"])
+    if words is None:
+        assert said == ()
+    else:
+        assert words in said[0]
+        assert "uniform range" in said[0]
+
+
+def test_rivals():
+    (said,) = cautions(100, ["Normal", "Logistic", "Weibull"])
+    assert said.startswith("Normal, Logistic and Weibull describe the values about equally well")
+
+
+def test_anderson_darling_against_scipy():
+    theirs = stats.goodness_of_fit(
+        stats.norm, X, known_params={"loc": 0, "scale": 1}, statistic="ad", n_mc_samples=1
+    ).statistic
+    assert anderson_darling(stats.norm.cdf(X)) == pytest.approx(theirs, rel=1e-12)
+
+
+def test_a_value_on_the_end_is_infinitely_far():
+    assert anderson_darling(np.array([0.0, 0.5])) == anderson_darling(np.array([0.5, 1.0])) == np.inf
+
+
+def test_kolmogorov_smirnov_against_scipy():
+    assert kolmogorov_smirnov(stats.norm.cdf(X)) == pytest.approx(stats.kstest(X, "norm").statistic, rel=1e-14)
+
+
+def test_kolmogorov_smirnov_of_counts_looks_at_every_whole_number():
+    x = np.sort(np.random.default_rng(2).poisson(4, 60)).astype(float)
+    oracle = stats.poisson(4.2)
+    expected = max(abs(np.mean(x <= k) - oracle.cdf(k)) for k in range(-1, 30))
+    assert kolmogorov_smirnov_of_counts(x, oracle.cdf) == pytest.approx(expected, rel=1e-14)

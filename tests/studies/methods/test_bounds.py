@@ -8,9 +8,8 @@ from xlmc.errors import SimulationError
 from xlmc.studies.methods import Corners, ImportanceGrid, Optimised, WorstCase
 from xlmc.studies.methods import corners as corners_file
 from xlmc.studies.methods.answer import extremes_of
-from xlmc.studies.methods.box import box_of
-from xlmc.studies.methods.evaluation import Evaluation
-from xlmc.studies.methods.optimised import at_least_as_wide
+from xlmc.studies.methods.optimised import widen_bounds
+from xlmc.studies.methods.points import Evaluation, box_of
 from xlmc.studies.methods.sampled import SAMPLERS
 
 DOMAIN = {
@@ -128,7 +127,7 @@ def test_parameters_that_vary(book):
 
 
 def test_many_assumptions_have_random_corners(book, monkeypatch):
-    monkeypatch.setattr(corners_file, "MOST_CORNERS", 4)
+    monkeypatch.setattr(corners_file, "_MOST_CORNERS", 4)
     cells = {f"A{row}": 0.5 for row in range(1, 4)} | {"B1": "=SUM(A1:A3)"}
     given = {f"a{row}": {"cell": f"A{row}", "low": 0, "high": 1} for row in range(1, 4)}
     result = Corners().run(book(cells, given, {"f": "B1"}), 0, 1)
@@ -143,7 +142,7 @@ def test_nowhere_to_start_from(book):
         {"f": "B1"},
         {"no": {"cell": "A1", "above": 2}},
     )
-    with pytest.raises(SimulationError, match="nowhere to start from"):
+    with pytest.raises(SimulationError, match="nothing to start from"):
         Optimised().run(model, 0, 1)
 
 
@@ -186,12 +185,12 @@ def test_bounds_are_widened_by_trials_that_lie_outside_and_searched_from_there(b
     model = book({"A1": 0.1, "B1": "=COS(A1)+A1/40"}, {"x": {"cell": "A1", "low": -1, "high": 7}}, {"y": "B1"})
     run = model.simulate(4_096, 1)
     extremes = extremes_of(run.forecasts, run.trial_index, 1, run.plan)
-    answers, ends = at_least_as_wide(model, 1, {"y": (-1.0, 1.0003)}, extremes)
+    answers, ends = widen_bounds(model, 1, {"y": (-1.0, 1.0003)}, extremes)
     top = float(np.arcsin(1 / 40)) + 2 * np.pi
     assert answers["y"].most == pytest.approx(np.cos(top) + top / 40, rel=1e-9)
     assert ends["y", "most"]["x"] == pytest.approx(top, abs=1e-3)
     assert np.isnan(answers["y"].least) == (("y", "least") not in ends)
-    assert at_least_as_wide(model, 1, {"y": (-2.0, 2.0)}, extremes) == ({}, {})
+    assert widen_bounds(model, 1, {"y": (-2.0, 2.0)}, extremes) == ({}, {})
 
 
 @pytest.mark.parametrize("method", [*SAMPLERS, ImportanceGrid()], ids=lambda method: method.key)

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from xlmc.report.methods.matplotlib_figure import STYLES, draw
 from xlmc.report.methods.methods_workbook import book
 from xlmc.report.methods.speed_chart import HOW_TO_READ, column_of, picture_of, spread
-from xlmc.studies.methods.choice import choice
+from xlmc.studies.methods.need import choice
 
 
 @pytest.fixture(scope="module")

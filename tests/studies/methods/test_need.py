@@ -8,12 +8,10 @@ import numpy as np
 import pytest
 
 from xlmc.studies.methods import recommendation, study
-from xlmc.studies.methods.causes import parts_of
-from xlmc.studies.methods.choice import choice
-from xlmc.studies.methods.curve import in_order
+from xlmc.studies.methods.curve import Rms, in_order, rms_of
 from xlmc.studies.methods.law import law
-from xlmc.studies.methods.need import need, seconds_of, shortfall
-from xlmc.studies.methods.rms import Rms, rms_of
+from xlmc.studies.methods.need import choice, need, seconds_of, shortfall
+from xlmc.studies.methods.recommendation import parts_of
 from xlmc.studies.methods.study import LENGTHS, STEP, ladder_of
 
 CONSISTENT = ("mc", "lhs", "sobol", "grid")

@@ -6,8 +6,8 @@ import pytest
 from xlmc.errors import SimulationError
 from xlmc.studies.methods import ImportanceGrid, Sampled, Surrogate
 from xlmc.studies.methods.importance_grid import BINS, DEFENSIVE, _density
-from xlmc.studies.methods.quadratic import fitted
 from xlmc.studies.methods.sampled import MONTE_CARLO
+from xlmc.studies.methods.surrogate import fit_quadratic
 
 REFERENCE = {"Chevrolet delta-V": (11.80333, 0.73709), "Nissan delta-V": (23.06344, 1.41424)}
 REFERENCE |= {"Chevrolet impact speed": (33.16317, 1.76307), "Nissan impact speed": (4.74205, 2.00052)}
@@ -116,12 +116,12 @@ def test_quadratic_polynomials_are_fitted_exactly():
     values = np.column_stack([1 + points[:, 0] * points[:, 1] - points[:, 2] ** 2, 5 * points[:, 1]])
     more = np.random.default_rng(4).uniform(-1, 4, (2_500, 3))
     wanted = np.column_stack([1 + more[:, 0] * more[:, 1] - more[:, 2] ** 2, 5 * more[:, 1]])
-    assert fitted(points, values)(more) == pytest.approx(wanted, abs=1e-6)
+    assert fit_quadratic(points, values)(more) == pytest.approx(wanted, abs=1e-6)
 
 
 def test_a_column_that_does_not_vary_is_no_trouble():
     points = np.column_stack([np.linspace(0, 1, 50), np.ones(50)])
-    assert fitted(points, points[:, :1] ** 2)(points)[:, 0] == pytest.approx(points[:, 0] ** 2, abs=1e-6)
+    assert fit_quadratic(points, points[:, :1] ** 2)(points)[:, 0] == pytest.approx(points[:, 0] ** 2, abs=1e-6)
 
 
 def test_the_surrogate_stops_above_a_ratio(case_study):

@@ -8,11 +8,10 @@ import pytest
 from xlmc.errors import SimulationError
 from xlmc.report.methods import methods_tables
 from xlmc.studies.methods import STATISTICS, recommendation, study
-from xlmc.studies.methods.curve import rung_of
+from xlmc.studies.methods.converged_reference import reference_of
+from xlmc.studies.methods.curve import line, rms_of, rung_of
 from xlmc.studies.methods.lockstep import in_step
 from xlmc.studies.methods.need import need, reach_of, shortfall
-from xlmc.studies.methods.reference import reference_of
-from xlmc.studies.methods.rms import line, rms_of
 from xlmc.studies.methods.sampled import MONTE_CARLO
 
 REPLICATES, TRIALS = 400, 16_384
@@ -212,7 +211,7 @@ def test_too_few_accepted(book):
         {"f": "B1"},
         {"rare": {"cell": "A1", "above": 0.999}},
     )
-    with pytest.raises(SimulationError, match="too few to measure methods by"):
+    with pytest.raises(SimulationError, match="too few to measure methods with"):
         study(model, reference_trials=2_048, trials=1_024, replicates=2)
 
 

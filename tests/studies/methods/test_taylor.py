@@ -91,4 +91,4 @@ def test_where_there_is_no_derivative_there_is_no_answer(book):
     for method in (FirstOrder(), SecondOrder()):
         result = method.run(model, 0, 1)
         assert np.isnan(result.answers["f"].mean)
-        assert any("nothing to say of f" in remark for remark in result.remarks)
+        assert any("no answer for f: a derivative is missing" in remark for remark in result.remarks)

@@ -17,11 +17,18 @@ from hypothesis.extra.numpy import arrays
 
 from xlmc import statistics
 from xlmc.statistics import Estimate
-from xlmc.studies.sensitivity.dependence import dependence, dependence_floor
-from xlmc.studies.sensitivity.explained import explained, explained_floor, shares, standardised
-from xlmc.studies.sensitivity.rank_correlations import contributions, rank_correlation
+from xlmc.studies.sensitivity.given_data import (
+    contributions,
+    dependence,
+    dependence_floor,
+    explained_floor,
+    explained_share,
+    rank_correlation,
+    shares,
+    standardise,
+)
+from xlmc.studies.sensitivity.pull_errors import Units
 from xlmc.studies.sensitivity.ranked import Ranked
-from xlmc.studies.sensitivity.units import Units
 
 COLUMNS = st.integers(30, 200).flatmap(
     lambda n: st.tuples(*[arrays(np.float64, n, elements=st.integers(-20, 20).map(float))] * 2)
@@ -44,7 +51,7 @@ def spearman(r):
 
 def found(x, y):
     ranked, other, units = Ranked.of(x), Ranked.of(y), Units.of(x.size)
-    return rank_correlation(ranked, other, units), explained(ranked, y, units), dependence(ranked, other, units)
+    return rank_correlation(ranked, other, units), explained_share(ranked, y, units), dependence(ranked, other, units)
 
 
 def near(estimate, truth):
@@ -87,7 +94,7 @@ def test_noise_stays_below_the_floor_as_often_as_it_says():
         other, units, above = Ranked.of(y), Units.of(300), np.zeros(2, bool)
         for _ in range(5):
             x = Ranked.of(rng.random(300))
-            above[0] |= explained(x, y, units).value > explained_floor(x, 5)
+            above[0] |= explained_share(x, y, units).value > explained_floor(x, 5)
             above[1] |= dependence(x, other, units).value > dependence_floor(x, 5)
         beyond += above
     assert (beyond < 83).all()
@@ -99,7 +106,7 @@ def test_what_only_widens_the_forecast_is_seen_by_dependence_alone():
     x = rng.uniform(-1.0, 1.0, 4000)
     y = (1.0 + 0.8 * x) * rng.normal(size=4000)
     ranked, units = Ranked.of(x), Units.of(4000)
-    assert near(explained(ranked, y, units), 0.0)
+    assert near(explained_share(ranked, y, units), 0.0)
     assert dependence(ranked, Ranked.of(y), units).value > 10.0 * dependence_floor(ranked, 1)
 
 
@@ -165,16 +172,16 @@ def test_rank_measures_do_not_know_the_scale(columns):
 def test_the_share_does_not_know_the_unit(columns, factor, offset):
     x, y = columns
     units = Units.of(x.size)
-    plain, other = explained(Ranked.of(x), y, units), explained(Ranked.of(x), factor * y + offset, units)
+    plain, other = explained_share(Ranked.of(x), y, units), explained_share(Ranked.of(x), factor * y + offset, units)
     assert other.value == pytest.approx(plain.value, abs=1e-6, nan_ok=True)
 
 
 @given(COLUMNS)
 def test_the_quick_share_is_the_share(columns):
     x, y = columns
-    z = standardised(y)
+    z = standardise(y)
     if z is not None:
-        slow = explained(Ranked.of(x), y, Units.of(x.size))
+        slow = explained_share(Ranked.of(x), y, Units.of(x.size))
         assert shares(Ranked.of(x), z[None, :])[0] == pytest.approx(slow.value, abs=1e-9)
 
 
@@ -202,3 +209,10 @@ def test_replicates_count_as_one_unit_each():
     pairs = Units.of(2000, np.repeat(np.arange(1000), 2))
     alone, joined = (rank_correlation(Ranked.of(x), Ranked.of(y), units) for units in (Units.of(2000), pairs))
     assert joined.error == pytest.approx(alone.error * math.sqrt(2.0), rel=0.01)
+
+
+def test_classes_of_the_largest_numbers_are_those_of_their_size():
+    values = np.linspace(-1.0, 1.0, 2_001) ** 3
+    plain, huge = Ranked.of(values).classes, Ranked.of(values * 1.7e308).classes
+    np.testing.assert_array_equal(huge.label, plain.label)
+    np.testing.assert_allclose(huge.squares, plain.squares, rtol=1e-12)

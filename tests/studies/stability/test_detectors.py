@@ -43,7 +43,7 @@ def test_a_sound_book_has_no_finding(look):
 def test_a_difference_of_near_equals(look):
     one = only(look({"C1": "=A1+1000000000", "B1": "=(C1-1000000000)*A2"}), "cancellation")
     assert (str(one.cell), one.level) == ("S!B1", Level.DOUBTFUL)
-    assert "C1-1000000000 is a difference of near equals" in one.what
+    assert "C1-1000000000 is a difference of nearly equal numbers" in one.what
 
 
 def test_digits_that_are_not_there(look):
@@ -149,7 +149,7 @@ def test_an_argument_close_to_the_edge_of_its_domain(look):
 
 def test_a_jump_and_a_bend(look):
     one = only(look({"B1": "=IF(A1>1.5,A1+1,A1)"}), "jump")
-    assert "A1>1.5 turns inside the ranges" in one.what
+    assert "A1>1.5 changes within the ranges" in one.what
     assert one.where[0].low < 1.5 < one.where[0].high
     assert "jump" not in kinds(look({"B1": "=IF(A1>1.5,2*A1-1.5,A1)"}))
     assert "jump" not in kinds(look({"B1": "=IF(A1>2.5,A1+1,A1)"}))

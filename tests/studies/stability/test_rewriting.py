@@ -9,9 +9,9 @@ import pytest
 from xlmc.address import parse_address
 from xlmc.evaluation.engine import Target
 from xlmc.studies.stability.case import Case
+from xlmc.studies.stability.formula_trees import Trees, factors
 from xlmc.studies.stability.momentum import spin
 from xlmc.studies.stability.rewriting import angles_in_degrees, same, with_quadrant, without_cosine, without_quotient
-from xlmc.studies.stability.trees import Trees, factors
 
 CELLS = {
     "A1": 5.0, "A2": 3.0, "A3": 20.0, "A4": 15.0, "A5": 186.0, "A6": 190.0, "A7": 282.0, "A8": 197.0, "A9": 7.0,

@@ -187,7 +187,7 @@ def test_a_form_that_is_worse_in_other_trials_stands_only_where_it_is_better(loo
 
 def test_where_none_is_known_the_culprit_is_named_alone(looked_at):
     (one,) = [each for each in looked_at("=(A1-TAN(A1))/A1^3", [(1e-5, 1e-4)]).findings if each.kind == "cancellation"]
-    assert one.what.startswith("A1-TAN(A1) is a difference of near equals")
+    assert one.what.startswith("A1-TAN(A1) is a difference of nearly equal numbers")
     assert one.instead is None
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from xlmc.report.methods.speed_chart import HOW_TO_READ, Line, Picture, Work, column_of, guides_of, picture_of, spread
 from xlmc.studies.methods import STATISTICS, Curve, Rung, Study
-from xlmc.studies.methods.rms import Rms
+from xlmc.studies.methods.curve import Rms
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

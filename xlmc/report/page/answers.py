@@ -9,8 +9,7 @@ from xlmc.report.page.element import EMPTY, Html, element
 from xlmc.report.page.flow import estimate_html, number, share_html
 from xlmc.report.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
 from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, range_heading, share_text, summarise
-from xlmc.results.record.sampling_words import sampling_sentence
-from xlmc.results.record.wording import limits_text
+from xlmc.results.record.in_words import limits_text, sampling_sentence
 from xlmc.results.statements import MEANING, statements
 from xlmc.run.rare.account import probability_text
 from xlmc.run.stopping.stopped import ALL_TRIALS

@@ -18,8 +18,8 @@ from xlmc.report.sheets.sensitivity_sheet import (
     write_influences,
     write_moves,
 )
-from xlmc.results.record.wording import number_text
-from xlmc.studies.sensitivity.noise import noise
+from xlmc.results.record.in_words import number_text
+from xlmc.studies.sensitivity.measures import noise
 
 if TYPE_CHECKING:
     from xlmc.statistics import Estimate

@@ -16,7 +16,7 @@ from xlmc.report.sheets.pairs_sheet import pair_sentences, write_pair_table
 from xlmc.report.sheets.results_sheet import LAST, write_counts
 from xlmc.report.sheets.statistics_sheet import write_forecast
 from xlmc.results.record import Entry, Record, RecordTable, Section, Value
-from xlmc.results.record.wording import distribution_text, number_text, status
+from xlmc.results.record.in_words import distribution_text, number_text, status
 from xlmc.results.statements import pairs_of
 from xlmc.statistics import Estimate
 from xlmc.workbook.printable import printable

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.results.record.errors_met import ErrorMet, errors_met
-from xlmc.results.record.sampling_words import REJECTED_SENTENCE
-from xlmc.results.record.wording import limits_text
+from xlmc.results.record.in_words import REJECTED_SENTENCE, limits_text
 from xlmc.run.checking import checks_sentence
 from xlmc.statistics import proportion
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from xlmc.report.filter_effect import FilterEffect, Marginal, filter_effect_of
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
-from xlmc.results.record.correlations_met import correlations_met
-from xlmc.results.record.wording import distribution_text, status
+from xlmc.results.record.definition_tables import correlations_met
+from xlmc.results.record.in_words import distribution_text, status
 from xlmc.statistics import Estimate
 
 if TYPE_CHECKING:

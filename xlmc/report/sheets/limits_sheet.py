@@ -8,7 +8,7 @@ from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.sensitivity_charts import CHART_ROWS, TableAt, limit_chart
 from xlmc.report.sheets.styles import bounds
-from xlmc.results.record.wording import number_text
+from xlmc.results.record.in_words import number_text
 
 if TYPE_CHECKING:
     from xlsxwriter.workbook import Workbook

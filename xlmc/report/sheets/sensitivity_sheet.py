@@ -19,7 +19,7 @@ from xlmc.report.sheets.sensitivity_charts import (
     spider_chart,
     tornado_chart,
 )
-from xlmc.studies.sensitivity.noise import Noise, noise
+from xlmc.studies.sensitivity.measures import Noise, noise
 
 if TYPE_CHECKING:
     from xlsxwriter.workbook import Workbook

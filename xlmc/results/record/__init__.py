@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from xlmc.results.record.make import make_record
-from xlmc.results.record.model import Entry, Record, RecordTable, Section, Value
+from xlmc.results.record.record_parts import Entry, Record, RecordTable, Section, Value
 
 __all__ = ["Entry", "Record", "RecordTable", "Section", "Value", "make_record"]

@@ -1,19 +1,35 @@
-"""The record's tables of definitions, each row with what the run made of it."""
+"""The record's tables of definitions, each row with its results in the run."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
 from typing import TYPE_CHECKING
 
-from xlmc.results.record.correlations_met import correlations_met
-from xlmc.results.record.model import RecordTable, Section, Value
-from xlmc.results.record.wording import cutoffs_text, limits_text, notes_text, parameters_text, status
+from xlmc.address import Cell
+from xlmc.definitions.model import name_key
+from xlmc.results.record.in_words import cutoffs_text, limits_text, notes_text, parameters_text, status
+from xlmc.results.record.record_parts import RecordTable, Section, Value
+from xlmc.run.correlating import CHANGED, used
+from xlmc.statistics import Estimate, rank_correlation
 
 if TYPE_CHECKING:
     from xlmc.definitions.model import Filter
     from xlmc.run.simulation import ForecastResult, Simulation
 
-__all__ = ["assumption_section", "check_section", "correlation_section", "filter_section", "forecast_section", "plain"]
+__all__ = [
+    "CorrelationMet",
+    "assumption_section",
+    "check_section",
+    "correlation_section",
+    "correlations_met",
+    "filter_section",
+    "forecast_section",
+    "plain",
+]
+
 
 _FORECAST = (
     ("name", "Forecast"),
@@ -102,16 +118,16 @@ def filter_section(simulation: Simulation) -> Section:
     return Section("filters", "Filters", table=RecordTable(_FILTER, rows))
 
 
-def _filter_row(simulation: Simulation, place: int, filter_: Filter) -> tuple[Value, ...]:
+def _filter_row(simulation: Simulation, index: int, filter_: Filter) -> tuple[Value, ...]:
     tally = simulation.tally
     return (
         filter_.name,
         str(filter_.cell),
         limits_text(filter_),
         filter_.because,
-        int(tally.rejected[place]),
-        int(tally.only[place]),
-        sum(tally.errors[place].values()),
+        int(tally.rejected[index]),
+        int(tally.only[index]),
+        sum(tally.errors[index].values()),
         notes_text(filter_.notes),
     )
 
@@ -168,3 +184,51 @@ def correlation_section(simulation: Simulation) -> Section:
         for met in correlations_met(simulation)
     )
     return Section("correlations", "Correlations", table=RecordTable(_CORRELATION, rows))
+
+
+@dataclass(frozen=True, slots=True)
+class CorrelationMet:
+    """A pair of assumptions.
+
+    Attributes:
+        asked: the rank correlation in its row; 0 where it has no row.
+        row: the first cell of the row; None where a repair of other pairs changed a pair that no row names.
+        used: the rank correlation that it was drawn with; None where one of the two was not drawn.
+        accepted: that of the accepted trials whose draws are kept; None where one of the two was not drawn.
+    """
+
+    first: str
+    second: str
+    asked: float
+    row: Cell | None
+    used: float | None = None
+    accepted: Estimate | None = None
+
+
+def correlations_met(simulation: Simulation) -> list[CorrelationMet]:
+    """The pairs in the order of the rows, then those that a repair changed without a row."""
+    model = simulation.model
+    pairs = [(c.first, c.second, c.value, c.row) for c in model.definitions.correlations]
+    return [_met(simulation, *pair) for pair in (*pairs, *_unnamed(simulation))]
+
+
+def _unnamed(simulation: Simulation) -> Iterator[tuple[str, str, float, None]]:
+    model = simulation.model
+    named = {frozenset((name_key(c.first), name_key(c.second))) for c in model.definitions.correlations}
+    spelt = {name_key(a.name): a.name for a in model.live}
+    for group in model.groups:
+        for first, second in combinations(group.names, 2):
+            found = used(model.groups, first, second)
+            if frozenset((first, second)) not in named and found is not None and abs(found) >= CHANGED:
+                yield spelt[first], spelt[second], 0.0, None
+
+
+def _met(simulation: Simulation, first: str, second: str, asked: float, row: Cell | None) -> CorrelationMet:
+    drawn = used(simulation.model.groups, first, second)
+    if drawn is None:
+        return CorrelationMet(first, second, asked, row)
+    columns = {name_key(name): values for name, values in simulation.inputs.items()}
+    x, y = columns[name_key(first)], columns[name_key(second)]
+    replicate = simulation.replicate
+    accepted = rank_correlation(x, y, None if replicate is None else replicate[: x.size])
+    return CorrelationMet(first, second, asked, row, drawn, accepted)

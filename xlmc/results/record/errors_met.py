@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Cell
 from xlmc.definitions.model import name_key
-from xlmc.results.record.cells import content_text
+from xlmc.results.record.recorded_cells import content_text
 from xlmc.run.cell_errors import Root
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def _of(kind: str, name: str, cell: Cell, errors: Counter[str], roots: Mapping[C
 
 
 def lost_sentences(simulation: Simulation) -> list[str]:
-    """The cells that trials were lost in, most trials first, then how many the statistics rest on; none without losses.
+    """The cells in which trials were lost, most trials first, and how many trials are left; nothing without losses.
 
     Sentences have no full stop.
     """

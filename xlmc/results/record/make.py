@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import hashlib
+import re
+import shlex
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
-from xlmc.results.record.cells import cell_section, needed_contents
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.columns import parts
+from xlmc.definitions.stopping import LIMIT
 from xlmc.results.record.definition_tables import (
     assumption_section,
     check_section,
@@ -16,21 +23,21 @@ from xlmc.results.record.definition_tables import (
 )
 from xlmc.results.record.environment import processor, versions
 from xlmc.results.record.errors_met import errors_met
-from xlmc.results.record.fingerprint import fingerprint
-from xlmc.results.record.model import Entry, Record, RecordTable, Section
-from xlmc.results.record.repeat import repeat_command
-from xlmc.results.record.sampling_words import errors_text, generator_text, method_text
+from xlmc.results.record.in_words import errors_text, generator_text, method_text
+from xlmc.results.record.record_parts import Entry, Record, RecordTable, Section
+from xlmc.results.record.recorded_cells import cell_section, needed_contents
 from xlmc.results.record.settings_table import settings_section
 from xlmc.results.record.structure_table import structure_section
+from xlmc.run.simulation import KEPT_INPUTS
 from xlmc.workbook.inject import original_hash
 
 if TYPE_CHECKING:
     from xlmc.run.rare.account import RareAccount
     from xlmc.run.simulation import Simulation
 
-__all__ = ["make_record"]
+__all__ = ["fingerprint", "make_record", "quoted_argument", "repeat_command"]
 
-FORMAT: Final = 2
+_FORMAT: Final = 2
 """Of the record: from 2 on it holds the settings and the cells that a run can be repeated and checked by."""
 
 _SHARES = {
@@ -40,7 +47,6 @@ _SHARES = {
 """How the share of accepted trials is estimated, by what ended the run."""
 
 _RARE_SHARE = "the mean weight of the trials drawn where accepted ones lie; its interval is that of its logarithm, 95 %"
-
 _CONVENTIONS = (
     ("percentiles", "Percentiles", "linear between trials, as Excel's PERCENTILE.INC"),
     ("central_range", "Central range", "as many trials lie below it as above it; it is not the shortest such range"),
@@ -51,6 +57,16 @@ _CONVENTIONS = (
     ("trial_numbers", "Trial numbers", "counted from 0"),
     ("logicals", "Logicals", "TRUE counts as 1, FALSE as 0"),
 )
+_LABELS = {
+    "python": "Python",
+    "numpy": "NumPy",
+    "scipy": "SciPy",
+    "machine": "Machine",
+    "system": "System",
+    "vector_instructions": "Vector instructions",
+}
+_PLAIN = re.compile(r"[\w.,:+@%/=-]+")
+_SAFE_IN_DOUBLE_QUOTES = re.compile(r'[^"\\$`!%\n]+')
 
 
 def make_record(simulation: Simulation, command: str | None = None) -> Record:
@@ -102,7 +118,7 @@ def _run(simulation: Simulation, command: str | None) -> Section:
         Entry("repeat", "Command that repeats it", repeat_command(simulation)),
         *given,
         Entry("fingerprint", "SHA-256 of the accepted trials", fingerprint(simulation)),
-        Entry("format", "Format of this record", FORMAT),
+        Entry("format", "Format of this record", _FORMAT),
     )
     return Section("run", "This run", entries)
 
@@ -240,11 +256,58 @@ def _entries(found: Mapping[str, str]) -> tuple[Entry, ...]:
     return tuple(Entry(key, _LABELS.get(key, key), text) for key, text in found.items())
 
 
-_LABELS = {
-    "python": "Python",
-    "numpy": "NumPy",
-    "scipy": "SciPy",
-    "machine": "Machine",
-    "system": "System",
-    "vector_instructions": "Vector instructions",
-}
+def fingerprint(simulation: Simulation) -> str:
+    """SHA-256 (lower-case hex) of the accepted trials: indices, then inputs, then forecasts, in the workbook's order.
+
+    Inputs are those of the first 1,048,576 accepted trials, or what the run kept of them. Indices are 8-byte
+    little-endian integers, the rest IEEE doubles, little-endian; every missing number is the same NaN.
+    """
+    digest = hashlib.sha256()
+    for part in parts(simulation.trial_index):
+        digest.update(part.astype("<i8", copy=False).data)
+    for values in simulation.inputs.values():
+        _update(digest, values[:KEPT_INPUTS])
+    for values in simulation.forecasts.values():
+        _update(digest, values)
+    return digest.hexdigest()
+
+
+def _update(digest: hashlib._Hash, values: NDArray[np.float64]) -> None:
+    for part in parts(values):
+        digest.update(np.where(np.isnan(part), np.nan, part).astype("<f8", copy=False).data)
+
+
+def repeat_command(simulation: Simulation) -> str:
+    """What to type, in the workbook's folder, to get the same numbers: `xlmc simulate book.xlsx --trials … --seed …`.
+
+    A run that ended with an accepted trial it waited for is repeated as that, any other by its number of trials. Other
+    settings are named where they differ from the workbook's own, which the repeat reads again.
+    """
+    settings, own = simulation.settings, simulation.model.definitions.settings
+    book = simulation.model.workbook.name
+    options = [*_length(simulation), f"--seed {settings.seed}"]
+    if settings.sampling != own.sampling:
+        options.append(f"--sampling {settings.sampling}")
+    if settings.stopping.rare is not None and simulation.stopped.by in ("accepted", "search"):
+        options.append(f"--rare {settings.stopping.rare}")
+    if settings.engine != own.engine:
+        options.append(f"--engine {settings.engine}")
+    return " ".join(["xlmc simulate", quoted_argument(f"./{book}" if book.startswith("-") else book), *options])
+
+
+def _length(simulation: Simulation) -> list[str]:
+    settings = simulation.settings
+    if simulation.stopped.by == "search" or getattr(simulation, "rare", None) is not None:
+        limit = [] if settings.trials == LIMIT else [f"--trials {settings.trials}"]
+        return [*limit, f"--until-accepted {settings.stopping.accepted}"]
+    if simulation.stopped.by != "accepted":
+        return [f"--trials {simulation.trials}"]
+    limit = [f"--trials {simulation.trials}"] if simulation.trials > LIMIT else []
+    return [*limit, f"--until-accepted {simulation.accepted}"]
+
+
+def quoted_argument(text: str) -> str:
+    """The text as one argument of a command: in double quotes, which every shell knows, or else as POSIX quotes."""
+    if _PLAIN.fullmatch(text):
+        return text
+    return f'"{text}"' if _SAFE_IN_DOUBLE_QUOTES.fullmatch(text) else shlex.quote(text)

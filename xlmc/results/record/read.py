@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final
 
 from xlmc.errors import ErrorCode, WorkbookError
-from xlmc.results.record.model import Entry, Record, RecordTable, Section, Value
+from xlmc.results.record.record_parts import Entry, Record, RecordTable, Section, Value
 from xlmc.workbook.model import CellContent, Sheet, Workbook
 
 __all__ = ["read_record"]
@@ -58,7 +58,7 @@ def _sections(cells: _Cells) -> Iterator[Section]:
     titles: dict[str, str] = {}
     entries: dict[str, list[Entry]] = {}
     rows: dict[str, list[int]] = {}
-    for row, found in _keyed(cells):
+    for row, found in _rows_with_keys(cells):
         section = found["section"]
         if found["entry"] is not None:
             label = str(_value(cells, row, _LABELS) or "")
@@ -72,7 +72,7 @@ def _sections(cells: _Cells) -> Iterator[Section]:
         yield Section(key, title, tuple(entries.get(key, ())), table)
 
 
-def _keyed(cells: _Cells) -> Iterator[tuple[int, re.Match[str]]]:
+def _rows_with_keys(cells: _Cells) -> Iterator[tuple[int, re.Match[str]]]:
     """The rows that have a key, in their order."""
     for row in sorted(row for row, column in cells if column == _KEYS):
         found = _KEY.fullmatch(str(cells[row, _KEYS].value))
@@ -82,10 +82,10 @@ def _keyed(cells: _Cells) -> Iterator[tuple[int, re.Match[str]]]:
 
 def _table(cells: _Cells, rows: list[int]) -> RecordTable:
     heading = rows[0] - _HEADINGS
-    places = sorted(column for row, column in cells if row == heading and column > _KEYS)
-    places = [column for column in places if cells[heading, column].value is not None]
-    columns = tuple((str(cells[heading, place].value), str(_value(cells, heading + 1, place))) for place in places)
-    return RecordTable(columns, tuple(tuple(_value(cells, row, place) for place in places) for row in rows))
+    used = sorted(column for row, column in cells if row == heading and column > _KEYS)
+    used = [column for column in used if cells[heading, column].value is not None]
+    columns = tuple((str(cells[heading, column].value), str(_value(cells, heading + 1, column))) for column in used)
+    return RecordTable(columns, tuple(tuple(_value(cells, row, column) for column in used) for row in rows))
 
 
 def _value(cells: _Cells, row: int, column: int) -> Value:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, get_type_hints
 from xlmc.definitions.model import Settings
 from xlmc.definitions.stopping import GOALS, Goal, Stopping, only_one
 from xlmc.errors import WorkbookError, XlmcError
-from xlmc.results.record.model import Entry, Record, Section, Value
+from xlmc.results.record.record_parts import Entry, Record, Section, Value
 
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
@@ -26,8 +26,8 @@ def in_float32(version: str, where: Path | None = None) -> WorkbookError:
     """The refusal of a run that was computed in float32.
 
     Args:
-        version: the xlmc that made it; empty where nothing says so.
-        where: the file, where it is not known to whoever is told.
+        version: the xlmc that made it; empty where it is not known.
+        where: the file, where the caller does not name it.
     """
     made = f"xlmc {version}" if version else "An older xlmc"
     message = f"{made} computed this run in float32, and this one computes in float64 only"
@@ -65,7 +65,7 @@ def recorded_settings(record: Record) -> Settings:
 
     Raises:
         KeyError: the record does not hold them.
-        WorkbookError: they are none, or the run was computed in float32.
+        WorkbookError: they cannot be read, or the run was computed in float32.
     """
     section = {entry.key: entry.value for entry in record.section("settings").entries}
     if section.get("arithmetic", FLOAT64) != FLOAT64:

@@ -1,4 +1,4 @@
-"""The record's account of what formulas lean on beside cells: defined names, tables, hidden rows."""
+"""The record's account of what formulas need beside cells: defined names, tables, hidden rows."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.definitions.model import name_key
 from xlmc.definitions.tables.tables import KINDS
-from xlmc.results.record.model import RecordTable, Section
+from xlmc.results.record.record_parts import RecordTable, Section
 
 if TYPE_CHECKING:
     from xlmc.run.model import Model
@@ -37,7 +37,7 @@ def structure_section(model: Model, contents: Collection[str]) -> Section:
     words = _words(contents) | {name_key(a.name) for a in model.assumptions}
     words |= {name_key(f.name) for f in model.forecasts} | {name_key(f.name) for f in model.filters}
     words |= {name_key(check.name) for check in model.checks}
-    names = sorted(_mentioned(workbook.names, words), key=_order)
+    names = sorted(_find_mentioned(workbook.names, words), key=_order)
     words |= _words([name.text for name in names])
     rows = [(f"{name.sheet}!{name.name}" if name.sheet else name.name, "defined name", name.text) for name in names]
     tables = (t for t in workbook.tables if t.name.casefold().startswith(KINDS) or t.name.casefold() in words)
@@ -59,7 +59,7 @@ def _words(texts: Collection[str]) -> set[str]:
     return set(_WORD.findall("\n".join(texts).casefold()))
 
 
-def _mentioned(names: Collection[DefinedName], words: set[str]) -> Iterator[DefinedName]:
+def _find_mentioned(names: Collection[DefinedName], words: set[str]) -> Iterator[DefinedName]:
     """The names among the words, and those that these mention in turn."""
     waiting = {name for name in names if not name.name.casefold().startswith(("_xlnm.", "_xlmc_"))}
     while found := {name for name in waiting if name.name.casefold() in words}:

@@ -2,23 +2,42 @@
 
 from __future__ import annotations
 
+import hashlib
+import io
 import re
 import struct
 import zipfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, BinaryIO, Final
+from typing import IO, Any, BinaryIO, Final
 
+import numpy as np
+from numpy.lib import format as npy
+from numpy.typing import NDArray
+
+from xlmc.columns import PART, parts
 from xlmc.errors import WorkbookError
 
-__all__ = ["AGAIN", "DAMAGE", "RUN", "SUFFIX", "WORKBOOK", "Package", "opened", "write_entries"]
+__all__ = [
+    "AGAIN",
+    "DAMAGE",
+    "RUN",
+    "SUFFIX",
+    "WORKBOOK",
+    "Package",
+    "column_header",
+    "column_parts",
+    "open_package",
+    "read_column",
+    "write_entries",
+]
+
 
 SUFFIX: Final = ".xlmcrun"
 RUN: Final = "run.json"
 WORKBOOK: Final = "workbook"
 AGAIN: Final = "Save the run again, or fetch or copy the file again"
-
 _NAMES: Final = re.compile(r"run\.json|workbook|columns/\d{1,6}\.npy")
 _EPOCH: Final = (1980, 1, 1, 0, 0, 0)  # the earliest time a zip can hold
 _ENCRYPTED: Final = 0x1
@@ -33,6 +52,7 @@ DAMAGE: Final = (  # what zipfile raises on a damaged file
     ValueError,
     NotImplementedError,
 )
+_TYPES: Final = {"<f8": np.dtype("<f8"), "<i8": np.dtype("<i8")}
 
 
 def write_entries(file: BinaryIO, entries: Iterable[tuple[str, int, Iterable[bytes]]], comment: bytes = b"") -> None:
@@ -55,7 +75,7 @@ def write_entries(file: BinaryIO, entries: Iterable[tuple[str, int, Iterable[byt
 
 
 class Package:
-    """An open package, of which nothing was unpacked yet."""
+    """An open package; its entries are read when they are asked for."""
 
     def __init__(self, package: zipfile.ZipFile, path: Path) -> None:
         self._package, self._path = package, path
@@ -82,12 +102,12 @@ class Package:
             WorkbookError: there is no such entry, or it is damaged.
         """
         self.size(name)
-        with _told(self._path), self._package.open(name) as entry:
+        with _naming_damage(self._path), self._package.open(name) as entry:
             yield entry
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[Package]:
+def open_package(path: Path) -> Iterator[Package]:
     """The package of a saved run.
 
     Raises:
@@ -101,7 +121,7 @@ def opened(path: Path) -> Iterator[Package]:
         hint = "Name a saved run, which ends in .xlmcrun, that you may read"
         raise WorkbookError(f"the file cannot be read ({error.strerror})", where=path, hint=hint) from error
     with file:
-        with _told(path):
+        with _naming_damage(path):
             package = zipfile.ZipFile(file)
         with package:
             _check(package, path)
@@ -127,8 +147,12 @@ def _check(package: zipfile.ZipFile, path: Path) -> None:
 
 
 @contextmanager
-def _told(path: Path) -> Iterator[None]:
-    """Damage in words."""
+def _naming_damage(path: Path) -> Iterator[None]:
+    """Raise what is damaged as a WorkbookError, in words.
+
+    Raises:
+        WorkbookError: the package is damaged.
+    """
     try:
         yield
     except zipfile.BadZipFile as error:
@@ -136,3 +160,56 @@ def _told(path: Path) -> Iterator[None]:
     except DAMAGE as error:
         reason = str(error) or "it ends too early"
         raise WorkbookError(f"the saved run is damaged ({reason})", where=path, hint=AGAIN) from error
+
+
+def column_header(count: int, kind: str) -> bytes:
+    """What stands before the numbers of a column: `count` of them, of the type `<f8` or `<i8`."""
+    header = io.BytesIO()
+    npy.write_array_header_1_0(header, {"descr": kind, "fortran_order": False, "shape": (count,)})
+    return header.getvalue()
+
+
+def column_parts(values: NDArray[Any], kind: str, digest: hashlib._Hash) -> Iterator[bytes]:
+    """A column's header and numbers, a part at a time; all of it goes into the digest too."""
+    header = column_header(values.size, kind)
+    digest.update(header)
+    yield header
+    for part in parts(values):
+        written = np.ascontiguousarray(part.astype(_TYPES[kind], copy=False)).tobytes()
+        digest.update(written)
+        yield written
+
+
+def read_column(entry: IO[bytes], kind: str, count: int, name: str, digest: hashlib._Hash) -> Iterator[NDArray[Any]]:
+    """The numbers of a column, a part at a time, each in memory of its own.
+
+    Args:
+        entry: where it lies, from its start.
+        kind: `<f8` or `<i8`.
+        count: how many numbers it must hold.
+        name: of the entry, for messages.
+        digest: takes all that is read.
+
+    Raises:
+        WorkbookError: it holds something else.
+    """
+    expected = column_header(count, kind)
+    header = entry.read(len(expected))
+    digest.update(header)
+    if header != expected:
+        raise _other(name)
+    left = count
+    while left:
+        size = min(left, PART)
+        data = entry.read(size * _TYPES[kind].itemsize)
+        digest.update(data)
+        if len(data) != size * _TYPES[kind].itemsize:
+            raise _other(name)
+        yield np.frombuffer(bytearray(data), _TYPES[kind]).astype(_TYPES[kind].newbyteorder("="), copy=False)
+        left -= size
+    if entry.read(1):
+        raise _other(name)
+
+
+def _other(name: str) -> WorkbookError:
+    return WorkbookError(f"the column {name!r} of the saved run is not what it says it is", hint=AGAIN)

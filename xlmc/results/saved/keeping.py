@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 
 from xlmc.errors import SimulationError, WorkbookError
 from xlmc.results.record.environment import processor, versions
-from xlmc.results.saved.archive import RUN, SUFFIX, WORKBOOK, write_entries
-from xlmc.results.saved.columns import column_header, column_parts
-from xlmc.results.saved.document import FORMAT, VERSION, settings_document, tally_document
+from xlmc.results.saved.archive import RUN, SUFFIX, WORKBOOK, column_header, column_parts, write_entries
+from xlmc.results.saved.run_json import FORMAT, VERSION, settings_document, tally_document
 from xlmc.run.simulation import Origin
 from xlmc.workbook.seal import blank_seal, seal_file
 from xlmc.workbook.target import Target
@@ -68,7 +67,7 @@ def keep(simulation: Simulation, path: Path, *, overwrite: bool = False) -> Path
 
 
 def check_run_path(path: Path) -> None:
-    """Refuse to write a saved run over what is none.
+    """Refuse a name that is not that of a saved run.
 
     Raises:
         WorkbookError: the name does not end in `.xlmcrun`.
@@ -79,7 +78,7 @@ def check_run_path(path: Path) -> None:
 
 
 def _entries(simulation: Simulation) -> Iterator[tuple[str, int, Iterator[bytes]]]:
-    """Name, size and bytes of every entry; the last one says what the others must be."""
+    """Name, size and bytes of every entry; the last one holds the checksums of the others."""
     data = simulation.model.workbook.data
     yield WORKBOOK, len(data), iter([data])
     listed: list[dict[str, Any]] = []

@@ -1,4 +1,4 @@
-"""Open a saved run: the same `Simulation` again, without simulating."""
+"""Open a saved run as the same `Simulation`, without simulating again."""
 
 from __future__ import annotations
 
@@ -17,19 +17,22 @@ from xlmc.columns import ColumnStore, parts
 from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError, WorkbookError, XlmcError
 from xlmc.results.record.settings_table import FLOAT64, in_float32
-from xlmc.results.saved.archive import AGAIN, DAMAGE, RUN, WORKBOOK, Package, opened
-from xlmc.results.saved.columns import read_column
-from xlmc.results.saved.document import (
+from xlmc.results.saved.archive import AGAIN, DAMAGE, RUN, WORKBOOK, Package, open_package, read_column
+from xlmc.results.saved.run_json import (
     FORMAT,
     VERSION,
+    build,
+    counts,
+    mapping,
     origin_of,
     plan_of,
     rare_of,
+    require,
     settings_of,
     stopped_of,
     tally_of,
+    whole,
 )
-from xlmc.results.saved.typed import counts, made, mapping, told, whole
 from xlmc.run.model import Model, understood
 from xlmc.run.simulation import Simulation
 from xlmc.workbook.package import LIMITS
@@ -62,10 +65,10 @@ def open_run(path: str | Path) -> Simulation:
 
     Raises:
         WorkbookError: the file cannot be read, is no saved run, or is damaged.
-        XlmcError: its workbook cannot be understood any more.
+        XlmcError: this xlmc refuses its workbook.
     """
     path = Path(path)
-    with opened(path) as package:
+    with open_package(path) as package:
         found = _document(package, path)
         model = _model(package, found, path)
         try:
@@ -73,7 +76,7 @@ def open_run(path: str | Path) -> Simulation:
             columns.read(package)
             return _simulation(found, model, columns)
         except (KeyError, ValueError, SimulationError) as error:
-            raise _damaged(path, error) from error
+            raise _damage_error(path, error) from error
 
 
 def _document(package: Package, path: Path) -> Document:
@@ -83,10 +86,10 @@ def _document(package: Package, path: Path) -> Document:
         data = entry.read()
     try:
         found = mapping(json.loads(data), "its format")
-        told(found.get("format") == FORMAT, "its format")
+        require(found.get("format") == FORMAT, "its format")
         whole(found.get("version"), "its version")
     except (ValueError, RecursionError) as error:
-        raise _damaged(path, error) from error
+        raise _damage_error(path, error) from error
     if not 1 <= found["version"] <= VERSION:
         message = f"the saved run is of version {found['version']}, and this xlmc reads versions 1 to {VERSION}"
         raise WorkbookError(message, where=path, hint="Install the xlmc that it was saved with")
@@ -94,7 +97,7 @@ def _document(package: Package, path: Path) -> Document:
 
 
 def _in_float64(found: dict[str, Any], path: Path) -> Document:
-    """The document of a run that was computed as xlmc still computes.
+    """The document, without the arithmetic of the run.
 
     Raises:
         WorkbookError: it was computed in float32.
@@ -108,9 +111,9 @@ def _in_float64(found: dict[str, Any], path: Path) -> Document:
 
 def _model(package: Package, found: Document, path: Path) -> Model:
     try:
-        about = made(_Book, found["workbook"], "its workbook")
+        about = build(_Book, found["workbook"], "its workbook")
     except (KeyError, ValueError) as error:
-        raise _damaged(path, error) from error
+        raise _damage_error(path, error) from error
     name = Path(about.name).name
     if package.size(WORKBOOK) > LIMITS.total:
         raise WorkbookError(f"its workbook is larger than {LIMITS.total >> 20} MB", where=path, hint=AGAIN)
@@ -149,16 +152,18 @@ class _Columns:
     """
 
     def __init__(self, found: object, model: Model, path: Path) -> None:
-        told(isinstance(found, list), "its columns")
+        require(isinstance(found, list), "its columns")
         assert isinstance(found, list)
-        listed = [made(_Column, each, "a column") for each in found]
+        listed = [build(_Column, each, "a column") for each in found]
         self._listed, self._path = listed, path
         self._names = {kind: [each.name for each in listed if each.kind == kind] for kind in _KINDS}
         live = [a.name for a in model.live]
-        told(self._names["trial"] == [""], "its list of trials")
-        told(self._names["input"] == self._names["prior"] == live, "its assumptions, which this xlmc reads otherwise")
-        told(self._names["forecast"] == [f.name for f in model.forecasts], "its forecasts, which are read otherwise")
-        told(len(listed) == sum(map(len, self._names.values())), "a column of a kind that there is not")
+        require(self._names["trial"] == [""], "its list of trials")
+        require(
+            self._names["input"] == self._names["prior"] == live, "its assumptions, which this xlmc reads otherwise"
+        )
+        require(self._names["forecast"] == [f.name for f in model.forecasts], "its forecasts, which are read otherwise")
+        require(len(listed) == sum(map(len, self._names.values())), "a column of a kind that there is not")
         types: dict[Hashable, np.dtype[Any]] = {
             self._key(each): np.dtype(_KINDS[each.kind]).newbyteorder("=") for each in listed
         }
@@ -178,10 +183,12 @@ class _Columns:
                 for part in read_column(entry, _KINDS[about.kind], about.count, about.entry, digest):
                     self._keeper.add(self._key(about), part)
                     self._keeper.settle()
-            told(digest.hexdigest() == about.sha256, f"the column {about.entry}: its SHA-256 is another")
+            require(digest.hexdigest() == about.sha256, f"the column {about.entry}: its SHA-256 is another")
         accepted = lengths["trial"]
-        told(all(len(found) <= 1 for found in lengths.values()), "columns of different lengths")
-        told(lengths["forecast"] <= accepted and max(lengths["input"], default=0) <= max(accepted), "too long columns")
+        require(all(len(found) <= 1 for found in lengths.values()), "columns of different lengths")
+        require(
+            lengths["forecast"] <= accepted and max(lengths["input"], default=0) <= max(accepted), "too long columns"
+        )
 
     def of(self, kind: str) -> Mapping[str, Column]:
         """The columns of a kind by name, in their order."""
@@ -191,20 +198,20 @@ class _Columns:
 def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
     settings = settings_of(found["settings"])
     plan, trials = plan_of(settings, found["order"]), whole(found["trials"], "its number of trials")
-    told(1 <= trials <= plan.trials, "its number of trials")
+    require(1 <= trials <= plan.trials, "its number of trials")
     live = {name_key(a.name) for a in model.live}
-    told(set(plan.order) <= live, "its order of dimensions")
+    require(set(plan.order) <= live, "its order of dimensions")
     invalid = counts(found["invalid"], "its invalid draws")
-    told(set(invalid) <= live, "its invalid draws")
+    require(set(invalid) <= live, "its invalid draws")
     index = columns.of("trial")[""]
     rare = rare_of(found["rare"])
     _check_index(index, trials if rare is None else rare.kept)
     forecasts, faults = columns.of("forecast"), mapping(found["faults"], "its faults")
     for name in forecasts:
-        told(not _holds_infinity(forecasts[name]), f"the forecast {name!r}")
+        require(not _holds_infinity(forecasts[name]), f"the forecast {name!r}")
     inputs, prior = columns.of("input"), columns.of("prior")
     for name in inputs:
-        told(not _holds_infinity(inputs[name]) and not _holds_infinity(prior[name]), f"the draws of {name!r}")
+        require(not _holds_infinity(inputs[name]) and not _holds_infinity(prior[name]), f"the draws of {name!r}")
     return Simulation(
         model=model,
         settings=settings,
@@ -230,14 +237,14 @@ def _holds_infinity(column: Column) -> bool:
 
 
 def _check_index(index: Column, trials: int) -> None:
-    """Refuse trial numbers that do not ascend, or are none of the run's."""
+    """Refuse trial numbers that do not ascend, or that the run does not have."""
     last = -1
     for part in parts(index):
-        told(bool(part[0] > last) and bool(np.all(np.diff(part) > 0)), "its trial numbers")
+        require(bool(part[0] > last) and bool(np.all(np.diff(part) > 0)), "its trial numbers")
         last = int(part[-1])
-    told(last < trials, "its trial numbers")
+    require(last < trials, "its trial numbers")
 
 
-def _damaged(path: Path, error: Exception) -> XlmcError:
+def _damage_error(path: Path, error: Exception) -> XlmcError:
     reason = f"it lacks {error.args[0]!r}" if isinstance(error, KeyError) else str(error)
     return WorkbookError(f"the saved run is damaged: {reason}", where=path, hint=AGAIN)

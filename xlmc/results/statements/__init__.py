@@ -3,10 +3,9 @@
 *Certainty* is Crystal Ball's word: the share of the accepted trials in a range.
 """
 
-from xlmc.results.statements.certainty import Certainty, certainties
-from xlmc.results.statements.digits import RoundedRange, percent_text, rounded_range
 from xlmc.results.statements.pairs import PAIRS, Pair, pairs_of
-from xlmc.results.statements.sentences import MEANING, Statement, statements
+from xlmc.results.statements.sentences import MEANING, Certainty, Statement, certainties, statements
+from xlmc.results.statements.significant_digits import RoundedRange, percent_text, rounded_range
 
 __all__ = [
     "MEANING",

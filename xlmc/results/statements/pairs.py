@@ -1,7 +1,7 @@
-"""Forecasts two at a time: how probable it is that both are high, that one is above the other, how they go together.
+"""Forecasts two at a time: how probable it is that both are high, or one above the other, and how they are correlated.
 
-Probabilities are counted over all accepted trials in which both are numbers. A rank correlation needs a sort of both
-columns: with independent trials the first 65,536 suffice, whose error is 0.004 at most.
+Probabilities are counted over all accepted trials in which both are numbers. A rank correlation needs both columns
+sorted: of independent trials the first 65,536 are enough, with an error of 0.004 at most.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.columns import parts
-from xlmc.results.statements.digits import rounded_value
+from xlmc.results.statements.significant_digits import rounded_value
 from xlmc.statistics import Estimate, proportion, rank_correlation, replicated_proportion
 
 if TYPE_CHECKING:
@@ -31,9 +31,9 @@ Replicates = NDArray[np.int64]
 PAIRS: Final = 15
 """The most that are looked at unless asked otherwise: all of six forecasts."""
 
-RANKED: Final = 1 << 16
-RANKED_OF_REPLICATES: Final = 1 << 20
-"""Replicates follow each other: the first trials would be those of few of them."""
+_RANKED: Final = 1 << 16
+_RANKED_OF_REPLICATES: Final = 1 << 20
+"""Replicates follow each other, so that the first trials belong to few of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ def pairs_of(simulation: Simulation, most: int = PAIRS) -> list[Pair]:
 def _pair(simulation: Simulation, first: Forecast, second: Forecast) -> Pair | None:
     columns = (simulation.forecasts[first.name], simulation.forecasts[second.name])
     limits, replicate = (_limit(simulation, first), _limit(simulation, second)), simulation.replicate
-    counts = _counted(columns, limits, replicate)
+    counts = _count_trials(columns, limits, replicate)
     trials = int(counts.trials.sum())
     if not trials:
         return None
@@ -105,7 +105,7 @@ def _limit(simulation: Simulation, forecast: Forecast) -> float:
 
 @dataclass(frozen=True, slots=True)
 class _Counts:
-    """Trials of each replicate, `(R,)`, or of all in one place where the trials themselves are independent."""
+    """Trials of each replicate, `(R,)`, or of all in one number where the trials themselves are independent."""
 
     trials: Replicates
     both: Replicates
@@ -120,7 +120,7 @@ class _Counts:
         return replicated_proportion(hits[known], self.trials[known])
 
 
-def _counted(columns: tuple[Floats, Floats], limits: tuple[float, float], replicate: Replicates | None) -> _Counts:
+def _count_trials(columns: tuple[Floats, Floats], limits: tuple[float, float], replicate: Replicates | None) -> _Counts:
     size = 1 if replicate is None or not replicate.size else int(replicate[-1]) + 1
     counts = np.zeros((4, size), np.int64)
     for where, first, second in _together(columns):
@@ -149,7 +149,7 @@ def _together(columns: tuple[Floats, Floats]) -> Iterator[tuple[slice, Floats, F
 
 
 def _correlation(columns: tuple[Floats, Floats], replicate: Replicates | None) -> tuple[Estimate, int]:
-    most = RANKED if replicate is None else RANKED_OF_REPLICATES
+    most = _RANKED if replicate is None else _RANKED_OF_REPLICATES
     first, second = (column[:most] for column in columns)
     known = ~(np.isnan(first) | np.isnan(second))
     if not known.any():

@@ -1,25 +1,31 @@
-"""What a run says in sentences to be quoted: each share with its error, and no digits that errors do not support."""
+"""Sentences on a run that people quote, and the certainties that they rest on.
+
+Each share stands with its error, and no number has more digits than its error supports.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from xlmc.results.statements.digits import RoundedRange, percent_text, rounded_range
+from xlmc.results.statements.significant_digits import RoundedRange, percent_text, rounded_range
+from xlmc.statistics import Estimate, probability_above, probability_between
 
 if TYPE_CHECKING:
     from xlmc.run.simulation import ForecastResult, Simulation
 
-__all__ = ["MEANING", "Statement", "statements"]
+__all__ = ["MEANING", "Certainty", "Statement", "certainties", "statements"]
 
-EVEN: Final = 0.5
 
+_EVEN: Final = 0.5
 MEANING: Final = (
-    "Shares are of the accepted trials, counted for the ends as they stand here, with their standard error. “More "
-    "probable than not” is said where the whole 95 % interval of the share lies above 50 %. All of it holds within "
-    "the model and the ranges of its assumptions: Monte Carlo error is not reconstruction error."
+    "Each share is a share of the accepted trials, counted for the range as it is printed here, and stands with its "
+    "standard error. “More probable than not” is said only where the whole 95 % interval of the share lies above 50 %. "
+    "All of this holds within the model and the ranges of its assumptions: the error given is that of Monte Carlo, not "
+    "that of the reconstruction."
 )
-"""What goes with the sentences."""
+"""The note that stands below the sentences."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +44,7 @@ class Statement:
 
 
 def statements(simulation: Simulation) -> list[Statement]:
-    """Of every forecast where its central range lies, and how probable values above its threshold are."""
+    """For every forecast: where its central range lies, and how probable values above its threshold are."""
     return [each for result in simulation.results.values() for each in _of(result)]
 
 
@@ -74,8 +80,51 @@ def _range_text(found: RoundedRange, units: str) -> str:
     if share.value == 1.0:
         return f"{percent_text(share)}, {between}"
     lowest = share.value if share.interval is None else share.interval[0]
-    if lowest > EVEN:
+    if lowest > _EVEN:
         return f"more probable than not ({percent_text(share)}) {between}"
-    if share.value > EVEN:
-        return f"{percent_text(share)} {between}; too few trials to call it more probable than not"
+    if share.value > _EVEN:
+        return f"{percent_text(share)} {between}; there are too few trials to call it more probable than not"
     return f"{percent_text(share)} {between}"
+
+
+@dataclass(frozen=True, slots=True)
+class Certainty:
+    """The share of a forecast's accepted trials in a range.
+
+    Attributes:
+        kind: `below`, `between` or `above` for the central range; `at most` or `over` for the threshold.
+        low, high: the ends of the range, infinite where it has none. The ends of `below`, `above` and `over` do not
+            belong to the range.
+        words: the range in words, with units.
+        share: the share of the trials in it, with its 95 % interval (Wilson's).
+    """
+
+    kind: str
+    low: float
+    high: float
+    words: str
+    share: Estimate
+
+
+def certainties(result: ForecastResult) -> list[Certainty]:
+    """The certainties below, in and above the central range as it is printed, and those of the threshold, if any."""
+    definition, sample = result.definition, result.sample
+    units = f" {definition.units}" if definition.units else ""
+    found = []
+    spoken = rounded_range(sample, result.statistics.central, definition.central)
+    if spoken is not None:
+        low, high = spoken.low, spoken.high
+        under = probability_between(sample, -math.inf, math.nextafter(low, -math.inf))
+        over = probability_above(sample, high)
+        between = f"from {spoken.low_text} to {spoken.high_text}{units}"
+        found = [
+            Certainty("below", -math.inf, low, f"below {spoken.low_text}{units}", under),
+            Certainty("between", low, high, between, spoken.share),
+            Certainty("above", high, math.inf, f"above {spoken.high_text}{units}", over),
+        ]
+    threshold, above = definition.threshold, result.statistics.probability_above
+    if threshold is not None and above is not None and sample.n:
+        at_most = probability_between(sample, -math.inf, threshold)
+        found.append(Certainty("at most", -math.inf, threshold, f"at most {threshold:g}{units}", at_most))
+        found.append(Certainty("over", threshold, math.inf, f"above {threshold:g}{units}", above))
+    return found

@@ -1,28 +1,128 @@
-"""Why two books differ: what one of them has beyond the other is taken out, and the two are run again.
+"""What two books of one scene share, and why they differ.
 
-In this order, until the difference is within the tolerance: the filters that only one book has; the assumptions that
-only one draws (held at their base values) and the distributions in which they differ (the second takes the first's);
-all of these. The cause is then the shortest list of such steps found: the most effective single ones first, added one
-by one until the difference is within the tolerance, and each that turns out not to be needed left out again. Where
-nothing helps, the cause lies in the formulas or in values that are held.
+What one book has beyond the other is taken out, and the two are run again.
+
+These are tried in this order, until the difference is within the tolerance: the filters that only one book has; the
+assumptions that only one draws (held at their base values) and the distributions in which the books differ (the second
+takes the first's); all of these. The cause is then the shortest list of such steps that is found: the most effective
+single steps are added one by one until the difference is within the tolerance, and each step that turns out not to be
+needed is left out again. Where nothing helps, the cause is in the formulas or in values that are held.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.model import Assumption, name_key
+from xlmc.definitions.model import Assumption, Filter, name_key
+from xlmc.results.record.in_words import distribution_text
 from xlmc.run.model import Model
+from xlmc.run.scene import filter_limits
 from xlmc.run.simulation import Simulation
-from xlmc.studies.comparison.inputs import Inputs
-from xlmc.studies.comparison.units import factor_between
-from xlmc.studies.comparison.variations import varied
+from xlmc.studies.comparison.unit_factors import factor_between
+from xlmc.studies.comparison.variations import with_changes
 
-__all__ = ["Step", "Variations", "cause_of", "steps_between"]
+__all__ = ["Inputs", "Step", "Unlike", "Variations", "cause_of", "inputs_of", "steps_between"]
+
+_SAME: Final = 1e-9
+"""Of the largest draw: draws that differ by less come from one distribution, and differ by rounding of units."""
+
+Floats = NDArray[np.float64]
 
 Run = Callable[[Model, str], Simulation]
+
+_KINDS = ("filter", "assumption", "distribution")
+
+
+@dataclass(frozen=True, slots=True)
+class Unlike:
+    """An assumption of both books that is not the same in them: how either draws it, in words."""
+
+    name: str
+    first: str
+    second: str
+
+
+@dataclass(frozen=True, slots=True)
+class Inputs:
+    """The assumptions and filters of two books, by name as the book that has them spells it.
+
+    Attributes:
+        alike: assumptions that both draw, with equal draws in every trial.
+        unlike: assumptions that both draw, but differently.
+        held: assumptions of both that only one draws, the other holds.
+        drawn: for either book, the assumptions that it draws and the other does not: it has none, or holds it.
+        filters: for either book, the filters that the other has not, or not with the same limits.
+    """
+
+    alike: tuple[str, ...]
+    unlike: tuple[Unlike, ...]
+    held: tuple[Unlike, ...]
+    drawn: tuple[tuple[str, ...], tuple[str, ...]]
+    filters: tuple[tuple[str, ...], tuple[str, ...]]
+
+
+def inputs_of(first: Simulation, second: Simulation) -> Inputs:
+    """Compare the inputs of two runs over the same trials; what no forecast or filter needs is left out."""
+    mine, theirs = (_needed(run.model) for run in (first, second))
+    both = [(mine[key], theirs[key]) for key in mine if key in theirs]
+    drawn = [(a, b) for a, b in both if not (a.frozen or b.frozen)]
+    same = [(a, b) for a, b in drawn if _draws_alike(a, b, first.prior[a.name], second.prior[b.name])]
+    held = [(a, b) for a, b in both if a.frozen != b.frozen or (a.frozen and not _held_alike(a, b))]
+    return Inputs(
+        alike=tuple(a.name for a, _ in same),
+        unlike=tuple(_unlike(a, b) for a, b in drawn if (a, b) not in same),
+        held=tuple(_unlike(a, b) for a, b in held),
+        drawn=(_drawn_only(mine, theirs), _drawn_only(theirs, mine)),
+        filters=(_filters_only(first.model, second.model), _filters_only(second.model, first.model)),
+    )
+
+
+def _needed(model: Model) -> dict[str, Assumption]:
+    return {name_key(a.name): a for a in model.assumptions if a not in model.scene.idle}
+
+
+def _drawn_only(mine: Mapping[str, Assumption], theirs: Mapping[str, Assumption]) -> tuple[str, ...]:
+    return tuple(a.name for key, a in mine.items() if not a.frozen and (key not in theirs or theirs[key].frozen))
+
+
+def _draws_alike(first: Assumption, second: Assumption, mine: Floats, theirs: Floats) -> bool:
+    factor = factor_between(second.units, first.units)
+    if factor is None:
+        return False
+    n = min(mine.size, theirs.size)  # as many as both have kept
+    atol = _SAME * float(np.nanmax(np.abs(mine), initial=0.0))
+    return np.allclose(theirs[:n] * factor, mine[:n], rtol=0.0, atol=atol, equal_nan=True)
+
+
+def _held_alike(first: Assumption, second: Assumption) -> bool:
+    factor = factor_between(second.units, first.units)
+    if factor is None or first.base is None or second.base is None:
+        return False
+    return abs(second.base * factor - first.base) <= _SAME * abs(first.base)
+
+
+def _unlike(first: Assumption, second: Assumption) -> Unlike:
+    return Unlike(first.name, _words(first), _words(second))
+
+
+def _words(assumption: Assumption) -> str:
+    what = f"held at {assumption.base:g}" if assumption.frozen else distribution_text(assumption)
+    return f"{what} {assumption.units}".rstrip()
+
+
+def _filters_only(mine: Model, theirs: Model) -> tuple[str, ...]:
+    known = {name_key(f.name): _limits(f) for f in theirs.filters}
+    return tuple(f.name for f in mine.filters if known.get(name_key(f.name)) != _limits(f))
+
+
+def _limits(filter_: Filter) -> list[tuple[str, object]]:
+    return [(relation, bound) for relation, bound in filter_limits(filter_)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +141,7 @@ class Step:
 
 
 def steps_between(inputs: Inputs, first: Simulation, second: Simulation) -> tuple[Step, ...]:
-    """What can be taken out: filters that reject a trial, assumptions with a base value, plain distributions."""
+    """The steps that can be taken: filters that reject a trial, assumptions with a base value, plain distributions."""
     found = []
     for side, run in enumerate((first, second)):
         rejected = {f.name: int(n) for f, n in zip(run.model.filters, run.tally.rejected, strict=True)}
@@ -68,7 +168,7 @@ def _may_swap(first: Assumption, second: Assumption) -> bool:
 
 
 class Variations:
-    """Runs of two books with steps taken, each made once.
+    """Runs of two books after steps, each run made once.
 
     Args:
         first, second: the books as they are.
@@ -82,7 +182,7 @@ class Variations:
         }
 
     def pair(self, steps: Iterable[Step]) -> tuple[Simulation, Simulation]:
-        """Both books with these steps taken."""
+        """The runs of both books after these steps."""
         taken = frozenset(steps)
         first, second = (self._side(side, frozenset(s for s in taken if s.side == side)) for side in (0, 1))
         return first, second
@@ -92,13 +192,10 @@ class Variations:
             book, other = self._books[side].model, _by_key(self._books[1 - side].model)
             names = {kind: [name_key(s.name) for s in steps if s.kind == kind] for kind in _KINDS}
             swapped = {key: other[key] for key in names["distribution"]}
-            model = varied(book, frozen=names["assumption"], without=names["filter"], drawn_as=swapped)
+            model = with_changes(book, frozen=names["assumption"], without=names["filter"], drawn_as=swapped)
             what = ", ".join(sorted(repr(step.name) for step in steps))
             self._made[side, steps] = self._run(model, f"{book.path.name} without {what}")
         return self._made[side, steps]
-
-
-_KINDS = ("filter", "assumption", "distribution")
 
 
 def cause_of(steps: Sequence[Step], left: Callable[[Iterable[Step]], float]) -> tuple[Step, ...]:

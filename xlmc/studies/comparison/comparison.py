@@ -13,10 +13,9 @@ from xlmc.run.model import Model
 from xlmc.run.simulate import simulate
 from xlmc.run.simulation import Simulation
 from xlmc.statistics import Estimate
-from xlmc.studies.comparison.causes import Step, Variations, cause_of, steps_between
+from xlmc.studies.comparison.causes import Inputs, Step, Variations, cause_of, inputs_of, steps_between
 from xlmc.studies.comparison.differences import Acceptance, Difference, acceptance, difference
-from xlmc.studies.comparison.influences import Accepted
-from xlmc.studies.comparison.inputs import Inputs, inputs_of
+from xlmc.studies.comparison.paired_statistics import Accepted
 from xlmc.studies.comparison.tolerances import (
     Judgement,
     Tolerances,
@@ -26,8 +25,8 @@ from xlmc.studies.comparison.tolerances import (
     judge,
     read_tolerances,
 )
-from xlmc.studies.comparison.units import factor_between
-from xlmc.studies.comparison.variations import plainly_sampled
+from xlmc.studies.comparison.unit_factors import factor_between
+from xlmc.studies.comparison.variations import with_plain_sampling
 
 __all__ = ["Cause", "Comparison", "ForecastComparison", "compare"]
 
@@ -149,8 +148,8 @@ def compare(
         SimulationError: no forecast has a counterpart, a pair has units of two kinds, or an argument is out of its
             range.
     """
-    first, second = plainly_sampled(first), plainly_sampled(second)
-    matched = _matched(first, second, pairs or {})
+    first, second = with_plain_sampling(first), with_plain_sampling(second)
+    matched = _match_forecasts(first, second, pairs or {})
     factors = [_factor(*pair) for pair in matched]
     stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, [mine for mine, _ in matched])
     trials = trials or max(model.definitions.settings.trials for model in (first, second))
@@ -168,7 +167,8 @@ def compare(
     inputs = inputs_of(*books)
     search = _Search(books, inputs, Variations(*books, run), chance_of(chance), causes)
     forecasts = tuple(
-        search.compared(mine, theirs, factor, stated) for (mine, theirs), factor in zip(matched, factors, strict=True)
+        search.compare_pair(mine, theirs, factor, stated)
+        for (mine, theirs), factor in zip(matched, factors, strict=True)
     )
     return Comparison(
         first=books[0],
@@ -177,7 +177,7 @@ def compare(
         acceptance=acceptance(*books),
         inputs=inputs,
         forecasts=forecasts,
-        unpaired=_unpaired(first, second, matched),
+        unpaired=_unpaired_forecasts(first, second, matched),
         runs=made,
     )
 
@@ -197,8 +197,8 @@ class _Search:
         self._steps = steps_between(inputs, *books) if causes else ()
         self._causes = causes
 
-    def compared(self, mine: Forecast, theirs: Forecast, factor: float, stated: Tolerances) -> ForecastComparison:
-        deviation = statistics.standard_deviation(_accepted(self._books[0], mine, 1.0).sample).value
+    def compare_pair(self, mine: Forecast, theirs: Forecast, factor: float, stated: Tolerances) -> ForecastComparison:
+        deviation = statistics.standard_deviation(_accepted_trials(self._books[0], mine, 1.0).sample).value
         tolerance, was_stated = stated.of(mine, deviation)
         found = self._difference((), mine, theirs, factor)
         limits = found.tolerances(tolerance, self._chance)
@@ -211,8 +211,8 @@ class _Search:
     def _difference(self, steps: Iterable[Step], mine: Forecast, theirs: Forecast, factor: float) -> Difference:
         first, second = self._variations.pair(steps)
         return difference(
-            _accepted(first, mine, 1.0),
-            _accepted(second, theirs, factor),
+            _accepted_trials(first, mine, 1.0),
+            _accepted_trials(second, theirs, factor),
             mine.central,
             _threshold(mine, theirs, factor),
         )
@@ -234,11 +234,11 @@ def _threshold(mine: Forecast, theirs: Forecast, factor: float) -> float | None:
     return theirs.threshold * factor
 
 
-def _accepted(run: Simulation, forecast: Forecast, factor: float) -> Accepted:
+def _accepted_trials(run: Simulation, forecast: Forecast, factor: float) -> Accepted:
     return Accepted.of(run.trial_index, run.forecasts[forecast.name] * factor)
 
 
-def _matched(first: Model, second: Model, pairs: Mapping[str, str]) -> list[tuple[Forecast, Forecast]]:
+def _match_forecasts(first: Model, second: Model, pairs: Mapping[str, str]) -> list[tuple[Forecast, Forecast]]:
     """The forecasts of the first book with their counterparts, in its order.
 
     Raises:
@@ -273,7 +273,7 @@ def _factor(mine: Forecast, theirs: Forecast) -> float:
     return factor
 
 
-def _unpaired(
+def _unpaired_forecasts(
     first: Model, second: Model, matched: Sequence[tuple[Forecast, Forecast]]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     mine, theirs = {a.name for a, _ in matched}, {b.name for _, b in matched}

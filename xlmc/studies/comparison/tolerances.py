@@ -12,11 +12,9 @@ from typing import Final
 from xlmc.definitions.model import Forecast, name_key
 from xlmc.errors import SimulationError
 from xlmc.statistics import Estimate
-from xlmc.studies.comparison.units import factor_between
+from xlmc.studies.comparison.unit_factors import factor_between
 
 __all__ = [
-    "CERTAINTY",
-    "SHARE_OF_SD",
     "Judgement",
     "Tolerances",
     "Verdict",
@@ -27,17 +25,17 @@ __all__ = [
     "read_tolerances",
 ]
 
-CERTAINTY: Final = 3.0
-"""Errors by which a difference must clear the tolerance, on either side of it: a wrong side once in 740 times."""
+_CERTAINTY: Final = 3.0
+"""Errors by which a difference must be below or above the tolerance: by chance it is on the wrong side once in 740."""
 
-SHARE_OF_SD: Final = 0.1
+_SHARE_OF_SD: Final = 0.1
 """Of a forecast's standard deviation: the tolerance where none is stated."""
 
-SHARE_OF_CHANCE: Final = 0.1
-LEAST_OF_CHANCE: Final = 0.001
+_SHARE_OF_CHANCE: Final = 0.1
+_LEAST_OF_CHANCE: Final = 0.001
 """Of P(> threshold), or of its complement where that is smaller: its tolerance where none is stated, and the least."""
 
-AT_THE_TOLERANCE: Final = 0.05
+_AT_THE_TOLERANCE: Final = 0.05
 """Of the tolerance: a difference known to be this near to it is as large as the tolerance, and stays undecided."""
 
 
@@ -55,8 +53,8 @@ class Judgement:
 
     Attributes:
         largest: of the numbers that make the verdict, the one that is farthest off, measured in its tolerance.
-        times: how many times the trials would decide, about, and at most 9, for the difference itself is a guess as
-            yet; 1 where they have, infinite where the difference is as large as the tolerance.
+        times: about how many times as many trials would decide, at most 9, because the difference itself is only known
+            roughly; 1 where they have decided, infinite where the difference is as large as the tolerance.
         blind: whether too few trials are there to know the error of a number that makes the verdict.
     """
 
@@ -89,12 +87,12 @@ def _judge(difference: Estimate, tolerance: float) -> tuple[Verdict, float]:
     if _is_blind(difference):
         return Verdict.UNDECIDED, math.inf
     assert difference.error is not None
-    size, margin = abs(difference.value), CERTAINTY * difference.error
+    size, margin = abs(difference.value), _CERTAINTY * difference.error
     if size + margin <= tolerance:
         return Verdict.WITHIN, 1.0
     if size - margin > tolerance:
         return Verdict.BEYOND, 1.0
-    if margin < AT_THE_TOLERANCE * tolerance:
+    if margin < _AT_THE_TOLERANCE * tolerance:
         return Verdict.UNDECIDED, math.inf
     # How near it is to the tolerance is known to an error only: nearer than that may be chance.
     return Verdict.UNDECIDED, (margin / max(abs(tolerance - size), difference.error)) ** 2
@@ -118,7 +116,7 @@ def chance_tolerance(share: float) -> float:
     >>> chance_tolerance(0.7), chance_tolerance(0.002)
     (0.03, 0.001)
     """
-    return max(LEAST_OF_CHANCE, round(SHARE_OF_CHANCE * min(share, 1.0 - share), 12))
+    return max(_LEAST_OF_CHANCE, round(_SHARE_OF_CHANCE * min(share, 1.0 - share), 12))
 
 
 def chance_of(points: float | None) -> float | None:
@@ -173,7 +171,7 @@ class Tolerances:
                 raise SimulationError(message, where=forecast.cell, hint="state it in the forecast's own unit")
             return found, True
         found = next((value for each in self.general if (value := each.of(forecast, deviation)) is not None), None)
-        return (SHARE_OF_SD * deviation, False) if found is None else (found, True)
+        return (_SHARE_OF_SD * deviation, False) if found is None else (found, True)
 
 
 _NUMBER_AND_UNIT = re.compile(r"\s*(?P<number>[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[^\d\s].*?)?\s*")
@@ -189,7 +187,7 @@ def read_tolerances(texts: Iterable[str], forecasts: Sequence[Forecast]) -> Tole
     single: dict[str, _Stated] = {}
     for text in texts:
         name, equals, amount = text.rpartition("=")
-        stated = _stated(text, amount)
+        stated = _read_stated(text, amount)
         if not equals:
             _refuse_idle(stated, general, forecasts)
             general.append(stated)
@@ -203,7 +201,7 @@ def read_tolerances(texts: Iterable[str], forecasts: Sequence[Forecast]) -> Tole
     return Tolerances(general, single)
 
 
-def _stated(text: str, amount: str) -> _Stated:
+def _read_stated(text: str, amount: str) -> _Stated:
     found = _NUMBER_AND_UNIT.fullmatch(amount)
     try:
         value = float(found["number"]) if found else math.nan

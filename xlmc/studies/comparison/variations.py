@@ -14,10 +14,10 @@ from xlmc.definitions.stopping import NO_GOAL
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
 
-__all__ = ["plainly_sampled", "varied"]
+__all__ = ["with_changes", "with_plain_sampling"]
 
 
-def varied(
+def with_changes(
     model: Model,
     *,
     frozen: Collection[str] = (),
@@ -43,7 +43,7 @@ def varied(
     return Model(model.workbook, definitions, model.path)
 
 
-def plainly_sampled(model: Model) -> Model:
+def with_plain_sampling(model: Model) -> Model:
     """The model with plain Monte Carlo for its sampling, and runs of a given length.
 
     Differences are judged from trials that are independent, the same trials of each model.

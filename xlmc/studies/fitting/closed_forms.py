@@ -9,7 +9,7 @@ from xlmc.studies.fitting.candidate import Candidate, Errors, Floats, Params, re
 __all__ = ["CLOSED_FORMS"]
 
 _LOG_2PI = float(np.log(2 * np.pi))
-EXACT = "exact sampling distribution"
+_EXACT = "exact sampling distribution"
 
 
 def _normal(x: Floats) -> Params:
@@ -106,7 +106,7 @@ def _pareto_errors(x: Floats, params: Params) -> Errors:
 CLOSED_FORMS = (
     Candidate("Normal", ("Mean", "Std dev"), _normal, _normal_log, _normal_cdf),
     Candidate(
-        "Uniform", ("Low", "High"), _uniform, _uniform_log, _uniform_cdf, errors=_uniform_errors, errors_from=EXACT
+        "Uniform", ("Low", "High"), _uniform, _uniform_log, _uniform_cdf, errors=_uniform_errors, errors_from=_EXACT
     ),
     Candidate(
         "Lognormal",
@@ -118,6 +118,6 @@ CLOSED_FORMS = (
     ),
     Candidate("Exponential", ("Rate",), _exponential, _exponential_log, _exponential_cdf),
     Candidate(
-        "Pareto", ("Location", "Shape"), _pareto, _pareto_log, _pareto_cdf, errors=_pareto_errors, errors_from=EXACT
+        "Pareto", ("Location", "Shape"), _pareto, _pareto_log, _pareto_cdf, errors=_pareto_errors, errors_from=_EXACT
     ),
 )

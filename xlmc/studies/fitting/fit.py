@@ -1,24 +1,36 @@
-"""Fit every family to the values by maximum likelihood, and rank them."""
+"""Fit every family to the values by maximum likelihood, rank the fits, and say what they may not be taken for.
+
+The distances from the values to a fit (Anderson-Darling, Kolmogorov-Smirnov) are given without p-values: the usual ones
+hold for a distribution that was known beforehand, and are far too large for one that was fitted to the same values.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from xlmc.errors import SimulationError
-from xlmc.studies.fitting.candidate import Candidate, Errors, Floats, Params, Unfit, refuse
-from xlmc.studies.fitting.cautions import cautions
+from xlmc.studies.fitting.candidate import Candidate, Errors, Floats, Params, Unfit, refuse, standard_errors
 from xlmc.studies.fitting.closed_forms import CLOSED_FORMS
-from xlmc.studies.fitting.counts import COUNTS
-from xlmc.studies.fitting.goodness import anderson_darling, kolmogorov_smirnov, kolmogorov_smirnov_of_counts
-from xlmc.studies.fitting.information import standard_errors
-from xlmc.studies.fitting.solved_forms import SOLVED_FORMS
-from xlmc.studies.fitting.triangular import TRIANGULAR
+from xlmc.studies.fitting.count_families import COUNTS
+from xlmc.studies.fitting.solved_forms import SOLVED_FORMS, TRIANGULAR
 
-__all__ = ["CRITERIA", "KINDS", "Fitted", "Fitting", "fit"]
+__all__ = [
+    "CRITERIA",
+    "FEW",
+    "KINDS",
+    "Fitted",
+    "Fitting",
+    "anderson_darling",
+    "cautions",
+    "fit",
+    "kolmogorov_smirnov",
+    "kolmogorov_smirnov_of_counts",
+    "row_to_paste",
+]
 
 KINDS: Mapping[str, tuple[Candidate, ...]] = {
     "continuous": (*CLOSED_FORMS, TRIANGULAR, *SOLVED_FORMS),
@@ -29,6 +41,14 @@ KINDS: Mapping[str, tuple[Candidate, ...]] = {
 CRITERIA = ("aic", "bic", "ad", "ks")
 _LEAST = 2
 _NEAR, _IN_THE_RACE = 2.0, 10.0
+
+FEW, _ENOUGH = 15, 30
+"""Below the first, families cannot be told apart at all; below the second, hardly."""
+
+_CLOSE = 2.0
+"""Families whose AIC differ by less are about equally likely (K. P. Burnham and D. R. Anderson, 2002)."""
+
+_DIGITS = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +116,7 @@ def fit(values: ArrayLike, *, kind: str | None = None, by: str = "aic") -> Fitti
     found, unfit = _estimates(kind, x)
     best = min((_aic(candidate, top) for candidate, _, top in found), default=0.0)
     fits = [
-        _fitted(candidate, params, top, x, kind, costly=_aic(candidate, top) - best < _IN_THE_RACE)
+        _judge_fit(candidate, params, top, x, kind, costly=_aic(candidate, top) - best < _IN_THE_RACE)
         for candidate, params, top in found
     ]
     fits.sort(key=lambda each: (_criterion(each, by), each.aic))
@@ -138,7 +158,7 @@ def _aic(candidate: Candidate, top: float) -> float:
     return 2 * candidate.free - 2 * top
 
 
-def _fitted(candidate: Candidate, params: Params, top: float, x: Floats, kind: str, *, costly: bool) -> Fitted:
+def _judge_fit(candidate: Candidate, params: Params, top: float, x: Floats, kind: str, *, costly: bool) -> Fitted:
     errors, errors_from = _errors(candidate, params, x, costly)
     if kind == "counts":
         ad, ks = None, kolmogorov_smirnov_of_counts(x, lambda k: np.asarray(candidate.cdf(k, *params)))
@@ -164,10 +184,69 @@ def _errors(candidate: Candidate, params: Params, x: Floats, costly: bool) -> tu
         if candidate.costly and not costly:
             return (None,) * len(params), f"not worked out: AIC more than {_IN_THE_RACE:g} above the best"
         return candidate.errors(x, params), candidate.errors_from
-    free = [place for place, heading in enumerate(candidate.headings) if heading not in candidate.fixed]
+    free = [index for index, heading in enumerate(candidate.headings) if heading not in candidate.fixed]
     return standard_errors(lambda moved: candidate.log_likelihood(x, moved), params, free), candidate.errors_from
 
 
 def _criterion(fitted: Fitted, by: str) -> float:
     value = {"aic": fitted.aic, "bic": fitted.bic, "ad": fitted.ad, "ks": fitted.ks}[by]
     return np.inf if value is None else value
+
+
+def anderson_darling(at: Floats) -> float:
+    """A² of the distribution function at the values, `(n,)` rising; infinite where a value lies on its end.
+
+    Source: T. W. Anderson and D. A. Darling, "A test of goodness of fit", 1954.
+    """
+    n = at.size
+    if at[0] <= 0 or at[-1] >= 1:
+        return np.inf
+    weights = 2 * np.arange(1, n + 1) - 1
+    return float(-n - np.sum(weights * (np.log(at) + np.log1p(-at[::-1]))) / n)
+
+
+def kolmogorov_smirnov(at: Floats) -> float:
+    """The largest distance between the distribution function, `(n,)` rising at the values, and the steps of these."""
+    n = at.size
+    steps = np.arange(n + 1) / n
+    return float(max(np.max(steps[1:] - at), np.max(at - steps[:-1])))
+
+
+def kolmogorov_smirnov_of_counts(x: Floats, cdf: Callable[[Floats], Floats]) -> float:
+    """The same for whole numbers `(n,)`, rising: both functions are steps, compared on every whole number."""
+    k = np.unique(np.concatenate([x - 1, x]))
+    steps = np.searchsorted(x, k, side="right") / x.size
+    return float(np.max(np.abs(steps - cdf(k))))
+
+
+def cautions(n: int, rivals: list[str]) -> tuple[str, ...]:
+    """What a person should know before using a fit.
+
+    Args:
+        n: how many values there are.
+        rivals: the families whose AIC lies within 2 of the best, the best first.
+    """
+    said = []
+    if n < FEW:
+        said.append(
+            f"{n} values cannot tell families of distributions apart. Their order is chance as much as evidence; a "
+            "uniform range, wide enough for every value that is possible, claims less"
+        )
+    elif n < _ENOUGH:
+        said.append(
+            f"{n} values tell families of distributions apart only roughly; a uniform range, wide enough for every "
+            "value that is possible, claims less"
+        )
+    if len(rivals) > 1:
+        said.append(f"{_join_names(rivals)} describe the values about equally well: their AIC lie within {_CLOSE:g}")
+    return tuple(said)
+
+
+def _join_names(names: list[str]) -> str:
+    return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def row_to_paste(fitted: Fitted, name: str, source: str) -> dict[str, str]:
+    """Heading -> what stands under it; parameters to six digits, more than a fit ever determines."""
+    parameters = {heading: f"{value:.{_DIGITS}g}" for heading, value in fitted.parameters.items()}
+    return {"Name": name, "Distribution": fitted.name, **parameters, "Source": source}

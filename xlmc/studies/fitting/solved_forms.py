@@ -1,17 +1,28 @@
-"""Families whose likelihood is highest where an equation of one unknown holds, or where a search finds it."""
+"""Families whose likelihood is highest where an equation of one unknown holds, or where a search finds it.
+
+For the triangular family the two ends are searched for, and for given ends the likeliest value is one of the measured
+ones. Its standard errors come from samples drawn from the fitted distribution (a parametric bootstrap), because its
+likelihood has a corner where theory asks for a smooth top. Source: S. Kotz and J. R. van Dorp, *Beyond Beta*, 2004,
+section 1.4.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
-from xlmc.studies.fitting.candidate import Candidate, Floats, Params, refuse
-from xlmc.studies.fitting.maximise import maximise, root
+from xlmc.studies.fitting.candidate import Candidate, Errors, Floats, Params, Unfit, refuse
 
-__all__ = ["SOLVED_FORMS"]
+__all__ = ["SOLVED_FORMS", "TRIANGULAR", "maximise", "root"]
 
 _AT_ZERO = frozenset({"Location"})
 _MOST_FREEDOM = 200.0
 """Student's t with more degrees of freedom is a normal to the eye, and to any sample."""
+
+_BOOTSTRAP_SAMPLES, _BOOTSTRAP_SEED = 100, 999
+_NEAREST, _FARTHEST = -12.0, 5.0
+"""Logarithms of the least and the greatest distance of an end from the values, in widths of these."""
 
 
 def _gamma(x: Floats) -> Params:
@@ -168,3 +179,132 @@ SOLVED_FORMS = (
     Candidate("Student's t", ("Midpoint", "Scale", "Degrees of freedom"), _student, _student_log, _student_cdf),
     Candidate("Beta", ("Low", "High", "Alpha", "Beta"), _beta, _beta_log, _beta_cdf, fixed=frozenset({"Low", "High"})),
 )
+
+
+def _triangular_likeliest(x: Floats, low: float, high: float) -> tuple[float, float]:
+    """The best of the values as the corner, and the log-likelihood there."""
+    n, width = x.size, high - low
+    rise, fall = np.log((x - low) / width), np.log((high - x) / width)
+    before = np.concatenate([[0.0], np.cumsum(rise)[:-1]])
+    after = np.concatenate([np.cumsum(fall[::-1])[::-1][1:], [0.0]])
+    rank = np.arange(n)
+    totals = before - rank * rise + after - (n - 1 - rank) * fall
+    best = int(np.argmax(totals))
+    return float(x[best]), float(totals[best] + n * np.log(2 / width))
+
+
+def _triangular_ends(x: Floats, tolerance: float = 1e-8) -> tuple[float, float]:
+    """Beyond the smallest and the largest value, where neither has density 0."""
+    spread = float(x[-1] - x[0])
+
+    def ends_at(point: Floats) -> tuple[float, float]:
+        return float(x[0] - spread * np.exp(point[0])), float(x[-1] + spread * np.exp(point[1]))
+
+    def log_likelihood(point: Floats) -> float:
+        # Ends on a value, or far away, are as good as ends near there: a slope keeps the search from wandering.
+        return _triangular_likeliest(x, *ends_at(np.clip(point, _NEAREST, _FARTHEST)))[1] - float(
+            np.sum(np.abs(point - np.clip(point, _NEAREST, _FARTHEST)))
+        )
+
+    return ends_at(np.clip(maximise(log_likelihood, [-2.5, -2.5], tolerance=tolerance), _NEAREST, _FARTHEST))
+
+
+def _triangular(x: Floats) -> Params:
+    low, high = _triangular_ends(x)
+    return low, _triangular_likeliest(x, low, high)[0], high
+
+
+def _triangular_log(x: Floats, low: float, likeliest: float, high: float) -> Floats:
+    inside = (x >= low) & (x <= high)
+    # A corner at an end leaves one slope: the other is not asked for.
+    rise = (x - low) / np.where(likeliest > low, likeliest - low, 1.0)
+    fall = (high - x) / np.where(high > likeliest, high - likeliest, 1.0)
+    height = np.where(x < likeliest, rise, np.where(x > likeliest, fall, 1.0))
+    return np.where(inside, np.log(2 / (high - low)) + np.log(height), -np.inf)
+
+
+def _triangular_cdf(x: Floats, low: float, likeliest: float, high: float) -> Floats:
+    width = high - low
+    rise = (np.clip(x, low, likeliest) - low) ** 2 / (width * max(likeliest - low, 1e-300))
+    fall = (high - np.clip(x, likeliest, high)) ** 2 / (width * max(high - likeliest, 1e-300))
+    return np.where(x <= likeliest, rise, 1 - fall)
+
+
+def _draw_triangular(u: Floats, low: float, likeliest: float, high: float) -> Floats:
+    width, share = high - low, (likeliest - low) / (high - low)
+    rising = low + np.sqrt(u * width * (likeliest - low))
+    falling = high - np.sqrt((1 - u) * width * (high - likeliest))
+    return np.where(u < share, rising, falling)
+
+
+def _triangular_errors(x: Floats, params: Params) -> Errors:
+    random, found = np.random.default_rng(_BOOTSTRAP_SEED), []
+    for _ in range(_BOOTSTRAP_SAMPLES):
+        sample = np.sort(_draw_triangular(random.random(x.size), *params))
+        try:
+            low, high = _triangular_ends(sample, 1e-2)
+        except Unfit:
+            continue
+        found.append((low, _triangular_likeliest(sample, low, high)[0], high))
+    if len(found) < _BOOTSTRAP_SAMPLES / 2:
+        return None, None, None
+    return tuple(float(error) for error in np.std(found, axis=0, ddof=1))
+
+
+TRIANGULAR = Candidate(
+    "Triangular",
+    ("Low", "Likeliest", "High"),
+    _triangular,
+    _triangular_log,
+    _triangular_cdf,
+    errors=_triangular_errors,
+    errors_from=f"parametric bootstrap of {_BOOTSTRAP_SAMPLES} samples",
+    costly=True,
+)
+
+
+def maximise(
+    log_likelihood: Callable[[Floats], float], start: list[float], *, tolerance: float = 1e-10, most: int = 4000
+) -> Floats:
+    """Where it is highest, by the simplex method, begun twice so that a simplex that collapsed early is found out.
+
+    Args:
+        log_likelihood: of parameters that may be any numbers.
+        start: a point near it.
+        tolerance: of the parameters.
+        most: how often each of the two may ask for it.
+
+    Raises:
+        Unfit: it has no highest point that can be found.
+    """
+    from scipy.optimize import minimize
+
+    def loss(point: Floats) -> float:
+        value = log_likelihood(point)
+        return -value if np.isfinite(value) else 1e300
+
+    point = np.array(start, dtype=float)
+    for _ in range(2):
+        options = {"xatol": tolerance, "fatol": tolerance / 10 * (1 + abs(loss(point))), "maxfev": most}
+        found = minimize(loss, point, method="Nelder-Mead", options=options)
+        point = np.asarray(found.x)
+    if not found.success or not found.fun < 1e300:
+        raise Unfit("its likelihood has no highest point")
+    return point
+
+
+def root(rising: Callable[[float], float], low: float, high: float) -> float:
+    """Where a rising function of a positive number crosses zero; the bracket is widened as need be.
+
+    Raises:
+        Unfit: it does not, within 1e-6 to 1e6.
+    """
+    from scipy.optimize import brentq
+
+    while rising(low) > 0 and low > 1e-6:
+        low /= 4
+    while rising(high) < 0 and high < 1e6:
+        high *= 4
+    if not rising(low) <= 0 <= rising(high):
+        raise Unfit("its likelihood has no highest point")
+    return float(brentq(rising, low, high, xtol=1e-14, rtol=1e-14))

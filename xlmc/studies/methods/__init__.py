@@ -7,15 +7,14 @@ a converged reference, `recommendation` says in words which of them to use.
 from __future__ import annotations
 
 from xlmc.studies.methods.answer import STATISTICS, Answer, Method, MethodResult
+from xlmc.studies.methods.converged_reference import Reference
 from xlmc.studies.methods.corners import Corners
-from xlmc.studies.methods.curve import Curve, Rung
+from xlmc.studies.methods.curve import Curve, Rms, Rung
 from xlmc.studies.methods.first_order import FirstOrder
 from xlmc.studies.methods.importance_grid import ImportanceGrid
 from xlmc.studies.methods.need import Need, need
 from xlmc.studies.methods.optimised import Optimised
 from xlmc.studies.methods.recommendation import recommendation
-from xlmc.studies.methods.reference import Reference
-from xlmc.studies.methods.rms import Rms
 from xlmc.studies.methods.sampled import Sampled
 from xlmc.studies.methods.second_order import SecondOrder
 from xlmc.studies.methods.study import ACCURACY, REPLICATES, Study, quick_settings, study

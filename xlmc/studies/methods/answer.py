@@ -1,4 +1,4 @@
-"""What every method is asked for: mean, standard deviation, both ends of the central range, and the share accepted."""
+"""What every method is asked for: mean, standard deviation, both ends of the central range, share accepted."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """One forecast, in its units; NaN where a method has nothing to say.
+    """One forecast, in its units; NaN where a method gives no number.
 
     Attributes:
         mean, sd: of the accepted trials, or of all where the method does not see filters.
         low, high: the ends of the forecast's central range.
-        least, most: bounds, for methods that give them in place of a distribution.
+        least, most: bounds, for methods that give them instead of a distribution.
     """
 
     mean: float = np.nan
@@ -75,8 +75,8 @@ def extremes_of(
     for name, values in forecasts.items():
         if np.isnan(values).all():
             continue
-        for end, place in (("least", np.nanargmin(values)), ("most", np.nanargmax(values))):
-            found.append(Extreme(name, end, float(values[place]), seed, plan, int(trials[place])))
+        for end, row in (("least", np.nanargmin(values)), ("most", np.nanargmax(values))):
+            found.append(Extreme(name, end, float(values[row]), seed, plan, int(trials[row])))
     return tuple(found)
 
 
@@ -90,7 +90,7 @@ class MethodResult:
         answers: forecast -> answer.
         acceptance: the share of trials that all filters accept; None where the method does not see filters.
         effective: how many equally weighted accepted trials carry as much; None where all weigh alike.
-        remarks: what this run has to say for itself: its point, its limits, what it left out.
+        remarks: on this run, in words: its point, its limits, what it left out.
         ends: (forecast, `least` or `most`) -> the point that the bound is reached at, by the assumptions' names; of
             methods whose bounds are forecasts of points that the workbook accepts.
         extremes: the lowest and highest accepted trials, of methods that draw.
@@ -113,7 +113,7 @@ class Method(Protocol):
         key: short, for JSON and colours.
         name: for people.
         errors: how they fall with its trials.
-        cannot: what it cannot do, in words; empty where there is nothing to say.
+        cannot: what it cannot do, in words; may be empty.
     """
 
     @property

@@ -11,13 +11,11 @@ from numpy.typing import NDArray
 
 from xlmc.run.model import Model
 from xlmc.studies.methods.answer import Answer, Errors, MethodResult
-from xlmc.studies.methods.box import box_of
-from xlmc.studies.methods.dependence import assumptions_of
-from xlmc.studies.methods.evaluation import Evaluation
+from xlmc.studies.methods.points import Evaluation, assumptions_of, box_of
 
-__all__ = ["MOST_CORNERS", "Corners"]
+__all__ = ["Corners"]
 
-MOST_CORNERS: Final = 1 << 16
+_MOST_CORNERS: Final = 1 << 16
 _MOST_NUMBERS: Final = 1 << 22
 """Assumptions times corners: very many assumptions have fewer corners looked at."""
 
@@ -56,12 +54,12 @@ class Corners:
 
 def _corners(k: int, seed: int) -> tuple[NDArray[np.bool_], tuple[str, ...]]:
     """Which end each assumption is at, (corners, k), and what to say of it."""
-    if 1 << k <= MOST_CORNERS:
+    if 1 << k <= _MOST_CORNERS:
         numbers = np.arange(1 << k)
         plural = "s" * (k != 1)
         said = f"all 2^{k} = {1 << k:,} corners of the {k} assumption{plural} that the forecasts depend on"
         return (numbers[:, None] >> np.arange(k)) & 1 == 1, (said,)
-    count = min(MOST_CORNERS, _MOST_NUMBERS // k)
+    count = min(_MOST_CORNERS, _MOST_NUMBERS // k)
     said = f"{count:,} random corners of 2^{k}: the true bounds may be wider"
     return np.random.default_rng(seed).random((count, k)) < 0.5, (said,)
 

@@ -1,4 +1,8 @@
-"""Error against work: what a method's runs of growing length are off by."""
+"""Error against work: what a method's runs of growing length are off by.
+
+Errors are root mean squares over replicates, that is, over runs with seeds of their own; in logarithms they lie
+about on a straight line over the length of the runs.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +12,99 @@ from statistics import median
 from typing import Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from xlmc.studies.methods.answer import STATISTICS, Method, MethodResult
-from xlmc.studies.methods.reference import Reference
-from xlmc.studies.methods.rms import Rms, line, rms_of
+from xlmc.studies.methods.converged_reference import Reference
 
-__all__ = ["Curve", "Rung", "in_order", "rung_of"]
+__all__ = ["NORMAL_95", "Curve", "Rms", "Rung", "in_order", "line", "rms_of", "rung_of"]
+
+NORMAL_95: Final = 1.959964
+"""95 of 100 runs lie within so many root mean square errors."""
+
+_BEYOND_CHANCE: Final = 4.0
+"""Standard errors from which on a mean error counts as more than chance: many numbers are looked at."""
 
 _SETTLED: Final = 20.0
 """Accepted trials of a run, about; of fewer, quantiles lie between the same few numbers however they are drawn."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rms:
+    """The root mean square error of a number, over `n` replicates, without the error of what it is measured against.
+
+    Attributes:
+        value: in the units of the number; NaN where no replicate gave one. The spread of the replicates about their own
+            mean, and the mean error with it where that is more than chance and the reference's error explain.
+        error: its standard error; of a single answer, the reference's own error.
+        bias: the mean error: what more replicates would not average away. It has the reference's error in it.
+        spread: standard deviation of the errors about their mean; NaN of a single answer.
+        n: replicates that gave a number.
+    """
+
+    value: float
+    error: float
+    bias: float
+    spread: float
+    n: int
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Where the true root mean square error lies, with 95 % confidence (χ² of as many replicates).
+
+        Of a single answer, within 1.96 standard errors of the reference.
+        """
+        if self.n < 2 or not self.value > 0.0:
+            reach = NORMAL_95 * float(np.nan_to_num(self.error))
+            return max(self.value - reach, 0.0), self.value + reach
+        from scipy.special import chdtri
+
+        free = self.n - 1
+        low, high = (float(np.sqrt(free / chdtri(free, p))) for p in (0.025, 0.975))
+        return low * self.value, high * self.value
+
+
+def rms_of(errors: ArrayLike, reference: float = 0.0) -> Rms:
+    """The root mean square of errors, NaNs left out.
+
+    Args:
+        errors: the differences from a reference.
+        reference: its standard error.
+
+    >>> rms_of([3.0, -4.0, 1.0, float("nan")]).value
+    3.605551275463989
+    """
+    found = np.asarray(errors, np.float64)
+    found = found[~np.isnan(found)]
+    known = float(np.nan_to_num(reference))
+    if not found.size:
+        return Rms(np.nan, np.nan, np.nan, np.nan, 0)
+    bias = float(np.mean(found))
+    if found.size == 1:
+        return Rms(abs(bias), known, bias, np.nan, 1)
+    spread = float(np.std(found, ddof=1))
+    chance = spread**2 / found.size + known**2
+    more = max(bias**2 - chance, 0.0) if bias**2 > _BEYOND_CHANCE**2 * chance else 0.0
+    value = float(np.sqrt(spread**2 + more))
+    return Rms(value, value / float(np.sqrt(2.0 * (found.size - 1))), bias, spread, int(found.size))
+
+
+def line(x: Sequence[float], y: Sequence[float], weights: Sequence[float] | None = None) -> tuple[float, float]:
+    """Slope and height at 1 of the straight line through logarithms; NaN where fewer than two points make one.
+
+    >>> [round(each, 6) for each in line([1, 100], [3, 0.3])]
+    [-0.5, 3.0]
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        across, up = np.log(np.asarray(x, np.float64)), np.log(np.asarray(y, np.float64))
+    known = np.isfinite(across) & np.isfinite(up)
+    weigh = np.ones(across.shape) if weights is None else np.asarray(weights, np.float64)
+    across, up, weigh = across[known], up[known], weigh[known]
+    if across.size < 2 or np.ptp(across) < 1e-9:
+        return np.nan, np.nan
+    middle, height = np.average(across, weights=weigh), np.average(up, weights=weigh)
+    slope = float(np.sum(weigh * (across - middle) * (up - height)) / np.sum(weigh * (across - middle) ** 2))
+    return slope, float(np.exp(height - slope * middle))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,7 +113,7 @@ class Rung:
 
     Attributes:
         budget: evaluations that each run might spend.
-        seconds: of the fastest run: the others waited for something else that the machine did. No more than of the
+        seconds: of the fastest run, because other work of the machine held up the others; no more than those of the
             fastest longer run, which does all that this one does (`in_order`).
         usual: seconds, the median of the runs.
         evaluations: that a run spent, the median.
@@ -35,7 +123,7 @@ class Rung:
         acceptance: of the share of accepted trials; None where the method gives none.
         effective: accepted trials that count fully, the median; None where all weigh alike.
         failed: runs without any number.
-        settled: whether so many trials are accepted that errors fall as theory says; fewer are not carried on.
+        settled: whether so many trials are accepted that errors fall as theory says; only such runs are extrapolated.
         measured: whether the seconds were, and not worked out from the rate of a shorter run.
     """
 
@@ -82,7 +170,7 @@ class Curve:
 
     @property
     def settled(self) -> tuple[Rung, ...]:
-        """The rungs that errors are carried on from; the longest where too few trials are accepted even there."""
+        """The rungs that errors are extrapolated from; the longest where too few trials are accepted even there."""
         return tuple(rung for rung in self.rungs if rung.settled) or self.rungs[-1:]
 
     def slope(self, statistic: str, against: str = "seconds") -> float:

@@ -1,21 +1,29 @@
-"""What the differential methods share: the point, the derivatives there, and what to say of them."""
+"""What the differential methods share: moments of the assumptions, and derivatives of the forecasts at the means."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.definitions.model import name_key
+from xlmc.errors import SimulationError
 from xlmc.evaluation.passes.derivatives import Derivative, Derivatives
 from xlmc.run.model import Model
+from xlmc.sampling.draws import Draw
+from xlmc.sampling.plan import Plan
 from xlmc.studies.derivatives import derivatives
-from xlmc.studies.methods.moments import Moments, moments_of
 
-__all__ = ["Expansion", "expansion_of"]
+__all__ = ["Expansion", "Moments", "draw_assumptions", "expansion_of"]
 
 Floats = NDArray[np.float64]
+
+_DRAWN: Final = 65_536
+_STEPS: Final = 1 << 16
+"""Of the midpoint rule over the quantile function of a distribution with cutoffs."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,7 +33,7 @@ class Expansion:
     Attributes:
         moments: of the assumptions.
         forecasts: name -> value and derivatives there, of one point.
-        remarks: what to say of the point.
+        remarks: on the point, in words.
     """
 
     moments: Moments
@@ -39,7 +47,7 @@ def expansion_of(model: Model, seed: int, order: int) -> Expansion:
     Raises:
         SimulationError: a mean or a standard deviation of an assumption is infinite.
     """
-    moments = moments_of(model, seed)
+    moments = _moments_of(model, seed)
     names = [a.name for a in model.live]
     found = derivatives(model, dict(zip(names, moments.mean, strict=True)), order=order)
     remarks = ("about the means of the assumptions", *moments.remarks, *_remarks(found))
@@ -50,8 +58,88 @@ def _remarks(found: Derivatives) -> list[str]:
     said = [f"no derivative: {each.why} ({each.function} in {each.cell})" for each in found.undefined]
     if found.numerical:
         names = ", ".join(f"{each.function} in {each.cell}" for each in found.numerical)
-        said.append(f"derivatives by differences, for want of a rule: {names}")
+        said.append(f"derivatives from differences, because there is no rule for {names}")
     lost = [name for name, each in found.forecasts.items() if np.isnan(each.gradient).any()]
     if lost:
-        said.append(f"nothing to say of {', '.join(lost)}")
+        said.append(f"no answer for {', '.join(lost)}: a derivative is missing")
     return said
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Moments:
+    """Of `k` assumptions, in the order of the model's.
+
+    Attributes:
+        mean: `(k,)`.
+        covariance: `(k, k)`.
+        remarks: where they are not exact, in words.
+    """
+
+    mean: Floats
+    covariance: Floats
+    remarks: tuple[str, ...]
+
+
+def _moments_of(model: Model, seed: int) -> Moments:
+    """The moments of a model's assumptions.
+
+    Raises:
+        SimulationError: a mean or a standard deviation is infinite.
+    """
+    found = np.array([_of_draw(model.draws[a.name]) for a in model.live]).reshape(-1, 2)
+    varying = [index for index, (mean, _) in enumerate(found) if np.isnan(mean)]
+    for index, assumption in enumerate(model.live):
+        if index not in varying and not np.isfinite(found[index]).all():
+            message = f"{assumption.name} has no finite mean and standard deviation to start from"
+            raise SimulationError(message, hint="give it cutoffs, or use a method that draws")
+    correlations = np.eye(len(model.live))
+    remarks = []
+    if varying or model.groups:
+        draws = np.concatenate([*draw_assumptions(model, seed)])
+        for index in varying:
+            found[index] = np.nanmean(draws[:, index]), np.nanvar(draws[:, index])
+        correlations = _correlations(model, draws, varying)
+        remarks.append(f"correlations are those of {len(draws):,} draws")
+        if varying:
+            names = ", ".join(model.live[index].name for index in varying)
+            remarks.append(f"parameters vary, so mean and SD are those of {len(draws):,} draws: {names}")
+    sd = np.sqrt(found[:, 1])
+    return Moments(found[:, 0], correlations * np.outer(sd, sd), tuple(remarks))
+
+
+def draw_assumptions(model: Model, seed: int) -> Iterator[Floats]:
+    """65,536 Sobol draws of the assumptions, before any filter, `(n, k)` block by block."""
+    plan = Plan.of("sobol", _DRAWN)
+    made = model.sampler(seed, plan.size, plan=plan)
+    keys = [name_key(a.name) for a in model.live]
+    for start in range(0, plan.trials, plan.size):
+        block = made.draw(start)
+        yield np.column_stack([block[key] for key in keys])
+
+
+def _of_draw(draw: Draw) -> tuple[float, float]:
+    """Mean and variance; NaN where parameters vary."""
+    parameters = [each for each in draw.parameters if isinstance(each, float)]
+    if len(parameters) < len(draw.parameters) or not all(isinstance(c, float) for c in draw.cutoffs or ()):
+        return np.nan, np.nan
+    if draw.cutoffs is None:
+        return float(draw.family.mean(*parameters)), float(draw.family.variance(*parameters))
+    middles = (np.arange(_STEPS) + 0.5) / _STEPS
+    draw.fill(middles, {})
+    return float(np.mean(middles)), float(np.var(middles))
+
+
+def _correlations(model: Model, draws: Floats, varying: list[int]) -> Floats:
+    """Pearson's, where something correlates; 0 elsewhere."""
+    keys = [name_key(a.name) for a in model.live]
+    sound = draws[~np.isnan(draws).any(axis=1)]
+    with np.errstate(invalid="ignore"):
+        every = np.nan_to_num(np.corrcoef(sound, rowvar=False)).reshape(len(keys), len(keys))
+    related = np.eye(len(keys), dtype=bool)
+    for group in model.groups:
+        indices = [keys.index(name) for name in group.names]
+        related[np.ix_(indices, indices)] = True
+    related[varying, :] = related[:, varying] = True
+    found = np.where(related, every, 0.0)
+    np.fill_diagonal(found, 1.0)
+    return found

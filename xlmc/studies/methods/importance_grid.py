@@ -37,7 +37,7 @@ DEFENSIVE: Final = 0.1
 _PILOT_SHARE: Final = 8
 _LEAST_PILOT, _MOST_PILOT = 4_096, 65_536
 _APART: Final = 1 << 40
-"""Between the seeds of the pilot and of the weighted run: their streams have nothing to do with each other."""
+"""Between the seeds of the pilot and of the weighted run, so that their streams are independent."""
 
 _BLOCK: Final = 32_768
 
@@ -51,7 +51,7 @@ class ImportanceGrid:
     key: str = "grid"
     name: str = "Importance grid"
     errors: Errors = "weighted"
-    cannot: str = "sees one assumption at a time, so that it gains less where only combinations are accepted"
+    cannot: str = "looks at one assumption at a time, so it gains less where only combinations are accepted"
 
     def run(self, model: Model, budget: int, seed: int) -> MethodResult:
         """See `Method`.
@@ -76,7 +76,7 @@ def _learned(model: Model, trials: int, seed: int) -> dict[str, Floats]:
     """Key of an assumption -> density of its uniforms in each bin, `(BINS,)`, 1 where it is as without a grid."""
     run = simulate(model, trials=trials, seed=seed, sampling="mc", engine="numpy", keep_inputs=0)
     if not run.accepted:
-        message = f"the filters accept none of {trials:,} trials, and there is nothing to learn a grid from"
+        message = f"the filters accept none of {trials:,} trials, so there is nothing to learn a grid from"
         raise SimulationError(message, hint="run more trials, or see whether the filters contradict the assumptions")
     found = {}
     for key in (name_key(a.name) for a in model.live):
@@ -129,7 +129,7 @@ class _GridPlan(Plan):
     def margins(self, seed: int, names: Sequence[str]) -> list[Margin]:
         """See `Plan`."""
         return [
-            _Bent(Stream(seed, name), self.grids[name], self.weights, place == 0) for place, name in enumerate(names)
+            _Bent(Stream(seed, name), self.grids[name], self.weights, index == 0) for index, name in enumerate(names)
         ]
 
 

@@ -19,16 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.studies.methods.answer import STATISTICS
-from xlmc.studies.methods.curve import Curve, Rung
-from xlmc.studies.methods.rms import NORMAL_95, Rms, line
+from xlmc.studies.methods.curve import NORMAL_95, Curve, Rms, Rung, line
 from xlmc.studies.methods.study import Study
 
-__all__ = ["Law", "comparisons", "law"]
+__all__ = ["Law", "law"]
 
 Kind = tuple[str, str]
 Floats = NDArray[np.float64]
 
-HALF: Final = -0.5
+_HALF: Final = -0.5
 _STEEPEST: Final = -1.5
 _WINDOW: Final = 4
 """Run lengths that one line is fitted to: two decades. Over more, some curves bend."""
@@ -76,8 +75,8 @@ class Law:
         return max(float((left / self.constant) ** (1.0 / self.slope)), self.least)
 
 
-def comparisons(study: Study) -> int:
-    """Numbers that are asked for, which each method has so many chances to seem wrong in."""
+def _comparisons(study: Study) -> int:
+    """How many numbers are asked for: a method has as many chances to seem wrong."""
     return sum(study.converges(name, each) for name in study.varying for each in STATISTICS)
 
 
@@ -87,54 +86,54 @@ def law(study: Study, curve: Curve, kind: Kind) -> Law:
     rungs = curve.settled
     match curve.method.errors:
         case "independent":
-            return _independent(rungs, kind, theory)
+            return _law_of_independent(rungs, kind, theory)
         case "floor":
-            return _with_floor(study, rungs, kind, theory)
+            return _law_with_floor(study, rungs, kind, theory)
         case "weighted":
-            return _measured(rungs[-_WINDOW:], kind, may_be_steeper=False)
+            return _fit_law(rungs[-_WINDOW:], kind, may_be_steeper=False)
         case _:
-            return _nearest(rungs, kind, study.tolerance(kind[0]))
+            return _law_near_tolerance(rungs, kind, study.tolerance(kind[0]))
 
 
-def _independent(rungs: Sequence[Rung], kind: Kind, theory: float) -> Law:
-    """Theory's, unless the runs contradict it: a quantile may lie where there is hardly any density."""
+def _law_of_independent(rungs: Sequence[Rung], kind: Kind, theory: float) -> Law:
+    """The law of theory, unless the runs contradict it: a quantile may lie where there is hardly any density."""
     from scipy.special import chdtr, chdtrc
 
     if not theory > 0.0:
-        return _measured(rungs, kind, may_be_steeper=False)
-    ratios = [(each.n - 1, each.spread * rung.budget**0.5 / theory) for rung, each in _known(rungs, kind)]
+        return _fit_law(rungs, kind, may_be_steeper=False)
+    ratios = [(each.n - 1, each.spread * rung.budget**0.5 / theory) for rung, each in _known_errors(rungs, kind)]
     free = sum(n for n, _ in ratios)
     squares = sum(n * ratio**2 for n, ratio in ratios)
     constant = theory
     if free and min(chdtr(free, squares), chdtrc(free, squares)) < _HARDLY:
         constant = theory * float(np.sqrt(squares / free))
-    return Law(constant, HALF, rungs[0].budget)
+    return Law(constant, _HALF, rungs[0].budget)
 
 
-def _nearest(rungs: Sequence[Rung], kind: Kind, tolerance: float) -> Law:
-    """The line through the run lengths that are nearest to where it comes down to the tolerance, the longest first."""
+def _law_near_tolerance(rungs: Sequence[Rung], kind: Kind, tolerance: float) -> Law:
+    """The line through the run lengths nearest to where the error falls to the tolerance, the longest first."""
     exact = _exact_from(rungs, kind)
     if exact is not None:
-        return Law(0.0, HALF, exact)
+        return Law(0.0, _HALF, exact)
     for start in range(max(len(rungs) - _WINDOW, 0), -1, -1):
-        found = _measured(rungs[start : start + _WINDOW], kind, may_be_steeper=True)
+        found = _fit_law(rungs[start : start + _WINDOW], kind, may_be_steeper=True)
         if np.isnan(found.constant) or found.trials(tolerance) > found.least:
             break
     return found
 
 
-def _measured(rungs: Sequence[Rung], kind: Kind, *, may_be_steeper: bool) -> Law:
+def _fit_law(rungs: Sequence[Rung], kind: Kind, *, may_be_steeper: bool) -> Law:
     exact = _exact_from(rungs, kind)
     if exact is not None:
-        return Law(0.0, HALF, exact)
-    known = [(rung, each) for rung, each in _known(rungs, kind) if each.value > 0.0]
+        return Law(0.0, _HALF, exact)
+    known = [(rung, each) for rung, each in _known_errors(rungs, kind) if each.value > 0.0]
     least = float(rungs[0].budget)
     if not known:
-        return Law(np.nan, HALF, least)
+        return Law(np.nan, _HALF, least)
     budgets = np.array([float(rung.budget) for rung, _ in known])
     values = np.array([each.value for _, each in known])
     weights = np.array([2.0 * (each.n - 1) for _, each in known])
-    slope = _slope(budgets, values, weights) if may_be_steeper else HALF
+    slope = _slope(budgets, values, weights) if may_be_steeper else _HALF
     height = float(np.average(np.log(values) - slope * np.log(budgets), weights=weights))
     return Law(float(np.exp(height)), slope, least)
 
@@ -143,27 +142,27 @@ def _slope(budgets: Floats, values: Floats, weights: Floats) -> float:
     """−1/2, unless the line is steeper by more than chance. A value of n runs has the variance 1/(2(n − 1)) in logs."""
     found = line(budgets.tolist(), values.tolist(), weights.tolist())[0]
     if np.isnan(found):
-        return HALF
+        return _HALF
     across = np.log(budgets)
     error = float(np.sum(weights * (across - np.average(across, weights=weights)) ** 2)) ** -0.5
-    return max(found, _STEEPEST) if found < HALF - _CLEARLY * error else HALF
+    return max(found, _STEEPEST) if found < _HALF - _CLEARLY * error else _HALF
 
 
-def _with_floor(study: Study, rungs: Sequence[Rung], kind: Kind, theory: float) -> Law:
+def _law_with_floor(study: Study, rungs: Sequence[Rung], kind: Kind, theory: float) -> Law:
     """Theory's errors of independent trials, on a floor: a mean error, and one that varies with the seed.
 
     Only the lengths that could show a floor at the tolerance are looked at; where no run was so long, the longest.
     """
     from scipy.special import chdtri, stdtrit
 
-    known = _known(rungs, kind)
+    known = _known_errors(rungs, kind)
     if not known:
-        return Law(np.nan, HALF, rungs[0].budget)
+        return Law(np.nan, _HALF, rungs[0].budget)
     tolerance = study.tolerance(kind[0])
     constant = theory if theory > 0.0 else 0.0
-    able = [pair for pair in known if NORMAL_95 * constant * pair[0].budget ** HALF <= tolerance]
+    able = [pair for pair in known if NORMAL_95 * constant * pair[0].budget ** _HALF <= tolerance]
     near = able if able and constant > 0.0 else known[-1:]
-    rare = (1.0 - CONFIDENCE) / comparisons(study) / 4.0  # mean and spread, each from both sides
+    rare = (1.0 - CONFIDENCE) / _comparisons(study) / 4.0  # mean and spread, each from both sides
     free = sum(each.n - 1 for _, each in near)
     variance = sum((each.n - 1) * each.spread**2 for _, each in near) / free
     noise = sum((each.n - 1) * constant**2 / rung.budget for rung, each in near) / free
@@ -174,7 +173,7 @@ def _with_floor(study: Study, rungs: Sequence[Rung], kind: Kind, theory: float) 
     low = float(np.hypot(max(abs(last.bias) - chance, 0.0), NORMAL_95 * extra[0]))
     high = float(np.hypot(abs(last.bias) + chance, NORMAL_95 * extra[1]))
     return Law(
-        constant, HALF, rungs[0].budget, min(max(_likely_floor(last, own, variance, noise), low), high), low, high
+        constant, _HALF, rungs[0].budget, min(max(_likely_floor(last, own, variance, noise), low), high), low, high
     )
 
 
@@ -184,7 +183,7 @@ def _likely_floor(last: Rms, own: float, variance: float, noise: float) -> float
     return float(np.sqrt(bias + NORMAL_95**2 * max(variance - noise, 0.0)))
 
 
-def _known(rungs: Sequence[Rung], kind: Kind) -> list[tuple[Rung, Rms]]:
+def _known_errors(rungs: Sequence[Rung], kind: Kind) -> list[tuple[Rung, Rms]]:
     """The run lengths with two numbers or more."""
     return [(rung, each) for rung in rungs if (each := rung.errors[kind]).n >= 2]
 

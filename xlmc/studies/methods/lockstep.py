@@ -1,6 +1,6 @@
 """Many searches side by side, each asking for one point at a time; their questions are answered together.
 
-An answer for fifty points costs little more than one for a single point, so searches that go step by step go in step.
+An answer for fifty points costs little more than one for a single point, so the searches take their steps together.
 """
 
 from __future__ import annotations
@@ -37,26 +37,26 @@ def in_step(
     round_ = _Round(len(searches), answer)
     found: dict[int, Found] = {}
 
-    def run(place: int) -> None:
+    def run(index: int) -> None:
         try:
-            found[place] = searches[place](lambda question: round_.ask(place, question))
+            found[index] = searches[index](lambda question: round_.ask(index, question))
         except BaseException as error:
             round_.fail(error)
         finally:
             round_.leave()
 
-    threads = [threading.Thread(target=run, args=(place,), daemon=True) for place in range(len(searches))]
+    threads = [threading.Thread(target=run, args=(index,), daemon=True) for index in range(len(searches))]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
     if round_.error is not None:
         raise round_.error
-    return [found[place] for place in range(len(searches))]
+    return [found[index] for index in range(len(searches))]
 
 
 class _Round(Generic[Asked, Answered]):
-    """The questions that wait; whoever asks, or leaves, last has them answered."""
+    """The questions that wait; the last search to ask, or to end, has them answered."""
 
     def __init__(self, going: int, answer: Callable[[list[Asked]], Sequence[Answered]]) -> None:
         self._going, self._answer = going, answer
@@ -65,15 +65,15 @@ class _Round(Generic[Asked, Answered]):
         self._changed = threading.Condition()
         self.error: BaseException | None = None
 
-    def ask(self, place: int, question: Asked) -> Answered:
+    def ask(self, index: int, question: Asked) -> Answered:
         with self._changed:
-            self._asked[place] = question
+            self._asked[index] = question
             self._answer_if_all()
-            while place not in self._answered and self.error is None:
+            while index not in self._answered and self.error is None:
                 self._changed.wait()
             if self.error is not None:
                 raise self.error
-            return self._answered.pop(place)
+            return self._answered.pop(index)
 
     def leave(self) -> None:
         with self._changed:
@@ -88,10 +88,10 @@ class _Round(Generic[Asked, Answered]):
     def _answer_if_all(self) -> None:
         if self.error is not None or not self._asked or len(self._asked) < self._going:
             return
-        places = sorted(self._asked)
+        indices = sorted(self._asked)
         try:
-            answers = self._answer([self._asked[place] for place in places])
-            self._answered.update(zip(places, answers, strict=True))
+            answers = self._answer([self._asked[index] for index in indices])
+            self._answered.update(zip(indices, answers, strict=True))
         except BaseException as error:
             self.error = error
         self._asked.clear()

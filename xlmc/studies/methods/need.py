@@ -1,24 +1,39 @@
-"""How many trials and seconds a method needs for an accuracy, and which answers given once are near enough."""
+"""How many trials and seconds each method needs for an accuracy, and which method to choose.
+
+Of a method that gives its answer once, the question is whether that answer is near enough.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
 
 from xlmc.studies.methods.answer import STATISTICS
-from xlmc.studies.methods.curve import Curve, Rung
+from xlmc.studies.methods.curve import NORMAL_95, Curve, Rung
 from xlmc.studies.methods.law import CONFIDENCE, law
-from xlmc.studies.methods.rms import NORMAL_95
+from xlmc.studies.methods.sampled import MONTE_CARLO
 from xlmc.studies.methods.study import Study
 
-__all__ = ["Need", "Shortfall", "Verdict", "asked_kinds", "need", "reach_of", "seconds_of", "shortfall"]
+__all__ = ["NO_TIME", "Choice", "Need", "Shortfall", "Verdict", "choice", "need", "reach_of", "seconds_of", "shortfall"]
 
 Verdict = Literal["yes", "no", "unknown"]
 
 _LEAST_PART: Final = 0.25
+
+_TIE: Final = 1.2
+"""Methods whose seconds are within this factor of the least are a tie: clocks and fits tell no more."""
+
+NO_TIME: Final = 0.1
+"""A difference of fewer seconds does not matter."""
+
+_NO_MATTER: Final = 2.0
+"""A method must be faster by this factor to be chosen instead of Monte Carlo."""
+
+_SOON: Final = 5.0
+"""A run that takes no longer is chosen whatever is faster."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,8 +45,8 @@ class Need:
         seconds: likewise.
         forecast, statistic: whose accuracy needs the most.
         beyond: how many times as many trials as the longest measured runs had; below 1 where it is between them.
-        reaches: whether the method comes to the accuracy at all, as far as the runs can tell.
-        floor: what 95 of 100 runs of any length are off by, in tolerances; 0 for a method that converges.
+        reaches: whether the method reaches the accuracy at all, as far as the runs can tell.
+        floor: the error that 95 of 100 runs of any length stay within, in tolerances; 0 for a method that converges.
     """
 
     trials: float
@@ -67,8 +82,8 @@ class Shortfall:
     reaches: Verdict
 
 
-def asked_kinds(study: Study) -> list[tuple[str, str]]:
-    """The numbers that there is something to come near to in: forecast and attribute of `Answer`."""
+def _asked_kinds(study: Study) -> list[tuple[str, str]]:
+    """The statistics that converge: forecast and attribute of `Answer`."""
     return [(name, each) for name in study.varying for each in STATISTICS if study.converges(name, each)]
 
 
@@ -76,7 +91,7 @@ def need(study: Study, curve: Curve) -> Need:
     """What a method that draws needs, for 95 of 100 runs to keep the accuracy in every number of every forecast."""
     longest = float(curve.rungs[-1].budget)
     worst = Need(0.0, 0.0, "", "mean", 0.0)
-    for kind in asked_kinds(study):
+    for kind in _asked_kinds(study):
         tolerance = study.tolerance(kind[0])
         found = law(study, curve, kind)
         reaches = _verdict(found.floor_low, found.floor_high, tolerance)
@@ -91,7 +106,7 @@ def need(study: Study, curve: Curve) -> Need:
 
 
 def _agreeing(study: Study, curve: Curve, found: Need) -> Need:
-    """An engine's: it is off by what its arithmetic is coarser by, in every run."""
+    """The need of an engine, which is off in every run by what its arithmetic rounds differently."""
     for name in study.varying:
         off = curve.apart * study.reference.answers[name].sd
         tolerance = study.tolerance(name)
@@ -106,7 +121,7 @@ def _verdict(low: float, high: float, tolerance: float) -> Verdict:
 
 
 def shortfall(study: Study, curve: Curve) -> Shortfall:
-    """Which number of an answer that was given once is worst: one that is surely not good enough comes first."""
+    """The worst number of an answer that was given once; one that is surely not good enough comes first."""
     order = ("yes", "unknown", "no")
     return max(_shortfalls(study, curve), key=lambda each: (order.index(each.reaches), each.times))
 
@@ -115,7 +130,7 @@ def _shortfalls(study: Study, curve: Curve) -> Iterator[Shortfall]:
     """Every number; the reference's error counts for as many comparisons as there are numbers and such methods."""
     from scipy.special import ndtri
 
-    kinds = asked_kinds(study)
+    kinds = _asked_kinds(study)
     chances = max(len(kinds) * len([each for each in study.once if each.answers]), 1)
     wide = float(-ndtri((1.0 - CONFIDENCE) / 2.0 / chances))
     for kind in kinds:
@@ -143,8 +158,8 @@ def reach_of(study: Study, curve: Curve, rung: Rung, kind: tuple[str, str]) -> t
 def seconds_of(curve: Curve, trials: float) -> float:
     """A run of so many trials: between measured run lengths in proportion, and beyond them as between the last two.
 
-    What a trial costs is not taken for less than a quarter of the longest run's average: runs that are shorter than a
-    block of trials all take the same time, and say nothing of it.
+    A trial is taken to cost at least a quarter of the longest run's average: runs that are shorter than a block of
+    trials all take the same time, and do not show what a trial costs.
     """
     timed = [rung for rung in curve.rungs if np.isfinite(rung.seconds)]
     if not timed or not np.isfinite(trials):
@@ -157,3 +172,36 @@ def seconds_of(curve: Curve, trials: float) -> float:
     if budgets.size > 1:
         each = max(float((seconds[-1] - seconds[-2]) / (budgets[-1] - budgets[-2])), _LEAST_PART * each)
     return float(seconds[-1]) + each * (trials - float(budgets[-1]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Choice:
+    """Methods that draw, for one accuracy.
+
+    Attributes:
+        chosen: what to use; None where no method reaches the accuracy, as for a tolerance of zero.
+        needs: what each method needs.
+        cheapest: the method of the least seconds, and those that tie with it, the least first.
+    """
+
+    chosen: Curve | None
+    needs: Mapping[Curve, Need]
+    cheapest: tuple[Curve, ...]
+
+
+def choice(study: Study, accuracy: tuple[str, float, bool] | None = None) -> Choice:
+    """Choose for the accuracy of a study, or for another one.
+
+    Monte Carlo, whose trials are independent and whose errors come out of the run itself, unless that takes more than
+    five seconds and another method takes less than half.
+    """
+    asked = study if accuracy is None else replace(study, accuracy=accuracy)
+    needs = {curve: need(asked, curve) for curve in (*study.curves, *study.engines)}
+    usable = sorted((curve for curve, found in needs.items() if found.usable), key=lambda curve: needs[curve].seconds)
+    if not usable:
+        return Choice(None, needs, ())
+    least = needs[usable[0]].seconds
+    cheapest = tuple(c for c in usable if needs[c].seconds <= max(_TIE * least, least + NO_TIME))
+    plain = next((curve for curve in usable if curve.method.key == MONTE_CARLO.key), usable[0])
+    slow = needs[plain].seconds > _SOON and needs[plain].seconds > _NO_MATTER * least
+    return Choice(usable[0] if slow else plain, needs, cheapest)

@@ -6,10 +6,10 @@ import numpy as np
 
 from xlmc.studies.methods.answer import STATISTICS
 
-__all__ = ["percent_words", "rounded", "seconds_text", "spelt", "trials_text"]
+__all__ = ["percent_words", "rounded_text", "seconds_text", "statistic_words", "trials_text"]
 
 
-def spelt(statistic: str) -> str:
+def statistic_words(statistic: str) -> str:
     """As it stands in a sentence: `lower end`, `SD`."""
     name = STATISTICS[statistic]
     return name if name.isupper() else name.lower()
@@ -24,7 +24,7 @@ def percent_words(share: float) -> str:
     return f"{100.0 * share:.3g} %" if abs(share) < 10.0 else f"{100.0 * share:,.0f} %"
 
 
-def rounded(value: float) -> str:
+def rounded_text(value: float) -> str:
     """Two significant digits."""
     return f"{float(f'{value:.2g}'):g}" if 0.001 <= abs(value) < 1e4 or value == 0.0 else f"{value:.1e}"
 

@@ -2,7 +2,7 @@
 
 Sequential quadratic programming (SLSQP) from the extreme accepted trials of a pilot run, with exact derivatives of
 forecasts and filter cells. A filter is a constraint on its cell, lowest or highest value; one that is only TRUE or
-FALSE is none that an optimiser could follow, and is checked alone. Whatever the optimiser says, the end is a point that
+FALSE cannot be followed by an optimiser, and is only checked. Whatever the optimiser says, the end is a point that
 the workbook itself accepts: from a final point that it rejects, the nearest one that it accepts is looked for.
 """
 
@@ -29,14 +29,13 @@ from xlmc.run.scene import filter_limits
 from xlmc.run.simulate import simulate
 from xlmc.studies.derivatives import derivatives
 from xlmc.studies.methods.answer import Answer, Errors, Extreme, MethodResult
-from xlmc.studies.methods.box import Box, box_of
-from xlmc.studies.methods.evaluation import Evaluation
 from xlmc.studies.methods.lockstep import in_step
+from xlmc.studies.methods.points import Box, Evaluation, box_of
 
-__all__ = ["PILOT", "STARTS", "Optimised", "at_least_as_wide"]
+__all__ = ["Optimised", "widen_bounds"]
 
-PILOT: Final = 32_768
-STARTS: Final = 2
+_PILOT: Final = 32_768
+_STARTS: Final = 2
 """From which each end is looked for: the accepted trials of the pilot that are nearest to it."""
 
 _MOST: Final = 200
@@ -75,21 +74,21 @@ class Optimised:
         """
         started = time.perf_counter()
         if len(model.live) > _MOST:
-            message = f"{len(model.live):,} assumptions are drawn, and the search is made for no more than {_MOST}"
+            message = f"{len(model.live):,} assumptions are drawn, and the search handles at most {_MOST}"
             raise SimulationError(message, hint="bounds by corners look at as many as there are")
-        pilot = simulate(model, trials=PILOT, seed=seed, sampling="mc", engine="numpy", keep_inputs=None)
+        pilot = simulate(model, trials=_PILOT, seed=seed, sampling="mc", engine="numpy", keep_inputs=None)
         if not pilot.accepted:
-            message = f"the filters accept none of {PILOT:,} trials, and the search has nowhere to start from"
+            message = f"the filters accept none of {_PILOT:,} trials, so the search has nothing to start from"
             raise SimulationError(message, hint="see whether the filters contradict the assumptions")
         search = _Search(model, box_of(model, seed), np.column_stack([pilot.inputs[a.name] for a in model.live]))
         answers, ends = search.answers(pilot.forecasts)
-        evaluations = PILOT + search.points
+        evaluations = _PILOT + search.points
         return MethodResult(
             time.perf_counter() - started, evaluations, answers, remarks=search.remarks, ends=ends
         )  # fmt: skip
 
 
-def at_least_as_wide(
+def widen_bounds(
     model: Model, seed: int, bounds: Mapping[str, tuple[float, float]], extremes: Iterable[Extreme]
 ) -> tuple[dict[str, Answer], dict[End, Point]]:
     """Wider bounds where accepted trials lie outside those that were found, by a search from these trials.
@@ -153,7 +152,7 @@ class _Search:
     @property
     def remarks(self) -> tuple[str, ...]:
         found = [
-            f"{STARTS} searches for each end, with exact derivatives, from accepted trials of a pilot run",
+            f"{_STARTS} searches for each end, with exact derivatives, from accepted trials of a pilot run",
             "each end is the forecast of a point that the workbook accepts; --json and the files of -o name it",
         ]
         unseen = [name for name, limits in self._filters.items() if any(at is None for _, at in limits) or not limits]
@@ -161,7 +160,7 @@ class _Search:
             found.append(f"checked, but not followed by the search: {', '.join(unseen)}")
         if self._whole.any():
             held = ", ".join(name for name, whole in zip(self._names, self._whole, strict=True) if whole)
-            found.append(f"held at their values in the starting trials, for they are not continuous: {held}")
+            found.append(f"held at their values in the starting trials, because they are not continuous: {held}")
         return (*found, *self._box.remarks)
 
     @cached_property
@@ -175,7 +174,7 @@ class _Search:
             (name, sign, trial)
             for name, values in forecasts.items()
             for sign in (1.0, -1.0)
-            for trial in np.argsort(sign * values)[: min(STARTS, np.count_nonzero(~np.isnan(values)))].tolist()
+            for trial in np.argsort(sign * values)[: min(_STARTS, np.count_nonzero(~np.isnan(values)))].tolist()
         ]
         searches = [partial(self._search, name, sign, self._accepted[trial]) for name, sign, trial in ends]
         best: dict[End, tuple[float, Floats]] = {}
@@ -248,15 +247,15 @@ class _Search:
         found = derivatives(self._model, dict(zip(self._names, at.T, strict=True)))
         self._derived += len(points)
 
-        def one(each: Derivative, place: int) -> tuple[float, Floats]:
-            return float(each.value[place]), np.nan_to_num(each.gradient[place] * self._width)
+        def one(each: Derivative, index: int) -> tuple[float, Floats]:
+            return float(each.value[index]), np.nan_to_num(each.gradient[index] * self._width)
 
         return [
             _Point(
-                {name: one(each, place) for name, each in found.forecasts.items()},
-                {name: one(each, place) for name, each in found.filters.items()},
+                {name: one(each, index) for name, each in found.forecasts.items()},
+                {name: one(each, index) for name, each in found.filters.items()},
             )
-            for place in range(len(points))
+            for index in range(len(points))
         ]
 
 

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from xlmc.evaluation.passes.derivatives import Derivative
 from xlmc.run.model import Model
 from xlmc.studies.methods.answer import Answer, Errors, MethodResult, answer_of
-from xlmc.studies.methods.expansion import expansion_of
-from xlmc.studies.methods.moments import drawn
+from xlmc.studies.methods.expansion import draw_assumptions, expansion_of
 
 __all__ = ["SecondOrder"]
 
@@ -25,7 +24,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class SecondOrder:
-    """The quadratic polynomial in place of the workbook."""
+    """The quadratic polynomial instead of the workbook."""
 
     key: str = "taylor-2"
     name: str = "Taylor, second order"
@@ -39,7 +38,7 @@ class SecondOrder:
         moments = expansion.moments
         found = {name: each for name, each in expansion.forecasts.items() if not np.isnan(_bend(each)).any()}
         values: dict[str, list[Floats]] = {name: [] for name in found}
-        for block in drawn(model, seed):
+        for block in draw_assumptions(model, seed):
             for name, each in found.items():
                 values[name].append(_polynomial(each, block - moments.mean))
         answers = {forecast.name: Answer() for forecast in model.forecasts}

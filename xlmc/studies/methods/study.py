@@ -1,4 +1,4 @@
-"""All methods on one workbook: what each costs, and how far it is from a converged reference."""
+"""Run all methods on one workbook, and measure what each costs and how far it is from a converged reference."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from xlmc.definitions.amounts import as_tolerance
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
 from xlmc.studies.methods.answer import STATISTICS, Answer, Extreme, Method, MethodResult
-from xlmc.studies.methods.corners import Corners
-from xlmc.studies.methods.curve import Curve, Rung, in_order, rung_of
-from xlmc.studies.methods.first_order import FirstOrder
-from xlmc.studies.methods.importance_grid import ImportanceGrid
-from xlmc.studies.methods.optimised import Optimised, at_least_as_wide
-from xlmc.studies.methods.reference import (
+from xlmc.studies.methods.converged_reference import (
     Reference,
     fastest_engine,
     reference_of,
     reference_size,
     unfiltered_of,
 )
+from xlmc.studies.methods.corners import Corners
+from xlmc.studies.methods.curve import Curve, Rung, in_order, rung_of
+from xlmc.studies.methods.first_order import FirstOrder
+from xlmc.studies.methods.importance_grid import ImportanceGrid
+from xlmc.studies.methods.optimised import Optimised, widen_bounds
 from xlmc.studies.methods.sampled import ENGINE_VARIANTS, MONTE_CARLO, SAMPLERS, Sampled
 from xlmc.studies.methods.second_order import SecondOrder
 from xlmc.studies.methods.surrogate import Surrogate
@@ -35,7 +35,7 @@ __all__ = ["ACCURACY", "LENGTHS", "REPLICATES", "STEP", "Study", "ladder_of", "q
 
 ACCURACY: Final = "1%"
 REPLICATES: Final = 24
-"""They know a root mean square error to 15 %."""
+"""So many runs of each length tell a root mean square error to 15 %."""
 
 STEP: Final = 4
 """The trials of each run length over those of the next shorter one."""
@@ -45,7 +45,7 @@ LENGTHS: Final = 8
 
 _SHORTEST: Final = 128
 _FEWEST_ACCEPTED: Final = 4.0
-"""Of the shortest runs, about."""
+"""Accepted trials of the shortest runs, about."""
 
 ONCE: Final[tuple[Method, ...]] = (Corners(), Optimised(), WorstCase(), FirstOrder(), SecondOrder())
 DRAWN: Final[tuple[Method, ...]] = (*SAMPLERS, ImportanceGrid(), Surrogate())
@@ -60,10 +60,10 @@ _APART: Final = 1_000_000
 SLOW: Final = "formulas"
 
 _RUNS_SECONDS, _LEAST_RUNS = 4.0, 6
-"""Of one method and length, where nobody says how many there shall be."""
+"""Seconds for one method and run length, where the number of runs is not given."""
 
 _CLOCKED: Final = 3
-"""Runs of an engine of each length: only their seconds are wanted, for their errors are those of Monte Carlo."""
+"""Runs of an engine of each length: only their seconds matter, because their errors are those of Monte Carlo."""
 
 _FEW: Final = 8
 """Trials that the slow reference engine is timed by."""
@@ -82,7 +82,7 @@ class Study:
         model: the workbook.
         seed: of the reference; the replicates have others.
         accuracy: what is asked of the answers, as typed, the number, and whether it is a share of each number.
-        reference: what the errors are from.
+        reference: what errors are measured against.
         unfiltered: the same without the filters; None where they reject nothing, or where there is no such answer.
         ladder: trials of the runs of methods that draw.
         replicates: the most runs of each length.
@@ -110,11 +110,11 @@ class Study:
 
     @property
     def varying(self) -> tuple[str, ...]:
-        """The forecasts that have any spread; of the others every method knows everything."""
+        """The forecasts that vary; every method gives the others exactly."""
         return tuple(name for name, width in self.reference.widths.items() if width > 0.0)
 
     def converges(self, forecast: str, statistic: str) -> bool:
-        """Whether there is something to come near to: the forecast varies, and its tail is not too heavy for this."""
+        """Whether a statistic of a forecast converges: the forecast varies, and its tail is not too heavy."""
         return forecast in self.varying and statistic not in self.reference.heavy.get(forecast, ())
 
     def tolerance(self, forecast: str) -> float:
@@ -143,7 +143,7 @@ def study(
         reference_trials: by default a power of two of them, up to 33,554,432, that takes about eight seconds.
         trials: of the longest runs; by default 16,384 times those of the shortest, or what takes two seconds.
         replicates: runs of each length, 2 or more; by default 24, or as many as take a method four seconds, 6 at least.
-        patience: seconds after which one length of one method is run no further, with six runs at least; by default
+        patience: seconds after which one method is not run again at one length, after six runs at least; by default
             four, or as long as it takes where `replicates` is given.
         seed: of the reference; by default the workbook's.
         told: called with what is being measured.
@@ -167,13 +167,13 @@ def study(
         patience = _RUNS_SECONDS if replicates is None else np.inf
     measuring = _Measuring(model, reference, ladder, replicates or REPLICATES, patience, own, tell)
     once = measuring.once(ONCE)
-    found = measuring.drawn(DRAWN, [each for each in ENGINE_VARIANTS if each.engine != SLOW])
+    found = measuring.run_drawn(DRAWN, [each for each in ENGINE_VARIANTS if each.engine != SLOW])
     curves = tuple(curve for curve in found if curve.method in DRAWN)
     engines = tuple(curve for curve in found if curve.method not in DRAWN)
-    once = tuple(measuring.widened(curve) if curve.ends else curve for curve in once)
+    once = tuple(measuring.widen(curve) if curve.ends else curve for curve in once)
     for variant in ENGINE_VARIANTS:
         if variant.engine == SLOW:
-            engines += measuring.slow(variant, next(curve for curve in curves if curve.method is MONTE_CARLO))
+            engines += measuring.time_slow(variant, next(curve for curve in curves if curve.method is MONTE_CARLO))
     most = replicates or REPLICATES
     return Study(
         model, own, wanted, reference, unfiltered, ladder, most, once, curves, engines, measuring.absent
@@ -181,7 +181,7 @@ def study(
 
 
 def quick_settings(given: Mapping[str, Any]) -> dict[str, Any]:
-    """What `--quick` asks of `study`, beside what is given: few and short runs."""
+    """The arguments that `--quick` gives to `study` beside the given ones: few and short runs."""
     usual = {"reference_trials": 1 << 20, "trials": 1 << 17, **given}
     return usual if "replicates" in given else {**usual, "replicates": 8, "patience": 0.5}
 
@@ -189,8 +189,8 @@ def quick_settings(given: Mapping[str, Any]) -> dict[str, Any]:
 def ladder_of(model: Model, most: int | None, seed: int, acceptance: float) -> tuple[int, ...]:
     """Trials of the runs, the fewest first: three lengths at least.
 
-    The shortest have four accepted trials, about, or 128 trials; without a wish, the longest have 16,384 times as many,
-    or what Monte Carlo takes two and a half seconds for.
+    The shortest have about four accepted trials, or 128 trials. Where `most` is not given, the longest have 16,384
+    times as many, or as many as Monte Carlo computes in two and a half seconds.
     """
     shortest = max(_SHORTEST, 1 << math.ceil(math.log2(_FEWEST_ACCEPTED / max(acceptance, 1e-9))))
     if most is not None:
@@ -240,11 +240,11 @@ class _Measuring:
         self.absent: dict[str, str] = {}
 
     def once(self, methods: Sequence[Method]) -> tuple[Curve, ...]:
-        """The methods that need to be run only once; twice, so that the second time says what it costs."""
+        """Run the methods that give one answer; twice, so that the second run shows what they cost."""
         found = []
         for method in methods:
             self._tell(method.name)
-            first = self._tried(method, self._ladder[-1])
+            first = self._try(method, self._ladder[-1])
             if first is None:
                 continue
             again = method.run(self._model, self._ladder[-1], self._seed) if first.seconds < _PATIENCE else first
@@ -255,10 +255,10 @@ class _Measuring:
             found.append(Curve(method, (rung,), setup, result.remarks, ranges, ends=result.ends))
         return tuple(found)
 
-    def widened(self, curve: Curve) -> Curve:
+    def widen(self, curve: Curve) -> Curve:
         """Bounds by optimisation, no narrower than what any run has drawn."""
         extremes = [*self._reference.extremes, *(each for ends in self._extremes.values() for each in ends.values())]
-        wider, ends = at_least_as_wide(self._model, self._seed, curve.ranges, extremes)
+        wider, ends = widen_bounds(self._model, self._seed, curve.ranges, extremes)
         if not ends:
             return curve
         ranges = {
@@ -270,12 +270,12 @@ class _Measuring:
         said = f"searched again from drawn trials that lie farther out: {names}"
         return replace(curve, ranges=ranges, ends={**curve.ends, **ends}, remarks=(*curve.remarks, said))
 
-    def drawn(self, methods: Sequence[Method], engines: Sequence[Sampled]) -> tuple[Curve, ...]:
-        """The methods that draw, and the engines, which compute the trials that the first of these has computed.
+    def run_drawn(self, methods: Sequence[Method], engines: Sequence[Sampled]) -> tuple[Curve, ...]:
+        """Run the methods that draw, and the engines, which compute again the trials of the first of these.
 
-        All in turn, run length after run length, so that whatever else the machine does is shared among them.
+        They take turns, run length after run length, so that other work of the machine slows all of them alike.
         """
-        firsts = {method.key: self._tried(method, self._ladder[0]) for method in (*methods, *engines)}
+        firsts = {method.key: self._try(method, self._ladder[0]) for method in (*methods, *engines)}
         able = [method for method in (*methods, *engines) if firsts[method.key] is not None]
         results: dict[tuple[str, int], list[MethodResult]] = {(m.key, b): [] for m in able for b in self._ladder}
         for replicate in range(self._replicates):
@@ -293,13 +293,13 @@ class _Measuring:
         return (*found.values(), *same)
 
     def _enough(self, known: Sequence[MethodResult], engine: bool) -> bool:
-        """Whether there are runs enough of one method and length: as many as wanted, or as their time allows."""
+        """Whether there are enough runs of one method and length: as many as wanted, or as their time allows."""
         if engine and len(known) >= _CLOCKED:
             return True
         return len(known) >= _LEAST_RUNS and sum(result.seconds for result in known) > self._patience
 
     def _run(self, method: Method, budget: int, seed: int) -> MethodResult:
-        """One run of a method that can be used; one that fails, for want of accepted trials, is counted as such."""
+        """One run of a method; one that fails because it has too few accepted trials counts as failed."""
         try:
             found = method.run(self._model, budget, seed)
             for each in found.extremes:
@@ -342,10 +342,10 @@ class _Measuring:
         said = f"answers at the same trials differ from those of numpy by {apart:.1g} SD at the most"
         return Curve(engine, ordered, _setup(first, ordered[0]), (said,), {}, apart)
 
-    def slow(self, engine: Sampled, numpy: Curve) -> tuple[Curve, ...]:
+    def time_slow(self, engine: Sampled, numpy: Curve) -> tuple[Curve, ...]:
         """An engine that is too slow for runs of any length: its time is worked out from a few trials."""
         self._tell(engine.name)
-        first = self._tried(engine, _FEW)
+        first = self._try(engine, _FEW)
         if first is None:
             return ()
         again = engine.run(self._model, _FEW, self._seed).seconds
@@ -356,7 +356,7 @@ class _Measuring:
         said = f"the same trials as {numpy.method.name}; time worked out from {_FEW} of them"
         return (Curve(engine, rungs, max(0.0, first.seconds - again), (said,), {}),)
 
-    def _tried(self, method: Method, budget: int) -> MethodResult | None:
+    def _try(self, method: Method, budget: int) -> MethodResult | None:
         """A method's first run; None, and why, where it cannot be used."""
         try:
             return method.run(self._model, budget, self._seed)

@@ -1,7 +1,7 @@
-"""A surrogate with the exact filter: quadratic polynomials in place of smooth cells, and exact formulas from there on.
+"""A surrogate with the exact filter: quadratic polynomials for smooth cells, and exact formulas from there on.
 
 A filter on a ratio, such as a coefficient of restitution, is no polynomial; what it is the ratio of is nearly one. So
-the surrogate takes the place of neither forecasts nor filters. From each of them the formulas are followed upwards to
+the surrogate replaces neither forecasts nor filters. From each of them the formulas are followed upwards to
 the first cells that a quadratic polynomial of the assumptions, fitted by least squares to a pilot run, gives to 3 % of
 their spread in trials that it was not fitted to. These cells become inputs; every formula below them is computed as it
 stands, the filters too.
@@ -22,13 +22,12 @@ from xlmc.errors import SimulationError
 from xlmc.run.model import Model
 from xlmc.run.scene import targets_of
 from xlmc.studies.methods.answer import Errors, MethodResult, answer_of
-from xlmc.studies.methods.evaluation import Evaluation
-from xlmc.studies.methods.quadratic import Quadratic, fitted
+from xlmc.studies.methods.points import Evaluation
 
-__all__ = ["TOLERANCE", "Surrogate"]
+__all__ = ["Quadratic", "Surrogate", "fit_quadratic"]
 
-TOLERANCE: Final = 0.03
-"""Of a cell's standard deviation: the largest error of a polynomial that takes its place. An error of that size that
+_TOLERANCE: Final = 0.03
+"""Of a cell's standard deviation: the largest error of a polynomial that replaces it. An error of that size that
 has nothing to do with the value widens its spread by one part in 2,000."""
 
 _MOST_CELLS: Final = 2_000
@@ -38,6 +37,15 @@ _APART: Final = 1 << 40
 """Between the seeds of the pilot and of the trials."""
 
 Floats = NDArray[np.float64]
+
+_MOST_WITH_PRODUCTS: Final = 60
+"""Variables; with more, only their squares are taken, and no products of two."""
+
+_AT_ONCE: Final = 1_024
+"""Points whose terms stay in the cache."""
+
+_RIDGE: Final = 1e-10
+"""Of a term's mean square: what settles terms that say the same, as the square of a variable that has two values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,14 +75,14 @@ class Surrogate:
         replaced = [cell for cell in inputs if cell in cells]
         if not replaced:
             message = (
-                f"no cell on the way to the answers is a quadratic polynomial to {100 * TOLERANCE:g} % of its spread"
+                f"no cell on the way to the answers is a quadratic polynomial to {100 * _TOLERANCE:g} % of its spread"
             )
             raise SimulationError(message, hint="use a method that draws")
-        polynomials = fitted(points, values[:, [cells.index(cell) for cell in replaced]])
+        polynomials = fit_quadratic(points, values[:, [cells.index(cell) for cell in replaced]])
         accepted, columns = _run(model, replaced, polynomials, budget, seed + _APART)
         answers = {f.name: answer_of(c, None, f.central) for f, c in zip(model.forecasts, columns.T, strict=True)}
-        places = ", ".join(map(str, replaced))
-        said = f"fitted to {pilot:,} trials; polynomials in place of {places}"
+        names = ", ".join(map(str, replaced))
+        said = f"fitted to {pilot:,} trials; polynomials instead of {names}"
         return MethodResult(time.perf_counter() - started, pilot, answers, accepted / budget, remarks=(said,))
 
 
@@ -101,7 +109,7 @@ def _errors(points: Floats, values: Floats) -> Floats:
     good = values[:, sound]
     if not sound.any():
         return found
-    missed = fitted(points[tested:], good[tested:])(points[:tested]) - good[:tested]
+    missed = fit_quadratic(points[tested:], good[tested:])(points[:tested]) - good[:tested]
     spread = good.std(axis=0)
     found[sound] = np.sqrt(np.mean(missed**2, axis=0)) / np.where(spread > 0.0, spread, 1.0)
     return found
@@ -112,7 +120,7 @@ def _cut(model: Model, errors: dict[Cell, float]) -> list[Cell]:
     needs, found = model.scene.graph.needs, dict[Cell, None]()
     seen: set[Cell] = set()
     open_ = targets_of(model.forecasts, model.filters)[::-1]
-    ends = {a.cell for a in model.live} | {cell for cell, error in errors.items() if error <= TOLERANCE}
+    ends = {a.cell for a in model.live} | {cell for cell, error in errors.items() if error <= _TOLERANCE}
     while open_:
         cell = open_.pop()
         if cell in ends:
@@ -144,3 +152,53 @@ def _run(model: Model, replaced: list[Cell], polynomials: Quadratic, trials: int
         count += int(np.count_nonzero(accepted))
         columns.append(found.forecasts[accepted])
     return count, np.concatenate(columns)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Quadratic:
+    """Polynomials in z = (x − centre) / scale: weights · (1, z, products of two).
+
+    Attributes:
+        centre, scale: `(k,)`.
+        weights: `(q, coefficients)`.
+    """
+
+    centre: Floats
+    scale: Floats
+    weights: Floats
+
+    @staticmethod
+    def coefficients(k: int) -> int:
+        """How many each polynomial of `k` variables has."""
+        return 1 + 2 * k + (k * (k - 1) // 2 if k <= _MOST_WITH_PRODUCTS else 0)
+
+    def __call__(self, points: Floats) -> Floats:
+        """The values at `(n, k)` points, `(n, q)`."""
+        parts = [points[start : start + _AT_ONCE] for start in range(0, len(points), _AT_ONCE)]
+        # Not a matrix product: these are small, and its threads would wait for each other.
+        found = [np.einsum("qt,tn->qn", self.weights, _terms((part - self.centre) / self.scale)) for part in parts]
+        return np.concatenate(found, axis=1).T
+
+
+def fit_quadratic(points: Floats, values: Floats) -> Quadratic:
+    """The polynomials of least squares through `(n, k)` points and their values `(n, q)`."""
+    centre, spread = points.mean(axis=0), points.std(axis=0)
+    scale = np.where(spread > 0.0, spread, 1.0)
+    terms = _terms((points - centre) / scale)
+    normal = terms @ terms.T
+    normal[np.diag_indices(len(normal))] += _RIDGE * len(points)
+    return Quadratic(centre, scale, np.asarray(np.linalg.solve(normal, terms @ values).T, np.float64))
+
+
+def _terms(z: Floats) -> Floats:
+    """(coefficients, n): 1, the variables, their squares and, of few variables, their products."""
+    n, k = z.shape
+    columns = np.ascontiguousarray(z.T)
+    found = np.empty((Quadratic.coefficients(k), n))
+    found[0], found[1 : 1 + k] = 1.0, columns
+    np.multiply(columns, columns, out=found[1 + k : 1 + 2 * k])
+    start = 1 + 2 * k
+    for i in range(k - 1 if k <= _MOST_WITH_PRODUCTS else 0):
+        np.multiply(columns[i], columns[i + 1 :], out=found[start : start + k - 1 - i])
+        start += k - 1 - i
+    return found

@@ -9,8 +9,8 @@ import numpy as np
 
 from xlmc.run.model import Model
 from xlmc.studies.methods.answer import Answer, Errors, MethodResult
-from xlmc.studies.methods.box import box_of
 from xlmc.studies.methods.expansion import expansion_of
+from xlmc.studies.methods.points import box_of
 
 __all__ = ["WorstCase"]
 

@@ -3,8 +3,8 @@
 `sensitivities(simulation)` is the way in.
 """
 
-from xlmc.studies.sensitivity.assembled import sensitivities
-from xlmc.studies.sensitivity.results import (
+from xlmc.studies.sensitivity.analysis import sensitivities
+from xlmc.studies.sensitivity.measures import (
     PERCENTS,
     Bar,
     FilterLimit,

@@ -1,6 +1,6 @@
 """The trials that decide a limit of a filter: the accepted ones, and those that nothing but this limit rejects.
 
-The run keeps the accepted trials only. The filters' cells are computed again from their draws; the others are found by
+The run keeps only the accepted trials. The filters' cells are computed again from their draws; the others are found by
 running some of the run's first trials again, with the same draws, no more than a quarter of a long run.
 """
 
@@ -8,27 +8,99 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.address import Cell
 from xlmc.definitions.model import name_key
-from xlmc.studies.sensitivity.limit_cells import Limit, LimitCells, Looked
-from xlmc.studies.sensitivity.moved_limit import LimitTrials, grid, kept
+from xlmc.run.drawing import parameter_target
+from xlmc.run.scene import filter_limits
+from xlmc.studies.sensitivity.moved_limit import LimitTrials, grid, holds_to
 
 if TYPE_CHECKING:
+    from xlmc.definitions.model import Filter
+    from xlmc.evaluation.engine import Evaluator, Program
+    from xlmc.run.model import Model
     from xlmc.run.simulation import Simulation
 
-__all__ = ["LimitsFound", "TriedLimit", "limit_trials"]
+__all__ = ["Limit", "LimitsFound", "TriedLimit", "limit_trials"]
 
-MOST_ACCEPTED: Final = 1 << 14
+Bools = NDArray[np.bool_]
+
+_MOST_ACCEPTED: Final = 1 << 14
 """Accepted trials that answers are taken from."""
 
-LEAST_AGAIN, MOST_AGAIN = 1 << 13, 1 << 15
+LEAST_AGAIN, _MOST_AGAIN = 1 << 13, 1 << 15
 """Trials run again, unless the run has fewer."""
 
 Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Limit:
+    """One limit of a filter, a number or a cell; filters are counted from 0."""
+
+    filter: Filter
+    filter_index: int
+    relation: str
+    bound: float | Cell
+
+
+@dataclass(frozen=True)
+class _CellValues:
+    """What a block of trials has in the cells: `(n,)` of each filter and of each limit; NaN for an error."""
+
+    filters: list[Floats]
+    bounds: list[Floats]
+
+
+class _LimitCells:
+    """The limits of a model, in the order of the workbook, and a program that computes what decides them.
+
+    Attributes:
+        limits: of all filters.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self.limits = [
+            Limit(filter_, i, relation, bound)
+            for i, filter_ in enumerate(model.filters)
+            for relation, bound in filter_limits(filter_)
+        ]
+
+    @cached_property
+    def program(self) -> Program:
+        """Gives filters' cells and limits instead of filters, and the forecasts."""
+        cells = [filter_.cell for filter_ in self._model.filters]
+        cells += [limit.bound for limit in self.limits if isinstance(limit.bound, Cell)]
+        return self._model.program_of([parameter_target(cell) for cell in cells])
+
+    def look(self, evaluator: Evaluator, draws: Mapping[str, Floats], n: int) -> _CellValues:
+        """Into the cells, in `n` trials, with an evaluator of the program."""
+        columns = [column.as_floats() for column in evaluator.filters(draws, n)]
+        filters = len(self._model.filters)
+        computed = iter(columns[filters:])
+        bounds = [next(computed) if isinstance(each.bound, Cell) else np.full(n, each.bound) for each in self.limits]
+        return _CellValues(columns[:filters], bounds)
+
+    def rejected_by_one(self, looked: _CellValues, draws: Mapping[str, Floats]) -> list[Bools]:
+        """For each limit, the trials `(n,)` that it rejects and nothing else does."""
+        held = [
+            holds_to(limit.relation, looked.filters[limit.filter_index], bound)
+            for limit, bound in zip(self.limits, looked.bounds, strict=True)
+        ]
+        limited = {limit.filter_index for limit in self.limits}
+        logical = [cell for i, cell in enumerate(looked.filters) if i not in limited]
+        broken = np.sum([~each for each in held], axis=0)
+        for cell in logical:
+            broken += (cell == 0.0) | np.isnan(cell)
+        for name in sorted(self._model.fallible):
+            broken += np.isnan(draws[name])
+        return [(broken == 1) & ~each for each in held]
 
 
 @dataclass(frozen=True)
@@ -58,7 +130,7 @@ class _More:
     forecasts: Floats
 
     @classmethod
-    def joined(cls, parts: list[_More], forecasts: int) -> _More:
+    def join(cls, parts: list[_More], forecasts: int) -> _More:
         parts = [cls(np.empty(0, np.int64), np.empty(0), np.empty((forecasts, 0))), *parts]
         columns = [(part.trials, part.values, part.forecasts) for part in parts]
         return cls(*(np.concatenate(each, axis=-1) for each in zip(*columns, strict=True)))
@@ -70,33 +142,33 @@ def limit_trials(simulation: Simulation, most: int, forecasts: int) -> LimitsFou
     Nothing is found where the draws of fewer than two accepted trials were kept, and no limit is tried where accepted
     trials are rare: those near it are not among the run's plain trials.
     """
-    cells = LimitCells(simulation.model)
+    cells = _LimitCells(simulation.model)
     if simulation.rare is not None:
         return LimitsFound(omitted=len(cells.limits))
-    m = min(simulation.kept_inputs, simulation.accepted, MOST_ACCEPTED)
+    m = min(simulation.kept_inputs, simulation.accepted, _MOST_ACCEPTED)
     if not cells.limits or not simulation.model.live or m < 2:
         return LimitsFound()
-    now = _accepted(simulation, cells, m)
+    now = _look_at_accepted(simulation, cells, m)
     constant = [bool(np.all(bound == bound[0])) for bound in now.bounds]
-    places = [place for place, fixed in enumerate(constant) if fixed]
+    fixed_limits = [i for i, fixed in enumerate(constant) if fixed]
     grids = {
-        place: grid(cells.limits[place].relation, float(now.bounds[place][0]), now.filters[cells.limits[place].place])
-        for place in places[:most]
+        i: grid(cells.limits[i].relation, float(now.bounds[i][0]), now.filters[cells.limits[i].filter_index])
+        for i in fixed_limits[:most]
     }
     reached = simulation.trials if m == simulation.accepted else int(simulation.trial_index[m])
     names = [f.name for f in simulation.model.forecasts[:forecasts]]
-    again = min(reached, MOST_AGAIN, max(LEAST_AGAIN, simulation.trials // 4))
-    more = _rejected(simulation, cells, grids, again, len(names))
+    again = min(reached, _MOST_AGAIN, max(LEAST_AGAIN, simulation.trials // 4))
+    more = _find_rejected(simulation, cells, grids, again, len(names))
     index = np.asarray(simulation.trial_index[:m])
     answers = np.array([simulation.forecasts[name][:m] for name in names]).reshape(len(names), m)
     tried = []
-    for place, limits in grids.items():
-        limit, extra = cells.limits[place], more[place]
+    for i, limits in grids.items():
+        limit, extra = cells.limits[i], more[i]
         trials = np.concatenate([index, extra.trials])
         found = LimitTrials(
             relation=limit.relation,
-            limit=float(now.bounds[place][0]),
-            values=np.concatenate([now.filters[limit.place], extra.values]),
+            limit=float(now.bounds[i][0]),
+            values=np.concatenate([now.filters[limit.filter_index], extra.values]),
             accepted=np.arange(trials.size) < m,
             forecasts=np.concatenate([answers, extra.forecasts], axis=1),
             replicate=simulation.plan.replicate_of(trials),
@@ -105,10 +177,10 @@ def limit_trials(simulation: Simulation, most: int, forecasts: int) -> LimitsFou
         )
         tried.append(TriedLimit(limit, found, limits))
     varying = [limit.filter.name for limit, fixed in zip(cells.limits, constant, strict=True) if not fixed]
-    return LimitsFound(tuple(tried), max(0, len(places) - most), tuple(dict.fromkeys(varying)))
+    return LimitsFound(tuple(tried), max(0, len(fixed_limits) - most), tuple(dict.fromkeys(varying)))
 
 
-def _accepted(simulation: Simulation, cells: LimitCells, m: int) -> Looked:
+def _look_at_accepted(simulation: Simulation, cells: _LimitCells, m: int) -> _CellValues:
     """What decides the limits in the first m accepted trials."""
     block = min(m, cells.program.largest_block)
     evaluator, parts = cells.program.evaluator(block), []
@@ -120,15 +192,17 @@ def _accepted(simulation: Simulation, cells: LimitCells, m: int) -> Looked:
         }
         parts.append(cells.look(evaluator, draws, n))
     filters = [np.concatenate(columns) for columns in zip(*(part.filters for part in parts), strict=True)]
-    return Looked(filters, [np.concatenate(columns) for columns in zip(*(part.bounds for part in parts), strict=True)])
+    return _CellValues(
+        filters, [np.concatenate(columns) for columns in zip(*(part.bounds for part in parts), strict=True)]
+    )
 
 
-def _rejected(
-    simulation: Simulation, cells: LimitCells, grids: Mapping[int, tuple[float, ...]], again: int, forecasts: int
+def _find_rejected(
+    simulation: Simulation, cells: _LimitCells, grids: Mapping[int, tuple[float, ...]], again: int, forecasts: int
 ) -> dict[int, _More]:
     """Of each limit those of the first `again` trials that it alone rejects and its loosest value to try lets in."""
-    parts: dict[int, list[_More]] = {place: [] for place in grids}
-    chosen = [p for p, limits in grids.items() if limits and simulation.tally.only[cells.limits[p].place]]
+    parts: dict[int, list[_More]] = {i: [] for i in grids}
+    chosen = [p for p, limits in grids.items() if limits and simulation.tally.only[cells.limits[p].filter_index]]
     program, plan = cells.program, simulation.plan
     block = min(again, program.largest_block)
     if chosen:
@@ -139,19 +213,19 @@ def _rejected(
         draws = {key: values[:n] for key, values in sampler.draw(start).items()}
         looked = cells.look(evaluator, draws, n)
         alone = cells.rejected_by_one(looked, draws)
-        let_in = {place: alone[place] & _loosely_kept(cells.limits[place], looked, grids[place]) for place in chosen}
+        let_in = {i: alone[i] & _within_loosest(cells.limits[i], looked, grids[i]) for i in chosen}
         every = np.flatnonzero(np.logical_or.reduce(list(let_in.values())))
         if not every.size:
             continue
         answers = np.array([column.as_floats() for column in evaluator.forecasts(every)[:forecasts]])
-        for place, mask in let_in.items():
+        for i, mask in let_in.items():
             mine = mask[every]
-            values = looked.filters[cells.limits[place].place][every[mine]]
-            parts[place].append(_More(every[mine] + start, values, answers[:, mine]))
-    return {place: _More.joined(found, forecasts) for place, found in parts.items()}
+            values = looked.filters[cells.limits[i].filter_index][every[mine]]
+            parts[i].append(_More(every[mine] + start, values, answers[:, mine]))
+    return {i: _More.join(found, forecasts) for i, found in parts.items()}
 
 
-def _loosely_kept(limit: Limit, looked: Looked, limits: tuple[float, ...]) -> NDArray[np.bool_]:
+def _within_loosest(limit: Limit, looked: _CellValues, limits: tuple[float, ...]) -> NDArray[np.bool_]:
     """`(n,)` the trials within the loosest limit to try."""
     loosest = limits[0] if limit.relation.startswith(">") else limits[-1]
-    return kept(limit.relation, looked.filters[limit.place], loosest)
+    return holds_to(limit.relation, looked.filters[limit.filter_index], loosest)

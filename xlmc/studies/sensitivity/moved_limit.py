@@ -17,15 +17,15 @@ from numpy.typing import NDArray
 from xlmc.statistics import Estimate, Sample, central_interval, proportion
 from xlmc.statistics.estimate import with_error
 from xlmc.statistics.sample import MOST_GROUPS
-from xlmc.studies.sensitivity.results import LimitAnswer, LimitPoint, Slope
-from xlmc.studies.sensitivity.units import Units
+from xlmc.studies.sensitivity.measures import LimitAnswer, LimitPoint, Slope
+from xlmc.studies.sensitivity.pull_errors import Units
 
-__all__ = ["STEPS", "LimitTrials", "grid", "kept", "moved_answers", "moved_limit"]
+__all__ = ["LimitTrials", "grid", "holds_to", "moved_limit"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-STEPS = 3
+_STEPS = 3
 """On either side of the limit as it is; the last on the tight side leaves about half of the accepted trials."""
 
 _ROUND = (1.0, 2.0, 2.5, 5.0)
@@ -64,12 +64,12 @@ class LimitTrials:
         """`(n,)` the trials accepted with the limit at this value."""
         if limit == self.limit:
             return self.accepted
-        held = kept(self.relation, self.values, limit)
+        held = holds_to(self.relation, self.values, limit)
         looser = (limit < self.limit) == self.relation.startswith(">")
         return held | self.accepted if looser else held & self.accepted
 
 
-def kept(relation: str, values: Floats, limit: float | Floats) -> Bools:
+def holds_to(relation: str, values: Floats, limit: float | Floats) -> Bools:
     """Whether values hold to a limit; False where one is NaN."""
     compare = {">=": np.greater_equal, "<=": np.less_equal, ">": np.greater, "<": np.less}[relation]
     return np.asarray(compare(values, limit))
@@ -78,14 +78,14 @@ def kept(relation: str, values: Floats, limit: float | Floats) -> Bools:
 def grid(relation: str, limit: float, values: Floats) -> tuple[float, ...]:
     """Limits to try, ascending, in round steps about the limit as it is; none where the accepted values tell no step.
 
-    Up to half of the accepted trials are cut off by `STEPS` steps on the tight side.
+    Up to half of the accepted trials are cut off by `_STEPS` steps on the tight side.
     """
     apart = np.abs(values[np.isfinite(values)] - limit)
     room = float(np.median(apart)) if apart.size else 0.0
     if not (math.isfinite(room) and room > 1e-9 * abs(limit) and room > 1e-300):
         return ()
-    step = _round_below(room / STEPS)
-    return tuple(float(f"{limit + place * step:.12g}") if place else limit for place in range(-STEPS, STEPS + 1))
+    step = _round_below(room / _STEPS)
+    return tuple(float(f"{limit + count * step:.12g}") if count else limit for count in range(-_STEPS, _STEPS + 1))
 
 
 def _round_below(size: float) -> float:
@@ -107,16 +107,16 @@ def moved_limit(
     """
     inside = [found.inside(limit) for limit in limits]
     table = [
-        moved_answers(found, row, inside, limits, share) for row, share in zip(found.forecasts, central, strict=True)
+        _answers_at(found, row, inside, limits, share) for row, share in zip(found.forecasts, central, strict=True)
     ]
     points = tuple(
         LimitPoint(
             limit=limit,
             trials=round(float(found.weights[mask].sum())),
             acceptance=_acceptance(found, mask),
-            answers=tuple(LimitAnswer(name, *answers[place]) for name, (answers, _) in zip(names, table, strict=True)),
+            answers=tuple(LimitAnswer(name, *answers[index]) for name, (answers, _) in zip(names, table, strict=True)),
         )
-        for place, (limit, mask) in enumerate(zip(limits, inside, strict=True))
+        for index, (limit, mask) in enumerate(zip(limits, inside, strict=True))
     )
     return points, tuple(Slope(name, slope) for name, (_, slope) in zip(names, table, strict=True))
 
@@ -132,7 +132,7 @@ def _acceptance(found: LimitTrials, inside: Bools) -> Estimate:
     return with_error(known.value + loose.value, error, math.inf, 0.95, found.trials)
 
 
-def moved_answers(
+def _answers_at(
     found: LimitTrials, forecast: Floats, inside: Sequence[Bools], limits: Sequence[float], central: float
 ) -> tuple[list[tuple[Estimate, Estimate, Estimate, Estimate]], Estimate]:
     """Mean, its change, and both ends of the central range of a forecast `(n,)` at every limit; and the slope."""
@@ -146,7 +146,7 @@ def moved_answers(
         held = mask[order]
         key = held.tobytes()
         if key not in made:
-            made[key] = _moved(y, weights, held, units, now, central)
+            made[key] = _move(y, weights, held, units, now, central)
         moved.append(made[key])
     slope = _slope(found, [(each.value, each.pulls) for each in moved], limits, units, accepted)
     return [each.estimates for each in moved], slope
@@ -160,7 +160,7 @@ class _Moved(NamedTuple):
     estimates: tuple[Estimate, Estimate, Estimate, Estimate]
 
 
-def _moved(y: Floats, weights: Floats, held: Bools, units: Units, now: tuple[float, Floats], central: float) -> _Moved:
+def _move(y: Floats, weights: Floats, held: Bools, units: Units, now: tuple[float, Floats], central: float) -> _Moved:
     """Of the trials held, in ascending order; `now` is the mean of the accepted ones."""
     mean, pulls = _mean(y, weights, held, units)
     change = _estimate(mean - now[0], pulls - now[1], units, held)
@@ -172,9 +172,9 @@ def _slope(
     found: LimitTrials, means: Sequence[tuple[float, Floats]], limits: Sequence[float], units: Units, held: Bools
 ) -> Estimate:
     """Of the mean, over one step on either side."""
-    place = list(limits).index(found.limit)
-    (before, pulls), (after, more) = means[place - 1], means[place + 1]
-    width = limits[place + 1] - limits[place - 1]
+    index = list(limits).index(found.limit)
+    (before, pulls), (after, more) = means[index - 1], means[index + 1]
+    width = limits[index + 1] - limits[index - 1]
     return _estimate((after - before) / width, (more - pulls) / width, units, held)
 
 

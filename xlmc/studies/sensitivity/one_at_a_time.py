@@ -1,7 +1,7 @@
 """Tornado and spider: one assumption moved at a time, all others at their base values.
 
-The model is evaluated, nothing is drawn: there is no noise, and there are no probabilities. An assumption's place is
-one of `PERCENTS` of its own distribution, before filtering and whatever it is correlated with, so that a case may be
+The model is evaluated, nothing is drawn: there is no noise, and there are no probabilities. An assumption is put at
+each of `PERCENTS` of its own distribution, before filtering and whatever it is correlated with, so that a case may be
 one that the filters would reject; that is marked.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.definitions.model import name_key
-from xlmc.studies.sensitivity.results import PERCENTS, Bar
+from xlmc.studies.sensitivity.measures import PERCENTS, Bar
 
 if TYPE_CHECKING:
     from xlmc.evaluation.engine import Column
@@ -47,13 +47,13 @@ def one_at_a_time(model: Model, assumptions: Sequence[str]) -> OneAtATime:
     base = {a.name: float(quantiles[a.name][-1]) if a.base is None else float(a.base) for a in model.live}
     units = {a.name: a.units for a in model.live}
     moved = {name: quantiles[name][:-1] for name in assumptions}
-    answers, rejected = _evaluated(model, base, moved)
+    answers, rejected = _evaluate(model, base, moved)
     bars = []
     for each in answers:
         made = [
             _bar(name, units[name], base[name], moved[name], each[cases], rejected[cases])
-            for place, name in enumerate(assumptions)
-            for cases in [slice(1 + place * len(PERCENTS), 1 + (place + 1) * len(PERCENTS))]
+            for index, name in enumerate(assumptions)
+            for cases in [slice(1 + index * len(PERCENTS), 1 + (index + 1) * len(PERCENTS))]
         ]
         bars.append(tuple(sorted(made, key=lambda bar: -bar.span)))
     return OneAtATime(
@@ -63,10 +63,10 @@ def one_at_a_time(model: Model, assumptions: Sequence[str]) -> OneAtATime:
     )
 
 
-def _evaluated(model: Model, base: dict[str, float], moved: dict[str, Floats]) -> tuple[list[Floats], Floats]:
+def _evaluate(model: Model, base: dict[str, float], moved: dict[str, Floats]) -> tuple[list[Floats], Floats]:
     """The base case and every move, one after another: one `(cases,)` a forecast, and whether the filters reject."""
     cases = 1 + len(moved) * len(PERCENTS)
-    starts = {name: 1 + place * len(PERCENTS) for place, name in enumerate(moved)}
+    starts = {name: 1 + index * len(PERCENTS) for index, name in enumerate(moved)}
     program = model.program("numpy")
     block = min(cases, program.largest_block)
     evaluator = program.evaluator(block)
@@ -76,9 +76,9 @@ def _evaluated(model: Model, base: dict[str, float], moved: dict[str, Floats]) -
         n = min(block, cases - first)
         columns = {name: np.full(n, value) for name, value in base.items()}
         for name, start in starts.items():
-            places = np.arange(start, start + len(PERCENTS)) - first
-            inside = (places >= 0) & (places < n)
-            columns[name][places[inside]] = moved[name][inside]
+            rows = np.arange(start, start + len(PERCENTS)) - first
+            inside = (rows >= 0) & (rows < n)
+            columns[name][rows[inside]] = moved[name][inside]
         filters = evaluator.filters({name_key(name): column for name, column in columns.items()}, n)
         rejected.append(np.logical_or.reduce([np.zeros(n, bool), *(_fails(column) for column in filters)]))
         answers.append([column.as_floats() for column in evaluator.forecasts(np.arange(n))])

@@ -1,7 +1,18 @@
-"""Sobol's indices of a model: where they are right to give, and the trials they need."""
+"""Sobol's indices of a model by pick and freeze: where they are right to give, and each with its standard error.
+
+Two independent sets of trials, A and B; ABᵢ is A with assumption i taken from B. With answers a, b and c of these, each
+`(n,)`, and v the variance of a and b,
+
+    first order   Sᵢ = 1 − mean((b − c)²) / 2v        (Jansen 1999)
+    total         Tᵢ = mean((a − c)²) / 2v            (Jansen 1999, Saltelli et al. 2010)
+
+Sᵢ is the share of the variance that assumption i explains alone, Tᵢ what would be left on average if all others were
+known. They hold for independent assumptions and trials that no filter rejects.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
@@ -11,19 +22,19 @@ from numpy.typing import NDArray
 
 from xlmc.definitions.model import name_key
 from xlmc.statistics import Estimate
-from xlmc.studies.sensitivity.sobol import sobol_indices
+from xlmc.studies.sensitivity.pull_errors import Units
 
 if TYPE_CHECKING:
     from xlmc.evaluation.engine import Evaluator
     from xlmc.run.model import Model
     from xlmc.run.simulation import Simulation
 
-__all__ = ["SobolRun", "pick_and_freeze", "why_not"]
+__all__ = ["SobolRun", "pick_and_freeze", "sobol_indices", "why_not"]
 
-MOST_PAIRS: Final = 1 << 13
-LEAST_PAIRS: Final = 1 << 8
+_MOST_PAIRS: Final = 1 << 13
+_LEAST_PAIRS: Final = 1 << 8
 _LEAST_EVALUATED, _MOST_EVALUATED = 1 << 15, 1 << 17
-
+_INSTEAD: Final = "What each assumption explains is given instead"
 Floats = NDArray[np.float64]
 
 
@@ -46,18 +57,17 @@ def why_not(simulation: Simulation) -> str:
     if simulation.accepted < simulation.trials:
         return (
             "Sobol indices are not given: the filters reject trials, and among the accepted ones the assumptions are "
-            "no longer independent, so that the variance cannot be shared out among them. What each explains is given "
-            "instead"
+            f"no longer independent, so that the variance cannot be divided among them. {_INSTEAD}"
         )
     if model.groups:
         return (
-            "Sobol indices are not given: assumptions are correlated, so that the variance cannot be shared out among "
-            "them. What each explains is given instead"
+            "Sobol indices are not given: assumptions are correlated, so that the variance cannot be divided among "
+            f"them. {_INSTEAD}"
         )
     if len(model.scene.stages) > 1:
         return (
             "Sobol indices are not given: parameters of assumptions depend on other assumptions, so that these are not "
-            "independent. What each explains is given instead"
+            f"independent. {_INSTEAD}"
         )
     return ""
 
@@ -72,8 +82,8 @@ def pick_and_freeze(model: Model, assumptions: Sequence[str], trials: int, seed:
         seed: of the run. The trials are its first ones by Monte Carlo, and those that follow them.
     """
     evaluations = max(_LEAST_EVALUATED, min(_MOST_EVALUATED, trials // 2))
-    chosen = assumptions[: max(evaluations // LEAST_PAIRS - 2, 1)]
-    pairs = min(MOST_PAIRS, evaluations // (len(chosen) + 2))
+    chosen = assumptions[: max(evaluations // _LEAST_PAIRS - 2, 1)]
+    pairs = min(_MOST_PAIRS, evaluations // (len(chosen) + 2))
     program = model.program("numpy")
     block = min(pairs, program.largest_block)
     first, second = _draws(model, seed, 0, pairs, block), _draws(model, seed, pairs, pairs, block)
@@ -107,3 +117,33 @@ def _answers(evaluator: Evaluator, draws: Mapping[str, Floats], count: int, bloc
         evaluator.filters(part, n)
         found.append([column.as_floats() for column in evaluator.forecasts(np.arange(n))])
     return [np.concatenate(columns) for columns in zip(*found, strict=True)]
+
+
+def sobol_indices(a: Floats, b: Floats, c: Floats) -> tuple[Estimate, Estimate]:
+    """First-order and total index from the answers `(n,)` of A, B and ABᵢ; nan where they do not vary.
+
+    Pairs in which one of the answers is no number (NaN) are left out.
+    """
+    known = ~(np.isnan(a) | np.isnan(b) | np.isnan(c))
+    a, b, c = a[known], b[known], c[known]
+    units = Units(int(a.size))
+    if units.n < 2:
+        return Estimate(math.nan, n=units.n), Estimate(math.nan, n=units.n)
+    largest = max(float(np.max(np.abs(a))), float(np.max(np.abs(b)))) or 1.0
+    a, b, c = a / largest, b / largest, c / largest  # first, so that sums and squares cannot overflow
+    middle = 0.5 * (a.mean() + b.mean())
+    scale = max(float(np.max(np.abs(a - middle))), float(np.max(np.abs(b - middle))))
+    if not scale > 1e-12:
+        return Estimate(math.nan, n=units.n), Estimate(math.nan, n=units.n)
+    a, b, c = (a - middle) / scale, (b - middle) / scale, (c - middle) / scale
+    squares = a * a + b * b  # of mean 2v
+    first, total = (_share((each - c) ** 2, squares, units) for each in (b, a))
+    alone = units.estimate(1.0 - first.value, first.error if first.error is not None else math.nan)
+    return alone, total
+
+
+def _share(part: Floats, whole: Floats, units: Units) -> Estimate:
+    """mean(part)/mean(whole), with the error of a ratio."""
+    size = float(whole.mean())
+    value = float(part.mean()) / size
+    return units.estimate(value, units.error((part - value * whole) / size))

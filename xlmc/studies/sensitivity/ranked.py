@@ -8,18 +8,18 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["LEAST_IN_A_CLASS", "MOST_CLASSES", "STEPS", "Classes", "Ranked"]
+__all__ = ["Classes", "Ranked"]
 
 Floats = NDArray[np.float64]
-Places = NDArray[np.intp]
+Indices = NDArray[np.intp]
 
-MOST_CLASSES = 16
+_MOST_CLASSES = 16
 """With a straight line in each they follow two periods of a sine to 0.1 % of its variance."""
 
-STEPS = 32
+_STEPS = 32
 """Classes of a forecast where its distribution function is looked at: at each of the limits between them."""
 
-LEAST_IN_A_CLASS = 50
+_LEAST_IN_A_CLASS = 50
 """Trials, where there is more than one class: enough to lay a line through."""
 
 _FLAT = 1e-24
@@ -41,9 +41,9 @@ class Classes:
         freedom: parameters of the fit: a mean a class, and a slope where there is a line.
     """
 
-    starts: Places
-    sizes: Places
-    label: Places
+    starts: Indices
+    sizes: Indices
+    label: Indices
     centred: Floats
     squares: Floats
     freedom: int
@@ -55,11 +55,11 @@ class Ranked:
 
     Attributes:
         values: as they came.
-        order: the places of the values, ascending.
+        order: the indices of the values, ascending.
     """
 
     values: Floats
-    order: Places
+    order: Indices
 
     @classmethod
     def of(cls, values: Floats) -> Ranked:
@@ -70,8 +70,8 @@ class Ranked:
         return int(self.values.size)
 
     @cached_property
-    def ties(self) -> tuple[Places, Places]:
-        """For every place in ascending order, `(n,)`: the first of those with the same value, and one past the last."""
+    def ties(self) -> tuple[Indices, Indices]:
+        """For every value in ascending order, `(n,)`: the index of the first equal one, and one past the last."""
         ascending = self.values[self.order]
         starts = np.flatnonzero(np.concatenate([[True], ascending[1:] != ascending[:-1]]))
         ends = np.append(starts[1:], self.n)
@@ -100,7 +100,7 @@ class Ranked:
 
     @cached_property
     def pulls(self) -> Floats:
-        """`(n,)` of the spread: see `rank_correlations.py`."""
+        """`(n,)` of the spread: see `given_data.rank_correlation`."""
         found = self.grades**2 + 2.0 * self.above(self.grades)
         return np.asarray(found - found.mean())
 
@@ -110,20 +110,20 @@ class Ranked:
         return bool(first[-1] > 0)
 
     @cached_property
-    def steps(self) -> Places:
-        """`(n,)` the class of every value, of `STEPS` at most, numbered upwards from 0."""
+    def steps(self) -> Indices:
+        """`(n,)` the class of every value, of `_STEPS` at most, numbered upwards from 0."""
         found = np.empty(self.n, np.intp)
-        found[self.order] = self._labels(STEPS)
+        found[self.order] = self._labels(_STEPS)
         return found
 
-    def _labels(self, classes: int) -> Places:
+    def _labels(self, classes: int) -> Indices:
         """`(n,)` classes of equal probability, in ascending order of the values; equal values stay together."""
         raw = np.floor((self.grades[self.order] + 0.5) * classes).astype(np.intp)
         return np.cumsum(np.concatenate([[0], raw[1:] != raw[:-1]]))
 
     @cached_property
     def classes(self) -> Classes:
-        label = self._labels(min(MOST_CLASSES, max(1, self.n // LEAST_IN_A_CLASS)))
+        label = self._labels(min(_MOST_CLASSES, max(1, self.n // _LEAST_IN_A_CLASS)))
         starts = np.flatnonzero(np.concatenate([[True], label[1:] != label[:-1]]))
         sizes = np.diff(np.append(starts, self.n))
         x = _squarable(self.values[self.order])

@@ -5,7 +5,7 @@ of the formula cures it. What *rounding* does comes from evaluations with random
 again with 50 digits. What is *wrong in form* (a lost quadrant, a jump) is read off the formulas.
 """
 
+from xlmc.studies.stability.digit_findings import CellDigits, Finding, Level, Stability, Where
 from xlmc.studies.stability.find import stability
-from xlmc.studies.stability.findings import CellDigits, Finding, Level, Stability, Where
 
 __all__ = ["CellDigits", "Finding", "Level", "Stability", "Where", "stability"]

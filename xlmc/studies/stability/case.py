@@ -32,15 +32,15 @@ from xlmc.run.model import Model
 from xlmc.run.scene import condition
 from xlmc.run.simulation import Simulation
 from xlmc.studies.derivatives import derivatives
-from xlmc.studies.stability.findings import Where
-from xlmc.studies.stability.trees import Trees
+from xlmc.studies.stability.digit_findings import Where
+from xlmc.studies.stability.formula_trees import Trees
 
-__all__ = ["RELATIONS", "REPLICAS", "Case"]
+__all__ = ["RELATIONS", "Case"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-REPLICAS: Final = 6
+_REPLICAS: Final = 6
 """Evaluations with random rounding: their root mean square is known to a third of itself."""
 
 RELATIONS: Final = frozenset({"<", "<=", ">", ">=", "=", "<>"})
@@ -72,8 +72,8 @@ class Case:
         self.node = {cell: self.lowering.cell(cell) for cell in (*self.cells, *targets)}
         self.names = [name_key(a.name) for a in model.live]
         self.conditions = [self.lowering.target(Target(condition(f), f.cell)) for f in model.filters]
-        self.places = closure(self.dag, [*self.node.values(), *self.conditions])
-        self._exact = Exact(self.dag, self.places)
+        self.nodes = closure(self.dag, [*self.node.values(), *self.conditions])
+        self._exact = Exact(self.dag, self.nodes)
         self._known: dict[int, dict[int, Any]] = {}
 
     @cached_property
@@ -90,7 +90,7 @@ class Case:
 
     def _room(self, trials: int) -> int:
         """How many trials of so many there is room for."""
-        each = 24 * len(self.places) + 16 * len(self.cells) * len(self.names)
+        each = 24 * len(self.nodes) + 16 * len(self.cells) * len(self.names)
         share = _BYTES / (each * (_PRIOR + _ACCEPTED))
         return trials if share >= 1 else max(_FEWEST_OF_EITHER, int(share * trials))
 
@@ -99,12 +99,12 @@ class Case:
         prior = [self.run.prior[a.name] for a in self.model.live]
         base = np.array([_base(a.base, draws) for a, draws in zip(self.model.live, prior, strict=True)])
         rows = [base]
-        for place, assumption in enumerate(self.model.live):
+        for index, assumption in enumerate(self.model.live):
             ends = [assumption.parameters.get(key) for key in ("low", "high", "minimum", "maximum")]
             numbers_ = [float(end) for end in ends if isinstance(end, int | float)]
-            for end in {*numbers_, float(np.nanmin(prior[place])), float(np.nanmax(prior[place]))}:
+            for end in {*numbers_, float(np.nanmin(prior[index])), float(np.nanmax(prior[index]))}:
                 row = base.copy()
-                row[place] = end
+                row[index] = end
                 rows.append(row)
         return np.array(rows)
 
@@ -126,7 +126,7 @@ class Case:
     @cached_property
     def values(self) -> dict[int, Value]:
         """Node -> its values."""
-        return evaluation(self.dag, self.places, self.draws)
+        return evaluation(self.dag, self.nodes, self.draws)
 
     @cached_property
     def errors(self) -> dict[int, Floats]:
@@ -136,36 +136,36 @@ class Case:
     def _spread(self, how: Callable[[int], dict[str, RandomRounding]]) -> dict[int, Floats]:
         """The root mean square of what differs in evaluations that move something."""
         squares: dict[int, Floats] = {}
-        for replica in range(REPLICAS):
-            found = evaluation(self.dag, self.places, self.draws, **how(replica))
-            for place in {*self.node.values()}:
-                off = numbers(found[place], self.n) - self.number(place)
-                squares[place] = squares.get(place, 0.0) + np.where(np.isnan(off), 0.0, off) ** 2
-        return {place: np.sqrt(square / REPLICAS) for place, square in squares.items()}
+        for replica in range(_REPLICAS):
+            found = evaluation(self.dag, self.nodes, self.draws, **how(replica))
+            for node in {*self.node.values()}:
+                off = numbers(found[node], self.n) - self.number(node)
+                squares[node] = squares.get(node, 0.0) + np.where(np.isnan(off), 0.0, off) ** 2
+        return {node: np.sqrt(square / _REPLICAS) for node, square in squares.items()}
 
-    def number(self, place: int) -> Floats:
+    def number(self, node: int) -> Floats:
         """A node's numbers, `(n,)`; NaN where it has none."""
-        return numbers(self.values[place], self.n)
+        return numbers(self.values[node], self.n)
 
     @cached_property
     def users(self) -> dict[int, list[int]]:
         """Node -> the nodes that use it."""
         found: dict[int, list[int]] = {}
-        for place in self.places:
-            for part in uses(formula_of(self.dag, place)):
-                found.setdefault(part, []).append(place)
+        for node in self.nodes:
+            for part in uses(formula_of(self.dag, node)):
+                found.setdefault(part, []).append(node)
         return found
 
     @cached_property
     def comparisons(self) -> list[int]:
         """The nodes that compare."""
-        nodes = ((place, formula_of(self.dag, place)) for place in self.places)
-        return [place for place, node in nodes if isinstance(node, Apply) and node.function.name in RELATIONS]
+        formulas = ((node, formula_of(self.dag, node)) for node in self.nodes)
+        return [node for node, formula in formulas if isinstance(formula, Apply) and formula.function.name in RELATIONS]
 
-    def after(self, *places: int) -> list[int]:
+    def after(self, *nodes: int) -> list[int]:
         """The nodes that follow from some, each after those that it needs."""
         found: set[int] = set()
-        open_ = list(places)
+        open_ = list(nodes)
         while open_:
             new = [user for user in self.users.get(open_.pop(), ()) if user not in found]
             found.update(new)
@@ -174,7 +174,7 @@ class Case:
 
     @cached_property
     def _order(self) -> dict[int, int]:
-        return {place: at for at, place in enumerate(self.places)}
+        return {node: at for at, node in enumerate(self.nodes)}
 
     @cached_property
     def derivatives(self) -> Derivatives:
@@ -184,14 +184,14 @@ class Case:
 
     @cached_property
     def of_inputs(self) -> dict[int, Floats]:
-        """Node of a cell -> by how much it moves with the last place of assumptions and typed numbers, `(n,)`."""
-        found = self._spread(lambda replica: {"of_inputs": RandomRounding((self._seed, REPLICAS, replica), _MOVE)})
-        return {place: spread * (2 * DOUBLE / _MOVE) for place, spread in found.items()}
+        """Node of a cell -> by how much it moves with the last digit of assumptions and typed numbers, `(n,)`."""
+        found = self._spread(lambda replica: {"of_inputs": RandomRounding((self._seed, _REPLICAS, replica), _MOVE)})
+        return {node: spread * (2 * DOUBLE / _MOVE) for node, spread in found.items()}
 
     @cached_property
     def term_sizes(self) -> dict[int, float]:
         """Node -> the largest number added or subtracted on the way to it."""
-        return term_sizes(self.dag, self.places, self.values)
+        return term_sizes(self.dag, self.nodes, self.values)
 
     def inherent(self, cell: Cell) -> Floats:
         """The error that rounding the assumptions, and the result, would bring alone, `(n,)`; NaN where unknown."""
@@ -212,15 +212,15 @@ class Case:
             size = abs(float(middle))
         return size or 1.0
 
-    def exact(self, place: int, trial: int) -> Any:
+    def exact(self, node: int, trial: int) -> Any:
         """A node's value in a trial with 50 digits."""
         if trial not in self._known:
             self._known[trial] = self._exact.trial({key: float(draws[trial]) for key, draws in self.draws.items()})
-        return self._known[trial][place]
+        return self._known[trial][node]
 
-    def exact_number(self, place: int, trial: int) -> float:
+    def exact_number(self, node: int, trial: int) -> float:
         """The same as a double; NaN where it is no number."""
-        return exactly(self.exact(place, trial))
+        return exactly(self.exact(node, trial))
 
     @property
     def recomputed(self) -> int:
@@ -231,7 +231,7 @@ class Case:
         """The nodes of functions that were not computed with 50 digits."""
         return self._exact.unchecked
 
-    def where(self, trials: Bools, place: int, most: int = 2) -> tuple[Where, ...]:
+    def where(self, trials: Bools, node: int, most: int = 2) -> tuple[Where, ...]:
         """The assumptions whose ranges tell the trials from others: those that they take up least of.
 
         An assumption is named only where the node depends on it, and where so many trials, drawn by chance, would
@@ -239,14 +239,14 @@ class Case:
 
         Args:
             trials: which.
-            place: the node that it happens to.
+            node: the one that it happens to.
             most: assumptions to name.
         """
         among = trials[self.special :]
         count, drawn = int(among.sum()), self.n - self.special
         if count < _FEWEST or count == drawn:
             return ()
-        needed = self.inputs_of(place)
+        needed = self.inputs_of(node)
         shares = []
         for number, (assumption, key) in enumerate(zip(self.model.live, self.names, strict=True)):
             draws = self.draws[key][self.special :]
@@ -263,10 +263,10 @@ class Case:
             for _, _, assumption, here in named
         )
 
-    def inputs_of(self, place: int) -> set[str]:
+    def inputs_of(self, node: int) -> set[str]:
         """The keys of the assumptions that a node depends on."""
-        nodes = (formula_of(self.dag, part) for part in closure(self.dag, [place]))
-        return {node.name for node in nodes if isinstance(node, Input)}
+        formulas = (formula_of(self.dag, part) for part in closure(self.dag, [node]))
+        return {formula.name for formula in formulas if isinstance(formula, Input)}
 
     def upstream(self, cell: Cell) -> set[Cell]:
         """The cells that a cell needs, itself among them."""
@@ -274,10 +274,10 @@ class Case:
         found: set[Cell] = set()
         open_ = [cell]
         while open_:
-            place = open_.pop()
-            if place not in found:
-                found.add(place)
-                open_ += needs.get(place, ())
+            node = open_.pop()
+            if node not in found:
+                found.add(node)
+                open_ += needs.get(node, ())
         return found
 
     def forecasts_of(self, cells: Iterable[Cell]) -> list[str]:
@@ -293,7 +293,7 @@ class Case:
 
 
 _MOVE: Final = 2.0**-30
-"""By how much inputs are moved, as a share: beside it, roundings on the way do not show."""
+"""By how much inputs are moved, as a share: far more than the roundings on the way."""
 
 _FEWEST: Final = 5
 """Trials that take up little of some range for no reason."""

@@ -1,18 +1,39 @@
-"""Which operation of a formula loses the digits: a division by something near 0, or a difference of near equals."""
+"""Which part of a formula loses the digits.
+
+Two operations do: a division by something near 0, and a difference of nearly equal numbers. Where it is neither, parts
+are tried: the culprit is the innermost part whose exact value, put in instead of it, takes the error away.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from xlmc.address import Cell
+from xlmc.evaluation.graph.nodes import Input
+from xlmc.evaluation.passes.random_rounding import closure, evaluation, follow, formula_of, numbers
 from xlmc.formula import ir
 from xlmc.functions.families import function_named
-from xlmc.studies.stability.case import Case
-from xlmc.studies.stability.trees import factors, terms
+from xlmc.functions.values import Value
+from xlmc.studies.stability.case import Case, Floats
+from xlmc.studies.stability.formula_trees import factors, terms
 
-__all__ = ["Cancellation", "Division", "cancellation", "divisions", "left_of"]
+__all__ = ["Cancellation", "Division", "cancellation", "culprit", "divisions", "left_of", "only_assumption", "zeros"]
+
+_HEALED: Final = 0.1
+_SURELY_HEALED: Final = 1e-3
+"""Of the error, that may be left: the first where that is no more than a sound formula has."""
+
+_SOUND: Final = 10.0
+"""Times what rounding the assumptions alone would bring."""
+
+_MOST_PARTS: Final = 300
+
+_GRID: Final = 4001
+_BISECTIONS: Final = 80
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,14 +43,14 @@ class Division:
     Attributes:
         tree: the quotient.
         factor: below the line.
-        place: of the factor.
+        node: of the factor.
         least: how small it gets, as a share of the size it usually has, or could have.
         crosses: whether it has either sign among the trials.
     """
 
     tree: ir.Expression
     factor: ir.Expression
-    place: int
+    node: int
     least: float
     crosses: bool
 
@@ -60,16 +81,16 @@ def divisions(case: Case, cell: Cell) -> list[Division]:
 
 
 def _division(case: Case, cell: Cell, tree: ir.Expression, factor: ir.Expression) -> Division | None:
-    place = case.trees.place(factor, cell)
-    if place is None or place not in case.values or isinstance(factor, ir.Number):
+    node = case.trees.node_of(factor, cell)
+    if node is None or node not in case.values or isinstance(factor, ir.Number):
         return None
-    values = case.number(place)
+    values = case.number(node)
     values = values[np.isfinite(values)]
     if not values.size:
         return None
     size = 1.0 if _is_bounded(factor) else float(np.median(np.abs(values))) or float(np.abs(values).max())
     least = float(np.abs(values).min()) / size if size else 0.0
-    return Division(tree, factor, place, least, bool(values.min() < 0 < values.max()))
+    return Division(tree, factor, node, least, bool(values.min() < 0 < values.max()))
 
 
 def _is_bounded(tree: ir.Expression) -> bool:
@@ -101,8 +122,93 @@ def left_of(case: Case, cell: Cell, tree: ir.Expression, trial: int) -> float:
 
 
 def _size(case: Case, cell: Cell, tree: ir.Expression, trial: int) -> float:
-    place = case.trees.place(tree, cell)
-    if place is None or place not in case.values:
+    node = case.trees.node_of(tree, cell)
+    if node is None or node not in case.values:
         return 0.0
-    size = abs(float(case.number(place)[trial]))
+    size = abs(float(case.number(node)[trial]))
     return size if np.isfinite(size) else 0.0
+
+
+def culprit(case: Case, cell: Cell, trials: Sequence[int]) -> ir.Expression | None:
+    """The innermost part of a cell's formula that is to blame for its error; None where there is none.
+
+    Args:
+        case: the evidence.
+        cell: whose formula.
+        trials: in which it is off.
+    """
+    parts = list(case.trees.parts(cell))
+    if len(parts) > _MOST_PARTS:
+        return None
+    return next((part for part in reversed(parts) if _heals(case, cell, part, trials)), None)
+
+
+def _heals(case: Case, cell: Cell, part: ir.Expression, trials: Sequence[int]) -> bool:
+    whole, node = case.node[cell], case.trees.node_of(part, cell)
+    if node is None or node not in case.values or isinstance(part, ir.Number):
+        return False
+    wanted, cured = _exact(case, whole, trials), _exact(case, node, trials)
+    before = np.abs(case.number(whole)[list(trials)] - wanted)
+    after = np.abs(_with(case, whole, node, cured, trials) - wanted)
+    known = np.isfinite(before) & (before > 0)
+    if not known.any() or not np.isfinite(after[known]).all():
+        return False
+    inherent = np.nan_to_num(case.inherent(cell)[list(trials)])[known]
+    left = float(np.median(after[known] / before[known]))
+    return left <= _SURELY_HEALED or (left <= _HEALED and bool(np.median(after[known] - _SOUND * inherent) <= 0))
+
+
+def _exact(case: Case, node: int, trials: Sequence[int]) -> Floats:
+    return np.array([case.exact_number(node, trial) for trial in trials])
+
+
+def _with(case: Case, whole: int, node: int, cured: Floats, trials: Sequence[int]) -> Floats:
+    """A cell's numbers where a part of it has its exact value, `(m,)` of m trials."""
+    rows = np.asarray(trials, np.intp)
+    after = set(case.after(node))
+    order = [one for one in closure(case.dag, [whole]) if one in after]
+    held = {one: case.values[one].take(rows) for one in closure(case.dag, [whole])}
+    return np.array(numbers(follow(case.dag, order, held, {node: Value.of_numbers(cured)})[whole], rows.size))
+
+
+def only_assumption(case: Case, node: int) -> str | None:
+    """The key of the only assumption that a node depends on; None where there are none or several."""
+    found = {
+        formula.name
+        for part in closure(case.dag, [node])
+        if isinstance(formula := formula_of(case.dag, part), Input) and formula.name in case.draws
+    }
+    return found.pop() if len(found) == 1 else None
+
+
+def zeros(case: Case, node: int, key: str) -> list[float]:
+    """Where a node is 0 as its only assumption goes through its range, and as far again to either side.
+
+    Rounded to 12 digits where that is as near, so that 270° is 270.
+    """
+    nodes = closure(case.dag, [node])
+
+    def at(x: np.ndarray[tuple[int], np.dtype[np.float64]]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        return np.array(numbers(evaluation(case.dag, nodes, {key: x})[node], x.size))
+
+    low, high = float(case.draws[key].min()), float(case.draws[key].max())
+    width = (high - low) or max(abs(low), 1.0) / 100
+    grid = np.linspace(low - width, high + width, _GRID)
+    values = at(grid)
+    with np.errstate(invalid="ignore"):
+        turns = np.flatnonzero((np.sign(values[:-1]) * np.sign(values[1:]) < 0) | (values[:-1] == 0))
+    found = []
+    for turn in turns:
+        left, right = grid[turn : turn + 1].copy(), grid[turn + 1 : turn + 2].copy()
+        sign = np.sign(at(left))
+        for _ in range(_BISECTIONS):
+            middle = (left + right) / 2
+            if np.sign(at(middle)) == sign:
+                left = middle
+            else:
+                right = middle
+        round_ = float(f"{right[0]:.12g}")
+        jumps = abs(at(left)[0] - at(right)[0]) > 1e-6 * np.nanmax(np.abs(values))
+        if not jumps:
+            found.append(round_)
+    return found

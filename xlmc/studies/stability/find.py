@@ -1,4 +1,4 @@
-"""Looks for digits that are not there, and for numbers that mean something else than they seem to."""
+"""Search a workbook for digits that are wrong, and for numbers that do not mean what they seem to mean."""
 
 from __future__ import annotations
 
@@ -9,26 +9,28 @@ from xlmc.evaluation.graph.nodes import Apply
 from xlmc.evaluation.passes.derivatives.sweep import owners
 from xlmc.run.simulate import simulate
 from xlmc.run.simulation import Simulation
-from xlmc.studies.stability.angles import rounded_angles
 from xlmc.studies.stability.case import Case
-from xlmc.studies.stability.conditioning import amplifying_forecasts
-from xlmc.studies.stability.digits import cell_digits, lost_digits
-from xlmc.studies.stability.edges import domain_edges
-from xlmc.studies.stability.filters import narrow_filters
-from xlmc.studies.stability.findings import Finding, Level, Stability
+from xlmc.studies.stability.detectors import (
+    amplifying_forecasts,
+    domain_edges,
+    heavy_tails,
+    narrow_filters,
+    rounded_angles,
+)
+from xlmc.studies.stability.digit_findings import Finding, Level, Stability
 from xlmc.studies.stability.jumps import jumps
 from xlmc.studies.stability.quadrant import lost_quadrants
-from xlmc.studies.stability.tails import heavy_tails
+from xlmc.studies.stability.rounding_errors import cell_digits, lost_digits
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
     from xlmc.run.model import Model
 
-__all__ = ["DETECTORS", "stability"]
+__all__ = ["stability"]
 
 Told = Callable[[str], None]
 
-DETECTORS: Final[Mapping[str, Callable[[Case], Iterable[Finding]]]] = {
+_DETECTORS: Final[Mapping[str, Callable[[Case], Iterable[Finding]]]] = {
     "lost quadrants": lost_quadrants,
     "lost digits": lost_digits,
     "heavy tails": heavy_tails,
@@ -56,7 +58,7 @@ def stability(
         trials: of the run that is looked at; by default the book's own.
         seed: of it.
         jobs: threads or processes.
-        told: told what is being done.
+        told: called with what is being done.
 
     Raises:
         SimulationError: an argument is out of its range.
@@ -66,13 +68,13 @@ def stability(
     run: Simulation = simulate(model, trials=trials, seed=seed, jobs=jobs)
     case = Case(model, run, run.settings.seed)
     found: list[Finding] = []
-    for name, detector in DETECTORS.items():
+    for name, detector in _DETECTORS.items():
         tell(name)
         found += detector(case)
     tell("what every cell amplifies")
     cells = tuple(cell_digits(case))
     ranked = sorted(_first_causes(case, found), key=lambda finding: (finding.level, -finding.size))
-    return Stability(run, tuple(ranked), cells, _unchecked(case), case.n, case.recomputed)
+    return Stability(run, tuple(ranked), cells, _unchecked_functions(case), case.n, case.recomputed)
 
 
 _OF_DIGITS: Final = frozenset({"division", "cancellation", "rounding"})
@@ -80,21 +82,21 @@ _OF_NUMBERS: Final = frozenset({"tail", "amplification"})
 
 
 def _first_causes(case: Case, findings: Iterable[Finding]) -> list[Finding]:
-    """Without what is said of numbers whose digits are not there."""
+    """The findings without those on numbers whose digits are wrong anyway."""
     found = list(findings)
     lost = [one.cell for one in found if one.level is Level.WRONG and one.kind in _OF_DIGITS]
     reached = {cell for cell in (one.cell for one in found) if any(part in case.upstream(cell) for part in lost)}
     return [one for one in found if one.kind not in _OF_NUMBERS or one.cell not in reached]
 
 
-def _unchecked(case: Case) -> tuple[tuple[Cell, tuple[str, ...]], ...]:
+def _unchecked_functions(case: Case) -> tuple[tuple[Cell, tuple[str, ...]], ...]:
     """The cells that hold functions which were not computed with 50 digits."""
     whose = owners(case.lowering)
     found: dict[Cell, list[str]] = {}
-    for place in sorted(case.unchecked):
-        node = case.dag.nodes[place]
-        if isinstance(node, Apply) and place in whose:
-            names = found.setdefault(whose[place], [])
-            if node.function.name not in names:
-                names.append(node.function.name)
+    for node in sorted(case.unchecked):
+        formula = case.dag.nodes[node]
+        if isinstance(formula, Apply) and node in whose:
+            names = found.setdefault(whose[node], [])
+            if formula.function.name not in names:
+                names.append(formula.function.name)
     return tuple((cell, tuple(names)) for cell, names in found.items())

@@ -1,4 +1,4 @@
-"""Formulas that jump inside the ranges: the two branches of an IF differ where its condition turns."""
+"""Formulas that jump within the ranges: the two branches of an IF differ where its condition changes."""
 
 from __future__ import annotations
 
@@ -13,21 +13,20 @@ from xlmc.evaluation.passes.random_rounding import formula_of, numbers
 from xlmc.formula import ir
 from xlmc.functions.families import function_named
 from xlmc.studies.stability.case import Case, Floats
-from xlmc.studies.stability.findings import Finding, Level, Where
-from xlmc.studies.stability.guards import guards
-from xlmc.studies.stability.quadrant import arctangents
+from xlmc.studies.stability.digit_findings import Finding, Level, Where
+from xlmc.studies.stability.quadrant import arctangents, guards
 
 __all__ = ["jumps"]
 
 _NEAREST: Final = 20
-"""Trials next to where the condition turns."""
+"""Trials nearest to where the condition changes."""
 
 _TOLD: Final = 0.01
 """Of the cell's central range."""
 
 
 def jumps(case: Case) -> Iterator[Finding]:
-    """The choices and lookups that take different ways in different trials, and by how much the cell jumps there."""
+    """The choices and lookups that differ between trials, and by how much the cell jumps there."""
     mending = _mending(case)
     for cell in case.cells:
         for part in case.trees.parts(cell):
@@ -41,23 +40,23 @@ def jumps(case: Case) -> Iterator[Finding]:
         row = function_named(kink.function)
         if row is not None and row.facts.finds and kink.cell in case.node:
             text = f"{kink.function} finds {kink.ways} different cells among the trials"
-            yield _finding(case, kink.cell, text, "the cell steps from one to the next", kink.share)
+            yield _finding(case, kink.cell, text, "the result steps from one cell to the next", kink.share)
 
 
 def _mending(case: Case) -> set[int]:
-    """The choices that mend the quadrant of an arctangent: they jump so that the angle does not."""
+    """The choices that put the quadrant of an arctangent right: they jump so that the angle does not."""
     found: set[int] = set()
     for cell in case.cells:
         for one in arctangents(case, cell):
             if (case.number(one.divisor) < 0).any():
-                for place in guards(case, one.place, one.divisor).holding:
-                    found |= {place, *uses(formula_of(case.dag, place))}
+                for node in guards(case, one.node, one.divisor).holding:
+                    found |= {node, *uses(formula_of(case.dag, node))}
     return found
 
 
 def _is_among(case: Case, cell: Cell, part: ir.Call, mending: set[int]) -> bool:
-    place = case.trees.place(part, cell)
-    return place is not None and place in mending
+    node = case.trees.node_of(part, cell)
+    return node is not None and node in mending
 
 
 def _of_choice(case: Case, cell: Cell, part: ir.Call) -> Finding | None:
@@ -79,20 +78,20 @@ def _of_choice(case: Case, cell: Cell, part: ir.Call) -> Finding | None:
         return None
     near = np.zeros(case.n, bool)
     near[nearest] = True
-    text = f"{case.trees.text(test, cell)} turns inside the ranges, and the two branches of the IF differ there"
+    text = f"{case.trees.text(test, cell)} changes within the ranges, and the two branches of the IF differ there"
     effect = f"the choice jumps by about {share:.2g} of the central range of the cell"
-    place = case.trees.place(test, cell)
-    return _finding(case, cell, text, effect, share, () if place is None else case.where(near, place))
+    node = case.trees.node_of(test, cell)
+    return _finding(case, cell, text, effect, share, () if node is None else case.where(near, node))
 
 
 def _numbers(case: Case, cell: Cell, tree: ir.Expression) -> Floats | None:
-    place = case.trees.place(tree, cell)
-    if place is None:
+    node = case.trees.node_of(tree, cell)
+    if node is None:
         return None
-    node = case.dag.nodes[place]
-    if place in case.values:
-        return case.number(place)
-    return numbers(node.value, case.n) if isinstance(node, Constant) else None
+    formula = case.dag.nodes[node]
+    if node in case.values:
+        return case.number(node)
+    return numbers(formula.value, case.n) if isinstance(formula, Constant) else None
 
 
 def _finding(
@@ -108,7 +107,7 @@ def _finding(
         "jump",
         cell,
         case.trees.title(cell),
-        case.trees.written(cell),
+        case.trees.written_formula(cell),
         what,
         effect,
         where,

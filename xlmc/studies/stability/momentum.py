@@ -19,9 +19,9 @@ from dataclasses import dataclass, replace
 
 from xlmc.formula import ir
 from xlmc.studies.stability.case import Case
-from xlmc.studies.stability.trees import factors, terms
+from xlmc.studies.stability.formula_trees import factors, terms
 
-__all__ = ["Momentum", "angle_of", "components", "known_momentum", "sine", "spin", "times"]
+__all__ = ["Momentum", "angle_of", "components", "sine", "spin", "times"]
 
 Tree = ir.Expression
 
@@ -48,7 +48,7 @@ def _bare(angle: Tree) -> tuple[Tree, bool]:
             return angle, False
 
 
-def _turned(angle: Tree, in_degrees: bool) -> Tree:
+def _in_radians(angle: Tree, in_degrees: bool) -> Tree:
     return ir.Call("RADIANS", (angle,)) if in_degrees else angle
 
 
@@ -56,7 +56,7 @@ def sine(left: Tree, right: Tree) -> Tree:
     """The sine of a difference of two angles, subtracted in degrees where they are in degrees."""
     (a, degrees), (b, also) = _bare(left), _bare(right)
     if degrees and also:
-        return ir.Call("SIN", (_turned(ir.Binary("-", a, b), True),))
+        return ir.Call("SIN", (_in_radians(ir.Binary("-", a, b), True),))
     return ir.Call("SIN", (ir.Binary("-", left, right),))
 
 
@@ -71,7 +71,7 @@ class Momentum:
     in_degrees: bool
 
 
-def known_momentum(case: Case) -> Iterator[Momentum]:
+def _known_momentum(case: Case) -> Iterator[Momentum]:
     """Every cell that is (15), either vehicle first."""
     for cell in case.cells:
         found = _momentum(case.trees.formula(cell))
@@ -131,7 +131,7 @@ def components(case: Case, tree: Tree) -> Iterator[Tree]:
     function = next((name for name in ("COS", "SIN") if _is_change(tree, name)), None)
     if function is None:
         return
-    for known in known_momentum(case):
+    for known in _known_momentum(case):
         for vehicle in (0, 1):
             yield _component(known, vehicle, function)
 
@@ -148,14 +148,14 @@ def _component(known: Momentum, vehicle: int, function: str) -> Tree:
     """`±(along·COS(mean) - across·SIN(mean))/m`, or with SIN and COS."""
     two = ir.Number(2.0)
     momenta = [
-        times(mass, speed, ir.Call("SIN", (_turned(ir.Binary("-", after, before), known.in_degrees),)))
+        times(mass, speed, ir.Call("SIN", (_in_radians(ir.Binary("-", after, before), known.in_degrees),)))
         for mass, speed, before, after in zip(known.masses, known.speeds, known.before, known.after, strict=True)
     ]
     half = ir.Binary("/", ir.Binary("-", *known.before), two)
-    mean = _turned(ir.Binary("/", ir.Binary("+", *known.before), two), known.in_degrees)
+    mean = _in_radians(ir.Binary("/", ir.Binary("+", *known.before), two), known.in_degrees)
 
     def of_half(name: str) -> Tree:
-        return times(two, ir.Call(name, (_turned(half, known.in_degrees),)))
+        return times(two, ir.Call(name, (_in_radians(half, known.in_degrees),)))
 
     along = ir.Binary("/", ir.Unary("-", ir.Binary("+", *momenta)), of_half("SIN"))
     across = ir.Binary("/", ir.Binary("-", *momenta), of_half("COS"))
@@ -215,12 +215,12 @@ class _Arm:
 
 def _arm(tree: Tree) -> _Arm | None:
     above, below = factors(tree)
-    for place, part in enumerate(above):
+    for index, part in enumerate(above):
         pair = terms(part)
         if len(pair) == 2:
             cosine, sine_ = (_with(pair, name) for name in ("COS", "SIN"))
             if cosine and sine_ and cosine[0] > 0 > sine_[0] and cosine[1] == sine_[1]:
-                return _Arm(above[:place] + above[place + 1 :], below, cosine[1], cosine[2], sine_[2])
+                return _Arm(above[:index] + above[index + 1 :], below, cosine[1], cosine[2], sine_[2])
     return None
 
 

@@ -102,7 +102,7 @@ class Polynomials:
         found: dict[Monomial, Fraction] = {}
         for one, a in left.items():
             for other, b in right.items():
-                monomial = _joined((one, other))
+                monomial = _join((one, other))
                 found[monomial] = found.get(monomial, Fraction(0)) + a * b
         if len(found) > _MOST_TERMS:
             raise OverflowError
@@ -137,7 +137,7 @@ class Polynomials:
                 if isinstance(atom, ir.Call) and atom.name == "SQRT" and power >= 2:
                     term = self.product(term, self.power(self.of(atom.arguments[0]), power // 2))
                     power %= 2
-                term = self.product(term, {_joined([((key, power),)]): Fraction(1)})
+                term = self.product(term, {_join([((key, power),)]): Fraction(1)})
             found = self.sum(found, term)
         return found
 
@@ -186,7 +186,7 @@ def _clean(polynomial: Mapping[Monomial, Fraction]) -> Polynomial:
     return {monomial: coefficient for monomial, coefficient in polynomial.items() if coefficient}
 
 
-def _joined(monomials: Iterable[Monomial]) -> Monomial:
+def _join(monomials: Iterable[Monomial]) -> Monomial:
     powers: dict[str, int] = {}
     for monomial in monomials:
         for key, power in monomial:

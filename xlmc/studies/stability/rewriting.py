@@ -1,9 +1,9 @@
 """Forms of known formulas that do not lose digits. Each is recomputed with 50 digits beside the one it replaces.
 
 (16′) V2 = -(V2f·SIN(β2-α1) + m1/m2·V1f·SIN(β1-α1)) / SIN(α1-α2)     no COS(α2), no V1
-(15′) SIN(RADIANS(β-α)) in place of SIN(RADIANS(β)-RADIANS(α))        angles subtracted in degrees are exact
-(23′) ATAN2(x, y) in place of ATAN(y/x)                               keeps the quadrant
-(filters) lo·ABS(c) <= s·SIGN(c) in place of lo <= s/c                no division
+(15′) SIN(RADIANS(β-α)) instead of SIN(RADIANS(β)-RADIANS(α))        angles subtracted in degrees are exact
+(23′) ATAN2(x, y) instead of ATAN(y/x)                               keeps the quadrant
+(filters) lo·ABS(c) <= s·SIGN(c) instead of lo <= s/c                no division
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from xlmc.formula import ir
 from xlmc.formula.substitute import substitute
 from xlmc.run.scene import filter_limits
 from xlmc.studies.stability.case import Case
+from xlmc.studies.stability.formula_trees import factors, terms
 from xlmc.studies.stability.momentum import angle_of, components, sine, spin, times
-from xlmc.studies.stability.trees import factors, terms
 
 __all__ = ["angles_in_degrees", "of_small_changes", "same", "with_quadrant", "without_cosine", "without_quotient"]
 
@@ -54,7 +54,7 @@ def _term(sign: int, tree: ir.Expression) -> _Term | None:
 
 
 def without_cosine(case: Case, cell: Cell, cosine: ir.Expression) -> ir.Expression | None:
-    """(16′) in place of (16): momentum along X solved for a speed, divided by the cosine of its angle.
+    """(16′) instead of (16): momentum along X solved for a speed, divided by the cosine of its angle.
 
     The whole cell must be `(m1·V1f·COS(β1) + m2·V2f·COS(β2) - m1·V1·COS(α1)) / (m2·COS(α2))`, its parts in any order.
     """
@@ -92,7 +92,7 @@ def _difference(left: ir.Expression, right: ir.Expression) -> ir.Expression | No
 
 
 def of_small_changes(case: Case, cell: Cell) -> ir.Expression | None:
-    """(17′) or (20′) in place of (17) or (20), differences of near equals where a change of speed is small."""
+    """(17′) or (20′) instead of (17) or (20), differences of nearly equal numbers where a change of speed is small."""
     tree = case.trees.formula(cell)
     turned = spin(tree)
     candidates = [*([] if turned is None else [turned]), *components(case, tree)]
@@ -148,19 +148,19 @@ def without_quotient(case: Case, filter_: Filter, tree: ir.Expression) -> ir.Exp
 
 def same(case: Case, cell: Cell, tree: ir.Expression, digits: int = 30) -> bool:
     """Whether a formula gives in a cell what the cell's own gives, to 30 digits, in some trials and beside them."""
-    place = case.trees.place(tree, cell)
-    if place is None:
+    node = case.trees.node_of(tree, cell)
+    if node is None:
         return False
-    node = case.node[cell]
-    exact = Exact(case.dag, closure(case.dag, [place, node]))
+    old = case.node[cell]
+    exact = Exact(case.dag, closure(case.dag, [node, old]))
     compared = 0
     for trial in np.linspace(case.special, case.n - 1, _TRIALS).astype(int):
         for away in (1.0, _AWAY):
             found = exact.trial({key: float(draws[trial]) * away for key, draws in case.draws.items()})
-            wanted = found[node]
+            wanted = found[old]
             if np.isnan(exactly(wanted)):
                 continue
             compared += 1
-            if np.isnan(exactly(found[place])) or abs(found[place] - wanted) > abs(wanted) * 10.0**-digits:
+            if np.isnan(exactly(found[node])) or abs(found[node] - wanted) > abs(wanted) * 10.0**-digits:
                 return False
     return compared > 0

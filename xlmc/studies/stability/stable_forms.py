@@ -1,4 +1,4 @@
-"""Other forms of sums of near equals, and of logarithms of what is near 1, that keep their digits.
+"""Other forms of sums of nearly equal numbers, and of logarithms of numbers near 1, that keep their digits.
 
     K·COS(a) + R          (R+K) - 2K·SIN(a/2)^2               (1-COS, the law of cosines: R+K is a square then)
     R·(1-SIN(a)^2)        R·COS(a)^2, and the other way round
@@ -24,7 +24,10 @@ from typing import Final
 
 from xlmc.address import Area
 from xlmc.formula import ir
-from xlmc.studies.stability.form_parts import (
+from xlmc.studies.stability.formula_trees import terms
+from xlmc.studies.stability.momentum import times
+from xlmc.studies.stability.polynomials import ONE, Polynomial, Polynomials
+from xlmc.studies.stability.rarer_forms import (
     TWO,
     UNIT,
     Form,
@@ -33,14 +36,14 @@ from xlmc.studies.stability.form_parts import (
     combined,
     half,
     less_one,
+    of_arccosine,
+    of_growth,
+    of_hyperbolic_cosine,
     of_one_and,
+    of_small_angle,
     scaled,
     squared,
 )
-from xlmc.studies.stability.momentum import times
-from xlmc.studies.stability.polynomials import ONE, Polynomial, Polynomials
-from xlmc.studies.stability.rarer_forms import of_arccosine, of_growth, of_hyperbolic_cosine, of_small_angle
-from xlmc.studies.stability.trees import terms
 
 __all__ = ["LOGARITHMS", "Form", "forms"]
 
@@ -271,12 +274,12 @@ def _of_fractions(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[
             for key, power in monomial:
                 if power < 0:
                     return
-                term = algebra.product(term, algebra.power(_opened(algebra, key), power))
+                term = algebra.product(term, algebra.power(_as_polynomial(algebra, key), power))
             plain = algebra.sum(plain, term)
         yield Form(plain, times(*(algebra.atoms[key] for key in divisors)))
 
 
-def _opened(algebra: Polynomials, key: str) -> Polynomial:
+def _as_polynomial(algebra: Polynomials, key: str) -> Polynomial:
     """An atom as the polynomial that it is, where it was one below the line."""
     return algebra.of(algebra.atoms[key])
 

@@ -1,4 +1,4 @@
-"""A formula in which the part that loses digits stands in another form, offered only after both were computed.
+"""Offer a formula with another form of the part that loses digits, but only after both were computed.
 
 What is computed is what is read from its text. It must be the same to 20 digits, have a number wherever the old one
 has, in all trials and in the corners of the ranges, and be off by a tenth of what the old one is at most, in the trials
@@ -18,15 +18,15 @@ from xlmc.address import Cell
 from xlmc.evaluation.passes.random_rounding import RandomRounding, closure, evaluation, numbers
 from xlmc.formula import ir
 from xlmc.studies.stability.case import Case, Floats
+from xlmc.studies.stability.formula_trees import factors, replace_part
 from xlmc.studies.stability.polynomials import Polynomial, Polynomials
 from xlmc.studies.stability.rewriting import same
 from xlmc.studies.stability.stable_forms import Form, forms
-from xlmc.studies.stability.trees import factors, replaced
 
-__all__ = ["steadied"]
+__all__ = ["steady_form"]
 
 _STEPS_BACK: Final = 3
-"""Formulas of other cells are looked into as far as that."""
+"""How many cells back formulas are followed."""
 
 _DIGITS: Final = 20
 _BETTER: Final = 0.1
@@ -41,10 +41,10 @@ _UNLIKE: Final = 30.0
 _SUSPECTS: Final = 4
 _REPLICAS: Final = 3
 _LONGEST: Final = 1000
-"""Characters: nobody would type more."""
+"""Characters of a formula: nobody would type more."""
 
 
-def steadied(case: Case, cell: Cell, part: ir.Expression, worst: Sequence[int]) -> ir.Expression | None:
+def steady_form(case: Case, cell: Cell, part: ir.Expression, worst: Sequence[int]) -> ir.Expression | None:
     """A cell's formula with another form of one part of it; None where none is known to be better.
 
     Args:
@@ -68,27 +68,27 @@ def _candidates(case: Case, cell: Cell, part: ir.Expression) -> Iterator[ir.Expr
         if opened is None:
             return
         for form in forms(opened, algebra):
-            yield from _placed(tree, part, form, algebra)
-        further = case.trees.opened(opened)
+            yield from _insert_form(tree, part, form, algebra)
+        further = case.trees.open_references(opened)
         opened = None if further == opened else further
 
 
-def _placed(tree: ir.Expression, part: ir.Expression, form: Form, algebra: Polynomials) -> Iterator[ir.Expression]:
+def _insert_form(tree: ir.Expression, part: ir.Expression, form: Form, algebra: Polynomials) -> Iterator[ir.Expression]:
     """The whole formula with a form in it, the factors beside it drawn in where that is possible."""
     if isinstance(form.above, Mapping):
         whole = _product(tree, part)
         if whole is not None:
             try:
-                drawn = _drawn(whole, part, form.above, algebra)
+                drawn = _draw_in(whole, part, form.above, algebra)
             except OverflowError:
                 drawn = None
             if drawn is not None:
-                yield replaced(tree, whole, _chosen(form, algebra.tree(drawn), whole))
+                yield replace_part(tree, whole, _choose(form, algebra.tree(drawn), whole))
     above = algebra.tree(form.above) if isinstance(form.above, Mapping) else form.above
-    yield replaced(tree, part, _chosen(form, above, part))
+    yield replace_part(tree, part, _choose(form, above, part))
 
 
-def _chosen(form: Form, above: ir.Expression, old: ir.Expression) -> ir.Expression:
+def _choose(form: Form, above: ir.Expression, old: ir.Expression) -> ir.Expression:
     new = above if form.below is None else ir.Binary("/", above, form.below)
     return new if form.only_if is None else ir.Call("IF", (form.only_if, new, old))
 
@@ -113,7 +113,7 @@ def _product(tree: ir.Expression, part: ir.Expression) -> ir.Expression | None:
     return None
 
 
-def _drawn(whole: ir.Expression, part: ir.Expression, above: Polynomial, algebra: Polynomials) -> Polynomial | None:
+def _draw_in(whole: ir.Expression, part: ir.Expression, above: Polynomial, algebra: Polynomials) -> Polynomial | None:
     """What stands above the line, times the other factors; None where these are sums."""
     found = above
     others, below = factors(whole)
@@ -129,16 +129,16 @@ def _drawn(whole: ir.Expression, part: ir.Expression, above: Polynomial, algebra
 
 
 def _is_better(case: Case, cell: Cell, tree: ir.Expression, worst: Sequence[int]) -> bool:
-    place = case.trees.place(tree, cell)
-    if place is None or not same(case, cell, tree, _DIGITS):
+    node = case.trees.node_of(tree, cell)
+    if node is None or not same(case, cell, tree, _DIGITS):
         return False
-    node = case.node[cell]
-    if _loses_numbers(case, node, place, _corners(case, node)):
+    old_node = case.node[cell]
+    if _loses_numbers(case, old_node, node, _corners(case, old_node)):
         return False
-    trials = sorted({*worst, *_some(case, _OTHERS), *_unlike(case, cell, place)})
-    new = _evaluated(case, place, {key: draw[trials] for key, draw in case.draws.items()})
-    old = case.number(node)[trials]
-    exact = np.array([case.exact_number(node, trial) for trial in trials])
+    trials = sorted({*worst, *_some(case, _OTHERS), *_unlike(case, cell, node)})
+    new = _evaluate(case, node, {key: draw[trials] for key, draw in case.draws.items()})
+    old = case.number(old_node)[trials]
+    exact = np.array([case.exact_number(old_node, trial) for trial in trials])
     with np.errstate(all="ignore"):
         size = np.fmax(case.inherent(cell)[trials], np.abs(exact) * np.finfo(float).eps)
         was = np.abs(old - exact) / size
@@ -148,10 +148,10 @@ def _is_better(case: Case, cell: Cell, tree: ir.Expression, worst: Sequence[int]
     return bool(np.nanmax(is_, initial=0.0) <= _BETTER * np.nanmax(was, initial=0.0))
 
 
-def _loses_numbers(case: Case, node: int, place: int, corners: Mapping[str, Floats]) -> bool:
+def _loses_numbers(case: Case, old_node: int, node: int, corners: Mapping[str, Floats]) -> bool:
     """Whether a node has no number somewhere where another one has."""
     for draws in (case.draws, corners):
-        old, new = (_evaluated(case, one, draws, replicas=0)[0] for one in (node, place))
+        old, new = (_evaluate(case, one, draws, replicas=0)[0] for one in (old_node, node))
         if (np.isfinite(old) & ~np.isfinite(new)).any():
             return True
     return False
@@ -171,13 +171,13 @@ def _zero(case: Case, key: str) -> tuple[float, ...]:
     return (0.0,) if draws.min() < 0 < draws.max() else ()
 
 
-def _unlike(case: Case, cell: Cell, place: int) -> list[int]:
+def _unlike(case: Case, cell: Cell, node: int) -> list[int]:
     """The trials in which another form differs most from the old one, by more than rounding does to that."""
-    node = case.node[cell]
+    old = case.node[cell]
     with np.errstate(all="ignore"):
-        rounding = np.fmax(case.errors[node], np.nan_to_num(case.inherent(cell)))
+        rounding = np.fmax(case.errors[old], np.nan_to_num(case.inherent(cell)))
         unlike = np.nan_to_num(
-            np.abs(_evaluated(case, place, case.draws, replicas=0)[0] - case.number(node)) / (_UNLIKE * rounding)
+            np.abs(_evaluate(case, node, case.draws, replicas=0)[0] - case.number(old)) / (_UNLIKE * rounding)
         )
     return [int(trial) for trial in np.argsort(unlike)[::-1][:_SUSPECTS] if unlike[trial] > 1]
 
@@ -186,9 +186,9 @@ def _some(case: Case, count: int) -> list[int]:
     return [int(trial) for trial in np.linspace(0, case.n - 1, count)]
 
 
-def _evaluated(case: Case, place: int, draws: Mapping[str, Floats], replicas: int = _REPLICAS) -> Floats:
+def _evaluate(case: Case, node: int, draws: Mapping[str, Floats], replicas: int = _REPLICAS) -> Floats:
     """A node's numbers for some draws, plain and with roundings made at random, `(1 + replicas, m)`."""
-    order = closure(case.dag, [place])
+    order = closure(case.dag, [node])
     count = next((draw.size for draw in draws.values()), 1)
-    jitters = [None, *(RandomRounding((_OTHERS, replica)) for replica in range(replicas))]
-    return np.array([numbers(evaluation(case.dag, order, draws, one)[place], count) for one in jitters])
+    roundings = [None, *(RandomRounding((_OTHERS, replica)) for replica in range(replicas))]
+    return np.array([numbers(evaluation(case.dag, order, draws, one)[node], count) for one in roundings])

@@ -1,0 +1,127 @@
+"""Definitions, and the sampling of a run, in words: those of the record, the result sheets and `xlmc check`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final
+
+from xlmc.address import Cell
+from xlmc.definitions.model import Assumption, DataRange, Filter, Parameter
+from xlmc.sampling.methods import GENERATOR, METHODS
+from xlmc.statistics.sample import MOST_GROUPS
+
+if TYPE_CHECKING:
+    from xlmc.run.model import Model
+    from xlmc.run.simulation import Simulation
+
+__all__ = [
+    "REJECTED_SENTENCE",
+    "cutoffs_text",
+    "distribution_text",
+    "errors_text",
+    "generator_text",
+    "limits_text",
+    "method_text",
+    "notes_text",
+    "number_text",
+    "parameters_text",
+    "sampling_sentence",
+    "status",
+]
+
+
+REJECTED_SENTENCE: Final = (
+    "± of the trials that a filter rejects is that of independent trials, which these samples hardly ever exceed."
+)
+"""The note where shares are shown whose errors are not computed from the replicates."""
+
+
+def number_text(value: Parameter) -> str:
+    """The shortest text that reads back as the same number: `0.95`, `6661`; or the cell that holds it."""
+    return str(value) if isinstance(value, Cell) else repr(float(value)).removesuffix(".0")
+
+
+def parameters_text(assumption: Assumption) -> str:
+    """`Low 6661, High 6861`; `Data Inputs!Q2:R9` for a distribution built from data."""
+    given = assumption.parameters
+    parts = [
+        f"{spec.heading} {number_text(given[spec.key])}" for spec in assumption.family.parameters if spec.key in given
+    ]
+    return ", ".join(parts if assumption.data is None else [*parts, _data_text(assumption.data)])
+
+
+def _data_text(data: DataRange) -> str:
+    weights = ", cumulative weights" * data.cumulative
+    bandwidth = "" if data.bandwidth is None else f", Bandwidth {number_text(data.bandwidth)}"
+    return f"Data {data.text or data.area}{weights}{bandwidth}"
+
+
+def cutoffs_text(lower: Parameter | None, upper: Parameter | None) -> str:
+    """`below 0.5, above 0.9`: what is cut off; empty where nothing is."""
+    cutoffs = ("below", lower), ("above", upper)
+    return ", ".join(f"{side} {number_text(cutoff)}" for side, cutoff in cutoffs if cutoff is not None)
+
+
+def distribution_text(assumption: Assumption) -> str:
+    """`Normal: Mean 0.77, Std dev 0.05; cut off below 0.6`."""
+    cutoffs = cutoffs_text(assumption.lower_cutoff, assumption.upper_cutoff)
+    ending = f"; cut off {cutoffs}" if cutoffs else ""
+    return f"{assumption.distribution}: {parameters_text(assumption)}{ending}"
+
+
+def limits_text(filter_: Filter) -> str:
+    """`at least 0 and below 1`; `TRUE` where the filter has no limits."""
+    limits = (
+        ("at least", filter_.at_least),
+        ("above", filter_.above),
+        ("at most", filter_.at_most),
+        ("below", filter_.below),
+    )
+    return " and ".join(f"{relation} {number_text(bound)}" for relation, bound in limits if bound is not None) or "TRUE"
+
+
+def notes_text(notes: Mapping[str, str]) -> str:
+    """The table's other columns: `Symbol: w1; Cell name: w_1`."""
+    return "; ".join(f"{heading}: {text}" for heading, text in notes.items())
+
+
+def status(model: Model, name: str, frozen: bool) -> str:
+    """What a run does with the assumption: `drawn`, `frozen`, or `not needed` by any forecast or filter."""
+    if frozen:
+        return "frozen"
+    return "drawn" if name in model.draws else "not needed"
+
+
+def method_text(simulation: Simulation) -> str:
+    """`Latin hypercube: 16 independent replicates of 12,500 trials`."""
+    plan = simulation.plan
+    if simulation.rare is not None:
+        return f"{METHODS[plan.method].name}: {simulation.rare.method}"
+    if not plan.size:
+        return f"{METHODS[plan.method].name}: independent trials"
+    asked = simulation.settings.trials
+    more = "" if asked == plan.trials else f", whole ones, for the {asked:,} trials that were asked for"
+    return f"{METHODS[plan.method].name}: {plan.replicates} independent replicates of {plan.size:,} trials{more}"
+
+
+def errors_text(simulation: Simulation) -> str:
+    """What the standard errors and intervals are made from."""
+    plan = simulation.plan
+    if not plan.size:
+        return "from the trials, which are independent"
+    groups = min(plan.replicates, MOST_GROUPS)
+    what = "replicates" if groups == plan.replicates else f"{groups} groups of replicates"
+    return f"from the differences between {what}, with Student's t of {groups - 1} degrees of freedom"
+
+
+def sampling_sentence(simulation: Simulation) -> str:
+    """How the run was sampled and where its errors come from, in one sentence."""
+    done = "" if simulation.rare is None else f" {simulation.rare.sentence}"
+    return f"{method_text(simulation)}; errors come {errors_text(simulation)}.{done}"
+
+
+def generator_text(simulation: Simulation) -> str:
+    """Where the random numbers come from."""
+    if simulation.rare is not None:
+        return f"{GENERATOR}, seeded by (seed, purpose): a stream to learn with, and one to draw the trials with"
+    return METHODS[simulation.plan.method].generator

@@ -1,0 +1,244 @@
+"""The short searches: heavy tails, narrow filters, edges of domains, rounded angles, forecasts that amplify."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from xlmc.address import Cell
+from xlmc.formula import ir
+from xlmc.functions.facts import Domain
+from xlmc.functions.families import function_named
+from xlmc.statistics.heavy_tails import heavy_tail
+from xlmc.studies.stability.case import Case, Floats
+from xlmc.studies.stability.digit_findings import Finding, Level
+from xlmc.studies.stability.formula_trees import terms
+from xlmc.studies.stability.rewriting import angles_in_degrees, without_quotient
+
+__all__ = ["amplifying_forecasts", "domain_edges", "heavy_tails", "narrow_filters", "rounded_angles"]
+
+_LIMIT: Final = 1e3
+"""Relative change of the forecast per relative change of the assumptions, all together, in the median trial."""
+
+_FEW: Final = 1e-3
+"""Share of accepted trials, of all."""
+
+_LEFT: Final = 0.1
+"""Of the larger angle: a difference above it loses less than a digit."""
+
+_CLOSE: Final = 1e-3
+"""Of the spread of the argument: an argument that comes nearer to the edge than that is reported."""
+
+
+def heavy_tails(case: Case) -> Iterator[Finding]:
+    """Distributions with such heavy tails that a mean or a standard deviation never converges.
+
+    These are looked for in forecasts, among accepted trials, and in cells that filters look at, among all trials. The
+    tail is measured by Hill's estimator of its index α: P(|x - median| > t) falls as t^-α. The mean exists above 1, the
+    standard deviation above 2. A quotient whose divisor goes through 0 has α = 1.
+    """
+    for forecast in case.model.forecasts:
+        x = np.asarray(case.run[forecast.name].values)
+        if (found := heavy_tail(x)) is not None:
+            index, _ = found
+            effect = f"{_statistic(*found)} as far as these trials show: more trials do not help; report percentiles"
+            yield _finding(case, Level.DOUBTFUL, forecast.cell, forecast.name, index, effect, None)
+    for filter_ in case.model.filters:
+        x = case.number(case.node[filter_.cell])[case.special : case.first_accepted]
+        if (found := heavy_tail(x)) is not None:
+            index, _ = found
+            host = _quotient_of(case, filter_.cell)
+            better = without_quotient(case, filter_, host) if host is not None else None
+            effect = (
+                "a filter only compares it with limits, so the forecasts are not affected; its mean and SD mean nothing"
+            )
+            yield _finding(case, Level.NOTE, filter_.cell, filter_.name, index, effect, better)
+
+
+def _statistic(index: float, error: float) -> str:
+    if index + 2 * error < 1:
+        return "neither its mean nor its SD converges"
+    return f"its SD does not converge{', and its mean hardly or not at all' if index - 2 * error <= 1 else ''}"
+
+
+def _quotient_of(case: Case, cell: Cell) -> ir.Expression | None:
+    """The formula behind a cell that may only refer to it."""
+    formulas = case.lowering.graph.formulas
+    tree: ir.Expression | None = case.trees.formula(cell) if cell in formulas else None
+    while isinstance(tree, Cell):
+        tree = case.trees.formula(tree) if tree in formulas else None
+    return tree
+
+
+def _finding(
+    case: Case, level: Level, cell: Cell, name: str, index: float, effect: str, better: ir.Expression | None
+) -> Finding:
+    return Finding(
+        level,
+        "tail",
+        cell,
+        name,
+        case.trees.written_formula(cell),
+        f"it has a heavy tail: large values t become rare only as t^-{index:.1f} does, as those of a quotient whose "
+        "divisor goes through 0",
+        effect,
+        (),
+        case.trees.offer_formula(better, cell),
+        1 / index,
+    )
+
+
+def amplifying_forecasts(case: Case) -> Iterator[Finding]:
+    """The forecasts that amplify a thousand times and more in half of the trials."""
+    for forecast in case.model.forecasts:
+        one = case.derivatives.forecasts[forecast.name]
+        moved = np.abs(one.gradient * case.derivatives.points)
+        with np.errstate(all="ignore"):
+            amplified = np.nansum(moved, axis=1) / np.maximum(np.abs(one.value), 0.01 * case.scale(forecast.cell))
+        known = amplified[np.isfinite(amplified)]
+        if not known.size or np.median(known) < _LIMIT:
+            continue
+        through = case.derivatives.names[int(np.nansum(moved, axis=0).argmax())]
+        factor = float(np.median(known))
+        yield Finding(
+            Level.NOTE,
+            "amplification",
+            forecast.cell,
+            forecast.name,
+            case.trees.written_formula(forecast.cell),
+            f"it changes by {factor:.2g} % when its assumptions change by 1 %, mostly through {through!r}",
+            "this comes from the problem itself: no other formula and no more digits reduce it; other evidence does",
+            (),
+            None,
+            factor,
+        )
+
+
+def narrow_filters(case: Case) -> Iterator[Finding]:
+    """One finding where the filters together accept less than a thousandth."""
+    run = case.run
+    if not run.model.filters or run.accepted >= _FEW * run.trials:
+        return
+    rejected = {row.name: int(count) for row, count in zip(run.model.filters, run.tally.rejected, strict=True)}
+    worst = max(rejected, key=lambda name: rejected[name])
+    filter_ = next(row for row in run.model.filters if row.name == worst)
+    effect = "the answer rests on the edge of the ranges" if run.accepted else "there is no answer"
+    yield Finding(
+        Level.WRONG if not run.accepted else Level.DOUBTFUL,
+        "filter",
+        filter_.cell,
+        worst,
+        case.trees.written_formula(filter_.cell),
+        f"the filters accept {run.accepted:,} of {run.trials:,} trials; {worst!r} rejects most, {rejected[worst]:,}",
+        f"{effect}: check whether ranges, evidence and model contradict each other",
+        (),
+        None,
+        1.0 - run.accepted / run.trials,
+    )
+
+
+def rounded_angles(case: Case) -> Iterator[Finding]:
+    """The cells that subtract angles so, and in which little is left of them in some trials."""
+    for cell in case.cells:
+        left = min((_left(case, cell, part) for part in case.trees.parts(cell)), default=1.0)
+        better = angles_in_degrees(case.trees.formula(cell)) if left < _LEFT else None
+        if better is not None:
+            yield Finding(
+                Level.NOTE,
+                "angles",
+                cell,
+                case.trees.title(cell),
+                case.trees.written_formula(cell),
+                "it subtracts angles after RADIANS, which rounds them; in degrees the difference is exact",
+                f"as little as {left:.1g} of the angles is left, and the difference loses as many of their digits",
+                (),
+                case.trees.offer_formula(better, cell),
+                1 / max(left, 1e-16),
+            )
+
+
+def _left(case: Case, cell: Cell, part: ir.Expression) -> float:
+    """The smallest difference as a share of the larger angle; 1 where the part is none."""
+    if angles_in_degrees(part) is None or not isinstance(part, ir.Binary) or part.operator != "-":
+        return 1.0
+    nodes = [case.trees.node_of(tree, cell) for tree in (part, part.left, part.right)]
+    if any(node is None or node not in case.values for node in nodes):
+        return 1.0
+    difference, first, second = (np.abs(case.number(node)) for node in nodes if node is not None)
+    with np.errstate(all="ignore"):
+        return float(np.nanmin(difference / np.fmax(first, second)))
+
+
+def domain_edges(case: Case) -> Iterator[Finding]:
+    """The functions whose argument leaves their domain in some trials, or comes close to its edge."""
+    for cell in case.cells:
+        for part in case.trees.parts(cell):
+            row = function_named(part.name) if isinstance(part, ir.Call) else None
+            domain = None if row is None else row.facts.domain
+            if isinstance(part, ir.Call) and domain is not None and not _is_of_squares(part):
+                finding = _edge_finding(case, cell, part, domain)
+                if finding is not None:
+                    yield finding
+
+
+def _is_of_squares(part: ir.Call) -> bool:
+    """Whether it is the root of a sum of squares, which cannot leave the domain."""
+    squares = [
+        sign > 0 and isinstance(term, ir.Binary) and (term.operator == "^" and term.right == ir.Number(2.0))
+        for sign, term in (found for argument in part.arguments[:1] for found in terms(argument))
+    ]
+    return all(squares)
+
+
+def _edge_finding(case: Case, cell: Cell, part: ir.Call, domain: Domain) -> Finding | None:
+    low, high = domain.low, domain.high
+    node = case.trees.node_of(part.arguments[0], cell)
+    if node is None or node not in case.values:
+        return None
+    x = case.number(node)[case.special :]
+    x = x[np.isfinite(x)]
+    if not x.size or x.min() == x.max():
+        return None
+    every = case.number(node)
+    outside = (every < low) | (every > high)
+    argument, function = case.trees.text(part.arguments[0], cell), part.name
+    takes = f"{low:g} or more" if high == np.inf else f"{low:g} to {high:g}"
+    above = takes if domain.with_ends else f"above {low:g}"
+    share = float(outside[case.special :].mean())
+    if share:
+        what = f"{function} takes {above}, and {argument} goes to {_extreme(x, low, high):.4g}"
+        return Finding(
+            Level.DOUBTFUL,
+            "edge",
+            cell,
+            case.trees.title(cell),
+            case.trees.written_formula(cell),
+            what,
+            f"the cell is an error in {share:.2%} of the trials",
+            case.where(outside, node),
+            None,
+            share,
+        )
+    room = np.minimum(x - low, high - x)
+    spread = float(x.max() - x.min())
+    if room.min() > _CLOSE * spread:
+        return None
+    near = np.asarray(np.minimum(every - low, high - every) <= 10 * _CLOSE * spread)
+    return Finding(
+        Level.NOTE,
+        "edge",
+        cell,
+        case.trees.title(cell),
+        case.trees.written_formula(cell),
+        f"{function} takes {above}, and {argument} comes as near as {room.min():.2g} to that edge",
+        "close to it the function is steep, and a trial beyond it is an error",
+        case.where(near, node),
+        None,
+        float(room.min() / spread),
+    )
+
+
+def _extreme(x: Floats, low: float, high: float) -> float:
+    return float(x.min() if low - x.min() > x.max() - high else x.max())

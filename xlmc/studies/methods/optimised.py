@@ -74,7 +74,7 @@ class Optimised:
         """
         started = time.perf_counter()
         if len(model.live) > _MOST:
-            message = f"{len(model.live):,} assumptions are drawn, and the search handles at most {_MOST}"
+            message = f"{len(model.live):,} assumptions are drawn, and the search handles no more than {_MOST}"
             raise SimulationError(message, hint="bounds by corners look at as many as there are")
         pilot = simulate(model, trials=_PILOT, seed=seed, sampling="mc", engine="numpy", keep_inputs=None)
         if not pilot.accepted:

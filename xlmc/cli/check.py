@@ -95,7 +95,7 @@ def _show_base_case(model: Model) -> list[str]:
 
 def _error_lines(model: Model, errors: BaseErrors) -> Iterator[str]:
     """The cells that errors come from with their formulas, then the cells that have theirs from these."""
-    from xlmc.results.record.recorded_cells import content_text
+    from xlmc.results.record.needed_cells import content_text
 
     handled = "" if errors.answers else " (handled: no forecast, filter or check is an error)"
     for cell, code in list(errors.roots.items())[:_MOST_CELLS]:

@@ -10,6 +10,7 @@ from xlmc.definitions.stopping import GOALS, AcceptedTrials, stopping
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.replay.changes import (
     Change,
+    Closeness,
     NumberChange,
     cell_changes,
     contents_now,
@@ -19,13 +20,12 @@ from xlmc.replay.changes import (
     number_changes,
     structure_changes,
 )
-from xlmc.replay.closeness import Closeness
 from xlmc.replay.sheets import SheetComparison
 from xlmc.replay.shown_results import as_recorded, compare_shown
 from xlmc.replay.versions import Rule, recorded_version, rules_since
 from xlmc.results.record import Record, make_record
+from xlmc.results.record.needed_cells import needed_contents, recorded_cells
 from xlmc.results.record.read import read_record
-from xlmc.results.record.recorded_cells import needed_contents, recorded_cells
 from xlmc.results.record.settings_table import recorded_settings
 from xlmc.results.saved import SUFFIX, is_saved_run, open_run
 from xlmc.run.model import understood

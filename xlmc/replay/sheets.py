@@ -16,7 +16,7 @@ from xlmc.address import Cell
 from xlmc.evaluation.graph.lower import Lowering
 from xlmc.formula import Resolver, build_graph
 from xlmc.formula.precedents import mentioned
-from xlmc.replay.closeness import Closeness, is_number
+from xlmc.replay.changes import Closeness, is_number
 from xlmc.report.sheets.book import build_sheets
 from xlmc.report.sheets.trials_sheet import HEADER, TRIAL_ROWS
 from xlmc.workbook.inject import marked_names

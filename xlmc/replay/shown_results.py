@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Cell
 from xlmc.errors import ErrorCode
-from xlmc.replay.closeness import Closeness, is_number
+from xlmc.replay.changes import Closeness, is_number
 from xlmc.replay.sheets import CellDifference, SheetComparison, compare_sheets
 from xlmc.replay.versions import recorded_version
 from xlmc.run.result_cells import result_values

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Cell
 from xlmc.definitions.model import name_key
-from xlmc.results.record.recorded_cells import content_text
+from xlmc.results.record.needed_cells import content_text
 from xlmc.run.cell_errors import Root
 
 if TYPE_CHECKING:

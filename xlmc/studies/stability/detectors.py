@@ -1,4 +1,4 @@
-"""The short searches: heavy tails, narrow filters, edges of domains, rounded angles, forecasts that amplify."""
+"""The short searches: heavy tails, narrow filters, edges of domains, jumps, rounded angles, forecasts that amplify."""
 
 from __future__ import annotations
 
@@ -8,16 +8,19 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
+from xlmc.evaluation.graph.nodes import Constant, uses
+from xlmc.evaluation.passes.random_rounding import formula_of, numbers
 from xlmc.formula import ir
 from xlmc.functions.facts import Domain
 from xlmc.functions.families import function_named
 from xlmc.statistics.heavy_tails import heavy_tail
 from xlmc.studies.stability.case import Case, Floats
-from xlmc.studies.stability.digit_findings import Finding, Level
+from xlmc.studies.stability.digit_findings import Finding, Level, Where
 from xlmc.studies.stability.formula_trees import terms
+from xlmc.studies.stability.quadrant import arctangents, guards
 from xlmc.studies.stability.rewriting import angles_in_degrees, without_quotient
 
-__all__ = ["amplifying_forecasts", "domain_edges", "heavy_tails", "narrow_filters", "rounded_angles"]
+__all__ = ["amplifying_forecasts", "domain_edges", "heavy_tails", "jumps", "narrow_filters", "rounded_angles"]
 
 _LIMIT: Final = 1e3
 """Relative change of the forecast per relative change of the assumptions, all together, in the median trial."""
@@ -30,6 +33,12 @@ _LEFT: Final = 0.1
 
 _CLOSE: Final = 1e-3
 """Of the spread of the argument: an argument that comes nearer to the edge than that is reported."""
+
+_NEAREST: Final = 20
+"""Trials nearest to where the condition changes."""
+
+_TOLD: Final = 0.01
+"""Of the cell's central range."""
 
 
 def heavy_tails(case: Case) -> Iterator[Finding]:
@@ -242,3 +251,97 @@ def _edge_finding(case: Case, cell: Cell, part: ir.Call, domain: Domain) -> Find
 
 def _extreme(x: Floats, low: float, high: float) -> float:
     return float(x.min() if low - x.min() > x.max() - high else x.max())
+
+
+def jumps(case: Case) -> Iterator[Finding]:
+    """Formulas that jump within the ranges, and by how much.
+
+    These are an IF whose branches differ where its condition changes, and a lookup that finds different cells.
+    """
+    mending = _mending(case)
+    for cell in case.cells:
+        for part in case.trees.parts(cell):
+            if isinstance(part, ir.Call) and part.name == "IF" and len(part.arguments) > 1:
+                if _is_among(case, cell, part, mending):
+                    continue
+                finding = _of_choice(case, cell, part)
+                if finding is not None:
+                    yield finding
+    for kink in case.derivatives.kinks:
+        row = function_named(kink.function)
+        if row is not None and row.facts.finds and kink.cell in case.node:
+            text = f"{kink.function} finds {kink.ways} different cells among the trials"
+            yield _jump_finding(case, kink.cell, text, "the result steps from one cell to the next", kink.share)
+
+
+def _mending(case: Case) -> set[int]:
+    """The choices that put the quadrant of an arctangent right: they jump so that the angle does not."""
+    found: set[int] = set()
+    for cell in case.cells:
+        for one in arctangents(case, cell):
+            if (case.number(one.divisor) < 0).any():
+                for node in guards(case, one.node, one.divisor).holding:
+                    found |= {node, *uses(formula_of(case.dag, node))}
+    return found
+
+
+def _is_among(case: Case, cell: Cell, part: ir.Call, mending: set[int]) -> bool:
+    node = case.trees.node_of(part, cell)
+    return node is not None and node in mending
+
+
+def _of_choice(case: Case, cell: Cell, part: ir.Call) -> Finding | None:
+    test = part.arguments[0]
+    if not (isinstance(test, ir.Binary) and test.operator in ("<", "<=", ">", ">=")):
+        return None
+    branches = [*part.arguments[1:], ir.Number(0.0)][:2]
+    left, right, yes, no = (_numbers(case, cell, tree) for tree in (test.left, test.right, *branches))
+    if left is None or right is None or yes is None or no is None:
+        return None
+    gap = left - right
+    known = np.isfinite(gap) & np.isfinite(yes) & np.isfinite(no)
+    if not ((gap[known] > 0).any() and (gap[known] < 0).any()):
+        return None
+    drawn = known & (np.arange(case.n) >= case.special)
+    nearest = np.argsort(np.where(drawn if drawn.any() else known, np.abs(gap), np.inf))[:_NEAREST]
+    share = float(np.median(np.abs(yes - no)[nearest])) / case.scale(cell)
+    if share < _TOLD:
+        return None
+    near = np.zeros(case.n, bool)
+    near[nearest] = True
+    text = f"{case.trees.text(test, cell)} changes within the ranges, and the two branches of the IF differ there"
+    effect = f"the choice jumps by about {share:.2g} of the central range of the cell"
+    node = case.trees.node_of(test, cell)
+    return _jump_finding(case, cell, text, effect, share, () if node is None else case.where(near, node))
+
+
+def _numbers(case: Case, cell: Cell, tree: ir.Expression) -> Floats | None:
+    node = case.trees.node_of(tree, cell)
+    if node is None:
+        return None
+    formula = case.dag.nodes[node]
+    if node in case.values:
+        return case.number(node)
+    return numbers(formula.value, case.n) if isinstance(formula, Constant) else None
+
+
+def _jump_finding(
+    case: Case,
+    cell: Cell,
+    what: str,
+    effect: str,
+    size: float,
+    where: tuple[Where, ...] = (),
+) -> Finding:
+    return Finding(
+        Level.NOTE,
+        "jump",
+        cell,
+        case.trees.title(cell),
+        case.trees.written_formula(cell),
+        what,
+        effect,
+        where,
+        None,
+        size,
+    )

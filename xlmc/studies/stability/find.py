@@ -14,11 +14,11 @@ from xlmc.studies.stability.detectors import (
     amplifying_forecasts,
     domain_edges,
     heavy_tails,
+    jumps,
     narrow_filters,
     rounded_angles,
 )
 from xlmc.studies.stability.digit_findings import Finding, Level, Stability
-from xlmc.studies.stability.jumps import jumps
 from xlmc.studies.stability.quadrant import lost_quadrants
 from xlmc.studies.stability.rounding_errors import cell_digits, lost_digits
 

@@ -1,4 +1,6 @@
-"""The record's account of the cells that a run needed: their contents as texts, to keep and to compare.
+"""The record's account of what a run needed of its workbook: contents of cells, names, tables, hidden rows.
+
+Contents are kept as texts, to be compared.
 
 Each cell has a row. Where cells are very many, they are packed instead: JSON (cell -> content), deflated, in base64,
 cut into pieces that fit into a cell of a worksheet.
@@ -10,11 +12,13 @@ import base64
 import binascii
 import hashlib
 import json
+import re
 import zlib
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Area, Cell, host_of, parse_address, quote_sheet
+from xlmc.definitions.model import name_key
 from xlmc.definitions.tables.tables import KINDS
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.formula.shape import text_at
@@ -24,7 +28,7 @@ from xlmc.workbook.model import CellValue, Formula
 
 if TYPE_CHECKING:
     from xlmc.run.model import Model
-    from xlmc.workbook.model import Workbook
+    from xlmc.workbook.model import DefinedName, Table, Workbook
 
 __all__ = [
     "MOST_ROWS",
@@ -34,11 +38,11 @@ __all__ = [
     "definition_cells",
     "needed_contents",
     "recorded_cells",
+    "structure_section",
 ]
 
 SAVED: Final = "  (Excel saved "
 """What stands between the formula of a cell that xlmc cannot compute and the value that was used for it."""
-
 
 MOST_ROWS: Final = 1_000
 """Cells that are listed one a row."""
@@ -49,6 +53,15 @@ _MOST_BYTES: Final = 256 << 20
 """Bytes of the contents unpacked: xlmc writes no record with more."""
 
 _COLUMNS: Final[tuple[tuple[str, str], ...]] = (("cell", "Cell"), ("content", "Content"))
+
+_WORD: Final = re.compile(r"[^\W\d][\w.\\?]*")
+_NOT_HIDDEN: Final = frozenset({"subtotal", "aggregate"})
+"""Functions that can leave out hidden rows."""
+
+_LONGEST_MEANING: Final = 30_000
+"""Characters that a cell of the record holds."""
+
+_STRUCTURE_COLUMNS: Final = (("name", "Name"), ("what", "Is a"), ("means", "Means"))
 
 
 def needed_contents(model: Model) -> dict[Cell, str]:
@@ -196,3 +209,69 @@ def _cell(address: str) -> Cell:
     if not isinstance(found, Cell):
         raise WorkbookError(f"the record names the cell {address!r}", hint="The record was edited")
     return found
+
+
+def structure_section(model: Model, contents: Collection[str]) -> Section:
+    """The names and tables that the needed cells mention, and the hidden rows where a function asks for them.
+
+    Args:
+        model: that was run.
+        contents: of the needed cells.
+    """
+    workbook = model.workbook
+    words = _words(contents) | {name_key(a.name) for a in model.assumptions}
+    words |= {name_key(f.name) for f in model.forecasts} | {name_key(f.name) for f in model.filters}
+    words |= {name_key(check.name) for check in model.checks}
+    names = sorted(_find_mentioned(workbook.names, words), key=_order)
+    words |= _words([name.text for name in names])
+    rows = [(f"{name.sheet}!{name.name}" if name.sheet else name.name, "defined name", name.text) for name in names]
+    tables = (t for t in workbook.tables if t.name.casefold().startswith(KINDS) or t.name.casefold() in words)
+    rows += [(table.name, "table", _table_text(table)) for table in tables]
+    if words & _NOT_HIDDEN:
+        rows += [(name, "hidden rows", _ranges(workbook.sheets[name].hidden_rows)) for name in _sheets_read(model)]
+    if workbook.date1904:
+        rows.append(("dates", "count", "from 1904"))
+    listed = tuple((name, what, means[:_LONGEST_MEANING]) for name, what, means in rows)
+    return Section("structure", "Names and tables that the run needed", table=RecordTable(_STRUCTURE_COLUMNS, listed))
+
+
+def _order(name: DefinedName) -> tuple[str, str]:
+    return name.name.casefold(), name.sheet or ""
+
+
+def _words(texts: Collection[str]) -> set[str]:
+    """The words of cells in small letters; those of texts too, which may name a cell or be read by INDIRECT."""
+    return set(_WORD.findall("\n".join(texts).casefold()))
+
+
+def _find_mentioned(names: Collection[DefinedName], words: set[str]) -> Iterator[DefinedName]:
+    """The names among the words, and those that these mention in turn."""
+    waiting = {name for name in names if not name.name.casefold().startswith(("_xlnm.", "_xlmc_"))}
+    while found := {name for name in waiting if name.name.casefold() in words}:
+        yield from found
+        waiting -= found
+        words = words | _words([name.text for name in found])
+
+
+def _sheets_read(model: Model) -> list[str]:
+    """The sheets with hidden rows that a needed cell stands on."""
+    read = {cell.sheet for cell in model.read}
+    sheets = model.workbook.sheets  # parsed when looked up: those not read are left alone
+    return [name for name in sheets if name in read and sheets[name].hidden_rows]
+
+
+def _ranges(rows: Iterable[int]) -> str:
+    """`{3, 4, 5, 9} -> '3-5, 9'`."""
+    found: list[list[int]] = []
+    for row in sorted(rows):
+        if found and row == found[-1][1] + 1:
+            found[-1][1] = row
+        else:
+            found.append([row, row])
+    return ", ".join(str(first) if first == last else f"{first}-{last}" for first, last in found)
+
+
+def _table_text(table: Table) -> str:
+    totals = f", {table.totals_rows} rows of totals" * bool(table.totals_rows)
+    headings = f", {table.header_rows} rows of headings" * (table.header_rows != 1)
+    return f"{table.area}{headings}{totals}: {'; '.join(table.columns)}"

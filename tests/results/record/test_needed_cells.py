@@ -14,11 +14,17 @@ from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.formula.shape import shape_of, text_at
 from xlmc.report.sheets.book import build_sheets
+from xlmc.results.record.needed_cells import (
+    MOST_ROWS,
+    cell_section,
+    content_text,
+    needed_contents,
+    recorded_cells,
+    structure_section,
+)
 from xlmc.results.record.read import read_record
 from xlmc.results.record.record_parts import Entry, Record, Section
-from xlmc.results.record.recorded_cells import MOST_ROWS, cell_section, content_text, needed_contents, recorded_cells
 from xlmc.results.record.settings_table import recorded_settings, settings_section
-from xlmc.results.record.structure_table import structure_section
 from xlmc.workbook.model import CellContent, Formula
 from xlmc.workbook.reader import read_workbook
 
@@ -146,7 +152,7 @@ def test_a_content_too_long_for_a_cell_is_packed():
 
 
 def test_packed_cells_come_through_a_worksheet(run, monkeypatch):
-    monkeypatch.setattr("xlmc.results.record.recorded_cells._PIECE", 100)
+    monkeypatch.setattr("xlmc.results.record.needed_cells._PIECE", 100)
     monkeypatch.setattr("xlmc.results.record.make.cell_section", lambda needed: cell_section(needed, rows=0))
     record = read_record(read_workbook(build_sheets(run)))
     assert record["cells.packed_2"]

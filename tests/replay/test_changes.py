@@ -8,7 +8,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from xlmc.replay.closeness import Closeness
+from xlmc.replay.changes import Closeness
 
 NUMBERS = st.floats(1e-300, 1e300) | st.floats(-1e300, -1e-300)
 REWRITTEN = Closeness(rewritten=True)

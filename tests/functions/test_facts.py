@@ -12,10 +12,10 @@ import pytest
 
 from xlmc.evaluation.graph.called_functions import SPECIAL
 from xlmc.evaluation.graph.choices import CHOICES
+from xlmc.evaluation.graph.computed_references import REFERENCES
 from xlmc.evaluation.graph.expressions import WRITTEN_OUT
 from xlmc.evaluation.graph.lambdas import LAMBDAS
 from xlmc.evaluation.graph.reference_functions import REFERENCE_FUNCTIONS
-from xlmc.evaluation.graph.references import REFERENCES
 from xlmc.evaluation.graph.running_totals import FOLDS
 from xlmc.evaluation.passes.bounds import _OF_ONE
 from xlmc.evaluation.passes.derivatives.rules import RULES
@@ -46,13 +46,16 @@ LISTS = {
     ("evaluation/graph/choices.py", "CHOICES"): "any other function has all its arguments computed",
     ("evaluation/graph/called_functions.py", "SPECIAL"): "any other function takes as many arguments as its row says",
     ("evaluation/graph/lambdas.py", "LAMBDAS"): "any other function takes no LAMBDA",
-    ("evaluation/graph/references.py", "_CHOOSING"): "any other function that gives a range is asked for its cells",
+    (
+        "evaluation/graph/computed_references.py",
+        "_CHOOSING",
+    ): "any other function that gives a range is asked for its cells",
     (
         "evaluation/graph/reference_functions.py",
         "REFERENCE_FUNCTIONS",
     ): "any other function gets values",
     ("evaluation/graph/reference_functions.py", "_count"): "what REFERENCE_FUNCTIONS has",
-    ("evaluation/graph/references.py", "REFERENCES"): "any other function gives values, not references",
+    ("evaluation/graph/computed_references.py", "REFERENCES"): "any other function gives values, not references",
     ("evaluation/graph/running_totals.py", "FOLDS"): "any other function is computed of each range by itself",
     ("evaluation/graph/running_totals.py", "RunningTotals"): "what FOLDS has",
     ("evaluation/graph/whole_columns.py", "_look_up"): "any other lookup searches as MATCH does, or is refused",
@@ -61,8 +64,8 @@ LISTS = {
     ("evaluation/llvm/sets.py", "_ROWS"): "any other function is computed by NumPy",
     ("evaluation/numpy/sequence.py", "_sines_with_cosines"): "any other function is computed by itself",
     ("evaluation/passes/bounds.py", "_OF_ONE"): "of any other function no bounds are known but those of its row",
-    ("evaluation/passes/derivatives/logical.py", "multiples"): "any other function is differentiated by differences",
-    ("evaluation/passes/derivatives/logical.py", "steps"): "any other function is differentiated by differences",
+    ("evaluation/passes/derivatives/conditions.py", "multiples"): "any other function is differentiated by differences",
+    ("evaluation/passes/derivatives/conditions.py", "steps"): "any other function is differentiated by differences",
     ("evaluation/passes/derivatives/sums.py", "conditional"): "one rule's own",
     ("evaluation/passes/derivatives/sums.py", "variance"): "one rule's own",
     ("evaluation/passes/exact.py", "EXACT"): "any other function is computed as in the run, and told of as not checked",

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.evaluation.graph.node_values import corner
+from xlmc.evaluation.graph.nodes import corner
 from xlmc.functions.values import BLANK, ERROR, TEXT, Bools, Codes, Floats, Value
 
 if TYPE_CHECKING:

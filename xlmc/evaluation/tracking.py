@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from xlmc.errors import FormulaError
 from xlmc.evaluation.engine import Column, column_of
 from xlmc.evaluation.graph.dag import MANY, Dag, constants
-from xlmc.evaluation.graph.node_values import evaluate_node
-from xlmc.evaluation.graph.nodes import Constant, Input, uses
+from xlmc.evaluation.graph.nodes import Constant, Input, evaluate_node, uses
 from xlmc.functions import Kind
 from xlmc.functions.budget import MOST_LIVE, TooLargeError, ask_for_live
 from xlmc.functions.values import Floats, Value

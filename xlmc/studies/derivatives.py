@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from xlmc.address import Cell
 from xlmc.errors import SimulationError
 from xlmc.evaluation.graph.nodes import Range
-from xlmc.evaluation.passes.derivatives.findings import Derivative, Derivatives, Notes
+from xlmc.evaluation.passes.derivatives.derivative import Derivative, Derivatives, Notes
 from xlmc.evaluation.passes.derivatives.jet import Jet
 from xlmc.evaluation.passes.derivatives.sweep import UnequalSizes, owners, sweep_forward
 from xlmc.functions.values import BLANK, ERROR, TEXT, Floats, Value

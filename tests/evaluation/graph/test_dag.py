@@ -107,7 +107,7 @@ def test_upstream_is_what_varies_in_order(dag):
 
 
 def test_a_range_of_no_trials(dag):
-    from xlmc.evaluation.graph.node_values import evaluate_node
+    from xlmc.evaluation.graph.nodes import evaluate_node
     from xlmc.functions.values import Value
 
     a = dag.input("a")

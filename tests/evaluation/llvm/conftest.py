@@ -33,16 +33,16 @@ def compiled(request, lower):
 
 @pytest.fixture(scope="session")
 def distance():
-    """`distance(computed, exact)`: how many last places of the exact value lie between, at most.
+    """`distance(computed, exact)`: how many units in the last place of the exact value lie between, at most.
 
-    Of a subnormal the places are those of all subnormals.
+    The unit of a subnormal is that of all subnormals.
     """
 
     def found(computed, exact):
         worst = 0.0
         for value, truth in zip(computed, exact, strict=True):
-            place = mpmath.mpf(float(np.spacing(abs(float(truth)))))
-            worst = max(worst, float(abs(mpmath.mpf(float(value)) - truth) / place))
+            unit = mpmath.mpf(float(np.spacing(abs(float(truth)))))
+            worst = max(worst, float(abs(mpmath.mpf(float(value)) - truth) / unit))
         return worst
 
     return found

@@ -11,8 +11,7 @@ import numpy as np
 
 from xlmc.address import Cell, host_of
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.evaluation.graph.node_values import evaluate_node
-from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Node, Range, Select, uses
+from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Node, Range, Select, evaluate_node, uses
 from xlmc.functions import Function, Kind
 from xlmc.functions.budget import MOST_KEPT, TooLargeError
 from xlmc.functions.values import BLANK, ERROR, LOGICAL, NUMBER, TEXT, Value, constant

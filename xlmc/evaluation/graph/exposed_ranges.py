@@ -13,8 +13,8 @@ from dataclasses import replace
 from xlmc.address import Area, Cell
 from xlmc.evaluation.graph.called_functions import check_count
 from xlmc.evaluation.graph.choices import CHOICES
+from xlmc.evaluation.graph.computed_references import REFERENCES, NoReference, areas_of
 from xlmc.evaluation.graph.lowering import Scope, TreeLowering
-from xlmc.evaluation.graph.references import REFERENCES, NoReference, areas_of
 from xlmc.formula import ir
 from xlmc.functions import Function
 from xlmc.functions.families import function_named

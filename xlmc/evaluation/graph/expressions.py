@@ -12,12 +12,12 @@ from xlmc.evaluation.graph import lambdas, whole_columns
 from xlmc.evaluation.graph.arrays import element, grid, size_of
 from xlmc.evaluation.graph.called_functions import as_set, check_count, not_computed, unknown_to_excel
 from xlmc.evaluation.graph.choices import CHOICES
+from xlmc.evaluation.graph.computed_references import NoReference, areas_of, of_one_cell
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.further_cells import refusal
 from xlmc.evaluation.graph.lowering import LambdaCalls, Scope, TreeLowering
 from xlmc.evaluation.graph.nodes import Range
 from xlmc.evaluation.graph.reference_functions import REFERENCE_FUNCTIONS
-from xlmc.evaluation.graph.references import NoReference, areas_of, of_one_cell
 from xlmc.evaluation.graph.running_totals import FOLDS, RunningTotals
 from xlmc.formula import Graph, ir
 from xlmc.functions import Function

@@ -10,12 +10,11 @@ from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.arrays import element, grid, size_of
 from xlmc.evaluation.graph.called_functions import limits
 from xlmc.evaluation.graph.callees import Arguments, bind, check_depth, find_callee, is_omitted, let_scope
+from xlmc.evaluation.graph.computed_references import areas_of
 from xlmc.evaluation.graph.dag import MANY
 from xlmc.evaluation.graph.lowering import Callee, Closure, Fork, Native, Scope, Thunk, TooDeepError, TreeLowering
-from xlmc.evaluation.graph.node_values import single
-from xlmc.evaluation.graph.nodes import Apply
+from xlmc.evaluation.graph.nodes import Apply, single
 from xlmc.evaluation.graph.recursion import call_recursive
-from xlmc.evaluation.graph.references import areas_of
 from xlmc.formula import ir
 from xlmc.functions import Function, Kind
 from xlmc.functions.budget import ask_for_cells

@@ -14,12 +14,12 @@ from xlmc.errors import ErrorCode, FormulaError, Notice
 from xlmc.evaluation.engine import Target
 from xlmc.evaluation.graph import lambdas
 from xlmc.evaluation.graph.arrays import element
+from xlmc.evaluation.graph.computed_references import NotYetNeeded
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.expressions import ExpressionLowering
 from xlmc.evaluation.graph.fill_down import FillDownCache
 from xlmc.evaluation.graph.lowering import Scope
 from xlmc.evaluation.graph.nodes import Apply, Constant, Input
-from xlmc.evaluation.graph.references import NotYetNeeded
 from xlmc.evaluation.graph.running_totals import RunningTotals
 from xlmc.formula import Filled, Graph, Resolver, ir
 from xlmc.formula.callables import gives_function

@@ -16,11 +16,11 @@ from typing import Final
 from xlmc.errors import FormulaError
 from xlmc.evaluation.graph.arrays import element, grid, size_of
 from xlmc.evaluation.graph.callees import Arguments, find_function, is_omitted
+from xlmc.evaluation.graph.computed_references import areas_of, join_areas
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.lowering import Closure, RecursiveLambda, Scope, Thunk, TreeLowering
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Node, Range, Select, uses
 from xlmc.evaluation.graph.recursive_calls import Body, SelfCall, Step, call_lambda
-from xlmc.evaluation.graph.references import areas_of, join_areas
 from xlmc.formula import ir
 from xlmc.functions import Function, Kind
 from xlmc.functions.registry import Cells

@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.evaluation.graph.node_values import Ragged, corner, evaluate_node
-from xlmc.evaluation.graph.nodes import Apply, IfErrorNode, Range, Select, uses
+from xlmc.evaluation.graph.nodes import Apply, IfErrorNode, Ragged, Range, Select, corner, evaluate_node, uses
 from xlmc.functions.budget import MOST_STEPS, ask_for_live
 from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.lookup.picked_cells import each_part, joined

@@ -8,9 +8,17 @@ from collections.abc import Callable, Mapping, Sequence
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, host_of, quote_sheet
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.arrays import beside, grid
+from xlmc.evaluation.graph.computed_references import (
+    REFERENCES,
+    NoReference,
+    NotYetNeeded,
+    areas_of,
+    cut,
+    many_numbers,
+    require,
+)
 from xlmc.evaluation.graph.further_cells import beyond, level, refusal
 from xlmc.evaluation.graph.lowering import Scope, TreeLowering
-from xlmc.evaluation.graph.references import REFERENCES, NoReference, NotYetNeeded, areas_of, cut, many_numbers, require
 from xlmc.evaluation.graph.totals import without_totals
 from xlmc.formula import ir
 from xlmc.formula.shape import shown_formula

@@ -11,9 +11,9 @@ from typing import Final
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.arrays import cell_by_cell
+from xlmc.evaluation.graph.computed_references import areas_of
 from xlmc.evaluation.graph.lowering import Scope, TreeLowering
 from xlmc.evaluation.graph.nodes import Range
-from xlmc.evaluation.graph.references import areas_of
 from xlmc.formula import ir
 from xlmc.functions import Function
 from xlmc.functions.budget import ask_for_reading

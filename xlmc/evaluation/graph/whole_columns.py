@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from xlmc.address import Area
 from xlmc.errors import FormulaError
+from xlmc.evaluation.graph.computed_references import join_areas, require
 from xlmc.evaluation.graph.exposed_ranges import (
     CURVED,
     Change,
@@ -35,7 +36,6 @@ from xlmc.evaluation.graph.further_cells import (
 )
 from xlmc.evaluation.graph.lowering import Scope, TreeLowering
 from xlmc.evaluation.graph.nodes import Constant, IfErrorNode, Range
-from xlmc.evaluation.graph.references import join_areas, require
 from xlmc.formula import ir
 from xlmc.functions import Function
 from xlmc.functions.facts import EmptyCells, Repeats

@@ -18,7 +18,7 @@ from llvmlite import ir
 
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Constant, Select
-from xlmc.evaluation.llvm.arithmetic import Arithmetic, intrinsic, sine_and_cosine
+from xlmc.evaluation.llvm.loop_arithmetic import Arithmetic, intrinsic, sine_and_cosine
 from xlmc.evaluation.llvm.loop_rules import Literal, LoopRule, Operand, literal, reads
 from xlmc.evaluation.llvm.machine import Machine
 from xlmc.functions import Kind

@@ -15,7 +15,7 @@ from llvmlite import ir
 
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Node, Select
-from xlmc.evaluation.llvm.arithmetic import arccosine, arcsine, arctangent, arctangent_of_two
+from xlmc.evaluation.llvm.loop_arithmetic import arccosine, arcsine, arctangent, arctangent_of_two
 from xlmc.evaluation.llvm.loop_rules import PLAIN, Emit, Emitter, LoopRule, Operand, literal
 from xlmc.evaluation.llvm.sets import over_cells
 from xlmc.functions import Kind

@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 
 from xlmc.evaluation.engine import Column, column_of
 from xlmc.evaluation.graph.dag import Dag
-from xlmc.evaluation.graph.node_values import evaluate_node
-from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select
+from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select, evaluate_node
 from xlmc.evaluation.llvm.loop import Load, compile_loop
 from xlmc.evaluation.llvm.loop_rules import LoopRule, Operand, reads
 from xlmc.evaluation.llvm.machine import Machine, NativeLoop

@@ -14,8 +14,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.evaluation.graph.dag import Dag
-from xlmc.evaluation.graph.node_values import Ragged, by_trial, evaluate_node
-from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Range, Select, uses
+from xlmc.evaluation.graph.nodes import (
+    Apply,
+    Constant,
+    IfErrorNode,
+    Ragged,
+    Range,
+    Select,
+    by_trial,
+    evaluate_node,
+    uses,
+)
 from xlmc.functions import Function, Kind
 from xlmc.functions.budget import ask_for_live
 from xlmc.functions.denormals import Underflow, flush, flushed

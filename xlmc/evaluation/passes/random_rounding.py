@@ -15,8 +15,18 @@ from typing import Final
 import numpy as np
 
 from xlmc.evaluation.graph.dag import Dag
-from xlmc.evaluation.graph.node_values import Ragged, evaluate_node
-from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Node, Range, Select, uses
+from xlmc.evaluation.graph.nodes import (
+    Apply,
+    Constant,
+    IfErrorNode,
+    Input,
+    Node,
+    Ragged,
+    Range,
+    Select,
+    evaluate_node,
+    uses,
+)
 from xlmc.functions import Kind
 from xlmc.functions.fifteen_digits import SETTLED
 from xlmc.functions.values import ERROR, LOGICAL, Floats, Value

@@ -9,8 +9,8 @@ from typing import Final
 
 from xlmc.address import Area, Cell, host_of, parse_address
 from xlmc.errors import FormulaError
+from xlmc.evaluation.graph.computed_references import NotYetNeeded
 from xlmc.evaluation.graph.lowering import Scope
-from xlmc.evaluation.graph.references import NotYetNeeded
 from xlmc.formula import ir
 from xlmc.formula.resolve import Resolver
 from xlmc.formula.substitute import substitute, unfold

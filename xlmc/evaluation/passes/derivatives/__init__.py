@@ -5,6 +5,6 @@ assumptions that reach it (`jet`). What a function does to them is its rule, a f
 a function without a rule is differentiated by differences of its own body's values (`numerical`).
 """
 
-from xlmc.evaluation.passes.derivatives.findings import Derivative, Derivatives, Kink, Numerical, Undefined
+from xlmc.evaluation.passes.derivatives.derivative import Derivative, Derivatives, Kink, Numerical, Undefined
 
 __all__ = ["Derivative", "Derivatives", "Kink", "Numerical", "Undefined"]

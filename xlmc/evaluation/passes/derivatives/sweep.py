@@ -15,13 +15,23 @@ from xlmc.address import Cell
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.lower import Lowering
-from xlmc.evaluation.graph.node_values import Ragged, evaluate_node
-from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Node, Range, Select, uses
-from xlmc.evaluation.passes.derivatives import elementary, lookup, sums  # noqa: F401 - they register their rules
-from xlmc.evaluation.passes.derivatives.findings import Notes
+from xlmc.evaluation.graph.nodes import (
+    Apply,
+    Constant,
+    IfErrorNode,
+    Input,
+    Node,
+    Ragged,
+    Range,
+    Select,
+    evaluate_node,
+    uses,
+)
+from xlmc.evaluation.passes.derivatives import elementary, lookup_rules, sums  # noqa: F401 - they register their rules
+from xlmc.evaluation.passes.derivatives.conditions import if_, if_error
+from xlmc.evaluation.passes.derivatives.derivative import Notes
 from xlmc.evaluation.passes.derivatives.jet import Jet, align
-from xlmc.evaluation.passes.derivatives.logical import if_, if_error
-from xlmc.evaluation.passes.derivatives.lookup import Drawer
+from xlmc.evaluation.passes.derivatives.lookup_rules import Drawer
 from xlmc.evaluation.passes.derivatives.numerical import by_differences
 from xlmc.evaluation.passes.derivatives.rules import RULES, Operand, Outcome
 from xlmc.functions import Kind

@@ -12,8 +12,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.evaluation.passes.derivatives.conditions import hold_still
 from xlmc.evaluation.passes.derivatives.jet import Jet, align, concatenate, flat
-from xlmc.evaluation.passes.derivatives.logical import hold_still
 from xlmc.evaluation.passes.derivatives.rules import RULES, DerivativeRule, Operand, Outcome, level_jets, rule
 from xlmc.functions import Function
 from xlmc.functions.lookup.picked_cells import each_part, joined, transposed

@@ -7,7 +7,7 @@ import pytest
 
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import column_of
-from xlmc.evaluation.graph.node_values import align, corner, single
+from xlmc.evaluation.graph.nodes import align, corner, single
 from xlmc.functions.values import constant, from_objects
 
 NA, CALC = ErrorCode.NA, ErrorCode.CALC

@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from xlmc.evaluation.llvm.arithmetic import HALF_PI
+from xlmc.evaluation.llvm.loop_arithmetic import HALF_PI
 from xlmc.functions.denormals import flushed
 
 pytest.importorskip("llvmlite")
@@ -109,7 +109,7 @@ HARD = np.array(
         *map(float.fromhex, ("0x1.f0400edae762fp-1", "0x1.fc01a33f8f07fp-1", "0x1.f8d76753701d4p-3")),
     ]
 )
-"""Where the angle of a point (√(1 - x²), x) is off by 2.3 to 2.6 last places, and where the reduction changes."""
+"""Where the angle of a point (√(1 - x²), x) is off by 2.3 to 2.6 units in the last place, and where the reduction changes."""
 
 
 def exactly(function, *arrays):

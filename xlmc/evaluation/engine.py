@@ -37,7 +37,7 @@ BLANK_RESULT: Final = 201
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """What to compute: a resolved tree, and the cell it speaks for in messages."""
+    """What to compute: a resolved tree, and the cell that messages about it name."""
 
     tree: ir.Expression
     cell: Cell
@@ -89,19 +89,19 @@ class KeptBlock:
 
 
 BlockRunner = Callable[[int, bool], KeptBlock | None]
-"""Takes a block's first trial and whether to keep draws; None where a trial needs care, and nothing is known then."""
+"""Takes a block's first trial and whether to keep draws; None where a trial must be computed on the careful path."""
 
 
 @runtime_checkable
 class RunsWholeBlocks(Protocol):
-    """What an evaluator may do besides: run a whole block in one piece, which spares memory, calls and locks."""
+    """What an evaluator may do besides: run a whole block at once, which needs less memory, calls and locks."""
 
     def block_runner(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> BlockRunner | None:
-        """What runs whole blocks to the same numbers; None where the model is not of the kind.
+        """A runner of whole blocks that gives the same numbers; None where the model does not allow one.
 
         Args:
             draw: makes the draws of a block from its first trial on, `(block,)` each.
-            linear: makes them too, where they are so simple.
+            linear: makes them too, where each is an offset plus a factor times a uniform.
         """
 
 
@@ -112,7 +112,7 @@ class Program(Protocol):
     node of a `Target`; the targets of the filters and the forecasts; the inputs whose draws may be errors.
 
     Attributes:
-        largest_block: more trials than these at once bring nothing.
+        largest_block: more trials than these at once are no faster.
     """
 
     largest_block: int

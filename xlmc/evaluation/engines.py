@@ -29,10 +29,10 @@ class Engine(NamedTuple):
         what: what it is for, in a clause; empty for the usual one.
         load: gives what makes its program of a lowering, filters, forecasts and inputs whose draws may be errors.
             Filters are evaluated on all trials, forecasts on the survivors.
-        bounded: it is told the bounds of the inputs, too, as `between`.
+        bounded: it is given the bounds of the inputs, too, as `between`.
         filler: draws its uniforms, where it brings something of its own; see `sampling.draws.Filler`.
         library: the package that it needs besides those of every engine; empty for none.
-        portable: its workers can be pickled: to unpickle one takes a fraction of the imports that a recipe needs.
+        portable: its workers can be pickled: to unpickle one takes a fraction of the imports that a `RunSpec` needs.
         process_blocks: blocks that take longer than a process to start: a quarter of a second, or half of one where it
             is not portable.
         searches: its runs may turn to a search for rare trials, which the engine numpy computes.

@@ -109,7 +109,7 @@ HARD = np.array(
         *map(float.fromhex, ("0x1.f0400edae762fp-1", "0x1.fc01a33f8f07fp-1", "0x1.f8d76753701d4p-3")),
     ]
 )
-"""Where the angle of a point (√(1 - x²), x) is off by 2.3 to 2.6 units in the last place, and where the reduction changes."""
+"""Where the angle of a point (√(1 - x²), x) is off by 2.3 to 2.6 such units, and where the reduction changes."""
 
 
 def exactly(function, *arrays):

@@ -1,4 +1,4 @@
-"""Filled-down formulas get the same nodes by recipe as they get when each is lowered for itself."""
+"""Filled-down formulas get the same nodes by pattern as they get when each is lowered for itself."""
 
 from __future__ import annotations
 
@@ -78,15 +78,15 @@ def canonical(lowering):
 
 @settings(max_examples=300, deadline=None)
 @given(data=st.data())
-def test_a_recipe_gives_what_lowering_gives(lower, data):
+def test_a_pattern_gives_what_lowering_gives(lower, data):
     cells, inputs = a_book(data.draw)
     targets = [f"{column}{row}" for column in "EFG" for row in range(1, 5)]
-    by_recipe, _ = lower(cells, inputs, targets)
+    by_pattern, _ = lower(cells, inputs, targets)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(FillDownCache, "lower", lambda self, stencil, leaves, lower: lower())
         one_by_one, _ = lower(cells, inputs, targets)
-    assert canonical(by_recipe) == canonical(one_by_one)
-    assert by_recipe.notices == one_by_one.notices
+    assert canonical(by_pattern) == canonical(one_by_one)
+    assert by_pattern.notices == one_by_one.notices
 
 
 @pytest.fixture

@@ -62,7 +62,7 @@ class FillDownCache:
         if any(self._dag.sizes[leaf] is not None for leaf in leaves):
             patterns[marks] = None
             return lower()
-        node, pattern = self._noted(leaves, lower)
+        node, pattern = self._record(leaves, lower)
         if pattern is not None:
             patterns[marks] = pattern
         return node
@@ -72,7 +72,7 @@ class FillDownCache:
         self._dag.replay(pattern.steps, local)
         return local[pattern.result]
 
-    def _noted(self, leaves: Sequence[int], lower: Callable[[], int]) -> tuple[int, _Pattern | None]:
+    def _record(self, leaves: Sequence[int], lower: Callable[[], int]) -> tuple[int, _Pattern | None]:
         """The node, and how it came about; None where this cell does not tell."""
         dag = self._dag
         made: list[int] = []
@@ -121,7 +121,7 @@ def _maker(node: Node) -> Callable[[tuple[int, ...]], Node]:
 
 
 _ASKING: Final = {*REFERENCE_FUNCTIONS, *LAMBDAS, "SINGLE"}
-"""Functions that mind which cell they stand in, or what else a cell holds than its value."""
+"""Functions whose result depends on the cell they stand in, or on more of a cell than its value."""
 
 
 def _is_repeatable(tree: ir.Expression) -> bool:

@@ -100,12 +100,12 @@ def one_further(area: Area) -> Area:
 
 def by_halves(area: Area) -> Area:
     """As far as a search by halves comes, which steps back from empty cells."""
-    rows = _halved(area.rows, area.whole.rows, 0 if area.further_columns else area.columns)
-    columns = _halved(area.columns, area.whole.columns, 0 if area.further_rows else area.rows + 1)
+    rows = _halve(area.rows, area.whole.rows, 0 if area.further_columns else area.columns)
+    columns = _halve(area.columns, area.whole.columns, 0 if area.further_rows else area.rows + 1)
     return resize(resize(area, rows, False), columns, True)
 
 
-def _halved(held: int, whole: int, least: int) -> int:
+def _halve(held: int, whole: int, least: int) -> int:
     """The end of a search of `whole` cells once its middle is among the first `held`; a range keeps its long side."""
     if held == whole:
         return held

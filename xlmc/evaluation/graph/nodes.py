@@ -157,8 +157,8 @@ def _select(condition: Value, yes: Value, no: Value) -> Value:
 
 def _if_error(value: Value, instead: Value, only_na: bool) -> Value:
     value, instead = align((value, instead))
-    rescued: Value = if_na(value, instead) if only_na else if_error(value, instead)
-    return rescued
+    found: Value = if_na(value, instead) if only_na else if_error(value, instead)
+    return found
 
 
 def _stack(rows: list[list[Value]]) -> Value:

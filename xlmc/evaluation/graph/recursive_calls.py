@@ -218,13 +218,13 @@ class _Run:
         elif isinstance(step, Select):
             condition = yield frame, step.condition
             truth, errors = _decide(condition)
-            wrong = _marked(errors > 0, frame)
+            wrong = _find_marked(errors > 0, frame)
             if wrong.size:
                 found.results.append(
                     (frame.own_trials[wrong], Value.of_errors(np.broadcast_to(errors, frame.trials.shape)[wrong]))
                 )
             for branch, taken in ((step.yes, truth & (errors == 0)), (step.no, ~truth & (errors == 0))):
-                index = _marked(taken, frame)
+                index = _find_marked(taken, frame)
                 if index.size:
                     inner = frame.of(index)
                     yield from self._round(inner, branch, found, True)
@@ -301,7 +301,7 @@ class _Run:
         """Every branch on the trials that take it, put together; blank in trials that take none."""
         parts = []
         for slot, taken in branches:
-            index = _marked(taken, frame)
+            index = _find_marked(taken, frame)
             if index.size:
                 inner = frame.of(index)
                 parts.append((index, (yield inner, slot)))
@@ -326,7 +326,7 @@ def _decide(condition: Value) -> tuple[NDArray[np.bool_], Codes]:
     return np.broadcast_arrays(truth, errors)  # type: ignore[return-value]
 
 
-def _marked(taken: NDArray[np.bool_], frame: _Frame) -> Trials:
+def _find_marked(taken: NDArray[np.bool_], frame: _Frame) -> Trials:
     """The trials that are marked, counted in a frame."""
     return np.flatnonzero(np.broadcast_to(taken, frame.trials.shape))
 

@@ -64,7 +64,7 @@ class _Call:
     direct: Mapping[int, list[Area]]
     mixed: tuple[int, ...]
 
-    def refused(self) -> FormulaError:
+    def refusal(self) -> FormulaError:
         return refusal(self.name)
 
     def with_areas(self, areas: Mapping[int, Sequence[Area]]) -> Arguments:
@@ -74,7 +74,7 @@ class _Call:
             for i, argument in enumerate(self.arguments)
         )
 
-    def changed(self, change: Change) -> Arguments:
+    def change_all(self, change: Change) -> Arguments:
         """The arguments with every range that is cut changed."""
         direct = {i: [change(area) if area.is_cut else area for area in areas] for i, areas in self.direct.items()}
         made = self.with_areas(direct)
@@ -141,15 +141,15 @@ def _of_areas(call: _Call) -> int:
     if name == "INDEX":
         return _pick(call)
     if name == "UNIQUE" and len(call.arguments) == 1:
-        return call.make(call.changed(one_further), {})
+        return call.make(call.change_all(one_further), {})
     if facts.empty_cells is EmptyCells.PAIRED:
         return call.make(call.with_areas(level(call.direct)), {})
     cut = [i for i, areas in call.direct.items() if any(area.is_cut for area in areas)]
     texts = name == "TEXTJOIN" and call.arguments[1] == ir.Logical(True) and 0 not in cut
     in_first = facts.empty_cells is EmptyCells.IGNORED_IN_FIRST and cut == [0]
     if facts.empty_cells is EmptyCells.IGNORED or texts or in_first:
-        return call.make(call.changed(to_filled), {})
-    raise call.refused()
+        return call.make(call.change_all(to_filled), {})
+    raise call.refusal()
 
 
 def _of_expressions(call: _Call) -> int:
@@ -166,22 +166,22 @@ def _of_expressions(call: _Call) -> int:
         return call.make(filled, {})
     if call.name == "FILTER" and 1 in call.mixed and _is_false(call, further[1]):
         return call.make(filled, {})
-    raise call.refused()
+    raise call.refusal()
 
 
 def _part(call: _Call) -> tuple[Arguments, Arguments, int]:
     """The arguments up to the last filled row; those of one further row; and how many of these there are.
 
-    Of arguments that are ranges, a function that adds up is told nothing new by empty cells.
+    Empty cells of arguments that are ranges add nothing to a function that adds up.
     """
     cut = call.cut()
     across = cut[0].further_columns > 0
     sizes = {area.whole.columns if across else area.whole.rows for area in cut}
     if len(sizes) > 1 or any((area.further_rows if across else area.further_columns) for area in cut):
-        raise call.refused()
+        raise call.refusal()
     length = max(area.columns if across else area.rows for area in cut)
-    filled = call.changed(lambda area: resize(area, length, across))
-    further = call.changed(lambda area: one_behind(area, length, across))
+    filled = call.change_all(lambda area: resize(area, length, across))
+    further = call.change_all(lambda area: one_behind(area, length, across))
     for i in range(len(call.arguments)):
         if i in call.mixed:
             _check(call, filled[i], length, across)
@@ -195,7 +195,7 @@ def _check(call: _Call, tree: ir.Expression, length: int, across: bool) -> None:
         tree = tree.arguments[0]
     size = call.lowering.dag.sizes[call.lowering.lower(tree, call.scope)] or (1, 1)
     if size[1 if across else 0] != length:
-        raise call.refused()
+        raise call.refusal()
 
 
 def _ends(call: _Call, further: Arguments) -> list[Arguments]:
@@ -205,11 +205,11 @@ def _ends(call: _Call, further: Arguments) -> list[Arguments]:
         return [further]
     curved = CURVED in degrees or (call.name == "SUMPRODUCT" and sum(degrees) > 1)
     if curved or not _ends_tell(call):
-        raise call.refused()
+        raise call.refusal()
     area = call.cut()[0]
     across = area.further_columns > 0
     length = (area.whole.columns if across else area.whole.rows) - 1
-    return [further, call.changed(lambda area: one_behind(area, length, across))]
+    return [further, call.change_all(lambda area: one_behind(area, length, across))]
 
 
 def _ends_tell(call: _Call) -> bool:
@@ -232,7 +232,7 @@ def _degree(call: _Call, position: int) -> int:
 def _add_up(call: _Call, filled: Arguments, ends: Sequence[Arguments], count: int) -> int:
     lowering = call.lowering
     if call.name == "SUMPRODUCT" and any(not area.is_cut for areas in call.direct.values() for area in areas):
-        raise call.refused()
+        raise call.refusal()
     share = lowering.number(count / len(ends))
     node = call.make(filled, {})
     for end in ends:
@@ -253,11 +253,11 @@ def _look_up(call: _Call, mode: int) -> int:
             return call.make(_as_unequal(call), {})
         if given == ir.Unary("-", ir.Number(1.0)) and not _degree(call, 1):
             return _from_behind(call)
-        raise call.refused()
+        raise call.refusal()
     exact = how is not None and (isinstance(how, ir.Missing) or how in (ir.Number(0.0), ir.Logical(False)))
     if call.mixed:
         return _search_computed(call, exact)
-    made = call.changed(lambda area: _reach(area, name, exact))
+    made = call.change_all(lambda area: _reach(area, name, exact))
     return call.make(made, _beside(call))
 
 
@@ -267,11 +267,11 @@ def _from_behind(call: _Call) -> int:
     sizes = {(area.rows, area.whole.rows, area.columns, area.whole.columns) for area in call.cut()}
     if call.name == "XLOOKUP":
         if _degree(call, 2) and not _is_not_found(call):
-            raise call.refused()
+            raise call.refusal()
         return call.make(made, {})
     area = call.cut()[0]
     if len(sizes) > 1:
-        raise call.refused()
+        raise call.refusal()
     across = area.further_columns > 0
     held, whole = (area.columns, area.whole.columns) if across else (area.rows, area.whole.rows)
     return call.lowering.apply(to_the_last(held, whole), (call.make(made, {}),))
@@ -300,12 +300,12 @@ def _search_computed(call: _Call, exact: bool) -> int:
     _, further, _ = _part(call)
     passed = 1 in call.mixed and _is_passed_over(call, further[1])
     if _degree(call, 1) and not passed:
-        raise call.refused()
+        raise call.refusal()
     passed = passed or exact
     cut = call.cut()
     across = cut[0].further_columns > 0
     length = max(area.columns if across else area.rows for area in map(one_further if exact else by_halves, cut))
-    node = call.make(call.changed(lambda area: resize(area, length, across)), {})
+    node = call.make(call.change_all(lambda area: resize(area, length, across)), {})
     return node if passed else _at_the_end(call, further, node)
 
 
@@ -316,12 +316,12 @@ def _at_the_end(call: _Call, further: Arguments, otherwise: int) -> int:
     shortest = min(max(area.whole.rows, area.whole.columns) for area in call.cut())
     numbered = call.mixed == (1, 2) and is_numbered(call.arguments[2])
     if call.name != "LOOKUP" or not (numbered or (call.mixed == (1,) and 2 in call.direct)) or 2 * longest >= shortest:
-        raise call.refused()
+        raise call.refusal()
     if not numbered and not all(area.is_cut for area in call.direct[2]):
-        raise call.refused()
+        raise call.refusal()
     there = call.make(_ends(call, further)[-1], {})
     if dag.sizes[there] is not None or dag.sizes[otherwise] is not None:
-        raise call.refused()
+        raise call.refusal()
     return dag.add(IfErrorNode(there, otherwise, True))
 
 
@@ -338,7 +338,7 @@ def _beside(call: _Call) -> dict[int, Function]:
 def _pick(call: _Call) -> int:
     """INDEX: beyond what is read, a number leads to a further cell."""
     if len(call.direct[0]) > 1:
-        raise call.refused()
+        raise call.refusal()
     (area,) = call.direct[0]
     alone = len(call.arguments) == 2
     axes = {1: "columns"} if alone and area.whole.rows == 1 else {1: "rows", 2: "columns"}
@@ -347,10 +347,10 @@ def _pick(call: _Call) -> int:
         one = getattr(area, "further_" + axis)
         given = i < len(call.arguments) and not isinstance(call.arguments[i], ir.Missing)
         if one and not given and not (alone and area.whole.columns == 1):
-            raise call.refused()
+            raise call.refusal()
         if one and given:
             within[i] = keep_within(getattr(area, axis) + 1, getattr(area.whole, axis), True)
-    return call.make(call.changed(one_further), within)
+    return call.make(call.change_all(one_further), within)
 
 
 def _as_unequal(call: _Call) -> Arguments:
@@ -359,10 +359,10 @@ def _as_unequal(call: _Call) -> Arguments:
         _part(call)
         sizes = {(area.whole.rows, area.further_columns > 0) for area in call.cut()}
         if len(sizes) > 1 or any(not area.is_cut for areas in call.direct.values() for area in areas):
-            raise call.refused()
+            raise call.refusal()
         across = call.cut()[0].further_columns > 0
         length = max(area.columns if across else area.rows for area in call.cut()) + 1
-        return call.changed(lambda area: resize(area, length, across))
+        return call.change_all(lambda area: resize(area, length, across))
     longer = {i: [one_further(area) if area.is_cut else area for area in areas] for i, areas in call.direct.items()}
     return call.with_areas(level(longer))
 

@@ -192,14 +192,14 @@ def _gather(module: ir.Module, chunk: int) -> ir.Function:
     source, target, survivors, n = function.args
     builder = ir.IRBuilder(function.append_basic_block("entry"))
 
-    def copied(i: Any, of: Any) -> None:
+    def copy(i: Any, of: Any) -> None:
         builder.store(builder.load(builder.gep(source, [of])), builder.gep(target, [i]))
 
     with builder.if_else(builder.icmp_signed("==", n, _LONG(chunk))) as (whole, some):
         with whole:
-            _for_each(builder, _LONG(chunk), lambda i: copied(i, i))
+            _for_each(builder, _LONG(chunk), lambda i: copy(i, i))
         with some:
-            _for_each(builder, n, lambda i: copied(i, builder.load(builder.gep(survivors, [i]))))
+            _for_each(builder, n, lambda i: copy(i, builder.load(builder.gep(survivors, [i]))))
     builder.ret_void()
     return function
 

@@ -128,13 +128,13 @@ class Body:
                 else:
                     fallible = fallible or self._source(part)[1].fallible
             values.append(self._value(part))
-        value = self.flushed(rule.emit(self, values))
+        value = self.flush(rule.emit(self, values))
         own = Operand(node, self._dag.types[node])
         self._known[own] = Loaded(value, fallible and own.kind is Kind.NUMBER)
         if isinstance(self._dag.nodes[node], Select):
             self._join(node, values[0])
 
-    def flushed(self, value: Any) -> Any:
+    def flush(self, value: Any) -> Any:
         """0 instead of a number too small for Excel, where the processor does not see to it."""
         if self._flushes or value.type != self.real:
             return value

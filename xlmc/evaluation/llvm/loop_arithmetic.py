@@ -106,7 +106,7 @@ class Arithmetic:
     def odd(self, whole: Any) -> Any:
         return self._builder.trunc(whole, ir.IntType(1))
 
-    def turned(self, x: Any, quadrant: Any, one_more: bool) -> Any:
+    def turn(self, x: Any, quadrant: Any, one_more: bool) -> Any:
         """`x` negated where the second bit of the quadrant, or of the one after it, is set."""
         if one_more:
             quadrant = self._builder.add(quadrant, ir.Constant(self._integer, 1))
@@ -144,8 +144,8 @@ def sine_and_cosine(builder: Any, angle: Any, fused: bool) -> tuple[Any, Any]:
     sine, cosine = _sine(do, x, rest, square, first), _cosine(do, x, rest, square, first)
     swapped = do.odd(quadrant)
     return (
-        do.turned(do.select(swapped, cosine, sine), quadrant, one_more=False),
-        do.turned(do.select(swapped, sine, cosine), quadrant, one_more=True),
+        do.turn(do.select(swapped, cosine, sine), quadrant, one_more=False),
+        do.turn(do.select(swapped, sine, cosine), quadrant, one_more=True),
     )
 
 

@@ -42,7 +42,7 @@ class Emitter(Protocol):
     def sine_and_cosine(self, angle: Any) -> tuple[Any, Any]:
         """Both, computed once for each angle."""
 
-    def flushed(self, value: Any) -> Any:
+    def flush(self, value: Any) -> Any:
         """0 instead of a number too small for Excel."""
 
     def flag(self, wrong: Any) -> None:

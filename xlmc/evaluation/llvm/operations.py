@@ -176,7 +176,7 @@ def _reciprocal(body: Emitter, parts: Sequence[Any]) -> Any:
 
 
 def _cube(body: Emitter, parts: Sequence[Any]) -> Any:
-    return body.builder.fmul(body.flushed(body.builder.fmul(parts[0], parts[0])), parts[0])
+    return body.builder.fmul(body.flush(body.builder.fmul(parts[0], parts[0])), parts[0])
 
 
 def _compare(dag: Dag, node: Apply, symbol: str) -> Emit:

@@ -63,7 +63,7 @@ def _members(dag: Dag, node: Apply) -> _Members:
             members.counting.append(Operand(node_id, kind))
             continue
         for cell in cells:
-            found = _counted(dag, cell, kind)
+            found = _count(dag, cell, kind)
             if found is not None:
                 members.counting.append(found)
             elif isinstance(cell, int):
@@ -98,7 +98,7 @@ def _each(value: Value) -> Iterator[Value]:
             yield Value(parts[0], parts[1], parts[2])  # type: ignore[arg-type]  # only texts may be None
 
 
-def _counted(dag: Dag, cell: int | Value, kind: Kind) -> Part | None:
+def _count(dag: Dag, cell: int | Value, kind: Kind) -> Part | None:
     """A cell of a range where it counts; None where it does not."""
     if isinstance(cell, Value):
         return _counted_constant(cell, kind)
@@ -128,7 +128,7 @@ def _sum_of_products(dag: Dag, node: Apply) -> LoopRule | None:
         for cell in cells:
             if isinstance(cell, Value) and int(cell.kinds.flat[0]) == TEXT and len(cells) == 1:
                 return None  # the careful path knows what Excel makes of it
-            found = _counted(dag, cell, Kind.NUMBER)
+            found = _count(dag, cell, Kind.NUMBER)
             parts.append(Literal(0.0) if found is None else found)
             if found is None and isinstance(cell, int):
                 beside.append(cell)
@@ -155,7 +155,7 @@ _sum = _fold("fadd")
 
 
 def _product(body: Emitter, parts: Parts) -> Any:
-    return reduce(lambda so_far, part: body.flushed(body.builder.fmul(so_far, part)), parts)
+    return reduce(lambda so_far, part: body.flush(body.builder.fmul(so_far, part)), parts)
 
 
 def _extreme(relation: str) -> Emit:

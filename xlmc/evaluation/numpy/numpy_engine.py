@@ -208,7 +208,7 @@ class _Space:
     """The memory of one thread: buffers for blocks of up to `block` trials, and the frame of the block at hand.
 
     Attributes:
-        underflow: to be told where NumPy raises that flag.
+        underflow: is called where NumPy raises that flag.
     """
 
     def __init__(self, program: NumpyProgram, block: int) -> None:

@@ -122,7 +122,7 @@ def _apply(dag: Dag, node_id: int, function: Function, arguments: tuple[int, ...
         if folded is None:
             return _careful_step(dag, node_id)
         return _fold(function, node_id, _readers(dag, folded, function.parameters[0].kind), buffer)
-    readers = [_reader(dag, argument, _wanted(dag, function, p)) for p, argument in enumerate(arguments)]
+    readers = [_reader(dag, argument, _wanted_kind(dag, function, p)) for p, argument in enumerate(arguments)]
     if any(reader is None for reader in readers):
         return _careful_step(dag, node_id)
     found = [reader for reader in readers if reader is not None]
@@ -132,7 +132,7 @@ def _apply(dag: Dag, node_id: int, function: Function, arguments: tuple[int, ...
 
 
 def _on_numbers(dag: Dag, function: Function, arguments: tuple[int, ...]) -> bool:
-    """Whether all arguments are plain numbers for a ufunc: the case of nearly every node, told at sight."""
+    """Whether all arguments are plain numbers for a ufunc: the case of nearly every node, seen at once."""
     if not function.on_numbers or function.ufunc is None or len(arguments) != function.ufunc.nin:
         return False
     return all(dag.types[argument] is Kind.NUMBER for argument in arguments)
@@ -144,11 +144,11 @@ def _fast_ufunc(dag: Dag, node: Apply) -> bool:
         return True
     if function.ufunc is None or len(node.arguments) != function.ufunc.nin or _compares_unlike_kinds(dag, node):
         return False
-    wanted = [_reader(dag, a, _wanted(dag, function, p)) for p, a in enumerate(node.arguments)]
+    wanted = [_reader(dag, a, _wanted_kind(dag, function, p)) for p, a in enumerate(node.arguments)]
     return all(reader is not None for reader in wanted)
 
 
-def _wanted(dag: Dag, function: Function, position: int) -> Kind:
+def _wanted_kind(dag: Dag, function: Function, position: int) -> Kind:
     """What an argument is read as; comparisons take numbers here, for that is what their ufunc orders."""
     kind = function.parameter(position).kind
     return Kind.NUMBER if kind is Kind.ANY and function.ufunc is not None else kind

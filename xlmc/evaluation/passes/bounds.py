@@ -39,7 +39,7 @@ def bounds(dag: Dag, nodes: Iterable[int], inputs: Mapping[str, Bounds]) -> dict
             case Select(_, yes, no):
                 between = _around((*of(yes), *of(no)))
             case Apply(function, (first, second)) if function.name in ("+", "-", "*", "/"):
-                between = _combined(function.name, of(first), of(second))
+                between = _combine(function.name, of(first), of(second))
             case Apply(function, (result, _)) if function.name == SETTLED.name:
                 between = of(result)
             case Apply(function) if function.facts.between is not None:
@@ -70,14 +70,14 @@ def of_constant(dag: Dag, node_id: int) -> Bounds | None:
     return None
 
 
-def _combined(operator: str, left: Bounds, right: Bounds) -> Bounds:
+def _combine(operator: str, left: Bounds, right: Bounds) -> Bounds:
     if operator == "+":
         return left[0] + right[0], left[1] + right[1]
     if operator == "-":
         return left[0] - right[1], left[1] - right[0]
     if operator == "/":
         away = right[0] > 0.0 or right[1] < 0.0
-        return _combined("*", left, _around((1.0 / right[0], 1.0 / right[1]))) if away else _ANY
+        return _combine("*", left, _around((1.0 / right[0], 1.0 / right[1]))) if away else _ANY
     return _around([a * b for a in left for b in right])
 
 

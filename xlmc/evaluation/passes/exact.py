@@ -256,7 +256,7 @@ def _sum_product(*items: Item) -> Item:
     return _total(terms)
 
 
-def _compared(relation: Callable[[mpf, mpf], bool]) -> Callable[..., Item]:
+def _compare(relation: Callable[[mpf, mpf], bool]) -> Callable[..., Item]:
     def body(left: Item, right: Item) -> Item:
         left, right = _single(left), _single(right)
         if isinstance(left, mpf) and isinstance(right, mpf):
@@ -266,7 +266,7 @@ def _compared(relation: Callable[[mpf, mpf], bool]) -> Callable[..., Item]:
     return body
 
 
-def _joined(decide: Callable[[list[bool]], bool]) -> Callable[..., Item]:
+def _join(decide: Callable[[list[bool]], bool]) -> Callable[..., Item]:
     def body(*items: Item) -> Item:
         found: list[bool] = []
         for item in items:
@@ -341,14 +341,14 @@ EXACT: Final[Mapping[str, Callable[..., Item]]] = {
     "COVARIANCE.P": _covariance(0),
     "COVARIANCE.S": _covariance(1),
     "SUMPRODUCT": _sum_product,
-    "=": _compared(lambda x, y: x == y),
-    "<>": _compared(lambda x, y: x != y),
-    "<": _compared(lambda x, y: x < y),
-    "<=": _compared(lambda x, y: x <= y),
-    ">": _compared(lambda x, y: x > y),
-    ">=": _compared(lambda x, y: x >= y),
-    "AND": _joined(all),
-    "OR": _joined(any),
+    "=": _compare(lambda x, y: x == y),
+    "<>": _compare(lambda x, y: x != y),
+    "<": _compare(lambda x, y: x < y),
+    "<=": _compare(lambda x, y: x <= y),
+    ">": _compare(lambda x, y: x > y),
+    ">=": _compare(lambda x, y: x >= y),
+    "AND": _join(all),
+    "OR": _join(any),
     "NOT": lambda item: (
         NotImplemented if isinstance(item, list | str) else (not item) if not isinstance(item, ErrorCode) else item
     ),
@@ -358,7 +358,7 @@ EXACT: Final[Mapping[str, Callable[..., Item]]] = {
 
 def _as_in_the_run(function: Any, items: Sequence[Item]) -> Item:
     """The run's own body, on doubles."""
-    arguments = [_boxed(item) for item in items]
+    arguments = [_box(item) for item in items]
     try:
         with np.errstate(all="ignore"):
             return _result_items(function(arguments))
@@ -366,7 +366,7 @@ def _as_in_the_run(function: Any, items: Sequence[Item]) -> Item:
         return ErrorCode.VALUE
 
 
-def _boxed(item: Item) -> Value:
+def _box(item: Item) -> Value:
     if isinstance(item, list):
         out = np.empty((1, len(item), len(item[0])), object)
         for r, row in enumerate(item):

@@ -151,7 +151,7 @@ class Notes:
         self.names[node] = name
         self.lost[node].setdefault(why, []).append(np.flatnonzero(trials) + start)
 
-    def differed(self, node: int, name: str, first: Floats, error: Floats | None) -> None:
+    def note_difference(self, node: int, name: str, first: Floats, error: Floats | None) -> None:
         """A function was differentiated by differences."""
         self.names[node] = name
         with np.errstate(all="ignore"):

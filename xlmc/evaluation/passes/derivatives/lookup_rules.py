@@ -53,7 +53,7 @@ class Drawer(NamedTuple):
             tags.append(_tag(operand.value, numbers))
         return cls(concatenate(jets, n), tags)
 
-    def drawn(self, found: Value, result: Value) -> Jet:
+    def draw(self, found: Value, result: Value) -> Jet:
         """The cells that a function found among the tags, as its result."""
         cells = np.where(found.kinds == NUMBER, found.numbers, 0.0)
         cells = np.broadcast_to(cells, found.shape).astype(np.intp)
@@ -96,7 +96,7 @@ def _look_up(call: Callable[[Values], Value], result: Value, operands: Sequence[
     """The cell that a call finds among tags, by the first operand as a key."""
     values = [operand.value for operand in operands]
     found = call(values)
-    jet = drawer.drawn(found, result)
+    jet = drawer.draw(found, result)
     key = operands[0].jet
     if key.active:
         level = key.as_range() if jet.x.ndim == 3 else key
@@ -178,7 +178,7 @@ def register_moving(data: Callable[[int], Sequence[int]], *names: str, why: str 
         found = function(values)
         rest = [operand for index, operand in enumerate(operands) if index not in moving]
         single = found.numbers.ndim == 1
-        return Outcome(_without(drawer.drawn(found, result), rest), found.numbers if single else None)
+        return Outcome(_without(drawer.draw(found, result), rest), found.numbers if single else None)
 
     for name in names:
         RULES[name] = DerivativeRule(apply, why, jumps)

@@ -189,11 +189,11 @@ def _by_assumptions(moved: Moved, result: Value, operands: Sequence[Operand]) ->
                 both = _along(moved, result, way({i: weight[i], j: weight[j]}))
                 second[i, j], second_error[i, j] = _mixed(both, singles[i], singles[j], level[i] * level[j])
                 second[j, i], second_error[j, i] = second[i, j], second_error[i, j]
-    error, second_error = _inherited(jets, singles, error, second_error)
+    error, second_error = _inherit(jets, singles, error, second_error)
     return Jet(result.numbers, active, first, second, error, second_error)
 
 
-def _inherited(
+def _inherit(
     jets: dict[int, Jet], singles: Sequence[_Along], error: Floats, second_error: Floats | None
 ) -> tuple[Floats, Floats | None]:
     """Errors of the operands' own derivatives: as large a share of the result's."""
@@ -256,12 +256,12 @@ def _along(moved: Moved, result: Value, way: _Way) -> _Along:
     for step in way.first:
         if step is not None:
             most = np.maximum(most, np.abs(step).reshape(step.shape[0], -1).max(axis=1))
-    found = _extrapolated(moved, result, way, np.ones(n))
+    found = _extrapolate(moved, result, way, np.ones(n))
     small = (most < 1) & (most >= _SMALLEST)
     if small.any():
-        found = found.or_better(_extrapolated(moved, result, way, np.where(small, 1 / most, 1.0)))
+        found = found.or_better(_extrapolate(moved, result, way, np.where(small, 1 / most, 1.0)))
     if not np.isfinite(found.first_error).all():
-        found = found.or_better(_extrapolated(moved, result, way, np.full(n, _FINER)))
+        found = found.or_better(_extrapolate(moved, result, way, np.full(n, _FINER)))
     return found
 
 
@@ -274,7 +274,7 @@ def _mixed(both: _Along, one: _Along, other: _Along, size: Floats) -> tuple[Floa
     return np.where(sure, second, np.nan) / (2 * size), np.where(sure, error, np.inf) / (2 * size)
 
 
-def _extrapolated(moved: Moved, result: Value, way: _Way, scale: Floats) -> _Along:
+def _extrapolate(moved: Moved, result: Value, way: _Way, scale: Floats) -> _Along:
     middle = np.broadcast_to(np.where(result.kinds >= ERROR, np.nan, result.numbers), result.shape)
     level = scale.reshape(-1, *(1,) * (result.numbers.ndim - 1))
     slopes, bends, steps = [], [], []

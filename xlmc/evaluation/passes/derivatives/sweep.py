@@ -128,7 +128,7 @@ def _differentiate(
     if outcome.ways is not None and (valued or not _is_condition(dag.nodes[node])):
         notes.took(node, name, outcome.ways, jumps)
     if outcome.numerical:
-        notes.differed(node, name, jet.first, jet.error)
+        notes.note_difference(node, name, jet.first, jet.error)
     _note_losses(node, name, why, result, jet, operands, notes, start)
     return jet
 
@@ -161,7 +161,7 @@ def _outcome(dag: Dag, node_id: int, result: Value, operands: Sequence[Operand])
     function = node.function
     if function.name.startswith("cell "):
         drawer = Drawer.of(operands)
-        return Outcome(drawer.drawn(function(drawer.tags), result))
+        return Outcome(drawer.draw(function(drawer.tags), result))
     if function.name in RULES:
         return RULES[function.name].apply(function, result, operands)
     if function.returns is Kind.LOGICAL:

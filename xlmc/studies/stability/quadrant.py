@@ -16,8 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.evaluation.graph.nodes import Ragged
-from xlmc.evaluation.graph.nodes import Apply, uses
+from xlmc.evaluation.graph.nodes import Apply, Ragged, uses
 from xlmc.evaluation.passes.random_rounding import follow, formula_of
 from xlmc.formula import ir
 from xlmc.functions.values import TEXT, Value

@@ -137,7 +137,7 @@ class FormulaError(XlmcError):
         self.span = span
 
     def at(self, where: object) -> FormulaError:
-        """The same error, told of a cell."""
+        """The same error, with where it is: a cell."""
         return FormulaError(self.message, where=where, hint=self.hint, text=self.text, span=self.span)
 
     def __str__(self) -> str:

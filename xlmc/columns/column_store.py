@@ -1,4 +1,8 @@
-"""A temporary folder of column files, which goes when nothing needs it any more."""
+"""Columns in files of a temporary folder, which goes when nothing needs it any more.
+
+A `ColumnStore` gathers columns and writes them once they are long; a `Folder` holds their files; each file is read as
+an array that is mapped into memory.
+"""
 
 from __future__ import annotations
 
@@ -113,7 +117,7 @@ def _remove(path: Path, owner: int, kept: ExitStack) -> None:
 
 @contextmanager
 def _naming_folder(path: Path | None) -> Iterator[None]:
-    """Failures of the disk in words."""
+    """Turn errors of the disk into messages that name the folder."""
     try:
         yield
     except OSError as error:
@@ -127,7 +131,7 @@ def _naming_folder(path: Path | None) -> Iterator[None]:
 
 
 IN_MEMORY: Final = 1 << 27
-"""Bytes of all columns of a keeper together that stay in memory."""
+"""Bytes of all columns of a store together that stay in memory."""
 
 WRITTEN: Final = 1 << 24
 """Bytes that are gathered before they are written: large writes cost least."""

@@ -1,4 +1,10 @@
-"""Passes over long columns, a part at a time, so that memory stays flat."""
+"""Passes over long columns, a part at a time, so that memory stays flat; and sorting in the same manner.
+
+A column that does not fit in memory is sorted in runs of 4 M values, which are written and then merged piece by piece.
+Splitters are every k-th value of the runs, so chosen that at most two runs' worth of values lies strictly between
+two of them (sampling at regular intervals: Shi & Schaeffer 1992); each such piece is gathered from all runs, sorted and
+written. Values equal to a splitter are only counted, so that ties cannot make a piece large.
+"""
 
 from __future__ import annotations
 

@@ -278,7 +278,7 @@ def _ends_an_operand(token: Any) -> bool:
 
 
 class _TreeBuilder:
-    """Takes the postfix stream and keeps one tree a completed operand."""
+    """Takes the postfix stream, and keeps one tree for each completed operand."""
 
     def __init__(self, match: object = None) -> None:
         self._operands: list[ir.Expression] = []

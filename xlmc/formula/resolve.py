@@ -77,7 +77,7 @@ class Resolver:
         return found.at(cell) if isinstance(found, Stencil) else found
 
     def tree_or_stencil(self, cell: Cell, formula: Formula) -> ir.Expression | Stencil:
-        """The same; or, of a formula that was filled into many cells, what these have in common.
+        """The tree of a cell's formula; or, if it was filled into many cells, the stencil that these have in common.
 
         Raises:
             FormulaError: as `formula`.

@@ -37,7 +37,7 @@ class _Span:
         return range(start, self.start), range(max(start, self.stop), stop)
 
     def add(self, start: int, stop: int) -> None:
-        """These have it too."""
+        """Note that these have it too."""
         if start <= self.stop and self.start <= stop:
             self.start, self.stop = min(start, self.start), max(stop, self.stop)
         elif stop - start > self.stop - self.start:
@@ -66,7 +66,7 @@ class Stretch:
         return map(self.strip.cells.__getitem__, range(self.start, self.stop))
 
     def waiting(self) -> Iterator[Cell]:
-        """Those that were not in order yet when this was asked, and maybe some that were."""
+        """The cells that are not in order yet, and perhaps some that are."""
         indices = chain(*self.strip.ordered.outside(self.start, self.stop))
         return map(self.strip.cells.__getitem__, indices)
 
@@ -75,7 +75,7 @@ class Stretch:
         self.strip.ordered.add(self.start, self.stop)
 
     def varies(self, varying: Set[Cell]) -> bool:
-        """Whether any is among the cells that vary; that is settled of all of them."""
+        """Whether any is among the cells that vary, once this is known of all of them."""
         cells, constant = self.strip.cells, self.strip.constant
         for indices in constant.outside(self.start, self.stop):
             found = next((index for index in indices if cells[index] in varying), None)

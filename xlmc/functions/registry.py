@@ -182,8 +182,8 @@ class Function:
         sets = any(parameter.as_set for parameter in self.parameters)
         kinds = {parameter.kind for parameter in self.parameters}
         numbers = self.ufunc is not None and not sets and kinds <= {Kind.NUMBER, Kind.ANY}
-        plainly = self.ufunc.nin if numbers and self.ufunc is not None and self.ufunc.nin < 3 else 0
-        answers = {"takes_values": values, "takes_sets": sets, "on_numbers": numbers, "fast_arity": plainly}
+        fast = self.ufunc.nin if numbers and self.ufunc is not None and self.ufunc.nin < 3 else 0
+        answers = {"takes_values": values, "takes_sets": sets, "on_numbers": numbers, "fast_arity": fast}
         for name, found in answers.items():
             object.__setattr__(self, name, found)
         if self.facts.spills and (self.ufunc is not None or (self.parameters and not values)):

@@ -26,7 +26,7 @@ class LazySheets(Mapping[str, Sheet]):
     """Worksheets by name, in tab order.
 
     Args:
-        file: the name of the file, for complaints.
+        file: the name of the file, for messages.
         parts: of its package.
         structure: of its workbook part.
 
@@ -127,7 +127,7 @@ def _spills(block: Element) -> bool:
 
 @contextmanager
 def naming_file(file: str) -> Iterator[None]:
-    """Complaints from within that say not where are told of `file`."""
+    """Let errors from within that do not say where they are name `file`."""
     try:
         yield
     except WorkbookError as error:

@@ -278,7 +278,7 @@ def _sync_folder(folder: Path) -> None:
 
 @contextmanager
 def _naming_file(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Failures in words, with the path as the person wrote it."""
+    """Turn errors of the disk into messages that name the path as the person wrote it."""
     try:
         yield
     except TakenError as error:

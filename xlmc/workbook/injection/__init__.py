@@ -1,1 +1,1 @@
-"""How result sheets get into a workbook: one file for each part of the package, or each number, that has to fit."""
+"""How result sheets get into a workbook: a module for each part of the package that has to be changed."""

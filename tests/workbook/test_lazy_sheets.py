@@ -1,9 +1,12 @@
+from __future__ import annotations
+
 import pickle
 
 import pytest
 
 from xlmc.address import Cell
 from xlmc.errors import WorkbookError
+from xlmc.workbook.lazy_sheets import dynamic_array_marks, naming_file
 
 NUMBER = '<sheetData><row r="1"><c r="A1"><v>5</v></c></row></sheetData>'
 BROKEN = "<sheetData><row"
@@ -59,3 +62,43 @@ def test_it_can_go_to_another_process(book):
 def test_sheets_that_mention_a_word_are_found_without_parsing(book):
     sheets = book({"One": NUMBER, "Two": "<f>Rand()", "Three": BROKEN, "Four": "<f>RAND"}).sheets
     assert list(sheets.mentioning([b"rand", b"risk"])) == ["Two", "Four"]
+
+
+@pytest.mark.parametrize(("where", "told"), [(None, "book.xlsx"), ("Sheet1!B7", "Sheet1!B7")])
+def test_a_complaint_without_a_place_gets_the_file(where, told):
+    with pytest.raises(WorkbookError, match="what is wrong") as caught, naming_file("book.xlsx"):
+        raise WorkbookError("what is wrong", where=where, hint="what to do")
+    assert (caught.value.where, caught.value.hint) == (told, "what to do")
+
+
+ARRAY = '<ext><d:dynamicArrayProperties xmlns:d="urn:xda" fDynamic="{}" fCollapsed="0"/></ext>'
+SPILLS, DOES_NOT = (f"<bk><extLst>{ARRAY.format(flag)}</extLst></bk>" for flag in "10")
+
+
+def metadata(types, future, cells):
+    names = "".join(f'<metadataType name="{name}"/>' for name in types)
+    blocks = ["".join(f'<rc t="{t}" v="{v}"/>' for t, v in block) for block in cells]
+    records = "".join(f"<bk>{block}</bk>" for block in blocks)
+    return (
+        '<metadata xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main">'
+        f"<metadataTypes>{names}</metadataTypes>{future}<cellMetadata>{records}</cellMetadata></metadata>"
+    ).encode()
+
+
+XLDAPR = '<futureMetadata name="XLDAPR">{}</futureMetadata>'.format
+RICH = '<futureMetadata name="XLRICHVALUE"><bk/></futureMetadata>'
+
+
+@pytest.mark.parametrize(
+    ("types", "future", "cells", "marks"),
+    [
+        (["XLDAPR"], XLDAPR(SPILLS), [[(1, 0)]], {"1"}),
+        (["XLDAPR"], XLDAPR(DOES_NOT), [[(1, 0)]], set()),
+        (["XLDAPR"], XLDAPR(DOES_NOT + SPILLS), [[(1, 0)], [(1, 1)]], {"2"}),
+        (["XLRICHVALUE", "XLDAPR"], RICH + XLDAPR(SPILLS), [[(1, 0)], [(2, 0)], [(1, 0), (2, 0)]], {"2", "3"}),
+        (["XLRICHVALUE"], RICH, [[(1, 0)]], set()),
+        ([], "", [], set()),
+    ],
+)
+def test_marks(types, future, cells, marks):
+    assert dynamic_array_marks(metadata(types, future, cells), "xl/metadata.xml") == marks

@@ -2,16 +2,18 @@ from __future__ import annotations
 
 import errno
 import io
+import ntpath
 import os
 import stat
 import zipfile
+from pathlib import Path, PureWindowsPath
 
 import pytest
 
 from xlmc.errors import WorkbookError
 from xlmc.workbook import writer
 from xlmc.workbook.package import read_parts
-from xlmc.workbook.writer import check_folder, package_bytes, refuse_if_open, write_workbook
+from xlmc.workbook.writer import check_folder, extended, openable, package_bytes, refuse_if_open, write_workbook
 
 PARTS = {
     "xl/workbook.xml": b"<w/>",
@@ -212,3 +214,38 @@ def test_a_disk_without_second_names_is_written_to(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "link", refuse)
     write_workbook(tmp_path / "book.xlsx", b"new")
     assert [(left.name, left.read_bytes()) for left in tmp_path.iterdir()] == [("book.xlsx", b"new")]
+
+
+LONG = "\\".join(["folder of a case"] * 16)
+
+
+@pytest.mark.parametrize(
+    ("path", "expected"),
+    [
+        (r"C:\cases\case.xlsx", r"C:\cases\case.xlsx"),
+        (r"\\server\share\case.xlsx", r"\\server\share\case.xlsx"),
+        (rf"C:\{LONG}\case.xlsx", rf"\\?\C:\{LONG}\case.xlsx"),
+        (rf"\\server\share\{LONG}\case.xlsx", rf"\\?\UNC\server\share\{LONG}\case.xlsx"),
+        (rf"C:/{LONG}/../case.xlsx".replace("\\", "/"), "\\\\?\\" + ntpath.normpath(rf"C:\{LONG}\..\case.xlsx")),
+        (rf"\\?\C:\{LONG}\case.xlsx", rf"\\?\C:\{LONG}\case.xlsx"),
+        (rf"{LONG}\case.xlsx", rf"{LONG}\case.xlsx"),  # relative: nothing to extend
+    ],
+)
+def test_long_windows_paths_are_extended(path, expected):
+    assert extended(path) == expected
+
+
+def test_a_folder_so_long_that_the_temporary_file_would_not_fit_is_extended_too():
+    folder = "C:\\" + "x" * 215
+    assert extended(rf"{folder}\a.xlsx").startswith("\\\\?\\C:\\")
+
+
+@pytest.mark.parametrize("path", [rf"\\server\share\{LONG}\case.xlsx", r"\\server\share\case.xlsx"])
+def test_names_beside_a_path_on_a_server_stay_on_it(path):
+    beside = PureWindowsPath(extended(path)).with_name("case-2.xlsx")
+    assert str(beside) == extended(path).replace("case.xlsx", "case-2.xlsx")
+    assert beside.parent == PureWindowsPath(extended(path)).parent
+
+
+def test_elsewhere_paths_are_as_they_are():
+    assert openable(Path("/tmp") / ("x" * 300)) == "/tmp/" + "x" * 300

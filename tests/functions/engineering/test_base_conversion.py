@@ -123,3 +123,59 @@ def test_digits_read_as_their_number(evaluate, name, data):
         if other != name:
             fits = -(base**10) // 2 <= number < base**10 // 2
             assert evaluate(f"{name}2{other}", digits) == (evaluate(f"DEC2{other}", number) if fits else NUM)
+
+
+NUM_OF_BITS, VALUE_OF_BITS, NA_OF_BITS = ErrorCode.NUM, ErrorCode.VALUE, ErrorCode.NA
+
+TABLE_OF_BITS = [
+    ("BITAND", (1, 5), 1),
+    ("BITAND", (13, 25), 9),
+    ("BITAND", (2**48 - 1, 2**48 - 1), 2**48 - 1),
+    ("BITAND", (2**48, 1), NUM_OF_BITS),
+    ("BITAND", (-1, 5), NUM_OF_BITS),
+    ("BITAND", (1.5, 1), NUM_OF_BITS),
+    ("BITAND", ("x", 1), VALUE_OF_BITS),
+    ("BITAND", (True, None), 0),
+    ("BITAND", (NA_OF_BITS, -1), NA_OF_BITS),
+    ("BITOR", (23, 10), 31),
+    ("BITOR", (True, 4), 5),
+    ("BITOR", (1, -1), NUM_OF_BITS),
+    ("BITXOR", (5, 3), 6),
+    ("BITXOR", (2**47, 1), 2**47 + 1),
+    ("BITXOR", (1, 1e300), NUM_OF_BITS),
+    ("BITLSHIFT", (4, 2), 16),
+    ("BITLSHIFT", (13, -2), 3),
+    ("BITLSHIFT", (1, 2.9), 4),
+    ("BITLSHIFT", (1, 47), 2**47),
+    ("BITLSHIFT", (1, 48), NUM_OF_BITS),
+    ("BITLSHIFT", (0, 53), 0),
+    ("BITRSHIFT", (3, -47), NUM_OF_BITS),
+    ("BITLSHIFT", (1, 54), NUM_OF_BITS),
+    ("BITLSHIFT", (1, -54), NUM_OF_BITS),
+    ("BITLSHIFT", (1.1, 2), NUM_OF_BITS),
+    ("BITLSHIFT", (-16, 2), NUM_OF_BITS),
+    ("BITLSHIFT", (4, "x"), VALUE_OF_BITS),
+    ("BITRSHIFT", (13, 2), 3),
+    ("BITRSHIFT", (13, -2), 52),
+    ("BITRSHIFT", (1, 1), 0),
+    ("BITRSHIFT", (1, -2.9), 4),
+    ("BITRSHIFT", (2**48, 1), NUM_OF_BITS),
+    ("BITRSHIFT", (1, 1e300), NUM_OF_BITS),
+]
+
+whole = st.integers(0, 2**48 - 1)
+
+
+@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE_OF_BITS)
+def test_table_bits(check, name, arguments, expected):
+    check(name, arguments, expected)
+
+
+@given(whole, whole, st.integers(0, 53))
+@settings(max_examples=200, deadline=None)
+def test_bits_are_those_of_whole_numbers(evaluate, x, y, places):
+    assert evaluate("BITAND", x, y) == x & y
+    assert evaluate("BITOR", x, y) == x | y
+    assert evaluate("BITXOR", x, y) == x ^ y
+    assert evaluate("BITRSHIFT", x, places) == x >> places
+    assert evaluate("BITLSHIFT", x, places) == (float(x << places) if x << places < 2**48 else NUM_OF_BITS)

@@ -83,3 +83,102 @@ def test_an_annuity_is_a_geometric_sum():
     growth = np.array([1.05, 1.0, 0.9])
     expected = [sum(g**-k for k in range(7)) for g in growth]
     assert annuity(np.log(growth), 7) == pytest.approx(expected, rel=1e-14)
+
+
+NUM_OF_ODD_FIRST_BONDS, VALUE_OF_ODD_FIRST_BONDS = ErrorCode.NUM, ErrorCode.VALUE
+
+SHORT = "2008-11-11", "2021-03-01", "2008-10-15", "2009-03-01"
+LONG = "1999-02-28", "2010-06-30", "1998-02-28", "2009-06-30"
+MONTH_ENDS = "2002-03-31", "2004-03-31", "2001-03-31", "2003-03-31"
+
+VALUES_OF_ODD_FIRST_BONDS = [
+    ("ODDFPRICE", (*SHORT, 0.0785, 0.0625, 100, 2, 1), 113.597717474079),
+    ("ODDFPRICE", (*LONG, 0.07, 0.03, 100, 1, 0), 128.0105899192),
+    ("ODDFPRICE", (*LONG, 0.07, 0.03, 100, 2, 1), 127.7049586143),
+    ("ODDFPRICE", (*LONG, 0.07, 0.03, 100, 2, 2), 127.6193871525),
+    ("ODDFPRICE", (*LONG, 0.07, 0.03, 100, 4, 1), 127.5554755738),
+    ("ODDFPRICE", (*MONTH_ENDS, 0.1, 0.1, 130, 2, 1), 123.4999641185),
+    ("ODDFPRICE", (*MONTH_ENDS, 0.1, 0.1, 130, 4, 3), 123.3392895892),
+    ("ODDFPRICE", (*MONTH_ENDS, 0.1, 0.1, 130, 4, 4), 123.3364745004),
+    (
+        "ODDFPRICE",
+        ("2008-11-11", "2021-03-02", "2008-10-15", "2009-03-01", 0.0785, 0.0625, 100, 2, 1),
+        NUM_OF_ODD_FIRST_BONDS,
+    ),
+    (
+        "ODDFPRICE",
+        ("2008-10-15", "2021-03-01", "2008-11-11", "2009-03-01", 0.0785, 0.0625, 100, 2, 1),
+        NUM_OF_ODD_FIRST_BONDS,
+    ),
+    (
+        "ODDFPRICE",
+        ("2009-03-01", "2021-03-01", "2008-10-15", "2009-03-01", 0.0785, 0.0625, 100, 2, 1),
+        NUM_OF_ODD_FIRST_BONDS,
+    ),
+    ("ODDFPRICE", (*SHORT, -0.0785, 0.0625, 100, 2, 1), NUM_OF_ODD_FIRST_BONDS),
+    ("ODDFPRICE", (*SHORT, 0.0785, -0.0625, 100, 2, 1), NUM_OF_ODD_FIRST_BONDS),
+    ("ODDFPRICE", (*SHORT, 0.0785, 0.0625, -100, 2, 1), NUM_OF_ODD_FIRST_BONDS),
+    ("ODDFPRICE", (*SHORT, 0.0785, 0.0625, 100, 3, 1), NUM_OF_ODD_FIRST_BONDS),
+    ("ODDFPRICE", (*SHORT, True, 0.0625, 100, 3, 1), VALUE_OF_ODD_FIRST_BONDS),
+    ("ODDFYIELD", (*SHORT, 0.0575, 84.5, 100, 2, 0), 0.0772455415972),
+    ("ODDFYIELD", (*SHORT, 0.0575, -84.5, 100, 2, 0), NUM_OF_ODD_FIRST_BONDS),
+]
+
+
+@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES_OF_ODD_FIRST_BONDS)
+def test_values_odd_first_bonds(check, name, arguments, expected):
+    check(name, arguments, expected, rel=1e-11)
+
+
+@given(
+    st.integers(1, 1200),
+    st.integers(1, 1200),
+    st.floats(0.001, 0.2),
+    st.floats(0.001, 0.3),
+    st.sampled_from([1.0, 2.0, 4.0]),
+    st.sampled_from([0.0, 1.0, 2.0, 3.0, 4.0]),
+)
+def test_the_yield_is_found_again_odd_first_bonds(evaluate, before, after, rate, yield_, frequency, basis):
+    dates = 40000.0, 44256.0, 40000.0 - before, 41334.0 - min(after, 1000) // 365 * 365.0
+    dates = (*dates[:3], evaluate("COUPPCD", dates[3], 44256.0, frequency, basis))
+    pr = evaluate("ODDFPRICE", *dates, rate, yield_, 100.0, frequency, basis)
+    assert isinstance(pr, float)
+    if pr > 0:
+        found = evaluate("ODDFYIELD", *dates, rate, pr, 100.0, frequency, basis)
+        assert found == pytest.approx(yield_, rel=1e-8)
+
+
+NUM_OF_ODD_LAST_BONDS, VALUE_OF_ODD_LAST_BONDS = ErrorCode.NUM, ErrorCode.VALUE
+
+SHORT_OF_ODD_LAST_BONDS = "2008-02-07", "2008-06-15", "2007-10-15"
+LONG_OF_ODD_LAST_BONDS = "1999-02-28", "2000-02-28", "1998-02-28"
+
+VALUES_OF_ODD_LAST_BONDS = [
+    ("ODDLPRICE", (*SHORT_OF_ODD_LAST_BONDS, 0.0375, 0.0405, 100, 2, 0), 99.8782860147213),
+    ("ODDLPRICE", (*LONG_OF_ODD_LAST_BONDS, 0.07, 0.03, 100, 1, 2), 103.6796116505),
+    ("ODDLPRICE", (*LONG_OF_ODD_LAST_BONDS, 0.07, 0.03, 100, 2, 0), 103.7180731889),
+    ("ODDLPRICE", (*LONG_OF_ODD_LAST_BONDS, 0.1, 0.03, 130, 4, 0), 135.6854157873),
+    ("ODDLPRICE", ("2008-06-15", "2008-02-07", "2007-10-15", 0.0375, 0.0405, 100, 2), NUM_OF_ODD_LAST_BONDS),
+    ("ODDLPRICE", ("2007-10-15", "2008-06-15", "2007-10-15", 0.0375, 0.0405, 100, 2), NUM_OF_ODD_LAST_BONDS),
+    ("ODDLPRICE", (*SHORT_OF_ODD_LAST_BONDS, -0.0375, 0.0405, 100, 2), NUM_OF_ODD_LAST_BONDS),
+    ("ODDLPRICE", (*SHORT_OF_ODD_LAST_BONDS, 0.0375, -0.0405, 100, 2), NUM_OF_ODD_LAST_BONDS),
+    ("ODDLPRICE", (*SHORT_OF_ODD_LAST_BONDS, 0.0375, 0.0405, -100, 2), NUM_OF_ODD_LAST_BONDS),
+    ("ODDLPRICE", (*SHORT_OF_ODD_LAST_BONDS, 0.0375, 0.0405, 100, 2, -1), NUM_OF_ODD_LAST_BONDS),
+    ("ODDLPRICE", (*SHORT_OF_ODD_LAST_BONDS, 0.0375, True, 100, 3), VALUE_OF_ODD_LAST_BONDS),
+    ("ODDLYIELD", ("2008-04-20", "2008-06-15", "2007-12-24", 0.0375, 99.875, 100, 2, 0), 0.0451922356291693),
+    ("ODDLYIELD", (*SHORT_OF_ODD_LAST_BONDS, 0.0375, 0, 100, 2), NUM_OF_ODD_LAST_BONDS),
+]
+
+
+@pytest.mark.parametrize(("name", "arguments", "expected"), VALUES_OF_ODD_LAST_BONDS)
+def test_values_odd_last_bonds(check, name, arguments, expected):
+    check(name, arguments, expected, rel=1e-11)
+
+
+@pytest.mark.parametrize("basis", [0.0, 1.0, 2.0, 3.0, 4.0])
+@pytest.mark.parametrize("frequency", [1.0, 2.0, 4.0])
+@pytest.mark.parametrize("maturity", [40100.0, 40800.0])
+def test_the_yield_is_found_again_odd_last_bonds(evaluate, basis, frequency, maturity):
+    pr = evaluate("ODDLPRICE", 40050.0, maturity, 39900.0, 0.05, 0.07, 100.0, frequency, basis)
+    found = evaluate("ODDLYIELD", 40050.0, maturity, 39900.0, 0.05, pr, 100.0, frequency, basis)
+    assert found == pytest.approx(0.07, rel=1e-10)

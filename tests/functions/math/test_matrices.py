@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 
 import numpy as np
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.families import function_named
-from xlmc.functions.values import ShapeVaries, Value, from_objects
+from xlmc.functions.values import ShapeVaries, Value, constant, from_objects
 
 DIV0, NUM, VALUE, NA = ErrorCode.DIV0, ErrorCode.NUM, ErrorCode.VALUE, ErrorCode.NA
 
@@ -125,3 +126,59 @@ def test_unit_matrices_of_several_sizes_cannot_be_one_array():
         function_named("MUNIT")([Value.of_numbers(np.array([2.0, 3.0]))])
     with pytest.raises(ShapeVaries):
         function_named("MUNIT")([from_objects(np.array([2.0, "x"], object))])
+
+
+DIV0_OF_PAIRED_SUMS, NUM_OF_PAIRED_SUMS, VALUE_OF_PAIRED_SUMS, NA_OF_PAIRED_SUMS = (
+    ErrorCode.DIV0,
+    ErrorCode.NUM,
+    ErrorCode.VALUE,
+    ErrorCode.NA,
+)
+
+X, Y = [[2, 3, 9, 1, 8, 7, 5]], [[6, 5, 11, 7, 5, 4, 4]]
+
+TABLE = [
+    ("SUMX2MY2", (X, Y), -55),
+    ("SUMX2PY2", (X, Y), 521),
+    ("SUMXMY2", (X, Y), 79),
+    ("SUMXMY2", (2, 4), 4),
+    ("SUMX2MY2", ([[1], [2], [3]], [[1, 1, 1]]), 11),
+    ("SUMX2PY2", ([[1, 2], [3, 4]], [[1, 1, 1, 1]]), 34),
+    ("SUMX2PY2", ([[1, None, "3", True]], [[1, 2, 3, 4]]), 2),
+    ("SUMX2PY2", ([[1, 2]], [["x", 2]]), 8),
+    ("SUMXMY2", ([[True, "1"]], [[1, 1]]), DIV0_OF_PAIRED_SUMS),
+    ("SUMXMY2", (X, [[1, 2]]), NA_OF_PAIRED_SUMS),
+    ("SUMXMY2", ([[1, DIV0_OF_PAIRED_SUMS]], [[NA_OF_PAIRED_SUMS, "x"]]), DIV0_OF_PAIRED_SUMS),
+    ("SUMXMY2", ([[1, "x"]], [[1, NA_OF_PAIRED_SUMS]]), NA_OF_PAIRED_SUMS),
+    ("SERIESSUM", (2, 3, 4, 5), 40),
+    ("SERIESSUM", (2, 2, 1, [[1, 2, 3], [4, 5, 6]]), 1284),
+    ("SERIESSUM", (0, 0, 1, [[7, 9]]), 7),
+    ("SERIESSUM", (10, 100, 100, [[1, 2, 3]]), 3e300),
+    ("SERIESSUM", (10, 100, 100, [[1, 2, 3, 4]]), NUM_OF_PAIRED_SUMS),
+    ("SERIESSUM", (-2, 0.5, 1, [[1]]), NUM_OF_PAIRED_SUMS),
+    ("SERIESSUM", ("1", None, "1", [[None], [2]]), 2),
+    ("SERIESSUM", ("x", 1, 1, 1), VALUE_OF_PAIRED_SUMS),
+    ("SERIESSUM", (1, 1, 1, [["0", 5]]), VALUE_OF_PAIRED_SUMS),
+    ("SERIESSUM", (1, 1, 1, [[True]]), VALUE_OF_PAIRED_SUMS),
+    ("SERIESSUM", (1, 1, NA_OF_PAIRED_SUMS, [[DIV0_OF_PAIRED_SUMS]]), NA_OF_PAIRED_SUMS),
+    ("SERIESSUM", (1, 1, 1, [[2, DIV0_OF_PAIRED_SUMS]]), DIV0_OF_PAIRED_SUMS),
+]
+
+
+@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
+def test_table_paired_sums(check, name, arguments, expected):
+    check(name, arguments, expected, rel=1e-15)
+
+
+def test_cosine_by_its_series(evaluate):
+    """The example in Excel's own help."""
+    coefficients = [[1], [-1 / 2], [1 / 24], [-1 / 720]]
+    assert evaluate("SERIESSUM", math.pi / 4, 0, 2, coefficients) == pytest.approx(0.707103214822846, rel=1e-14)
+
+
+def test_trials_beside_constant_coefficients(value):
+    x = Value.of_numbers(np.array([1.0, 2.0, 3.0]))
+    result = function_named("SERIESSUM")([x, constant(1.0), constant(2.0), value([[1, 10]])])
+    assert result.numbers.tolist() == [11.0, 82.0, 273.0]
+    pairs = function_named("SUMXMY2")([value([[1, 2]]), Value.of_numbers(np.arange(6.0).reshape(3, 1, 2))])
+    assert pairs.numbers.tolist() == [2.0, 2.0, 18.0]

@@ -109,3 +109,67 @@ def test_the_trimmed_mean_is_scipys(evaluate, x, share):
 def test_a_shift_costs_no_digits(evaluate):
     x = np.array(MOMENTS[0]) + 2.0**40
     assert evaluate("KURT", [x.tolist()]) == pytest.approx(evaluate("KURT", MOMENTS), rel=1e-13)
+
+
+NUM_OF_ANY_KIND, VALUE_OF_ANY_KIND, NA_OF_ANY_KIND, DIV0_OF_ANY_KIND = (
+    ErrorCode.NUM,
+    ErrorCode.VALUE,
+    ErrorCode.NA,
+    ErrorCode.DIV0,
+)
+
+MIXED_OF_ANY_KIND = [[10, "12", True], [None, False, 4]]
+"""10, 0, 1, 0 and 4."""
+BLANK = [[None, None]]
+BREAKING = [[1345, 1301, 1368, 1322, 1310, 1370, 1318, 1350, 1303, 1299]]  # the example in Excel's own help
+
+HELP_OF_ANY_KIND = [
+    ("AVERAGEA", ([[10, 7, 9, 2, "Not available"]],), "5.6"),
+    ("AVERAGEA", ([[10, 7, 9, 2, None]],), "7"),
+    ("MAXA", ([[0, 0.2, 0.5, 0.4, True]],), "1"),
+    ("MINA", ([[False, 0.2, 0.5, 0.4, 0.8]],), "0"),
+    ("STDEVA", (BREAKING,), "27.46391572"),
+    ("STDEVPA", (BREAKING,), "26.05455814"),
+    ("VARA", (BREAKING,), "754.2666667"),
+    ("VARPA", (BREAKING,), "678.84"),
+]
+
+
+@pytest.mark.parametrize(("name", "arguments", "printed"), HELP_OF_ANY_KIND)
+def test_examples_of_excels_help_any_kind(shows, name, arguments, printed):
+    shows(name, arguments, printed)
+
+
+TABLE_OF_ANY_KIND = [
+    ("AVERAGEA", (MIXED_OF_ANY_KIND,), 3),
+    ("AVERAGEA", ("1", 1, [[False]], None), 0.5),
+    ("AVERAGEA", ("TRUE", 1), VALUE_OF_ANY_KIND),
+    ("AVERAGEA", (BLANK,), DIV0_OF_ANY_KIND),
+    ("AVERAGEA", ([[1, NA_OF_ANY_KIND]], DIV0_OF_ANY_KIND), NA_OF_ANY_KIND),
+    ("MAXA", (MIXED_OF_ANY_KIND, 3), 10),
+    ("MAXA", ([["x", -1]],), 0),
+    ("MAXA", ([[None, -1]],), -1),
+    ("MAXA", (None, -1), 0),
+    ("MAXA", (BLANK,), 0),
+    ("MINA", (MIXED_OF_ANY_KIND, 3), 0),
+    ("MINA", ("-23", [["x"]], BLANK), -23),
+    ("MINA", ("x", 1), VALUE_OF_ANY_KIND),
+    ("MINA", (BLANK,), 0),
+    ("VARA", (MIXED_OF_ANY_KIND,), 18),
+    ("VARA", ([[True]],), DIV0_OF_ANY_KIND),
+    ("VARA", (BLANK,), DIV0_OF_ANY_KIND),
+    ("VARA", ([[0.1, 0.1, 0.1]],), 0),
+    ("VARPA", (MIXED_OF_ANY_KIND,), 14.4),
+    ("VARPA", ([[True]],), 0),
+    ("VARPA", (BLANK,), DIV0_OF_ANY_KIND),
+    ("STDEVA", (MIXED_OF_ANY_KIND,), 18**0.5),
+    ("STDEVA", ([["x"]],), DIV0_OF_ANY_KIND),
+    ("STDEVPA", (MIXED_OF_ANY_KIND,), 14.4**0.5),
+    ("STDEVPA", (BLANK,), DIV0_OF_ANY_KIND),
+    ("STDEVPA", ([[NA_OF_ANY_KIND]],), NA_OF_ANY_KIND),
+]
+
+
+@pytest.mark.parametrize(("name", "arguments", "expected"), TABLE_OF_ANY_KIND)
+def test_table_any_kind(check, name, arguments, expected):
+    check(name, arguments, expected, rel=1e-15)

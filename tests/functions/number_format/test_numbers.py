@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import pytest
 
+from xlmc.functions.number_format.numbers import approximated
+
 DIGITS = [
     ("0", 12345.6789, "12346"),
     ("0.00", 1.005, "1.01"),
@@ -74,4 +76,67 @@ def test_numbers(written, code, value, text):
 
 @pytest.mark.parametrize("code", ["0E+", "E+0", "0e0", "0 e 0"])
 def test_an_exponent_has_digits_on_both_sides(written, code):
+    assert written(code, 1) == "refused"
+
+
+@pytest.mark.parametrize(
+    ("x", "largest", "fraction"),
+    [
+        (0.3, 9, (2, 7)),
+        (1.3, 9, (4, 3)),
+        (2.3, 9, (16, 7)),
+        (0.3, 99, (3, 10)),
+        (3.14159265358979, 9, (22, 7)),
+        (3.14159265358979, 999, (355, 113)),
+        (12345.6789, 99, (1000000, 81)),
+        (0.0, 9, (0, 1)),
+        (5.0, 9, (5, 1)),
+        (0.00001, 9, (0, 1)),
+        (1234567890000.1, 9, (11111111010001, 9)),
+        (12345678900000.7, 99, (123456789000007, 10)),
+    ],
+)
+def test_fractions_that_excel_finds(x, largest, fraction):
+    assert approximated(x, largest) == fraction
+
+
+TABLE = [
+    ("# ?/?", 1.5, "1 1/2"),
+    ("# ?/?", -1.2, "-1 1/5"),
+    ("# ?/?", 0.3, " 2/7"),
+    ("# ?/?", 1, "1    "),
+    ("# ?/?", 0, "0    "),
+    ("# #/#", 5, "5"),
+    ("# ??/??", 1.5, "1  1/2 "),
+    ("# ???/???", 12345.6789, "12345  74/109"),
+    ("0 0/0", 1234, "1234 0/1"),
+    ("0/0", 12.345, "37/3"),
+    ("?/?", 123, "123/1"),
+    ("??/??", -1.2, "- 6/5 "),
+    ("# ?/8", 0.3, " 2/8"),
+    ("# ?/8", 1.99, "2    "),
+    ("# ??/16", 12345.6789, "12345 11/16"),
+    ("# ??/100", -123.456, "-123 46/100"),
+    ("# ?/10", 1, "1     "),
+    ("00 00/000", 1.25, "01 01/004"),
+    ("#,##0 ?/?", 1234.5, "1,234 1/2"),
+    ("00x00/00", 12345.67, "12345x65/97"),
+    ("00 0z0/00", 12345.67, "1234 5z65/97"),
+    ("# ?? / ?????????", 0.123251512342345, " 480894 / 3901729  "),
+    (r"#\:#/#", 0.75, "3/4"),
+    (r"?\:#/#", 0.75, "  3/4"),
+    (r"0\:#/#", 0.75, "0:3/4"),
+    (r"#\:0/#", 0, "0/1"),
+    (r"?\:0/#", 0, "0:0/1"),
+    (r"#\:?/0", 1, "1    "),
+]
+
+
+@pytest.mark.parametrize(("code", "value", "text"), TABLE)
+def test_numbers_fractions(written, code, value, text):
+    assert written(code, value) == text
+
+
+@pytest.mark.parametrize("code", ["0/", "/0", "/"])
+def test_a_fraction_has_two_sides(written, code):
     assert written(code, 1) == "refused"

@@ -5,7 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.functions.statistical.probabilities import binomial_mass, deviance, poisson_mass, stirling_error
+from xlmc.functions.statistical.probabilities import (
+    binomial_mass,
+    by_form,
+    degrees_of_freedom,
+    deviance,
+    incomplete_beta,
+    inverse_beta,
+    poisson_mass,
+    stirling_error,
+)
 
 POISSON = [
     ((993702635.0, 993655954.0), 4.2274572874897610619e-6),
@@ -93,3 +102,55 @@ def test_no_flag_is_raised_at_the_ends():
         poisson_mass(np.array([0.0, 0.0, 20.0, 3.0]), np.array([0.0, 1.0, 0.0, 0.0]))
         x, y, p = np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.5])
         binomial_mass(x, y, p, 1 - p)
+
+
+def _never():
+    raise AssertionError("it was asked for")
+
+
+@pytest.mark.parametrize(
+    ("cumulative", "probability", "density", "expected"),
+    [
+        ([True, False], lambda: np.array([1.0, 2.0]), lambda: np.array([3.0, 4.0]), [1, 4]),
+        ([True, True], lambda: np.array([1.0, 2.0]), _never, [1, 2]),
+        ([False, False], _never, lambda: np.array([3.0, 4.0]), [3, 4]),
+        ([True, True], lambda: np.array([1.0]), _never, [1, 1]),
+    ],
+)
+def test_only_the_form_that_a_trial_asks_for_is_computed(cumulative, probability, density, expected):
+    assert by_form(np.array(cumulative), probability, density).tolist() == expected
+
+
+def test_from_1_to_ten_billion_fractions_dropped():
+    given = np.array([0.9, 1, 1.9, 5, 1e10, 1e10 + 0.5, -3])
+    valid, freedom = degrees_of_freedom(given)
+    assert valid.tolist() == [False, True, True, True, True, False, False]
+    assert freedom.tolist() == [1, 1, 1, 5, 1e10, 1, 1]
+
+
+BELOW = [
+    ((0.5, 0.5, 1e-300), 6.3661977236758135105e-151),
+    ((3.0, 4.0, 1e-20), 1.9999999999999996709e-59),
+    ((200.0, 3.0, 0.25), 4.4369253716407351781e-117),
+    ((8.0, 10.0, 0.5), 0.6854705810546875),
+]
+
+
+@pytest.mark.parametrize(("arguments", "expected"), BELOW)
+def test_both_ends_keep_their_digits(arguments, expected):
+    a, b, x = map(np.array, arguments)
+    assert incomplete_beta(a, b, x, 1 - x) == pytest.approx(expected, rel=1e-13)
+    assert incomplete_beta(b, a, 1 - x, x) == pytest.approx(1 - expected, rel=1e-13)
+
+
+@pytest.mark.parametrize(("arguments", "p"), BELOW)
+def test_the_inverse_gives_the_number_and_its_complement(arguments, p):
+    a, b, x = map(np.array, arguments)
+    assert inverse_beta(a, b, np.array(p))[0] == pytest.approx(x, rel=1e-12)
+    assert inverse_beta(b, a, np.array(p))[0] == pytest.approx(1 - inverse_beta(b, a, np.array(p))[1], rel=1e-13)
+
+
+def test_arrays_broadcast():
+    a, x = np.array([[1.0], [2.0]]), np.array([0.25, 0.5, 0.75])
+    expected = [[0.25, 0.5, 0.75], [0.0625, 0.25, 0.5625]]
+    assert incomplete_beta(a, np.array(1.0), x, 1 - x) == pytest.approx(np.array(expected), rel=1e-15)

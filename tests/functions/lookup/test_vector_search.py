@@ -1,4 +1,4 @@
-"""The search by halves against plain loops; equal, next smaller and next larger values against a model that tries them all."""
+"""The search by halves against plain loops; equal, next smaller and larger values against a model that tries all."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
 
-from xlmc.cli.terminal import degraded, on_terminal, paragraph, put, say, width
+from xlmc.cli.terminal import encodable, on_terminal, paragraph, put, say, width
 from xlmc.workbook.printable import printable
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]], *,
     """
     widest = width() if on_terminal() else _PIPE_WIDTH
     shown = [[_one_line(cell) for cell in row] for row in rows]
-    lines = table_lines([_one_line(heading) for heading in headings], shown, right, widest, degraded("─"))
+    lines = table_lines([_one_line(heading) for heading in headings], shown, right, widest, encodable("─"))
     put("\n".join((_bold(paragraph(_one_line(title))), "", *lines)) + "\n\n")
 
 
@@ -54,7 +54,7 @@ def warnings(found: Sequence[str]) -> None:
 
 
 def _one_line(cell: str) -> str:
-    return degraded(" ".join(printable(cell).splitlines()))
+    return encodable(" ".join(printable(cell).splitlines()))
 
 
 def _bold(text: str) -> str:

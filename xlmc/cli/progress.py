@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from xlmc.cli.terminal import degraded, on_terminal
+from xlmc.cli.terminal import encodable, on_terminal
 from xlmc.workbook.printable import printable
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def progress_bar(quiet: bool) -> Iterator[Progress | None]:
         task = bar.add_task("", total=1.0)
 
         def show(standing: Standing) -> None:
-            bar.below = degraded(printable(errors_line(standing)), err=True)
+            bar.below = encodable(printable(errors_line(standing)), err=True)
             bar.update(task, completed=standing.share, description=trials_line(standing))
 
         yield show
@@ -70,4 +70,4 @@ def step_line(quiet: bool) -> Iterator[Callable[[str], None] | None]:
     from rich.markup import escape
 
     with Console(stderr=True).status("", spinner="line") as status:
-        yield lambda what: status.update(escape(degraded(printable(f"running: {what}"), err=True)))
+        yield lambda what: status.update(escape(encodable(printable(f"running: {what}"), err=True)))

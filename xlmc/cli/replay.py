@@ -63,7 +63,7 @@ def _lines(found: Replayed, path: Path) -> Iterator[str]:
     yield from _numbers(found.numbers)
     yield from _sheet_lines(found)
     if found.of_this_version and not found.changes and not found.identical:
-        yield from _unexplained(found)
+        yield from _unexplained_lines(found)
     yield from _changes(found.environment, "Software or a processor that is not the same as then:")
 
 
@@ -158,7 +158,7 @@ def _rest(listed: Sequence[object]) -> Iterator[str]:
         yield f"  … and {len(listed) - _MOST:,} more"
 
 
-def _unexplained(found: Replayed) -> Iterator[str]:
+def _unexplained_lines(found: Replayed) -> Iterator[str]:
     if found.same_bits and not found.numbers:
         return
     if found.same_bits:

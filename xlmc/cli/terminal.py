@@ -18,7 +18,7 @@ from typing import Final, TextIO
 from xlmc.errors import WorkbookError
 from xlmc.workbook.printable import printable
 
-__all__ = ["degraded", "on_terminal", "paragraph", "prepare", "put", "say", "say_json", "width"]
+__all__ = ["encodable", "on_terminal", "paragraph", "prepare", "put", "say", "say_json", "width"]
 
 PIPE_WIDTH: Final = 100
 """Columns of text in a pipe or a file."""
@@ -80,7 +80,7 @@ def say(text: object = "", *, err: bool = False) -> None:
 
 def _wrap_note(line: str) -> str:
     """A line wrapped to the terminal's width; words stay whole, so that a path or an address can be copied."""
-    line = degraded(line, err=True)
+    line = encodable(line, err=True)
     wide = _columns(sys.stderr)
     return fill(line, wide, subsequent_indent="  ", break_on_hyphens=False, break_long_words=False)
 
@@ -149,7 +149,7 @@ def on_terminal(*, err: bool = False) -> bool:
     return stream is not None and stream.isatty()
 
 
-def degraded(text: str, *, err: bool = False) -> str:
+def encodable(text: str, *, err: bool = False) -> str:
     """The text as the stream's encoding can show it, so that columns can be measured."""
     encoding = getattr(sys.stderr if err else sys.stdout, "encoding", None) or "utf-8"
     return text.encode(encoding, _HANDLER).decode(encoding)

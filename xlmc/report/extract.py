@@ -132,12 +132,12 @@ def _chunks(
     index = simulation.trial_index
     for start in range(0, index.size, size):
         trials = index[start : start + size]
-        yield trials, [_filled(column.values[start : start + size], trials.size) for column in columns]
+        yield trials, [_fill_up(column.values[start : start + size], trials.size) for column in columns]
         for values in (index, *(column.values for column in columns)):
             release(values)
 
 
-def _filled(values: NDArray[np.float64], size: int) -> NDArray[np.float64]:
+def _fill_up(values: NDArray[np.float64], size: int) -> NDArray[np.float64]:
     if values.size == size:
         return values
     return np.concatenate([values, np.full(size - values.size, np.nan)])

@@ -158,19 +158,19 @@ def _width(x: Floats, first: float, last: float) -> float:
 
 def _round_below(width: float) -> float:
     """The largest round number that is no larger."""
-    return _scaled(max(factor for factor in _ROUND if factor <= _mantissa(width)), width)
+    return _scale(max(factor for factor in _ROUND if factor <= _mantissa(width)), width)
 
 
 def _round_above(width: float) -> float:
     """The smallest round number that is larger."""
-    return _scaled(min(factor for factor in (*_ROUND, 10.0) if factor > _mantissa(width)), width)
+    return _scale(min(factor for factor in (*_ROUND, 10.0) if factor > _mantissa(width)), width)
 
 
 def _mantissa(number: float) -> float:
     return float(f"{number:.6e}".partition("e")[0])
 
 
-def _scaled(factor: float, like: float) -> float:
+def _scale(factor: float, like: float) -> float:
     return float(f"{factor}e{f'{like:.6e}'.partition('e')[2]}")  # 0.1, not 0.1 and a rounding error
 
 

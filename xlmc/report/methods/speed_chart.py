@@ -196,7 +196,7 @@ def picture_of(study: Study, work: Work) -> Picture | None:
         upwards=_upwards(study),
         lines=tuple(lines),
         marks=marks,
-        chosen=_chosen(study, found, work, scale),
+        chosen=_recommended_run(study, found, work, scale),
         frame=_frame(lines, scale),
         absent=tuple(absent),
         brief=f"needs for {_accuracy_text(study, scale)}, for {_accuracy_text(study, scale / FINER)}",
@@ -317,7 +317,7 @@ def _mark(study: Study, height: float, found: Choice, more: str) -> tuple[str, .
     return (*said, *(f"tie: {name}" for name in named), *([f"and {rest} more"] if rest > 0 else []))
 
 
-def _chosen(study: Study, found: Choice, work: Work, scale: float) -> tuple[float, float, str] | None:
+def _recommended_run(study: Study, found: Choice, work: Work, scale: float) -> tuple[float, float, str] | None:
     if found.chosen is None:
         return None
     wanted = found.needs[found.chosen]

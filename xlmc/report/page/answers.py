@@ -45,8 +45,8 @@ def _warning(sentence: str) -> Html:
 def _question(simulation: Simulation) -> Iterator[Html | str]:
     model = simulation.model
     yield (
-        f"The workbook computes {_counted(len(model.forecasts), 'answer (forecast)', 'answers (forecasts)')} from "
-        f"{_counted(len(model.live), 'quantity', 'quantities')} known only within ranges (assumptions). "
+        f"The workbook computes {_count_text(len(model.forecasts), 'answer (forecast)', 'answers (forecasts)')} from "
+        f"{_count_text(len(model.live), 'quantity', 'quantities')} known only within ranges (assumptions). "
         f"{simulation.evaluated:,} combinations of values from these ranges were tried. "
     )
     if not model.filters:
@@ -65,7 +65,7 @@ def _question(simulation: Simulation) -> Iterator[Html | str]:
     yield ". The answers are those of these accepted trials."
 
 
-def _counted(count: int, one: str, several: str) -> str:
+def _count_text(count: int, one: str, several: str) -> str:
     return f"{count} {one if count == 1 else several}"
 
 

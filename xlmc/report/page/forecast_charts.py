@@ -39,14 +39,14 @@ def charts(simulation: Simulation, figures: Sequence[Figure]) -> Html:
     return element(
         "section",
         element("h2", "Forecasts"),
-        *(_explained(simulation, figures) if figures else [element("p", _NOTHING, class_="alarm")]),
+        *(_how_to_read(simulation, figures) if figures else [element("p", _NOTHING, class_="alarm")]),
         element("noscript", element("p", "The charts need JavaScript; every number below is here without it.")),
         *(_chart(figure) for figure in figures),
         id="forecasts",
     )
 
 
-def _explained(simulation: Simulation, figures: Sequence[Figure]) -> Iterator[Html]:
+def _how_to_read(simulation: Simulation, figures: Sequence[Figure]) -> Iterator[Html]:
     yield element("p", _HOW, class_="how")
     if simulation.plan.size:
         yield element("p", _PLAIN_SHARE, class_="remark")

@@ -114,11 +114,11 @@ def _limit(limit: FilterLimit, units: dict[str, str]) -> Html:
     write_acceptance(flow, limit)
     write_answers(answers, limit)
     numbers = element("details", element("summary", "The answers at each limit"), answers.html)
-    drawings = element("div", *_moved(limit, units), element("div", flow.html), class_="drawings")
+    drawings = element("div", *_answer_charts(limit, units), element("div", flow.html), class_="drawings")
     return element("article", heading, drawings, numbers, class_="sensitivity")
 
 
-def _moved(limit: FilterLimit, units: dict[str, str]) -> Iterator[Html]:
+def _answer_charts(limit: FilterLimit, units: dict[str, str]) -> Iterator[Html]:
     """A chart for the forecasts of each unit: changes in different units have no common axis."""
     by_unit: dict[str, list[int]] = {}
     for index, slope in enumerate(limit.slopes):

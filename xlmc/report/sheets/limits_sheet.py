@@ -175,11 +175,11 @@ def moved_caption(limit: FilterLimit) -> str:
     """What the chart of the changes shows."""
     return (
         f"How far each forecast's mean moves from that with the limit as it is ({number_text(limit.limit)}); whiskers "
-        f"are standard errors of the change. Other filters and limits stay.{_unmoved(limit)}"
+        f"are standard errors of the change. Other filters and limits stay.{_nothing_moves(limit)}"
     )
 
 
-def _unmoved(limit: FilterLimit) -> str:
+def _nothing_moves(limit: FilterLimit) -> str:
     """What changes of 0 ± 0 mean."""
     if len({point.trials for point in limit.points}) > 1:
         return ""

@@ -58,7 +58,7 @@ def _statistics(result: ForecastResult) -> list[list[Shown]]:
         ("Median", units, found.median),
         ("Mode", units, found.mode),
         ("Standard deviation", units, found.standard_deviation),
-        ("Variance", _squared(units), found.variance),
+        ("Variance", _square(units), found.variance),
         ("Skewness", "", found.skewness),
         ("Kurtosis (normal 3)", "", found.kurtosis),
         ("Coefficient of variation", "", found.coefficient_of_variation),
@@ -88,7 +88,7 @@ def _with_interval(estimate: Estimate, like: Estimate) -> list[Shown]:
     return [*cells.estimate(estimate, like=like), *cells.interval(estimate)]
 
 
-def _squared(units: str) -> str:
+def _square(units: str) -> str:
     if not units:
         return ""
     return f"{units}²" if units.isalpha() else f"({units})²"

@@ -24,7 +24,7 @@ from tables import placed
 
 import xlmc.statistics as xs
 from xlmc.sampling.methods import METHODS
-from xlmc.sampling.plan import Plan
+from xlmc.sampling.sampling_plan import SamplingPlan
 
 __all__ = ["RUNS", "Cell", "faults", "measure", "one_run", "table"]
 
@@ -55,7 +55,7 @@ class Cell(NamedTuple):
     trials: int
 
 
-def one_run(problem: Problem, plan: Plan, seed: int) -> xs.Sample:
+def one_run(problem: Problem, plan: SamplingPlan, seed: int) -> xs.Sample:
     """The accepted trials of a run, as xlmc would have them."""
     u = np.empty((3, plan.trials))
     for margin, row in zip(plan.margins(seed, ("a", "b", "c")), u, strict=True):
@@ -72,7 +72,7 @@ def estimates(sample: xs.Sample) -> list[xs.Estimate]:
 def measure(name: str, method: str, runs: int, first: int = 0) -> Cell:
     """One problem by one method, with the seeds from `first` on."""
     problem = PROBLEMS[name]
-    plan, truth = Plan.of(method, problem.trials), problem.truth()
+    plan, truth = SamplingPlan.of(method, problem.trials), problem.truth()
     hits, accepted, fewest = np.zeros(len(STATISTICS), int), [], []
     for seed in range(first, first + runs):
         sample = one_run(problem, plan, seed)

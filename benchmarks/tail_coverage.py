@@ -31,9 +31,10 @@ from tables import placed
 from tail_problems import ORDINARY, PROBLEMS, RANKS, STATISTICS, Problem
 
 import xlmc.statistics as xs
-from xlmc.run.simulation import FARTHEST_PART, FEW, LEAST_ACCEPTED, TELLING
+from xlmc.run.forecast_result import FARTHEST_PART, TELLING
+from xlmc.run.simulation import FEW, LEAST_ACCEPTED
 from xlmc.sampling.methods import METHODS
-from xlmc.sampling.plan import Plan
+from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.statistics.sample import MOST_GROUPS
 
 __all__ = ["Cell", "faults", "measure", "one_run", "tables"]
@@ -75,7 +76,7 @@ class Cell(NamedTuple):
     width: list[float]
 
 
-def one_run(problem: Problem, u: Floats, plan: Plan) -> Floats:
+def one_run(problem: Problem, u: Floats, plan: SamplingPlan) -> Floats:
     """(6, 4) value, both ends of the interval, and whether there is a notice, by xlmc's own functions."""
     kept = np.flatnonzero(problem.keeps(u))
     sample = xs.Sample.of(problem.forecast(u[:, kept]), None, plan.replicate_of(kept))
@@ -87,7 +88,7 @@ def one_run(problem: Problem, u: Floats, plan: Plan) -> Floats:
     )
 
 
-def many_runs(problem: Problem, u: Floats, plan: Plan) -> Floats:
+def many_runs(problem: Problem, u: Floats, plan: SamplingPlan) -> Floats:
     """(runs, 6, 4) the same of (2, runs, trials) uniforms."""
     shape, flat = u.shape[1:], u.reshape(2, -1)
     x, kept = problem.forecast(flat).reshape(shape), problem.keeps(flat).reshape(shape)
@@ -103,7 +104,7 @@ def many_runs(problem: Problem, u: Floats, plan: Plan) -> Floats:
     return np.moveaxis(found, -1, 0)
 
 
-def _told(sample: xs.Sample, plan: Plan) -> list[bool]:
+def _told(sample: xs.Sample, plan: SamplingPlan) -> list[bool]:
     """Whether a run gives a notice or a warning on each number."""
     if plan.replicates and sample.n < LEAST_ACCEPTED * min(plan.replicates, MOST_GROUPS):
         return [True] * len(STATISTICS)
@@ -120,13 +121,13 @@ def measure(method: str, trials: int, seeds: range) -> Floats:
     Raises:
         ArithmeticError: the formulas for many runs give something else than xlmc.
     """
-    plan = Plan.of(method, trials)
+    plan = SamplingPlan.of(method, trials)
     at_once = min(CHECKED, max(1, AT_ONCE // plan.trials))
     parts = [_together(plan, seeds[start : start + at_once]) for start in range(0, len(seeds), at_once)]
     return np.concatenate(parts, axis=1)
 
 
-def _together(plan: Plan, seeds: range) -> Floats:
+def _together(plan: SamplingPlan, seeds: range) -> Floats:
     u = np.empty((2, len(seeds), plan.trials))
     for run, seed in enumerate(seeds):
         for margin, rows in zip(plan.margins(seed, ("a", "b")), u, strict=True):
@@ -142,7 +143,7 @@ def _together(plan: Plan, seeds: range) -> Floats:
 
 def cells(method: str, trials: int, found: Floats) -> Iterator[Cell]:
     """What `measure` gave, problem by problem."""
-    plan = Plan.of(method, trials)
+    plan = SamplingPlan.of(method, trials)
     for (name, problem), runs in zip(PROBLEMS.items(), found, strict=True):
         value, low, high, told = np.moveaxis(runs, -1, 0)
         holds = (low <= problem.truth + 1e-9) & (problem.truth - 1e-9 <= high)
@@ -156,7 +157,7 @@ def cells(method: str, trials: int, found: Floats) -> Iterator[Cell]:
         yield Cell(name, method, plan.trials, len(runs), *counts, shown)
 
 
-def _seen(problem: Problem, plan: Plan) -> Floats:
+def _seen(problem: Problem, plan: SamplingPlan) -> Floats:
     """(6,) two trials of each replicate: of a share, and as much of a percentile; of mean and SD nothing."""
     share = 2.0 * plan.replicates / plan.trials
     low, high = problem.support

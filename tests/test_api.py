@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import xlmc
-from xlmc.run import model, simulate, simulation
+from xlmc.run import loading, simulate, simulation
 
 BOOK = Path(__file__).resolve().parents[1] / "examples" / "skid-100-ft.xlsx"
 
@@ -34,7 +34,7 @@ def test_an_opened_run_can_be_run_again(book, tmp_path):
 
 
 def test_doors_change_nothing_that_a_run_holds(book):
-    pure = simulate.simulate(model.load(BOOK), trials=1_000)
+    pure = simulate.simulate(loading.load(BOOK), trials=1_000)
     assert type(pure) is simulation.Simulation
     held = xlmc.Simulation.of(pure)
     assert all(getattr(held, each.name) is getattr(pure, each.name) for each in dataclasses.fields(pure)[1:])

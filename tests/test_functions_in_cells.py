@@ -18,7 +18,7 @@ from scipy import stats
 import xlmc
 from xlmc.address import Area
 from xlmc.api import Model
-from xlmc.definitions.reader import read_definitions
+from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.errors import XlmcError
 from xlmc.evaluation.engines import ENGINES
 from xlmc.workbook.model import CellContent, Formula

@@ -13,7 +13,7 @@ from xlmc.api import Model
 from xlmc.definitions.model import Settings
 from xlmc.errors import SimulationError
 from xlmc.results.record import make_record
-from xlmc.run.pilot import planned
+from xlmc.run.sobol_order import plan_sampling
 from xlmc.sampling.methods import METHODS
 
 ROUNDED = ", whole ones, for the 1,000 trials that were asked for"
@@ -122,17 +122,17 @@ def test_the_pilot_finds_what_matters(book):
     cells = {"A1": 1.0, "A2": 1.0, "A3": 1.0, "B1": "=A1+9*A2+3*A3"}
     given = {name: {"cell": cell, "low": 0, "high": 1} for name, cell in zip("abc", ("A1", "A2", "A3"), strict=True)}
     model = book(cells, given, {"x": "B1"})
-    assert planned(model, Settings(sampling="sobol")).order == ("b", "c", "a")
+    assert plan_sampling(model, Settings(sampling="sobol")).order == ("b", "c", "a")
     filtered = book(cells, given, {"x": "A2"}, {"f": {"cell": "A1", "below": 0.1}})
-    assert planned(filtered, Settings(sampling="sobol")).order == ("a", "b")
-    assert planned(model, Settings(sampling="lhs")).order == ()
+    assert plan_sampling(filtered, Settings(sampling="sobol")).order == ("a", "b")
+    assert plan_sampling(model, Settings(sampling="lhs")).order == ()
 
 
 def test_the_pilot_gets_along_with_nothing_accepted_and_with_errors(book):
     model = book(CELLS, GIVEN, {"x": "B3"}, {"f": {"cell": "A1", "above": 2}})
-    assert planned(model, Settings(sampling="sobol")).order == ("a",)
+    assert plan_sampling(model, Settings(sampling="sobol")).order == ("a",)
     errors = book({**CELLS, "B3": "=SQRT(-A1)"}, GIVEN, {"x": "B3", "y": "B1"})
-    assert set(planned(errors, Settings(sampling="sobol")).order) == {"a", "b"}
+    assert set(plan_sampling(errors, Settings(sampling="sobol")).order) == {"a", "b"}
 
 
 @pytest.mark.parametrize("engine", ["formulas", "jit"])

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from xlmc.api import Model, Simulation, load, open_run
-    from xlmc.run.simulation import ForecastResult
+    from xlmc.run.forecast_result import ForecastResult
     from xlmc.run.version import __version__
     from xlmc.studies.comparison import compare
     from xlmc.studies.screening import screen

@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from xlmc.definitions.stopping import stopping
-from xlmc.run import model, simulation
+from xlmc.run import loading, model, simulation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from xlmc.run.simulate import Progress
+    from xlmc.run.simulate import OnProgress
 
 __all__ = ["Model", "Simulation", "load", "open_run"]
 
@@ -134,7 +134,7 @@ class Model(model.Model):
         workers: int | None = None,
         keep_inputs: int | None = 1 << 20,
         keep_interrupted: bool = False,
-        progress: Progress | None = None,
+        progress: OnProgress | None = None,
         **goals: Any,
     ) -> Simulation:
         """Run the simulation; what is not given comes from the workbook's settings.
@@ -164,7 +164,7 @@ class Model(model.Model):
             workers: of the local cluster; by default one for each processor.
             keep_inputs: of how many accepted trials, from the first on, the draws are kept; None for all.
             keep_interrupted: end the run with what it has when Ctrl-C is pressed, rather than raise KeyboardInterrupt.
-            progress: called with a `Standing` (trials, accepted, share done, means) after every block.
+            progress: called with a `Progress` (trials, accepted, share done, means) after every block.
             **goals: options of goals that have no argument here: see `xlmc.definitions.stopping`.
 
         Raises:
@@ -208,7 +208,7 @@ def load(path: str | Path) -> Model:
         DefinitionError: a definition is not what it must be; all faulty ones are listed.
         FormulaError: a needed cell cannot be computed.
     """
-    return Model.of(model.load(path))
+    return Model.of(loading.load(path))
 
 
 def open_run(path: str | Path) -> Simulation:

@@ -17,11 +17,11 @@ from fuzzing.inputs import Disagreement, Input, Reached, steps_of
 from fuzzing.splicing import spliced
 from xlmc.address import Area
 from xlmc.api import Model
+from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.definitions.model import Definitions
-from xlmc.definitions.reader import read_definitions
 from xlmc.evaluation.engines import ENGINES
 from xlmc.report.summary import summarise, summary_text
-from xlmc.run.model import understood
+from xlmc.run.loading import build_model
 from xlmc.run.simulation import Simulation
 from xlmc.workbook.model import CellContent, Formula, Workbook
 from xlmc.workbook.reader import read_workbook
@@ -147,7 +147,7 @@ def _model(given: Input, kind: str) -> Model:
     """The model of the book; without the step `file` its other cells are not read again."""
     text, form = given.said.removeprefix("="), given.steps[0]
     if "file" in given.steps:
-        return Model.of(understood(read_workbook(book_of(text, form, kind), NAME), Path(NAME)))
+        return Model.of(build_model(read_workbook(book_of(text, form, kind), NAME), Path(NAME)))
     workbook, definitions = _read(kind)
     area = None if form == "plain" else Area("S", 1, 6, *((2, 7) if form == "block" else (1, 6)))
     held = CellContent(0.0, Formula(text, 1, 6, area, dynamic=form == "dynamic"))

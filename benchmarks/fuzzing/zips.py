@@ -20,7 +20,7 @@ from fuzzing.inputs import Input, Reached, steps_of
 from fuzzing.outputs import examined
 from fuzzing.xml_changes import changed
 from xlmc.api import Model
-from xlmc.definitions.reader import read_definitions
+from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.errors import XlmcError
 from xlmc.evaluation.engines import ENGINES
 from xlmc.workbook.reader import read_workbook

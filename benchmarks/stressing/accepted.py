@@ -15,7 +15,7 @@ from problems import Normals
 from scipy import stats
 
 import xlmc.statistics as xs
-from xlmc.sampling.plan import Plan
+from xlmc.sampling.sampling_plan import SamplingPlan
 
 __all__ = ["METHODS", "after_filters", "exact_coverage", "shares", "waited_for"]
 
@@ -28,7 +28,7 @@ STATISTICS: Final = ("mean", "SD", "median", "24.5 %", "75.5 %", "acceptance")
 def after_filters(method: str, acceptance: float, trials: int, runs: int, first: int = 0) -> dict[str, Any]:
     """How often 95 % intervals held the truth, by STATISTICS; those that there were, and how many those were."""
     above = float(stats.norm.isf(acceptance))
-    problem, plan = Normals(trials, above), Plan.of(method, trials)
+    problem, plan = Normals(trials, above), SamplingPlan.of(method, trials)
     truth = [*problem.truth().tolist(), acceptance]
     hits, given, accepted = np.zeros(len(truth), int), np.zeros(len(truth), int), 0
     for seed in range(first, first + runs):
@@ -45,7 +45,7 @@ def after_filters(method: str, acceptance: float, trials: int, runs: int, first:
     }  # fmt: skip
 
 
-def _acceptance(sample: xs.Sample, plan: Plan) -> xs.Estimate:
+def _acceptance(sample: xs.Sample, plan: SamplingPlan) -> xs.Estimate:
     """As `Simulation.acceptance` has it; replicates that accepted nothing count there."""
     if not plan.size:
         return xs.proportion(sample.n, plan.trials)

@@ -9,7 +9,8 @@ from typing import Any, Final
 import numpy as np
 
 from stressing.charts import COLOURS, binomial_error, coverage_axis, figure, save
-from xlmc.run.simulation import FARTHEST_PART, FEW, LEAST_ACCEPTED, TELLING
+from xlmc.run.forecast_result import FARTHEST_PART, TELLING
+from xlmc.run.simulation import FEW, LEAST_ACCEPTED
 from xlmc.sampling.methods import METHODS
 
 __all__ = ["correlations", "counts", "few", "samplers", "shares", "stops", "tails"]

@@ -21,12 +21,12 @@ def march(tmp_path_factory):
 
 
 def test_the_forecast_needs_every_cell(march):
-    assert len(march.scene.graph.formulas) == CELLS + OF_THE_ANSWER
+    assert len(march.needed.graph.formulas) == CELLS + OF_THE_ANSWER
     assert len(march.live) == len(books.MARCH)
 
 
 def test_the_march_has_the_kinds_of_formulas_that_it_is_said_to_have(march):
-    text = " ".join(march.workbook.content(cell).formula.text for cell in march.scene.graph.formulas)
+    text = " ".join(march.workbook.content(cell).formula.text for cell in march.needed.graph.formulas)
     assert all(f"{name}(" in text for name in ("IF", "SUM", "VLOOKUP", "INDEX", "MATCH", "SIN", "COS", "ATAN", "SQRT"))
 
 

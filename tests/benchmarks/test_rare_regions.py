@@ -7,7 +7,7 @@ import pytest
 
 from xlmc.run.rare.landscape import Landscape
 from xlmc.run.rare.layered import ground_of
-from xlmc.run.rare.tempered import widened
+from xlmc.run.rare.strays import wide_assumptions
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +50,7 @@ def test_the_exact_answers_are_those_of_the_books(bench, random, name):
     """Against draws from widened assumptions, weighted: 4.5 standard errors, which are below a third."""
     book = bench.BOOKS[name]
     landscape = Landscape(book.model, random)
-    spread = widened(landscape.dimensions)
+    spread = wide_assumptions(landscape.dimensions)
     points = spread.draw(400_000, random)
     weights = np.exp(spread.log_weights(points)) * landscape.accepts(points)
     error = weights.std() / np.sqrt(weights.size)

@@ -134,7 +134,7 @@ def test_a_workbook_that_an_older_version_ran_and_this_one_refuses(xlmc, results
     def refuse(*_):
         raise XlmcError("no")
 
-    monkeypatch.setattr("xlmc.replay.repeat.understood", refuse)
+    monkeypatch.setattr("xlmc.replay.repeat.build_model", refuse)
     outcome = xlmc("replay", results)
     assert outcome.code == 1
     assert outcome.out.splitlines()[1:3] == ["differs.", f"xlmc 0.1.0 made this run, and this is xlmc {__version__}."]

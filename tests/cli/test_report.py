@@ -108,7 +108,7 @@ def test_draws_that_were_not_saved_are_blank_and_said_to_be(xlmc, small_book, tm
     ],
 )
 def test_names_are_refused_before_the_run(xlmc, book, tmp_path, monkeypatch, options, message):
-    monkeypatch.setattr("xlmc.run.model.load", lambda path: 1 / 0)
+    monkeypatch.setattr("xlmc.run.loading.load", lambda path: 1 / 0)
     before = book.read_bytes()
     outcome = xlmc("simulate", book, *options)
     assert outcome.code == 2

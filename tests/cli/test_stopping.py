@@ -12,7 +12,7 @@ import openpyxl
 import pytest
 
 from xlmc.cli.progress import errors_line, trials_line
-from xlmc.run.stopping import Standing
+from xlmc.run.stopping import Progress
 from xlmc.statistics import Estimate
 
 pytestmark = pytest.mark.usefixtures("short_books")
@@ -158,7 +158,7 @@ def test_ctrl_c_keeps_what_was_accepted(xlmc, book, tmp_path, options):
     assert record_of(results)["run.fingerprint"] == record["run.fingerprint"]
 
 
-STANDING = Standing(
+STANDING = Progress(
     65_536, 1_150, 0.5, {"Delta-V": Estimate(12.0, 0.0125), "e": Estimate(1.0), "v": Estimate(3.0, 45.6)}
 )
 
@@ -166,7 +166,7 @@ STANDING = Standing(
 def test_the_progress_bar():
     assert trials_line(STANDING) == "65,536 trials, 1,150 accepted (1.75 %)"
     assert errors_line(STANDING) == "± Delta-V 0.013, v 46"
-    assert errors_line(Standing(10, 0, 0.0, {"x": Estimate(float("nan"))})) == ""
+    assert errors_line(Progress(10, 0, 0.0, {"x": Estimate(float("nan"))})) == ""
 
 
 def test_the_progress_bar_on_a_terminal(case_study, tmp_path):

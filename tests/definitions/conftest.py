@@ -9,7 +9,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.address import Cell, parse_address
-from xlmc.definitions.reader import read_definitions
+from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.evaluation.engines import ENGINES
 from xlmc.workbook.model import CellContent, DefinedName, Formula, Sheet, Table, Workbook
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.definitions.reader import read_definitions
+from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.evaluation.engines import ENGINES
 
 HEADINGS = [

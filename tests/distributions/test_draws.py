@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from xlmc.distributions import FAMILIES, ByPercentiles
-from xlmc.sampling.draws import Draw, Sampler, Stage
+from xlmc.sampling.draws import Draw, DrawStage, Sampler
 
 TRIALS, BLOCK, BINS = 1_000_000, 50_000, 1000
 CUMUL = FAMILIES["Cumul"].built(np.array([[1.0, 0.25], [1.5, 0.75]]))
@@ -38,7 +38,7 @@ CASES = {
 
 def drawn(family, parameters, cutoffs=None):
     draw = Draw("speed", family, parameters, cutoffs)
-    sampler = Sampler(999, [Stage((draw,))], [], [], BLOCK)
+    sampler = Sampler(999, [DrawStage((draw,))], [], [], BLOCK)
     return np.concatenate([sampler.draw(start)["speed"].copy() for start in range(0, TRIALS, BLOCK)])
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from xlmc.address import Cell
 from xlmc.distributions import FAMILIES, family_named
-from xlmc.distributions.naming import plain
+from xlmc.distributions.spelling import plain
 from xlmc.errors import DefinitionError
 
 

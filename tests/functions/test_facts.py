@@ -28,7 +28,7 @@ from xlmc.functions.math.aggregate import SO_FAR
 from xlmc.functions.operators import ALL_BITS
 from xlmc.functions.values import constant
 from xlmc.run.rare.preimage import FUNCTIONS, PERIODIC
-from xlmc.run.rare.switches import _OF_AREAS
+from xlmc.run.rare.ways import _OF_AREAS
 
 PACKAGE = Path(__file__).resolve().parents[2] / "xlmc"
 
@@ -79,7 +79,7 @@ LISTS = {
     ("run/rare/inverting.py", "Inverting"): "any other function is not undone: its filter is searched for",
     ("run/rare/preimage.py", "FUNCTIONS"): "any other function is not undone: its filter is searched for",
     ("run/rare/preimage.py", "PERIODIC"): "what FUNCTIONS has",
-    ("run/rare/switches.py", "_OF_AREAS"): "any other function of an area makes no ways to be told apart",
+    ("run/rare/ways.py", "_OF_AREAS"): "any other function of an area makes no ways to be told apart",
     ("studies/stability/rounding_errors.py", "_STEEP"): "of any other function it is said that its argument is rounded",
     ("studies/stability/momentum.py", "_arm"): "one form of a formula",
     ("studies/stability/momentum.py", "components"): "one form of a formula",

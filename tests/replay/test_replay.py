@@ -382,7 +382,7 @@ def test_a_workbook_that_could_never_be_run_is_refused(edited, monkeypatch):
     def refuse(*_):
         raise XlmcError("no")
 
-    monkeypatch.setattr(repeating, "understood", refuse)
+    monkeypatch.setattr(repeating, "build_model", refuse)
     with pytest.raises(XlmcError, match="no"):
         replay(edited(lambda book: None))
 

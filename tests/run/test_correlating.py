@@ -9,7 +9,7 @@ from xlmc.address import Cell
 from xlmc.definitions.model import Correlation
 from xlmc.distributions import FAMILIES
 from xlmc.results.record.definition_tables import correlations_met
-from xlmc.run.correlating import correlated_groups, repair_notices, used
+from xlmc.run.correlating import correlated_groups, drawn_correlation, repair_notices
 from xlmc.sampling.copula import GaussianCopula
 from xlmc.sampling.draws import Draw
 from xlmc.sampling.methods import METHODS
@@ -54,7 +54,7 @@ CONTRADICTORY = {("A1", "A2"): 0.9, ("A3", "A2"): 0.9, ("A1", "A3"): -0.9}
 
 def test_contradictory_correlations_are_repaired_and_told(book):
     model = book(CELLS, GIVEN, {"x": "B1"}, correlations=CONTRADICTORY)
-    found = [used(model.groups, *pair) for pair in CONTRADICTORY]
+    found = [drawn_correlation(model.groups, *pair) for pair in CONTRADICTORY]
     assert found == pytest.approx([0.4826, 0.4826, -0.4826], abs=1e-4)
     [notice] = [each for each in model.notices if "correlations" in each.message]
     assert str(notice.where) == "Correlations!A1"
@@ -66,10 +66,10 @@ def test_contradictory_correlations_are_repaired_and_told(book):
 def test_pairs_in_no_row_count_as_0_and_the_notice_says_so(book):
     model = book(CELLS, GIVEN, {"x": "B1"}, correlations={("A1", "A2"): 0.9, ("A2", "A3"): 0.9})
     [notice] = repair_notices(model.groups, model.definitions.correlations, ["A1", "A2", "A3", "A4"])
-    between = used(model.groups, "a1", "A3")
+    between = drawn_correlation(model.groups, "a1", "A3")
     assert between > 0.1
     assert f"'A1' and 'A3' 0 → {between:.3f} (in no row, which counts as 0)" in notice.message
-    assert used(model.groups, "A1", "A4") is None
+    assert drawn_correlation(model.groups, "A1", "A4") is None
 
 
 def test_what_is_possible_is_no_news(book):
@@ -98,7 +98,7 @@ def test_unfiltered_runs_have_the_correlations_and_the_margins(book, method, cor
     z = stats.norm.isf(0.001 / 6 / 2)
     for i, first in enumerate(names):
         for j, second in enumerate(names[:i]):
-            target = used(model.groups, first, second) or 0.0
+            target = drawn_correlation(model.groups, first, second) or 0.0
             error = (1 - target**2) * np.sqrt((1 + target**2 / 2) / (n - 3))
             assert abs(seen[i, j] - target) <= z * error + 1e-9
     for values in run.inputs.values():
@@ -155,7 +155,7 @@ def test_what_is_drawn_beside_other_correlations_is_said_and_why(book):
     asked = {("A1", "A2"): 0.9, ("A2", "A3"): 0.5}
     model = book({"A1": 1.0, "A2": 1.0, "A3": 1.0, "B1": "=A1+A2+A3"}, given, {"x": "B1"}, correlations=asked)
     first, second = [each.message for each in model.notices if "orrelation" in each.message]
-    drawn = used(model.groups, "A1", "A2")
+    drawn = drawn_correlation(model.groups, "A1", "A2")
     assert drawn < 0.5
     assert f"they are drawn with {drawn:.3g}, for the other correlations leave no more" in first
     assert "cannot all be drawn at once in the one way that xlmc has, a Gaussian copula" in second

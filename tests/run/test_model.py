@@ -32,7 +32,7 @@ def test_what_offset_leads_to_keeps_the_order_of_the_first_stages(book):
     cells = {"A1": 1.0, "A2": 1.0, "A3": 1.0, "B1": "=SUM(A1:A3)", "C1": "=A3-5", "C2": "=OFFSET(D1,2,-3)-5"}
     low = {"named": ("A1", "C1"), "by offset": ("A2", "C2"), "needed": ("A3", 0)}
     model = book(cells, {name: {"cell": cell, "low": at, "high": 9} for name, (cell, at) in low.items()}, {"x": "B1"})
-    assert [list(stage) for stage in model.scene.stages] == [["needed"], ["by offset", "named"]]
+    assert [list(stage) for stage in model.needed.stages] == [["needed"], ["by offset", "named"]]
     assert [a.name for a in model.live] == ["needed", "by offset", "named"]
 
 
@@ -151,7 +151,7 @@ def test_the_saved_value_of_a_known_part_is_noticed(book):
 
 def test_a_book_with_mistakes_is_not_loaded(tmp_path, monkeypatch):
     from xlmc.definitions.model import Definitions
-    from xlmc.run import model as module
+    from xlmc.run import loading as module
     from xlmc.workbook.model import Workbook
 
     problems = (DefinitionError("Low is blank", where="S!B2"), DefinitionError("Name is blank", where="S!A3"))

@@ -13,7 +13,7 @@ import xlsxwriter
 
 import xlmc
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.run.result_cells import filled_sheets, result_values
+from xlmc.run.result_cells import filled_sheets
 from xlmc.workbook.inject import original_hash
 from xlmc.workbook.package import read_parts
 from xlmc.workbook.reader import read_workbook
@@ -116,7 +116,7 @@ def test_only_values_change(filled):
     kept = {"[Content_Types].xml", "xl/workbook.xml", "xl/_rels/workbook.xml.rels", "xl/styles.xml", "docProps/app.xml"}
     sheets = {"xl/worksheets/sheet1.xml", "xl/worksheets/sheet2.xml"}
     assert {name for name in before if after[name] != before[name]} <= kept | sheets
-    cells = {cell.a1 for cell in result_values(run)}
+    cells = {cell.a1 for cell in run.shown_results.cells}
     for name in sheets:
         assert _blanked(before[name], cells) == _blanked(after[name], cells)
 
@@ -153,7 +153,7 @@ def test_results_of_a_run_without_accepted_trials_are_not_available(tmp_path):
     cells = {"A1": ("=RiskNormal(5,1)+RiskOutput()", 5), "A2": ("=RiskMean(A1)", 5), "A3": ("=A1/0+RiskOutput()", 0)}
     cells["A4"] = ("=RiskMean(A3)", 1)
     run = xlmc.load(build(tmp_path / "book.xlsx", cells)).simulate(trials=100)
-    values = {cell.a1: value for cell, value in result_values(run).items()}
+    values = {cell.a1: value for cell, value in run.shown_results.cells.items()}
     assert values["A4"] is ErrorCode.NA
     assert values["A2"] == run["S!A1"].mean.value
 
@@ -166,7 +166,7 @@ def test_results_of_an_assumption_are_those_of_its_accepted_draws(tmp_path):
     run = xlmc.load(build(tmp_path / "book.xlsx", {**INPUTS, **cells})).simulate(trials=500)
     draws = run.inputs["S!A1#1"]
     assert draws.size == 500
-    values = {cell.a1: value for cell, value in result_values(run).items()}
+    values = {cell.a1: value for cell, value in run.shown_results.cells.items()}
     assert values["B1"] == pytest.approx(draws.mean(), rel=1e-14)
     assert values["B2"] == pytest.approx(np.percentile(draws, 90), rel=1e-14)
     assert values["B3"] == 500
@@ -217,7 +217,7 @@ def test_an_array_formula_of_results_fills_its_area(tmp_path):
 def test_a_book_without_such_cells_is_not_touched(tmp_path):
     cells = {"A1": ("=RiskNormal(5,1)+RiskOutput()", 5)}
     run = xlmc.load(build(tmp_path / "book.xlsx", cells)).simulate(trials=100)
-    assert result_values(run) == {}
+    assert run.shown_results.cells == {}
 
 
 # Cells that cannot be computed: they and all that depends on them show #N/A, and are named.
@@ -234,7 +234,9 @@ def shown(run, path):
 
     Written without the result sheets, which say nothing of these; `filled` has them.
     """
-    path.write_bytes(package_bytes({**run.model.workbook.parts, **filled_sheets(run)}))
+    path.write_bytes(
+        package_bytes({**run.model.workbook.parts, **filled_sheets(run.model.workbook, run.shown_results)})
+    )
     book = openpyxl.load_workbook(path, data_only=True)
     found = {cell.coordinate: cell.value for row in book["S"].iter_rows() for cell in row}
     return found | {f"Other!{c.coordinate}": c.value for row in book["Other"].iter_rows() for c in row}

@@ -5,7 +5,7 @@ import pytest
 
 from xlmc.distributions import FAMILIES
 from xlmc.sampling.copula import GaussianCopula
-from xlmc.sampling.draws import CorrelatedGroup, Draw, Sampler, Stage
+from xlmc.sampling.draws import CorrelatedGroup, Draw, DrawStage, Sampler
 from xlmc.sampling.streams import Stream
 
 UNIFORM, NORMAL = FAMILIES["Uniform"], FAMILIES["Normal"]
@@ -17,7 +17,7 @@ def uniform(name, low=0.0, high=1.0):
 
 
 def sampler(*draws, groups=(), block=64, seed=999):
-    return Sampler(seed, [Stage(draws)], groups, [], block)
+    return Sampler(seed, [DrawStage(draws)], groups, [], block)
 
 
 def drawn(montecarlo, blocks, block=64):
@@ -84,7 +84,7 @@ def test_parameters_may_depend_on_earlier_stages():
         assert set(earlier) == {"a"}
         return {"2a": 2 * earlier["a"][:n]}
 
-    stages = [Stage((uniform("a"),)), Stage((Draw("b", UNIFORM, ("2a", 3.0)),), dynamic=True)]
+    stages = [DrawStage((uniform("a"),)), DrawStage((Draw("b", UNIFORM, ("2a", 3.0)),), dynamic=True)]
     found = Sampler(999, stages, [], [parameters], 64).draw(0)
     u = np.empty(64)
     Stream(999, "b").uniforms(0, u)
@@ -96,7 +96,7 @@ def test_trials_whose_parameters_are_no_distribution_are_nan(bad):
     def parameters(earlier, n):
         return {"low": np.where(earlier["a"] > 0.5, bad, 0.0)}
 
-    stages = [Stage((uniform("a"),)), Stage((Draw("b", UNIFORM, ("low", 3.0)),), dynamic=True)]
+    stages = [DrawStage((uniform("a"),)), DrawStage((Draw("b", UNIFORM, ("low", 3.0)),), dynamic=True)]
     found = Sampler(999, stages, [], [parameters], 64).draw(0)
     assert np.array_equal(np.isnan(found["b"]), found["a"] > 0.5)
 
@@ -111,8 +111,8 @@ def test_stages_have_parameters_of_their_own_in_order():
 
         return parameters
 
-    stages = [Stage((uniform("a"),))]
-    stages += [Stage((Draw(name, UNIFORM, (0.0, f"{name} high")),), dynamic=True) for name in ("b", "c")]
+    stages = [DrawStage((uniform("a"),))]
+    stages += [DrawStage((Draw(name, UNIFORM, (0.0, f"{name} high")),), dynamic=True) for name in ("b", "c")]
     Sampler(1, stages, [], [note("b"), note("c")], 8).draw(0)
     assert seen == [("b", ["a"]), ("c", ["a", "b"])]
 

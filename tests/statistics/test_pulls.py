@@ -10,7 +10,7 @@ from scipy import stats
 from scipy.special import ndtri
 
 import xlmc.statistics as xs
-from xlmc.sampling.plan import Plan
+from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.statistics.estimate import LENGTHENED, t_quantile, t_range
 from xlmc.statistics.pulls import trial_skewness
 
@@ -25,7 +25,7 @@ FORECASTS = {
 
 
 def uniforms(method, trials, seed):
-    plan = Plan.of(method, trials)
+    plan = SamplingPlan.of(method, trials)
     u = np.empty(plan.trials)
     plan.margins(seed, ["a"])[0].uniforms(0, u)
     return np.maximum(u, 2.0**-54), plan.replicate_of(np.arange(plan.trials))

@@ -36,10 +36,10 @@ def check(book: Path) -> None:
     Checks that fail at the base case, and cells in error there, stand first.
     """
     from xlmc.cli.printing import notices
-    from xlmc.definitions.reader import read_definitions
+    from xlmc.definitions.definitions_reader import read_definitions
     from xlmc.errors import XlmcError
     from xlmc.evaluation.engines import ENGINES
-    from xlmc.run.filter_values import filter_faults
+    from xlmc.run.loading import filter_faults
     from xlmc.run.model import Model
     from xlmc.workbook.reader import read_workbook
 
@@ -134,20 +134,20 @@ def _show_definitions(definitions: Definitions, model: Model | None) -> None:
 
 
 def _drawn_with(model: Model | None, correlation: Correlation) -> str:
-    from xlmc.run.correlating import used
+    from xlmc.run.correlating import drawn_correlation
 
-    found = None if model is None else used(model.groups, correlation.first, correlation.second)
+    found = None if model is None else drawn_correlation(model.groups, correlation.first, correlation.second)
     return "-" if found is None else f"{found:.3g}"
 
 
 def _show_need(model: Model, workbook: Workbook) -> None:
     formulas = sum(c.formula is not None for sheet in workbook.sheets.values() for c in sheet.cells.values())
-    needed, varying = model.scene.graph.formulas, model.scene.graph.varying
+    needed, varying = model.needed.graph.formulas, model.needed.graph.varying
     count = sum(cell in varying for cell in needed)
     said = f"Of {formulas} formula cells the forecasts and filters need {len(needed)}; {count} vary with an assumption."
     say(paragraph(said))
-    if model.scene.idle:
-        say(paragraph("No forecast or filter needs: " + ", ".join(a.name for a in model.scene.idle) + "."))
+    if model.needed.idle:
+        say(paragraph("No forecast or filter needs: " + ", ".join(a.name for a in model.needed.idle) + "."))
 
 
 def show_first(run: Simulation) -> None:

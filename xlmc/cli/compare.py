@@ -68,7 +68,7 @@ def compare(
     from xlmc.cli.printing import warnings
     from xlmc.cli.progress import step_line
     from xlmc.report.study_report import Files
-    from xlmc.run.model import load
+    from xlmc.run.loading import load
     from xlmc.studies import comparison
     from xlmc.studies.comparison.verdicts import book_names
 

@@ -71,7 +71,7 @@ def methods(
     """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
     from xlmc.cli.progress import step_line
     from xlmc.report.methods import check_targets, save_methods
-    from xlmc.run.model import load
+    from xlmc.run.loading import load
     from xlmc.studies.methods import quick_settings, study
 
     model = load(book)

@@ -10,13 +10,13 @@ from xlmc.cli.terminal import encodable, on_terminal
 from xlmc.workbook.printable import printable
 
 if TYPE_CHECKING:
-    from xlmc.run.simulate import Progress
-    from xlmc.run.stopping import Standing
+    from xlmc.run.simulate import OnProgress
+    from xlmc.run.stopping import Progress
 
 __all__ = ["errors_line", "progress_bar", "step_line", "trials_line"]
 
 
-def trials_line(standing: Standing) -> str:
+def trials_line(standing: Progress) -> str:
     """`65,536 trials, 1,150 accepted (1.75 %)`."""
     if standing.searching:
         return f"{standing.trials:,} trials, looking for accepted ones"
@@ -24,23 +24,24 @@ def trials_line(standing: Standing) -> str:
     return f"{standing.trials:,} trials, {standing.accepted:,} accepted ({share:.3g} %)"
 
 
-def errors_line(standing: Standing) -> str:
+def errors_line(standing: Progress) -> str:
     """The standard error of every forecast's mean so far: `± Chevrolet delta-V 0.013, Nissan delta-V 0.02`."""
     known = [(name, mean.error) for name, mean in standing.means.items() if mean.error is not None]
     return f"± {', '.join(f'{name} {error:.2g}' for name, error in known)}" if known else ""
 
 
 @contextmanager
-def progress_bar(quiet: bool) -> Iterator[Progress | None]:
+def progress_bar(quiet: bool) -> Iterator[OnProgress | None]:
     """A bar and the standard errors below it, on stderr while the trials run, where there is a terminal to draw on."""
     if quiet or not on_terminal(err=True):
         yield None
         return
     from rich.console import Console, RenderableType
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as RichProgress
     from rich.text import Text
 
-    class Bar(Progress):
+    class Bar(RichProgress):
         """A bar with a line below it."""
 
         below = ""
@@ -53,7 +54,7 @@ def progress_bar(quiet: bool) -> Iterator[Progress | None]:
     with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("", total=1.0)
 
-        def show(standing: Standing) -> None:
+        def show(standing: Progress) -> None:
             bar.below = encodable(printable(errors_line(standing)), err=True)
             bar.update(task, completed=standing.share, description=trials_line(standing))
 

@@ -46,7 +46,7 @@ def stability(
     from xlmc.cli.printing import warnings
     from xlmc.cli.progress import step_line
     from xlmc.report.study_report import Files
-    from xlmc.run.model import load
+    from xlmc.run.loading import load
     from xlmc.studies import stability as room
 
     model = load(book)

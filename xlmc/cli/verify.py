@@ -24,7 +24,7 @@ _SHOWN = 50
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def verify(book: Path, everything: bool, as_json: bool) -> None:
     """Recompute the formulas of BOOK at the base case and compare with the values that Excel saved."""
-    from xlmc.definitions.reader import read_definitions
+    from xlmc.definitions.definitions_reader import read_definitions
     from xlmc.evaluation.engines import ENGINES
     from xlmc.studies.verify import Status
     from xlmc.studies.verify import verify as check

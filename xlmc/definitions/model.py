@@ -186,12 +186,12 @@ class Settings:
 
 @dataclass(frozen=True, slots=True)
 class Definitions:
-    """Everything a workbook asks of a run, as understood.
+    """Everything that a workbook asks of a run.
 
     `problems` are the mistakes found, each with its cell; a run is refused while there are any. `rewritten` are the
-    formulas in which calls stand for assumptions (`=10+RiskNormal(5,1)`), with these in their place, or why a cell
-    cannot be computed; `results` are the cells that show results of the run, and `unavailable` are those that should,
-    or belong to a what-if table of the run, and cannot be computed, each with the reason.
+    formulas in which calls stand for assumptions (`=10+RiskNormal(5,1)`), with assumptions instead of the calls, or why
+    a cell cannot be computed; `results` are the cells that show results of the run, and `unavailable` are those that
+    should, or belong to a what-if table of the run, and cannot be computed, each with the reason.
     """
 
     assumptions: tuple[Assumption, ...] = ()

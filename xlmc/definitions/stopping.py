@@ -2,10 +2,11 @@
 
 A goal is a class whose attributes are its row; `GOALS` lists them. How to add a stop rule: write its goal here, with
 its option and its setting, and put it into `GOALS`. It is a `WholeGoal` where one whole number says it all, else a
-`Goal` with fields of its own, which it checks. Write its rule in a module of `xlmc/run/stopping/` (see `rule.Rule`),
-under the goal's key, and put it into `RULES` in `choose.py` there. Describe the option in docs/command-line.md and the
-setting in docs/workbooks.md. The command line, `xlmc_settings`, `Model.simulate`, the record, saved runs and `xlmc
-replay` read all that they need here; `tests/run/stopping/test_new_rule.py` adds a rule in this way.
+`Goal` with fields of its own, which it checks. Write its rule in a module of `xlmc/run/stopping/` (see
+`rule.StopRule`), under the goal's key, and put it into `RULES` in `watch.py` there. Describe the option in
+docs/command-line.md and the setting in docs/workbooks.md. The command line, `xlmc_settings`, `Model.simulate`, the
+record, saved runs and `xlmc replay` read all that they need here; `tests/run/stopping/test_new_rule.py` adds a rule in
+this way.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Cells that depend on the run in a way that xlmc cannot compute, and what a person is told of them.
+"""Cells that depend on the run in a way that xlmc cannot compute, and what is said of them.
 
 Excel's what-if data tables are among them: their cells hold no formulas, only what Excel last calculated, and so they
 would pass for constants.
@@ -13,7 +13,7 @@ from itertools import groupby
 from typing import Final
 
 from xlmc.address import Area, Cell, host_of
-from xlmc.definitions.findings import Findings
+from xlmc.definitions.problems import Findings
 from xlmc.errors import FormulaError
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.workbook.model import DataTable, Workbook
@@ -110,7 +110,7 @@ def tables_of_run(
         workbook: whose tables.
         drawn: the assumptions and draws.
         results: the cells that show results of the run, or should.
-        rewritten: formulas with draws in place of calls, as in `Definitions`.
+        rewritten: formulas with draws instead of calls, as in `Definitions`.
     """
     if not workbook.data_tables:
         return TablesOfRun()

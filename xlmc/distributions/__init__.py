@@ -33,7 +33,6 @@ from xlmc.distributions.lognorm2 import Lognorm2
 from xlmc.distributions.lognormal import Lognormal
 from xlmc.distributions.maximum_extreme import MaximumExtreme
 from xlmc.distributions.minimum_extreme import MinimumExtreme
-from xlmc.distributions.naming import did_you_mean, plain
 from xlmc.distributions.negative_binomial import NegativeBinomial
 from xlmc.distributions.negbin import Negbin
 from xlmc.distributions.normal import Normal
@@ -41,6 +40,7 @@ from xlmc.distributions.parameters import DataError, DataSpec, Fault, ParameterS
 from xlmc.distributions.pareto import Pareto
 from xlmc.distributions.piecewise import Piecewise
 from xlmc.distributions.poisson import Poisson
+from xlmc.distributions.spelling import did_you_mean, plain
 from xlmc.distributions.students_t import StudentsT
 from xlmc.distributions.trapezoid import Trapezoid
 from xlmc.distributions.triangular import Triangular

@@ -46,7 +46,7 @@ class Family(ABC):
         rules: what the parameters must keep.
         open_below: the quantile of 0 is minus infinity, so u = 0 is read as `SMALLEST_U`.
         always_finite: every draw is a finite number if the parameters keep every rule; otherwise draws are tried out.
-        roles: of each parameter, so that percentiles may stand in its place; empty where they may not.
+        roles: of each parameter, so that percentiles may be given instead; empty where they may not.
         data: what a family that is built from data needs; None for one that has parameters alone.
         formula: its density, distribution or quantile function in the headings of its parameters, for people.
         source: where the formula is written down.

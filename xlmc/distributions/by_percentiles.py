@@ -1,4 +1,4 @@
-"""A family that is told by percentiles: "10 % of drivers react within 0.8 s, 90 % within 2 s".
+"""A family that is given by percentiles: "10 % of drivers react within 0.8 s, 90 % within 2 s".
 
 Which member of the family has these percentiles? Most families are moved, stretched and bent: quantile = location +
 scale · q(p; shape). Given the shape, percentiles fix location and scale in closed form, and what is left is one
@@ -35,7 +35,7 @@ _MET = 1e-9  # of the spread of the percentiles: they are met when the member's 
 
 
 def by_percentiles(family: Family, given: Collection[str], percents: Sequence[float]) -> ByPercentiles:
-    """The family with percentiles in place of the parameters that are not given.
+    """The family with percentiles instead of the parameters that are not given.
 
     Args:
         family: one whose parameters have roles.
@@ -88,8 +88,8 @@ class ByPercentiles(Family):
         """The first thing wrong with these numbers, if any."""
         if fault := super().broken_rule(*values):
             return fault
-        places = list(zip(self.parameters, values, strict=True))[len(self._given) :]
-        for (lower, below), (upper, above) in pairwise(places):
+        percentiles = list(zip(self.parameters, values, strict=True))[len(self._given) :]
+        for (lower, below), (upper, above) in pairwise(percentiles):
             if not below < above:
                 message = f"{lower.heading} ({show(below)}) is not below {upper.heading} ({show(above)})"
                 return Fault(lower.key, message, "Exchange the two, or correct the wrong one")
@@ -98,7 +98,7 @@ class ByPercentiles(Family):
                 f"{spec.heading} {show(value)}" for spec, value in zip(self.parameters, values, strict=True)
             )
             message = f"No single {self.name} has {shown}"
-            return Fault(places[-1][0].key, message, "Correct the percentiles, or choose another distribution")
+            return Fault(percentiles[-1][0].key, message, "Correct the percentiles, or choose another distribution")
         return None
 
     def valid(self, *params: Values, **named: Values) -> bool | NDArray[np.bool_]:
@@ -185,8 +185,8 @@ def match_percentiles(family: Family, given: Mapping[str, float], points: Points
 
 def _spread(given: Mapping[str, float], points: Points) -> float:
     """A length to measure by: from the least to the greatest of what is known; from 0 where that is a single number."""
-    places = [x for _, x in points] + [given[key] for key in ("low", "likeliest", "high", "location") if key in given]
-    return max(places) - min(places) or abs(places[0]) or 1.0
+    lengths = [x for _, x in points] + [given[key] for key in ("low", "likeliest", "high", "location") if key in given]
+    return max(lengths) - min(lengths) or abs(lengths[0]) or 1.0
 
 
 def _moved(family: Family, given: Mapping[str, float], points: Points) -> Iterator[tuple[float, ...]]:
@@ -194,7 +194,7 @@ def _moved(family: Family, given: Mapping[str, float], points: Points) -> Iterat
     shapes = [math.nan if member.shape is None else member.shape]
     if "shape" in family.roles and member.shape is None:
         spread = _spread(given, points)
-        roots = _roots(lambda places: member.misfit(np.exp(places)) / spread, _LOG_SHAPES)
+        roots = _roots(lambda logs: member.misfit(np.exp(logs)) / spread, _LOG_SHAPES)
         shapes = [math.exp(root) for root in sorted(roots, key=abs)]
     for shape in shapes:
         if (found := member.parameters(shape)) is not None:
@@ -214,7 +214,7 @@ class _Moved:
 
     def parameters(self, shape: float) -> Solution:
         """The family's parameters with this shape; None where they would be none."""
-        location, scale = (float(each) for each in self.placed(self.quantiles(shape)))
+        location, scale = (float(each) for each in self.fit(self.quantiles(shape)))
         if not (scale > 0 and math.isfinite(location)):
             return None
         return tuple(float(value) for value in self._as_parameters(location, scale, shape))
@@ -222,7 +222,7 @@ class _Moved:
     def misfit(self, shape: Array) -> Array:
         """How far the member with this shape misses the percentile that location and scale have not been fitted to."""
         q = self.quantiles(shape)
-        location, scale = self.placed(q)
+        location, scale = self.fit(q)
         left = {3: 1, 2: 1 - self._farthest if self.location is not None else 0, 1: 0}[len(self.x)]
         return location + scale * q[left] - self.x[left]  # type: ignore[no-any-return]
 
@@ -230,7 +230,7 @@ class _Moved:
         """q(p; shape), `(points,)` or `(points, shapes)`."""
         return np.array([self.family.ppf(p, *self._as_parameters(0.0, 1.0, shape)) for p in self.p])
 
-    def placed(self, q: Array) -> tuple[Any, Any]:
+    def fit(self, q: Array) -> tuple[Any, Any]:
         """Location and scale, as given or fitted to the outer percentiles."""
         location, scale = self.location, self.scale
         if location is None and scale is None:
@@ -264,17 +264,15 @@ def _scale(role: Role, value: float | None) -> float | None:
     return {"scale": value, "rate": 1 / value if value else math.inf, "log scale": float(np.exp(value))}[role]
 
 
-def _roots(function: Callable[[Array], Array], places: Array) -> Iterator[float]:
-    """Where the function changes its sign, from the lowest place on; nowhere if it is 0 all over."""
+def _roots(function: Callable[[Array], Array], grid: Array) -> Iterator[float]:
+    """Where the function changes its sign, from the lowest number on; nowhere if it is 0 all over."""
     from scipy.optimize import brentq
 
-    values = function(places)
+    values = function(grid)
     if not np.nanmax(np.abs(np.where(np.isfinite(values), values, 0.0))) > _MET:
         return
     for left in np.flatnonzero(np.sign(values[:-1]) * np.sign(values[1:]) <= 0):
-        yield brentq(
-            lambda s: float(function(np.array([s]))[0]), places[left], places[left + 1], xtol=1e-15, rtol=1e-15
-        )
+        yield brentq(lambda s: float(function(np.array([s]))[0]), grid[left], grid[left + 1], xtol=1e-15, rtol=1e-15)
 
 
 def _ordered(family: Family, given: Mapping[str, float], points: Points) -> Iterator[tuple[float, ...]]:
@@ -286,7 +284,7 @@ def _ordered(family: Family, given: Mapping[str, float], points: Points) -> Iter
         return np.where(np.isfinite(away), away, 1e6)
 
     if len(points) == 1:
-        roots = _roots(lambda places: np.array([misfit(np.array([place]))[0] for place in places]), _COORDINATES)
+        roots = _roots(lambda grid: np.array([misfit(np.array([each]))[0] for each in grid]), _COORDINATES)
         yield from (chart.parameters(np.array([root])) for root in roots)
     else:
         yield from (chart.parameters(found) for found in _least(misfit, chart.starts()))

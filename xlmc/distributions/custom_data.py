@@ -36,7 +36,7 @@ _TOLERANCE = 1e-9
 Row = Sequence[float | None]
 """The numbers of a row; None where the cell is blank."""
 
-Place = tuple[int, int]
+Position = tuple[int, int]
 """Row and column within the data, counted from 0."""
 
 
@@ -148,26 +148,26 @@ def _weights(rows: Sequence[Row], column: int, cumulative: bool) -> list[float]:
     weights: list[float] = []
     reached, last = 0.0, (filled[0][0], column)
     for number, row in filled:
-        given, place = row[column], (number, column)
+        given, position = row[column], (number, column)
         if cumulative:
-            _refuse_fall(given, reached, place, last)
+            _refuse_fall(given, reached, position, last)
         weight = 1.0 if given is None else given
         if weight < 0:
-            raise DataError(f"The weight ({show(weight)}) is below 0", "Type 0 or more", *place)
+            raise DataError(f"The weight ({show(weight)}) is below 0", "Type 0 or more", *position)
         weights.append(weight - reached if cumulative else weight)
-        reached, last = weight, place
+        reached, last = weight, position
     if not sum(weights) > 0:
         raise DataError("Every weight is 0", "Give at least one row a weight above 0", filled[0][0], column)
     return weights
 
 
-def _refuse_fall(given: float | None, reached: float, place: Place, last: Place) -> None:
+def _refuse_fall(given: float | None, reached: float, position: Position, last: Position) -> None:
     """A cumulative weight is there, and no less than the one before it."""
     if given is None:
-        raise DataError("A cumulative weight is blank", "Type the sum of the weights up to this row", *place)
+        raise DataError("A cumulative weight is blank", "Type the sum of the weights up to this row", *position)
     if given < reached:
         message = f"The cumulative weight ({show(given)}) falls: before it, in {{also}}, it is {show(reached)}"
-        raise DataError(message, "Sort the rows, or clear Cumulative where weights are not sums", *place, also=last)
+        raise DataError(message, "Sort the rows, or clear Cumulative where weights are not sums", *position, also=last)
 
 
 def _pieces_of(row: Row, number: int, weight: float, before: float | None) -> tuple[Piece, ...]:
@@ -210,18 +210,18 @@ def _heights(row: Row, number: int) -> tuple[float, float]:
     return left / larger, right / larger
 
 
-def _height(height: float | None, place: Place) -> float:
+def _height(height: float | None, position: Position) -> float:
     if height is None:
-        raise DataError("One of the two heights is blank", "Type both, or neither for a flat range", *place)
+        raise DataError("One of the two heights is blank", "Type both, or neither for a flat range", *position)
     if height < 0:
-        raise DataError(f"The height ({show(height)}) is below 0", "Type 0 or more", *place)
+        raise DataError(f"The height ({show(height)}) is below 0", "Type 0 or more", *position)
     return height
 
 
-def _refuse_many(count: float, place: Place = (0, 0)) -> None:
+def _refuse_many(count: float, position: Position = (0, 0)) -> None:
     if count > MOST_VALUES:
         message = f"The data give more than {MOST_VALUES:,} single values"
-        raise DataError(message, "Take a larger step, or a range without steps", *place)
+        raise DataError(message, "Take a larger step, or a range without steps", *position)
 
 
 def _refuse_overlaps(found: Iterable[_Read]) -> None:

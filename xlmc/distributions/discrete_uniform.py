@@ -11,10 +11,10 @@ from xlmc.distributions.whole_numbers import MOST, WholeNumbers
 __all__ = ["DiscreteUniform"]
 
 
-def _whole(spec: ParameterSpec, place: int) -> Constraint:
+def _whole(spec: ParameterSpec, index: int) -> Constraint:
     return Constraint(
         spec.key,
-        lambda *ends: (abs(ends[place]) <= MOST) & (ends[place] == np.floor(ends[place])),
+        lambda *ends: (abs(ends[index]) <= MOST) & (ends[index] == np.floor(ends[index])),
         f"{spec.heading} ({{{spec.key}}}) must be a whole number from -{MOST:,.0f} to {MOST:,.0f}",
         "Correct the number, or wrap its formula in ROUND",
     )

@@ -160,9 +160,9 @@ class EmpiricalSmoothed(Family):
 
         asked = np.atleast_1d(np.asarray(x, dtype=float))
         found = np.empty(asked.shape)
-        for place, point in np.ndenumerate(asked):
+        for index, point in np.ndenumerate(asked):
             near, before = self._near(np.array([point]))
-            found[place] = (before + ndtr((point - near) / self.bandwidth).sum()) / self.values.size
+            found[index] = (before + ndtr((point - near) / self.bandwidth).sum()) / self.values.size
         low, high = self._support()
         found = np.where(asked < low, 0.0, np.where(asked > high, 1.0, found))
         return found.reshape(np.shape(x))

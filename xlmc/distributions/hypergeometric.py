@@ -66,8 +66,8 @@ class Hypergeometric(WholeNumbers):
         asked, found = columns[0].ravel(), np.full(columns[0].size, np.nan)
         for row, here in _alike(columns[1:]):
             first, *tails = _tails(*row)
-            place = np.clip(asked[here] - first + 1, 0, tails[side].size - 1)
-            found[here] = tails[side][place.astype(np.intp)]
+            index = np.clip(asked[here] - first + 1, 0, tails[side].size - 1)
+            found[here] = tails[side][index.astype(np.intp)]
         return found.reshape(columns[0].shape)
 
     def _ppf(self, u: Array, *params: Values) -> Array:

@@ -134,7 +134,7 @@ class DataError(ValueError):
     """Numbers that no distribution can be built from.
 
     Attributes:
-        message, hint: what is wrong, and what to do; `{also}` in the message stands for the second place.
+        message, hint: what is wrong, and what to do; `{also}` in the message stands for the other cell.
         row, column: where to look first, counted from 0; None for the data as a whole.
         also: the row and column that it disagrees with.
     """

@@ -17,7 +17,7 @@ from xlmc.distributions.base import Array, Family, Values
 __all__ = ["Piece", "Pieces"]
 
 
-Places = NDArray[np.intp]
+Indices = NDArray[np.intp]
 """Of each value, which piece it belongs to."""
 
 
@@ -85,7 +85,7 @@ class Pieces(Family):
         if self.single.all():
             return self.low[piece]
         along = np.clip((u - self.below[piece]) / self.share[piece], 0.0, 1.0)
-        return self._place(piece, _distance(along, self.start[piece]))
+        return self._position(piece, _distance(along, self.start[piece]))
 
     def _isf(self, q: Array, *_: Values) -> Array:
         # The last piece above which no more than q lies, counted from the right.
@@ -94,9 +94,9 @@ class Pieces(Family):
         if self.single.all():
             return self.low[piece]
         along = np.clip((q - self.above[piece + 1]) / self.share[piece], 0.0, 1.0)
-        return self._place(piece, 1 - _distance(along, 2 - self.start[piece]))
+        return self._position(piece, 1 - _distance(along, 2 - self.start[piece]))
 
-    def _place(self, piece: Places, t: Array) -> Array:
+    def _position(self, piece: Indices, t: Array) -> Array:
         low, high = self.low[piece], self.high[piece]
         return np.asarray(np.clip(low + (high - low) * t, low, high))
 
@@ -114,15 +114,15 @@ class Pieces(Family):
         whole = (piece <= inside) & (x <= self.low[inside])
         return np.where(whole, self.above[inside], np.where(piece > inside, 0.0, value))
 
-    def _along(self, piece: Places, x: Values) -> Array:
+    def _along(self, piece: Indices, x: Values) -> Array:
         width = np.where(self.single[piece], 1.0, self.high[piece] - self.low[piece])
         return np.asarray((np.clip(x, self.low[piece], self.high[piece]) - self.low[piece]) / width)
 
-    def _covered(self, piece: Places, x: Values) -> Array:
+    def _covered(self, piece: Indices, x: Values) -> Array:
         t, start = self._along(piece, x), self.start[piece]
         return np.asarray(t * (start + (1 - start) * t))
 
-    def _uncovered(self, piece: Places, x: Values) -> Array:
+    def _uncovered(self, piece: Indices, x: Values) -> Array:
         width = np.where(self.single[piece], 1.0, self.high[piece] - self.low[piece])
         t = (self.high[piece] - np.clip(x, self.low[piece], self.high[piece])) / width
         end = 2 - self.start[piece]

@@ -152,10 +152,10 @@ def _table(family: WholeNumbers, params: tuple[float, ...]) -> tuple[float, Arra
 
 def probability(parameters: Sequence[ParameterSpec], *, positive: bool = False) -> Constraint:
     """The rule that Probability lies between 0 and 1; 1 is allowed, and so is 0 unless it must be `positive`."""
-    place = parameters.index(PROBABILITY)
+    index = parameters.index(PROBABILITY)
     return Constraint(
         "probability",
-        lambda *values: ((values[place] > 0) if positive else (values[place] >= 0)) & (values[place] <= 1),
+        lambda *values: ((values[index] > 0) if positive else (values[index] >= 0)) & (values[index] <= 1),
         f"Probability ({{probability}}) must be {'above 0 and at most 1' if positive else 'from 0 to 1'}",
         "Type a share, such as 0.25 for 25 %",
     )
@@ -173,10 +173,10 @@ def within_reach(successes: Callable[..., Any]) -> Constraint:
 
 def whole(parameters: Sequence[ParameterSpec], spec: ParameterSpec, least: float) -> Constraint:
     """The rule that a parameter is a whole number from `least` to `MOST`."""
-    place = parameters.index(spec)
+    index = parameters.index(spec)
     return Constraint(
         spec.key,
-        lambda *values: (values[place] >= least) & (values[place] <= MOST) & (values[place] == np.floor(values[place])),
+        lambda *values: (values[index] >= least) & (values[index] <= MOST) & (values[index] == np.floor(values[index])),
         f"{spec.heading} ({{{spec.key}}}) must be a whole number from {least:.0f} to {MOST:,.0f}",
         "Correct the number, or wrap its formula in ROUND",
     )

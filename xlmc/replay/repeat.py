@@ -28,7 +28,7 @@ from xlmc.results.record.needed_cells import needed_contents, recorded_cells
 from xlmc.results.record.read import read_record
 from xlmc.results.record.settings_table import recorded_settings
 from xlmc.results.saved import SUFFIX, is_saved_run, open_run
-from xlmc.run.model import understood
+from xlmc.run.loading import build_model
 from xlmc.run.simulate import simulate
 from xlmc.run.simulation import KEPT_INPUTS
 from xlmc.run.version import __version__
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from xlmc.address import Cell
     from xlmc.definitions.model import Settings
     from xlmc.run.model import Model
-    from xlmc.run.simulate import Progress
+    from xlmc.run.simulate import OnProgress
     from xlmc.run.simulation import Simulation
     from xlmc.workbook.model import Workbook
 
@@ -105,7 +105,7 @@ class Replayed:
         return close and bool(self.environment) and not (self.changes or self.fault or self.same_bits)
 
 
-def replay(path: str | Path, *, jobs: int = 1, progress: Progress | None = None) -> Replayed:
+def replay(path: str | Path, *, jobs: int = 1, progress: OnProgress | None = None) -> Replayed:
     """Repeat a recorded run, and compare it with its record.
 
     Args:
@@ -132,7 +132,7 @@ def _replay(
     record: Record,
     model: Model | None,
     jobs: int,
-    progress: Progress | None,
+    progress: OnProgress | None,
     path: Path | None = None,
 ) -> Replayed:
     cells, settings = _read_recorded(record, path)
@@ -140,7 +140,7 @@ def _replay(
     rules = rules_since(version, cells.values())
     _refuse_incomplete(record, settings, version, path)
     try:
-        model = model or understood(workbook, path or Path(workbook.name))
+        model = model or build_model(workbook, path or Path(workbook.name))
         repeated = _repeat(model, record, settings, jobs, progress)
     except XlmcError as fault:
         changes = tuple(cell_changes(cells, contents_now(workbook, cells)))
@@ -232,7 +232,7 @@ def _repeat_command(record: Record) -> str:
         return ""
 
 
-def _repeat(model: Model, record: Record, settings: Settings, jobs: int, progress: Progress | None) -> Simulation:
+def _repeat(model: Model, record: Record, settings: Settings, jobs: int, progress: OnProgress | None) -> Simulation:
     """The run again: up to the trial that ended it, whatever did.
 
     One that waited for an accepted trial waits again; methods whose trials belong together run all of them.

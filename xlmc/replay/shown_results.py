@@ -11,7 +11,6 @@ from xlmc.errors import ErrorCode
 from xlmc.replay.changes import Closeness, is_number
 from xlmc.replay.sheets import CellDifference, SheetComparison, compare_sheets
 from xlmc.replay.versions import recorded_version
-from xlmc.run.result_cells import result_values
 from xlmc.run.stopping.stopped import Stopped
 from xlmc.run.version import __version__
 from xlmc.workbook.model import CellContent
@@ -82,7 +81,7 @@ def _compare_own_cells(workbook: Workbook, run: Simulation, closeness: Closeness
         run: the repeated run.
         closeness: how far numbers may be apart.
     """
-    values = result_values(run)
+    values = run.shown_results.cells
     found = {cell: workbook.content(cell) for cell in sorted(values)}
     empty = [cell for cell, content in found.items() if _is_uncomputed(content)]
     if empty:

@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from xlmc.results.record.definition_tables import CorrelationMet
     from xlmc.results.statements import Pair
     from xlmc.run.checking import CheckResult
-    from xlmc.run.simulation import ForecastResult, Simulation
+    from xlmc.run.forecast_result import ForecastResult
+    from xlmc.run.simulation import Simulation
     from xlmc.statistics import Estimate
 
 __all__ = [

@@ -13,7 +13,7 @@ from xlmc.address import Cell, InFormula
 from xlmc.definitions.model import Forecast, name_key
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import TEXT_RESULT, Target
-from xlmc.run.model import lowered
+from xlmc.run.model import lower_needed
 
 if TYPE_CHECKING:
     from xlmc.definitions.model import Assumption, Definitions
@@ -69,7 +69,7 @@ def error_roots(model: Model, cells: Sequence[Cell], drawn: Sequence[Mapping[str
         cells: forecasts and filters that were errors in some trials.
         drawn: sets of trials to look through: assumption -> its draws, `(n,)`.
     """
-    if len(model.scene.graph.formulas) > _MOST_CELLS:
+    if len(model.needed.graph.formulas) > _MOST_CELLS:
         return {}
     found = {}
     for cell in dict.fromkeys(cells):
@@ -110,7 +110,7 @@ def _root(lowering: Lowering, cell: Cell) -> Root | None:
 
 def _held(model: Model, trial: Mapping[str, float]) -> Lowering:
     """The nodes of all that is asked for, every assumption held: at its draw in a trial, or at its base value."""
-    return lowered(model.workbook, _without_draws(model.definitions, trial))[1]
+    return lower_needed(model.workbook, _without_draws(model.definitions, trial))[1]
 
 
 def _without_draws(definitions: Definitions, trial: Mapping[str, float]) -> Definitions:

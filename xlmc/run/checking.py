@@ -194,11 +194,11 @@ def _failures(model: Model, draws: Mapping[str, Floats], trials: int) -> tuple[N
     for start in range(0, trials, size):
         n = min(size, trials - start)
         block = {key: np.ascontiguousarray(values[start : start + n]) for key, values in draws.items()}
-        for place, column in enumerate(evaluator.filters(block, n)):
+        for index, column in enumerate(evaluator.filters(block, n)):
             fails = np.flatnonzero(_fails(column))
-            failed[place] += fails.size
-            if fails.size and not held[place]:
-                held[place] = _held(column, int(fails[0]))
+            failed[index] += fails.size
+            if fails.size and not held[index]:
+                held[index] = _held(column, int(fails[0]))
     return failed, held
 
 

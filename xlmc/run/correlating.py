@@ -13,7 +13,7 @@ from xlmc.errors import Notice
 from xlmc.sampling.copula import GaussianCopula
 from xlmc.sampling.draws import CorrelatedGroup, Draw
 
-__all__ = ["CHANGED", "correlated_groups", "repair_notices", "tie_notices", "used"]
+__all__ = ["CHANGED", "correlated_groups", "drawn_correlation", "repair_notices", "tie_notices"]
 
 _ROUNDING = 1e-9
 """An eigenvalue so little below 0 is one of 0."""
@@ -47,7 +47,7 @@ def correlated_groups(correlations: Sequence[Correlation], draws: Mapping[str, D
     return groups
 
 
-def used(groups: Sequence[CorrelatedGroup], first: str, second: str) -> float | None:
+def drawn_correlation(groups: Sequence[CorrelatedGroup], first: str, second: str) -> float | None:
     """The rank correlation that two assumptions, by name, are drawn with; None where one of them is not drawn."""
     for group in groups:
         if name_key(first) in group.names and name_key(second) in group.names:
@@ -123,8 +123,8 @@ def _repair(group: CorrelatedGroup, asked: dict[frozenset[str], Correlation], sp
         row = asked.get(frozenset((group.names[i], group.names[j])))
         before, after = float(group.copula.wanted[i, j]), float(group.copula.spearman[i, j])
         pair = f"{spelt[group.names[i]]!r} and {spelt[group.names[j]]!r} {before:g} → {after:.3f}"
-        place = "in no row, which counts as 0" if row is None else str(row.row)
-        changes.append((-abs(after - before), f"{pair} ({place})"))
+        row_text = "in no row, which counts as 0" if row is None else str(row.row)
+        changes.append((-abs(after - before), f"{pair} ({row_text})"))
     changes.sort()
     told = [text for change, text in changes if -change >= CHANGED] or [changes[0][1]]
     rows = [row.row for pair, row in asked.items() if pair <= set(group.names)]

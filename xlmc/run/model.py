@@ -1,71 +1,63 @@
-"""A workbook understood and compiled: ready to be sampled and evaluated."""
+"""A workbook that was read and compiled: ready to be sampled and evaluated."""
 
 from __future__ import annotations
 
 import gc
-from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
+import re
+from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.model import Assumption, Definitions, name_key
-from xlmc.definitions.reader import read_definitions
-from xlmc.errors import DefinitionError, Notice, SimulationError
+from xlmc.definitions.model import Assumption, Definitions, Forecast, name_key
+from xlmc.errors import Notice, SimulationError
 from xlmc.evaluation.engine import Evaluator, Program, Target
 from xlmc.evaluation.engines import ENGINES
 from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
-from xlmc.run.base_parameters import with_base_parameters
+from xlmc.formula import Graph
 from xlmc.run.correlating import correlated_groups, repair_notices, tie_notices
-from xlmc.run.drawing import draw_of, dynamic_parameters
-from xlmc.run.filter_values import filter_faults
-from xlmc.run.remarks import example_notices, still_notices
-from xlmc.run.scene import Scene, condition, definitions_of_checks, drawing_order, refuse_without_base, survey
-from xlmc.sampling.draws import CorrelatedGroup, Draw, Filler, Sampler, Stage
-from xlmc.sampling.plan import Plan
+from xlmc.run.draw_binding import draw_of, dynamic_parameters, with_base_parameters
+from xlmc.run.needed import (
+    Needed,
+    definitions_of_checks,
+    drawing_order,
+    filter_condition,
+    find_needed,
+    refuse_without_base,
+)
+from xlmc.sampling.draws import CorrelatedGroup, Draw, DrawStage, Filler, Sampler
+from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.workbook.model import Workbook
-from xlmc.workbook.reader import read_workbook
 
-__all__ = ["Model", "load", "lowered", "paused_collection", "understood"]
+__all__ = ["Model", "lower_needed", "paused_collection"]
+
+_EXAMPLE: Final = re.compile(r"example\b", re.IGNORECASE)
+_MOST_NAMED: Final = 4
 
 
-def load(path: str | Path) -> Model:
-    """Read a workbook and compile what its forecasts and filters need.
+@contextmanager
+def paused_collection() -> Iterator[None]:
+    """Make no search for garbage meanwhile.
 
-    Raises:
-        WorkbookError: the file cannot be read.
-        DefinitionError, FormulaError: as for `understood`.
+    Loading a large book makes millions of small objects, none of which is garbage; a search would walk all of them
+    again and again.
     """
-    with paused_collection():
-        return understood(read_workbook(path), Path(path))
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
 
 
-def understood(workbook: Workbook, path: Path) -> Model:
-    """The model of a workbook that was read.
-
-    Raises:
-        DefinitionError: a definition is not what it must be; all faulty ones are listed.
-        FormulaError: a needed cell cannot be computed.
-    """
-    with paused_collection():
-        definitions = read_definitions(workbook, ENGINES)
-        if definitions.problems:
-            raise _joined(definitions.problems)
-        model = Model(workbook, definitions, path)
-        if faults := filter_faults(model):
-            raise _joined(faults)
-        return model
-
-
-def _joined(problems: Sequence[DefinitionError]) -> DefinitionError:
-    return problems[0] if len(problems) == 1 else DefinitionError("\n".join(str(p) for p in problems).rstrip("."))
-
-
-def lowered(workbook: Workbook, definitions: Definitions) -> tuple[Scene, Lowering]:
+def lower_needed(workbook: Workbook, definitions: Definitions) -> tuple[Needed, Lowering]:
     """What the forecasts and filters need, and its nodes.
 
     Raises:
@@ -73,30 +65,30 @@ def lowered(workbook: Workbook, definitions: Definitions) -> tuple[Scene, Loweri
     """
     inputs = {a.cell: name_key(a.name) for a in definitions.assumptions if not a.frozen}
     held = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
-    scenes: list[Scene] = []
+    found: list[Needed] = []
 
     def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
-        scenes.append(survey(workbook, definitions, more))
-        return Lowering(scenes[-1].graph, inputs, held)
+        found.append(find_needed(workbook, definitions, more))
+        return Lowering(found[-1].graph, inputs, held)
 
     lowering = lower_until_complete(lower)
-    scene = scenes[-1]
+    needed = found[-1]
     if lowering.led_to:
         named = {a.name: a for a in definitions.assumptions}
-        live = [named[name] for name in scene.live]  # in this order, on which correlated draws depend
-        scene = replace(scene, stages=drawing_order(scene.graph, live, lowering.led_to))
-    return scene, lowering
+        live = [named[name] for name in needed.live]  # in this order, on which correlated draws depend
+        needed = replace(needed, stages=drawing_order(needed.graph, live, lowering.led_to))
+    return needed, lowering
 
 
-def _lowered_checks(workbook: Workbook, definitions: Definitions, live: Collection[str]) -> Lowering:
+def _lower_checks(workbook: Workbook, definitions: Definitions, live: Collection[str]) -> Lowering:
     """The nodes of the checks, apart from those of the run, which they must not change.
 
     Raises:
         FormulaError, DefinitionError: a check cannot be computed.
     """
     asked = definitions_of_checks(definitions, live)
-    scene, lowering = lowered(workbook, asked)
-    refuse_without_base(definitions.checks, scene, asked)
+    needed, lowering = lower_needed(workbook, asked)
+    refuse_without_base(definitions.checks, needed, asked)
     for check in definitions.checks:
         lowering.target(Target(check.cell, check.cell))
     return lowering
@@ -120,9 +112,9 @@ class Model:
         self.workbook, self.definitions, self.path = workbook, definitions, path
         self.assumptions, self.forecasts = definitions.assumptions, definitions.forecasts
         self.filters, self.checks = definitions.filters, definitions.checks
-        self.scene, self.lowering = lowered(workbook, definitions)
+        self.needed, self.lowering = lower_needed(workbook, definitions)
         named = {a.name: a for a in self.assumptions}
-        self.live: tuple[Assumption, ...] = tuple(map(named.__getitem__, self.scene.live))
+        self.live: tuple[Assumption, ...] = tuple(map(named.__getitem__, self.needed.live))
         self.draws: Mapping[str, Draw] = {a.name: draw_of(a, self.lowering) for a in self.live}
         found = {draw.name: draw.support() for draw in self.draws.values()}
         self._ends = {key: ends for key, ends in found.items() if ends is not None}
@@ -132,21 +124,21 @@ class Model:
         self.groups: tuple[CorrelatedGroup, ...] = tuple(correlated_groups(rows, correlated))
         self._programs: dict[str, Program] = {}
         self._check_targets()
-        self._checks = _lowered_checks(workbook, definitions, frozenset(self.scene.live)) if self.checks else None
+        self._checks = _lower_checks(workbook, definitions, frozenset(self.needed.live)) if self.checks else None
         self.notices: tuple[Notice, ...] = (
             *workbook.notices,
             *definitions.notices,
-            *self.scene.notices(frozenset() if self._checks is None else self._checks.graph.reached),
+            *self.needed.notices(frozenset() if self._checks is None else self._checks.graph.reached),
             *self.lowering.notices,
             *tie_notices(self.groups, rows, correlated),
-            *repair_notices(self.groups, rows, self.scene.live),
-            *still_notices(self.scene, self._moving(), self.forecasts),
-            *example_notices(self._sources()),
+            *repair_notices(self.groups, rows, self.needed.live),
+            *_still_notices(self.needed, self._moving(), self.forecasts),
+            *_example_notices(self._sources()),
         )
 
     def _sources(self) -> list[tuple[str, Cell, str]]:
         """What is needed of assumptions and filters, the row of each, and its source or reason."""
-        idle = {a.name for a in self.scene.idle}
+        idle = {a.name for a in self.needed.idle}
         found = [(f"{a.name!r}", a.row, a.source) for a in self.assumptions if a.name not in idle]
         return found + [(f"{each.name!r} (a filter)", each.row, each.because) for each in self.filters]
 
@@ -168,7 +160,7 @@ class Model:
     @property
     def fallible(self) -> frozenset[str]:
         """Keys of the assumptions whose draws may be errors: their parameters vary."""
-        return frozenset(name_key(name) for stage in self.scene.stages[1:] for name in stage)
+        return frozenset(name_key(name) for stage in self.needed.stages[1:] for name in stage)
 
     def function(self, inputs: Mapping[str, ArrayLike]) -> dict[str, NDArray[np.float64]]:
         """The workbook as a function: values of every live assumption in, every forecast out. Filters are not asked.
@@ -245,15 +237,15 @@ class Model:
         seed: int,
         block: int,
         engine: str = "numpy",
-        plan: Plan | None = None,
+        plan: SamplingPlan | None = None,
         filler: Filler | None = None,
     ) -> Sampler:
         """The draws, block by block; for one thread. They are the same for every engine; by default independent.
 
-        With a filler, its uniforms take the place of the seed's.
+        With a filler, its uniforms are taken instead of the seed's.
         """
         draws = self.draws.__getitem__
-        stages = [Stage(tuple(map(draws, names)), dynamic=i > 0) for i, names in enumerate(self.scene.stages)]
+        stages = [DrawStage(tuple(map(draws, names)), dynamic=i > 0) for i, names in enumerate(self.needed.stages)]
         parameters = [dynamic_parameters(stage.draws, self.lowering, block) for stage in stages[1:]]
         return Sampler(seed, stages, self.groups, parameters, block, plan, filler or ENGINES[engine].filler)
 
@@ -273,9 +265,9 @@ class Model:
         held: dict[str, NDArray[np.float64]] = {}
         found: dict[str, NDArray[np.float64]] = {}
         bases = {a.name: a.base for a in self.live}
-        for place, names in enumerate(self.scene.stages):
+        for number, names in enumerate(self.needed.stages):
             varying: Mapping[Hashable, NDArray[np.float64]] = {}
-            if place:
+            if number:
                 varying = dynamic_parameters([self.draws[name] for name in names], self.lowering, 1)(held, 1)
             for name in names:
                 values, base = np.append(wanted, 0.5), bases[name]
@@ -285,7 +277,7 @@ class Model:
         return found
 
     def program_of(self, filters: Sequence[Target]) -> Program:
-        """Other targets in place of the filters, and the forecasts, compiled for the engine `numpy`."""
+        """Other targets instead of the filters, and the forecasts, compiled for the engine `numpy`."""
         return NumpyProgram.of(self.lowering, filters, self._forecast_targets, self.fallible)
 
     def check_program(self) -> Program:
@@ -303,25 +295,59 @@ class Model:
     @property
     def filter_targets(self) -> list[Target]:
         """What the filters ask, 1 where it holds."""
-        return [Target(condition(filter_), filter_.cell) for filter_ in self.filters]
+        return [Target(filter_condition(filter_), filter_.cell) for filter_ in self.filters]
 
     @property
     def _forecast_targets(self) -> list[Target]:
         return [Target(forecast.cell, forecast.cell) for forecast in self.forecasts]
 
     def _check_targets(self) -> None:
-        """Lower every target once, so that a fault is told when the workbook is loaded."""
+        """Lower every target once, so that a fault is reported when the workbook is loaded."""
         for target in (*self.filter_targets, *self._forecast_targets):
             self.lowering.target(target)
 
 
-@contextmanager
-def paused_collection() -> Iterator[None]:
-    """No search for garbage meanwhile: it would walk all that was made so far again and again."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
+def _example_notices(sources: Iterable[tuple[str, Cell, str]]) -> list[Notice]:
+    """The sources and reasons that still begin with the word "Example", as those of a template do.
+
+    Args:
+        sources: what each is the source of, the row where it stands, and what it says.
+    """
+    found = [(named, row) for named, row, said in sources if _EXAMPLE.match(said.strip())]
+    if not found:
+        return []
+    named = ", ".join(name for name, _ in found[:_MOST_NAMED])
+    more = f" and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
+    begins = "source still says" if len(found) == 1 else f"{len(found)} sources still say"
+    message = f'{begins} "Example": {named}{more}. Write there what each number of this case rests on'
+    return [Notice(message[0].upper() + message[1:], found[0][1])]
+
+
+def _still_notices(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecast]) -> list[Notice]:
+    """The forecasts that are the same in every trial.
+
+    Args:
+        needed: what they need.
+        moving: the cells of the live assumptions whose range has more than one value.
+        forecasts: all of them.
+    """
+    reached = needed.graph.varying if len(moving) == len(needed.live) else _reached(needed.graph, moving)
+    still = [forecast for forecast in forecasts if forecast.cell not in reached]
+    if forecasts and len(still) == len(forecasts):
+        why = "no assumption is drawn" if not needed.live else "no assumption that is drawn reaches a forecast"
+        if needed.live and not moving:
+            why = "the range of every assumption that is drawn has a single value"
+        return [Notice(f"nothing varies: {why}, so every trial gives the base case again", still[0].cell)]
+    return [
+        Notice(f"the forecast {forecast.name!r} does not vary: no assumption with a range reaches it", forecast.cell)
+        for forecast in still
+    ]
+
+
+def _reached(graph: Graph, moving: Set[Cell]) -> set[Cell]:
+    """The cells that depend on a moving one."""
+    found = set(moving)
+    for cell in graph.formulas:  # each after the cells it needs
+        if not found.isdisjoint(graph.needs[cell]):
+            found.add(cell)
+    return found

@@ -7,15 +7,15 @@ and all that depends on it, shows #N/A: what Excel happened to hold there belong
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.definitions.in_cells.result_functions import CRYSTAL_BALL_STATISTICS, Asked, asked_for, is_result
-from xlmc.definitions.in_cells.trees import number_of
+from xlmc.definitions.in_cells.call_arguments import number_of
+from xlmc.definitions.in_cells.result_functions import CRYSTAL_BALL_STATISTICS, ResultCall, is_result, result_call
 from xlmc.definitions.model import name_key
 from xlmc.definitions.unavailable import areas_text
 from xlmc.errors import ErrorCode, FormulaError
@@ -24,13 +24,11 @@ from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.formula.precedents import mentioned
 from xlmc.formula.substitute import substitute
+from xlmc.run.forecast_result import ForecastResult
 from xlmc.workbook.injection.formula_values import with_values
 from xlmc.workbook.model import CellValue, Workbook
 
-if TYPE_CHECKING:
-    from xlmc.run.simulation import ForecastResult, Simulation
-
-__all__ = ["ShownResults", "filled_sheets", "result_values", "shown_results", "unavailable_warning"]
+__all__ = ["ShownResults", "filled_sheets", "shown_results"]
 
 _ANYWHERE: Final = re.compile(r"\b(?:OFFSET|INDIRECT|CELL)\s*\(", re.IGNORECASE)
 """Functions that look for their cells while they are computed."""
@@ -50,55 +48,53 @@ class ShownResults:
     values: Mapping[Cell, CellValue] = field(default_factory=dict)
     missing: Mapping[Cell, str] = field(default_factory=dict)
 
+    @property
+    def cells(self) -> dict[Cell, CellValue]:
+        """The values of all these cells; #N/A where there is none."""
+        return {**self.values, **dict.fromkeys(self.missing, ErrorCode.NA)}
 
-def filled_sheets(simulation: Simulation) -> dict[str, bytes]:
-    """The parts of the sheets that show results, with the run's values: name -> bytes.
+    @property
+    def warning(self) -> str:
+        """Which cells show #N/A, in one sentence; empty where none does."""
+        if not self.missing:
+            return ""
+        reasons = dict.fromkeys(self.missing.values())
+        told = [f"{areas_text(c for c, why in self.missing.items() if why == each)} ({each})" for each in reasons]
+        count = len(self.missing)
+        cells = "1 cell of the workbook depends" if count == 1 else f"{count:,} cells of the workbook depend"
+        them = "it shows" if count == 1 else "they show"
+        return (
+            f"{cells} on the run and cannot be computed, so that {them} #N/A in the result workbook: {'; '.join(told)}"
+        )
 
-    Args:
-        simulation: the finished run.
-    """
-    workbook = simulation.model.workbook
+
+def filled_sheets(workbook: Workbook, shown: ShownResults) -> dict[str, bytes]:
+    """The parts of the sheets that show results, with the run's values: name -> bytes."""
     by_sheet: dict[str, dict[tuple[int, int], CellValue]] = {}
-    for cell, value in result_values(simulation).items():
+    for cell, value in shown.cells.items():
         by_sheet.setdefault(cell.sheet, {})[cell.row, cell.column] = value
     parts = {name: workbook.sheets[name].part for name in by_sheet}
     return {parts[name]: with_values(workbook.parts[parts[name]], parts[name], by_sheet[name]) for name in by_sheet}
 
 
-def result_values(simulation: Simulation) -> dict[Cell, CellValue]:
-    """The values of the cells that show results, and of those that depend on them; #N/A where there is none."""
-    shown = simulation.shown_results
-    return {**shown.values, **dict.fromkeys(shown.missing, ErrorCode.NA)}
-
-
-def unavailable_warning(shown: ShownResults) -> str:
-    """Which cells show #N/A, in one sentence; empty where none does."""
-    if not shown.missing:
-        return ""
-    reasons = dict.fromkeys(shown.missing.values())
-    told = [f"{areas_text(c for c, why in shown.missing.items() if why == reason)} ({reason})" for reason in reasons]
-    count = len(shown.missing)
-    cells = "1 cell of the workbook depends" if count == 1 else f"{count:,} cells of the workbook depend"
-    them = "it shows" if count == 1 else "they show"
-    return f"{cells} on the run and cannot be computed, so that {them} #N/A in the result workbook: {'; '.join(told)}"
-
-
-def shown_results(simulation: Simulation) -> ShownResults:
+def shown_results(
+    workbook: Workbook, cells: Iterable[Cell], unavailable: Mapping[Cell, str], results: Iterable[ForecastResult]
+) -> ShownResults:
     """The values of the cells that show results, and of those that depend on them.
 
     Args:
-        simulation: the finished run.
+        workbook: of the run.
+        cells: that show results.
+        unavailable: those that should, and cannot -> why.
+        results: of the forecasts.
     """
-    definitions = simulation.model.definitions
-    if not (definitions.results or definitions.unavailable):
-        return ShownResults()
-    shown = [cell for cell in definitions.results if cell not in definitions.unavailable]
-    trees = {cell: _with_numbers(cell, simulation) for cell in shown}
-    return _Showing(simulation.model.workbook, trees, definitions.unavailable).found()
+    answers = _Answers(workbook, tuple(results))
+    trees = {cell: answers.formula(cell) for cell in cells if cell not in unavailable}
+    return _Showing(workbook, trees, unavailable).found() if trees or unavailable else ShownResults()
 
 
 class _Showing:
-    """The workbook's formulas, those that show results with numbers in place of the calls that ask for them."""
+    """The workbook's formulas, those that show results with numbers instead of the calls that ask for them."""
 
     def __init__(
         self, workbook: Workbook, trees: Mapping[Cell, ir.Expression], unavailable: Mapping[Cell, str]
@@ -232,37 +228,40 @@ def _faults(lowering: Lowering) -> dict[Cell, str]:
     return found
 
 
-def _with_numbers(cell: Cell, simulation: Simulation) -> ir.Expression:
-    """The formula of a cell with the results in place of the calls that ask for them."""
-    workbook = simulation.model.workbook
-    formula = workbook.content(cell).formula
-    assert formula is not None  # a call was found in it
-    return substitute(
-        Resolver(workbook).formula(cell, formula),
-        lambda part: _answer(asked_for(part), simulation) if isinstance(part, ir.Call) and is_result(part) else None,
-    )
+class _Answers:
+    """What the calls that ask for results get."""
 
+    def __init__(self, workbook: Workbook, results: Sequence[ForecastResult]) -> None:
+        self._workbook, self._results = workbook, results
 
-def _answer(asked: Asked, simulation: Simulation) -> ir.Expression:
-    """What a call shows: a number, or an error where there is none."""
-    result = _result(asked.place, simulation)
-    if result is None or result.values.size == 0:
-        return ir.ErrorLiteral(ErrorCode.NA)
-    number = None
-    if asked.number is not None:
-        number = number_of(asked.number, lambda cell: _saved_number(simulation.model.workbook, cell))
-        if number is None:
-            return ir.ErrorLiteral(ErrorCode.VALUE)
-    value = _statistic(result, asked.what, number)
-    return ir.ErrorLiteral(ErrorCode.NUM) if value is None or not np.isfinite(value) else ir.Number(value)
+    def formula(self, cell: Cell) -> ir.Expression:
+        """The formula of a cell with the results instead of the calls that ask for them."""
+        formula = self._workbook.content(cell).formula
+        assert formula is not None  # a call was found in it
+        return substitute(
+            Resolver(self._workbook).formula(cell, formula),
+            lambda part: self._answer(result_call(part)) if isinstance(part, ir.Call) and is_result(part) else None,
+        )
 
+    def _answer(self, asked: ResultCall) -> ir.Expression:
+        """What a call shows: a number, or an error where there is none."""
+        result = self._result(asked.of)
+        if result is None or result.values.size == 0:
+            return ir.ErrorLiteral(ErrorCode.NA)
+        number = None
+        if asked.number is not None:
+            number = number_of(asked.number, lambda cell: _saved_number(self._workbook, cell))
+            if number is None:
+                return ir.ErrorLiteral(ErrorCode.VALUE)
+        value = _statistic(result, asked.what, number)
+        return ir.ErrorLiteral(ErrorCode.NUM) if value is None or not np.isfinite(value) else ir.Number(value)
 
-def _result(place: Cell | str, simulation: Simulation) -> ForecastResult | None:
-    for result in simulation.results.values():
-        definition = result.definition
-        if definition.cell == place or (isinstance(place, str) and name_key(definition.name) == name_key(place)):
-            return result
-    return None
+    def _result(self, of: Cell | str) -> ForecastResult | None:
+        for result in self._results:
+            definition = result.definition
+            if definition.cell == of or (isinstance(of, str) and name_key(definition.name) == name_key(of)):
+                return result
+        return None
 
 
 def _statistic(result: ForecastResult, what: str, number: float | None) -> float | None:

@@ -18,16 +18,16 @@ from xlmc.definitions.stopping import LIMIT, MOST_TRIALS, NO_GOAL, Stopping
 from xlmc.errors import SimulationError
 from xlmc.run.blocks import Block, FilterTally, Task
 from xlmc.run.checking import LEAST_CHECKED
-from xlmc.run.pilot import planned
-from xlmc.run.rare.deciding import looks_of
+from xlmc.run.rare.rare_switch import rare_switch
 from xlmc.run.scheduling.run_spec import model_runner
 from xlmc.run.scheduling.worker_pool import WorkerPool
 from xlmc.run.simulation import KEPT_INPUTS, Simulation
+from xlmc.run.sobol_order import plan_sampling
 from xlmc.run.stopping import (
     Interruption,
-    Standing,
+    Progress,
+    ProgressTracker,
     Stopped,
-    Teller,
     Watch,
     chosen_rule,
     may_end_early,
@@ -38,10 +38,10 @@ from xlmc.sampling.methods import METHODS
 if TYPE_CHECKING:
     from xlmc.definitions.model import Settings
     from xlmc.run.model import Model
-    from xlmc.run.rare.searching import Search
-    from xlmc.sampling.plan import Plan
+    from xlmc.run.rare.search import Search
+    from xlmc.sampling.sampling_plan import SamplingPlan
 
-__all__ = ["BLOCK", "PRIOR_TRIALS", "Progress", "simulate"]
+__all__ = ["BLOCK", "PRIOR_TRIALS", "OnProgress", "simulate"]
 
 BLOCK: Final = 32_768
 """Trials evaluated at once, where the engine does not want fewer: enough that the calls cost little beside the
@@ -50,7 +50,7 @@ arithmetic, few enough for the cache."""
 PRIOR_TRIALS: Final = 65_536
 """Trials whose draws are all kept, accepted or not, to show the prior."""
 
-Progress = Callable[[Standing], None]
+OnProgress = Callable[[Progress], None]
 
 
 def simulate(
@@ -66,15 +66,15 @@ def simulate(
     workers: int | None = None,
     keep_inputs: int | None = KEPT_INPUTS,
     keep_interrupted: bool = False,
-    progress: Progress | None = None,
+    progress: OnProgress | None = None,
 ) -> Simulation:
     """Run a model; see `Model.simulate`."""
     settings = _settings(model, trials, seed, engine, sampling, stopping)
     program = model.program(settings.engine)
-    plan = planned(model, settings)
-    rule, looks = chosen_rule(settings.stopping, model.forecasts), looks_of(model, settings)
+    plan = plan_sampling(model, settings)
+    rule, looks = chosen_rule(settings.stopping, model.forecasts), rare_switch(model, settings)
     watch = Watch(rule, plan.trials, settings.stopping.seconds, time.monotonic)
-    teller = None if progress is None else Teller([forecast.name for forecast in model.forecasts])
+    teller = None if progress is None else ProgressTracker([forecast.name for forecast in model.forecasts])
     pool = WorkerPool(jobs, scheduler, workers)
     if keep_inputs is not None and keep_inputs < 0:
         raise SimulationError(
@@ -93,7 +93,7 @@ def simulate(
     stopped: Stopped | None = None
     with Interruption(wanted=keep_interrupted and may_end_early(settings.sampling)) as interruption:
         with closing(pool.blocks(model, program, settings, plan, block, tasks)) as blocks:
-            while stopped is None and not looks.hopeless(gathered.trials, gathered.accepted):
+            while stopped is None and not looks.should_search(gathered.trials, gathered.accepted):
                 finished = next(blocks)
                 counting = finished.trials if looks.certain else watch.counting(finished)
                 if counting < finished.trials:
@@ -130,18 +130,18 @@ def _searched(
     accepted: NDArray[np.int64],
     watch: Watch,
     interruption: Interruption,
-    progress: Progress | None,
+    progress: OnProgress | None,
 ) -> Search | Stopped:
     """Accepted trials from a search, or what ended it before it had any."""
 
     def say(evaluations: int) -> None:
         if progress is not None:
-            progress(Standing(plain + evaluations, 0, watch.share, {}, searching=True))
+            progress(Progress(plain + evaluations, 0, watch.share, {}, searching=True))
         ended = watch.meanwhile(interrupted=interruption.asked)
         if ended is not None:
             raise _EndedError(ended)
 
-    from xlmc.run.rare.searching import search
+    from xlmc.run.rare.search import search
 
     try:
         found = search(model, settings, plain, accepted, say)
@@ -151,8 +151,8 @@ def _searched(
 
 
 def _with_search(plain: Simulation, found: Search, most_inputs: int) -> Simulation:
-    """The run with the trials that were found, in the place of those few that plain trials had left."""
-    from xlmc.run.rare.searching import accepted_blocks
+    """The run with the trials that were found, instead of those few that plain trials had left."""
+    from xlmc.run.rare.search import accepted_blocks
 
     assert found.account is not None
     model, block = plain.model, plain.model.program("numpy").largest_block
@@ -206,7 +206,7 @@ class _Gathered:
         real, whole = np.dtype(np.float64), np.dtype(np.int64)
         self._inputs = {a.name: ("input", key) for a, key in zip(model.live, keys, strict=True)}
         self._prior = {a.name: ("prior", key) for a, key in zip(model.live, keys, strict=True)}
-        self._forecasts = {f.name: ("forecast", place) for place, f in enumerate(model.forecasts)}
+        self._forecasts = {f.name: ("forecast", number) for number, f in enumerate(model.forecasts)}
         columns = (*self._inputs.values(), *self._prior.values(), *self._forecasts.values())
         self._keeper = ColumnStore({("trial", 0): whole, **dict.fromkeys(columns, real)})
         self._tally = FilterTally.empty(len(model.filters))
@@ -236,8 +236,8 @@ class _Gathered:
             self._keeper.add(("input", key), values[:room])
         for key, values in (block.prior or {}).items():
             self._keeper.add(("prior", key), values)
-        for place, values in enumerate(block.forecasts):
-            self._keeper.add(("forecast", place), values)
+        for number, values in enumerate(block.forecasts):
+            self._keeper.add(("forecast", number), values)
         self._keeper.settle()
 
     @property
@@ -245,11 +245,11 @@ class _Gathered:
         """`(m,)` the numbers of the accepted trials so far."""
         return self._keeper.columns({"trial": ("trial", 0)})["trial"]
 
-    def forecast(self, place: int) -> NDArray[np.float64]:
+    def forecast(self, number: int) -> NDArray[np.float64]:
         """A forecast's accepted trials so far, `(m,)`, NaN where it has no number."""
-        return self._keeper.columns({"": ("forecast", place)})[""]
+        return self._keeper.columns({"": ("forecast", number)})[""]
 
-    def simulation(self, settings: Settings, plan: Plan, stopped: Stopped) -> Simulation:
+    def simulation(self, settings: Settings, plan: SamplingPlan, stopped: Stopped) -> Simulation:
         return Simulation(
             model=self._model,
             settings=settings,

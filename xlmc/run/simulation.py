@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Final
@@ -12,20 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc import statistics
-from xlmc.columns import numbers, parts
-from xlmc.definitions.model import Forecast, Settings, name_key
+from xlmc.columns import parts
+from xlmc.definitions.model import Settings, name_key
 from xlmc.errors import Notice, SimulationError
 from xlmc.run.blocks import FilterTally
 from xlmc.run.cell_errors import Root, error_roots
 from xlmc.run.checking import CheckResult, check_results
-from xlmc.run.digits import lost_digits
-from xlmc.run.result_cells import ShownResults, shown_results, unavailable_warning
+from xlmc.run.digit_watch import lost_digits
+from xlmc.run.forecast_result import ForecastResult, Replicates, tail_notices
+from xlmc.run.result_cells import ShownResults, shown_results
 from xlmc.run.stopping import Stopped
 from xlmc.run.stopping.stopped import ALL_TRIALS
-from xlmc.run.tail_notices import tail_notices
 from xlmc.sampling.methods import METHODS
-from xlmc.sampling.plan import Plan
-from xlmc.statistics import Description, Estimate, Sample
+from xlmc.sampling.sampling_plan import SamplingPlan
+from xlmc.statistics import Estimate
 from xlmc.statistics.sample import MOST_GROUPS
 
 if TYPE_CHECKING:
@@ -39,7 +39,6 @@ __all__ = [
     "ERROR_SHARE",
     "KEPT_INPUTS",
     "TRIAL",
-    "ForecastResult",
     "Origin",
     "Simulation",
     "assumption_heading",
@@ -61,76 +60,13 @@ LEAST_ACCEPTED: Final = 10
 FEW: Final = 100
 """Accepted trials below which the interval of a standard deviation may be too short: docs/stress.md."""
 
-TELLING: Final = 1_000
-"""Accepted trials from which on a single one can make up little of a variance, if there is one."""
-
-FARTHEST_PART: Final = 0.1
-"""Above this part in the sum of squares mean and standard deviation hang on a single trial."""
-
 Floats = NDArray[np.float64]
-Replicates = NDArray[np.int64]
 
-
-class ForecastResult:
-    """One forecast's accepted trials and their statistics. Estimates carry their standard error.
-
-    Attributes:
-        faults: error, `text` or `blank` -> accepted trials in which it is none.
-    """
-
-    def __init__(
-        self,
-        definition: Forecast,
-        column: Callable[[], Floats],
-        faults: Counter[str],
-        replicate: Callable[[], Replicates | None] = lambda: None,
-    ) -> None:
-        self.definition, self.faults = definition, faults
-        self._column, self._replicate = column, replicate
-
-    @cached_property
-    def values(self) -> Floats:
-        """`(m,)` accepted trials in which it is a number, in their order."""
-        return numbers(self._column())
-
-    @cached_property
-    def sample(self) -> Sample:
-        """The same in ascending order with their replicates, from which the statistics come."""
-        replicate, column = self._replicate(), self._column()
-        return Sample.of(self.values, None, None if replicate is None else replicate[~np.isnan(column)])
-
-    def __repr__(self) -> str:
-        return f"<{self.definition.name}: {self.values.size} accepted trials>"
-
-    @cached_property
-    def statistics(self) -> Description:
-        """Every statistic at once."""
-        d = self.definition
-        return statistics.describe(self.sample, central=d.central, threshold=d.threshold)
-
-    @property
-    def mean(self) -> Estimate:
-        return statistics.mean(self.sample)
-
-    @property
-    def median(self) -> Estimate:
-        return statistics.median(self.sample)
-
-    @property
-    def standard_deviation(self) -> Estimate:
-        return statistics.standard_deviation(self.sample)
-
-    def percentile(self, percent: float) -> Estimate:
-        """The value that `percent` (0 to 100) of the trials do not exceed, as Excel's PERCENTILE.INC."""
-        return statistics.percentile(self.sample, percent)
-
-    def central(self, share: float | None = None) -> tuple[Estimate, Estimate]:
-        """Both ends of the central range that holds `share` of the trials; the forecast's own share by default."""
-        return statistics.central_interval(self.sample, self.definition.central if share is None else share)
-
-    def probability_above(self, threshold: float) -> Estimate:
-        """P(forecast > threshold)."""
-        return statistics.probability_above(self.sample, threshold)
+_OF_FEW = (
+    "Intervals of percentiles and of shares hold with few trials too; those of the mean of a skewed forecast, of the "
+    "standard deviation, the skewness, the kurtosis and the coefficient of variation can then be too short: "
+    "--until-accepted 1000, say, goes on until there are more"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,25 +82,8 @@ class Origin:
     processor: Mapping[str, str]
 
 
-_OF_FEW = (
-    "Intervals of percentiles and of shares hold with few trials too; those of the mean of a skewed forecast, of the "
-    "standard deviation, the skewness, the kurtosis and the coefficient of variation can then be too short: "
-    "--until-accepted 1000, say, goes on until there are more"
-)
-_OF_TAILS = (
-    "Of a ratio whose denominator passes 0 they do not exist, whatever their errors say: use the median and "
-    "percentiles, which do"
-)
-
-
 def _trials(count: int) -> str:
     return "1 trial was" if count == 1 else f"{count:,} trials were"
-
-
-def _farthest(sample: Sample) -> str:
-    """In words; empty where no trial has too large a part."""
-    part = statistics.farthest_part(sample)
-    return f"which makes up {part:.0%} of the variance of {sample.n:,}" if part > FARTHEST_PART else ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,7 +110,7 @@ class Simulation:
 
     model: Model
     settings: Settings
-    plan: Plan
+    plan: SamplingPlan
     block: int
     trials: int
     trial_index: NDArray[np.int64]
@@ -280,15 +199,7 @@ class Simulation:
         if not self.plan.replicates and 0 < self.accepted < FEW:
             found.append(Notice(f"only {_trials(self.accepted)} accepted. {_OF_FEW}"))
         samples = {name: result.sample for name, result in self.results.items()}
-        hanging = {
-            name: part for name, sample in samples.items() if sample.n >= TELLING and (part := _farthest(sample))
-        }
-        found += [
-            Notice(f"the mean and the standard deviation of {name!r} hang on a single trial, {part}. {_OF_TAILS}")
-            for name, part in hanging.items()
-        ]
-        rest = {name: sample for name, sample in samples.items() if name not in hanging}
-        return (*found, *tail_notices(rest, METHODS[self.plan.method].name))
+        return (*found, *tail_notices(samples, METHODS[self.plan.method].name))
 
     @property
     def warnings(self) -> list[str]:
@@ -305,13 +216,14 @@ class Simulation:
             found.append(f"{self.error_trials:,} trials ({share:.2%}) were lost to errors in cells")
         failing = [warning for check in self.checks for warning in check.warnings]
         rare = () if self.rare is None else self.rare.warnings
-        missing = unavailable_warning(self.shown_results)
+        missing = self.shown_results.warning
         return [*failing, *found, *self._sparse(), *self._lost_digits, *rare, *([missing] if missing else [])]
 
     @cached_property
     def shown_results(self) -> ShownResults:
         """What the workbook's own cells show of this run, `=RiskMean(B9)` and all that depends on it."""
-        return shown_results(self)
+        asked = self.model.definitions
+        return shown_results(self.model.workbook, asked.results, asked.unavailable, self.results.values())
 
     @cached_property
     def error_roots(self) -> dict[Cell, Root]:

@@ -16,10 +16,10 @@ from xlmc.errors import SimulationError
 from xlmc.functions.denormals import TINIEST, flush
 from xlmc.sampling.copula import GaussianCopula, Ties, ties_of
 from xlmc.sampling.methods import Margin
-from xlmc.sampling.plan import Plan
+from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.sampling.streams import Stream
 
-__all__ = ["CorrelatedGroup", "Draw", "DynamicParameters", "Filler", "Linear", "Sampler", "Stage"]
+__all__ = ["CorrelatedGroup", "Draw", "DrawStage", "DynamicParameters", "Filler", "Linear", "Sampler"]
 
 Floats = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ class Draw:
     cutoffs: tuple[Hashable, Hashable] | None = None
 
     def fill(self, u: Floats, dynamic: Mapping[Hashable, Floats]) -> None:
-        """Turn uniforms `(n,)` into draws, in place; NaN where the parameters of a trial are no distribution.
+        """Turn uniforms `(n,)` into draws, in their memory; NaN where the parameters of a trial are no distribution.
 
         A draw that is too small a number for a cell is 0.
         """
@@ -129,7 +129,7 @@ class Draw:
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
+class DrawStage:
     """Assumptions whose parameters depend on earlier stages only; the first stage's on nothing."""
 
     draws: tuple[Draw, ...]
@@ -163,25 +163,25 @@ class Sampler:
         parameters: for each dynamic stage, in order.
         block: trials per block.
         plan: the method and its replicates; by default independent trials.
-        filler: draws the uniforms in place of the streams, the same bits; None for the streams themselves.
+        filler: draws the uniforms instead of the streams, the same bits; None for the streams themselves.
     """
 
     def __init__(
         self,
         seed: int,
-        stages: Sequence[Stage],
+        stages: Sequence[DrawStage],
         groups: Sequence[CorrelatedGroup],
         parameters: Sequence[DynamicParameters],
         block: int,
-        plan: Plan | None = None,
+        plan: SamplingPlan | None = None,
         filler: Filler | None = None,
     ) -> None:
         self._made_of = seed, stages, groups, parameters, block, plan, filler
         names = [name for group in groups for name in group.names]
         names += [draw.name for stage in stages for draw in stage.draws if draw.name not in names]
         self._rows = np.empty((len(names), block))
-        self._places = {name: row for row, name in enumerate(names)}
-        self._margins = (plan or Plan.of("mc", block)).margins(seed, names)
+        self._row_of = {name: row for row, name in enumerate(names)}
+        self._margins = (plan or SamplingPlan.of("mc", block)).margins(seed, names)
         self._stages, self._groups, self._parameters = stages, groups, parameters
         self._block = block
         grouped = {name for group in groups for name in group.names}
@@ -204,9 +204,9 @@ class Sampler:
         return Sampler, self._made_of
 
     @property
-    def places(self) -> Mapping[str, int]:
-        """Key of an assumption -> its place among the uniforms that a filler fills in."""
-        return self._places
+    def row_of(self) -> Mapping[str, int]:
+        """Key of an assumption -> its row among the uniforms that a filler fills in."""
+        return self._row_of
 
     @property
     def linear(self) -> Linear | None:
@@ -215,21 +215,21 @@ class Sampler:
         maps = [draw.offset_and_factor() for draw in draws]
         if self._groups or None in maps or len(self._streams) < len(draws):
             return None
-        streams = tuple(self._streams[self._places[draw.name]] for draw in draws)
+        streams = tuple(self._streams[self._row_of[draw.name]] for draw in draws)
         return Linear(tuple(draw.name for draw in draws), streams, tuple(found for found in maps if found is not None))
 
     def draw(self, start: int) -> dict[str, Floats]:
         """The draws of trials `start` to `start + block - 1`, `(block,)` each; NaN for an error."""
         self._fill(start)
         for group in self._groups:
-            first = self._places[group.names[0]]
+            first = self._row_of[group.names[0]]
             group.copula.join(self._rows[first : first + len(group.names)])
         drawn: dict[str, Floats] = {}
         dynamic = iter(self._parameters)
         for stage in self._stages:
             known = next(dynamic)(drawn, self._block) if stage.dynamic else {}
             for draw in stage.draws:
-                drawn[draw.name] = self._rows[self._places[draw.name]]
+                drawn[draw.name] = self._rows[self._row_of[draw.name]]
                 if draw.name not in self._filled:
                     draw.fill(drawn[draw.name], known)
                     draw.refuse_no_numbers(drawn[draw.name])

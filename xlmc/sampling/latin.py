@@ -24,7 +24,7 @@ class LatinHypercube:
         name: of the assumption.
         strata: intervals, and trials, in a replicate; 1 to 16,384.
 
-    Within its interval a trial keeps the place that it would have in [0, 1) under Monte Carlo.
+    Within its interval a trial keeps the position that it would have in [0, 1) under Monte Carlo.
     """
 
     def __init__(self, seed: int, name: str, strata: int) -> None:

@@ -88,7 +88,7 @@ def _scrambled_sobol(seed: int, dimensions: Mapping[str, int], size: int) -> lis
     Raises:
         SimulationError: there are more assumptions than Sobol points have dimensions, or these are not to be had.
     """
-    from xlmc.sampling.sobol import DIMENSIONS, ScrambledSobol
+    from xlmc.sampling.sobol_points import DIMENSIONS, ScrambledSobol
 
     if len(dimensions) > DIMENSIONS:
         message = f"Sobol points have {DIMENSIONS:,} dimensions, and {len(dimensions):,} assumptions are drawn"
@@ -140,4 +140,4 @@ _ROWS: Final = (
 )
 
 METHODS: Final[dict[str, SamplingMethod]] = {row.key: row for row in _ROWS}
-"""By their keys; the first is that of a run that is told nothing."""
+"""By their keys; the first is used where nothing else is asked for."""

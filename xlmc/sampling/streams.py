@@ -44,12 +44,12 @@ class Stream:
         self._generator.random(out=out)
 
     def raw(self, start: int, count: int) -> NDArray[np.uint64]:
-        """The 64 random bits at each place from `start` on, `(count,)`."""
+        """The 64 random bits at each position from `start` on, `(count,)`."""
         self._go_to(start, count)
         return np.asarray(self._bits.random_raw(count), dtype=np.uint64)
 
     def _go_to(self, start: int, count: int) -> None:
-        """To the place `start`, from which `count` numbers will be taken."""
+        """Go to the position `start`, from which `count` numbers will be taken."""
         if start != self._at:
             self._bits.state = self._start
             self._bits.advance(start)

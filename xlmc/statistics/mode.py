@@ -181,4 +181,4 @@ def _dealt(sample: Sample) -> Iterator[Sample]:
     size = min(sample.n // groups, MOST_IN_A_GROUP)
     shuffle = np.random.Generator(np.random.PCG64DXSM(SHUFFLE_SEED))
     dealt = np.sort(shuffle.choice(sample.n, (groups, size), replace=False), axis=1)
-    yield from (sample.part(places) for places in dealt)
+    yield from (sample.part(ranks) for ranks in dealt)

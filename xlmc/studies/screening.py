@@ -239,14 +239,14 @@ class _Screen:
         filters = tuple(left_out([f.name]) for f in model.filters)
         reduced = self._together(filters, left_out)
         without = [*map(name_key, reduced.names if reduced else ())]
-        before = model.scene.graph
-        after = with_changes(model, frozen=[*map(name_key, frozen)], without=without).scene.graph
+        before = model.needed.graph
+        after = with_changes(model, frozen=[*map(name_key, frozen)], without=without).needed.graph
         return Screening(
             run=self._run,
             tolerances=self._tolerances,
             chance=self._chance,
             acceptance_tolerance=self._acceptance_tolerance,
-            idle=tuple(a.name for a in model.scene.idle),
+            idle=tuple(a.name for a in model.needed.idle),
             valueless=self._valueless,
             baseless=tuple(a.name for a in model.live if a.base is None),
             expected=tuple(expected),

@@ -14,7 +14,7 @@ from xlmc.errors import ErrorCode
 from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.formula import Resolver, build_graph
 from xlmc.formula.shape import shown_formula
-from xlmc.run.scene import targets_of
+from xlmc.run.needed import targets_of
 from xlmc.workbook.model import CellValue, Workbook
 
 __all__ = ["TOLERANCE", "CellCheck", "Status", "Verification", "verify"]

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from xlmc.address import Cell, InFormula
+from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.definitions.in_cells.calls import holds_call
 from xlmc.definitions.in_cells.crystal_ball_functions import CRYSTAL_BALL
 from xlmc.definitions.in_cells.random_functions import INVERSES
 from xlmc.definitions.in_cells.result_functions import RESULTS
 from xlmc.definitions.in_cells.risk_functions import ALTERNATES, RISK
-from xlmc.definitions.reader import read_definitions
 from xlmc.errors import FormulaError
 from xlmc.evaluation.engines import ENGINES
 from xlmc.workbook.model import CellContent, Formula

@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.address import Area, Cell
-from xlmc.definitions.reader import read_definitions
+from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engines import ENGINES
 from xlmc.workbook.model import Formula

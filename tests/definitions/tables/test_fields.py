@@ -3,9 +3,9 @@ from __future__ import annotations
 import pytest
 
 from xlmc.address import Cell
-from xlmc.definitions.findings import Findings
+from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import logical, number, optional_text, parameter, required_text, static_value
-from xlmc.definitions.tables.tables import definition_tables, rows_of
+from xlmc.definitions.tables.table_rows import definition_tables, rows_of
 from xlmc.errors import DefinitionError, ErrorCode
 
 HERE = Cell("S", 2, 2)

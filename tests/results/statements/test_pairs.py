@@ -12,7 +12,7 @@ from xlmc.address import Cell
 from xlmc.definitions.model import Forecast
 from xlmc.results.statements import pairs
 from xlmc.results.statements.pairs import pairs_of
-from xlmc.run.simulation import ForecastResult
+from xlmc.run.forecast_result import ForecastResult
 
 
 def run_of(columns, replicate=None, **more):

@@ -10,7 +10,7 @@ import pytest
 from xlmc.address import Cell
 from xlmc.definitions.model import Forecast
 from xlmc.results.statements.sentences import certainties, statements
-from xlmc.run.simulation import ForecastResult
+from xlmc.run.forecast_result import ForecastResult
 
 
 class Run:

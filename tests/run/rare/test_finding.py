@@ -11,11 +11,10 @@ import numpy as np
 import pytest
 from scipy.special import bdtr
 
-from xlmc.run.rare.equalising import equalised
+from xlmc.run.rare.equalising import equalise
 from xlmc.run.rare.finding import find
 from xlmc.run.rare.mixture import Mixture
-from xlmc.run.rare.proposal import Proposal
-from xlmc.run.rare.shear import Shear
+from xlmc.run.rare.proposal import Proposal, Shear
 
 RUNS = 3
 BENCHMARKS = Path(__file__).resolve().parents[3] / "benchmarks"
@@ -52,10 +51,10 @@ def shifted(mean):
 
 def test_a_trial_heavier_than_any_known_is_learnt_from(random):
     """The proposal lies at 4, most of the region at 2 to 3: its first trials there weigh far more than was known."""
-    found = equalised(lambda z: z[:, 0] > 2.0, shifted(4.0), -9.0, -math.inf, 10_000, 10**6, random)
+    found = equalise(lambda z: z[:, 0] > 2.0, shifted(4.0), -9.0, -math.inf, 10_000, 10**6, random)
     assert found.surprise is not None
     assert found.surprise.points.min() < 3.0
-    again = equalised(lambda z: z[:, 0] > 2.0, shifted(2.5), -2.0, -math.inf, 500, 10**6, random)
+    again = equalise(lambda z: z[:, 0] > 2.0, shifted(2.5), -2.0, -math.inf, 500, 10**6, random)
     assert again.surprise is None
     assert len(again.points) == 500
     low, high = again.acceptance.interval
@@ -118,7 +117,7 @@ def test_acceptance_is_more_than_nothing_where_few_trials_are_wanted():
     """Some 1.3 of 32,768 are accepted: as many draws again may have none, so there are more, a million at most."""
     for seed in range(20):
         random = np.random.default_rng((13, seed))
-        found = equalised(
+        found = equalise(
             lambda z: (z[:, 0] > 2.5) & (z[:, 0] < 2.5 + 6.4e-5), shifted(2.5), -2.7, -math.inf, 2, 10**8, random
         )
         assert len(found.points) == 2

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from xlmc.run.rare.expectation import fitted_mixture
-from xlmc.run.rare.mixture import Mixture, log_sum, standard_log_density
+from xlmc.run.rare.mixture import Mixture, fit_mixture, log_sum, standard_log_density
 
 
 @pytest.fixture
@@ -45,7 +44,7 @@ def test_sums_of_logarithms_neither_overflow_nor_vanish():
 def test_two_clouds_are_found_with_their_shares(random):
     cloud = random.normal(size=(4000, 2)) * [0.1, 1.0]
     points = cloud + np.where(random.random(4000) < 0.25, 5.0, -5.0)[:, None] * [1.0, 0.0]
-    found = fitted_mixture(points, np.ones(4000), random)
+    found = fit_mixture(points, np.ones(4000), random)
     right = found.means[:, 0] > 0
     assert found.shares[right].sum() == pytest.approx(0.25, abs=4.5 * np.sqrt(0.25 * 0.75 / 4000))
     assert np.abs(np.abs(found.means[:, 0]) - 5.0).max() < 0.1
@@ -54,13 +53,13 @@ def test_two_clouds_are_found_with_their_shares(random):
 def test_a_layer_a_millionth_thin_is_as_good_as_any_other(random):
     points = random.normal(size=(2000, 3))
     points[:, 2] = points[:, 0] + 1e-6 * points[:, 2]
-    found = fitted_mixture(points, np.ones(2000), random)
+    found = fit_mixture(points, np.ones(2000), random)
     inside = found.draw(2000, random)
     assert np.std(inside[:, 2] - inside[:, 0]) == pytest.approx(1e-6, rel=0.3)
 
 
 def test_weights_count_as_repetitions(random):
     points = random.normal(size=(3000, 1))
-    found = fitted_mixture(points, np.exp(points[:, 0] - 0.5), random)
+    found = fit_mixture(points, np.exp(points[:, 0] - 0.5), random)
     drawn = found.draw(20_000, random)
     assert drawn.mean() == pytest.approx(1.0, abs=0.15)  # the tilted normal has mean 1; the weights' own error is 0.03

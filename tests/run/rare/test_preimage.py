@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.run.rare import preimage
-from xlmc.run.rare.spans import Spans, chosen, common, joined, pieces
+from xlmc.run.rare.spans import Spans, choose, intersection, union, union_of_pairs
 
 ARGUMENTS = np.concatenate([np.linspace(-6.2, 6.2, 199), [-1.0, 0.0, 1.0, 3.0]])
 OF_ONE = {
@@ -94,17 +94,17 @@ def test_ratios_of_lines(ends, of):
 
 def test_pieces_are_in_order_and_apart():
     ends = [([4.0], [5.0]), ([1.0], [2.0]), ([1.5], [3.0]), ([9.0], [8.0]), ([math.nan], [1.0])]
-    found = pieces([(np.array(low), np.array(high)) for low, high in ends])
+    found = union_of_pairs([(np.array(low), np.array(high)) for low, high in ends])
     assert found.low.T.tolist() == [[1.0, 4.0]]
     assert found.high.T.tolist() == [[3.0, 5.0]]
 
 
 def test_sets_are_met_joined_and_chosen():
-    first = pieces([(np.zeros(2), np.ones(2)), (np.full(2, 4.0), np.full(2, 6.0))])
+    first = union_of_pairs([(np.zeros(2), np.ones(2)), (np.full(2, 4.0), np.full(2, 6.0))])
     second = Spans.between(np.full(2, 0.5), np.full(2, 5.0))
-    assert common([first, second]).low[:, 0].tolist() == [0.5, 4.0]
-    assert common([first, second]).high[:, 0].tolist() == [1.0, 5.0]
-    assert joined([first, second]).high[:, 0].tolist() == [6.0]
-    either = chosen(np.array([True, False]), first, second)
+    assert intersection([first, second]).low[:, 0].tolist() == [0.5, 4.0]
+    assert intersection([first, second]).high[:, 0].tolist() == [1.0, 5.0]
+    assert union([first, second]).high[:, 0].tolist() == [6.0]
+    either = choose(np.array([True, False]), first, second)
     assert either.low.T.tolist() == [[0.0, 4.0], [0.5, math.inf]]
     assert not Spans.where(np.array([False])).contain(np.zeros(1))

@@ -2,9 +2,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
 
-from xlmc.run.rare.proposal import fitted_again, proposed
-from xlmc.run.rare.shear import fitted_shear
+from xlmc.run.rare.proposal import COPIED, copies, fit_proposal, fit_shear, height, refit
 
 
 def bent_layer(random, n, dimensions):
@@ -17,7 +19,7 @@ def bent_layer(random, n, dimensions):
 @pytest.mark.parametrize("dimensions", [2, 5, 30])
 def test_weights_are_1_on_average_whatever_was_learnt(random, dimensions):
     """Over all proposals, accepted or not: the densities are densities, and the draws come from them."""
-    proposal = proposed(bent_layer(random, 4000, dimensions), np.ones(4000), random)
+    proposal = fit_proposal(bent_layer(random, 4000, dimensions), np.ones(4000), random)
     points = proposal.draw(200_000, random)
     weights = np.exp(proposal.log_weights(points))
     assert weights.max() <= 50.0 + 1e-9  # one in fifty proposals is a plain trial
@@ -29,7 +31,7 @@ def test_weights_are_1_on_average_whatever_was_learnt(random, dimensions):
 
 
 def test_a_bent_layer_is_followed(random):
-    proposal = proposed(bent_layer(random, 4000, 5), np.ones(4000), random)
+    proposal = fit_proposal(bent_layer(random, 4000, 5), np.ones(4000), random)
     points = proposal.draw(4000, random)
     assert np.mean(np.abs(points[:, 0] - 0.25 * points[:, 1] ** 2) < 0.03) > 0.5
 
@@ -37,13 +39,13 @@ def test_a_bent_layer_is_followed(random):
 def test_directions_that_do_not_matter_are_left_alone(random):
     points = random.normal(size=(8000, 40))
     points[:, 7] = 4.0 + 0.2 * points[:, 7]
-    proposal = proposed(points, np.ones(8000), random)
+    proposal = fit_proposal(points, np.ones(8000), random)
     assert proposal.directions <= 3
-    assert fitted_again(proposal, points, np.ones(8000), random).basis is proposal.basis
+    assert refit(proposal, points, np.ones(8000), random).basis is proposal.basis
 
 
 def test_the_basis_turns_and_does_not_stretch(random):
-    basis = proposed(bent_layer(random, 4000, 20), np.ones(4000), random).basis
+    basis = fit_proposal(bent_layer(random, 4000, 20), np.ones(4000), random).basis
     assert basis.T @ basis == pytest.approx(np.eye(20), abs=1e-12)
 
 
@@ -51,8 +53,48 @@ def test_the_basis_turns_and_does_not_stretch(random):
 def test_a_shear_has_no_more_terms_than_its_points_can_tell(random, points, terms):
     others = random.normal(size=(points, 3))
     thin = (others[:, :1] * others[:, 1:2]) + others[:, 2:] ** 2 + 1.0
-    shear = fitted_shear(thin, others, np.ones(points))
+    shear = fit_shear(thin, others, np.ones(points))
     found = (shear.constant != 0).sum() + (shear.linear != 0).sum() + (shear.quadratic != 0).sum()
     assert found <= terms
     if terms == 10:
         assert shear.shift(others) == pytest.approx(thin, abs=1e-7)
+
+
+LOGS = arrays.arrays(np.float64, st.integers(1, 60), elements=st.floats(-30, 30))
+
+
+def cost(logs, at):
+    ratios = np.exp(logs - at)
+    above = ratios[ratios > 1]
+    return float(np.sum(above**2 - above)), float(ratios.sum())
+
+
+@given(LOGS)
+def test_the_envelope_is_the_lowest_whose_copies_cost_no_more_than_they_may(logs):
+    at = height(logs)
+    paid, kept = cost(logs, at)
+    assert paid <= COPIED * kept
+    paid, kept = cost(logs, at - 1e-6)
+    assert paid > COPIED * kept or at <= logs.max() - 50 + 1e-6
+
+
+@given(LOGS, st.floats(2, 1e6), st.floats(-40, 40))
+def test_it_is_never_below_the_least_and_never_above_all_weights_without_need(logs, kept, least):
+    at = height(logs, kept, least)
+    assert at >= least
+    assert at <= max(least, logs.max())
+    assert cost(logs, at)[0] <= COPIED * kept
+
+
+def test_no_weights_need_no_envelope():
+    assert height(np.empty(0)) == -np.inf
+    assert height(np.empty(0), 10, 3.0) == 3.0
+
+
+@given(st.floats(-20, 5))
+def test_copies_are_the_weight_on_average(log):
+    n = 1000
+    luck = (np.arange(n) + 0.5) / n
+    found = copies(np.full(n, log), luck, 0.0)
+    assert found.mean() == pytest.approx(np.exp(log), abs=1 / n)
+    assert np.ptp(found) <= 1

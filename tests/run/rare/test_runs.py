@@ -17,7 +17,7 @@ from xlmc.report.sheets.book import build_sheets
 from xlmc.results.record import make_record
 from xlmc.results.record.in_words import sampling_sentence
 from xlmc.results.record.make import fingerprint
-from xlmc.run.rare import deciding
+from xlmc.run.rare import rare_switch
 
 CELLS = {"A1": 1.0, "A2": 1.0, "B1": "=A1*A2", "C1": "=A1+A2", "C2": "=A1-A2"}
 UNIT = {"low": 0, "high": 1}
@@ -59,8 +59,8 @@ def test_plain_rejection_gives_the_same_answer(model, run):
 
 
 def test_counts_are_those_of_plain_trials(model, run):
-    plain = model.simulate(deciding.ALWAYS_FIRST, seed=4)
-    assert run.trials == plain.trials == deciding.ALWAYS_FIRST
+    plain = model.simulate(rare_switch.ALWAYS_FIRST, seed=4)
+    assert run.trials == plain.trials == rare_switch.ALWAYS_FIRST
     assert run.tally.rejected.tolist() == plain.tally.rejected.tolist()
     assert run.prior["a"].tobytes() == plain.prior["a"].tobytes()
 
@@ -95,7 +95,7 @@ def test_threads_and_engines_change_nothing(model, run):
 
 
 def test_plain_trials_give_way_where_they_would_not_do(model, monkeypatch):
-    monkeypatch.setattr(deciding, "FIRST_LOOK", 1 << 16)
+    monkeypatch.setattr(rare_switch, "FIRST_LOOK", 1 << 16)
     found = model.simulate(1 << 22, seed=4, until_accepted=500)
     assert found.rare is not None
     assert found.trials >= 1 << 16
@@ -105,14 +105,14 @@ def test_plain_trials_give_way_where_they_would_not_do(model, monkeypatch):
 
 
 def test_plain_trials_stay_where_they_do(model, monkeypatch):
-    monkeypatch.setattr(deciding, "FIRST_LOOK", 1 << 14)
+    monkeypatch.setattr(rare_switch, "FIRST_LOOK", 1 << 14)
     found = model.simulate(1 << 22, seed=4, until_accepted=10)
     assert found.rare is None
     assert found.accepted == 10
 
 
 def test_never_is_never(model, monkeypatch):
-    monkeypatch.setattr(deciding, "FIRST_LOOK", 1 << 14)
+    monkeypatch.setattr(rare_switch, "FIRST_LOOK", 1 << 14)
     found = model.simulate(1 << 18, seed=4, until_accepted=5000, rare="never")
     assert found.rare is None
     assert not found.stopped.reached

@@ -3,16 +3,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from xlmc.run.needed import filter_condition
 from xlmc.run.rare.landscape import Landscape
 from xlmc.run.rare.shortfall import Leaf, Together, leaves, shortfall
-from xlmc.run.scene import condition
 
 UNIT = {"low": 0, "high": 1}
 GIVEN = {"a": {"cell": "A1", **UNIT}, "b": {"cell": "A2", **UNIT}}
 
 
 def asked(model):
-    return [shortfall(condition(f), f.cell, model.scene.graph.formulas) for f in model.filters]
+    return [shortfall(filter_condition(f), f.cell, model.needed.graph.formulas) for f in model.filters]
 
 
 def shape(of):

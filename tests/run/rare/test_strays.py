@@ -11,10 +11,9 @@ from scipy.special import ndtr
 from xlmc.run.rare.account import RareAccount, probability_text
 from xlmc.run.rare.finding import find
 from xlmc.run.rare.landscape import points_of
-from xlmc.run.rare.plain import plain_uniforms
+from xlmc.run.rare.search import plain_uniforms
 from xlmc.run.rare.splitting import explore
-from xlmc.run.rare.strays import Evidence, pooled, strays
-from xlmc.run.rare.tempered import Tempered, as_they_are, widened
+from xlmc.run.rare.strays import Evidence, Tempered, find_strays, plain_assumptions, pool, wide_assumptions
 from xlmc.statistics import Estimate
 
 NORMAL = {"distribution": "Normal", "mean": 0, "std_dev": 1}
@@ -23,7 +22,7 @@ NORMAL = {"distribution": "Normal", "mean": 0, "std_dev": 1}
 @pytest.mark.parametrize("dimensions", [1, 2, 8, 40])
 def test_widened_assumptions_cover_the_plain_ones(random, dimensions):
     """Weights are bounded, since some trials are plain ones, and 1 on average, since both are densities."""
-    spread = widened(dimensions)
+    spread = wide_assumptions(dimensions)
     assert spread.shares.sum() == pytest.approx(1.0)
     weights = np.exp(spread.log_weights(spread.draw(100_000, random)))
     assert weights.max() <= 1 / spread.shares[0] + 1e-9
@@ -31,7 +30,7 @@ def test_widened_assumptions_cover_the_plain_ones(random, dimensions):
 
 
 def test_they_estimate_a_rare_share_whatever_was_found(random):
-    spread = widened(3)
+    spread = wide_assumptions(3)
     points = spread.draw(65_536, random)
     found = Evidence.of(spread, 65_536, points[points[:, 1] > 4.75])
     error = np.sqrt(np.exp(2 * found.logs).sum()) / found.trials
@@ -74,9 +73,9 @@ def test_a_part_whose_scale_is_another_is_not_lost():
 def test_a_single_plain_trial_is_evidence_enough(random, monkeypatch):
     """Without the widened assumptions, one accepted plain trial of the lost part leads to it."""
     monkeypatch.setattr(
-        "xlmc.run.rare.finding.widened", lambda dimensions: Tempered(np.ones(1), np.ones((1, dimensions)))
+        "xlmc.run.rare.finding.wide_assumptions", lambda dimensions: Tempered(np.ones(1), np.ones((1, dimensions)))
     )
-    plain = Evidence.of(as_they_are(2), 10**6, np.array([[0.3, 4.8]]))
+    plain = Evidence.of(plain_assumptions(2), 10**6, np.array([[0.3, 4.8]]))
     found = find(two_parts, lambda z: two_parts(z) == 0.0, 2, 500, 10**8, random, random, plain=[plain])
     truth = 1 - (1 - ndtr(-4.75)) ** 2
     assert abs(found.equalised.acceptance.value - truth) < 4.5 * found.equalised.acceptance.error
@@ -93,8 +92,8 @@ def test_strays_are_what_a_proposal_hardly_comes_to(random):
     proposal = Tempered(np.ones(1), np.array([[0.2, 1.0]]))
     points = proposal.draw(1000, random) * 0.5
     near, far = np.array([[0.1, 0.2]]), np.array([[3.0, 0.2]])
-    known = [Evidence.of(as_they_are(2), 1000, np.concatenate([near, far]))]
-    found = strays(proposal, known, points, np.ones(1000))
+    known = [Evidence.of(plain_assumptions(2), 1000, np.concatenate([near, far]))]
+    found = find_strays(proposal, known, points, np.ones(1000))
     assert found.points.tolist() == far.tolist()
     assert found.mass == pytest.approx(1e-3)
     assert found.tells(0.05)
@@ -105,9 +104,9 @@ def test_pooled_weights_count_every_source(random):
     """Half plain, half wide: each point is as likely as under the mean of both."""
     wide = Tempered(np.ones(1), np.array([[3.0]]))
     points = np.array([[0.0], [4.0]])
-    parts = [Evidence.of(as_they_are(1), 500, points[:1]), Evidence.of(wide, 500, points[1:])]
+    parts = [Evidence.of(plain_assumptions(1), 500, points[:1]), Evidence.of(wide, 500, points[1:])]
     both = Tempered(np.full(2, 0.5), np.array([[1.0], [3.0]]))
-    assert pooled(parts)[1] == pytest.approx(both.log_weights(points))
+    assert pool(parts)[1] == pytest.approx(both.log_weights(points))
 
 
 ACCOUNT = RareAccount(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from xlmc.run.rare.landscape import Landscape
-from xlmc.run.rare.switches import MOST_WAYS
+from xlmc.run.rare.ways import MOST_WAYS
 
 NORMAL = {"distribution": "Normal", "mean": 0, "std_dev": 1}
 COIN = {"distribution": "Yes-No", "probability": 0.5}

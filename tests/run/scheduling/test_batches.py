@@ -13,9 +13,8 @@ import pytest
 from xlmc.errors import SimulationError
 from xlmc.run.blocks import Task
 from xlmc.run.scheduling import batches
-from xlmc.run.scheduling.batches import Answers, Sharing, Worker
+from xlmc.run.scheduling.batches import Answers, Sharing, Worker, by_threads
 from xlmc.run.scheduling.processes import by_processes, idle_pool
-from xlmc.run.scheduling.threads import by_threads
 
 
 @pytest.fixture(autouse=True)

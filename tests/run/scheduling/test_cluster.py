@@ -98,7 +98,7 @@ def test_workers_with_other_software_are_refused(model, monkeypatch, name):
 def test_a_worker_that_joins_later_is_asked_too(model, monkeypatch):
     """What it is sent says what it was packed with."""
     monkeypatch.setattr(scheduling, "_check_workers", lambda *_: None)
-    packed = scheduling.RunSpec.packed
+    packed = scheduling.RunSpec.pack
     own = scheduling.software()
     with monkeypatch.context() as patch:
         patch.setattr("xlmc.run.scheduling.run_spec.software", lambda: own | {"numpy": "0.0.1"})

@@ -13,7 +13,7 @@ from committed_books import EXAMPLES
 import xlmc
 from xlmc.run.blocks import Task
 from xlmc.run.scheduling.run_spec import model_runner
-from xlmc.sampling.plan import Plan
+from xlmc.sampling.sampling_plan import SamplingPlan
 
 FORMULAS = {
     "date": "=YEAR(40000+A1)",
@@ -34,7 +34,7 @@ def again(worker):
 
 
 def workers(model, method="mc", block=200):
-    worker = model_runner(model, model.program("numpy"), "numpy", 3, block, Plan.of(method, 1000))
+    worker = model_runner(model, model.program("numpy"), "numpy", 3, block, SamplingPlan.of(method, 1000))
     return worker, again(worker)
 
 

@@ -11,11 +11,10 @@ import pytest
 
 from xlmc.errors import SimulationError
 from xlmc.run.blocks import Task
-from xlmc.run.scheduling import processes, worker_pool, worker_process
+from xlmc.run.scheduling import processes, worker_pool
 from xlmc.run.scheduling.batches import Answers
-from xlmc.run.scheduling.processes import by_processes, idle_pool
+from xlmc.run.scheduling.processes import WorkerProcess, by_processes, idle_pool
 from xlmc.run.scheduling.run_spec import RunSpec, model_runner
-from xlmc.run.scheduling.worker_process import WorkerProcess
 
 
 @pytest.fixture(autouse=True)
@@ -36,7 +35,7 @@ def children(monkeypatch):
         started.append(popen(*arguments, **named))
         return started[-1]
 
-    monkeypatch.setattr(worker_process.subprocess, "Popen", start)
+    monkeypatch.setattr(processes.subprocess, "Popen", start)
     return started
 
 

@@ -6,11 +6,11 @@ import pytest
 
 from xlmc.errors import SimulationError
 from xlmc.run.blocks import Task
-from xlmc.run.scheduling.run_spec import RunSpec, check_software, model_runner, software, unpacked
+from xlmc.run.scheduling.run_spec import RunSpec, check_software, model_runner, software, unpack
 
 
 def test_a_run_spec_makes_the_same_blocks(model):
-    spec = unpacked(RunSpec.of(model, "numpy", 7, 100).packed())
+    spec = unpack(RunSpec.of(model, "numpy", 7, 100).pack())
     again = spec.model()
     task = Task(300, 80, True)
     mine = model_runner(model, model.program("numpy"), "numpy", 7, 100).run(task)
@@ -24,17 +24,17 @@ def test_a_run_spec_leaves_the_file_out(model):
 
 
 def test_the_same_run_has_the_same_run_spec(model):
-    packed = RunSpec.of(model, "numpy", 7, 100).packed()
-    assert packed == RunSpec.of(model, "numpy", 7, 100).packed()
-    assert packed != RunSpec.of(model, "numpy", 8, 100).packed()
+    packed = RunSpec.of(model, "numpy", 7, 100).pack()
+    assert packed == RunSpec.of(model, "numpy", 7, 100).pack()
+    assert packed != RunSpec.of(model, "numpy", 8, 100).pack()
 
 
 @pytest.mark.parametrize("name", ["xlmc", "numpy", "scipy", "formulas", "Python", "processor"])
 def test_other_software_is_refused(model, monkeypatch, name):
-    packed = RunSpec.of(model, "numpy", 7, 100).packed()
+    packed = RunSpec.of(model, "numpy", 7, 100).pack()
     monkeypatch.setattr("xlmc.run.scheduling.run_spec.software", lambda: software() | {name: "0.0.1"})
     with pytest.raises(SimulationError, match=f"this worker: {name} is 0.0.1 there and ") as caught:
-        unpacked(packed)
+        unpack(packed)
     assert "same software" in caught.value.hint
 
 

@@ -9,8 +9,7 @@ from scipy.special import bdtr, erfinv
 
 from xlmc import statistics
 from xlmc.definitions.stopping import stopping
-from xlmc.run.stopping.precision import LEAST_EQUAL, LEAST_NUMBERS, UntilPrecise, half_width, wanted_of
-from xlmc.run.stopping.schedule import Checkpoints
+from xlmc.run.stopping.precision import LEAST_EQUAL, LEAST_NUMBERS, Checkpoints, UntilPrecise, half_width, wanted_of
 
 FORECASTS = [(0, "x", 0.51)]
 

@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from xlmc.distributions import FAMILIES
-from xlmc.distributions.naming import plain
+from xlmc.distributions.spelling import plain
 from xlmc.errors import SimulationError
 from xlmc.studies.fitting import CRITERIA, KINDS, fit
 from xlmc.studies.fitting.fit import anderson_darling, cautions, kolmogorov_smirnov, kolmogorov_smirnov_of_counts

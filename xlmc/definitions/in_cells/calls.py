@@ -18,14 +18,14 @@ from typing import Final
 
 from xlmc.address import Area, Cell
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.findings import Findings
-from xlmc.definitions.in_cells.draws import MatrixPlace
+from xlmc.definitions.in_cells.call_draws import MatrixRow
 from xlmc.definitions.in_cells.reading import CellReading, Output
-from xlmc.definitions.in_cells.result_functions import Asked, mentions_result
+from xlmc.definitions.in_cells.result_functions import ResultCall, mentions_result
 from xlmc.definitions.model import Assumption, Correlation, Forecast, name_key
+from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import number_in
 from xlmc.definitions.tables.identity import Claims
-from xlmc.definitions.tables.tables import is_blank
+from xlmc.definitions.tables.table_rows import is_blank
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import Resolver, ir
@@ -39,7 +39,7 @@ _OUTPUT: Final = re.compile(r"RiskOutput\s*\(", re.IGNORECASE)
 _TEXTS: Final = re.compile(r'"(?:[^"]|"")*"')
 _MARKS: Final = (b"rand", b"risk", b"cb.")
 
-_Row = tuple[Assumption, MatrixPlace]
+_Row = tuple[Assumption, MatrixRow]
 
 
 def holds_call(text: str) -> bool:
@@ -58,7 +58,7 @@ class InCells:
     Attributes:
         assumptions: in the order of sheets, rows and columns.
         outputs: the cells that are marked as outputs, by their cell.
-        rewritten: the formulas with assumptions in place of calls; or why a cell cannot be computed.
+        rewritten: the formulas with assumptions instead of calls; or why a cell cannot be computed.
         matrices: name of an assumption -> its row in a matrix of correlations.
         results: the cells that show results -> what they ask for.
         unavailable: the cells that should show results and cannot -> why.
@@ -69,8 +69,8 @@ class InCells:
     assumptions: list[Assumption] = field(default_factory=list)
     outputs: dict[Cell, Output] = field(default_factory=dict)
     rewritten: dict[Cell, ir.Expression | FormulaError] = field(default_factory=dict)
-    matrices: dict[str, MatrixPlace] = field(default_factory=dict)
-    results: dict[Cell, list[Asked]] = field(default_factory=dict)
+    matrices: dict[str, MatrixRow] = field(default_factory=dict)
+    results: dict[Cell, list[ResultCall]] = field(default_factory=dict)
     unavailable: dict[Cell, str] = field(default_factory=dict)
     idle: dict[str, Cell] = field(default_factory=dict)
     lognorms: list[Cell] = field(default_factory=list)
@@ -102,11 +102,11 @@ def read_in_cells(workbook: Workbook, computed: Computed, lognorm: str, claims: 
     for cell, formula in _suspects(workbook):
         reading = CellReading(workbook, computed, lognorm, bases, cell)
         try:
-            found.rewritten[cell] = reading.rewritten(resolver.formula(cell, formula))
+            found.rewritten[cell] = reading.rewrite(resolver.formula(cell, formula))
             _take(reading, found, claims, findings)
         except (FormulaError, DefinitionError) as error:
             found.rewritten[cell] = refused = _about(error, cell, formula)
-            if _OUTPUT.search(formula.text) and not reading.asked:  # others are told of if anything needs the cell
+            if _OUTPUT.search(formula.text) and not reading.asked:  # others are reported if anything needs the cell
                 findings.problems.append(DefinitionError(refused.message, where=cell, hint=refused.hint))
             if reading.unavailable or (not reading.asked and mentions_result(_without_texts(formula.text))):
                 found.unavailable[cell] = reading.unavailable or refused.message
@@ -119,8 +119,8 @@ def _take(reading: CellReading, found: InCells, claims: Claims, findings: Findin
     """Add what one cell says."""
     host = reading.host
     found.rewritten |= reading.trees
-    for place in sorted(reading.draws):
-        draw = reading.draws[place]
+    for position in sorted(reading.draws):
+        draw = reading.draws[position]
         assumption = replace(draw.assumption, name=_free_name(draw.assumption, claims, findings))
         found.assumptions.append(assumption)
         if draw.matrix is not None:
@@ -134,7 +134,7 @@ def _take(reading: CellReading, found: InCells, claims: Claims, findings: Findin
 
 
 def _free_name(assumption: Assumption, claims: Claims, findings: Findings) -> str:
-    """Its own name; with its place behind it where another has that name."""
+    """Its own name; with its cell behind it where another has that name."""
     name = assumption.name
     if name_key(name) in claims.names:
         name = f"{name} ({assumption.cell})"
@@ -144,7 +144,7 @@ def _free_name(assumption: Assumption, claims: Claims, findings: Findings) -> st
 
 
 def _about(error: FormulaError | DefinitionError, cell: Cell, formula: Formula) -> FormulaError:
-    """The error, told of the cell; one about a cell that its formula names says so."""
+    """The error with this cell as its location; one about a cell that the formula names says so."""
     if isinstance(error, FormulaError):
         text = formula.text if error.text is None else error.text
         return FormulaError(error.message, where=cell, hint=error.hint, text=text, span=error.span)
@@ -194,7 +194,7 @@ def _any_of(names: Collection[str]) -> re.Pattern[str] | None:
 def in_cell_correlations(
     workbook: Workbook,
     assumptions: Iterable[Assumption],
-    matrices: Mapping[str, MatrixPlace],
+    matrices: Mapping[str, MatrixRow],
     rows: Iterable[Correlation],
     findings: Findings,
 ) -> list[Correlation]:
@@ -209,9 +209,9 @@ def in_cell_correlations(
     """
     groups: dict[tuple[Area, str], list[_Row]] = {}
     for assumption in assumptions:
-        place = matrices.get(assumption.name)
-        if place is not None and not assumption.frozen:
-            groups.setdefault((place.area, place.instance), []).append((assumption, place))
+        named_row = matrices.get(assumption.name)
+        if named_row is not None and not assumption.frozen:
+            groups.setdefault((named_row.area, named_row.instance), []).append((assumption, named_row))
     taken = {frozenset((row.first, row.second)): row for row in rows}
     found = []
     for first, second in (pair for group in groups.values() for pair in _pairs(group, findings)):
@@ -276,16 +276,16 @@ def in_cell_forecasts(
     shown = []
     for cell, asked in found.results.items():
         for each in asked:
-            if isinstance(each.place, str):
-                _remark_on_name(each.place, each.function, cell, claims, findings)
-            elif not computed.at_all(each.place):
-                message = f"{each.function} asks for results of {each.place}, which nothing computes: nothing is shown"
+            if isinstance(each.of, str):
+                _remark_on_name(each.of, each.function, cell, claims, findings)
+            elif not computed.at_all(each.of):
+                message = f"{each.function} asks for results of {each.of}, which nothing computes: nothing is shown"
                 findings.notice(message, cell)
-            elif each.place not in claims.cells:
-                message = f"{each.place} is taken for a forecast, because {each.function} shows results of it"
+            elif each.of not in claims.cells:
+                message = f"{each.of} is taken for a forecast, because {each.function} shows results of it"
                 findings.notice(message, cell)
-                name = _take_forecast(str(each.place), each.place, claims, findings)
-                shown.append(Forecast(name, each.place, cell, central=central))
+                name = _take_forecast(str(each.of), each.of, claims, findings)
+                shown.append(Forecast(name, each.of, cell, central=central))
     return [*outputs, *shown]
 
 

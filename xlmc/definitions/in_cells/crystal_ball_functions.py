@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from xlmc.definitions.in_cells.draws import Arguments, Drawn, Properties, Signature
-from xlmc.definitions.in_cells.trees import is_left_out
+from xlmc.definitions.in_cells.call_arguments import is_left_out
+from xlmc.definitions.in_cells.call_draws import Arguments, Drawn, Properties, Signature
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
 

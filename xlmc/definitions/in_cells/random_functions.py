@@ -11,8 +11,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from xlmc.definitions.in_cells.draws import Arguments, Drawn, Properties, Signature
-from xlmc.definitions.in_cells.trees import is_left_out, number_of, quotient, whole_part
+from xlmc.definitions.in_cells.call_arguments import is_left_out, number_of, quotient, whole_part
+from xlmc.definitions.in_cells.call_draws import Arguments, Drawn, Properties, Signature
 from xlmc.distributions import FAMILIES
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
@@ -92,9 +92,9 @@ def random_draw(tree: ir.Expression) -> Drawn | None:
 def _inverse(name: str, arguments: tuple[ir.Expression, ...]) -> Drawn | None:
     """The draw of an inverse function where its probability is `RAND()` itself."""
     for signature in INVERSES[name]:
-        place = signature.takes.index("RAND")
+        index = signature.takes.index("RAND")
         fits = len(signature.takes) == len(arguments) and not any(map(is_left_out, arguments))
-        if fits and arguments[place] == _RAND:
+        if fits and arguments[index] == _RAND:
             return signature.drawn(name, arguments, Properties())
     return None
 

@@ -8,16 +8,16 @@ from typing import Final
 
 from xlmc.address import Area, Cell, InFormula
 from xlmc.definitions.computed import Computed
+from xlmc.definitions.in_cells.call_arguments import difference, is_left_out, number_of, total
+from xlmc.definitions.in_cells.call_draws import Drawn, MatrixRow, base_of, percentile_cutoffs
 from xlmc.definitions.in_cells.crystal_ball_functions import crystal_ball_draw
-from xlmc.definitions.in_cells.draws import Drawn, MatrixPlace, base_of, percentile_cutoffs
 from xlmc.definitions.in_cells.random_functions import random_draw
-from xlmc.definitions.in_cells.result_functions import NOT_COMPUTED, Asked, asked_for, is_result, not_computed
+from xlmc.definitions.in_cells.result_functions import NOT_COMPUTED, ResultCall, is_result, not_computed, result_call
 from xlmc.definitions.in_cells.risk_functions import risk_draw
 from xlmc.definitions.in_cells.risk_properties import is_property
-from xlmc.definitions.in_cells.trees import difference, is_left_out, number_of, total
 from xlmc.definitions.model import Assumption, DataRange, Parameter
 from xlmc.definitions.tables.fields import number_in, static_value
-from xlmc.definitions.tables.tables import as_text, is_blank
+from xlmc.definitions.tables.table_rows import as_text, is_blank
 from xlmc.distributions import FAMILIES
 from xlmc.errors import FormulaError
 from xlmc.formula import formula_text, ir
@@ -40,7 +40,7 @@ class Output:
 @dataclass(frozen=True, slots=True)
 class _Draw:
     assumption: Assumption
-    matrix: MatrixPlace | None
+    matrix: MatrixRow | None
 
 
 class CellReading:
@@ -48,7 +48,7 @@ class CellReading:
 
     Attributes:
         host: the cell.
-        draws: by their place, in which they come in the formula.
+        draws: by their position in the formula.
         trees: of the arguments that are expressions, by the cells that stand for them.
         output, asked, idle, has_lognorm: see `in_cells.InCells`.
         unavailable: why it cannot show the results that it should show; empty where it can, or should show none.
@@ -62,20 +62,20 @@ class CellReading:
         self.draws: dict[tuple[int, int], _Draw] = {}
         self.trees: dict[Cell, ir.Expression] = {}
         self.output: Output | None = None
-        self.asked: list[Asked] = []
+        self.asked: list[ResultCall] = []
         self.unavailable = ""
         self.idle: tuple[str, ...] = ()
         self.has_lognorm = False
         self._count = self._depth = 0
 
-    def rewritten(self, tree: ir.Expression) -> ir.Expression:
-        """The formula with assumptions in place of calls.
+    def rewrite(self, tree: ir.Expression) -> ir.Expression:
+        """The formula with assumptions instead of calls.
 
         Raises:
             FormulaError: a call is not supported or not what it must be, or shows results of the run.
         """
         self._find_results(tree)
-        return substitute(tree, self._changed)
+        return substitute(tree, self._replacement)
 
     def _find_results(self, tree: ir.Expression) -> None:
         calls: list[ir.Call] = []
@@ -101,7 +101,7 @@ class CellReading:
             if _draws(tree):
                 hint = "show the result in a cell of its own"
                 raise FormulaError("the formula both draws and shows results of the run", hint=hint)
-            self.asked = [asked_for(call) for call in calls if is_result(call)]
+            self.asked = [result_call(call) for call in calls if is_result(call)]
             if missing := [each for call in calls if (each := not_computed(call))]:
                 known = missing[0] in NOT_COMPUTED
                 what = (
@@ -112,13 +112,13 @@ class CellReading:
             self.unavailable = error.message
             raise
 
-    def _changed(self, part: ir.Expression) -> ir.Expression | None:
+    def _replacement(self, part: ir.Expression) -> ir.Expression | None:
         if isinstance(part, ir.Lambda):
             _refuse_calls_within(part)
         drawn = random_draw(part)
         if drawn is not None:
-            number, parameters = self._next(), self._each_rewritten(drawn.parameters)
-            return self._placed(replace(drawn, parameters=parameters, text=formula_text(part)), number)
+            number, parameters = self._next(), self._rewrite_each(drawn.parameters)
+            return self._take_draw(replace(drawn, parameters=parameters, text=formula_text(part)), number)
         if not isinstance(part, ir.Call) or not part.name.startswith(("RISK", "CB.")):
             return None
         if self._depth and is_property(part):
@@ -129,30 +129,30 @@ class CellReading:
         return self._program_call(part)
 
     def _program_call(self, call: ir.Call) -> ir.Expression:
-        """What stands in place of a call of Crystal Ball or @RISK."""
+        """What stands instead of a call of Crystal Ball or @RISK."""
         number = self._next()
         self._depth += 1
-        rewritten = ir.Call(call.name, tuple(substitute(argument, self._changed) for argument in call.arguments))
+        rewritten = ir.Call(call.name, tuple(substitute(argument, self._replacement) for argument in call.arguments))
         self._depth -= 1
         drawn = crystal_ball_draw(rewritten) or risk_draw(rewritten, self._lognorm)
         if drawn is None:
             raise FormulaError(f"the function {call.name} is not supported", hint=_SUPPORTED)
         self.has_lognorm = self.has_lognorm or drawn.function == "RiskLognorm"
-        return self._placed(replace(drawn, text=formula_text(call)), number)
+        return self._take_draw(replace(drawn, text=formula_text(call)), number)
 
     def _next(self) -> int:
         self._count += 1
         return self._count
 
-    def _each_rewritten(self, trees: Mapping[str, ir.Expression]) -> dict[str, ir.Expression]:
-        return {key: substitute(tree, self._changed) for key, tree in trees.items()}
+    def _rewrite_each(self, trees: Mapping[str, ir.Expression]) -> dict[str, ir.Expression]:
+        return {key: substitute(tree, self._replacement) for key, tree in trees.items()}
 
     def _take_output(self, call: ir.Call) -> None:
         name = units = None
-        for place, argument in enumerate(call.arguments):
+        for index, argument in enumerate(call.arguments):
             if isinstance(argument, ir.Call) and argument.name == "RISKUNITS":
                 units = self._text("RiskUnits", argument.arguments[0]) if argument.arguments else None
-            elif place == 0 and not is_left_out(argument):
+            elif index == 0 and not is_left_out(argument):
                 name = self._text("RiskOutput", argument)
         if self.output is not None:
             raise FormulaError("the formula has two RiskOutput", hint="keep one of them")
@@ -167,11 +167,11 @@ class CellReading:
             raise FormulaError(f"{function} needs a text", hint="write it in quotes, or name a cell that holds one")
         return text
 
-    def _placed(self, drawn: Drawn, number: int) -> ir.Expression:
-        """Take the draw for an assumption, or for many; what stands in the formula in its place."""
+    def _take_draw(self, drawn: Drawn, number: int) -> ir.Expression:
+        """Take the draw for an assumption, or for many; what stands in the formula instead of the call."""
         plan = self._plan(drawn, number)
         if drawn.grid is None:
-            return self._shifted(drawn, self._drawn_at(plan, drawn, str(number), (number, 0)))
+            return self._shift(drawn, self._drawn_at(plan, drawn, str(number), (number, 0)))
         rows, columns = drawn.grid
         return ir.Array(
             tuple(
@@ -184,14 +184,14 @@ class CellReading:
         )
 
     @staticmethod
-    def _shifted(drawn: Drawn, site: ir.Expression) -> ir.Expression:
+    def _shift(drawn: Drawn, site: ir.Expression) -> ir.Expression:
         shift = drawn.properties.shift
         return site if shift is None else total(site, shift)
 
-    def _drawn_at(self, plan: Assumption, drawn: Drawn, label: str, place: tuple[int, int]) -> Cell:
+    def _drawn_at(self, plan: Assumption, drawn: Drawn, label: str, position: tuple[int, int]) -> Cell:
         site = InFormula.of(self.host, label)
         name = plan.name or str(site)
-        self.draws[place] = _Draw(replace(plan, cell=site, name=name), drawn.properties.matrix)
+        self.draws[position] = _Draw(replace(plan, cell=site, name=name), drawn.properties.matrix)
         self._bases[site] = plan.base
         return site
 
@@ -205,12 +205,12 @@ class CellReading:
         parameters = {key: self._parameter(tree, f"{number} {key}") for key, tree in drawn.parameters.items()}
         data = self._data(drawn, number) if drawn.data else None
         lower, upper = self._cutoffs(drawn, number)
-        numbers = {key: self._known(tree) for key, tree in drawn.parameters.items()}
-        static = None if properties.static is None else self._known(properties.static)
-        shift = 0.0 if properties.shift is None else self._known(properties.shift)
+        numbers = {key: self._base_number(tree) for key, tree in drawn.parameters.items()}
+        static = None if properties.static is None else self._base_number(properties.static)
+        shift = 0.0 if properties.shift is None else self._base_number(properties.shift)
         if static is None:
-            limits = tuple(None if limit is None else self._known_parameter(limit) for limit in (lower, upper))
-            base = base_of(drawn.family, numbers, data, (lower, upper), limits, self._saved)
+            limits = tuple(None if limit is None else self._base_parameter(limit) for limit in (lower, upper))
+            base = base_of(drawn.family, numbers, data, (lower, upper), limits, self._saved_number)
         else:
             base = None if shift is None else static - shift
         if properties.locked and base is None:
@@ -268,9 +268,9 @@ class CellReading:
             for r, row in enumerate(drawn.data, start=1)
         )
         area = next((source for source in drawn.sources if isinstance(source, Area)), None)
-        place = Area(self.host.sheet, self.host.row, self.host.column, self.host.row, self.host.column)
+        own = Area(self.host.sheet, self.host.row, self.host.column, self.host.row, self.host.column)
         text = ", ".join(formula_text(source) for source in drawn.sources)
-        return DataRange(area or place, rows, text=text)
+        return DataRange(area or own, rows, text=text)
 
     def _element(self, tree: ir.Expression, label: str) -> Parameter | None:
         if isinstance(tree, Cell) and tree not in self._bases and not self._computed.at_all(tree):
@@ -278,18 +278,18 @@ class CellReading:
             return None if is_blank(content) else number_in("The data cell", content, tree)
         return self._parameter(tree, label)
 
-    def _known(self, tree: ir.Expression) -> float | None:
+    def _base_number(self, tree: ir.Expression) -> float | None:
         """What a tree is in the base case, as far as the file says."""
-        return number_of(tree, self._saved)
+        return number_of(tree, self._saved_number)
 
-    def _known_parameter(self, parameter: Parameter) -> float | None:
+    def _base_parameter(self, parameter: Parameter) -> float | None:
         if isinstance(parameter, Cell):
-            return self._known(self.trees.get(parameter, parameter))
+            return self._base_number(self.trees.get(parameter, parameter))
         return parameter
 
-    def _saved(self, cell: Cell) -> float | None:
+    def _saved_number(self, cell: Cell) -> float | None:
         if cell in self.trees:
-            return self._known(self.trees[cell])
+            return self._base_number(self.trees[cell])
         return self._bases[cell] if cell in self._bases else static_value(cell, self._workbook)
 
     def _constant(self, cell: Cell) -> float | None:

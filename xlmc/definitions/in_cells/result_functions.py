@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from typing import Final
 
 from xlmc.address import Area, Cell
+from xlmc.definitions.in_cells.call_arguments import is_left_out
 from xlmc.definitions.in_cells.crystal_ball_functions import CRYSTAL_BALL
 from xlmc.definitions.in_cells.risk_functions import RISK
 from xlmc.definitions.in_cells.risk_properties import is_property
-from xlmc.definitions.in_cells.trees import is_left_out
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
 
@@ -21,11 +21,11 @@ __all__ = [
     "CRYSTAL_BALL_STATISTICS",
     "NOT_COMPUTED",
     "RESULTS",
-    "Asked",
-    "asked_for",
+    "ResultCall",
     "is_result",
     "mentions_result",
     "not_computed",
+    "result_call",
 ]
 
 CRYSTAL_BALL_STATISTICS: Final = (
@@ -165,11 +165,11 @@ _CALLED: Final = re.compile(r"(?<![\w.])(?:_xl\w+\.)*(Risk\w+|CB\.\w+)\s*\(", re
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class ResultCall:
     """What a call shows: of which cell (or of which forecast, by name), what, and the number it takes, if any."""
 
     function: str
-    place: Cell | str
+    of: Cell | str
     what: str
     number: ir.Expression | None
 
@@ -201,7 +201,7 @@ def mentions_result(text: str) -> bool:
     return any(_shows(name.upper()) for name in _CALLED.findall(text))
 
 
-def asked_for(call: ir.Call) -> Asked:
+def result_call(call: ir.Call) -> ResultCall:
     """What a call shows.
 
     Raises:
@@ -213,23 +213,23 @@ def asked_for(call: ir.Call) -> Asked:
         takes = "the cell of an output" if count == 1 else "the cell of an output, and a number"
         raise FormulaError(f"{function} has {len(call.arguments)} arguments", hint=f"it takes {takes}")
     _refuse_more(function, call.arguments[count:])
-    place = call.arguments[0]
-    if isinstance(place, Area) and place.rows == place.columns == 1:
-        place = Cell(place.sheet, place.top, place.left)
-    if not isinstance(place, Cell | ir.Text):
+    of = call.arguments[0]
+    if isinstance(of, Area) and of.rows == of.columns == 1:
+        of = Cell(of.sheet, of.top, of.left)
+    if not isinstance(of, Cell | ir.Text):
         raise FormulaError(f"{function} must name the cell of an output first", hint="such as RiskMean(B9)")
-    named = place.value if isinstance(place, ir.Text) else place
-    return Asked(function, named, what, call.arguments[1] if count == 2 else None)
+    named = of.value if isinstance(of, ir.Text) else of
+    return ResultCall(function, named, what, call.arguments[1] if count == 2 else None)
 
 
 def _refuse_more(function: str, more: tuple[ir.Expression, ...]) -> None:
     """@RISK takes the number of a simulation, of which xlmc runs one, and properties that leave out values."""
-    for place, argument in enumerate(more):
+    for index, argument in enumerate(more):
         if isinstance(argument, ir.Call) and is_property(argument):
             hint = "leave it out: xlmc shows results of all accepted trials"
             raise FormulaError(f"{function} of a part of the values is not computed", hint=hint)
-        if place or function.startswith("CB."):
-            raise FormulaError(f"{function} has {len(more) - place} arguments too many", hint="take them out")
+        if index or function.startswith("CB."):
+            raise FormulaError(f"{function} has {len(more) - index} arguments too many", hint="take them out")
         if not (is_left_out(argument) or argument == ir.Number(1.0)):
             hint = "leave the number of the simulation out, or write 1: xlmc runs one simulation"
             raise FormulaError(f"{function} asks for another simulation than the first", hint=hint)

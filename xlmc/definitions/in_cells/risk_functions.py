@@ -15,9 +15,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
-from xlmc.definitions.in_cells.draws import Arguments, Drawn, Properties, Signature
+from xlmc.definitions.in_cells.call_arguments import difference, number_of, quotient, total
+from xlmc.definitions.in_cells.call_draws import Arguments, Drawn, Properties, Signature
 from xlmc.definitions.in_cells.risk_properties import is_property, properties_of
-from xlmc.definitions.in_cells.trees import difference, number_of, quotient, total
 from xlmc.distributions import FAMILIES
 from xlmc.distributions.by_percentiles import by_percentiles
 from xlmc.distributions.parameters import show
@@ -205,14 +205,14 @@ def _pairs(
                     f"{function} has no parameter {what.value!r}",
                     hint=f"use {', '.join(map(repr, alternate.names))}, or a percentile such as 5%",
                 )
-            taken, place = key in given, key
+            taken, named = key in given, key
             given[key] = quotient(1.0, value) if key == alternate.inverted else value
         else:
             share = _share(function, what, descending)
-            taken, place = share in points, f"{100 * share:g} %"
+            taken, named = share in points, f"{100 * share:g} %"
             points[share] = value
         if taken:
-            raise FormulaError(f"{function} is given {place} twice", hint="keep one of them")
+            raise FormulaError(f"{function} is given {named} twice", hint="keep one of them")
     if alternate.mean_above and "location" in given and "mean" in given:
         given["mean"] = total(given["mean"], given["location"])
     return given, dict(sorted(points.items()))

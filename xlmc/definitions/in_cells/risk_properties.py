@@ -22,8 +22,8 @@ from dataclasses import replace
 from typing import Final
 
 from xlmc.address import Area, Cell
-from xlmc.definitions.in_cells.draws import MatrixPlace, Properties
-from xlmc.definitions.in_cells.trees import is_left_out, number_of
+from xlmc.definitions.in_cells.call_arguments import is_left_out, number_of
+from xlmc.definitions.in_cells.call_draws import MatrixRow, Properties
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
 
@@ -67,8 +67,8 @@ def properties_of(function: str, calls: _Given) -> Properties:
     return found
 
 
-def _filled(arguments: _Given, place: int) -> ir.Expression | None:
-    return arguments[place] if place < len(arguments) and not is_left_out(arguments[place]) else None
+def _filled(arguments: _Given, index: int) -> ir.Expression | None:
+    return arguments[index] if index < len(arguments) and not is_left_out(arguments[index]) else None
 
 
 def _truncate(found: Properties, arguments: _Given) -> Properties:
@@ -81,8 +81,8 @@ def _truncate_shifted(found: Properties, arguments: _Given) -> Properties:
 
 def _truncate_percents(found: Properties, arguments: _Given) -> Properties:
     limits = []
-    for place, default in enumerate((0.0, 1.0)):
-        given = _filled(arguments, place)
+    for index, default in enumerate((0.0, 1.0)):
+        given = _filled(arguments, index)
         limits.append(default if given is None else number_of(given))
     low, high = limits
     if low is None or high is None or not 0 <= low < high <= 1:
@@ -103,7 +103,7 @@ def _corrmat(found: Properties, arguments: _Given) -> Properties:
     if instance is not None and not isinstance(instance, ir.Number | ir.Text):
         raise FormulaError("RiskCorrmat's instance must be a number or a text", hint="write it, or leave it out")
     return replace(
-        found, matrix=MatrixPlace(matrix, int(position), "" if instance is None else str(instance.value).casefold())
+        found, matrix=MatrixRow(matrix, int(position), "" if instance is None else str(instance.value).casefold())
     )
 
 

@@ -9,16 +9,16 @@ from dataclasses import dataclass
 
 from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.findings import Findings
 from xlmc.definitions.model import CUTOFFS, Assumption, Parameter
+from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.data import OPTIONS, cached_data_family, given_data, refuse_options
 from xlmc.definitions.tables.fields import logical, number_in, optional_text, parameter, static_value
 from xlmc.definitions.tables.identity import Claims, identify
-from xlmc.definitions.tables.tables import DefinitionTable, Row, is_blank, rows_of
+from xlmc.definitions.tables.table_rows import DefinitionTable, Row, is_blank, rows_of
 from xlmc.distributions import FAMILIES, Family, ParameterSpec, Truncated, family_named
 from xlmc.distributions.by_percentiles import by_percentiles
-from xlmc.distributions.naming import plain
 from xlmc.distributions.parameters import show
+from xlmc.distributions.spelling import plain
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import Workbook
 
@@ -83,7 +83,7 @@ def _assumption(
     name, cell = identity
     ends = None if family is None else _range_of(family, given, row.workbook)
     if family is not None and ends is not None and not frozen:
-        _remark_on_range(family, ends, given.places, base, cell, findings)
+        _remark_on_range(family, ends, given.cells, base, cell, findings)
     return Assumption(
         name=name,
         cell=cell,
@@ -134,12 +134,12 @@ class _Given:
     """The parameters and cutoffs of a row by key, as a run needs them.
 
     Attributes:
-        places: the table's own cells that hold them; the row's first cell for one that is left to its default.
+        cells: the table's own cells that hold them; the row's first cell for one that is left to its default.
     """
 
     parameters: dict[str, Parameter]
     cutoffs: dict[str, Parameter]
-    places: dict[str, Cell]
+    cells: dict[str, Cell]
 
 
 def _given(row: Row, family: Family, findings: Findings) -> _Given:
@@ -156,7 +156,7 @@ def _given(row: Row, family: Family, findings: Findings) -> _Given:
     for key, heading in headings.items():
         value = None if heading is None else findings.attempt(parameter, row, heading)
         if heading is not None and value is not None:
-            given.places[key] = row.cell(heading)
+            given.cells[key] = row.cell(heading)
             (given.cutoffs if key in CUTOFFS else given.parameters)[key] = value
     _refuse_unused(row, family, findings)
     return given
@@ -182,7 +182,7 @@ def _range_of(family: Family, given: _Given, workbook: Workbook) -> tuple[float,
     lower, upper = numbers.pop("lower_cutoff", -math.inf), numbers.pop("upper_cutoff", math.inf)
     fault = Truncated(family).fault(lower, upper, **numbers) if given.cutoffs else family.fault(**numbers)
     if fault is not None:
-        raise DefinitionError(fault.message, where=given.places[fault.key], hint=fault.hint)
+        raise DefinitionError(fault.message, where=given.cells[fault.key], hint=fault.hint)
     low, high = family.support(**numbers)
     return max(float(low), lower), min(float(high), upper)
 
@@ -190,7 +190,7 @@ def _range_of(family: Family, given: _Given, workbook: Workbook) -> tuple[float,
 def _remark_on_range(
     family: Family,
     ends: tuple[float, float],
-    places: Mapping[str, Cell],
+    cells: Mapping[str, Cell],
     base: float | None,
     cell: Cell,
     findings: Findings,
@@ -200,7 +200,7 @@ def _remark_on_range(
     Args:
         family: of the assumption.
         ends: the least and the largest draw.
-        places: where its parameters stand, by key.
+        cells: where its parameters stand, by key.
         base: the base case, if there is any.
         cell: of the assumption.
         findings: takes the remarks.
@@ -208,7 +208,7 @@ def _remark_on_range(
     low, high = ends
     if low == high:
         both = "Low and High are both" if {"low", "high"} <= {*family.keys} else "Every draw is"
-        where = places[family.keys[0]] if family.keys else cell
+        where = cells[family.keys[0]] if family.keys else cell
         findings.notice(f"{both} {show(low)}: the assumption does not vary", where)
     if base is not None and not low <= base <= high:
         reach = f"{show(low)} to {show(high)}"
@@ -254,7 +254,7 @@ def is_percentile(heading: str) -> bool:
 
 
 def _with_percentiles(row: Row, family: Family) -> Family:
-    """The family with the row's percentiles in place of the parameters that it leaves blank; itself without any.
+    """The family with the row's percentiles instead of the parameters that it leaves blank; itself without any.
 
     Raises:
         DefinitionError: the row has more or fewer percentiles than blank parameters, or one outside 0 to 100.

@@ -8,11 +8,11 @@ import numpy as np
 
 from xlmc.address import Area, Cell
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.findings import Findings
 from xlmc.definitions.model import CUTOFFS, DataRange, Parameter
-from xlmc.definitions.references import area_of_reference, formula_at
+from xlmc.definitions.problems import Findings
+from xlmc.definitions.reference_text import area_of_reference, formula_at
 from xlmc.definitions.tables.fields import logical, number_in, parameter, static_value
-from xlmc.definitions.tables.tables import Row, as_text, is_blank
+from xlmc.definitions.tables.table_rows import Row, as_text, is_blank
 from xlmc.distributions import DataError, Family
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError

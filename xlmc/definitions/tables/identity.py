@@ -8,9 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from xlmc.address import Cell
-from xlmc.definitions.findings import Findings
 from xlmc.definitions.model import name_key
-from xlmc.definitions.references import (
+from xlmc.definitions.problems import Findings
+from xlmc.definitions.reference_text import (
     cell_of_name,
     cell_of_reference,
     formula_at,
@@ -19,7 +19,7 @@ from xlmc.definitions.references import (
     split_sheet,
 )
 from xlmc.definitions.tables.fields import required_text
-from xlmc.definitions.tables.tables import Row, as_text
+from xlmc.definitions.tables.table_rows import Row, as_text
 from xlmc.errors import DefinitionError
 from xlmc.workbook.model import DefinedName, Workbook
 

@@ -7,13 +7,13 @@ from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
 from xlmc.definitions.amounts import as_seconds, typed_whole_number
-from xlmc.definitions.findings import Findings
 from xlmc.definitions.model import Settings
+from xlmc.definitions.problems import Findings
 from xlmc.definitions.stopping import GOALS, LIMIT, MOST_TRIALS, NO_GOAL, RARE, Option, Stopping, stopping
 from xlmc.definitions.tables.fields import central_share, number_in, required_text
-from xlmc.definitions.tables.tables import DefinitionTable, Row, as_text, rows_of
-from xlmc.distributions.naming import did_you_mean, plain
+from xlmc.definitions.tables.table_rows import DefinitionTable, Row, as_text, rows_of
 from xlmc.distributions.parameters import show
+from xlmc.distributions.spelling import did_you_mean, plain
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.sampling.methods import METHODS
 from xlmc.workbook.model import Workbook
@@ -202,9 +202,9 @@ def _stopping_settings() -> dict[str, Callable[[Row, Findings], Any]]:
 
 
 def _read_stopping(tables: list[DefinitionTable], values: dict[str, Any], findings: Findings) -> Stopping:
-    """What the settings say of the end of the run, taken out of `values`; a mistake is one of the whole table."""
+    """What the settings say of the end of the run, taken out of `values`; a mistake is reported for the whole table."""
     given = {name: values.pop(plain(name)) for name in _stopping_settings() if plain(name) in values}
-    if any(value is None for value in given.values()):  # a mistake, which was told
+    if any(value is None for value in given.values()):  # a mistake that was reported before
         return NO_GOAL
     try:
         if "Precision %" in given and "Precision" in given:
@@ -271,7 +271,7 @@ def _rare(row: Row, _findings: Findings) -> str:
 
 
 def _as_written(row: Row, read: Callable[[Any], T], given: object) -> T:
-    """What is read from the value; its fault told of the cell."""
+    """What is read from the value; a fault names the cell."""
     try:
         return read(given)
     except SimulationError as error:

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from xlmc.report.sheets.page import Page
     from xlmc.report.sheets.trials_sheet import TrialsAt
     from xlmc.results.statements import Certainty
-    from xlmc.run.simulation import ForecastResult, Simulation
+    from xlmc.run.forecast_result import ForecastResult
+    from xlmc.run.simulation import Simulation
 
 __all__ = ["LAST", "WIDTHS", "write_certainty", "write_ranges"]
 

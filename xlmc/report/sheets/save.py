@@ -53,7 +53,10 @@ def save(
     check_ending(path, simulation.model.path)
     check()
     sheets = build_sheets(simulation, command=command, rows=rows)
-    parts = inject({**simulation.model.workbook.parts, **filled_sheets(simulation)}, sheets)
+    parts = inject(
+        {**simulation.model.workbook.parts, **filled_sheets(simulation.model.workbook, simulation.shown_results)},
+        sheets,
+    )
     if not _is_source(simulation, path):  # the person's own file, which is never ours to replace
         parts = sealed_parts(parts, result_sheets(parts)[-1], simulation.model.workbook.name)
     write_workbook(path, package_bytes(parts), check)

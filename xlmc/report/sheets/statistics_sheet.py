@@ -10,7 +10,8 @@ from xlmc.report.summary import ERROR_SENTENCE, percent
 
 if TYPE_CHECKING:
     from xlmc.report.sheets.page import Page
-    from xlmc.run.simulation import ForecastResult, Simulation
+    from xlmc.run.forecast_result import ForecastResult
+    from xlmc.run.simulation import Simulation
     from xlmc.statistics import Estimate
 
 __all__ = ["WIDTHS", "write_forecast", "write_statistics"]

@@ -12,12 +12,13 @@ from xlmc.address import Cell
 from xlmc.definitions.model import name_key
 from xlmc.results.record.in_words import cutoffs_text, limits_text, notes_text, parameters_text, status
 from xlmc.results.record.record_parts import RecordTable, Section, Value
-from xlmc.run.correlating import CHANGED, used
+from xlmc.run.correlating import CHANGED, drawn_correlation
 from xlmc.statistics import Estimate, rank_correlation
 
 if TYPE_CHECKING:
     from xlmc.definitions.model import Filter
-    from xlmc.run.simulation import ForecastResult, Simulation
+    from xlmc.run.forecast_result import ForecastResult
+    from xlmc.run.simulation import Simulation
 
 __all__ = [
     "CorrelationMet",
@@ -218,13 +219,13 @@ def _unnamed(simulation: Simulation) -> Iterator[tuple[str, str, float, None]]:
     spelt = {name_key(a.name): a.name for a in model.live}
     for group in model.groups:
         for first, second in combinations(group.names, 2):
-            found = used(model.groups, first, second)
+            found = drawn_correlation(model.groups, first, second)
             if frozenset((first, second)) not in named and found is not None and abs(found) >= CHANGED:
                 yield spelt[first], spelt[second], 0.0, None
 
 
 def _met(simulation: Simulation, first: str, second: str, asked: float, row: Cell | None) -> CorrelationMet:
-    drawn = used(simulation.model.groups, first, second)
+    drawn = drawn_correlation(simulation.model.groups, first, second)
     if drawn is None:
         return CorrelationMet(first, second, asked, row)
     columns = {name_key(name): values for name, values in simulation.inputs.items()}

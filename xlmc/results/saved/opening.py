@@ -33,7 +33,8 @@ from xlmc.results.saved.run_json import (
     tally_of,
     whole,
 )
-from xlmc.run.model import Model, understood
+from xlmc.run.loading import build_model
+from xlmc.run.model import Model
 from xlmc.run.simulation import Simulation
 from xlmc.workbook.package import LIMITS
 from xlmc.workbook.reader import read_workbook
@@ -121,7 +122,7 @@ def _model(package: Package, found: Document, path: Path) -> Model:
         data = entry.read()
     if hashlib.sha256(data).hexdigest() != about.sha256:
         raise WorkbookError("the workbook in the saved run is not the one that was run", where=path, hint=AGAIN)
-    return understood(read_workbook(data, name), Path(name))
+    return build_model(read_workbook(data, name), Path(name))
 
 
 @dataclass(frozen=True, slots=True)

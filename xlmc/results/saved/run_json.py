@@ -19,7 +19,7 @@ from xlmc.run.rare.account import RareAccount
 from xlmc.run.simulation import Origin
 from xlmc.run.stopping.stopped import WITHOUT_GOAL, Stopped
 from xlmc.sampling.methods import METHODS
-from xlmc.sampling.plan import Plan
+from xlmc.sampling.sampling_plan import SamplingPlan
 
 __all__ = [
     "FORMAT",
@@ -98,13 +98,13 @@ def _goal_of(kind: type[Goal], found: object) -> Goal | None:
     return build(kind, {"number": found} if issubclass(kind, WholeGoal) else found, f"its goal, {kind.noun}")
 
 
-def plan_of(settings: Settings, order: object) -> Plan:
+def plan_of(settings: Settings, order: object) -> SamplingPlan:
     """The plan again: a function of the settings, but for the order of the dimensions.
 
     Raises:
         ValueError: the order is none.
     """
-    return replace(Plan.of(settings.sampling, settings.trials), order=texts(order, "its order of dimensions"))
+    return replace(SamplingPlan.of(settings.sampling, settings.trials), order=texts(order, "its order of dimensions"))
 
 
 def tally_document(tally: FilterTally) -> dict[str, Any]:

@@ -13,7 +13,8 @@ from xlmc.results.statements.significant_digits import RoundedRange, percent_tex
 from xlmc.statistics import Estimate, probability_above, probability_between
 
 if TYPE_CHECKING:
-    from xlmc.run.simulation import ForecastResult, Simulation
+    from xlmc.run.forecast_result import ForecastResult
+    from xlmc.run.simulation import Simulation
 
 __all__ = ["MEANING", "Certainty", "Statement", "certainties", "statements"]
 

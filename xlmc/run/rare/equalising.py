@@ -3,7 +3,7 @@
 The kept ones are then independent, and spread as the trials that plain rejection accepts: this is rejection, out of a
 better envelope. How high the envelope must be, the largest weights among the trials say (as in empirical supremum
 rejection sampling: Caffo, Booth & Davis 2002): where it grows, those kept before are thinned, each by the number in
-[0, 1) that it was kept by. A few trials above the envelope stand more than once: see `envelope`.
+[0, 1) that it was kept by. A few trials above the envelope stand more than once: see `proposal`.
 
 When there are enough depends on the weights met so far: where heavy ones have not come yet, there are enough too soon,
 and the trials lack what weighs much. So more are drawn after that, how many being settled before: the trials are the
@@ -20,13 +20,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.run.rare.envelope import copies, height
 from xlmc.run.rare.learning import Round, Say
-from xlmc.run.rare.proposal import Proposal
+from xlmc.run.rare.proposal import Proposal, copies, height
 from xlmc.statistics import Estimate
 from xlmc.statistics.estimate import with_relative_error
 
-__all__ = ["BATCH", "Accepts", "Equalised", "equalised"]
+__all__ = ["BATCH", "Accepts", "Equalised", "equalise"]
 
 Floats = NDArray[np.float64]
 
@@ -73,7 +72,7 @@ class Equalised:
     surprise: Round | None = None
 
 
-def equalised(
+def equalise(
     accepts: Accepts,
     proposal: Proposal,
     lowest: float,
@@ -95,7 +94,7 @@ def equalised(
         wanted: trials.
         most: proposals, rounded up to whole batches.
         random: where the trials come from; it must not have served to learn the proposal.
-        say: told of the proposals so far.
+        say: called with the proposals so far.
         surprises: whether to stop where the envelope must be much higher than `lowest`.
     """
     drawing = _Drawing(accepts, proposal, random, wanted, lowest, lowest + _SURPRISE if surprises else math.inf)
@@ -174,12 +173,12 @@ class _Drawing:
     def batch(self) -> Floats:
         """(m,) logarithms of the weights of the accepted ones among another batch."""
         points, luck = self._proposal.draw(BATCH, self._random), self._random.random(BATCH)
-        places = np.flatnonzero(self._accepts(points))
-        logs = self._proposal.log_weights(points[places])
-        self._kept = self._kept.joined(points[places], logs, luck[places])
+        indices = np.flatnonzero(self._accepts(points))
+        logs = self._proposal.log_weights(points[indices])
+        self._kept = self._kept.joined(points[indices], logs, luck[indices])
         self._envelope = height(self._kept.logs, self._wanted, self._envelope)
         if self._envelope > self._bar:
-            self.surprise = Round(self._proposal, BATCH, points[places], logs)
+            self.surprise = Round(self._proposal, BATCH, points[indices], logs)
         self._kept = self._kept.under(self._envelope)
         return logs
 

@@ -9,11 +9,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.run.rare.equalising import Accepts, Equalised, equalised
-from xlmc.run.rare.learning import Learned, Round, Say, after, again, learn, widened_search
+from xlmc.run.rare.equalising import Accepts, Equalised, equalise
+from xlmc.run.rare.learning import Learned, Round, Say, count_on, learn, learn_again, search_on
 from xlmc.run.rare.splitting import Distance
-from xlmc.run.rare.strays import Evidence
-from xlmc.run.rare.tempered import Tempered, widened
+from xlmc.run.rare.strays import Evidence, Tempered, wide_assumptions
 
 __all__ = ["Found", "find"]
 
@@ -75,19 +74,19 @@ def find(
         most: evaluations, of which learning takes what it needs.
         learning: random numbers to learn with.
         drawing: others, to draw the trials with: what they come from must not have served to learn.
-        say: told of the evaluations so far.
+        say: called with the evaluations so far.
         plain: trials from before the search.
         ways: see `learn`.
     """
-    spread, checked, trials = widened(dimensions), 0, min(_SURVEY, most // _PART)
+    spread, checked, trials = wide_assumptions(dimensions), 0, min(_SURVEY, most // _PART)
     first = _survey(accepts, spread, trials, learning)
     before = first.trials
-    learned = learn(distance, dimensions, learning, after(before, say), most - before, (*plain, first), ways)
+    learned = learn(distance, dimensions, learning, count_on(before, say), most - before, (*plain, first), ways)
     for tries_left in range(_AGAIN, -1, -1):
         used, done = learned.best, learned.evaluations + before
         if used is None or wanted > used.rate * (most - done):
             return Found(learned, None, None, done, checked)
-        drawn = equalised(
+        drawn = equalise(
             accepts,
             used.proposal,
             used.envelope,
@@ -95,12 +94,12 @@ def find(
             wanted,
             most - done,
             drawing,
-            after(done, say),
+            count_on(done, say),
             surprises=tries_left > 0,
         )
         if drawn.surprise is not None:
             before += drawn.proposals
-            learned = again(distance, learned, drawn.surprise, learning, after(before, say), most - before)
+            learned = learn_again(distance, learned, drawn.surprise, learning, count_on(before, say), most - before)
             continue
         check = _survey(accepts, spread, trials, drawing)
         checked += check.trials
@@ -108,7 +107,7 @@ def find(
         if not tries_left or not missed.tells(drawn.acceptance.value):
             break
         before += drawn.proposals + check.trials
-        learned = widened_search(distance, learned, missed, learning, after(before, say), most - before)
+        learned = search_on(distance, learned, missed, learning, count_on(before, say), most - before)
     return Found(learned, used, drawn, done + drawn.proposals + check.trials, checked, missed)
 
 

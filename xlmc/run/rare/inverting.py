@@ -22,7 +22,7 @@ from xlmc.evaluation.engine import Target
 from xlmc.formula import ir
 from xlmc.run.rare import preimage
 from xlmc.run.rare.shortfall import Leaf, Shortfall, Together
-from xlmc.run.rare.spans import Spans, chosen, common, joined
+from xlmc.run.rare.spans import Spans, choose, intersection, union
 
 __all__ = ["Inverting", "Region", "conjuncts"]
 
@@ -95,14 +95,14 @@ class Inverting:
         found = [part for part in parts if part is not None]
         if not found or (not of.every and len(found) < len(parts)):
             return None
-        together = common if of.every else joined
+        together = intersection if of.every else union
         return lambda known: together([part(known) for part in found])
 
     def _comparison(self, holds: Target) -> Region | None:
         tree, cell = holds.tree, holds.cell
         if not self._depends(tree):
-            place = self._known(tree, cell)
-            return lambda known: Spans.where(known[place] == 1.0)
+            index = self._known(tree, cell)
+            return lambda known: Spans.where(known[index] == 1.0)
         if not isinstance(tree, ir.Binary) or tree.operator not in ("<", "<=", ">", ">="):
             return None
         left, right = (tree.left, tree.right) if tree.operator[0] == ">" else (tree.right, tree.left)
@@ -116,10 +116,10 @@ class Inverting:
         undo = self._undo(tree, cell)
         if undo is None:
             return None
-        place, endless = self._known(bound, cell), np.full(1, -np.inf if below else np.inf)
+        index, endless = self._known(bound, cell), np.full(1, -np.inf if below else np.inf)
 
         def found(known: Known) -> Spans:
-            end = known[place]
+            end = known[index]
             far = np.broadcast_to(endless, end.shape)
             return undo(Spans.between(far, end) if below else Spans.between(end, far), known)
 
@@ -198,8 +198,8 @@ class Inverting:
         undo = self._undo(part, cell)
         if undo is None:
             return None
-        place = self._known(other, cell)
-        return lambda value, known: undo(step(value, known[place]), known)
+        index = self._known(other, cell)
+        return lambda value, known: undo(step(value, known[index]), known)
 
     def _power(self, base: ir.Expression, power: float, cell: Cell) -> Undo | None:
         undo = self._undo(base, cell)
@@ -211,15 +211,15 @@ class Inverting:
         first, second = self._value(yes, cell), self._value(no, cell)
         if first is None or second is None:
             return None
-        place = self._known(ir.Call("IF", (condition, ir.Number(1.0), ir.Number(0.0))), cell)
-        return lambda value, known: chosen(known[place] == 1.0, first(value, known), second(value, known))
+        index = self._known(ir.Call("IF", (condition, ir.Number(1.0), ir.Number(0.0))), cell)
+        return lambda value, known: choose(known[index] == 1.0, first(value, known), second(value, known))
 
     def _value(self, tree: ir.Expression, cell: Cell) -> Undo | None:
         """Of a tree that may not depend on the assumption at all: then anything will do, or nothing."""
         if self._depends(tree):
             return self._undo(tree, cell)
-        place = self._known(tree, cell)
-        return lambda value, known: Spans.where(value.contain(known[place]))
+        index = self._known(tree, cell)
+        return lambda value, known: Spans.where(value.contain(known[index]))
 
     def _of_many(self, tree: ir.Call, cell: Cell) -> Undo | None:
         """Of a function of several arguments, one of which depends on the assumption."""
@@ -249,9 +249,9 @@ class Inverting:
         return None
 
     def _after(self, undo: Undo, lines: Sequence[_Pair], cell: Cell) -> Undo:
-        places = [self._known(each, cell) for line in lines for each in line]
+        indices = [self._known(each, cell) for line in lines for each in line]
         step = preimage.ratio if len(lines) > 1 else preimage.line
-        return lambda value, given: undo(step(value, *(given[place] for place in places)), given)
+        return lambda value, given: undo(step(value, *(given[index] for index in indices)), given)
 
     def _line(self, tree: ir.Expression, x: Cell) -> _Pair | None:
         """The formulas a and b of a + b·x; None where the tree is no such line, or a long one."""

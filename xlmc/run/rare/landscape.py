@@ -14,16 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.evaluation.engine import Column
-from xlmc.run.rare.shortfall import Leaf, Shortfall, leaves, lengths, measured, shortfall
+from xlmc.run.needed import filter_condition
+from xlmc.run.rare.shortfall import Leaf, Shortfall, leaves, lengths, measure, shortfall
 from xlmc.run.rare.splitting import Distance
-from xlmc.run.rare.ways_of import ways_of
-from xlmc.run.scene import condition
+from xlmc.run.rare.ways import ways_of
 
 if TYPE_CHECKING:
     from xlmc.run.model import Model
     from xlmc.sampling.streams import Stream
 
-__all__ = ["OUTSIDE", "Drawing", "Given", "Landscape", "points_of", "uniforms_of"]
+__all__ = ["OUTSIDE", "Drawing", "GivenUniforms", "Landscape", "points_of", "uniforms_of"]
 
 Floats = NDArray[np.float64]
 
@@ -51,8 +51,8 @@ def points_of(uniforms: Floats) -> Floats:
     return np.asarray(ndtri(np.maximum(uniforms, _LEAST)))
 
 
-class Given:
-    """Uniforms that are given, in the place of a seed's streams.
+class GivenUniforms:
+    """Uniforms that are given, instead of a seed's streams.
 
     Attributes:
         uniforms: (n, d) to draw from next; trial `start` of a block takes row `start`.
@@ -80,17 +80,17 @@ class Drawing:
 
     Attributes:
         block: trials at a time, at most.
-        places: key of an assumption -> its place among the uniforms.
+        row_of: key of an assumption -> its row among the uniforms.
     """
 
     def __init__(self, model: Model) -> None:
         self.block = model.program("numpy").largest_block
-        self._given = Given()
+        self._given = GivenUniforms()
         self._sampler = model.sampler(0, self.block, filler=self._given.filler)
-        self.places = self._sampler.places
+        self.row_of = self._sampler.row_of
         self._fallible = model.fallible
 
-    def drawn(self, uniforms: Floats) -> tuple[dict[str, Floats], int, NDArray[np.bool_]]:
+    def draw_at(self, uniforms: Floats) -> tuple[dict[str, Floats], int, NDArray[np.bool_]]:
         """The draws at (n, d) uniforms, up to a block of them, how many they are, and where none is an error."""
         self._given.uniforms = uniforms
         n = len(uniforms)
@@ -115,9 +115,9 @@ class Landscape:
     """
 
     def __init__(self, model: Model, random: np.random.Generator) -> None:
-        formulas = model.scene.graph.formulas
+        formulas = model.needed.graph.formulas
         self.dimensions = len(model.live)
-        self._filters = [shortfall(condition(f), f.cell, formulas) for f in model.filters]
+        self._filters = [shortfall(filter_condition(f), f.cell, formulas) for f in model.filters]
         self._ways = ways_of(model, self._filters)
         gates = [gate for way in self._ways for gate in way]
         self._leaves = list(dict.fromkeys(leaf for each in (*self._filters, *gates) for leaf in leaves(each)))
@@ -162,7 +162,7 @@ class Landscape:
         """The same of (n, d) uniforms."""
         parts = [np.empty(0, bool)]
         for start in range(0, len(uniforms), self._block):
-            draws, n, accepted = self._drawing.drawn(uniforms[start : start + self._block])
+            draws, n, accepted = self._drawing.draw_at(uniforms[start : start + self._block])
             columns = self._deciding.filters(draws, n)
             self._count(columns, ~accepted)
             for column in columns:
@@ -192,8 +192,7 @@ class Landscape:
     ) -> list[Floats]:
         """For each filter, (n,) how far a block's trials are from what it asks."""
         return [
-            _exact(measured(each, scaled), column, invalid)
-            for each, column in zip(self._filters, columns, strict=False)
+            _exact(measure(each, scaled), column, invalid) for each, column in zip(self._filters, columns, strict=False)
         ]
 
     @property
@@ -214,14 +213,14 @@ class Landscape:
         for columns, invalid in self._columns(uniforms):
             scaled = self._scaled(columns)
             within = np.log1p(np.maximum.reduce(self._asked(columns, invalid, scaled)))
-            outside = np.maximum.reduce([measured(gate, scaled) for gate in way])
+            outside = np.maximum.reduce([measure(gate, scaled) for gate in way])
             parts.append(np.where(outside > 0.0, OUTSIDE + np.log1p(outside), within))
         return np.concatenate(parts)
 
     def _columns(self, uniforms: Floats) -> Iterator[tuple[list[Column], NDArray[np.bool_]]]:
         """Block by block, every target, and where a draw is an error."""
         for start in range(0, len(uniforms), self._block):
-            draws, n, valid = self._drawing.drawn(uniforms[start : start + self._block])
+            draws, n, valid = self._drawing.draw_at(uniforms[start : start + self._block])
             columns = self._evaluator.filters(draws, n)
             self._count(columns[: len(self._filters)], ~valid)
             yield columns, ~valid

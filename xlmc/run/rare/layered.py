@@ -1,9 +1,9 @@
 """A landscape in which thin layers are solved: the accepted values of some assumptions come first in their uniforms.
 
-Where filters leave a thin bent layer, one assumption of each is rearranged (see `rearranged`), so that the layer is the
+Where filters leave a thin bent layer, one assumption of each is rearranged (see `spans`), so that the layer is the
 tail of its normal. Every point still stands for a trial, as likely as before, and is accepted where the filters accept
-that trial. The distance of a point whose place is beyond the accepted values is how far it is from them in the order,
-as a logarithm; what the other filters ask is measured as if it were within.
+that trial. The distance of a point whose position is beyond the accepted values is how far it is from them in the
+order, as a logarithm; what the other filters ask is measured as if it were within.
 """
 
 from __future__ import annotations
@@ -80,8 +80,8 @@ class Layered:
         found = uniforms_of(points)
         for part in self._blocks(found):
             for layer in self.layers:
-                draws, n, _ = self._drawing.drawn(part)
-                part[:, layer.place] = layer.rearranged(draws, n).uniform(part[:, layer.place])
+                draws, n, _ = self._drawing.draw_at(part)
+                part[:, layer.row] = layer.rearranged(draws, n).uniform_at(part[:, layer.row])
         return found
 
     def points(self, uniforms: Floats) -> Floats:
@@ -89,9 +89,9 @@ class Layered:
         found = points_of(uniforms)
         for start, part in zip(range(0, len(found), self._drawing.block), self._blocks(uniforms), strict=True):
             for layer in self.layers:
-                draws, n, _ = self._drawing.drawn(part)
-                places = layer.rearranged(draws, n).place(part[:, layer.place])
-                found[start : start + n, layer.place] = _normal(places)
+                draws, n, _ = self._drawing.draw_at(part)
+                positions = layer.rearranged(draws, n).position_of(part[:, layer.row])
+                found[start : start + n, layer.row] = _normal(positions)
         return found
 
     def _blocks(self, rows: Floats) -> list[Floats]:
@@ -110,19 +110,19 @@ class Layered:
         return np.where(outside | (found >= OUTSIDE), found + OUTSIDE, nearest)
 
     def _within(self, uniforms: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-        """How far the places of a block are beyond the layers, (n,), and where there is nothing to be accepted.
+        """How far the positions of a block are beyond the layers, (n,), and where there is nothing to be accepted.
 
         The uniforms, (n, d), become those of a trial within them.
         """
         beyond, outside = np.zeros(len(uniforms)), np.zeros(len(uniforms), bool)
         for layer in self.layers:
-            draws, n, _ = self._drawing.drawn(uniforms)
-            order, places = layer.rearranged(draws, n), uniforms[:, layer.place].copy()
+            draws, n, _ = self._drawing.draw_at(uniforms)
+            order, positions = layer.rearranged(draws, n), uniforms[:, layer.row].copy()
             some = order.total > 0.0
-            farther = np.log(np.maximum(places, _LEAST)) - np.log(np.where(some, order.total, 1.0))
-            beyond = np.maximum(beyond, np.where(some & (places >= order.total), farther, 0.0) / layer.usual)
+            farther = np.log(np.maximum(positions, _LEAST)) - np.log(np.where(some, order.total, 1.0))
+            beyond = np.maximum(beyond, np.where(some & (positions >= order.total), farther, 0.0) / layer.usual)
             outside |= ~some
-            uniforms[:, layer.place] = order.uniform(order.folded(places))
+            uniforms[:, layer.row] = order.uniform_at(order.fold(positions))
         return beyond, outside
 
 
@@ -145,7 +145,7 @@ def ground_of(model: Model, landscape: Landscape, random: np.random.Generator) -
     return Layered(landscape, drawing, layers) if layers else landscape
 
 
-def _normal(places: Floats) -> Floats:
+def _normal(positions: Floats) -> Floats:
     from scipy.special import ndtri
 
-    return np.asarray(ndtri(np.maximum(places, _LEAST)))
+    return np.asarray(ndtri(np.maximum(positions, _LEAST)))

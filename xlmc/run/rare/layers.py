@@ -18,12 +18,11 @@ from xlmc.address import Cell
 from xlmc.definitions.model import name_key
 from xlmc.formula import ir
 from xlmc.formula.precedents import references
+from xlmc.run.needed import upstream
 from xlmc.run.rare.inverting import Inverting, Region, conjuncts
 from xlmc.run.rare.preimage import TURNS
-from xlmc.run.rare.rearranged import Rearranged
 from xlmc.run.rare.shortfall import Shortfall, leaves
-from xlmc.run.rare.spans import Spans, common
-from xlmc.run.scene import upstream
+from xlmc.run.rare.spans import Rearranged, Spans, intersection
 
 if TYPE_CHECKING:
     from xlmc.definitions.model import Assumption
@@ -69,7 +68,7 @@ class Layer:
     Attributes:
         name: of the assumption.
         cell: of it.
-        place: of its uniform.
+        row: of its uniform.
         draw: how it is drawn.
         regions: what it may be, one for each part of the filters.
         evaluator: of what these must know.
@@ -78,7 +77,7 @@ class Layer:
 
     name: str
     cell: Cell
-    place: int
+    row: int
     draw: Draw
     regions: tuple[Region, ...]
     evaluator: Evaluator
@@ -90,7 +89,7 @@ class Layer:
 
     def spans(self, known: Sequence[Floats]) -> Spans:
         """The values that are left to it."""
-        return common([region(known) for region in self.regions])
+        return intersection([region(known) for region in self.regions])
 
     def rearranged(self, draws: dict[str, Floats], n: int) -> Rearranged:
         """Its uniform with those that are left to it first."""
@@ -121,18 +120,18 @@ class _Looking:
 
     def __init__(self, model: Model, filters: Sequence[Shortfall], drawing: Drawing, uniforms: Floats) -> None:
         self._model, self._block = model, drawing.block
-        draws, self._n, _ = drawing.drawn(uniforms)
+        draws, self._n, _ = drawing.draw_at(uniforms)
         self._draws = {name: values.copy() for name, values in draws.items()}
         self._parts = list(conjuncts(filters))
         grouped = {name for group in model.groups for name in group.names}
-        graph = model.scene.graph
+        graph = model.needed.graph
         asked = upstream(graph, {cell for each in self._parts for cell in _cells(each)}, self._led_to)
         varied = upstream(graph, [cell for each in model.live for cell in each.cells], self._led_to)
         self._formulas = [cell for cell in graph.formulas if cell in asked or cell in varied]
         candidates = [each for each in model.live if each.cell in asked and name_key(each.name) not in grouped]
         most = min(_MOST_CANDIDATES, _MOST_LOOKS // max(1, len(self._formulas)))
         self._candidates = [each for each in candidates if self._is_smooth(each)][:most]
-        self._places = drawing.places
+        self._row_of = drawing.row_of
         self._moved = {each.cell: self._downstream(each.cell) for each in self._candidates}
 
     @property
@@ -154,25 +153,25 @@ class _Looking:
     def _layers(self, assumption: Assumption, parts: Sequence[Shortfall]) -> Iterator[tuple[float, Layer]]:
         """The layers that some of the parts leave an assumption, and how even their chances are."""
         moved = self._moved[assumption.cell]
-        formulas, gates = self._model.scene.graph.formulas, self._gates(assumption.cell)
+        formulas, gates = self._model.needed.graph.formulas, self._gates(assumption.cell)
         undoing = Inverting(assumption.cell, formulas, lambda tree: _meets(tree, moved), gates)
         varying = [part for part in parts if any(_meets(tree, moved) for tree in _trees(part))]
         regions = [region for part in varying if (region := undoing.region(part)) is not None]
         if not regions:
             return
         draw = self._model.draws[assumption.name]
-        place = self._places[draw.name]
+        row = self._row_of[draw.name]
         evaluator = self._model.evaluator(undoing.targets, self._block)
-        known = Layer(assumption.name, assumption.cell, place, draw, (), evaluator).known(self._draws, self._n)
+        known = Layer(assumption.name, assumption.cell, row, draw, (), evaluator).known(self._draws, self._n)
         if any(np.nanmax(np.abs(known[turned]), initial=0.0) > TURNS for turned in undoing.turned):
             return
         spans = [region(known) for region in regions]
         for taken in _subsets(len(regions)):
-            found = self._judged(draw, common([spans[i] for i in taken]))
+            found = self._judged(draw, intersection([spans[i] for i in taken]))
             if found is not None:
                 even, usual = found
                 chosen = tuple(regions[i] for i in taken)
-                yield even, Layer(assumption.name, assumption.cell, place, draw, chosen, evaluator, usual)
+                yield even, Layer(assumption.name, assumption.cell, row, draw, chosen, evaluator, usual)
 
     def _judged(self, draw: Draw, spans: Spans) -> tuple[float, float] | None:
         """How even the chances of a layer are, (Σc)²/(nΣc²), and what is usual; None if it is none, or not thin."""
@@ -194,7 +193,7 @@ class _Looking:
         """Cells, each of which is all that reads the one before, the first all that reads an assumption."""
         found = [cell]
         asked = {cell for part in self._parts for cell in _cells(part)}
-        formulas = self._model.scene.graph.formulas
+        formulas = self._model.needed.graph.formulas
         while found[-1] not in asked:
             readers = [each for each in self._moved[cell] if each in formulas and found[-1] in self._read(each)]
             if len(readers) != 1:
@@ -204,7 +203,7 @@ class _Looking:
 
     def _read(self, cell: Cell) -> set[Cell]:
         """What a formula cell reads of formula cells and inputs."""
-        return {*self._model.scene.graph.needs.get(cell, ()), *self._led_to.get(cell, ())}
+        return {*self._model.needed.graph.needs.get(cell, ()), *self._led_to.get(cell, ())}
 
     def _is_smooth(self, assumption: Assumption) -> bool:
         """Whether uniforms and draws go with each other one by one, with parameters that do not vary."""
@@ -247,7 +246,7 @@ def _subsets(count: int) -> Iterator[tuple[int, ...]]:
     """All of several parts, then each alone, then each two."""
     yield tuple(range(count))
     if 1 < count <= _MOST_CONJUNCTS:
-        yield from ((place,) for place in range(count))
+        yield from ((index,) for index in range(count))
     if 2 < count <= _MOST_CONJUNCTS:
         yield from combinations(range(count), 2)
 

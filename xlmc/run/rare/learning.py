@@ -15,12 +15,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.run.rare.envelope import height
-from xlmc.run.rare.proposal import Proposal, fitted_again, proposed
+from xlmc.run.rare.proposal import Proposal, fit_proposal, height, refit
 from xlmc.run.rare.splitting import EXPLORING, Descent, Distance, descend, explore
-from xlmc.run.rare.strays import Evidence, joined_evidence, pooled, strays
+from xlmc.run.rare.strays import Evidence, find_strays, join_evidence, pool
 
-__all__ = ["Learned", "Round", "Say", "after", "again", "learn", "widened_search"]
+__all__ = ["Learned", "Round", "Say", "count_on", "learn", "learn_again", "search_on"]
 
 Floats = NDArray[np.float64]
 
@@ -56,11 +55,11 @@ _FEWEST: Final = 100
 """Accepted points that a proposal can be fitted to."""
 
 Say = Callable[[int], None]
-"""Told of the evaluations so far."""
+"""Called with the number of evaluations so far."""
 
 
-def after(before: int, say: Say) -> Say:
-    """Tells of evaluations that come after so many others."""
+def count_on(before: int, say: Say) -> Say:
+    """A `say` for evaluations that come after so many others."""
     return lambda count: say(before + count)
 
 
@@ -143,7 +142,7 @@ class Learned:
     def strays(self, proposal: Proposal, known: Sequence[Evidence]) -> Evidence:
         """Accepted trials among those of other origin that a proposal hardly ever comes to; see `strays`."""
         points, weights, _ = _of_descents(self.descents)
-        return strays(proposal, known, points, weights)
+        return find_strays(proposal, known, points, weights)
 
 
 def learn(
@@ -161,7 +160,7 @@ def learn(
         distance: 0 where a point of so many dimensions is accepted.
         dimensions: of the points.
         random: to learn with.
-        say: told of the evaluations so far.
+        say: called with the evaluations so far.
         most: evaluations.
         known: trials that were drawn before; those that were accepted are evidence.
         ways: distances of parts of all trials, whose populations go apart; by default all together.
@@ -177,12 +176,12 @@ def learn(
     if not any(each.reached for each in found):
         if not any(len(each.points) for each in known):
             return learned
-        learned = _explored(distance, learned, joined_evidence(known), random)
+        learned = _explored(distance, learned, join_evidence(known), random)
     learned, proposal = _with_strays(distance, learned, random, most - _TRIALS)
     return _refined(distance, learned, proposal, random, say, most)
 
 
-def again(
+def learn_again(
     distance: Distance, learned: Learned, more: Round, random: np.random.Generator, say: Say, most: float
 ) -> Learned:
     """Learn from trials that turned out to be heavier than any that were known."""
@@ -190,7 +189,7 @@ def again(
     return _refined(distance, known, _improved(known, random), random, say, most)
 
 
-def widened_search(
+def search_on(
     distance: Distance, learned: Learned, found: Evidence, random: np.random.Generator, say: Say, most: float
 ) -> Learned:
     """Search on from accepted trials that lie where nothing was learned."""
@@ -202,7 +201,7 @@ def _described(learned: Learned, random: np.random.Generator) -> Proposal:
     """A first proposal, from the populations alone."""
     points, weights, halves = _of_descents(learned.descents)
     order = _dealt(halves, random)
-    return proposed(points[order], weights[order], random)
+    return fit_proposal(points[order], weights[order], random)
 
 
 def _with_strays(
@@ -232,7 +231,7 @@ def _refined(
     best = 0.0
     for number in range(_ROUNDS):
         before = learned.evaluations
-        drawn = _drawn(distance, proposal, random, after(before, say), most - before)
+        drawn = _drawn(distance, proposal, random, count_on(before, say), most - before)
         learned = replace(learned, rounds=(*learned.rounds, drawn), evaluations=before + drawn.trials)
         if learned.evaluations >= most or drawn.rate >= _GOOD or (number > 1 and drawn.rate < best * _GAIN):
             break
@@ -244,7 +243,7 @@ def _refined(
 def _improved(learned: Learned, random: np.random.Generator) -> Proposal:
     """Fitted to the populations' points and to all that were drawn, half by half."""
     moved, shares, halves = _of_descents(learned.descents)
-    points, logs = pooled((*learned.rounds, *learned.known))
+    points, logs = pool((*learned.rounds, *learned.known))
     if len(points) < _FEWEST:
         points, weights = moved, shares
     else:
@@ -253,7 +252,7 @@ def _improved(learned: Learned, random: np.random.Generator) -> Proposal:
         halves = np.concatenate([halves, np.arange(len(points)) % 2])
         points, weights = np.concatenate([moved, points]), np.concatenate([shares, weights / weights.sum()])
     order = _dealt(halves, random)
-    return fitted_again(learned.rounds[-1].proposal, points[order], weights[order], random)
+    return refit(learned.rounds[-1].proposal, points[order], weights[order], random)
 
 
 def _of_descents(descents: Sequence[Descent]) -> tuple[Floats, Floats, NDArray[np.int64]]:

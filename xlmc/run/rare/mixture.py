@@ -1,21 +1,38 @@
-"""Mixtures of normal distributions: their density and draws from them.
+"""Mixtures of normal distributions: their density, draws from them, and how one is fitted to weighted points.
 
 Sums over many points are `einsum`s: a matrix product may have other last bits with another number of threads.
+
+**Fit.** Expectation and maximisation (Dempster, Laird & Rubin 1977). How many components there are, points that were
+left out of the fit decide: those of the mixture that gives them the highest likelihood.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Mixture", "standard_log_density"]
+__all__ = ["Mixture", "fit_mixture", "standard_log_density"]
 
 Floats = NDArray[np.float64]
 
 _LOG_2_PI = math.log(2.0 * math.pi)
+
+_COMPONENTS: Final = (1, 2, 4, 8, 16)
+
+_ROUNDS: Final = 12
+
+_COMPARED: Final = 4_096
+"""Points that numbers of components are compared on."""
+
+_GAIN: Final = 0.01
+"""What one more step of components must add to the mean log-likelihood: a hundredth of the trials."""
+
+_DECIMALS: Final = 9
+"""Of what was fitted: the last bits, which matrix products may give otherwise with more threads, must not matter."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,3 +82,90 @@ def log_sum(logs: Floats) -> Floats:
 def standard_log_density(points: Floats) -> Floats:
     """(n,) of independent standard normals at (n, r) points."""
     return np.asarray(-0.5 * (np.einsum("nr,nr->n", points, points) + points.shape[1] * _LOG_2_PI))
+
+
+def fit_mixture(points: Floats, weights: Floats, random: np.random.Generator) -> Mixture:
+    """The mixture that describes (n, r) points with (n,) weights best, of 1 to 16 components.
+
+    Every second point is left out of the choice of the number of components, and judges it. They are
+    fitted in coordinates in which their mean is 0 and their covariance 1, so that a thin layer is not thin there.
+    """
+    shares = weights / weights.sum()
+    centre = np.einsum("n,nr->r", shares, points)
+    apart = points - centre
+    root = np.linalg.cholesky(np.einsum("n,nr,nq->rq", shares, apart, apart))
+    scaled = np.einsum("rq,nq->nr", np.linalg.inv(root), apart)
+    found = _rounded(_fit(scaled, weights, _components(scaled, weights, random), random))
+    return Mixture(found.shares, centre + found.means @ root.T, root @ found.roots)
+
+
+def _components(points: Floats, weights: Floats, random: np.random.Generator) -> int:
+    best, number = -np.inf, 1
+    points, weights = points[:_COMPARED], weights[:_COMPARED]
+    for components in _COMPONENTS:
+        if components > 1 and components * (points.shape[1] + 2) * 10 > len(points):
+            break
+        tried = _fit(points[::2], weights[::2], components, random)
+        found = float(np.sum(weights[1::2] * tried.log_density(points[1::2])) / weights[1::2].sum())
+        if found > best + _GAIN:
+            best, number = found, components
+        elif components > 2 * number:
+            break
+    return number
+
+
+def _fit(points: Floats, weights: Floats, components: int, random: np.random.Generator) -> Mixture:
+    shares = weights / weights.sum()
+    size = float(1.0 / np.sum(shares * shares))
+    mixture = _maximised(points, shares * _nearest(points, _seeds(points, shares, components, random)), size)
+    if components == 1:
+        return mixture
+    for _ in range(_ROUNDS):
+        logs = mixture.log_parts(points)
+        mixture = _maximised(points, shares * np.exp(logs - log_sum(logs)), size)
+    return mixture
+
+
+def _seeds(points: Floats, shares: Floats, components: int, random: np.random.Generator) -> Floats:
+    """Points far from each other (Arthur & Vassilvitskii 2007, k-means++)."""
+    seeds = [points[_chosen(shares, random)]]
+    distance = np.full(len(points), np.inf)
+    while len(seeds) < components:
+        distance = np.minimum(distance, np.square(points - seeds[-1]).sum(axis=1))
+        seeds.append(points[_chosen(shares * distance, random)])
+    return np.array(seeds)
+
+
+def _chosen(amounts: Floats, random: np.random.Generator) -> int:
+    reached = np.cumsum(amounts)
+    return min(int(np.searchsorted(reached, random.random() * reached[-1], side="right")), amounts.size - 1)
+
+
+def _nearest(points: Floats, seeds: Floats) -> Floats:
+    """(K, n) 1 for the nearest seed of each point, else 0."""
+    apart = np.stack([np.square(points - seed).sum(axis=1) for seed in seeds])
+    return np.asarray(np.arange(len(seeds))[:, None] == apart.argmin(axis=0), dtype=np.float64)
+
+
+def _maximised(points: Floats, parts: Floats, size: float) -> Mixture:
+    """The components that have these parts (K, n) of the points.
+
+    Each is given r + 2 points more, with the spread of all narrowed as far as K components fill the space: a component
+    of few points does not shrink to them.
+    """
+    dimensions = points.shape[1]
+    totals = np.maximum(parts.sum(axis=1), 1e-12)
+    means = np.einsum("kn,nr->kr", parts, points) / totals[:, None]
+    held = (dimensions + 2.0) / size
+    own = held * len(parts) ** (-2.0 / dimensions) * np.eye(dimensions)
+    roots = np.empty((len(parts), dimensions, dimensions))
+    for k, part in enumerate(parts):
+        apart = points - means[k]
+        spread = np.einsum("nr,nq->rq", apart * part[:, None], apart)
+        roots[k] = np.linalg.cholesky((spread + own) / (totals[k] + held))
+    return Mixture(totals / totals.sum(), means, roots)
+
+
+def _rounded(mixture: Mixture) -> Mixture:
+    shares = np.maximum(np.round(mixture.shares, _DECIMALS), 10.0**-_DECIMALS)
+    return Mixture(shares / shares.sum(), np.round(mixture.means, _DECIMALS), np.round(mixture.roots, _DECIMALS))

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.run.rare.spans import Spans, chosen, common, joined, pieces
+from xlmc.run.rare.spans import Spans, choose, intersection, union, union_of_pairs
 
 __all__ = [
     "FUNCTIONS",
@@ -44,27 +44,27 @@ def term(value: Spans, o: Floats) -> Spans:
 
 def negated(value: Spans) -> Spans:
     """Of −s."""
-    return pieces([(-value.high, -value.low)])
+    return union_of_pairs([(-value.high, -value.low)])
 
 
 def factor(value: Spans, o: Floats) -> Spans:
     """Of s · o."""
     with np.errstate(all="ignore"):
-        found = pieces([_ordered(value.low / o, value.high / o, (value.low <= value.high) & (o != 0.0))])
-    return chosen(o == 0.0, _anything(value), found)
+        found = union_of_pairs([_ordered(value.low / o, value.high / o, (value.low <= value.high) & (o != 0.0))])
+    return choose(o == 0.0, _anything(value), found)
 
 
 def numerator(value: Spans, o: Floats) -> Spans:
     """Of s / o; nothing is divided by 0."""
     with np.errstate(all="ignore"):
-        return pieces([_ordered(value.low * o, value.high * o, (value.low <= value.high) & (o != 0.0))])
+        return union_of_pairs([_ordered(value.low * o, value.high * o, (value.low <= value.high) & (o != 0.0))])
 
 
 def divisor(value: Spans, o: Floats) -> Spans:
     """Of o / s."""
     above = _reciprocal(value.low, value.high, o)
     below = _reciprocal(-value.high, -value.low, o)
-    return chosen(o == 0.0, _anything(value), pieces([above, (-below[1], -below[0])]))
+    return choose(o == 0.0, _anything(value), union_of_pairs([above, (-below[1], -below[0])]))
 
 
 def line(value: Spans, start: Floats, slope: Floats) -> Spans:
@@ -81,15 +81,15 @@ def ratio(value: Spans, a: Floats, b: Floats, c: Floats, d: Floats) -> Spans:
         full, low, high = Spans.where(some), np.where(some, low, 0.0), np.where(some, high, 0.0)
         over, under = _beyond(a, b, c, d, low), _beyond(-a, -b, -c, -d, high)
         reversed_ = _beyond(-a, -b, -c, -d, low), _beyond(a, b, c, d, high)
-        found += [common([full, above, over, under]), common([full, below, *reversed_])]
-    return joined(found)
+        found += [intersection([full, above, over, under]), intersection([full, below, *reversed_])]
+    return union(found)
 
 
 def _beyond(a: Floats, b: Floats, c: Floats, d: Floats, end: Floats) -> Spans:
     """Where a + b·s ≥ end·(c + d·s); everywhere if the end is infinite."""
     finite = np.isfinite(end)
     held = np.where(finite, end, 0.0)
-    return chosen(finite, _not_negative(a - held * c, b - held * d), Spans.whole(end.size))
+    return choose(finite, _not_negative(a - held * c, b - held * d), Spans.whole(end.size))
 
 
 def _not_negative(start: Floats, slope: Floats) -> Spans:
@@ -122,7 +122,7 @@ def powered(value: Spans, power: float) -> Spans:
     if whole and int(power) % 2:
         return Spans(_root(value.low, power), _root(value.high, power))
     upper = _root(np.maximum(value.low, 0.0), power), _root(value.high, power)
-    return pieces([upper, (-upper[1], -upper[0])]) if whole else pieces([upper])
+    return union_of_pairs([upper, (-upper[1], -upper[0])]) if whole else union_of_pairs([upper])
 
 
 def _root(values: Floats, power: float) -> Floats:
@@ -139,7 +139,7 @@ def exponent(value: Spans, o: Floats) -> Spans:
 def largest(value: Spans, o: Floats) -> Spans:
     """Of MAX(s, o)."""
     reached = np.where((value.low <= o) & (o <= value.high), -np.inf, value.low)
-    return pieces([(np.where(o <= value.high, reached, np.inf), value.high)])
+    return union_of_pairs([(np.where(o <= value.high, reached, np.inf), value.high)])
 
 
 def smallest(value: Spans, o: Floats) -> Spans:
@@ -149,12 +149,14 @@ def smallest(value: Spans, o: Floats) -> Spans:
 
 def _exponential(value: Spans) -> Spans:
     with np.errstate(all="ignore"):
-        return pieces([(np.log(np.maximum(value.low, 0.0)), np.log(value.high))])
+        return union_of_pairs([(np.log(np.maximum(value.low, 0.0)), np.log(value.high))])
 
 
 def _square_root(value: Spans) -> Spans:
     low = np.maximum(value.low, 0.0)
-    return pieces([(np.where(low <= value.high, low, np.inf) ** 2, np.where(value.high >= 0, value.high**2, -np.inf))])
+    return union_of_pairs(
+        [(np.where(low <= value.high, low, np.inf) ** 2, np.where(value.high >= 0, value.high**2, -np.inf))]
+    )
 
 
 def _logarithm(value: Spans) -> Spans:
@@ -164,20 +166,22 @@ def _logarithm(value: Spans) -> Spans:
 
 def _absolute(value: Spans) -> Spans:
     low = np.maximum(value.low, 0.0)
-    return pieces([(low, value.high), (-value.high, -low)])
+    return union_of_pairs([(low, value.high), (-value.high, -low)])
 
 
 def _sine(value: Spans) -> Spans:
     low, high = _arc(value, np.arcsin, -1.0, 1.0)
     turns = [2.0 * math.pi * turn for turn in (-1, 0, 1)]
-    return pieces([part for by in turns for part in ((low + by, high + by), (math.pi - high + by, math.pi - low + by))])
+    return union_of_pairs(
+        [part for by in turns for part in ((low + by, high + by), (math.pi - high + by, math.pi - low + by))]
+    )
 
 
 def _tangent(value: Spans) -> Spans:
     low, high = np.arctan(value.low), np.arctan(value.high)
     full = value.low <= value.high
     turns = [math.pi * turn for turn in range(-2, 3)]
-    return pieces([(np.where(full, low + by, np.inf), np.where(full, high + by, -np.inf)) for by in turns])
+    return union_of_pairs([(np.where(full, low + by, np.inf), np.where(full, high + by, -np.inf)) for by in turns])
 
 
 def _arc(value: Spans, function: Callable[[Floats], Floats], least: float, most: float) -> tuple[Floats, Floats]:
@@ -192,7 +196,7 @@ def _arc_tangent(value: Spans) -> Spans:
     quarter = 0.5 * math.pi
     low, high = _arc(value, np.tan, -quarter, quarter)
     low = np.where((value.low <= -quarter) & (low <= high), -np.inf, low)
-    return pieces([(low, np.where((value.high >= quarter) & (low <= high), np.inf, high))])
+    return union_of_pairs([(low, np.where((value.high >= quarter) & (low <= high), np.inf, high))])
 
 
 def _scaled(by: float) -> Callable[[Spans], Spans]:
@@ -208,8 +212,8 @@ FUNCTIONS: Final[Mapping[str, Callable[[Spans], Spans]]] = {
     "SIN": _sine,
     "COS": lambda value: term(_sine(value), np.full(value.low.shape[1], 0.5 * math.pi)),
     "TAN": _tangent,
-    "ASIN": lambda value: pieces([_arc(value, np.sin, -0.5 * math.pi, 0.5 * math.pi)]),
-    "ACOS": lambda value: pieces([_arc(value, np.cos, 0.0, math.pi)]),
+    "ASIN": lambda value: union_of_pairs([_arc(value, np.sin, -0.5 * math.pi, 0.5 * math.pi)]),
+    "ACOS": lambda value: union_of_pairs([_arc(value, np.cos, 0.0, math.pi)]),
     "ATAN": _arc_tangent,
     "RADIANS": _scaled(math.pi / 180.0),
     "DEGREES": _scaled(180.0 / math.pi),

@@ -1,8 +1,16 @@
 """Where trials are proposed: a mixture of normals in the directions that matter, the assumptions as they are in others.
 
 Trials that are accepted differ from all trials in some directions only. Those in which neither mean nor spread differ
-are left alone, so that there may be many assumptions (Uribe, Papaioannou, Marzouk & Straub 2021). In directions in
-which accepted trials lie close together, the mixture describes how far they are from a curved sheet: see `shear`.
+are left alone, so that there may be many assumptions (Uribe, Papaioannou, Marzouk & Straub 2021).
+
+**Shear.** Filters that ask for narrow ranges leave a layer that is thin in some directions and bent along the others;
+normal distributions are not bent. So a thin coordinate is taken less what a quadratic function of the others says of
+it: the mixture describes how far trials are from a curved sheet. A shear leaves volumes as they are.
+
+**Envelope.** A trial of weight w under an envelope of height h is kept with probability w/h: the kept ones are as good
+as of equal weight. One above the envelope would have to be kept more than once: w/h times, on average. That is allowed
+as far as copies cost 1 % of the effective sample size (Kish 1965): an envelope above all weights is several times to a
+hundred times higher, and keeps so many trials less.
 """
 
 from __future__ import annotations
@@ -15,11 +23,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.run.rare.expectation import fitted_mixture
-from xlmc.run.rare.mixture import Mixture, log_sum, standard_log_density
-from xlmc.run.rare.shear import Shear, fitted_shear
+from xlmc.run.rare.mixture import Mixture, fit_mixture, log_sum, standard_log_density
 
-__all__ = ["Proposal", "fitted_again", "proposed"]
+__all__ = ["COPIED", "Proposal", "Shear", "copies", "fit_proposal", "fit_shear", "height", "refit"]
 
 Floats = NDArray[np.float64]
 
@@ -49,6 +55,15 @@ _WIDE: Final = 0.16
 
 _PRIOR: Final = 0.02
 """Of the proposals, from the assumptions themselves: no weight is above the inverse of it (Owen & Zhou 2000)."""
+
+_POINTS_A_TERM: Final = 30
+
+_DECIMALS: Final = 9
+
+COPIED: Final = 0.01
+"""By how much Σc² may exceed Σc, c the copies of each trial, as a share of Σc."""
+
+_STEPS: Final = 50
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,21 +117,21 @@ class Proposal:
         return float(log_sum(logs[:, None])[0])
 
 
-def proposed(points: Floats, weights: Floats, random: np.random.Generator) -> Proposal:
+def fit_proposal(points: Floats, weights: Floats, random: np.random.Generator) -> Proposal:
     """Fit to (n, d) accepted points with (n,) weights, in no order."""
     basis, thin, matter = _directions(points, weights)
     along = np.einsum("nd,dr->nr", points, basis)
-    shear = fitted_shear(along[:, :thin], along[:, thin:], weights)
+    shear = fit_shear(along[:, :thin], along[:, thin:], weights)
     along[:, :thin] -= shear.shift(along[:, thin:])
-    return _defended(Proposal(basis, shear, *[fitted_mixture(along[:, :matter], weights, random)] * 2), points, weights)
+    return _defended(Proposal(basis, shear, *[fit_mixture(along[:, :matter], weights, random)] * 2), points, weights)
 
 
-def fitted_again(proposal: Proposal, points: Floats, weights: Floats, random: np.random.Generator) -> Proposal:
+def refit(proposal: Proposal, points: Floats, weights: Floats, random: np.random.Generator) -> Proposal:
     """The same coordinates with a mixture fitted to other points."""
     along = np.einsum("nd,dr->nr", points, proposal.basis)
     thin, matter = proposal.shear.thin, proposal.directions
     along[:, :thin] -= proposal.shear.shift(along[:, thin:])
-    mixture = fitted_mixture(along[:, :matter], weights, random)
+    mixture = fit_mixture(along[:, :matter], weights, random)
     return _defended(Proposal(proposal.basis, proposal.shear, mixture, mixture), points, weights)
 
 
@@ -171,3 +186,86 @@ def _widened(root: Floats) -> Floats:
     """The root of a covariance in whose principal directions no spread is below 1."""
     spreads, directions = np.linalg.eigh(root @ root.T)
     return np.asarray(np.linalg.cholesky((directions * np.maximum(spreads, 1.0)) @ directions.T))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shear:
+    """Of (n, d) points, the first t coordinates being the thin ones: what a + b·x + x·C·x says of each.
+
+    Attributes:
+        constant: (t,) a.
+        linear: (t, d − t) b.
+        quadratic: (t, d − t, d − t) C.
+    """
+
+    constant: Floats
+    linear: Floats
+    quadratic: Floats
+
+    @property
+    def thin(self) -> int:
+        """How many are thin."""
+        return self.constant.size
+
+    def shift(self, others: Floats) -> Floats:
+        """(n, t) what (n, d − t) other coordinates say of the thin ones."""
+        found: Floats = self.constant + np.einsum("nk,tk->nt", others, self.linear)
+        for index, square in enumerate(self.quadratic):
+            found[:, index] += np.einsum("nk,nk->n", np.einsum("nj,jk->nk", others, square), others)
+        return found
+
+
+def fit_shear(thin: Floats, others: Floats, weights: Floats) -> Shear:
+    """The shear that leaves least of (n, t) thin coordinates, by least squares with (n,) weights.
+
+    With few points for so many products of coordinates, squares alone are taken; with fewer still, nothing is moved.
+    """
+    count, width = others.shape[1], thin.shape[1]
+    first, second = np.triu_indices(count)
+    affordable = len(others) // _POINTS_A_TERM
+    if 1 + count + first.size > affordable:
+        first = second = np.arange(count)
+    if not width or 1 + count + first.size > affordable:
+        return Shear(np.zeros(width), np.zeros((width, count)), np.zeros((width, count, count)))
+    terms = np.concatenate([np.ones((len(others), 1)), others, others[:, first] * others[:, second]], axis=1)
+    roots = np.sqrt(weights / weights.mean())[:, None]
+    solved = np.round(np.linalg.lstsq(terms * roots, thin * roots, rcond=1e-9)[0].T, _DECIMALS)
+    quadratic = np.zeros((width, count, count))
+    quadratic[:, first, second] = solved[:, 1 + count :]
+    return Shear(solved[:, 0], solved[:, 1 : 1 + count], quadratic)
+
+
+def height(logs: Floats, kept: float | None = None, least: float = -math.inf) -> float:
+    """The logarithm of the lowest envelope, from `least` on, that costs no more than that.
+
+    Args:
+        logs: (m,) logarithms of the weights; those below `least` may be missing.
+        kept: trials that will be kept in all; by default as many as the envelope keeps of these.
+        least: from where on.
+    """
+    highest = float(logs.max(initial=-math.inf))
+    if highest <= least or highest == -math.inf:
+        return max(least, highest)
+    low, high = max(least, highest - 50.0), highest
+    if least > -math.inf and _fits(logs, low, kept):
+        return low
+    for _ in range(_STEPS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if _fits(logs, middle, kept) else (middle, high)
+    return high
+
+
+def _fits(logs: Floats, height_: float, kept: float | None) -> bool:
+    ratios = np.exp(logs - height_)
+    above = ratios[ratios > 1.0]
+    return float(np.sum(above * above - above)) <= COPIED * (float(ratios.sum()) if kept is None else kept)
+
+
+def copies(logs: Floats, luck: Floats, height_: float) -> NDArray[np.int64]:
+    """(m,) how often each trial is kept.
+
+    That is its weight over the envelope, rounded down, or up where its luck, (m,) in [0, 1), is less than the rest.
+    """
+    ratios = np.exp(logs - height_)
+    whole = np.floor(ratios)
+    return np.asarray(whole + (luck < ratios - whole), dtype=np.int64)

@@ -17,7 +17,7 @@ from xlmc.address import Area, Cell
 from xlmc.evaluation.engine import Column, Target
 from xlmc.formula import ir
 
-__all__ = ["Fails", "Leaf", "Shortfall", "Together", "asked", "leaves", "lengths", "measured", "shortfall"]
+__all__ = ["Fails", "Leaf", "Shortfall", "Together", "comparisons_of", "leaves", "lengths", "measure", "shortfall"]
 
 Floats = NDArray[np.float64]
 
@@ -61,17 +61,19 @@ def shortfall(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expres
     """What a condition asks.
 
     Args:
-        tree: the condition, as `scene.condition` makes it.
+        tree: the condition, as `needed.filter_condition` makes it.
         cell: that it speaks for.
         formulas: the resolved formulas of the cells that it may lead to.
     """
     match tree:
         case ir.Binary("<>", ir.Binary("+", Cell() as held, ir.Number(0.0)), ir.Number(0.0)) if held in formulas:
-            return asked(held, cell, formulas, wanted=True)
-    return asked(tree, cell, formulas, wanted=True)
+            return comparisons_of(held, cell, formulas, wanted=True)
+    return comparisons_of(tree, cell, formulas, wanted=True)
 
 
-def asked(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression], *, wanted: bool) -> Shortfall:
+def comparisons_of(
+    tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression], *, wanted: bool
+) -> Shortfall:
     """The comparisons that decide whether a tree, in a cell, is TRUE, or FALSE where that is wanted.
 
     Args:
@@ -82,11 +84,11 @@ def asked(tree: ir.Expression, cell: Cell, formulas: Mapping[Cell, ir.Expression
     """
     match tree:
         case Cell() if tree in formulas:
-            return asked(formulas[tree], tree, formulas, wanted=wanted)
+            return comparisons_of(formulas[tree], tree, formulas, wanted=wanted)
         case ir.Call("NOT", (part,)):
-            return asked(part, cell, formulas, wanted=not wanted)
+            return comparisons_of(part, cell, formulas, wanted=not wanted)
         case ir.Call("AND" | "OR", parts) if parts and not any(isinstance(part, Area | ir.Missing) for part in parts):
-            found = tuple(asked(part, cell, formulas, wanted=wanted) for part in parts)
+            found = tuple(comparisons_of(part, cell, formulas, wanted=wanted) for part in parts)
             return Together(found, (tree.name == "AND") is wanted)
         case ir.Call("IF", (condition, yes, no)) if not isinstance(yes, ir.Missing) and not isinstance(no, ir.Missing):
             return _either(condition, yes, no, cell, formulas, wanted=wanted)
@@ -108,8 +110,8 @@ def _either(
     wanted: bool,
 ) -> Shortfall:
     """The condition and the one part, or neither."""
-    sides = (asked(condition, cell, formulas, wanted=side) for side in (True, False))
-    values = (asked(part, cell, formulas, wanted=wanted) for part in (yes, no))
+    sides = (comparisons_of(condition, cell, formulas, wanted=side) for side in (True, False))
+    values = (comparisons_of(part, cell, formulas, wanted=wanted) for part in (yes, no))
     return Together(tuple(Together(both, every=True) for both in zip(sides, values, strict=True)), every=False)
 
 
@@ -131,13 +133,13 @@ def leaves(of: Shortfall) -> list[Leaf]:
     return [leaf for part in (of.parts if isinstance(of, Together) else (of.part,)) for leaf in leaves(part)]
 
 
-def measured(of: Shortfall, found: Mapping[Leaf, Floats]) -> Floats:
+def measure(of: Shortfall, found: Mapping[Leaf, Floats]) -> Floats:
     """(n,) how far each trial is from what is asked, given how far from each comparison: 0 where it holds."""
     if isinstance(of, Leaf):
         return found[of]
     if isinstance(of, Fails):
-        return np.asarray(measured(of.part, found) <= 0.0, dtype=np.float64)
-    parts = [measured(part, found) for part in of.parts]
+        return np.asarray(measure(of.part, found) <= 0.0, dtype=np.float64)
+    parts = [measure(part, found) for part in of.parts]
     return np.asarray((np.maximum if of.every else np.minimum).reduce(parts))
 
 

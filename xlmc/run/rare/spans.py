@@ -1,15 +1,31 @@
-"""Sets of numbers as a few intervals in each trial, for all trials of a block together."""
+"""Sets of numbers as a few intervals in each trial, for all trials of a block together.
+
+**Rearranged.** Where the accepted values of a uniform u are a few short intervals, the pieces of [0, 1) are put in
+another order: these intervals first, one after the other, then all the rest. The position t in this order is a uniform
+again, whatever the intervals are, and accepted where it is below their length together: a thin layer has become a tail,
+and every probability is as it was. Nothing that is said of t depends on how exactly the intervals are known; what they
+leave out is found behind them.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Spans", "chosen", "common", "joined", "pieces"]
+__all__ = ["Rearranged", "Spans", "choose", "intersection", "union", "union_of_pairs"]
 
 Floats = NDArray[np.float64]
+
+_LARGEST: Final = 1.0 - 2.0**-53
+
+_MARGIN: Final = 1e-3
+"""By which share of itself an interval is taken longer at either end: rounding must not cut off what is accepted."""
+
+_BITS: Final = 8.0
+"""By how many of the last bits of its ends, beside."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,7 +43,7 @@ class Spans:
     @classmethod
     def between(cls, low: Floats, high: Floats) -> Spans:
         """One interval a trial, (n,) ends each; empty where the ends are the wrong way round, or no numbers."""
-        return pieces([(low, high)])
+        return union_of_pairs([(low, high)])
 
     @classmethod
     def whole(cls, n: int) -> Spans:
@@ -44,7 +60,7 @@ class Spans:
         return np.asarray(((self.low <= values) & (values <= self.high)).any(axis=0))
 
 
-def pieces(parts: list[tuple[Floats, Floats]]) -> Spans:
+def union_of_pairs(parts: list[tuple[Floats, Floats]]) -> Spans:
     """The union of intervals: pairs of ends, (n,) or (p, n)."""
     low = np.concatenate([np.atleast_2d(low) for low, _ in parts])
     high = np.concatenate([np.atleast_2d(high) for _, high in parts])
@@ -69,21 +85,82 @@ def _emptied(low: Floats, high: Floats, here: NDArray[np.bool_]) -> tuple[Floats
     return np.where(here, np.inf, low), np.where(here, -np.inf, high)
 
 
-def joined(parts: list[Spans]) -> Spans:
+def union(parts: list[Spans]) -> Spans:
     """What any of them holds."""
-    return pieces([(each.low, each.high) for each in parts])
+    return union_of_pairs([(each.low, each.high) for each in parts])
 
 
-def common(parts: list[Spans]) -> Spans:
+def intersection(parts: list[Spans]) -> Spans:
     """What all of them hold."""
     found = parts[0]
     for each in parts[1:]:
         low = np.maximum(found.low[:, None], each.low[None])
         high = np.minimum(found.high[:, None], each.high[None])
-        found = pieces([(low.reshape(-1, low.shape[-1]), high.reshape(-1, high.shape[-1]))])
+        found = union_of_pairs([(low.reshape(-1, low.shape[-1]), high.reshape(-1, high.shape[-1]))])
     return found
 
 
-def chosen(holds: NDArray[np.bool_], yes: Spans, no: Spans) -> Spans:
+def choose(holds: NDArray[np.bool_], yes: Spans, no: Spans) -> Spans:
     """The one set where something holds, (n,), and the other elsewhere."""
-    return pieces([_emptied(yes.low, yes.high, ~holds), _emptied(no.low, no.high, holds)])
+    return union_of_pairs([_emptied(yes.low, yes.high, ~holds), _emptied(no.low, no.high, holds)])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rearranged:
+    """Of n trials.
+
+    Attributes:
+        start: (p, n) of the intervals, in order; ∞ for those that are not there.
+        length: (p, n), 0 for those.
+        before: (p, n) the length of all earlier ones.
+        total: (n,) the length of all.
+    """
+
+    start: Floats
+    length: Floats
+    before: Floats
+    total: Floats
+
+    @classmethod
+    def of(cls, low: Floats, high: Floats) -> Rearranged:
+        """For intervals (p, n) of the uniform; those that are empty have no length."""
+        with np.errstate(invalid="ignore"):
+            margin = _MARGIN * (high - low) + _BITS * np.spacing(np.where(low < high, high, 1.0))
+        found = union_of_pairs([_within(low, high, margin)])
+        with np.errstate(invalid="ignore"):
+            length = np.where(found.low < found.high, found.high - found.low, 0.0)
+        reached = np.cumsum(length, axis=0)
+        return cls(found.low, length, reached - length, np.minimum(reached[-1], 1.0))
+
+    def uniform_at(self, position: Floats) -> Floats:
+        """(n,) the uniform at these positions, (n,)."""
+        rest = position - self.total
+        found = rest.copy()
+        for start, length, before in zip(self.start, self.length, self.before, strict=True):
+            found += np.where(rest >= start - before, length, 0.0)
+        for start, length, before in zip(self.start, self.length, self.before, strict=True):
+            inside = (position >= before) & (position < before + length)
+            found = np.where(inside, start + (position - before), found)
+        return np.asarray(np.clip(found, 0.0, _LARGEST))
+
+    def position_of(self, uniform: Floats) -> Floats:
+        """(n,) the positions of uniforms, (n,)."""
+        found = uniform + self.total
+        for start, length in zip(self.start, self.length, strict=True):
+            found -= np.where(uniform >= start + length, length, 0.0)
+        for start, length, before in zip(self.start, self.length, self.before, strict=True):
+            inside = (uniform >= start) & (uniform < start + length)
+            found = np.where(inside, before + (uniform - start), found)
+        return np.asarray(np.clip(found, 0.0, _LARGEST))
+
+    def fold(self, position: Floats) -> Floats:
+        """(n,) positions that are all within the intervals: those beyond, by whole lengths nearer."""
+        some = self.total > 0.0
+        found = np.fmod(position, np.where(some, self.total, 1.0))
+        return np.where(some, found, position)
+
+
+def _within(low: Floats, high: Floats, margin: Floats) -> tuple[Floats, Floats]:
+    """Longer by so much, within 0 and 1."""
+    full, least, most = low < high, np.maximum(low - margin, 0.0), np.minimum(high + margin, 1.0)
+    return np.where(full, least, np.inf), np.where(full, most, -np.inf)

@@ -1,7 +1,7 @@
 """Run blocks on a Dask cluster: an existing one, or one of this machine.
 
-The `RunSpec` is a Dask task of its own, so Dask sends it to each worker once, and again to a worker that takes a lost
-one's place. A few blocks are one Dask task; where a worker dies, Dask gives its blocks to another. Only as many are
+The `RunSpec` is a Dask task of its own, so Dask sends it to each worker once, and again to a worker that replaces a
+lost one. A few blocks are one Dask task; where a worker dies, Dask gives its blocks to another. Only as many are
 under way as keep the workers busy, and results are taken in order, so memory stays flat here and there.
 """
 
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from xlmc.errors import SimulationError
 from xlmc.run.blocks import Block, ModelRunner, Task
-from xlmc.run.scheduling.run_spec import LIBRARIES, RunSpec, check_software, software, unpacked
+from xlmc.run.scheduling.run_spec import LIBRARIES, RunSpec, check_software, software, unpack
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -57,7 +57,7 @@ def by_cluster(
     """
     with _client(scheduler, workers) as client:
         _check_workers(client, scheduler)
-        yield from _blocks(client, spec.packed(), blocks, iter(tasks))
+        yield from _blocks(client, spec.pack(), blocks, iter(tasks))
 
 
 @contextmanager
@@ -147,7 +147,7 @@ class _Runners:
     """The runners of one run on a worker: as many as its threads use at once."""
 
     def __init__(self, packed: bytes) -> None:
-        self._spec = unpacked(packed)
+        self._spec = unpack(packed)
         self._model = self._spec.model()
         self._program = self._model.program(self._spec.engine)
         self._idle: SimpleQueue[ModelRunner] = SimpleQueue()

@@ -17,7 +17,7 @@ from xlmc.evaluation.engines import ENGINES
 from xlmc.run.blocks import ModelRunner
 from xlmc.run.model import Model
 from xlmc.run.version import __version__
-from xlmc.sampling.plan import Plan
+from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.workbook.model import Workbook
 
 __all__ = ["RunSpec", "check_software", "model_runner", "software"]
@@ -27,7 +27,7 @@ LIBRARIES = ("numpy", "scipy", "formulas", *(engine.library for engine in ENGINE
 
 
 def model_runner(
-    model: Model, program: Program, engine: str, seed: int, block: int, plan: Plan | None = None
+    model: Model, program: Program, engine: str, seed: int, block: int, plan: SamplingPlan | None = None
 ) -> ModelRunner:
     """What runs the blocks of a model in this process, in one thread."""
     sampler, evaluator = model.sampler(seed, block, engine, plan), program.evaluator(block)
@@ -44,7 +44,7 @@ class RunSpec:
     engine: str
     seed: int
     block: int
-    plan: Plan | None = None
+    plan: SamplingPlan | None = None
 
     @classmethod
     def of(
@@ -53,14 +53,14 @@ class RunSpec:
         engine: str,
         seed: int,
         block: int,
-        plan: Plan | None = None,
+        plan: SamplingPlan | None = None,
     ) -> RunSpec:
         """Of a run of this model."""
         bare = replace(model.workbook, parts={}, data=b"")  # the file as it was: only the result sheets need it
         needed = plan if plan is not None and plan.size else None  # independent trials may be any number
         return cls(bare, model.definitions, model.path, engine, seed, block, needed)
 
-    def packed(self) -> bytes:
+    def pack(self) -> bytes:
         """It and the software that it was made with, as bytes for `unpacked`."""
         return pickle.dumps((software(), pickle.dumps(self, protocol=5)), protocol=5)
 
@@ -78,7 +78,7 @@ class RunSpec:
         return model_runner(model, program, self.engine, self.seed, self.block, self.plan)
 
 
-def unpacked(packed: bytes) -> RunSpec:
+def unpack(packed: bytes) -> RunSpec:
     """What was packed. The bytes must come from a process of one's own: to unpickle them is to run what is in them.
 
     Raises:

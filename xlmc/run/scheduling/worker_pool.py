@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 from xlmc.errors import SimulationError
 from xlmc.evaluation.engines import ENGINES
 from xlmc.run.blocks import Block, ModelRunner, Task
+from xlmc.run.scheduling.batches import by_threads
 from xlmc.run.scheduling.cluster import by_cluster
 from xlmc.run.scheduling.processes import by_processes
 from xlmc.run.scheduling.run_spec import RunSpec, model_runner
-from xlmc.run.scheduling.threads import by_threads
 
 if TYPE_CHECKING:
     from xlmc.definitions.model import Settings
     from xlmc.evaluation.engine import Program
     from xlmc.run.model import Model
-    from xlmc.sampling.plan import Plan
+    from xlmc.sampling.sampling_plan import SamplingPlan
 
 __all__ = ["WorkerPool"]
 
@@ -53,7 +53,7 @@ class WorkerPool:
             raise SimulationError(f"there is no scheduler {self.scheduler!r}", hint=hint)
 
     def blocks(
-        self, model: Model, program: Program, settings: Settings, plan: Plan, block: int, tasks: Iterator[Task]
+        self, model: Model, program: Program, settings: Settings, plan: SamplingPlan, block: int, tasks: Iterator[Task]
     ) -> Generator[Block, None, None]:
         """The blocks of a run, of `block` trials each, in the order of their tasks.
 

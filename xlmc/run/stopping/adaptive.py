@@ -20,9 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.definitions.stopping import StableDigits
+from xlmc.run.stopping.progress import RunningMoments
 from xlmc.run.stopping.rule import Columns, Observed
-from xlmc.run.stopping.running import RunningMoments
-from xlmc.run.stopping.wording import be, list_of
+from xlmc.run.stopping.stopped import be, list_of
 
 __all__ = ["LEAST_SEQUENCES", "Sequences", "UntilStable", "numerical_tolerance", "sequence_length"]
 
@@ -98,18 +98,18 @@ class Sequences:
 
 
 class UntilStable:
-    """See `Rule`.
+    """See `StopRule`.
 
     Args:
         asked: how many significant ones.
-        forecasts: (place, name, share of the central range) of those that count.
+        forecasts: (index, name, share of the central range) of those that count.
     """
 
     key = StableDigits.key
 
     def __init__(self, asked: StableDigits, forecasts: Sequence[tuple[int, str, float]]) -> None:
         self._digits, self._names = asked.number, [name for _, name, _ in forecasts]
-        self._sequences = {place: Sequences(share) for place, _, share in forecasts}
+        self._sequences = {index: Sequences(share) for index, _, share in forecasts}
         self._share = 0.0
 
     @property
@@ -126,8 +126,8 @@ class UntilStable:
 
     def reached(self, block: Observed, columns: Columns) -> bool:
         shares = []
-        for place, sequences in self._sequences.items():
-            sequences.add(block.forecasts[place])
+        for index, sequences in self._sequences.items():
+            sequences.add(block.forecasts[index])
             excess = sequences.excess(self._digits)
             shares.append(min(sequences.count / LEAST_SEQUENCES, 1.0 / max(excess, 1e-9) ** 2, 1.0))
         self._share = min(shares)

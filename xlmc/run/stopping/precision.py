@@ -3,9 +3,12 @@
 Such a rule may end a run because its numbers look known better than they are. With a tolerance that goes to 0 its
 intervals keep their confidence (Chow & Robbins 1965 for the mean; Glynn & Whitt 1992 for any number whose error is
 estimated consistently). So that they keep it in runs as short as people make, the rule looks only after a growing
-number of blocks (see `schedule`), and only when there are 1,000 numbers or more of each forecast, or 10,000 where these
+number of blocks, and only when there are 1,000 numbers or more of each forecast, or 10,000 where these
 are all the same, for what is rare may not have come yet; and it stops only when all that was asked for is precise
 enough at one and the same look.
+
+A rule that looks after every block gets many chances to find its numbers known well by luck, and costs most. With
+numbers of blocks that grow by a constant factor there are few looks, each at much more than the one before.
 """
 
 from __future__ import annotations
@@ -17,13 +20,20 @@ from typing import Final
 
 from xlmc.columns import numbers
 from xlmc.definitions.stopping import Precision
+from xlmc.run.stopping.progress import RunningMoments
 from xlmc.run.stopping.rule import Columns, Observed
-from xlmc.run.stopping.running import RunningMoments
-from xlmc.run.stopping.schedule import Checkpoints
-from xlmc.run.stopping.wording import be, list_of
+from xlmc.run.stopping.stopped import be, list_of
 from xlmc.statistics import Estimate, Sample, percentile
 
-__all__ = ["LEAST_EQUAL", "LEAST_NUMBERS", "UntilPrecise", "Wanted", "half_width", "wanted_of"]
+__all__ = [
+    "LEAST_EQUAL",
+    "LEAST_NUMBERS",
+    "Checkpoints",
+    "UntilPrecise",
+    "Wanted",
+    "half_width",
+    "wanted_of",
+]
 
 LEAST_NUMBERS: Final = 1_000
 """Of a forecast, before it is looked at."""
@@ -32,23 +42,29 @@ LEAST_EQUAL: Final = 10_000
 """Of a forecast that has not varied. Of what comes in 1 of 1,000 trials, 1,000 numbers hold none in 37 % of the runs,
 10,000 in 1 of 22,000."""
 
+_FIRST = 4
+"""Blocks before the first look."""
+
+_GROWTH = 1.25
+"""Blocks of a look over those of the look before it: at most so many times the trials needed are run."""
+
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
     """One number to be known well.
 
     Attributes:
-        place: the forecast's.
+        index: the forecast's.
         percent: of a percentile; None for the mean or the standard deviation.
         spread: the standard deviation rather than the mean.
     """
 
-    place: int
+    index: int
     percent: float | None = None
     spread: bool = False
 
 
-def wanted_of(place: int, central: float, asked: Sequence[str]) -> list[Wanted]:
+def wanted_of(index: int, central: float, asked: Sequence[str]) -> list[Wanted]:
     """What is asked of a forecast, `range` being both ends of the range that holds the share `central`.
 
     >>> [wanted.percent for wanted in wanted_of(0, 0.5, ("mean", "range", "p90"))]
@@ -58,30 +74,30 @@ def wanted_of(place: int, central: float, asked: Sequence[str]) -> list[Wanted]:
     for name in asked:
         if name == "range":
             tail = 50.0 * (1.0 - central)
-            found |= {Wanted(place, tail): None, Wanted(place, 100.0 - tail): None}
+            found |= {Wanted(index, tail): None, Wanted(index, 100.0 - tail): None}
         elif name in ("mean", "sd"):
-            found[Wanted(place, spread=name == "sd")] = None
+            found[Wanted(index, spread=name == "sd")] = None
         else:
-            found[Wanted(place, float(name[1:]))] = None
+            found[Wanted(index, float(name[1:]))] = None
     return list(found)
 
 
 class UntilPrecise:
-    """See `Rule`.
+    """See `StopRule`.
 
     Args:
         asked: how well which numbers must be known.
-        forecasts: (place, name, share of the central range) of those that count.
+        forecasts: (index, name, share of the central range) of those that count.
     """
 
     key = Precision.key
 
     def __init__(self, asked: Precision, forecasts: Sequence[tuple[int, str, float]]) -> None:
         self._asked, self._names = asked, [name for _, name, _ in forecasts]
-        found = [wanted for place, _, central in forecasts for wanted in wanted_of(place, central, asked.numbers)]
+        found = [wanted for index, _, central in forecasts for wanted in wanted_of(index, central, asked.numbers)]
         self._wanted = sorted(found, key=lambda wanted: wanted.percent is not None)  # the cheap ones first
         spread = "sd" in asked.numbers
-        self._moments = {place: RunningMoments(spread=spread) for place, _, _ in forecasts}
+        self._moments = {index: RunningMoments(spread=spread) for index, _, _ in forecasts}
         self._checkpoints = Checkpoints()
         self._accepted, self._needed = 0, math.inf
 
@@ -101,8 +117,8 @@ class UntilPrecise:
 
     def reached(self, block: Observed, columns: Columns) -> bool:
         self._accepted += block.accepted.size
-        for place, moments in self._moments.items():
-            moments.add(block.forecasts[place])
+        for index, moments in self._moments.items():
+            moments.add(block.forecasts[index])
         if not self._checkpoints.due() or any(each.n < _least(each) for each in self._moments.values()):
             return False
         for number, wanted in enumerate(self._wanted):
@@ -124,9 +140,9 @@ class UntilPrecise:
         return half / allowed
 
     def _estimate(self, wanted: Wanted, columns: Columns) -> Estimate:
-        confidence, moments = self._asked.confidence, self._moments[wanted.place]
+        confidence, moments = self._asked.confidence, self._moments[wanted.index]
         if wanted.percent is not None:
-            sample = Sample.of(numbers(columns(wanted.place)))
+            sample = Sample.of(numbers(columns(wanted.index)))
             return percentile(sample, wanted.percent, confidence=confidence)
         return moments.standard_deviation(confidence) if wanted.spread else moments.mean(confidence)
 
@@ -141,3 +157,23 @@ def half_width(estimate: Estimate) -> float:
         return math.inf
     low, high = estimate.interval
     return max(estimate.value - low, high - estimate.value)
+
+
+class Checkpoints:
+    """Counts blocks, and says after which to look: 4, 5, 7, 9, 12, 15, 19, 24, 30, …
+
+    >>> checkpoints = Checkpoints()
+    >>> [block for block in range(1, 31) if checkpoints.due()]
+    [4, 5, 7, 9, 12, 15, 19, 24, 30]
+    """
+
+    def __init__(self) -> None:
+        self._blocks, self._next = 0, _FIRST
+
+    def due(self) -> bool:
+        """Count a block; whether to look after it."""
+        self._blocks += 1
+        if self._blocks < self._next:
+            return False
+        self._next = max(self._blocks + 1, math.ceil(self._blocks * _GROWTH))
+        return True

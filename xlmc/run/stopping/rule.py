@@ -1,4 +1,9 @@
-"""What every rule that ends a run can do."""
+"""What every rule that ends a run can do, and the simplest: until so many trials are accepted.
+
+The run then ends with the trial that is the last of them, and the accepted trials are a plain sample of that size. The
+number of trials is random, with a negative binomial distribution, so that the share of accepted trials is estimated
+otherwise: see `statistics.inverse_proportion`.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +13,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Columns", "Observed", "Rule"]
+from xlmc.definitions.stopping import AcceptedTrials
+
+__all__ = ["Columns", "Observed", "StopRule", "UntilAccepted"]
 
 Floats = NDArray[np.float64]
 
@@ -35,7 +42,7 @@ class Observed(Protocol):
     def forecasts(self) -> Sequence[Floats]: ...
 
 
-class Rule(Protocol):
+class StopRule(Protocol):
     """Looks at the blocks of a run, each once, in their order.
 
     Attributes:
@@ -58,3 +65,30 @@ class Rule(Protocol):
 
     def reached(self, block: Observed, columns: Columns) -> bool:
         """Whether the run may end with this block, cut to the trials that count."""
+
+
+class UntilAccepted:
+    """See `Rule`."""
+
+    key = AcceptedTrials.key
+
+    def __init__(self, asked: AcceptedTrials) -> None:
+        self._wanted, self._seen = asked.number, 0
+
+    @property
+    def goal(self) -> str:
+        return f"{self._wanted:,} trials were accepted"
+
+    @property
+    def share(self) -> float:
+        return min(1.0, self._seen / self._wanted)
+
+    def counting(self, block: Observed, start: int) -> int:
+        missing = self._wanted - self._seen
+        if block.accepted.size < missing:
+            return block.trials
+        return int(block.accepted[missing - 1]) - start + 1
+
+    def reached(self, block: Observed, columns: Columns) -> bool:
+        self._seen += block.accepted.size
+        return self._seen >= self._wanted

@@ -1,14 +1,31 @@
-"""Watches a run: its goal, its number of trials, its time."""
+"""Watches a run: its goal, its number of trials, its time, and Ctrl-C, which is a wish to end it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import signal
+import threading
+from collections.abc import Callable, Sequence
+from types import FrameType, TracebackType
+from typing import Any, Final
 
-from xlmc.run.stopping.rule import Columns, Observed, Rule
-from xlmc.run.stopping.stopped import Stopped
-from xlmc.run.stopping.wording import duration
+from xlmc.definitions.model import Forecast, name_key
+from xlmc.definitions.stopping import Stopping
+from xlmc.errors import SimulationError
+from xlmc.run.stopping.adaptive import UntilStable
+from xlmc.run.stopping.precision import UntilPrecise
+from xlmc.run.stopping.rule import Columns, Observed, StopRule, UntilAccepted
+from xlmc.run.stopping.stopped import Stopped, duration
+from xlmc.sampling.methods import METHODS
 
-__all__ = ["Watch"]
+__all__ = ["RULES", "Interruption", "Watch", "chosen_rule", "may_end_early", "refuse_other_sampling"]
+
+RULES: Final[dict[str, Callable[..., StopRule]]] = {
+    UntilAccepted.key: UntilAccepted,
+    UntilPrecise.key: UntilPrecise,
+    UntilStable.key: UntilStable,
+}
+"""The key of a goal -> its rule: made of the goal and, where it looks at forecasts, of these, each as (index, name,
+share of the central range)."""
 
 
 class Watch:
@@ -21,7 +38,7 @@ class Watch:
         clock: seconds from any moment on; read for the first time now.
     """
 
-    def __init__(self, rule: Rule | None, trials: int, seconds: float | None, clock: Callable[[], float]) -> None:
+    def __init__(self, rule: StopRule | None, trials: int, seconds: float | None, clock: Callable[[], float]) -> None:
         self._rule, self._trials, self._seconds, self._clock = rule, trials, seconds, clock
         self._began = clock()
         self._seen = 0
@@ -65,3 +82,80 @@ class Watch:
         if self._seconds is not None and self._clock() - self._began >= self._seconds:
             return Stopped("time", f"the time limit of {duration(self._seconds)} was reached", goal)
         return None
+
+
+class Interruption:
+    """Notes a first Ctrl-C while there is something to keep; any other is a `KeyboardInterrupt` as ever.
+
+    Python hears signals in its main thread alone: elsewhere, or where Ctrl-C is ignored, this does nothing.
+
+    Args:
+        wanted: whether to note anything.
+
+    Attributes:
+        asked: whether the run is to end.
+        keeping: whether there is something to keep; to be set by whoever has it.
+    """
+
+    def __init__(self, *, wanted: bool) -> None:
+        self._wanted = wanted
+        self._before: Any = None
+        self.asked = self.keeping = False
+
+    def __enter__(self) -> Interruption:
+        usual = self._wanted and threading.current_thread() is threading.main_thread()
+        if usual and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            self._before = signal.signal(signal.SIGINT, self._heard)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
+
+    def _heard(self, number: int, frame: FrameType | None) -> None:
+        if self.asked or not self.keeping:
+            raise KeyboardInterrupt
+        self.asked = True
+
+
+def chosen_rule(asked: Stopping, forecasts: Sequence[Forecast]) -> StopRule | None:
+    """The rule; None where the run is to run its trials.
+
+    Raises:
+        SimulationError: there is no forecast of a name, or none at all.
+    """
+    goal = asked.goal
+    if goal is None:
+        return None
+    rule = RULES[goal.key]
+    return rule(goal, _named(asked.forecasts, forecasts)) if goal.of_forecasts else rule(goal)
+
+
+def _named(names: Sequence[str], forecasts: Sequence[Forecast]) -> list[tuple[int, str, float]]:
+    index_of = {name_key(forecast.name): index for index, forecast in enumerate(forecasts)}
+    if not index_of:
+        raise SimulationError("there is no forecast whose precision could be asked for", hint="Define a forecast")
+    for name in names:
+        if name_key(name) not in index_of:
+            hint = f"choose from {', '.join(repr(forecast.name) for forecast in forecasts)}"
+            raise SimulationError(f"there is no forecast {name!r}", hint=hint)
+    found = dict.fromkeys(index_of[name_key(name)] for name in names) or range(len(forecasts))
+    return [(index, forecasts[index].name, forecasts[index].central) for index in found]
+
+
+def may_end_early(sampling: str) -> bool:
+    """Whether the first trials of a run are a sample, as those of a Latin hypercube or a Sobol sequence are not."""
+    return METHODS[sampling].independent
+
+
+def refuse_other_sampling(sampling: str, asked: Stopping) -> None:
+    """Refuse to end a run early whose trials belong together.
+
+    Raises:
+        SimulationError: something but the number of trials may end it.
+    """
+    if asked.asked and not may_end_early(sampling):
+        message = f"a run with {sampling} sampling cannot end before all its trials are run"
+        raise SimulationError(message, hint="Use mc, plain Monte Carlo, or give a number of trials alone")

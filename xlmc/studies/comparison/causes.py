@@ -22,7 +22,7 @@ from xlmc.address import Cell
 from xlmc.definitions.model import Assumption, Filter, name_key
 from xlmc.results.record.in_words import distribution_text
 from xlmc.run.model import Model
-from xlmc.run.scene import filter_limits
+from xlmc.run.needed import filter_limits
 from xlmc.run.simulation import Simulation
 from xlmc.studies.comparison.unit_factors import factor_between
 from xlmc.studies.comparison.variations import with_changes
@@ -84,7 +84,7 @@ def inputs_of(first: Simulation, second: Simulation) -> Inputs:
 
 
 def _needed(model: Model) -> dict[str, Assumption]:
-    return {name_key(a.name): a for a in model.assumptions if a not in model.scene.idle}
+    return {name_key(a.name): a for a in model.assumptions if a not in model.needed.idle}
 
 
 def _drawn_only(mine: Mapping[str, Assumption], theirs: Mapping[str, Assumption]) -> tuple[str, ...]:

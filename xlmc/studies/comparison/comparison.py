@@ -284,5 +284,7 @@ def _unpaired_forecasts(
 
 
 def _simpler(first: Model, second: Model) -> int | None:
-    mine, theirs = ((len(model.live), len(model.scene.graph.formulas), len(model.filters)) for model in (first, second))
+    mine, theirs = (
+        (len(model.live), len(model.needed.graph.formulas), len(model.filters)) for model in (first, second)
+    )
     return None if mine == theirs else int(theirs < mine)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from xlmc import statistics
 from xlmc.run.model import Model
-from xlmc.sampling.plan import Plan
+from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.statistics import Sample
 
 __all__ = ["STATISTICS", "Answer", "Errors", "Extreme", "Method", "MethodResult", "answer_of", "extremes_of"]
@@ -63,12 +63,12 @@ class Extreme:
     end: str
     value: float
     seed: int
-    plan: Plan
+    plan: SamplingPlan
     trial: int
 
 
 def extremes_of(
-    forecasts: Mapping[str, Floats], trials: NDArray[np.int64], seed: int, plan: Plan
+    forecasts: Mapping[str, Floats], trials: NDArray[np.int64], seed: int, plan: SamplingPlan
 ) -> tuple[Extreme, ...]:
     """The extremes of every forecast `(m,)` over accepted trials `(m,)`; none of one that is nowhere a number."""
     found = []

@@ -14,7 +14,7 @@ from xlmc.errors import SimulationError
 from xlmc.evaluation.passes.derivatives import Derivative, Derivatives
 from xlmc.run.model import Model
 from xlmc.sampling.draws import Draw
-from xlmc.sampling.plan import Plan
+from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.studies.derivatives import derivatives
 
 __all__ = ["Expansion", "Moments", "draw_assumptions", "expansion_of"]
@@ -109,7 +109,7 @@ def _moments_of(model: Model, seed: int) -> Moments:
 
 def draw_assumptions(model: Model, seed: int) -> Iterator[Floats]:
     """65,536 Sobol draws of the assumptions, before any filter, `(n, k)` block by block."""
-    plan = Plan.of("sobol", _DRAWN)
+    plan = SamplingPlan.of("sobol", _DRAWN)
     made = model.sampler(seed, plan.size, plan=plan)
     keys = [name_key(a.name) for a in model.live]
     for start in range(0, plan.trials, plan.size):

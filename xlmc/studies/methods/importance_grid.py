@@ -24,7 +24,7 @@ from xlmc.run.model import Model
 from xlmc.run.scheduling.run_spec import model_runner
 from xlmc.run.simulate import simulate
 from xlmc.sampling.methods import Margin
-from xlmc.sampling.plan import Plan
+from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.sampling.streams import Stream
 from xlmc.studies.methods.answer import Errors, Extreme, MethodResult, answer_of, extremes_of
 
@@ -115,7 +115,7 @@ def _weighted(
 
 
 @dataclass(frozen=True, slots=True)
-class _GridPlan(Plan):
+class _GridPlan(SamplingPlan):
     """Independent trials, denser where the grids say.
 
     Attributes:

@@ -23,9 +23,9 @@ from xlmc.definitions.model import name_key
 from xlmc.errors import SimulationError
 from xlmc.evaluation.passes.derivatives import Derivative
 from xlmc.functions.values import ERROR, TEXT
-from xlmc.run.drawing import parameter_target
+from xlmc.run.draw_binding import parameter_target
 from xlmc.run.model import Model
-from xlmc.run.scene import filter_limits
+from xlmc.run.needed import filter_limits
 from xlmc.run.simulate import simulate
 from xlmc.studies.derivatives import derivatives
 from xlmc.studies.methods.answer import Answer, Errors, Extreme, MethodResult

@@ -18,7 +18,7 @@ from xlmc.definitions.model import name_key
 from xlmc.evaluation.engine import Target
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.run.model import Model
-from xlmc.run.scene import condition
+from xlmc.run.needed import filter_condition
 from xlmc.sampling.draws import Draw
 
 __all__ = ["Box", "Evaluation", "Outcomes", "assumptions_of", "box_of"]
@@ -133,7 +133,7 @@ class Evaluation:
     def __init__(self, model: Model, cells: tuple[Cell, ...] = ()) -> None:
         self._keys = [name_key(a.name) for a in model.live]
         self._filters, self._forecasts, self._cells = len(model.filters), len(model.forecasts), len(cells)
-        asked = [Target(condition(each), each.cell) for each in model.filters]
+        asked = [Target(filter_condition(each), each.cell) for each in model.filters]
         asked += [Target(each.cell, each.cell) for each in model.forecasts]
         asked += [Target(cell, cell) for cell in cells]
         program = NumpyProgram.of(model.lowering, asked, [], frozenset(self._keys))
@@ -160,7 +160,7 @@ class Evaluation:
 
 def _upstream(model: Model, cells: Iterable[Cell]) -> set[Cell]:
     """The cells that these depend on, and they themselves."""
-    needs = model.scene.graph.needs
+    needs = model.needed.graph.needs
     found: set[Cell] = set()
     open_ = list(cells)
     while open_:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from xlmc.evaluation.engines import ENGINES
 from xlmc.run.model import Model
-from xlmc.run.pilot import PILOT_TRIALS
 from xlmc.run.simulate import simulate
+from xlmc.run.sobol_order import PILOT_TRIALS
 from xlmc.sampling.methods import METHODS
 from xlmc.studies.methods.answer import Errors, MethodResult, answer_of, extremes_of
 

@@ -20,7 +20,7 @@ from xlmc.address import Cell
 from xlmc.definitions.model import Assumption, name_key
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
-from xlmc.run.scene import targets_of
+from xlmc.run.needed import targets_of
 from xlmc.studies.methods.answer import Errors, MethodResult, answer_of
 from xlmc.studies.methods.points import Evaluation
 
@@ -65,7 +65,7 @@ class Surrogate:
         """
         started = time.perf_counter()
         pilot = _pilot_size(len(model.live))
-        cells = tuple(cell for cell in model.scene.graph.formulas if cell in model.scene.graph.varying)
+        cells = tuple(cell for cell in model.needed.graph.formulas if cell in model.needed.graph.varying)
         if len(cells) > _MOST_CELLS:
             message = f"{len(cells):,} cells vary, and the surrogate looks at no more than {_MOST_CELLS:,}"
             raise SimulationError(message, hint="use a method that draws")
@@ -117,7 +117,7 @@ def _errors(points: Floats, values: Floats) -> Floats:
 
 def _cut(model: Model, errors: dict[Cell, float]) -> list[Cell]:
     """The cells at which following the formulas upwards ends: smooth ones, and the assumptions themselves."""
-    needs, found = model.scene.graph.needs, dict[Cell, None]()
+    needs, found = model.needed.graph.needs, dict[Cell, None]()
     seen: set[Cell] = set()
     open_ = targets_of(model.forecasts, model.filters)[::-1]
     ends = {a.cell for a in model.live} | {cell for cell, error in errors.items() if error <= _TOLERANCE}

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from xlmc.address import Cell
 from xlmc.definitions.model import name_key
-from xlmc.run.drawing import parameter_target
-from xlmc.run.scene import filter_limits
+from xlmc.run.draw_binding import parameter_target
+from xlmc.run.needed import filter_limits
 from xlmc.studies.sensitivity.moved_limit import LimitTrials, grid, holds_to
 
 if TYPE_CHECKING:

@@ -64,7 +64,7 @@ def why_not(simulation: Simulation) -> str:
             "Sobol indices are not given: assumptions are correlated, so that the variance cannot be divided among "
             f"them. {_INSTEAD}"
         )
-    if len(model.scene.stages) > 1:
+    if len(model.needed.stages) > 1:
         return (
             "Sobol indices are not given: parameters of assumptions depend on other assumptions, so that these are not "
             f"independent. {_INSTEAD}"

@@ -29,7 +29,7 @@ from xlmc.evaluation.passes.random_rounding import (
 )
 from xlmc.functions.values import Value
 from xlmc.run.model import Model
-from xlmc.run.scene import condition
+from xlmc.run.needed import filter_condition
 from xlmc.run.simulation import Simulation
 from xlmc.studies.derivatives import derivatives
 from xlmc.studies.stability.digit_findings import Where
@@ -71,7 +71,7 @@ class Case:
         targets = [*(f.cell for f in model.forecasts), *(f.cell for f in model.filters)]
         self.node = {cell: self.lowering.cell(cell) for cell in (*self.cells, *targets)}
         self.names = [name_key(a.name) for a in model.live]
-        self.conditions = [self.lowering.target(Target(condition(f), f.cell)) for f in model.filters]
+        self.conditions = [self.lowering.target(Target(filter_condition(f), f.cell)) for f in model.filters]
         self.nodes = closure(self.dag, [*self.node.values(), *self.conditions])
         self._exact = Exact(self.dag, self.nodes)
         self._known: dict[int, dict[int, Any]] = {}

@@ -19,7 +19,7 @@ from xlmc.evaluation.passes.exact import Exact, exactly
 from xlmc.evaluation.passes.random_rounding import closure
 from xlmc.formula import ir
 from xlmc.formula.substitute import substitute
-from xlmc.run.scene import filter_limits
+from xlmc.run.needed import filter_limits
 from xlmc.studies.stability.case import Case
 from xlmc.studies.stability.formula_trees import factors, terms
 from xlmc.studies.stability.momentum import angle_of, components, sine, spin, times

@@ -14,7 +14,7 @@ import numpy as np
 
 from xlmc.address import Cell
 from xlmc.formula import ir
-from xlmc.run.digits import DUST, MOST_OF_SPREAD
+from xlmc.run.digit_watch import DUST, MOST_OF_SPREAD
 from xlmc.studies.stability.case import Bools, Case, Floats
 from xlmc.studies.stability.culprits import (
     Cancellation,

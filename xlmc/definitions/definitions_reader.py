@@ -1,0 +1,150 @@
+"""Everything a workbook asks of a run, read from its reserved tables and from calls in its cells."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from xlmc.definitions.computed import Computed
+from xlmc.definitions.in_cells.calls import InCells, in_cell_correlations, in_cell_forecasts, read_in_cells
+from xlmc.definitions.model import Definitions, Settings, name_key
+from xlmc.definitions.problems import Findings
+from xlmc.definitions.tables.assumptions import read_assumptions
+from xlmc.definitions.tables.correlations import read_correlations
+from xlmc.definitions.tables.filters import read_checks, read_filters
+from xlmc.definitions.tables.forecasts import read_forecasts
+from xlmc.definitions.tables.identity import Claims
+from xlmc.definitions.tables.settings import read_settings
+from xlmc.definitions.tables.table_rows import DefinitionTable, definition_tables, holds_rows
+from xlmc.definitions.unavailable import (
+    TABLE_REASON,
+    TablesOfRun,
+    faults_of,
+    remark_on_tables,
+    remark_on_unavailable,
+    tables_of_run,
+)
+from xlmc.errors import DefinitionError
+from xlmc.workbook.model import Workbook
+
+__all__ = ["read_definitions"]
+
+
+def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definitions:
+    """What the tables `xlmc_assumptions`, `xlmc_forecasts`, … of a workbook say, and calls such as `RiskNormal`.
+
+    Nothing is raised for a mistake in them: all mistakes are in `problems`, each with its cell and what to do.
+
+    Args:
+        workbook: that was read.
+        engines: the names that its setting Engine may have.
+    """
+    findings = Findings()
+    tables = definition_tables(workbook, findings)
+    uncertain, answers, tests = Claims("assumption"), Claims("forecast"), Claims("filter")
+    settings, central = read_settings(workbook, tables["xlmc_settings"], engines, findings)
+    computed = Computed(workbook, drawn=uncertain.cells)
+    assumptions = read_assumptions(workbook, tables["xlmc_assumptions"], computed, uncertain, findings)
+    forecasts = read_forecasts(workbook, tables["xlmc_forecasts"], computed, central, answers, findings)
+    filters = read_filters(workbook, tables["xlmc_filters"], computed, tests, findings)
+    checks = read_checks(workbook, tables["xlmc_checks"], computed, Claims("check"), findings)
+    calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings)
+    _remark_on_stored_assumptions(workbook, findings)
+    if not (calls or any(tables.values())):
+        remark_on_tables(workbook.data_tables, TablesOfRun(), findings)
+        _say_how_to_begin(workbook, findings)
+        return Definitions(notices=tuple(findings.notices), problems=tuple(findings.problems))
+
+    names = {key: name for key, (name, _) in uncertain.names.items()}
+    assumptions = *assumptions, *calls.assumptions
+    frozen = [name_key(each.name) for each in assumptions if each.frozen]
+    correlations = read_correlations(workbook, tables["xlmc_correlations"], names, frozen, findings)
+    more = in_cell_correlations(workbook, calls.assumptions, calls.matrices, correlations, findings)
+    forecasts = *forecasts, *in_cell_forecasts(calls, computed, central, answers, findings)
+    _remark_on_calls(calls, settings, findings)
+    drawn = {each.cell for each in assumptions if not each.frozen}
+    what_if = tables_of_run(workbook, drawn, calls.results.keys() | calls.unavailable.keys(), calls.rewritten)
+    remark_on_tables(workbook.data_tables, what_if, findings)
+    unavailable = {**calls.unavailable, **dict.fromkeys(faults_of(workbook, what_if.stale), TABLE_REASON)}
+    remark_on_unavailable(calls.unavailable, findings)
+    if not calls.assumptions:
+        _refuse_no_assumption(workbook, calls, tables["xlmc_assumptions"], findings)
+    if calls and not (forecasts or tables["xlmc_forecasts"]):
+        _say_how_to_mark(workbook, findings)
+    elif not forecasts:
+        _refuse_none(workbook, "forecast", tables["xlmc_forecasts"], findings)
+    return Definitions(
+        assumptions=assumptions,
+        forecasts=forecasts,
+        filters=filters,
+        correlations=(*correlations, *more),
+        settings=settings,
+        notices=tuple(findings.notices),
+        problems=tuple(findings.problems),
+        rewritten={**calls.rewritten, **faults_of(workbook, what_if.varying)},
+        results=tuple(calls.results),
+        unavailable=unavailable,
+        checks=checks,
+    )
+
+
+def _remark_on_calls(calls: InCells, settings: Settings, findings: Findings) -> None:
+    for name, cell in calls.idle.items():
+        findings.notice(f"{name} has no effect: every draw has its own stream, by its name and the run's seed", cell)
+    if calls.lognorms and not settings.lognorm:
+        message = (
+            "RiskLognorm is read as @RISK's: its numbers are the mean and standard deviation of the draw. XLRisk means "
+            "those of the logarithm: for that, set Lognorm to XLRisk in the table xlmc_settings"
+        )
+        findings.notice(message, calls.lognorms[0])
+
+
+def _remark_on_stored_assumptions(workbook: Workbook, findings: Findings) -> None:
+    """Crystal Ball keeps what its dialogs define outside the cells, and marks the workbook by a hidden sheet."""
+    mark = next((name for name in workbook.sheets if name.casefold().startswith("cb_data_")), None)
+    if mark is not None:
+        message = (
+            "The workbook holds assumptions or forecasts from Crystal Ball's dialogs, which are not read: write them "
+            "as rows of the tables xlmc_assumptions and xlmc_forecasts, or as functions such as CB.Normal in cells"
+        )
+        findings.notice(message, mark)
+
+
+def _refuse_no_assumption(
+    workbook: Workbook, calls: InCells, tables: list[DefinitionTable], findings: Findings
+) -> None:
+    """Say why no cell draws, where calls were meant to."""
+    refused = [error for error in calls.refused if not any(error.where == known.where for known in findings.problems)]
+    if any(holds_rows(workbook, table) for table in tables):
+        return
+    findings.problems += [DefinitionError(error.message, where=error.where, hint=error.hint) for error in refused]
+    if not any(calls.refused):
+        _refuse_none(workbook, "assumption", tables, findings)
+
+
+def _say_how_to_mark(workbook: Workbook, findings: Findings) -> None:
+    if findings.problems:
+        return  # the answer may be in a cell that cannot be read
+    findings.problem(
+        "The workbook draws at random, and marks no cell as an answer",
+        workbook.name,
+        'Write RiskOutput("its name")+ in front of the formula of the answer, or list it in a table xlmc_forecasts',
+    )
+
+
+def _say_how_to_begin(workbook: Workbook, findings: Findings) -> None:
+    findings.problem(
+        "The workbook holds no xlmc tables, so there is nothing to run",
+        workbook.name,
+        "Insert ▸ Table, then name it xlmc_assumptions, xlmc_forecasts or xlmc_filters under Table Design;"
+        " or start from a template with xlmc new",
+    )
+
+
+def _refuse_none(workbook: Workbook, what: str, tables: list[DefinitionTable], findings: Findings) -> None:
+    """Without a forecast there is no answer, and without an assumption it does not vary."""
+    if any(holds_rows(workbook, table) for table in tables):
+        return
+    if tables:
+        findings.problem(f"The table {tables[0].table.name} holds no {what}", tables[0].where, "Fill in a row")
+    else:
+        findings.problem(f"The workbook defines no {what}", workbook.name, f"Add a table named xlmc_{what}s")

@@ -1,0 +1,203 @@
+"""Assumptions of a workbook as draws: constant parameters checked, dynamic ones compiled.
+
+A parameter that is computed from its assumption's own cell, `Low` as `=D7*0.97`, is computed from the base value of
+that cell: a draw cannot have limits that move with itself. What a person means is 3 % below the value in the cell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence, Set
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.address import Cell, InFormula
+from xlmc.definitions.model import CUTOFFS, Assumption, DataRange, Definitions, Parameter, name_key
+from xlmc.definitions.tables.data import data_family
+from xlmc.distributions import ByPercentiles, Family
+from xlmc.distributions.parameters import show
+from xlmc.errors import DefinitionError, Notice
+from xlmc.evaluation.engine import Evaluator, Target
+from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
+from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
+from xlmc.formula import Graph, Resolver, build_graph, ir
+from xlmc.functions.values import ERROR, TEXT
+from xlmc.run.needed import upstream
+from xlmc.sampling.draws import Draw, DynamicParameters
+from xlmc.workbook.model import Workbook
+
+__all__ = ["draw_of", "dynamic_parameters", "parameter_target", "with_base_parameters"]
+
+
+def parameter_target(cell: Cell) -> Target:
+    """A parameter's cell, taken as a number."""
+    return Target(ir.Binary("+", cell, ir.Number(0.0)), cell)
+
+
+def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
+    """How an assumption is drawn; a parameter that no assumption reaches becomes a number here.
+
+    Raises:
+        DefinitionError: the numbers are no distribution.
+    """
+    data = assumption.data
+    family = assumption.family if data is None else _from_data(assumption.family, data, assumption.name, lowering)
+    parameters = tuple(fold_parameter(each, lowering) for each in family.bind((), assumption.parameters))
+    cutoffs = None
+    if assumption.lower_cutoff is not None or assumption.upper_cutoff is not None:
+        lower = -np.inf if assumption.lower_cutoff is None else assumption.lower_cutoff
+        upper = np.inf if assumption.upper_cutoff is None else assumption.upper_cutoff
+        cutoffs = fold_parameter(lower, lowering), fold_parameter(upper, lowering)
+    draw = Draw(name_key(assumption.name), family, parameters, cutoffs)
+    if isinstance(family, ByPercentiles) and draw.varying:  # the member with these percentiles is looked for once
+        message = f"{assumption.name}: a distribution given by percentiles cannot depend on another assumption"
+        raise DefinitionError(message, where=draw.varying[0], hint="give it by its parameters, or by numbers")
+    if (fault := draw.fault()) is not None:
+        raise DefinitionError(f"{assumption.name}: {fault.message}", where=assumption.row, hint=fault.hint)
+    return draw
+
+
+def _from_data(family: Family, data: DataRange, name: str, lowering: Lowering) -> Family:
+    """The family of the data that the cells compute to."""
+    drawn = next((cell for cell in lowering.inputs if cell in data.area), None)
+    if drawn is not None:
+        raise _varying_data(name, drawn)
+
+    def number(cell: Cell) -> float:
+        value = fold_parameter(cell, lowering)
+        if isinstance(value, Cell):
+            raise _varying_data(name, cell)
+        return value
+
+    return data_family(family, data, number)
+
+
+def _varying_data(name: str, cell: Cell) -> DefinitionError:
+    return DefinitionError(
+        f"The data of {name!r} vary with an assumption in this cell, and data must be fixed",
+        where=cell,
+        hint="Draw from fixed data, and let the cell that uses the draw vary with the assumption",
+    )
+
+
+def fold_parameter(parameter: Parameter, lowering: Lowering) -> Parameter:
+    """The parameter's number; its cell where an assumption reaches it.
+
+    Raises:
+        DefinitionError: the cell is an error or a text.
+    """
+    if not isinstance(parameter, Cell):
+        return float(parameter)
+    value = lowering.known(parameter_target(parameter))
+    if value is None:
+        return parameter
+    if int(value.kinds[0]) >= ERROR or int(value.kinds[0]) == TEXT:
+        raise DefinitionError("the parameter is an error", where=parameter, hint="correct the cell's formula")
+    return float(value.numbers[0])
+
+
+@dataclass(frozen=True, slots=True)
+class _Varying:
+    """Computes parameters from draws; see `DynamicParameters`."""
+
+    evaluator: Evaluator
+    cells: tuple[Cell, ...]
+
+    def __call__(self, drawn: Mapping[str, NDArray[np.float64]], n: int) -> dict[Hashable, NDArray[np.float64]]:
+        columns = self.evaluator.filters(drawn, n)
+        return {cell: column.as_floats() for cell, column in zip(self.cells, columns, strict=True)}
+
+
+def dynamic_parameters(draws: Sequence[Draw], lowering: Lowering, block: int) -> DynamicParameters:
+    """What computes the varying parameters of a stage from the draws of the stages before it; for one thread."""
+    cells = tuple(dict.fromkeys(p for draw in draws for p in draw.varying if isinstance(p, Cell)))
+    targets = [parameter_target(cell) for cell in cells]
+    program = NumpyProgram.of(lowering, targets, [], frozenset(lowering.inputs.values()))
+    return _Varying(program.evaluator(block), cells)
+
+
+def with_base_parameters(workbook: Workbook, definitions: Definitions) -> Definitions:
+    """The definitions with a number for every parameter and cutoff that depends on its assumption's own cell.
+
+    Raises:
+        DefinitionError: such a parameter depends on another assumption, too, or the cell is blank.
+        FormulaError: its formula cannot be computed.
+    """
+    assumptions = definitions.assumptions
+    sought = [cell for a in assumptions if not isinstance(a.cell, InFormula) for cell in a.formulas.values()]
+    if not sought:
+        return definitions
+    rows = {a.cell: a for a in assumptions if not isinstance(a.cell, InFormula)}
+    resolver = Resolver(workbook, [a.cell for a in assumptions], rewritten=definitions.rewritten)
+    given = frozenset(a.cell for a in assumptions)
+    graph = build_graph(resolver, sought, given, strict=False)
+    if given.isdisjoint(graph.reached):
+        return definitions
+    changed = {cell: _Own(resolver, definitions, assumption).found(graph) for cell, assumption in rows.items()}
+    numbers = {cell: found for cell, found in changed.items() if found}
+    notices = (_notice(rows[cell], found) for cell, found in numbers.items())
+    changed_ones = tuple(_with_numbers(a, numbers.get(a.cell, {})) for a in assumptions)
+    return replace(definitions, assumptions=changed_ones, notices=(*definitions.notices, *notices))
+
+
+class _Own:
+    """One assumption, and those of its parameters that its own cell reaches."""
+
+    def __init__(self, resolver: Resolver, definitions: Definitions, assumption: Assumption) -> None:
+        self._resolver, self._definitions, self._assumption = resolver, definitions, assumption
+
+    def found(self, graph: Graph) -> dict[str, float]:
+        """Key of each such parameter -> its number."""
+        reached = ((key, cell, upstream(graph, [cell], {})) for key, cell in self._assumption.formulas.items())
+        numbers = {key: self._number(key, cell, up) for key, cell, up in reached if self._assumption.cell in up}
+        return {key: number for key, number in numbers.items() if number is not None}
+
+    def _number(self, key: str, cell: Cell, upstream: Set[Cell]) -> float | None:
+        """The number; None where another assumption reaches it, and this one is held, so that nothing asks for it."""
+        own = self._assumption
+        if own.base is None:
+            message = f"{_heading(own, key)} of {own.name!r} depends on the assumption's own cell, which is blank"
+            raise DefinitionError(message, where=cell, hint=f"Type the measured value into {own.cell}")
+        others = (a for a in self._definitions.assumptions if not a.frozen and a.cell != own.cell)
+        value = self._computed(cell)
+        if isinstance(value, Cell) and own.frozen:
+            return None
+        if isinstance(value, Cell):
+            other = next((a for a in others if a.cell in upstream), None)
+            more = "another assumption" if other is None else f"the assumption {other.name!r}"
+            message = f"{_heading(own, key)} of {own.name!r} depends on the assumption's own cell and on {more}"
+            hint = f"In its formula, type the number {show(own.base)} instead of {own.cell}"
+            raise DefinitionError(message, where=cell, hint=hint)
+        return value
+
+    def _computed(self, cell: Cell) -> Parameter:
+        """What the cell is with the assumption at its base value; the cell where another assumption reaches it."""
+        assumptions, own = self._definitions.assumptions, self._assumption.cell
+        drawn = {a.cell: name_key(a.name) for a in assumptions if not a.frozen and a.cell != own}
+        held = {a.cell: a.base for a in assumptions if a.cell not in drawn and a.base is not None}
+
+        def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
+            graph = build_graph(self._resolver, [cell], frozenset(drawn), frozenset(held), more=more)
+            return Lowering(graph, drawn, held)
+
+        return fold_parameter(cell, lower_until_complete(lower))
+
+
+def _with_numbers(assumption: Assumption, numbers: Mapping[str, float]) -> Assumption:
+    if not numbers:
+        return assumption
+    parameters = {key: numbers.get(key, value) for key, value in assumption.parameters.items()}
+    cutoffs = {key: number for key, number in numbers.items() if key in CUTOFFS}
+    return replace(assumption, parameters=parameters, **cutoffs)  # type: ignore[arg-type]
+
+
+def _notice(assumption: Assumption, numbers: Mapping[str, float]) -> Notice:
+    base = "" if assumption.base is None else f" ({show(assumption.base)})"
+    shown = ", ".join(f"{_heading(assumption, key)} {show(number)}" for key, number in numbers.items())
+    return Notice(f"computed from the base value of the assumption's own cell{base}: {shown}", assumption.row)
+
+
+def _heading(assumption: Assumption, key: str) -> str:
+    headings = {spec.key: spec.heading for spec in assumption.family.parameters}
+    return headings.get(key) or CUTOFFS[key]

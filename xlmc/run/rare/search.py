@@ -1,0 +1,208 @@
+"""From a model to accepted trials where these are rare: the search, its trials as blocks, and the account of it."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.run.blocks import Block, ModelRunner, Task
+from xlmc.run.rare.account import RareAccount
+from xlmc.run.rare.equalising import Equalised
+from xlmc.run.rare.finding import Found, find
+from xlmc.run.rare.landscape import GivenUniforms, Landscape
+from xlmc.run.rare.layered import Ground, Layered, ground_of
+from xlmc.run.rare.strays import Evidence, plain_assumptions
+from xlmc.sampling.methods import METHODS
+from xlmc.statistics.estimate import Estimate, with_relative_error
+
+if TYPE_CHECKING:
+    from xlmc.definitions.model import Settings
+    from xlmc.run.model import Model
+from collections.abc import Sequence
+
+if TYPE_CHECKING:
+    from xlmc.run.model import Model
+    from xlmc.sampling.streams import Stream
+
+__all__ = ["Search", "accepted_blocks", "plain_uniforms", "search"]
+
+Floats = NDArray[np.float64]
+
+_PURPOSE: Final = "rare acceptance: "
+
+_PART: Final = 16
+_LEAST_PART: Final = 1 << 25
+"""Of the limit of trials, a search takes one part of so many, or so many trials where that is more: what is described
+well needs far less, and what is not is known by then."""
+
+_MOST_PLAIN: Final = 4_096
+"""Accepted plain trials that are looked at: the first of them."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Search:
+    """What came of a search.
+
+    Attributes:
+        uniforms: (m, d) of accepted trials of equal weight; none where it failed.
+        account: None likewise.
+        failure: why there are none, in words without a full stop.
+        evaluations: trials that it took.
+    """
+
+    uniforms: Floats
+    account: RareAccount | None
+    failure: str
+    evaluations: int
+
+
+def search(
+    model: Model, settings: Settings, plain: int, accepted: NDArray[np.int64], say: Callable[[int], None]
+) -> Search:
+    """Look for as many accepted trials as the settings ask for; a pure function of the model and these.
+
+    Args:
+        model: with filters and drawn assumptions.
+        settings: of the run.
+        plain: trials that were run before, which count towards the limit.
+        accepted: (k,) the numbers of those among them that were accepted.
+        say: called with the evaluations so far.
+    """
+    learning, drawing = _random(settings.seed, "learning"), _random(settings.seed, "drawing")
+    landscape = ground_of(model, Landscape(model, learning), _random(settings.seed, "layers"))
+    wanted, most = settings.stopping.accepted or 0, _most(settings.trials, plain)
+    independent = METHODS[settings.sampling].independent
+    evidence = [_plain(model, settings, plain, accepted, landscape)] if independent else []
+    found = find(
+        landscape.distance,
+        landscape.accepts,
+        landscape.dimensions,
+        wanted,
+        most,
+        learning,
+        drawing,
+        say,
+        evidence,
+        landscape.ways,
+    )
+    drawn = found.equalised
+    if drawn is None or found.used is None or len(drawn.points) < wanted:
+        failure = _failure(model, landscape, found, wanted, settings.trials - plain - most)
+        return Search(np.empty((0, landscape.dimensions)), None, failure, landscape.evaluations)
+    proposal = found.used.proposal
+    account = RareAccount(
+        evaluations=plain + landscape.evaluations,
+        learning=landscape.evaluations - drawn.proposals - found.checked,
+        proposals=drawn.proposals,
+        proposals_accepted=drawn.accepted,
+        fresh=drawn.fresh,
+        kept=len(drawn.points),
+        acceptance=_acceptance(drawn, found.strays),
+        effective=drawn.effective,
+        size=drawn.size,
+        searched=found.learned.searched,
+        explored=found.learned.explored,
+        levels=max(len(each.levels) for each in found.learned.descents),
+        components=proposal.mixture.shares.size,
+        directions=proposal.directions,
+        dimensions=landscape.dimensions,
+        lost=landscape.lost,
+        plain=plain,
+        plain_accepted=accepted.size,
+        checked=found.checked,
+        ways=len(landscape.ways),
+        missed=0.0 if found.strays is None else found.strays.mass,
+        solved=tuple(layer.name for layer in landscape.layers) if isinstance(landscape, Layered) else (),
+    )
+    return Search(landscape.uniforms(drawn.points), account, "", landscape.evaluations)
+
+
+def _most(limit: int, plain: int) -> int:
+    """Trials that a search may take."""
+    return min(limit - plain, max(limit // _PART, _LEAST_PART))
+
+
+def _plain(model: Model, settings: Settings, trials: int, accepted: NDArray[np.int64], landscape: Ground) -> Evidence:
+    """The plain trials, or the first of them where many were accepted."""
+    few = accepted[:_MOST_PLAIN]
+    counted = int(few[-1]) + 1 if few.size < accepted.size else trials
+    points = landscape.points(plain_uniforms(model, settings.seed, few))
+    return Evidence.of(plain_assumptions(landscape.dimensions), counted, points[landscape.accepts(points)])
+
+
+def _acceptance(drawn: Equalised, strays: Evidence | None) -> Estimate:
+    """The probability of acceptance, with the mass of what the proposal hardly ever comes to as a further error."""
+    found = drawn.acceptance
+    if strays is None or not len(strays.points) or found.error is None or found.n is None:
+        return found
+    error = math.hypot(found.error, strays.mass)
+    return with_relative_error(found.value, error, drawn.effective - 1.0, 0.95, found.n)
+
+
+def _random(seed: int, purpose: str) -> np.random.Generator:
+    """Random numbers that no other part of a run uses."""
+    words = np.frombuffer(hashlib.sha256(f"{_PURPOSE}{purpose}".encode()).digest(), dtype="<u4").tolist()
+    return np.random.Generator(np.random.PCG64DXSM(np.random.SeedSequence(seed, spawn_key=words)))
+
+
+def _failure(model: Model, landscape: Ground, found: Found, wanted: int, left: int) -> str:
+    """Why there are no trials, in words; so many of the limit of trials were none of a search's."""
+    reached = [each for each in found.learned.descents if each.reached]
+    if not reached:
+        nearest = np.stack([each.nearest for each in found.learned.descents])
+        index = int(np.argmin(landscape.distance(nearest)))
+        lengths = landscape.by_filter(nearest[index : index + 1])
+        names = [repr(f.name) for f, (length,) in zip(model.filters, lengths, strict=True) if length > 0.0]
+        return (
+            f"a search of {found.evaluations:,} trials found none that the filters accept: the nearest one still "
+            f"fails {' and '.join(names)}, so the filters contradict each other or the assumptions, or accept less "
+            "than one trial in 10¹⁵"
+        )
+    share = f"about {found.learned.probability:.1g} of all trials are accepted"
+    if found.used is None and found.learned.best is None:
+        return f"a search of {found.evaluations:,} trials found that {share}, but could not describe where they lie"
+    more = f"the part of the limit (-n) that a search may take, one in {_PART}" if left else "the limit (-n)"
+    return (
+        f"a search of {found.evaluations:,} trials found that {share}, described badly where they lie, and gave up, "
+        f"as {wanted:,} of them would take more than {more},"
+    )
+
+
+def accepted_blocks(model: Model, uniforms: Floats, block: int, wants_inputs: Callable[[], bool]) -> Iterator[Block]:
+    """The trials at accepted uniforms, evaluated and filtered like any others: no filter is taken for granted."""
+    given = GivenUniforms()
+    given.uniforms = uniforms
+    sampler = model.sampler(0, block, filler=given.filler)
+    evaluator = model.program("numpy").evaluator(block)
+    runner = ModelRunner(sampler, evaluator, block, len(model.forecasts), model.fallible)
+    for start in range(0, len(uniforms), block):
+        count = min(block, len(uniforms) - start)
+        yield runner.run(Task(start, count, prior=False, inputs=wants_inputs()))
+
+
+def plain_uniforms(model: Model, seed: int, accepted: NDArray[np.int64]) -> Floats:
+    """(k, d) the uniforms of plain trials with these numbers, (k,)."""
+    streams = _streams(model, seed)
+    uniforms = np.empty((len(streams), accepted.size))
+    for row, stream in zip(uniforms, streams, strict=True):
+        for index, trial in enumerate(accepted.tolist()):
+            stream.uniforms(trial, row[index : index + 1])
+    return uniforms.T
+
+
+def _streams(model: Model, seed: int) -> Sequence[Stream]:
+    """In the order of the coordinates."""
+    found: list[Stream] = []
+
+    def filler(streams: Sequence[Stream], _maps: object, _rows: Floats) -> Callable[[int], None]:
+        found.extend(streams)
+        return lambda _: None
+
+    model.sampler(seed, 1, filler=filler)
+    return found

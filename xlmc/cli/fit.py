@@ -84,8 +84,8 @@ def _values(book: Path, reference: str) -> tuple[list[float], str, int]:
     Raises:
         DefinitionError: there is no such range, or a cell in it holds something else.
     """
+    from xlmc.definitions.cell_references import area_of_reference
     from xlmc.definitions.computed import Computed
-    from xlmc.definitions.reference_text import area_of_reference
     from xlmc.definitions.tables.data import area_values
     from xlmc.definitions.tables.fields import number_in
     from xlmc.workbook.reader import read_workbook

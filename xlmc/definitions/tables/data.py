@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from xlmc.address import Area, Cell
+from xlmc.definitions.cell_references import area_of_reference, formula_at
 from xlmc.definitions.computed import Computed
 from xlmc.definitions.model import CUTOFFS, DataRange, Parameter
 from xlmc.definitions.problems import Findings
-from xlmc.definitions.reference_text import area_of_reference, formula_at
 from xlmc.definitions.tables.fields import logical, number_in, parameter, static_value
 from xlmc.definitions.tables.table_rows import Row, as_text, is_blank
 from xlmc.distributions import DataError, Family

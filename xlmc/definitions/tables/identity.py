@@ -8,9 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from xlmc.address import Cell
-from xlmc.definitions.model import name_key
-from xlmc.definitions.problems import Findings
-from xlmc.definitions.reference_text import (
+from xlmc.definitions.cell_references import (
     cell_of_name,
     cell_of_reference,
     formula_at,
@@ -18,6 +16,8 @@ from xlmc.definitions.reference_text import (
     refuse_name_of_other_sheet,
     split_sheet,
 )
+from xlmc.definitions.model import name_key
+from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import required_text
 from xlmc.definitions.tables.table_rows import Row, as_text
 from xlmc.errors import DefinitionError

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Cell, column_letters, parse_address
-from xlmc.definitions.reference_text import formula_at, is_address, split_sheet
+from xlmc.definitions.cell_references import formula_at, is_address, split_sheet
 from xlmc.workbook.model import Formula
 
 

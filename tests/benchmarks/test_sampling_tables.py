@@ -96,7 +96,7 @@ def test_some_of_the_runs_again(coverage, method):
 def test_the_truths_are_true(coverage, name):
     """Beside a Monte Carlo run of 4 million trials, or 100,000 accepted ones: within 4.5 of its errors."""
     problem = coverage.PROBLEMS[name]
-    sample = coverage.one_run(problem, coverage.Plan.of("mc", 4_000_000), 77)
+    sample = coverage.one_run(problem, coverage.SamplingPlan.of("mc", 4_000_000), 77)
     assert sample.n > 100_000
     for estimate, truth in zip(coverage.estimates(sample), problem.truth(), strict=True):
         assert abs(estimate.value - truth) < 4.5 * estimate.error

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from rooms import DOORS, MODULES, PACKAGE, ROOMS, arrows, floors, imported, room_of, upwards
+from rooms import DOORS, LISTS, MODULES, PACKAGE, ROOMS, arrows, circles, floors, imported, pieces, room_of, upwards
 
 
 def test_every_room_stands_in_the_table():
@@ -18,6 +18,15 @@ def test_no_import_runs_up_the_table_not_even_a_lazy_one_or_one_for_type_checker
 def test_the_house_stays_as_low_as_it_is():
     assert len(ROOMS) <= 18
     assert max(floors().values()) <= 11
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    assert circles() == []
+
+
+def test_a_module_that_only_one_other_needs_is_not_small():
+    assert list(pieces()) == []
+    assert {*LISTS} <= {str(path.relative_to(PACKAGE)) for path in MODULES}
 
 
 def test_an_arrow_up_would_be_seen():

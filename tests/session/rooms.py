@@ -1,4 +1,4 @@
-"""The rooms of xlmc, and what imports what: `python tests/session/rooms.py` prints rooms, floors, arrows and circles.
+"""The rooms of xlmc, and what imports what: `python tests/session/rooms.py` prints rooms, floors, arrows, circles.
 
 A room is a folder of `xlmc/`, or a module beside them; `__init__` and `__main__` are the doors and no rooms. Every
 import counts: those inside of functions, and those for type checkers only.
@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from functools import cache
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "xlmc"
@@ -106,6 +107,60 @@ def upwards() -> Iterator[str]:
             yield from (f"{file} imports from {other}" for file in sorted(files))
 
 
+LISTS = (
+    "evaluation/engines.py",
+    "report/sheets/book.py",
+    "run/stopping/choose.py",
+    "sampling/methods.py",
+    "studies/methods/study.py",
+)
+"""Modules that list things of one kind; what they and the packages' doors import stands alone, however small it is."""
+
+SMALL = 60
+"""Lines: a module below that which one other imports is a piece of that other."""
+
+
+def importers() -> dict[Path, set[Path]]:
+    """Module -> the modules that import it or a name of it, anywhere in them; a package's own door counts, too."""
+    paths = {_name_of(path): path for path in MODULES}
+    found: dict[Path, set[Path]] = {path: set() for path in MODULES}
+    for path in MODULES:
+        for name in imported(path) & paths.keys():
+            found[paths[name]].add(path)
+    return found
+
+
+def _name_of(path: Path) -> str:
+    return ".".join(("xlmc", *path.relative_to(PACKAGE).with_suffix("").parts)).removesuffix(".__init__")
+
+
+def pieces() -> Iterator[str]:
+    """Small modules that one other imports, a line each."""
+    for path, others in importers().items():
+        name = str(path.relative_to(PACKAGE))
+        if len(others) == 1 and path.stem not in DOORS:
+            (whole,) = others
+            lines = len(path.read_text(encoding="utf-8").splitlines())
+            of = str(whole.relative_to(PACKAGE))
+            if lines < SMALL and whole.stem not in DOORS and of not in LISTS:
+                yield f"{name} ({lines} lines) is a piece of {of}"
+
+
+def circles() -> list[list[str]]:
+    """Modules that import each other in a circle; what a package's door shows of its own modules is no circle."""
+    below: dict[str, set[str]] = {}
+    for path, others in importers().items():
+        for other in others:
+            if other.stem not in DOORS and path.stem not in DOORS:
+                below.setdefault(str(other.relative_to(PACKAGE)), set()).add(str(path.relative_to(PACKAGE)))
+    sorter = TopologicalSorter(below)
+    try:
+        sorter.prepare()
+    except CycleError as error:
+        return [list(error.args[1])]
+    return []
+
+
 def main() -> None:
     """Print them."""
     standing = floors()
@@ -113,6 +168,8 @@ def main() -> None:
         print(f"{standing[room]:2}  {room:14}{words}")
     print(f"{len(ROOMS)} rooms on {max(standing.values())} floors, {len(arrows())} arrows, no circle")
     print("\n".join(upwards()) or "no arrow up")
+    print("\n".join(" → ".join(circle) for circle in circles()) or "no circle of modules")
+    print("\n".join(pieces()) or "no piece of a module")
 
 
 if __name__ == "__main__":

@@ -25,6 +25,13 @@ def test_a_uniform_depends_on_its_trial_alone(start, n):
     assert np.array_equal(out, first(500)[start : start + n])
 
 
+def test_the_same_trials_may_be_asked_for_again():
+    stream, out = Stream(SEED, "a"), np.empty((2, 5))
+    for row in out:
+        stream.uniforms(10, row)
+    assert np.array_equal(out[0], out[1])
+
+
 def test_far_trials_are_reached_at_once():
     far, near = np.empty(3), np.empty(1)
     Stream(SEED, "a").uniforms(10**15, far)

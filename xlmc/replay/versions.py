@@ -136,6 +136,7 @@ _COMMITS: Final = {
     "0.1.0": "46fd152e6dd49dcf68dc416c020a215c696d0a3d",
     "0.2.0": "bb61f93b6f64bf49b751e73e09eb58a162bfd9ba",
     "0.3.0": "00742dc47a736f0895b4959ff85cd29eb56e2e66",
+    "0.4.0": "bc3aba5294be41225bc1b4b5739ec48cd9e98e2c",
 }
 """The last commit of each version before this one."""
 

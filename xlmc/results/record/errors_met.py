@@ -89,8 +89,8 @@ def lost_sentences(simulation: Simulation) -> list[str]:
 def _lost(simulation: Simulation, met: ErrorMet) -> str:
     accepted = met.kind == "forecast" and bool(simulation.model.filters)
     of = simulation.accepted if met.kind == "forecast" else simulation.trials
-    share = 100 * met.trials / max(of, 1)
-    said = f"{met.what} in {met.trials:,} of {of:,} {'accepted ' * accepted}trials ({share:.2g} %)"
+    share = float(f"{100 * met.trials / max(of, 1):.2g}")
+    said = f"{met.what} in {met.trials:,} of {of:,} {'accepted ' * accepted}trials ({share:g} %)"
     if met.root is None:
         return said
     cell, code = met.root

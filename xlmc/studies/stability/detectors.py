@@ -111,13 +111,14 @@ def amplifying_forecasts(case: Case) -> Iterator[Finding]:
             continue
         through = case.derivatives.names[int(np.nansum(moved, axis=0).argmax())]
         factor = float(np.median(known))
+        percent = f"{float(f'{factor:.2g}'):,g} %"
         yield Finding(
             Level.NOTE,
             "amplification",
             forecast.cell,
             forecast.name,
             case.trees.written_formula(forecast.cell),
-            f"it changes by {factor:.2g} % when its assumptions change by 1 %, mostly through {through!r}",
+            f"it changes by {percent} when its assumptions change by 1 %, mostly through {through!r}",
             "this comes from the problem itself: no other formula and no more digits reduce it; other evidence does",
             (),
             None,

@@ -31,8 +31,8 @@ from scipy.special import bdtr
 from tables import placed
 
 import xlmc.statistics as xs
-from xlmc.run.rare.finding import Found
 from xlmc.run.rare.landscape import Landscape
+from xlmc.run.rare.search import Found
 from xlmc.statistics import Estimate
 
 __all__ = ["covered", "estimates", "faults"]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri
 
-from xlmc.run.rare.finding import Found, find
+from xlmc.run.rare.search import Found, find
 from xlmc.run.rare.splitting import descend
 
 __all__ = ["Distance", "Floats", "compared", "one_run"]

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.distributions.discrete_values import DUniform
+from xlmc.distributions.discrete import DUniform
 from xlmc.distributions.empirical import Empirical
 from xlmc.distributions.parameters import DataError
 

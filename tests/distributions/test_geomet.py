@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from xlmc.distributions.geomet import Geomet
-from xlmc.distributions.geometric import Geometric
+from xlmc.distributions.geometric import Geomet, Geometric
 
 GEOMET = Geomet()
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from xlmc.distributions.negative_binomial import NegativeBinomial
-from xlmc.distributions.negbin import Negbin
+from xlmc.distributions.negative_binomial import NegativeBinomial, Negbin
 
 NEGBIN = Negbin()
 

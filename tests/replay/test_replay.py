@@ -13,7 +13,7 @@ from xlmc.errors import WorkbookError, XlmcError
 from xlmc.replay import Change, replay
 from xlmc.replay import repeat as repeating
 from xlmc.results.record import Entry, Record, RecordTable, make_record
-from xlmc.results.record.read import read_record
+from xlmc.results.record.record_parts import read_record
 from xlmc.workbook.reader import read_workbook
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/intersection.xlsx"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from xlmc.errors import SimulationError
-from xlmc.report.figure import figures_of
+from xlmc.report.histogram import figures_of
 
 pytest.importorskip("matplotlib")
 

@@ -16,25 +16,20 @@ from xlmc.distributions.binomial import Binomial
 from xlmc.distributions.by_percentiles import ByPercentiles
 from xlmc.distributions.cumul import Cumul
 from xlmc.distributions.custom import Custom
-from xlmc.distributions.discrete import Discrete
+from xlmc.distributions.discrete import Discrete, DUniform
 from xlmc.distributions.discrete_uniform import DiscreteUniform
-from xlmc.distributions.discrete_values import DUniform
 from xlmc.distributions.empirical import Empirical
 from xlmc.distributions.empirical_smoothed import EmpiricalSmoothed
 from xlmc.distributions.exponential import Exponential
+from xlmc.distributions.extreme_value import MaximumExtreme, MinimumExtreme
 from xlmc.distributions.gamma import Gamma
 from xlmc.distributions.general import General
-from xlmc.distributions.geomet import Geomet
-from xlmc.distributions.geometric import Geometric
+from xlmc.distributions.geometric import Geomet, Geometric
 from xlmc.distributions.histogrm import Histogrm
 from xlmc.distributions.hypergeometric import Hypergeometric
 from xlmc.distributions.logistic import Logistic
-from xlmc.distributions.lognorm2 import Lognorm2
-from xlmc.distributions.lognormal import Lognormal
-from xlmc.distributions.maximum_extreme import MaximumExtreme
-from xlmc.distributions.minimum_extreme import MinimumExtreme
-from xlmc.distributions.negative_binomial import NegativeBinomial
-from xlmc.distributions.negbin import Negbin
+from xlmc.distributions.lognormal import Lognorm2, Lognormal
+from xlmc.distributions.negative_binomial import NegativeBinomial, Negbin
 from xlmc.distributions.normal import Normal
 from xlmc.distributions.parameters import DataError, DataSpec, Fault, ParameterSpec
 from xlmc.distributions.pareto import Pareto

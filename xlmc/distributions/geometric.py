@@ -1,4 +1,4 @@
-"""Geometric: how many independent trials it takes until the first success."""
+"""Geometric: how many independent trials it takes until the first success; Geomet counts the failures before it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 from xlmc.distributions.base import Array, Values
 from xlmc.distributions.whole_numbers import PROBABILITY, WholeNumbers, probability, within_reach
 
-__all__ = ["Geometric"]
+__all__ = ["Geomet", "Geometric"]
 
 
 class Geometric(WholeNumbers):
@@ -63,3 +63,19 @@ class Geometric(WholeNumbers):
 
 
 LARGEST_SHARE = 1 - 2.0**-53
+
+
+class Geomet(Geometric):
+    """Geometric with the probability of success, counting failures as @RISK does: 0, 1, 2, …
+
+    >>> geomet = Geomet()
+    >>> print(float(geomet.ppf(0.99, probability=0.25)), float(Geometric().ppf(0.99, probability=0.25)))
+    16.0 17.0
+    """
+
+    name = "Geomet"
+    aliases = ("Geometric failures",)
+    formula = "P(k) = Probability·(1 - Probability)^k, k from 0"
+    source = "N. L. Johnson, A. W. Kemp and S. Kotz, Univariate Discrete Distributions, 2005, chapter 5"
+    elsewhere = ("@RISK Geomet(p)",)
+    first = 0.0

@@ -1,4 +1,4 @@
-"""Negative binomial: how many independent trials it takes until so many have succeeded."""
+"""Negative binomial: how many independent trials it takes until so many succeed; Negbin counts the failures."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 from xlmc.distributions.base import Array, Values
 from xlmc.distributions.whole_numbers import PROBABILITY, SHAPE, WholeNumbers, probability, whole, within_reach
 
-__all__ = ["NegativeBinomial"]
+__all__ = ["NegativeBinomial", "Negbin"]
 
 
 class NegativeBinomial(WholeNumbers):
@@ -59,3 +59,19 @@ class NegativeBinomial(WholeNumbers):
     def _support(self, probability: Values, shape: Values) -> tuple[Values, Values]:
         least = self._least(shape) + 0 * probability
         return least, np.where(np.equal(probability, 1), least, np.inf) + 0 * least
+
+
+class Negbin(NegativeBinomial):
+    """Negative binomial with the probability of success and the number of successes, counting failures as @RISK does.
+
+    >>> negbin = Negbin()
+    >>> print(float(negbin.ppf(0.99, probability=0.25, shape=3)))
+    28.0
+    """
+
+    name = "Negbin"
+    aliases = ("Negative binomial failures",)
+    formula = "P(k) = C(k + Shape - 1, k)·Probability^Shape·(1 - Probability)^k, k from 0"
+    source = "N. L. Johnson, A. W. Kemp and S. Kotz, Univariate Discrete Distributions, 2005, chapter 5"
+    elsewhere = ("@RISK Negbin(s, p)",)
+    counts_successes = False

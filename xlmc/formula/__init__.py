@@ -2,10 +2,10 @@
 
 from xlmc.formula import ir
 from xlmc.formula.graph import Filled, Graph, build_graph
+from xlmc.formula.ir import formula_text
 from xlmc.formula.parse import compile_with_formulas, parse
 from xlmc.formula.resolve import Resolver
 from xlmc.formula.stencil import Stencil
-from xlmc.formula.text import formula_text
 
 __all__ = [
     "Filled",

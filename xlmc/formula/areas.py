@@ -1,4 +1,4 @@
-"""The cells and areas that references mean: seen from a host cell, joined by `:` or the blank, or parts of a table."""
+"""What references mean: cells and areas seen from a host cell, parts of a table, cells of another workbook."""
 
 from __future__ import annotations
 
@@ -7,9 +7,19 @@ from typing import Final
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
-from xlmc.workbook.model import Table
+from xlmc.workbook.model import DefinedName, LinkedBook, Table, Workbook
 
-__all__ = ["cells_of", "combine", "is_far", "seen_from", "table_rows"]
+__all__ = [
+    "COPY",
+    "cells_of",
+    "combine",
+    "is_far",
+    "linked_name",
+    "linked_sheet",
+    "meant_book",
+    "seen_from",
+    "table_rows",
+]
 
 _REF: Final = ir.ErrorLiteral(ErrorCode.REF)
 _NULL: Final = ir.ErrorLiteral(ErrorCode.NULL)
@@ -142,3 +152,63 @@ def table_rows(table: Table, items: tuple[str, ...], host: Cell) -> tuple[int, i
     named = [spans[item] for item in items or ("#data",)]
     top, bottom = min(span[0] for span in named), max(span[1] for span in named)
     return (top, bottom) if top <= bottom else None
+
+
+COPY: Final = "copy the value into this workbook; links are not followed"
+"""The hint for what is not stored."""
+
+_THIS: Final = "[0]"
+
+
+def meant_book(workbook: Workbook, book: str | None, around: str | None) -> str | None:
+    """The linked workbook that a prefix means; None of this one.
+
+    Args:
+        workbook: whose formula it is.
+        book: the prefix.
+        around: the linked workbook whose name is being read, if any.
+
+    Raises:
+        FormulaError: there is no such link.
+    """
+    if book is None:
+        return around
+    if book == _THIS:
+        return None
+    if book not in workbook.links:
+        raise FormulaError("refers to another workbook", hint=COPY)
+    return book
+
+
+def linked_sheet(workbook: Workbook, book: str, name: str | None, host: Cell) -> str:
+    """A sheet of a linked workbook, or the host's own.
+
+    Raises:
+        FormulaError: nothing of it is stored.
+    """
+    linked = workbook.links[book]
+    sheets = {title.casefold(): title for title in linked.sheets}
+    found = sheets.get((host.sheet if name is None else f"{book}{name}").casefold())
+    if found is None:
+        raise FormulaError(f"refers to {_name_of(linked)}, of which no values are stored", hint=COPY)
+    return found
+
+
+def linked_name(workbook: Workbook, book: str, name: ir.Name) -> DefinedName:
+    """A name of a linked workbook: the sheet's own first, then the workbook's, then the only one.
+
+    Raises:
+        FormulaError: what it stands for is not stored.
+    """
+    linked = workbook.links[book]
+    named = {(n.sheet and n.sheet.casefold()): n for n in linked.names if n.name.casefold() == name.name.casefold()}
+    scope = None if name.sheet is None else f"{book}{name.sheet}".casefold()
+    only = next(iter(named.values())) if len(named) == 1 and scope is None else None
+    found = named.get(scope) or named.get(None) or only
+    if found is None:
+        raise FormulaError(f"refers to {name.name!r} of {_name_of(linked)}, which is not stored", hint=COPY)
+    return found
+
+
+def _name_of(linked: LinkedBook) -> str:
+    return linked.file or "another workbook"

@@ -6,7 +6,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import Final, assert_never
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode
@@ -32,6 +34,7 @@ __all__ = [
     "Unary",
     "Variable",
     "chain",
+    "formula_text",
     "marked_as",
 ]
 
@@ -242,3 +245,57 @@ def marked_as(built: Expression, tree: Binary) -> Expression:
     if not isinstance(built, Binary) or not (tree.last or tree.all_bits):
         return built
     return replace(built, last=tree.last, all_bits=tree.all_bits)
+
+
+_PARAMETER: Final = "_xlpm."
+"""What files put before a variable: without it, `x:y` would be two columns."""
+
+_OPTIONAL: Final = "_xlop."
+_FUNCTION: Final = "_xleta."
+"""What they put before a parameter that may be left out, and before a function that is given as a value."""
+
+
+def formula_text(tree: Expression, name: Callable[[Cell | Area], str] = str) -> str:
+    """The text of a resolved tree without its leading `=`, every operation in brackets of its own."""
+    match tree:
+        case Cell() | Area():
+            return name(tree)
+        case Number(value):
+            return repr(value) if value >= 0 else f"({value!r})"
+        case Text(value):
+            return '"' + value.replace('"', '""') + '"'
+        case Logical(value):
+            return "TRUE" if value else "FALSE"
+        case ErrorLiteral(code):
+            return code.text
+        case Missing():
+            return ""
+        case Unary("%", operand):
+            return f"({formula_text(operand, name)}%)"
+        case Unary(operator, operand):
+            return f"({operator}({formula_text(operand, name)}))"
+        case Binary():
+            first, rest = chain(tree)
+            terms = [f"{operator}{formula_text(right, name)})" for operator, right in rest]
+            return "(" * len(terms) + formula_text(first, name) + "".join(terms)
+        case Call(function, arguments):
+            return f"{function}({','.join(formula_text(part, name) for part in arguments)})"
+        case Variable(variable):
+            return _PARAMETER + variable
+        case FunctionName(function):
+            return _FUNCTION + function
+        case Let(bindings, body):
+            pairs = (f"{_PARAMETER}{bound},{formula_text(value, name)}" for bound, value in bindings)
+            return f"LET({','.join(pairs)},{formula_text(body, name)})"
+        case Lambda(parameters, body, optional):
+            needed = len(parameters) - optional
+            bound = ((_PARAMETER if i < needed else _OPTIONAL) + name_ for i, name_ in enumerate(parameters))
+            return f"LAMBDA({','.join([*bound, formula_text(body, name)])})"
+        case Invoke(called, arguments):
+            return f"{formula_text(called, name)}({','.join(formula_text(part, name) for part in arguments)})"
+        case Array(rows):
+            return "{" + ";".join(",".join(formula_text(part, name) for part in row) for row in rows) + "}"
+        case Reference() | Name() | TableReference():
+            raise TypeError(f"not resolved: {tree}")
+        case _:
+            assert_never(tree)

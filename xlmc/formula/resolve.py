@@ -15,9 +15,18 @@ from typing import Final, assert_never
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
-from xlmc.formula.areas import cells_of, combine, is_far, seen_from, table_rows
+from xlmc.formula.areas import (
+    COPY,
+    cells_of,
+    combine,
+    is_far,
+    linked_name,
+    linked_sheet,
+    meant_book,
+    seen_from,
+    table_rows,
+)
 from xlmc.formula.callables import calls_function, function_named_by, stands_for_function
-from xlmc.formula.linked import COPY, linked_name, linked_sheet, meant_book
 from xlmc.formula.parse import parse
 from xlmc.formula.shape import Shapes
 from xlmc.formula.stencil import Stencil, stencil

@@ -3,16 +3,21 @@
 Excel's own limits give Excel's own errors (a text of more than 32,767 characters is `#VALUE!`). The limits here are
 xlmc's: a workbook is untrusted, and no formula of it may fill the memory. They count cells × trials, so that a block of
 trials that is too large is evaluated in smaller portions; only what is too large for a single trial is refused.
+
+`work_arrays` are arrays that a function works in, kept by each thread from call to call: pages of fresh memory cost
+much time.
 """
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterable, Iterator
 from typing import Any, Final
 
 import numpy as np
 
 from xlmc.errors import FormulaError
+from xlmc.functions.values import Floats
 
 __all__ = [
     "MOST_CALLS",
@@ -35,6 +40,7 @@ __all__ = [
     "ask_for_work",
     "bytes_of",
     "counted",
+    "work_arrays",
 ]
 
 MOST_CELLS: Final = 1 << 23
@@ -224,3 +230,16 @@ def _own(array: np.ndarray[Any, Any] | None) -> int:
     if array is None:
         return 0
     return array.nbytes if 0 not in array.strides or array.size < 2 else array.itemsize
+
+
+_KEPT: Final = 2
+
+_MEMORY = threading.local()
+
+
+def work_arrays(n: int, arrays: int) -> list[Floats]:
+    """One or two arrays `(n,)` of this thread's own, until it asks again."""
+    kept: list[Floats] = getattr(_MEMORY, "arrays", [])
+    if len(kept) < arrays or kept[0].size < n:
+        _MEMORY.arrays = kept = [np.empty(n) for _ in range(_KEPT)]
+    return [array[:n] for array in kept[:arrays]]

@@ -31,12 +31,12 @@ from typing import Any, ClassVar, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.functions.budget import work_arrays
 from xlmc.functions.denormals import TINIEST
 from xlmc.functions.facts import Facts
 from xlmc.functions.number_text import shown
 from xlmc.functions.registry import Function, Kind, Number
 from xlmc.functions.values import Bools, Floats
-from xlmc.functions.work_memory import work_arrays
 
 __all__ = [
     "COMPARISONS",

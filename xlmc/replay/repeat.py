@@ -25,7 +25,7 @@ from xlmc.replay.shown_results import as_recorded, compare_shown
 from xlmc.replay.versions import Rule, recorded_version, rules_since
 from xlmc.results.record import Record, make_record
 from xlmc.results.record.needed_cells import needed_contents, recorded_cells
-from xlmc.results.record.read import read_record
+from xlmc.results.record.record_parts import read_record
 from xlmc.results.record.settings_table import recorded_settings
 from xlmc.results.saved import SUFFIX, is_saved_run, open_run
 from xlmc.run.loading import build_model

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import SimulationError
-from xlmc.report.figure import Figure as Drawn
-from xlmc.report.figure import figures_of
+from xlmc.report.histogram import Figure as Drawn
+from xlmc.report.histogram import figures_of
 from xlmc.report.sheets.styles import DARK, GRID, INK, LIGHT
 from xlmc.report.summary import estimate_text, percent
 

@@ -18,7 +18,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from xlmc.columns.temporary_names import new_file_name, owned, remove_stray_files
+from xlmc.columns.column_store import new_file_name, owned, remove_stray_files
 from xlmc.errors import WorkbookError
 
 __all__ = [

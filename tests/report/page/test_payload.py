@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.columns import column_store
-from xlmc.report.figure import figures_of
+from xlmc.report.histogram import figures_of
 from xlmc.report.page.payload import ALL_VALUES, MOST_VALUES, most_values, payload, payload_text, rank_table
 
 EVIL = "</script><img src=x onerror=alert(1)>&amp;<!--\u2028"

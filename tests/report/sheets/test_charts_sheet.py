@@ -12,7 +12,7 @@ from openpyxl.chart.reader import read_chart
 from openpyxl.utils import column_index_from_string, get_column_letter, range_boundaries
 from openpyxl.xml.functions import fromstring
 
-from xlmc.report.figure import figures_of
+from xlmc.report.histogram import figures_of
 from xlmc.report.sheets.bins_sheet import HEADER, TABLE
 from xlmc.report.sheets.book import build_sheets
 

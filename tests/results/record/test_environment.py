@@ -7,7 +7,7 @@ import numpy
 import pytest
 
 import xlmc
-from xlmc.results.record.environment import LIBRARIES, processor, versions
+from xlmc.results.record.make import LIBRARIES, processor, versions
 
 
 def test_versions_are_those_installed():

@@ -22,8 +22,7 @@ from xlmc.results.record.needed_cells import (
     recorded_cells,
     structure_section,
 )
-from xlmc.results.record.read import read_record
-from xlmc.results.record.record_parts import Entry, Record, Section
+from xlmc.results.record.record_parts import Entry, Record, Section, read_record
 from xlmc.results.record.settings_table import recorded_settings, settings_section
 from xlmc.workbook.model import CellContent, Formula
 from xlmc.workbook.reader import read_workbook

@@ -12,9 +12,9 @@ import pytest
 from scipy.special import bdtr
 
 from xlmc.run.rare.equalising import equalise
-from xlmc.run.rare.finding import find
 from xlmc.run.rare.mixture import Mixture
 from xlmc.run.rare.proposal import Proposal, Shear
+from xlmc.run.rare.search import find
 
 RUNS = 3
 BENCHMARKS = Path(__file__).resolve().parents[3] / "benchmarks"

@@ -9,9 +9,8 @@ import pytest
 from scipy.special import ndtr
 
 from xlmc.run.rare.account import RareAccount, probability_text
-from xlmc.run.rare.finding import find
 from xlmc.run.rare.landscape import points_of
-from xlmc.run.rare.search import plain_uniforms
+from xlmc.run.rare.search import find, plain_uniforms
 from xlmc.run.rare.splitting import explore
 from xlmc.run.rare.strays import Evidence, Tempered, find_strays, plain_assumptions, pool, wide_assumptions
 from xlmc.statistics import Estimate
@@ -73,7 +72,7 @@ def test_a_part_whose_scale_is_another_is_not_lost():
 def test_a_single_plain_trial_is_evidence_enough(random, monkeypatch):
     """Without the widened assumptions, one accepted plain trial of the lost part leads to it."""
     monkeypatch.setattr(
-        "xlmc.run.rare.finding.wide_assumptions", lambda dimensions: Tempered(np.ones(1), np.ones((1, dimensions)))
+        "xlmc.run.rare.search.wide_assumptions", lambda dimensions: Tempered(np.ones(1), np.ones((1, dimensions)))
     )
     plain = Evidence.of(plain_assumptions(2), 10**6, np.array([[0.3, 4.8]]))
     found = find(two_parts, lambda z: two_parts(z) == 0.0, 2, 500, 10**8, random, random, plain=[plain])

@@ -10,8 +10,7 @@ from xlmc.address import Cell
 from xlmc.definitions.model import Forecast
 from xlmc.errors import SimulationError
 from xlmc.statistics import Estimate
-from xlmc.studies.comparison.tolerances import Verdict, judge, read_tolerances
-from xlmc.studies.comparison.unit_factors import factor_between
+from xlmc.studies.comparison.tolerances import Verdict, factor_between, judge, read_tolerances
 
 SPEED = Forecast("Chevy delta-V", Cell("S", 1, 1), Cell("S", 1, 1), units="mph")
 ANGLE = Forecast("PDOF", Cell("S", 2, 1), Cell("S", 2, 1), units="deg")

@@ -10,8 +10,8 @@ from xlmc.report.methods import methods_tables
 from xlmc.studies.methods import STATISTICS, recommendation, study
 from xlmc.studies.methods.converged_reference import reference_of
 from xlmc.studies.methods.curve import line, rms_of, rung_of
-from xlmc.studies.methods.lockstep import in_step
 from xlmc.studies.methods.need import need, reach_of, shortfall
+from xlmc.studies.methods.optimised import in_step
 from xlmc.studies.methods.sampled import MONTE_CARLO
 
 REPLICATES, TRIALS = 400, 16_384

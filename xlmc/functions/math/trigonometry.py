@@ -17,10 +17,10 @@ from typing import Final
 
 import numpy as np
 
+from xlmc.functions.budget import work_arrays
 from xlmc.functions.facts import Domain, Facts
 from xlmc.functions.registry import Number, excel
 from xlmc.functions.values import DIV0, NUM, Bools, Floats
-from xlmc.functions.work_memory import work_arrays
 
 __all__ = ["Within", "sine_and_cosine"]
 

@@ -12,8 +12,8 @@ from xlmc.report.summary import estimate_text
 from xlmc.sampling.methods import METHODS
 from xlmc.statistics import Estimate, format_estimate
 from xlmc.studies.methods import STATISTICS, Curve, Method, Rung, Study, need
+from xlmc.studies.methods.answer import seconds_text, trials_text
 from xlmc.studies.methods.need import shortfall
-from xlmc.studies.methods.number_words import seconds_text, trials_text
 
 __all__ = [
     "Table",

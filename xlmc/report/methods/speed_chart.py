@@ -16,9 +16,9 @@ import numpy as np
 
 from xlmc.report.methods.methods_tables import near_text
 from xlmc.studies.methods import Curve, Study
+from xlmc.studies.methods.answer import seconds_text, trials_text
 from xlmc.studies.methods.law import law
 from xlmc.studies.methods.need import Choice, Need, choice, reach_of, seconds_of, shortfall
-from xlmc.studies.methods.number_words import seconds_text, trials_text
 
 __all__ = [
     "HOW_TO_READ",

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from xlmc.report.figure import Figure
+from xlmc.report.histogram import Figure
 from xlmc.report.page.element import EMPTY, Html, element, join, void
 from xlmc.report.page.payload import most_values, overlays_of
 from xlmc.report.summary import percent

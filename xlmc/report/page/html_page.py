@@ -15,7 +15,7 @@ from string import Template
 from typing import TYPE_CHECKING
 
 from xlmc.errors import WorkbookError
-from xlmc.report.figure import figures_of
+from xlmc.report.histogram import figures_of
 from xlmc.report.page.answers import answers
 from xlmc.report.page.element import EMPTY, Html, element, join
 from xlmc.report.page.forecast_charts import charts, overlays

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.columns import picked, release
-from xlmc.report.figure import Figure
+from xlmc.report.histogram import Figure
 from xlmc.report.summary import percent
 from xlmc.statistics import Estimate, format_estimate
 from xlmc.statistics.estimate import t_quantile

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from xlmc.report.figure import Figure
-from xlmc.report.histogram import Histogram
+from xlmc.report.histogram import Figure, Histogram
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.styles import DARK, LIGHT, Reference, across, finish, upwards

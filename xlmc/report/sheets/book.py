@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
-from xlmc.report.figure import Figure, figures_of
+from xlmc.report.histogram import Figure, figures_of
 from xlmc.report.sheets import (
     assumptions_sheet,
     bins_sheet,

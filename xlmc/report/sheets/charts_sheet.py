@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from xlmc.report.figure import Figure, varying
+from xlmc.report.histogram import Figure, varying
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.bins_sheet import BinsAt, histogram_chart
 from xlmc.report.sheets.curve_charts import MOST, cumulative_charts, group_by_units, overlay_chart, trend_chart

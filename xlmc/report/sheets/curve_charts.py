@@ -20,8 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.columns import release
-from xlmc.report.figure import Figure
-from xlmc.report.histogram import Histogram, multiples
+from xlmc.report.histogram import Figure, Histogram, multiples
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.curves_sheet import SHARE, Curves, TableAt

@@ -21,7 +21,6 @@ from xlmc.results.record.definition_tables import (
     forecast_section,
     plain,
 )
-from xlmc.results.record.environment import processor, versions
 from xlmc.results.record.errors_met import errors_met
 from xlmc.results.record.in_words import errors_text, generator_text, method_text
 from xlmc.results.record.needed_cells import cell_section, needed_contents, structure_section
@@ -33,8 +32,36 @@ from xlmc.workbook.inject import original_hash
 if TYPE_CHECKING:
     from xlmc.run.rare.account import RareAccount
     from xlmc.run.simulation import Simulation
+import platform
+from importlib.metadata import version
 
-__all__ = ["fingerprint", "make_record", "quoted_argument", "repeat_command"]
+from xlmc.evaluation.engines import ENGINES
+
+__all__ = ["LIBRARIES", "fingerprint", "make_record", "processor", "quoted_argument", "repeat_command", "versions"]
+
+LIBRARIES = ("numpy", "scipy", "formulas", "XlsxWriter", "openpyxl")
+
+
+def versions(engine: str = "numpy") -> dict[str, str]:
+    """Name -> version of xlmc, of Python and of the libraries a result depends on, those of its engine among them."""
+    from xlmc.run.version import __version__
+
+    own = {"xlmc": __version__, "python": platform.python_version()}
+    return own | {name: version(name) for name in (*LIBRARIES, *filter(None, [ENGINES[engine].library]))}
+
+
+def processor() -> dict[str, str]:
+    """The kind of machine and the vector instructions NumPy found: its sine may differ between them in the last bit."""
+    import numpy
+
+    found: dict[str, list[str]] = numpy.show_config(mode="dicts")["SIMD Extensions"]  # type: ignore[assignment]
+    features = [*found.get("baseline", []), *found.get("found", [])]
+    return {
+        "machine": platform.machine(),
+        "system": platform.system(),
+        "vector_instructions": " ".join(features) or "none",
+    }
+
 
 _FORMAT: Final = 2
 """Of the record: from 2 on it holds the settings and the cells that a run can be repeated and checked by."""

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import SimulationError, WorkbookError
-from xlmc.results.record.environment import processor, versions
+from xlmc.results.record.make import processor, versions
 from xlmc.results.saved.archive import RUN, SUFFIX, WORKBOOK, column_header, column_parts, write_entries
 from xlmc.results.saved.run_json import FORMAT, VERSION, settings_document, tally_document
 from xlmc.run.simulation import Origin

@@ -24,7 +24,7 @@ from xlmc.results.record.in_words import distribution_text
 from xlmc.run.model import Model
 from xlmc.run.needed import filter_limits
 from xlmc.run.simulation import Simulation
-from xlmc.studies.comparison.unit_factors import factor_between
+from xlmc.studies.comparison.tolerances import factor_between
 from xlmc.studies.comparison.variations import with_changes
 
 __all__ = ["Inputs", "Step", "Unlike", "Variations", "cause_of", "inputs_of", "steps_between"]

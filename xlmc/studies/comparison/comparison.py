@@ -21,11 +21,11 @@ from xlmc.studies.comparison.tolerances import (
     Tolerances,
     Verdict,
     chance_of,
+    factor_between,
     in_tolerances,
     judge,
     read_tolerances,
 )
-from xlmc.studies.comparison.unit_factors import factor_between
 from xlmc.studies.comparison.variations import with_plain_sampling
 
 __all__ = ["Cause", "Comparison", "ForecastComparison", "compare"]

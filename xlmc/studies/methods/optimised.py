@@ -4,16 +4,18 @@ Sequential quadratic programming (SLSQP) from the extreme accepted trials of a p
 forecasts and filter cells. A filter is a constraint on its cell, lowest or highest value; one that is only TRUE or
 FALSE cannot be followed by an optimiser, and is only checked. Whatever the optimiser says, the end is a point that
 the workbook itself accepts: from a final point that it rejects, the nearest one that it accepts is looked for.
+
+All searches go on in step (`in_step`): the workbook is evaluated at the points of all of them at once.
 """
 
 from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any, Final
+from typing import Any, Final, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,10 +31,96 @@ from xlmc.run.needed import filter_limits
 from xlmc.run.simulate import simulate
 from xlmc.studies.derivatives import derivatives
 from xlmc.studies.methods.answer import Answer, Errors, Extreme, MethodResult
-from xlmc.studies.methods.lockstep import in_step
 from xlmc.studies.methods.points import Box, Evaluation, box_of
 
-__all__ = ["Optimised", "widen_bounds"]
+__all__ = ["Optimised", "in_step", "widen_bounds"]
+
+Asked = TypeVar("Asked")
+Answered = TypeVar("Answered")
+Found = TypeVar("Found")
+
+
+def in_step(
+    searches: Sequence[Callable[[Callable[[Asked], Answered]], Found]],
+    answer: Callable[[list[Asked]], Sequence[Answered]],
+) -> list[Found]:
+    """Run every search in a thread of its own; each is given what answers one question, and waits for the others'.
+
+    Args:
+        searches: take the function to ask, give what they find.
+        answer: takes one question of every search that goes on, in the order of the searches, gives their answers.
+
+    Raises:
+        Exception: whatever a search or an answer raised first.
+
+    >>> def double(ask):
+    ...     return ask(ask(1))
+    >>> in_step([double, double], lambda questions: [2 * each for each in questions])
+    [4, 4]
+    """
+    round_ = _Round(len(searches), answer)
+    found: dict[int, Found] = {}
+
+    def run(index: int) -> None:
+        try:
+            found[index] = searches[index](lambda question: round_.ask(index, question))
+        except BaseException as error:
+            round_.fail(error)
+        finally:
+            round_.leave()
+
+    threads = [threading.Thread(target=run, args=(index,), daemon=True) for index in range(len(searches))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    if round_.error is not None:
+        raise round_.error
+    return [found[index] for index in range(len(searches))]
+
+
+class _Round(Generic[Asked, Answered]):
+    """The questions that wait; the last search to ask, or to end, has them answered."""
+
+    def __init__(self, going: int, answer: Callable[[list[Asked]], Sequence[Answered]]) -> None:
+        self._going, self._answer = going, answer
+        self._asked: dict[int, Asked] = {}
+        self._answered: dict[int, Answered] = {}
+        self._changed = threading.Condition()
+        self.error: BaseException | None = None
+
+    def ask(self, index: int, question: Asked) -> Answered:
+        with self._changed:
+            self._asked[index] = question
+            self._answer_if_all()
+            while index not in self._answered and self.error is None:
+                self._changed.wait()
+            if self.error is not None:
+                raise self.error
+            return self._answered.pop(index)
+
+    def leave(self) -> None:
+        with self._changed:
+            self._going -= 1
+            self._answer_if_all()
+
+    def fail(self, error: BaseException) -> None:
+        with self._changed:
+            self.error = self.error or error
+            self._changed.notify_all()
+
+    def _answer_if_all(self) -> None:
+        if self.error is not None or not self._asked or len(self._asked) < self._going:
+            return
+        indices = sorted(self._asked)
+        try:
+            answers = self._answer([self._asked[index] for index in indices])
+            self._answered.update(zip(indices, answers, strict=True))
+        except BaseException as error:
+            self.error = error
+        self._asked.clear()
+        self._changed.notify_all()
+
 
 _PILOT: Final = 32_768
 _STARTS: Final = 2

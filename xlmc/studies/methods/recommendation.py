@@ -13,9 +13,9 @@ from typing import Final
 
 import numpy as np
 
+from xlmc.studies.methods.answer import percent_words, rounded_text, seconds_text, statistic_words, trials_text
 from xlmc.studies.methods.curve import Curve
 from xlmc.studies.methods.need import NO_TIME, Choice, Need, Shortfall, choice, shortfall
-from xlmc.studies.methods.number_words import percent_words, rounded_text, seconds_text, statistic_words, trials_text
 from xlmc.studies.methods.sampled import MONTE_CARLO, Sampled
 from xlmc.studies.methods.study import Study
 

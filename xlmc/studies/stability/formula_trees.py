@@ -12,9 +12,9 @@ from xlmc.errors import FormulaError
 from xlmc.evaluation.graph.computed_references import NotYetNeeded
 from xlmc.evaluation.graph.lowering import Scope
 from xlmc.formula import ir
+from xlmc.formula.ir import formula_text
 from xlmc.formula.resolve import Resolver
 from xlmc.formula.substitute import substitute, unfold
-from xlmc.formula.text import formula_text
 from xlmc.run.model import Model
 from xlmc.workbook.model import DefinedName, Formula, Workbook
 

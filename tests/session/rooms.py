@@ -110,7 +110,6 @@ def upwards() -> Iterator[str]:
 LISTS = (
     "evaluation/engines.py",
     "report/sheets/book.py",
-    "run/stopping/choose.py",
     "sampling/methods.py",
     "studies/methods/study.py",
 )

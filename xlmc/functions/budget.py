@@ -15,9 +15,9 @@ from collections.abc import Iterable, Iterator
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from xlmc.errors import FormulaError
-from xlmc.functions.values import Floats
 
 __all__ = [
     "MOST_CALLS",
@@ -237,9 +237,9 @@ _KEPT: Final = 2
 _MEMORY = threading.local()
 
 
-def work_arrays(n: int, arrays: int) -> list[Floats]:
+def work_arrays(n: int, arrays: int) -> list[NDArray[np.float64]]:
     """One or two arrays `(n,)` of this thread's own, until it asks again."""
-    kept: list[Floats] = getattr(_MEMORY, "arrays", [])
+    kept: list[NDArray[np.float64]] = getattr(_MEMORY, "arrays", [])
     if len(kept) < arrays or kept[0].size < n:
         _MEMORY.arrays = kept = [np.empty(n) for _ in range(_KEPT)]
     return [array[:n] for array in kept[:arrays]]

@@ -36,9 +36,9 @@ class SamplingPlan:
         Raises:
             ValueError: there is no such method.
 
-        >>> Plan.of("sobol", 200_000)
-        Plan(method='sobol', trials=204800, size=8192, order=())
-        >>> Plan.of("lhs", 200_000).replicates
+        >>> SamplingPlan.of("sobol", 200_000)
+        SamplingPlan(method='sobol', trials=204800, size=8192, order=())
+        >>> SamplingPlan.of("lhs", 200_000).replicates
         16
         """
         if method not in METHODS:

@@ -103,7 +103,7 @@ def test_a_worker_that_joins_later_is_asked_too(model, monkeypatch):
     with monkeypatch.context() as patch:
         patch.setattr("xlmc.run.scheduling.run_spec.software", lambda: own | {"numpy": "0.0.1"})
         other = packed(scheduling.RunSpec.of(model, "numpy", 999, 100))
-    monkeypatch.setattr(scheduling.RunSpec, "packed", lambda _: other)
+    monkeypatch.setattr(scheduling.RunSpec, "pack", lambda _: other)
     with in_one_process(1) as found, pytest.raises(SimulationError, match=r"numpy is .* there and 0\.0\.1 here"):
         model.simulate(1000, scheduler=found.scheduler_address)
 

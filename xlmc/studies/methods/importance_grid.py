@@ -127,7 +127,7 @@ class _GridPlan(SamplingPlan):
     weights: Floats = field(default_factory=lambda: np.empty(0))
 
     def margins(self, seed: int, names: Sequence[str]) -> list[Margin]:
-        """See `Plan`."""
+        """See `SamplingPlan`."""
         return [
             _Bent(Stream(seed, name), self.grids[name], self.weights, index == 0) for index, name in enumerate(names)
         ]

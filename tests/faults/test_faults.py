@@ -120,8 +120,8 @@ def test_two_writers_that_both_begin_a_new_file(tmp_path):
 
 SCRIPT = """
 import sys
-from xlmc.columns import columns
-columns.IN_MEMORY = columns.WRITTEN = 0
+from xlmc.columns import column_store
+column_store.IN_MEMORY = column_store.WRITTEN = 0
 from xlmc.cli import main
 sys.argv = ["xlmc", *sys.argv[1:]]
 main()

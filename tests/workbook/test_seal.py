@@ -65,6 +65,12 @@ def test_a_seal_of_the_users_own_stays(tmp_path):
     assert b"/xl/xlmc/seal2.json" in parts["[Content_Types].xml"] or b'Extension="json"' in parts["[Content_Types].xml"]
 
 
+def test_of_a_package_with_two_seals_nobody_is_known(tmp_path):
+    parts = sealed_parts(PARTS, SHEET, "case.xlsx")
+    parts["xl/xlmc/seal2.json"] = parts["xl/xlmc/seal1.json"]
+    assert read_seal(written(tmp_path / "out.xlsx", parts)) is None
+
+
 TEXTS = {".html": b"<html></html>\n", ".json": b'{\n  "a": 1', ".htm": b"<p>"}
 
 

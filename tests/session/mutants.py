@@ -126,7 +126,6 @@ MUTANTS = {
     "looks of a rule": Mutant("math.ceil(self._blocks * _GROWTH)", "self._blocks + 1", ("run", "../xlmc/run")),
     # results
     "missing numbers in the fingerprint": Mutant("np.where(np.isnan(part), np.nan, part)", "part", ("results",)),
-    "entries of a saved run": Mutant("if name not in self._sizes:", "if False:", ("results",)),
     # studies
     "direction of a contribution": Mutant(
         "squares = np.nan_to_num(r) ** 2", "squares = np.nan_to_num(r)", ("studies",)

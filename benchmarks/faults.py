@@ -27,6 +27,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NoReturn
+from unittest import mock
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
@@ -112,16 +113,15 @@ class Writers:
 def fill_columns(folder: Path, values: int) -> None:
     """Keep columns on disk, in this folder, as a long run does."""
     before, tempfile.tempdir = tempfile.tempdir, str(folder)
-    limits, column_store.IN_MEMORY, column_store.WRITTEN = (column_store.IN_MEMORY, column_store.WRITTEN), 0, 0  # type: ignore[misc]
     try:
-        keeper = column_store.ColumnStore({"a": np.dtype(np.float64)})
-        for _ in range(values // 1_000):
-            keeper.add("a", np.ones(1_000))
-            keeper.settle()
-        del keeper
+        with mock.patch.multiple(column_store, IN_MEMORY=0, WRITTEN=0):
+            keeper = column_store.ColumnStore({"a": np.dtype(np.float64)})
+            for _ in range(values // 1_000):
+                keeper.add("a", np.ones(1_000))
+                keeper.settle()
+            del keeper
     finally:
         tempfile.tempdir = before
-        column_store.IN_MEMORY, column_store.WRITTEN = limits  # type: ignore[misc]
 
 
 def in_child(work: Callable[[], None]) -> int:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.options import OneOf
+from xlmc.cli.study_output import finite
 from xlmc.cli.terminal import paragraph, say, say_json
 
 if TYPE_CHECKING:
@@ -119,19 +120,15 @@ def _entry(fitted: Fitted) -> dict[str, object]:
     return {
         "distribution": fitted.name,
         "parameters": dict(fitted.parameters),
-        "standard_errors": {heading: _finite(error) for heading, error in fitted.errors.items()},
+        "standard_errors": {heading: finite(error) for heading, error in fitted.errors.items()},
         "standard_errors_from": fitted.errors_from,
         "not_estimated": sorted(fitted.fixed),
         "log_likelihood": fitted.log_likelihood,
         "aic": fitted.aic,
         "bic": fitted.bic,
-        "anderson_darling": _finite(fitted.ad),
+        "anderson_darling": finite(fitted.ad),
         "kolmogorov_smirnov": fitted.ks,
     }
-
-
-def _finite(value: float | None) -> float | None:
-    return value if value is not None and math.isfinite(value) else None
 
 
 def _show(found: Fitting, source: str, blank: int, row: dict[str, str]) -> None:

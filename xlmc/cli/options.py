@@ -48,7 +48,7 @@ class WholeNumber(click.ParamType):  # type: ignore[type-arg]  # no generic befo
         return found
 
 
-class OneOf(click.Choice):  # type: ignore[type-arg]
+class OneOf(click.Choice):  # type: ignore[type-arg]  # likewise
     """One of some words, in any case."""
 
     def __init__(self, *words: str) -> None:

@@ -224,7 +224,7 @@ class _Moved:
         q = self.quantiles(shape)
         location, scale = self.fit(q)
         left = {3: 1, 2: 1 - self._farthest if self.location is not None else 0, 1: 0}[len(self.x)]
-        return location + scale * q[left] - self.x[left]  # type: ignore[no-any-return]
+        return location + scale * q[left] - self.x[left]  # type: ignore[no-any-return]  # as SciPy has no types
 
     def quantiles(self, shape: Values) -> Array:
         """q(p; shape), `(points,)` or `(points, shapes)`."""

@@ -62,12 +62,12 @@ class Lognorm2(Family):
     def _cdf(self, x: Values, location: Values, mu: Values, sigma: Values) -> Values:
         from scipy.special import ndtr
 
-        return ndtr(_standard(x, location, mu, sigma))  # type: ignore[no-any-return]
+        return ndtr(_standard(x, location, mu, sigma))  # type: ignore[no-any-return]  # likewise
 
     def _sf(self, x: Values, location: Values, mu: Values, sigma: Values) -> Values:
         from scipy.special import ndtr
 
-        return ndtr(np.negative(_standard(x, location, mu, sigma)))  # type: ignore[no-any-return]
+        return ndtr(np.negative(_standard(x, location, mu, sigma)))  # type: ignore[no-any-return]  # likewise
 
     def _mean(self, location: Values, mu: Values, sigma: Values) -> Values:
         with np.errstate(over="ignore"):

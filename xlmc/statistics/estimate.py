@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-__all__ = ["Estimate", "format_estimate", "supported_digits"]
+__all__ = ["Estimate", "format_estimate", "supported_digits", "two_digit_exponent"]
 
 LEAST_DOF = 1.0 - 1e-9
 """Fewer degrees of freedom give no error; the margin is for the rounding of an effective sample size."""
@@ -134,17 +134,17 @@ def format_estimate(value: float, error: float | None) -> str:
         return f"{value:.6g}"
     if error == 0.0:
         return f"{value:.6g} ± 0"
-    size = _exponent(max(abs(value), error))
+    size = two_digit_exponent(max(abs(value), error))
     if not -4 <= size < MOST_DIGITS:
         scaled = format_estimate(value / 10.0**size, error / 10.0**size)
         return f"({scaled})e{size:+03d}"
-    decimals = 1 - _exponent(error)
+    decimals = 1 - two_digit_exponent(error)
     if decimals + size >= MOST_DIGITS:  # an error below the last bit of the value
         return f"{value:.{MOST_DIGITS}g} ± {error:.1e}"
     return f"{_rounded(value, decimals)} ± {_rounded(error, decimals)}"
 
 
-def _exponent(number: float) -> int:
+def two_digit_exponent(number: float) -> int:
     """The power of ten of a number rounded to two digits: 0.00996 -> -2."""
     return int(f"{number:.1e}".partition("e")[2])
 

@@ -188,7 +188,7 @@ class _Rows(Sequence[Area]):
     def __len__(self) -> int:
         return _length(self.longest)
 
-    def __getitem__(self, at: int) -> Area:  # type: ignore[override]
+    def __getitem__(self, at: int) -> Area:  # type: ignore[override]  # never a slice
         if self.longest.rows == 1:
             return replace(self.longest, left=self.longest.right - at)
         return replace(self.longest, top=self.longest.bottom - at)

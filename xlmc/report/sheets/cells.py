@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 from xlmc.statistics import Estimate
+from xlmc.statistics.estimate import two_digit_exponent
 
 __all__ = [
     "BLANK",
@@ -113,11 +114,11 @@ def share_format(estimate: Estimate) -> str:
 
 def spread_format(spread: float) -> str:
     """The format of single trials: four digits of their spread."""
-    return _format(spread, 3 - _exponent(spread)) if _usable(spread) else "General"
+    return _format(spread, 3 - two_digit_exponent(spread)) if _usable(spread) else "General"
 
 
 def _paired_decimals(estimate: Estimate) -> int | None:
-    return 1 - _exponent(estimate.error) if estimate.error and _usable(estimate.error) else None
+    return 1 - two_digit_exponent(estimate.error) if estimate.error and _usable(estimate.error) else None
 
 
 def _format(value: float, decimals: int | None) -> str:
@@ -126,10 +127,10 @@ def _format(value: float, decimals: int | None) -> str:
     if decimals is None:
         if value == 0.0:
             return "General"
-        decimals = _DIGITS - 1 - _exponent(value)
+        decimals = _DIGITS - 1 - two_digit_exponent(value)
     size = max(abs(value), 10.0**-decimals)
     if not _SMALLEST <= size < _LARGEST:
-        return "0" + _fraction(min(max(decimals + _exponent(size), 0), 3)) + "E+00"
+        return "0" + _fraction(min(max(decimals + two_digit_exponent(size), 0), 3)) + "E+00"
     room = _ROOM - len(f"{value:,.0f}") - 1
     return "#,##0" + _fraction(max(min(decimals, room), 0))
 
@@ -140,8 +141,3 @@ def _fraction(decimals: int) -> str:
 
 def _usable(number: float) -> bool:
     return number != 0.0 and math.isfinite(number)
-
-
-def _exponent(number: float) -> int:
-    """The power of ten of a number rounded to two digits: 0.00996 -> -2."""
-    return int(f"{number:.1e}".partition("e")[2])

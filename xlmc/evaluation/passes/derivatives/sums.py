@@ -104,7 +104,7 @@ def product(function: Function, result: Value, operands: Sequence[Operand]) -> O
     for jet, counted in zip(jets, counts, strict=True):
         whole = jet.spread()
         for column in range(counted.shape[1]):
-            one = whole.each(lambda part, _, column=column: part[..., column])  # type: ignore[misc]
+            one = whole.each(lambda part, _, column=column: part[..., column])  # type: ignore[misc]  # mypy sees two arguments
             factor = chain(np.where(counted[:, column], one.x, 1.0), [one], [np.where(counted[:, column], 1.0, 0.0)])
             running = running * factor
     return Outcome(running)

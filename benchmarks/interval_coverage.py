@@ -23,7 +23,7 @@ from scipy.special import bdtr
 from tables import placed
 
 import xlmc.statistics as xs
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 from xlmc.sampling.sampling_plan import SamplingPlan
 
 __all__ = ["RUNS", "Cell", "faults", "measure", "one_run", "table"]

@@ -17,8 +17,8 @@ from scipy.special import ndtr, ndtri
 
 from xlmc.address import parse_address
 from xlmc.api import Model
-from xlmc.definitions.model import Assumption, Correlation, Definitions, Filter, Forecast
-from xlmc.workbook.model import CellContent, Formula, Sheet, Workbook
+from xlmc.definitions.definitions import Assumption, Correlation, Definitions, Filter, Forecast
+from xlmc.workbook.workbook import CellContent, Formula, Sheet, Workbook
 
 __all__ = ["ORDINARY", "SEVERAL", "THIN", "RareBook"]
 

@@ -138,6 +138,6 @@ def _ratios(records: dict[str, Any]) -> None:
 
 
 def _key(name: str) -> str:
-    from xlmc.definitions.model import name_key
+    from xlmc.definitions.definitions import name_key
 
     return name_key(name)

@@ -33,7 +33,7 @@ from tail_problems import ORDINARY, PROBLEMS, RANKS, STATISTICS, Problem
 import xlmc.statistics as xs
 from xlmc.run.forecast_result import FARTHEST_PART, TELLING
 from xlmc.run.simulation import FEW, LEAST_ACCEPTED
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.statistics.sample import MOST_GROUPS
 

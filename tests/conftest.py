@@ -15,8 +15,8 @@ from openpyxl.worksheet.table import Table as WrittenTable
 
 from xlmc.address import Area, parse_address
 from xlmc.api import Model
-from xlmc.definitions.model import Assumption, Correlation, Definitions, Filter, Forecast
-from xlmc.workbook.model import CellContent, DefinedName, Formula, Sheet, Table, Workbook
+from xlmc.definitions.definitions import Assumption, Correlation, Definitions, Filter, Forecast
+from xlmc.workbook.workbook import CellContent, DefinedName, Formula, Sheet, Table, Workbook
 
 
 def _content(value, row, column):

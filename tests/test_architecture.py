@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections import Counter
 
 from rooms import DOORS, LISTS, MODULES, PACKAGE, ROOMS, arrows, circles, floors, imported, pieces, room_of, upwards
 
@@ -27,6 +28,11 @@ def test_no_modules_import_each_other_in_a_circle():
 def test_a_module_that_only_one_other_needs_is_not_small():
     assert list(pieces()) == []
     assert {*LISTS} <= {str(path.relative_to(PACKAGE)) for path in MODULES}
+
+
+def test_a_name_says_which_module_is_meant_but_a_command_may_have_the_name_of_what_it_runs():
+    names = Counter(path.name for path in MODULES if room_of(path) != "cli" and path.name != "__init__.py")
+    assert [name for name, times in names.items() if times > 1] == []
 
 
 def test_an_arrow_up_would_be_seen():

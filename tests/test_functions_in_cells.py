@@ -21,7 +21,7 @@ from xlmc.api import Model
 from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.errors import XlmcError
 from xlmc.evaluation.engines import ENGINES
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.workbook import CellContent, Formula
 
 TRIALS = 100_000
 

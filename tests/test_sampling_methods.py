@@ -10,11 +10,11 @@ import pytest
 import xlmc.run.simulate
 from xlmc import statistics
 from xlmc.api import Model
-from xlmc.definitions.model import Settings
+from xlmc.definitions.definitions import Settings
 from xlmc.errors import SimulationError
 from xlmc.results.record import make_record
 from xlmc.run.sobol_order import plan_sampling
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 
 ROUNDED = ", whole ones, for the 1,000 trials that were asked for"
 STRATIFIED = [method for method in METHODS if method != "mc"]

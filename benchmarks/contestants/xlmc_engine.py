@@ -58,7 +58,7 @@ def prepare(task: Task) -> Xlmc:
 
 
 def _key(name: str) -> str:
-    from xlmc.definitions.model import name_key
+    from xlmc.definitions.definitions import name_key
 
     return name_key(name)
 

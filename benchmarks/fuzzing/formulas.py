@@ -17,14 +17,14 @@ from fuzzing.inputs import Disagreement, Input, Reached, steps_of
 from fuzzing.splicing import spliced
 from xlmc.address import Area
 from xlmc.api import Model
+from xlmc.definitions.definitions import Definitions
 from xlmc.definitions.definitions_reader import read_definitions
-from xlmc.definitions.model import Definitions
 from xlmc.evaluation.engines import ENGINES
 from xlmc.report.summary import summarise, summary_text
 from xlmc.run.loading import build_model
 from xlmc.run.simulation import Simulation
-from xlmc.workbook.model import CellContent, Formula, Workbook
 from xlmc.workbook.reader import read_workbook
+from xlmc.workbook.workbook import CellContent, Formula, Workbook
 
 __all__ = ["book_of", "make", "run"]
 

@@ -11,7 +11,7 @@ import numpy as np
 from stressing.charts import COLOURS, binomial_error, coverage_axis, figure, save
 from xlmc.run.forecast_result import FARTHEST_PART, TELLING
 from xlmc.run.simulation import FEW, LEAST_ACCEPTED
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 
 __all__ = ["correlations", "counts", "few", "samplers", "shares", "stops", "tails"]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from stressing.forms import CONSTANTS, FORMS, INPUTS, PRINTED, REWRITTEN
 from xlmc.api import Model, load
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 
 __all__ = ["FORMS_ENGINES", "book_of", "forms_book", "values_of"]
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import openpyxl
 import pytest
 
-from xlmc.cli.progress import errors_line, trials_line
+from xlmc.cli.progress_bar import errors_line, trials_line
 from xlmc.run.stopping import Progress
 from xlmc.statistics import Estimate
 

@@ -11,7 +11,7 @@ import pytest
 from xlmc.address import Cell, parse_address
 from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.evaluation.engines import ENGINES
-from xlmc.workbook.model import CellContent, DefinedName, Formula, Sheet, Table, Workbook
+from xlmc.workbook.workbook import CellContent, DefinedName, Formula, Sheet, Table, Workbook
 
 
 def content(value, cell):

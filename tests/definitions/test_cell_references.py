@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Cell, column_letters, parse_address
 from xlmc.definitions.cell_references import formula_at, is_address, split_sheet
-from xlmc.workbook.model import Formula
+from xlmc.workbook.workbook import Formula
 
 
 @pytest.mark.parametrize(

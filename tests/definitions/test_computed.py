@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from xlmc.address import Area, Cell
 from xlmc.definitions.computed import Computed
-from xlmc.workbook.model import Formula
+from xlmc.workbook.workbook import Formula
 
 
 def test_formulas_arrays_and_draws(make_book):

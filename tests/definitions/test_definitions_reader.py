@@ -7,8 +7,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from xlmc.address import Cell
+from xlmc.definitions.definitions import Assumption, Correlation, Filter, Forecast, Settings
 from xlmc.definitions.definitions_reader import read_definitions
-from xlmc.definitions.model import Assumption, Correlation, Filter, Forecast, Settings
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engines import ENGINES
 

@@ -6,7 +6,7 @@ import pytest
 from xlmc.address import Area
 from xlmc.errors import FormulaError
 from xlmc.evaluation.formulas_engine import FormulasProgram
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.workbook import CellContent, Formula
 
 
 def test_a_draw_that_is_an_error(lower):

@@ -30,7 +30,7 @@ from xlmc.evaluation.engine import TEXT_RESULT, Column, Target
 from xlmc.evaluation.engines import ENGINES
 from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.formula import Resolver, build_graph
-from xlmc.workbook.model import CellContent, Formula, Sheet, Workbook
+from xlmc.workbook.workbook import CellContent, Formula, Sheet, Workbook
 
 FOLDER = Path(__file__).parent
 DRAWN = "Drawn"

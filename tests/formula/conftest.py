@@ -8,7 +8,7 @@ import pytest
 
 from xlmc.address import Area, Cell, column_letters, parse_address
 from xlmc.formula import Resolver, build_graph, ir, parse
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.workbook import CellContent, Formula
 
 SIGNS = {" ": "∩", ",": "∪"}
 

@@ -7,7 +7,7 @@ import pytest
 from xlmc.address import Cell, parse_address
 from xlmc.errors import FormulaError
 from xlmc.formula import Resolver, build_graph, ir
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from xlmc.errors import FormulaError
 from xlmc.formula import Resolver, build_graph, ir
 from xlmc.formula import graph as module
 from xlmc.formula.graph import Spills
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 
 @pytest.fixture

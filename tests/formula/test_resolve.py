@@ -5,7 +5,7 @@ import pytest
 from xlmc.address import Cell
 from xlmc.errors import FormulaError
 from xlmc.formula import Resolver, ir
-from xlmc.workbook.model import Formula
+from xlmc.workbook.workbook import Formula
 
 NAMES = {
     "Rate": "S!$C$3",

@@ -8,7 +8,7 @@ from xlmc.address import Cell
 from xlmc.errors import FormulaError
 from xlmc.formula import Resolver, ir
 from xlmc.formula.precedents import references
-from xlmc.workbook.model import Formula
+from xlmc.workbook.workbook import Formula
 
 TABS = ("Mar", "Jan", "It's", "Dec", "Apr")
 CELLS = {"Mar!B9": 1.0, "Dec!A4": 2.0, "'It''s'!A2": 3.0}

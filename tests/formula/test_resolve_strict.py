@@ -7,7 +7,7 @@ import pytest
 from xlmc.address import Cell
 from xlmc.errors import FormulaError
 from xlmc.formula import Resolver
-from xlmc.workbook.model import Formula
+from xlmc.workbook.workbook import Formula
 
 NAMES = {"Rate": "S!$C$3", "Half": "Gone/2", "Data!Own": "Data!$A$1", "Both": "Half+Rate", "Loop": "Loop"}
 ANY_CASE = {

@@ -10,7 +10,7 @@ from xlmc.address import Area, Cell, parse_address
 from xlmc.errors import FormulaError
 from xlmc.formula import Resolver
 from xlmc.formula.shape import Shapes, shape_of, shown_formula
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.workbook import CellContent, Formula
 
 
 @pytest.mark.parametrize(

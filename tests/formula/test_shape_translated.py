@@ -12,7 +12,7 @@ from xlmc.errors import FormulaError
 from xlmc.formula import Resolver, parse
 from xlmc.formula import shape as module
 from xlmc.formula.shape import Shapes, shape_of
-from xlmc.workbook.model import Formula
+from xlmc.workbook.workbook import Formula
 
 ROWS, COLUMNS = 40, 20  # far enough from the edges: a shift of this much stays on the sheet
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.formula import Resolver, Stencil
 from xlmc.formula.precedents import references
-from xlmc.workbook.model import Formula
+from xlmc.workbook.workbook import Formula
 
 HOME = Cell("S", 5, 5)
 

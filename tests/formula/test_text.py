@@ -4,7 +4,7 @@ import pytest
 
 from xlmc.address import Cell
 from xlmc.formula import Resolver, formula_text, parse
-from xlmc.workbook.model import Formula
+from xlmc.workbook.workbook import Formula
 
 TEXTS = {
     "A1+B1*2": "(S!A1+(S!B1*2.0))",

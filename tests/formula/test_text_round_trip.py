@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from xlmc.address import Area, Cell
 from xlmc.formula import Resolver, formula_text, ir, parse
-from xlmc.workbook.model import Formula
+from xlmc.workbook.workbook import Formula
 
 HERE = Cell("It's", 3, 3)
 NAMES = {"Rate": "S!$C$3", "Twice": "LAMBDA(v,2*v)", "Half": "Rate/2", "Next": "!B1"}

@@ -9,9 +9,9 @@ import pytest
 
 from xlmc.address import parse_address
 from xlmc.api import Model
-from xlmc.definitions.model import Assumption, Definitions, Filter, Forecast, Settings
+from xlmc.definitions.definitions import Assumption, Definitions, Filter, Forecast, Settings
 from xlmc.report.sheets.book import build_sheets
-from xlmc.workbook.model import CellContent, Formula, Sheet, Workbook
+from xlmc.workbook.workbook import CellContent, Formula, Sheet, Workbook
 
 
 def _cell(address):

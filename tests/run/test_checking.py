@@ -9,7 +9,7 @@ import pytest
 
 from xlmc.address import parse_address
 from xlmc.api import Model
-from xlmc.definitions.model import Check
+from xlmc.definitions.definitions import Check
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.run.checking import LEAST_CHECKED, base_checks, checks_sentence
 

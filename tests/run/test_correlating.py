@@ -6,13 +6,13 @@ from scipy import stats
 
 import xlmc.statistics as xs
 from xlmc.address import Cell
-from xlmc.definitions.model import Correlation
+from xlmc.definitions.definitions import Correlation
 from xlmc.distributions import FAMILIES
 from xlmc.results.record.definition_tables import correlations_met
 from xlmc.run.correlating import correlated_groups, drawn_correlation, repair_notices
 from xlmc.sampling.copula import GaussianCopula
 from xlmc.sampling.draws import Draw
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 
 UNIT = {"low": 0, "high": 1}
 

@@ -10,7 +10,7 @@ from openpyxl.worksheet.table import Table
 
 from xlmc.address import Cell
 from xlmc.api import Model, load
-from xlmc.definitions.model import Assumption
+from xlmc.definitions.definitions import Assumption
 from xlmc.distributions import FAMILIES, ByPercentiles
 from xlmc.errors import DefinitionError
 

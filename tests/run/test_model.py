@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from xlmc.api import load
-from xlmc.definitions.model import Settings
+from xlmc.definitions.definitions import Settings
 from xlmc.errors import DefinitionError, FormulaError, SimulationError
 from xlmc.evaluation.engines import ENGINES
 
@@ -150,9 +150,9 @@ def test_the_saved_value_of_a_known_part_is_noticed(book):
 
 
 def test_a_book_with_mistakes_is_not_loaded(tmp_path, monkeypatch):
-    from xlmc.definitions.model import Definitions
+    from xlmc.definitions.definitions import Definitions
     from xlmc.run import loading as module
-    from xlmc.workbook.model import Workbook
+    from xlmc.workbook.workbook import Workbook
 
     problems = (DefinitionError("Low is blank", where="S!B2"), DefinitionError("Name is blank", where="S!A3"))
     monkeypatch.setattr(module, "read_workbook", lambda path: Workbook("b", {}))

@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.address import Cell
-from xlmc.definitions.model import Filter
+from xlmc.definitions.definitions import Filter
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import formula_text
 from xlmc.run.needed import filter_condition, find_needed

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.errors import SimulationError
-from xlmc.sampling.methods import METHODS, REPLICATES
+from xlmc.sampling.sampling_methods import METHODS, REPLICATES
 from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.sampling.sobol_points import DIMENSIONS
 

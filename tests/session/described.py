@@ -13,7 +13,7 @@ from xlmc.definitions.tables.settings import _settings
 from xlmc.distributions import FAMILIES
 from xlmc.evaluation.engines import ENGINES
 from xlmc.report.sheets.book import SHEETS
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 
 __all__ = ["undescribed"]
 

@@ -110,7 +110,7 @@ def upwards() -> Iterator[str]:
 LISTS = (
     "evaluation/engines.py",
     "report/sheets/book.py",
-    "sampling/methods.py",
+    "sampling/sampling_methods.py",
     "studies/methods/study.py",
 )
 """Modules that list things of one kind; what they and the packages' doors import stands alone, however small it is."""

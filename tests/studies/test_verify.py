@@ -8,7 +8,7 @@ import pytest
 
 from xlmc.address import Area, Cell
 from xlmc.studies.verify import Status, verify
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.workbook import CellContent, Formula
 
 SHORT_SINE, SHORT_COSINE = 1.22514845490862e-16, 6.1257422745431e-17  # saved by 32-bit Excel
 

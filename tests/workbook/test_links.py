@@ -13,7 +13,7 @@ from xlmc.address import Cell
 from xlmc.errors import ErrorCode, FormulaError, WorkbookError
 from xlmc.replay import Change, replay
 from xlmc.studies.verify import Status, verify
-from xlmc.workbook.model import CellContent
+from xlmc.workbook.workbook import CellContent
 
 MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
 OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"

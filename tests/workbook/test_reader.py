@@ -9,8 +9,8 @@ import xlsxwriter
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, WorkbookError
-from xlmc.workbook.model import DataTable, DefinedName, Formula, Table, Workbook
 from xlmc.workbook.reader import read_workbook
+from xlmc.workbook.workbook import DataTable, DefinedName, Formula, Table, Workbook
 
 
 @pytest.fixture

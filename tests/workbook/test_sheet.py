@@ -3,9 +3,9 @@ import pytest
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.workbook.cell_values import CellContext
-from xlmc.workbook.model import CellContent, DataTable, Formula
 from xlmc.workbook.sheet import parse_sheet
 from xlmc.workbook.structure import SheetEntry
+from xlmc.workbook.workbook import CellContent, DataTable, Formula
 
 MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
 STRICT = "http://purl.oclc.org/ooxml/spreadsheetml/main"

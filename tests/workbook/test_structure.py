@@ -4,8 +4,8 @@ import pytest
 
 from xlmc.address import Area
 from xlmc.errors import WorkbookError
-from xlmc.workbook.model import DefinedName, Table
 from xlmc.workbook.structure import area_of, read_structure, read_table, tables_of
+from xlmc.workbook.workbook import DefinedName, Table
 
 MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
 OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"

@@ -15,12 +15,12 @@ from xlmc.cli.terminal import paragraph, say
 from xlmc.errors import sentence
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Correlation, Definitions
+    from xlmc.definitions.definitions import Correlation, Definitions
     from xlmc.run.cell_errors import BaseErrors
     from xlmc.run.checking import CheckResult
     from xlmc.run.model import Model
     from xlmc.run.simulation import Simulation
-    from xlmc.workbook.model import Workbook
+    from xlmc.workbook.workbook import Workbook
 
 __all__ = ["check", "check_table", "failing_lines", "show_first"]
 

@@ -66,7 +66,7 @@ def compare(
 ) -> None:
     """Run the workbooks FIRST and SECOND over the same trials, and say whether the simpler one is enough."""
     from xlmc.cli.printing import warnings
-    from xlmc.cli.progress import step_line
+    from xlmc.cli.progress_bar import step_line
     from xlmc.report.study_report import Files
     from xlmc.run.loading import load
     from xlmc.studies import comparison

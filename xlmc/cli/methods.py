@@ -69,7 +69,7 @@ def methods(
     quiet: bool,
 ) -> None:
     """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
-    from xlmc.cli.progress import step_line
+    from xlmc.cli.progress_bar import step_line
     from xlmc.report.methods import check_targets, save_methods
     from xlmc.run.loading import load
     from xlmc.studies.methods import quick_settings, study

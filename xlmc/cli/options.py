@@ -9,7 +9,7 @@ import click
 
 from xlmc.definitions.stopping import GOALS, RARE, Option
 from xlmc.evaluation.engines import ENGINES
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 
 __all__ = ["OneOf", "WholeNumber", "engine_option", "jobs_option", "sampling_option", "stopping_options"]
 

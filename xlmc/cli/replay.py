@@ -14,7 +14,7 @@ from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
     from xlmc.replay import CellDifference, Change, NumberChange, Replayed
-    from xlmc.workbook.model import CellValue
+    from xlmc.workbook.workbook import CellValue
 
 __all__ = ["replay"]
 
@@ -33,7 +33,7 @@ _LONGEST = 60
 def replay(recorded: Path, jobs: int, as_json: bool, quiet: bool) -> None:
     """Repeat the run recorded in RESULTS, a result workbook or a saved run, from the definitions in the same file."""
     from xlmc import replay as replaying
-    from xlmc.cli.progress import progress_bar
+    from xlmc.cli.progress_bar import progress_bar
 
     with progress_bar(quiet) as progress:
         found = replaying.replay(recorded, jobs=jobs, progress=progress)

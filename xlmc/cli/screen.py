@@ -76,7 +76,7 @@ def screen(
     answers.
     """
     from xlmc.cli.printing import warnings
-    from xlmc.cli.progress import step_line
+    from xlmc.cli.progress_bar import step_line
     from xlmc.report.study_report import Files
     from xlmc.run.loading import load
     from xlmc.studies import screening

@@ -78,7 +78,7 @@ def simulate(
     """Run BOOK, print the summary, and write result sheets and charts into a copy of it."""
     from xlmc.api import load
     from xlmc.cli.printing import notices, warnings
-    from xlmc.cli.progress import progress_bar
+    from xlmc.cli.progress_bar import progress_bar
     from xlmc.run.simulation import KEPT_INPUTS
 
     if in_place and output is not None:

@@ -44,7 +44,7 @@ def stability(
 ) -> None:
     """Find where BOOK loses digits, or its numbers are not what they seem, within the ranges of its assumptions."""
     from xlmc.cli.printing import warnings
-    from xlmc.cli.progress import step_line
+    from xlmc.cli.progress_bar import step_line
     from xlmc.report.study_report import Files
     from xlmc.run.loading import load
     from xlmc.studies import stability as room

@@ -12,7 +12,7 @@ from typing import NoReturn
 from xlmc.address import Area, Cell, column_letters, column_number, parse_address, quote_sheet
 from xlmc.distributions.spelling import did_you_mean, nearest
 from xlmc.errors import DefinitionError
-from xlmc.workbook.model import DefinedName, Formula, Table, Workbook
+from xlmc.workbook.workbook import DefinedName, Formula, Table, Workbook
 
 __all__ = [
     "area_of_reference",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Container
 
 from xlmc.address import Area, Cell
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["Computed"]
 

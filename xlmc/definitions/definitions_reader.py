@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from xlmc.definitions.computed import Computed
+from xlmc.definitions.definitions import Definitions, Settings, name_key
 from xlmc.definitions.in_cells.calls import InCells, in_cell_correlations, in_cell_forecasts, read_in_cells
-from xlmc.definitions.model import Definitions, Settings, name_key
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.assumptions import read_assumptions
 from xlmc.definitions.tables.correlations import read_correlations
@@ -24,7 +24,7 @@ from xlmc.definitions.unavailable import (
     tables_of_run,
 )
 from xlmc.errors import DefinitionError
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["read_definitions"]
 

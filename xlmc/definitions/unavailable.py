@@ -16,7 +16,7 @@ from xlmc.address import Area, Cell, host_of
 from xlmc.definitions.problems import Findings
 from xlmc.errors import FormulaError
 from xlmc.formula import Graph, Resolver, build_graph, ir
-from xlmc.workbook.model import DataTable, Workbook
+from xlmc.workbook.workbook import DataTable, Workbook
 
 __all__ = [
     "TABLE_REASON",

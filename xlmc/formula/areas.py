@@ -7,7 +7,7 @@ from typing import Final
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import ir
-from xlmc.workbook.model import DefinedName, LinkedBook, Table, Workbook
+from xlmc.workbook.workbook import DefinedName, LinkedBook, Table, Workbook
 
 __all__ = [
     "COPY",

@@ -9,7 +9,7 @@ from typing import Final
 from xlmc.errors import FormulaError
 from xlmc.formula import ir
 from xlmc.formula.parse import parse
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["calls_function", "function_named_by", "gives_function", "stands_for_function"]
 

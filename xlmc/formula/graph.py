@@ -20,7 +20,7 @@ from xlmc.formula.precedents import references
 from xlmc.formula.resolve import Resolver
 from xlmc.formula.stencil import Stencil
 from xlmc.formula.strips import Needs, Part, Stretch, Strips
-from xlmc.workbook.model import Sheet, Workbook
+from xlmc.workbook.workbook import Sheet, Workbook
 
 __all__ = ["Filled", "Graph", "Spills", "build_graph", "circular"]
 

@@ -8,7 +8,7 @@ from typing import Final, assert_never
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_number
 from xlmc.formula import ir
-from xlmc.workbook.model import Formula, Workbook
+from xlmc.workbook.workbook import Formula, Workbook
 
 __all__ = ["LOOKED_AT", "mentioned", "references"]
 

@@ -30,7 +30,7 @@ from xlmc.formula.callables import calls_function, function_named_by, stands_for
 from xlmc.formula.parse import parse
 from xlmc.formula.shape import Shapes
 from xlmc.formula.stencil import Stencil, stencil
-from xlmc.workbook.model import Formula, Table, Workbook
+from xlmc.workbook.workbook import Formula, Table, Workbook
 
 __all__ = ["Resolver"]
 

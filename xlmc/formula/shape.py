@@ -14,7 +14,7 @@ from xlmc.address import MAX_COLUMN, MAX_ROW, Cell, column_letters, column_numbe
 from xlmc.formula import ir
 from xlmc.formula.parse import parse_cell
 from xlmc.formula.stencil import Stencil
-from xlmc.workbook.model import Formula
+from xlmc.workbook.workbook import Formula
 
 __all__ = ["Shapes", "shape_of", "shown_formula", "text_at"]
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Final, TypeGuard, TypeVar
 
 from xlmc.results.record import Record, Value
 from xlmc.results.record.needed_cells import SAVED, content_text, definition_cells
-from xlmc.workbook.model import CellValue
+from xlmc.workbook.workbook import CellValue
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
-    from xlmc.workbook.model import Workbook
+    from xlmc.workbook.workbook import Workbook
 
 __all__ = [
     "Change",

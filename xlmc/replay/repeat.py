@@ -32,18 +32,18 @@ from xlmc.run.loading import build_model
 from xlmc.run.simulate import simulate
 from xlmc.run.simulation import KEPT_INPUTS
 from xlmc.run.version import __version__
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 from xlmc.workbook.lazy_sheets import naming_file
 from xlmc.workbook.reader import read_workbook
 from xlmc.workbook.seal import read_seal
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
-    from xlmc.definitions.model import Settings
+    from xlmc.definitions.definitions import Settings
     from xlmc.run.model import Model
     from xlmc.run.simulate import OnProgress
     from xlmc.run.simulation import Simulation
-    from xlmc.workbook.model import Workbook
+    from xlmc.workbook.workbook import Workbook
 
 __all__ = ["Replayed", "replay"]
 

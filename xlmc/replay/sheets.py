@@ -20,12 +20,12 @@ from xlmc.replay.changes import Closeness, is_number
 from xlmc.report.sheets.book import build_sheets
 from xlmc.report.sheets.trials_sheet import HEADER, TRIAL_ROWS
 from xlmc.workbook.inject import marked_names
-from xlmc.workbook.model import CellContent, CellValue
 from xlmc.workbook.reader import read_workbook
+from xlmc.workbook.workbook import CellContent, CellValue
 
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
-    from xlmc.workbook.model import Sheet, Workbook
+    from xlmc.workbook.workbook import Sheet, Workbook
 
 __all__ = ["CellDifference", "SheetComparison", "compare_sheets"]
 

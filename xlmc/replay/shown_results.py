@@ -13,14 +13,14 @@ from xlmc.replay.sheets import CellDifference, SheetComparison, compare_sheets
 from xlmc.replay.versions import recorded_version
 from xlmc.run.stopping.stopped import Stopped
 from xlmc.run.version import __version__
-from xlmc.workbook.model import CellContent
+from xlmc.workbook.workbook import CellContent
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Settings
+    from xlmc.definitions.definitions import Settings
     from xlmc.results.record import Record, Value
     from xlmc.run.model import Model
     from xlmc.run.simulation import Simulation
-    from xlmc.workbook.model import Workbook
+    from xlmc.workbook.workbook import Workbook
 
 __all__ = ["as_recorded", "compare_shown"]
 

@@ -26,7 +26,7 @@ from xlmc.workbook.target import Target
 from xlmc.workbook.writer import write_workbook
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Assumption, Filter
+    from xlmc.definitions.definitions import Assumption, Filter
     from xlmc.results.record.definition_tables import CorrelationMet
     from xlmc.results.statements import Pair
     from xlmc.run.checking import CheckResult

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.statistics import Estimate, format_estimate
 
 if TYPE_CHECKING:

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell, InFormula
-from xlmc.definitions.model import Forecast, name_key
+from xlmc.definitions.definitions import Forecast, name_key
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import TEXT_RESULT, Target
 from xlmc.run.model import lower_needed
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Assumption, Definitions
+    from xlmc.definitions.definitions import Assumption, Definitions
     from xlmc.evaluation.graph.lower import Lowering
     from xlmc.run.model import Model
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.distributions.parameters import show
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT
@@ -17,7 +17,7 @@ from xlmc.statistics import Estimate, proportion
 
 if TYPE_CHECKING:
     from xlmc.address import Cell
-    from xlmc.definitions.model import Check
+    from xlmc.definitions.definitions import Check
     from xlmc.evaluation.engine import Column
     from xlmc.run.model import Model
 

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from xlmc.definitions.model import Correlation, name_key
+from xlmc.definitions.definitions import Correlation, name_key
 from xlmc.distributions.whole_numbers import WholeNumbers
 from xlmc.errors import Notice
 from xlmc.sampling.copula import GaussianCopula

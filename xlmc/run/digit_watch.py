@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.evaluation.passes.random_rounding import RandomRounding, closure, evaluation, numbers, term_sizes
 from xlmc.functions.budget import TooLargeError
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell, InFormula
-from xlmc.definitions.model import CUTOFFS, Assumption, DataRange, Definitions, Parameter, name_key
+from xlmc.definitions.definitions import CUTOFFS, Assumption, DataRange, Definitions, Parameter, name_key
 from xlmc.definitions.tables.data import data_family
 from xlmc.distributions import ByPercentiles, Family
 from xlmc.distributions.parameters import show
@@ -25,7 +25,7 @@ from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.functions.values import ERROR, TEXT
 from xlmc.run.needed import upstream
 from xlmc.sampling.draws import Draw, DynamicParameters
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["draw_of", "dynamic_parameters", "parameter_target", "with_base_parameters"]
 

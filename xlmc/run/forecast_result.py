@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from xlmc import statistics
 from xlmc.columns import numbers
-from xlmc.definitions.model import Forecast
+from xlmc.definitions.definitions import Forecast
 from xlmc.errors import Notice
 from xlmc.run.stopping.stopped import list_of
 from xlmc.statistics import Description, Estimate, Sample, errors_from_trials, too_short

@@ -13,8 +13,8 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
+from xlmc.definitions.definitions import Filter, name_key
 from xlmc.definitions.definitions_reader import read_definitions
-from xlmc.definitions.model import Filter, name_key
 from xlmc.definitions.tables.filters import LIMIT_HINT
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError
@@ -24,8 +24,8 @@ from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.formula import ir
 from xlmc.run.model import Model, paused_collection
 from xlmc.run.needed import filter_limits
-from xlmc.workbook.model import Workbook
 from xlmc.workbook.reader import read_workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["build_model", "filter_faults", "load"]
 

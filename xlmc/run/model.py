@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.model import Assumption, Definitions, Forecast, name_key
+from xlmc.definitions.definitions import Assumption, Definitions, Forecast, name_key
 from xlmc.errors import Notice, SimulationError
 from xlmc.evaluation.engine import Evaluator, Program, Target
 from xlmc.evaluation.engines import ENGINES
@@ -33,7 +33,7 @@ from xlmc.run.needed import (
 )
 from xlmc.sampling.draws import CorrelatedGroup, Draw, DrawStage, Filler, Sampler
 from xlmc.sampling.sampling_plan import SamplingPlan
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["Model", "lower_needed", "paused_collection"]
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from xlmc.address import Cell, InFormula
-from xlmc.definitions.model import Assumption, Check, Definitions, Filter, Forecast
+from xlmc.definitions.definitions import Assumption, Check, Definitions, Filter, Forecast
 from xlmc.errors import DefinitionError, Notice
 from xlmc.formula import Graph, Resolver, build_graph, ir
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = [
     "Needed",

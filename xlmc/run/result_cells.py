@@ -14,9 +14,9 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
+from xlmc.definitions.definitions import name_key
 from xlmc.definitions.in_cells.call_arguments import number_of
 from xlmc.definitions.in_cells.result_functions import CRYSTAL_BALL_STATISTICS, ResultCall, is_result, result_call
-from xlmc.definitions.model import name_key
 from xlmc.definitions.unavailable import areas_text
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.arrays import size_of
@@ -26,7 +26,7 @@ from xlmc.formula.precedents import mentioned
 from xlmc.formula.substitute import substitute
 from xlmc.run.forecast_result import ForecastResult
 from xlmc.workbook.injection.formula_values import with_values
-from xlmc.workbook.model import CellValue, Workbook
+from xlmc.workbook.workbook import CellValue, Workbook
 
 __all__ = ["ShownResults", "filled_sheets", "shown_results"]
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.columns import ColumnStore
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.definitions.stopping import LIMIT, MOST_TRIALS, NO_GOAL, Stopping
 from xlmc.errors import SimulationError
 from xlmc.run.blocks import Block, FilterTally, Task
@@ -33,10 +33,10 @@ from xlmc.run.stopping import (
     may_end_early,
     refuse_other_sampling,
 )
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Settings
+    from xlmc.definitions.definitions import Settings
     from xlmc.run.model import Model
     from xlmc.run.rare.search import Search
     from xlmc.sampling.sampling_plan import SamplingPlan

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from xlmc import statistics
 from xlmc.columns import parts
-from xlmc.definitions.model import Settings, name_key
+from xlmc.definitions.definitions import Settings, name_key
 from xlmc.errors import Notice, SimulationError
 from xlmc.run.blocks import FilterTally
 from xlmc.run.cell_errors import Root, error_roots
@@ -23,7 +23,7 @@ from xlmc.run.forecast_result import ForecastResult, Replicates, tail_notices
 from xlmc.run.result_cells import ShownResults, shown_results
 from xlmc.run.stopping import Stopped
 from xlmc.run.stopping.stopped import ALL_TRIALS
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.statistics import Estimate
 from xlmc.statistics.sample import MOST_GROUPS

@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.run.blocks import Block, Task
 from xlmc.run.scheduling.run_spec import model_runner
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.statistics import rank_correlation
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Settings
+    from xlmc.definitions.definitions import Settings
     from xlmc.run.model import Model
 
 __all__ = ["PILOT_TRIALS", "plan_sampling"]

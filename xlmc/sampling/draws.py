@@ -15,7 +15,7 @@ from xlmc.distributions.uniform import Uniform
 from xlmc.errors import SimulationError
 from xlmc.functions.denormals import TINIEST, flush
 from xlmc.sampling.copula import GaussianCopula, Ties, ties_of
-from xlmc.sampling.methods import Margin
+from xlmc.sampling.sampling_methods import Margin
 from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.sampling.streams import Stream
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.sampling.methods import METHODS, REPLICATES, Margin
+from xlmc.sampling.sampling_methods import METHODS, REPLICATES, Margin
 
 __all__ = ["SamplingPlan"]
 

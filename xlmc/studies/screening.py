@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from xlmc import statistics
 from xlmc.address import Cell
-from xlmc.definitions.model import Assumption, Forecast, name_key
+from xlmc.definitions.definitions import Assumption, Forecast, name_key
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
 from xlmc.run.simulate import simulate

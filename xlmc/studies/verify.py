@@ -8,14 +8,14 @@ from enum import Enum
 from typing import Final
 
 from xlmc.address import Cell
+from xlmc.definitions.definitions import Definitions
 from xlmc.definitions.in_cells.calls import holds_call
-from xlmc.definitions.model import Definitions
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.formula import Resolver, build_graph
 from xlmc.formula.shape import shown_formula
 from xlmc.run.needed import targets_of
-from xlmc.workbook.model import CellValue, Workbook
+from xlmc.workbook.workbook import CellValue, Workbook
 
 __all__ = ["TOLERANCE", "CellCheck", "Status", "Verification", "verify"]
 

@@ -9,8 +9,8 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from xlmc.errors import ErrorCode
-from xlmc.workbook.model import CellValue
 from xlmc.workbook.safe_xml import tree, whole_number
+from xlmc.workbook.workbook import CellValue
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, TypeVar
 
 from xlmc.errors import WorkbookError
 from xlmc.workbook.cell_values import CellContext, shared_strings
-from xlmc.workbook.model import DataTable, Sheet
 from xlmc.workbook.safe_xml import is_true, tree
 from xlmc.workbook.sheet import parse_sheet
 from xlmc.workbook.structure import Structure
+from xlmc.workbook.workbook import DataTable, Sheet
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

@@ -8,9 +8,9 @@ from collections.abc import Callable, Mapping
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_number
 from xlmc.errors import WorkbookError
 from xlmc.workbook.cell_values import CellContext, convert, decode, run_text
-from xlmc.workbook.model import CellContent, CellValue, DataTable, Formula, Sheet
 from xlmc.workbook.safe_xml import REPAIR, expat_parser, feed, is_true
 from xlmc.workbook.structure import SheetEntry, area_of
+from xlmc.workbook.workbook import CellContent, CellValue, DataTable, Formula, Sheet
 
 __all__ = ["parse_sheet"]
 

@@ -15,7 +15,7 @@ from xlmc.definitions.in_cells.result_functions import RESULTS
 from xlmc.definitions.in_cells.risk_functions import ALTERNATES, RISK
 from xlmc.errors import FormulaError
 from xlmc.evaluation.engines import ENGINES
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.workbook import CellContent, Formula
 
 A1, A2 = Cell("S", 1, 1), Cell("S", 2, 1)
 HERE = Cell("S", 9, 9)

@@ -4,7 +4,7 @@ import pytest
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode
-from xlmc.workbook.model import Formula
+from xlmc.workbook.workbook import Formula
 
 SPILL = Formula("H1:H3", row=1, column=2, array=Area("Inputs", 1, 2, 3, 2))
 

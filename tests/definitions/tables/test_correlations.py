@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.definitions.model import Correlation
+from xlmc.definitions.definitions import Correlation
 
 MISTAKES = [
     ({"Answers!A21": None}, "Answers!A21", "First is blank", "Fill in First"),

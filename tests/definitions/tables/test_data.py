@@ -6,7 +6,7 @@ from xlmc.address import Area, Cell
 from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.errors import ErrorCode
 from xlmc.evaluation.engines import ENGINES
-from xlmc.workbook.model import Formula
+from xlmc.workbook.workbook import Formula
 
 HEADINGS = ["Name", "Value", "Distribution", "Data", "Cumulative", "Bandwidth", "Lower cutoff", "Upper cutoff", "Low"]
 DATA = [[5, 15, 0.75], [16, 21, 0.25]]

@@ -4,7 +4,7 @@ import pytest
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode
-from xlmc.workbook.model import Formula
+from xlmc.workbook.workbook import Formula
 
 MISTAKES = [
     ({"Answers!A2": None}, "Answers!A2", "Name is blank", "Fill in Name"),

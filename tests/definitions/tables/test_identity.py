@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.address import Cell
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.workbook import CellContent, Formula
 
 POINTED = Cell("Model", 1, 2)
 AT = "Answers!B2"  # the Cell of the forecast

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.definitions.model import Settings
+from xlmc.definitions.definitions import Settings
 from xlmc.definitions.stopping import LIMIT, AcceptedTrials, Precision, StableDigits, Stopping
 
 NAME, VALUE = "Answers!A31", "Answers!B31"

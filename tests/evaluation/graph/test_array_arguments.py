@@ -13,7 +13,7 @@ from xlmc.address import Area
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions.families import REGISTRY
 from xlmc.functions.registry import Ranges
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.workbook import CellContent, Formula
 
 VALUE, NA, REF = ErrorCode.VALUE, ErrorCode.NA, ErrorCode.REF
 

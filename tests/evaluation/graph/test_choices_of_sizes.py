@@ -9,7 +9,7 @@ from xlmc.address import Area
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.engines import ENGINES
 from xlmc.evaluation.graph.arrays import MOST_WAYS
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.workbook import CellContent, Formula
 
 CELLS = {"B1": 1.0, "C1": 2.0, "D1": 3.0, "B2": 10.0, "C2": 20.0, "D2": 30.0}
 DRAWS = [-1.0, 0.0, 1.0, 2.0, 3.0, np.nan]

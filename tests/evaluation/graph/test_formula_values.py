@@ -11,7 +11,7 @@ import pytest
 from xlmc.address import Area
 from xlmc.errors import ErrorCode, XlmcError
 from xlmc.studies.verify import verify
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.workbook import CellContent, Formula
 
 CELLS = {
     "A1": 1.0,

@@ -7,7 +7,7 @@ import pytest
 from xlmc.address import Area
 from xlmc.errors import ErrorCode
 from xlmc.studies.verify import verify
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.workbook import CellContent, Formula
 
 CELLS = {"A1": 1.0, "A2": 2.0, "A3": 3.0}
 

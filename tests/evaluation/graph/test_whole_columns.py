@@ -6,7 +6,7 @@ import pytest
 
 from xlmc.address import Area
 from xlmc.errors import FormulaError
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.workbook import CellContent, Formula
 
 ROWS, COLUMNS = 1048576.0, 16384.0
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.definitions.model import Correlation
+from xlmc.definitions.definitions import Correlation
 from xlmc.report.filter_effect import filter_effect
 from xlmc.report.sheets.assumptions_sheet import HEADER
 from xlmc.statistics import rank_correlation

@@ -7,9 +7,9 @@ import pytest
 
 from xlmc.address import parse_address
 from xlmc.api import Model
-from xlmc.definitions.model import Assumption, Correlation, Definitions, Filter, Forecast, Settings
+from xlmc.definitions.definitions import Assumption, Correlation, Definitions, Filter, Forecast, Settings
 from xlmc.errors import Notice
-from xlmc.workbook.model import CellContent, Formula, Sheet, Workbook
+from xlmc.workbook.workbook import CellContent, Formula, Sheet, Workbook
 
 CELLS = {
     "A1": 2.0,

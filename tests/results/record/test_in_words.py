@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.address import Area, Cell
-from xlmc.definitions.model import Assumption, DataRange, Filter
+from xlmc.definitions.definitions import Assumption, DataRange, Filter
 from xlmc.results.record.in_words import (
     distribution_text,
     limits_text,

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import xlmc
-from xlmc.definitions.model import Settings
+from xlmc.definitions.definitions import Settings
 from xlmc.results.record import make_record
 from xlmc.results.record.errors_met import errors_met
 from xlmc.results.record.make import fingerprint, quoted_argument, repeat_command

@@ -24,8 +24,8 @@ from xlmc.results.record.needed_cells import (
 )
 from xlmc.results.record.record_parts import Entry, Record, Section, read_record
 from xlmc.results.record.settings_table import recorded_settings, settings_section
-from xlmc.workbook.model import CellContent, Formula
 from xlmc.workbook.reader import read_workbook
+from xlmc.workbook.workbook import CellContent, Formula
 
 TEXTS = {
     "A1+B2": "B3+C4",

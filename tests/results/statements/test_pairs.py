@@ -9,7 +9,7 @@ import pytest
 
 from xlmc import statistics
 from xlmc.address import Cell
-from xlmc.definitions.model import Forecast
+from xlmc.definitions.definitions import Forecast
 from xlmc.results.statements import pairs
 from xlmc.results.statements.pairs import pairs_of
 from xlmc.run.forecast_result import ForecastResult

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from xlmc.address import Cell
-from xlmc.definitions.model import Forecast
+from xlmc.definitions.definitions import Forecast
 from xlmc.results.statements.sentences import certainties, statements
 from xlmc.run.forecast_result import ForecastResult
 

@@ -7,7 +7,7 @@ import threading
 import pytest
 
 from xlmc.address import parse_address
-from xlmc.definitions.model import Forecast
+from xlmc.definitions.definitions import Forecast
 from xlmc.definitions.stopping import NO_GOAL, AcceptedTrials, stopping
 from xlmc.errors import SimulationError
 from xlmc.run.stopping import Interruption, Stopped, Watch, chosen_rule, may_end_early, refuse_other_sampling

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.address import Cell
-from xlmc.definitions.model import Forecast
+from xlmc.definitions.definitions import Forecast
 from xlmc.errors import SimulationError
 from xlmc.statistics import Estimate
 from xlmc.studies.comparison.tolerances import Verdict, factor_between, judge, read_tolerances

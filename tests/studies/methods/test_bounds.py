@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.errors import SimulationError
 from xlmc.studies.methods import Corners, ImportanceGrid, Optimised, WorstCase
 from xlmc.studies.methods import corners as corners_file

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from xlmc.studies.stability import Level, stability
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.workbook import CellContent, Formula
 
 UNIFORM = {"x": {"cell": "A1", "low": 1, "high": 2}, "y": {"cell": "A2", "low": 1, "high": 2}}
 BASE = {"A1": 1.5, "A2": 1.5}

@@ -12,8 +12,8 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Area, Cell
+from xlmc.definitions.definitions import DataRange, Parameter
 from xlmc.definitions.in_cells.call_arguments import elements, is_left_out, rows_of_trees
-from xlmc.definitions.model import DataRange, Parameter
 from xlmc.definitions.tables.data import data_family
 from xlmc.distributions import FAMILIES, Family, Truncated
 from xlmc.errors import DefinitionError, FormulaError

@@ -18,10 +18,10 @@ from typing import Final
 
 from xlmc.address import Area, Cell
 from xlmc.definitions.computed import Computed
+from xlmc.definitions.definitions import Assumption, Correlation, Forecast, name_key
 from xlmc.definitions.in_cells.call_draws import MatrixRow
 from xlmc.definitions.in_cells.reading import CellReading, Output
 from xlmc.definitions.in_cells.result_functions import ResultCall, mentions_result
-from xlmc.definitions.model import Assumption, Correlation, Forecast, name_key
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import number_in
 from xlmc.definitions.tables.identity import Claims
@@ -30,7 +30,7 @@ from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.formula import Resolver, ir
 from xlmc.workbook.lazy_sheets import LazySheets
-from xlmc.workbook.model import Formula, Workbook
+from xlmc.workbook.workbook import Formula, Workbook
 
 __all__ = ["InCells", "holds_call", "in_cell_correlations", "in_cell_forecasts", "read_in_cells"]
 

@@ -8,6 +8,7 @@ from typing import Final
 
 from xlmc.address import Area, Cell, InFormula
 from xlmc.definitions.computed import Computed
+from xlmc.definitions.definitions import Assumption, DataRange, Parameter
 from xlmc.definitions.in_cells.call_arguments import difference, is_left_out, number_of, total
 from xlmc.definitions.in_cells.call_draws import Drawn, MatrixRow, base_of, percentile_cutoffs
 from xlmc.definitions.in_cells.crystal_ball_functions import crystal_ball_draw
@@ -15,14 +16,13 @@ from xlmc.definitions.in_cells.random_functions import random_draw
 from xlmc.definitions.in_cells.result_functions import NOT_COMPUTED, ResultCall, is_result, not_computed, result_call
 from xlmc.definitions.in_cells.risk_functions import risk_draw
 from xlmc.definitions.in_cells.risk_properties import is_property
-from xlmc.definitions.model import Assumption, DataRange, Parameter
 from xlmc.definitions.tables.fields import number_in, static_value
 from xlmc.definitions.tables.table_rows import as_text, is_blank
 from xlmc.distributions import FAMILIES
 from xlmc.errors import FormulaError
 from xlmc.formula import formula_text, ir
 from xlmc.formula.substitute import is_bound, substitute
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["CellReading", "Output"]
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.model import CUTOFFS, Assumption, Parameter
+from xlmc.definitions.definitions import CUTOFFS, Assumption, Parameter
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.data import OPTIONS, cached_data_family, given_data, refuse_options
 from xlmc.definitions.tables.fields import logical, number_in, optional_text, parameter, static_value
@@ -20,7 +20,7 @@ from xlmc.distributions.by_percentiles import by_percentiles
 from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import plain
 from xlmc.errors import DefinitionError
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["is_percentile", "read_assumptions"]
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from xlmc.address import Cell
-from xlmc.definitions.model import Correlation, name_key
+from xlmc.definitions.definitions import Correlation, name_key
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import number, required_text
 from xlmc.definitions.tables.table_rows import DefinitionTable, Row, rows_of
 from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import did_you_mean
 from xlmc.errors import DefinitionError
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["read_correlations"]
 

@@ -9,14 +9,14 @@ import numpy as np
 from xlmc.address import Area, Cell
 from xlmc.definitions.cell_references import area_of_reference, formula_at
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.model import CUTOFFS, DataRange, Parameter
+from xlmc.definitions.definitions import CUTOFFS, DataRange, Parameter
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import logical, number_in, parameter, static_value
 from xlmc.definitions.tables.table_rows import Row, as_text, is_blank
 from xlmc.distributions import DataError, Family
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["OPTIONS", "area_values", "cached_data_family", "data_family", "given_data", "refuse_options"]
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 from typing import NoReturn
 
 from xlmc.address import Cell
-from xlmc.definitions.model import Parameter
+from xlmc.definitions.definitions import Parameter
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.table_rows import Row, as_text, is_blank
 from xlmc.errors import DefinitionError, ErrorCode
-from xlmc.workbook.model import CellContent, Workbook
+from xlmc.workbook.workbook import CellContent, Workbook
 
 __all__ = [
     "central_share",

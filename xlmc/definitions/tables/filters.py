@@ -6,14 +6,14 @@ from collections.abc import Iterable, Mapping
 
 from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.model import Check, Filter, Parameter
+from xlmc.definitions.definitions import Check, Filter, Parameter
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import optional_text, parameter, static_value
 from xlmc.definitions.tables.identity import Claims, identify
 from xlmc.definitions.tables.table_rows import DefinitionTable, Row, as_text, holds_rows, is_blank, rows_of
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError, ErrorCode
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["LIMIT_HINT", "read_checks", "read_filters"]
 

@@ -6,13 +6,13 @@ from collections.abc import Iterable
 
 from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.model import Forecast
+from xlmc.definitions.definitions import Forecast
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.fields import central_share, number, number_in, optional_text
 from xlmc.definitions.tables.identity import Claims, identify
 from xlmc.definitions.tables.table_rows import DefinitionTable, Row, is_blank, rows_of
 from xlmc.errors import DefinitionError
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["read_forecasts"]
 

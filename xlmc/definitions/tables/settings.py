@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
 from xlmc.definitions.amounts import as_seconds, typed_whole_number
-from xlmc.definitions.model import Settings
+from xlmc.definitions.definitions import Settings
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.stopping import GOALS, LIMIT, MOST_TRIALS, NO_GOAL, RARE, Option, Stopping, stopping
 from xlmc.definitions.tables.fields import central_share, number_in, required_text
@@ -15,8 +15,8 @@ from xlmc.definitions.tables.table_rows import DefinitionTable, Row, as_text, ro
 from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import did_you_mean, plain
 from xlmc.errors import DefinitionError, SimulationError
-from xlmc.sampling.methods import METHODS
-from xlmc.workbook.model import Workbook
+from xlmc.sampling.sampling_methods import METHODS
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["read_settings"]
 

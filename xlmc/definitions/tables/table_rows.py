@@ -10,8 +10,8 @@ from xlmc.address import Cell
 from xlmc.definitions.problems import Findings
 from xlmc.distributions.spelling import nearest, plain
 from xlmc.errors import ErrorCode
-from xlmc.workbook.model import CellContent, CellValue, Table, Workbook
 from xlmc.workbook.printable import label
+from xlmc.workbook.workbook import CellContent, CellValue, Table, Workbook
 
 __all__ = ["KINDS", "DefinitionTable", "Row", "as_text", "definition_tables", "holds_rows", "is_blank", "rows_of"]
 

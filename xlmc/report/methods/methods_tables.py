@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.report.summary import estimate_text
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 from xlmc.statistics import Estimate, format_estimate
 from xlmc.studies.methods import STATISTICS, Curve, Method, Rung, Study, need
 from xlmc.studies.methods.answer import seconds_text, trials_text

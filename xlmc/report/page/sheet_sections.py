@@ -22,7 +22,7 @@ from xlmc.statistics import Estimate
 from xlmc.workbook.printable import printable
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Assumption
+    from xlmc.definitions.definitions import Assumption
     from xlmc.run.simulation import Simulation
 
 __all__ = ["assumptions", "certainty", "checks", "filters", "notices", "pairs", "record", "statistics"]

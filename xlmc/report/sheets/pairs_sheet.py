@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from xlsxwriter.chart_scatter import ChartScatter
     from xlsxwriter.workbook import Workbook
 
-    from xlmc.definitions.model import Forecast
+    from xlmc.definitions.definitions import Forecast
     from xlmc.report.sheets.page import Page
     from xlmc.report.sheets.trials_sheet import TrialsAt
     from xlmc.run.simulation import Simulation

@@ -9,14 +9,14 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from xlmc.address import Cell
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.results.record.in_words import cutoffs_text, limits_text, notes_text, parameters_text, status
 from xlmc.results.record.record_parts import RecordTable, Section, Value
 from xlmc.run.correlating import CHANGED, drawn_correlation
 from xlmc.statistics import Estimate, rank_correlation
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Filter
+    from xlmc.definitions.definitions import Filter
     from xlmc.run.forecast_result import ForecastResult
     from xlmc.run.simulation import Simulation
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Cell
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.results.record.needed_cells import content_text
 from xlmc.run.cell_errors import Root
 

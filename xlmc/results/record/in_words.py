@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Cell
-from xlmc.definitions.model import Assumption, DataRange, Filter, Parameter
-from xlmc.sampling.methods import GENERATOR, METHODS
+from xlmc.definitions.definitions import Assumption, DataRange, Filter, Parameter
+from xlmc.sampling.sampling_methods import GENERATOR, METHODS
 from xlmc.statistics.sample import MOST_GROUPS
 
 if TYPE_CHECKING:

@@ -18,17 +18,17 @@ from collections.abc import Collection, Container, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Area, Cell, host_of, parse_address, quote_sheet
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.definitions.tables.table_rows import KINDS
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.formula.shape import text_at
 from xlmc.results.record.in_words import number_text
 from xlmc.results.record.record_parts import Entry, Record, RecordTable, Section
-from xlmc.workbook.model import CellValue, Formula
+from xlmc.workbook.workbook import CellValue, Formula
 
 if TYPE_CHECKING:
     from xlmc.run.model import Model
-    from xlmc.workbook.model import DefinedName, Table, Workbook
+    from xlmc.workbook.workbook import DefinedName, Table, Workbook
 
 __all__ = [
     "MOST_ROWS",

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from xlmc.errors import ErrorCode, WorkbookError
-from xlmc.workbook.model import CellContent, Sheet, Workbook
+from xlmc.workbook.workbook import CellContent, Sheet, Workbook
 
 __all__ = ["Entry", "Record", "RecordTable", "Section", "Value", "read_record"]
 

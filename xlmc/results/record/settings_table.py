@@ -8,7 +8,7 @@ from dataclasses import astuple, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, get_type_hints
 
-from xlmc.definitions.model import Settings
+from xlmc.definitions.definitions import Settings
 from xlmc.definitions.stopping import GOALS, Goal, Stopping, only_one
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.results.record.record_parts import Entry, Record, Section, Value

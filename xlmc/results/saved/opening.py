@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.columns import ColumnStore, parts
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.errors import SimulationError, WorkbookError, XlmcError
 from xlmc.results.record.settings_table import FLOAT64, in_float32
 from xlmc.results.saved.archive import AGAIN, DAMAGE, RUN, WORKBOOK, Package, open_package, read_column

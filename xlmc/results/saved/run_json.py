@@ -11,14 +11,14 @@ from typing import Any, Final, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from xlmc.definitions.model import Settings
+from xlmc.definitions.definitions import Settings
 from xlmc.definitions.stopping import GOALS, MOST_TRIALS, RARE, Goal, Stopping, WholeGoal, only_one
 from xlmc.evaluation.engines import ENGINES
 from xlmc.run.blocks import FilterTally
 from xlmc.run.rare.account import RareAccount
 from xlmc.run.simulation import Origin
 from xlmc.run.stopping.stopped import WITHOUT_GOAL, Stopped
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 from xlmc.sampling.sampling_plan import SamplingPlan
 
 __all__ = [

@@ -20,7 +20,7 @@ from xlmc.results.statements.significant_digits import rounded_value
 from xlmc.statistics import Estimate, proportion, rank_correlation, replicated_proportion
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Forecast
+    from xlmc.definitions.definitions import Forecast
     from xlmc.run.simulation import Simulation
 
 __all__ = ["PAIRS", "Pair", "pairs_of"]

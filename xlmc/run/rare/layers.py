@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.formula import ir
 from xlmc.formula.precedents import references
 from xlmc.run.needed import upstream
@@ -25,7 +25,7 @@ from xlmc.run.rare.shortfall import Shortfall, leaves
 from xlmc.run.rare.spans import Rearranged, Spans, intersection
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Assumption
+    from xlmc.definitions.definitions import Assumption
     from xlmc.evaluation.engine import Evaluator
     from xlmc.run.model import Model
     from xlmc.run.rare.landscape import Drawing

@@ -12,7 +12,7 @@ from xlmc.errors import SimulationError
 from xlmc.evaluation.engines import ENGINES
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Settings
+    from xlmc.definitions.definitions import Settings
     from xlmc.run.model import Model
 
 __all__ = ["ALWAYS_FIRST", "FIRST_LOOK", "LEAST_LIMIT", "RareSwitch", "rare_switch"]

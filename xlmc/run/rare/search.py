@@ -19,11 +19,11 @@ from xlmc.run.rare.layered import Ground, Layered, ground_of
 from xlmc.run.rare.learning import Learned, Round, Say, count_on, learn, learn_again, search_on
 from xlmc.run.rare.splitting import Distance
 from xlmc.run.rare.strays import Evidence, Tempered, plain_assumptions, wide_assumptions
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 from xlmc.statistics.estimate import Estimate, with_relative_error
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Settings
+    from xlmc.definitions.definitions import Settings
     from xlmc.run.model import Model
     from xlmc.sampling.streams import Stream
 

@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from xlmc.address import Area, Cell
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.formula import ir
 from xlmc.run.needed import filter_limits, upstream
 from xlmc.run.rare.shortfall import Shortfall
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Assumption
+    from xlmc.definitions.definitions import Assumption
     from xlmc.run.model import Model
 from collections import deque
 from collections.abc import Mapping

@@ -10,7 +10,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from xlmc.definitions.model import Definitions
+from xlmc.definitions.definitions import Definitions
 from xlmc.errors import SimulationError
 from xlmc.evaluation.engine import Program
 from xlmc.evaluation.engines import ENGINES
@@ -18,7 +18,7 @@ from xlmc.run.blocks import ModelRunner
 from xlmc.run.model import Model
 from xlmc.run.version import __version__
 from xlmc.sampling.sampling_plan import SamplingPlan
-from xlmc.workbook.model import Workbook
+from xlmc.workbook.workbook import Workbook
 
 __all__ = ["RunSpec", "check_software", "model_runner", "software"]
 

@@ -15,7 +15,7 @@ from xlmc.run.scheduling.processes import by_processes
 from xlmc.run.scheduling.run_spec import RunSpec, model_runner
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Settings
+    from xlmc.definitions.definitions import Settings
     from xlmc.evaluation.engine import Program
     from xlmc.run.model import Model
     from xlmc.sampling.sampling_plan import SamplingPlan

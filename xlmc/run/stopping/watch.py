@@ -8,14 +8,14 @@ from collections.abc import Callable, Sequence
 from types import FrameType, TracebackType
 from typing import Any, Final
 
-from xlmc.definitions.model import Forecast, name_key
+from xlmc.definitions.definitions import Forecast, name_key
 from xlmc.definitions.stopping import Stopping
 from xlmc.errors import SimulationError
 from xlmc.run.stopping.adaptive import UntilStable
 from xlmc.run.stopping.precision import UntilPrecise
 from xlmc.run.stopping.rule import Columns, Observed, StopRule, UntilAccepted
 from xlmc.run.stopping.stopped import Stopped, duration
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 
 __all__ = ["RULES", "Interruption", "Watch", "chosen_rule", "may_end_early", "refuse_other_sampling"]
 

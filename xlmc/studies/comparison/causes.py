@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.model import Assumption, Filter, name_key
+from xlmc.definitions.definitions import Assumption, Filter, name_key
 from xlmc.results.record.in_words import distribution_text
 from xlmc.run.model import Model
 from xlmc.run.needed import filter_limits

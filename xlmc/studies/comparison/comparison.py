@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import ceil, inf
 
 from xlmc import statistics
-from xlmc.definitions.model import Forecast, name_key
+from xlmc.definitions.definitions import Forecast, name_key
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
 from xlmc.run.simulate import simulate

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
-from xlmc.definitions.model import Assumption, name_key
+from xlmc.definitions.definitions import Assumption, name_key
 from xlmc.definitions.stopping import NO_GOAL
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc import statistics
-from xlmc.definitions.model import Forecast
+from xlmc.definitions.definitions import Forecast
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
 from xlmc.run.simulate import simulate

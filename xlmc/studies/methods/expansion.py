@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.errors import SimulationError
 from xlmc.evaluation.passes.derivatives import Derivative, Derivatives
 from xlmc.run.model import Model

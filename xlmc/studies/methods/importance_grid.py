@@ -17,13 +17,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.errors import SimulationError
 from xlmc.run.blocks import Task
 from xlmc.run.model import Model
 from xlmc.run.scheduling.run_spec import model_runner
 from xlmc.run.simulate import simulate
-from xlmc.sampling.methods import Margin
+from xlmc.sampling.sampling_methods import Margin
 from xlmc.sampling.sampling_plan import SamplingPlan
 from xlmc.sampling.streams import Stream
 from xlmc.studies.methods.answer import Errors, Extreme, MethodResult, answer_of, extremes_of

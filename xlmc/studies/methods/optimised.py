@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.errors import SimulationError
 from xlmc.evaluation.passes.derivatives import Derivative
 from xlmc.functions.values import ERROR, TEXT

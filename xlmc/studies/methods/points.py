@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.evaluation.engine import Target
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.run.model import Model

@@ -9,7 +9,7 @@ from xlmc.evaluation.engines import ENGINES
 from xlmc.run.model import Model
 from xlmc.run.simulate import simulate
 from xlmc.run.sobol_order import PILOT_TRIALS
-from xlmc.sampling.methods import METHODS
+from xlmc.sampling.sampling_methods import METHODS
 from xlmc.studies.methods.answer import Errors, MethodResult, answer_of, extremes_of
 
 __all__ = ["ENGINE_VARIANTS", "MONTE_CARLO", "SAMPLERS", "Sampled"]

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.model import Assumption, name_key
+from xlmc.definitions.definitions import Assumption, name_key
 from xlmc.errors import SimulationError
 from xlmc.run.model import Model
 from xlmc.run.needed import targets_of

@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.run.draw_binding import parameter_target
 from xlmc.run.needed import filter_limits
 from xlmc.studies.sensitivity.moved_limit import LimitTrials, grid, holds_to
 
 if TYPE_CHECKING:
-    from xlmc.definitions.model import Filter
+    from xlmc.definitions.definitions import Filter
     from xlmc.evaluation.engine import Evaluator, Program
     from xlmc.run.model import Model
     from xlmc.run.simulation import Simulation

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.studies.sensitivity.measures import PERCENTS, Bar
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.statistics import Estimate
 from xlmc.studies.sensitivity.pull_errors import Units
 

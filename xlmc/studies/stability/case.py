@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell
-from xlmc.definitions.model import name_key
+from xlmc.definitions.definitions import name_key
 from xlmc.evaluation.engine import Target
 from xlmc.evaluation.graph.nodes import Apply, Input, uses
 from xlmc.evaluation.passes.derivatives import Derivatives

@@ -16,7 +16,7 @@ from xlmc.formula.ir import formula_text
 from xlmc.formula.resolve import Resolver
 from xlmc.formula.substitute import substitute, unfold
 from xlmc.run.model import Model
-from xlmc.workbook.model import DefinedName, Formula, Workbook
+from xlmc.workbook.workbook import DefinedName, Formula, Workbook
 
 __all__ = ["Trees", "factors", "replace_part", "terms"]
 

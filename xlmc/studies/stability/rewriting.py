@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.definitions.model import Filter
+from xlmc.definitions.definitions import Filter
 from xlmc.evaluation.passes.exact import Exact, exactly
 from xlmc.evaluation.passes.random_rounding import closure
 from xlmc.formula import ir

@@ -15,8 +15,8 @@ from itertools import chain
 from xlmc.errors import WorkbookError
 from xlmc.workbook.injection.result_sheet import SheetName
 from xlmc.workbook.injection.splice import OFFICE_RELATIONSHIPS, Element, SplicedXml, render
-from xlmc.workbook.model import DefinedName
 from xlmc.workbook.safe_xml import REPAIR
+from xlmc.workbook.workbook import DefinedName
 
 __all__ = [
     "NewSheet",

@@ -9,7 +9,7 @@ from typing import Final
 from xlmc.address import Area, Cell, parse_address
 from xlmc.errors import ErrorCode
 from xlmc.workbook.injection.splice import Element, SplicedXml, render
-from xlmc.workbook.model import CellValue
+from xlmc.workbook.workbook import CellValue
 
 __all__ = ["with_values", "without_formula_values"]
 

@@ -12,7 +12,7 @@ from xlmc.address import Cell
 from xlmc.errors import SimulationError
 from xlmc.studies import derivatives as of_model
 from xlmc.studies.derivatives import derivatives
-from xlmc.workbook.model import CellContent, Formula
+from xlmc.workbook.workbook import CellContent, Formula
 
 X = {"x": {"cell": "A1", "low": -9, "high": 9}}
 XY = X | {"y": {"cell": "B1", "low": -9, "high": 9}}

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.formula import compile_with_formulas, ir, parse
-from xlmc.formula.parse import _TOKENS, _TreeBuilder
+from xlmc.formula.formula_tokens import TOKENS
+from xlmc.formula.parse import _TreeBuilder
 
 TREES = {
     # numbers, texts, logicals, errors
@@ -256,8 +257,7 @@ def test_deep_formulas(opening, closing):
 def test_the_same_text_is_parsed_once():
     assert parse("A1+Rate") is parse("A1+Rate")
 
-
-class TestTheSeam:
+    """What of `formulas` the parser leans on: where one of these breaks, so does `formula/parse.py` or `formula_tokens.py`."""
     """What of `formulas` the parser leans on: where one of these breaks, so does `formula/parse.py`."""
 
     def test_the_builder_and_the_tokens_are_class_attributes(self):
@@ -320,7 +320,7 @@ class TestTheSeam:
 
             def __init__(self):
                 super().__init__()
-                self.filters = _TOKENS
+                self.filters = TOKENS
 
         Listening().ast("=SUM()+SUM(1)+SUM(1,,2)")
         assert Counting.counts == (0, 1, 3)

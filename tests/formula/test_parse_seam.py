@@ -16,7 +16,7 @@ from formulas.tokens.operand import Empty, Error, Number, Operand, Range, String
 from formulas.tokens.operator import Intersect, Operator, OperatorToken, Separator
 from formulas.tokens.parenthesis import Parenthesis, _update_n_args
 
-from xlmc.formula.parse import _TOKENS, _Operator
+from xlmc.formula.formula_tokens import TOKENS, _Operator
 
 PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"
 
@@ -62,9 +62,9 @@ def test_the_kinds_of_token_and_the_order_they_are_tried_in():
     kept = [token for token in Parser.filters if token.__name__ not in ("Lambda", "Range", "Number")]
     assert kept == [Error, String, OperatorToken, Separator, Function, Array, Parenthesis, Intersect]
     assert {Number, Range} < set(Parser.filters)
-    replaced = [base for base in kept if any(issubclass(token, base) for token in _TOKENS)]
+    replaced = [base for base in kept if any(issubclass(token, base) for token in TOKENS)]
     assert replaced == [OperatorToken, Separator, Function, Array, Parenthesis, Intersect]
-    assert sum(issubclass(token, Operand) for token in _TOKENS) == 7
+    assert sum(issubclass(token, Operand) for token in TOKENS) == 7
 
 
 def test_what_a_token_offers():

@@ -5,8 +5,9 @@ import pytest
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.families import function_named
+from xlmc.functions.per_element import per_object
 from xlmc.functions.registry import REGISTRY, Kind, Logical, Number
-from xlmc.functions.toolpak import Date, flattened, number_of, numbers_only, per_object, toolpak
+from xlmc.functions.toolpak import Date, flattened, number_of, numbers_only, toolpak
 from xlmc.functions.values import Value, constant, from_objects
 
 NUM, VALUE, NA = ErrorCode.NUM, ErrorCode.VALUE, ErrorCode.NA

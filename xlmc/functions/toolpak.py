@@ -24,7 +24,7 @@ from xlmc.functions.arguments import earliest, leveled
 from xlmc.functions.dates.calendar import in_calendar
 from xlmc.functions.lookup.picked_cells import flattened as in_rows
 from xlmc.functions.registry import Anything, Kind, Parameter, Ranges, excel
-from xlmc.functions.values import LOGICAL, NUM, Bools, Codes, Floats, Value, from_objects, parse_number
+from xlmc.functions.values import LOGICAL, NUM, Bools, Codes, Floats, Value, parse_number
 
 __all__ = [
     "DAYS_TO_1904",
@@ -33,7 +33,6 @@ __all__ = [
     "flattened",
     "number_of",
     "numbers_only",
-    "per_object",
     "strict_numbers",
     "toolpak",
     "whole_days",
@@ -136,28 +135,6 @@ def numbers_only(body: Callable[..., Any]) -> Callable[..., Value]:
         return Value.of_logicals(result, errors) if result.dtype == bool else Value.of_numbers(result, errors)
 
     return strict
-
-
-def per_object(function: Callable[..., object]) -> Callable[..., Value]:
-    """A body for `Anything` arguments from a function of Python objects, called once an element.
-
-    The function takes floats, bools, strings and None, never an error: the first error among the arguments is the
-    result without it. It returns one of these, or an `ErrorCode`.
-    """
-
-    @wraps(function)
-    def body(*values: Value) -> Value:
-        arguments = [value.objects() for value in leveled(*values)]
-        shape = np.broadcast_shapes(*(items.shape for items in arguments))
-        spread = [np.broadcast_to(items, shape) for items in arguments]
-        out = np.empty(shape, object)
-        for index in np.ndindex(*shape):
-            items = [array[index] for array in spread]
-            error = next((item for item in items if isinstance(item, ErrorCode)), None)
-            out[index] = function(*items) if error is None else error
-        return from_objects(out)
-
-    return body
 
 
 def flattened(values: Sequence[Value]) -> tuple[Floats, Codes]:

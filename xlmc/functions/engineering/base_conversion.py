@@ -13,8 +13,9 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.math.numerals import digits_of, read_digits
+from xlmc.functions.per_element import per_object
 from xlmc.functions.registry import Kind, Number, excel
-from xlmc.functions.toolpak import OneCell, number_of, per_object
+from xlmc.functions.toolpak import OneCell, number_of
 from xlmc.functions.values import NUM, Bools, Floats, general_text
 
 __all__: list[str] = []

@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
+from xlmc.functions.per_element import per_object
 from xlmc.functions.registry import Anything, Cells, Kind, Parameter, excel
-from xlmc.functions.toolpak import OneCell, number_of, per_object
+from xlmc.functions.toolpak import OneCell, number_of
 from xlmc.functions.values import Value, from_objects
 
 __all__ = ["common_suffix", "read", "written"]

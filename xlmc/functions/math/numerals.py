@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Final
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.per_element import per_element
+from xlmc.functions.per_element import per_element, per_object
 from xlmc.functions.registry import Anything, Kind, Number, Text, excel
-from xlmc.functions.toolpak import number_of, per_object
+from xlmc.functions.toolpak import number_of
 
 __all__ = ["digits_of", "read_digits"]
 

@@ -257,8 +257,9 @@ def test_deep_formulas(opening, closing):
 def test_the_same_text_is_parsed_once():
     assert parse("A1+Rate") is parse("A1+Rate")
 
-    """What of `formulas` the parser leans on: where one of these breaks, so does `formula/parse.py` or `formula_tokens.py`."""
-    """What of `formulas` the parser leans on: where one of these breaks, so does `formula/parse.py`."""
+
+class TestTheSeam:
+    """What of `formulas` the parser leans on: where one of these breaks, so does the parser."""
 
     def test_the_builder_and_the_tokens_are_class_attributes(self):
         assert isinstance(Parser.filters, list)

@@ -6,8 +6,8 @@ r"""Formula text to tree, through the tokenizer and the shunting-yard of `formul
     operators = from tightest:  : blank ,   - + @ (before)   % # (after)   ^   * /   + -   &   = < > <= >= <>
 
 `formulas` reads tokens by a list of classes and hands the postfix stream to a builder; both are class attributes of its
-`Parser`. The classes are ours (`formula_tokens.py`), and our builder makes tree nodes. The stack machine is theirs. Nothing
-but these two modules imports `formulas`.
+`Parser`. The classes are ours (`formula_tokens.py`), and our builder makes tree nodes. The stack machine is theirs.
+Nothing but these two modules imports `formulas`.
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ import hashlib
 import re
 import shlex
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -47,7 +48,13 @@ def versions(engine: str = "numpy") -> dict[str, str]:
     from xlmc.run.version import __version__
 
     own = {"xlmc": __version__, "python": platform.python_version()}
-    return own | {name: version(name) for name in (*LIBRARIES, *filter(None, [ENGINES[engine].library]))}
+    return own | {name: _installed(name) for name in (*LIBRARIES, *filter(None, [ENGINES[engine].library]))}
+
+
+@cache
+def _installed(library: str) -> str:
+    """Its version, which is looked for in files once a process."""
+    return version(library)
 
 
 def processor() -> dict[str, str]:

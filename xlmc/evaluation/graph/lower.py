@@ -250,4 +250,10 @@ class Lowering(ExpressionLowering):
         return self._held_cell(cell)
 
     def _held_cell(self, cell: Cell) -> int:
-        return self.dag.constant(constant(self.graph.workbook.content(cell).value))
+        value = self.graph.workbook.content(cell).value
+        return self._blank if value is None else self.dag.constant(constant(value))
+
+    @cached_property
+    def _blank(self) -> int:
+        """The node of a blank cell: a long range may hold a million of them."""
+        return self.dag.constant(constant(None))

@@ -100,7 +100,8 @@ def test_threads_change_no_bit(model):
 
 def test_the_reference_engine_agrees(model):
     """`formulas` computes cell by cell with the same libm: the two differ by the order of a few operations."""
-    fast, slow = model.simulate(300, engine="numpy"), model.simulate(300, engine="formulas")
+    fast, slow = (model.simulate(60, 39, engine=engine) for engine in ("numpy", "formulas"))
+    assert fast.accepted == 6
     assert (fast.trial_index == slow.trial_index).all()
     for name, values in fast.forecasts.items():
         assert slow.forecasts[name] == pytest.approx(values, rel=1e-12)

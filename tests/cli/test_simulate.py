@@ -142,7 +142,9 @@ def test_an_output_folder_that_is_not_there_loses_nothing(xlmc, book, tmp_path):
 
 def test_the_reference_engine_gives_the_same_answer(xlmc, book):
     """The table prints 4 digits or so; both engines agree to 1e-12."""
-    fast, slow = (xlmc("simulate", book, "-n", 200, "--engine", engine).out for engine in ("numpy", "formulas"))
+    fast, slow = (
+        xlmc("simulate", book, "-n", 60, "--seed", 39, "--engine", engine).out for engine in ("numpy", "formulas")
+    )
     assert fast == slow
 
 

@@ -45,7 +45,7 @@ def hang():
     ("what", "longest", "key"),
     [
         (lambda: os.kill(os.getpid(), signal.SIGKILL), 30.0, "the process died with -9"),
-        (hang, 2.0, "the process takes too long"),
+        (hang, 0.3, "the process takes too long"),
         (lambda: bytearray(3 << 30), 30.0, "MemoryError at outside xlmc"),
         (lambda: 1 / 0, 30.0, "ZeroDivisionError at outside xlmc"),
     ],

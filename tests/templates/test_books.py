@@ -87,12 +87,12 @@ def test_cached_values_are_what_libreoffice_computes(name, book_path, recalculat
 
 
 @pytest.mark.parametrize("name", BOOKS)
-@pytest.mark.parametrize("table", TABLES)
-def test_tables_stand_where_they_belong(name, table, book_path):
-    sheet, headers = TABLES[table]
+def test_tables_stand_where_they_belong(name, book_path, subtests):
     book = opened(book_path[name])
-    assert [column.name for column in book[sheet].tables[table].tableColumns] == headers
-    assert list(rows(book, table)[0]) == headers
+    for table, (sheet, headers) in TABLES.items():
+        with subtests.test(table):
+            assert [column.name for column in book[sheet].tables[table].tableColumns] == headers
+            assert list(rows(book, table)[0]) == headers
 
 
 @pytest.mark.parametrize("name", BOOKS)

@@ -53,21 +53,23 @@ def outcome(workbook):
     return compute
 
 
-@pytest.mark.parametrize("name", OURS)
-def test_a_wrong_number_of_arguments_is_refused_with_the_cell(outcome, name):
-    fewest, most = _limits(name)
-    for count in {max(fewest - 1, 0), most + 1} - {fewest}:
-        refused = outcome(f"{name}({','.join(['1'] * count)})")
-        assert isinstance(refused, str)
-        assert "S!Z9" in refused
+def test_a_wrong_number_of_arguments_is_refused_with_the_cell(outcome, subtests):
+    for name in OURS:
+        fewest, most = _limits(name)
+        with subtests.test(name):
+            for count in {max(fewest - 1, 0), most + 1} - {fewest}:
+                refused = outcome(f"{name}({','.join(['1'] * count)})")
+                assert isinstance(refused, str)
+                assert "S!Z9" in refused
 
 
-@pytest.mark.parametrize(("i", "name"), list(enumerate(OURS)))
-def test_any_arguments_give_values_or_a_refusal_with_the_cell(outcome, i, name):
-    count = max(_limits(name)[0], 1)
-    for part in ("", "A1:B3", "{1,2;3,4}", LOST[i % len(LOST)]):
-        found = outcome(f"{name}({','.join([part] * count)})")
-        assert "S!Z9" in found if isinstance(found, str) else found.shape == (3,)
+def test_any_arguments_give_values_or_a_refusal_with_the_cell(outcome, subtests):
+    for i, name in enumerate(OURS):
+        count = max(_limits(name)[0], 1)
+        for part in ("", "A1:B3", "{1,2;3,4}", LOST[i % len(LOST)]):
+            with subtests.test(name, part=part):
+                found = outcome(f"{name}({','.join([part] * count)})")
+                assert "S!Z9" in found if isinstance(found, str) else found.shape == (3,)
 
 
 def test_a_count_that_is_wrong_says_what_is_right():

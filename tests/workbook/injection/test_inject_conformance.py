@@ -39,12 +39,24 @@ def sheet_names(data):
             return None
 
 
-@pytest.fixture(params=[book for book in BOOKS if book.name not in BROKEN], ids=lambda book: book.name)
-def host(request):
-    return read_parts(request.param.read_bytes())
+PORTIONS = 4
+"""Every fourth workbook is a test, so that processes share them."""
 
 
-def test_only_the_five_change_and_removal_undoes_it(host, results, other_results):
+@pytest.fixture(params=range(PORTIONS))
+def hosts(request):
+    """The name and the parts of each."""
+    whole = [book for book in BOOKS if book.name not in BROKEN]
+    return ((book.name, read_parts(book.read_bytes())) for book in whole[request.param :: PORTIONS])
+
+
+def test_only_the_five_change_and_removal_undoes_it(hosts, results, other_results, subtests):
+    for name, host in hosts:
+        with subtests.test(name):
+            _inject_and_remove(host, results, other_results)
+
+
+def _inject_and_remove(host, results, other_results):
     once = inject(host, results)
     changing = roles(once).changing
     assert len(changing) <= 5
@@ -57,9 +69,15 @@ def test_only_the_five_change_and_removal_undoes_it(host, results, other_results
     assert list(inject(inject(once, other_results), results).items()) == list(once.items())
 
 
-def test_openpyxl_reads_the_result_where_it_read_the_workbook(host, results):
-    if sum(map(len, host.values())) > LARGE:
-        pytest.skip("openpyxl takes seconds for it")
+def test_openpyxl_reads_the_result_where_it_read_the_workbook(hosts, results, subtests):
+    """But the largest, for which openpyxl takes seconds."""
+    for name, host in hosts:
+        if sum(map(len, host.values())) <= LARGE:
+            with subtests.test(name):
+                _inject_and_open(host, results)
+
+
+def _inject_and_open(host, results):
     names = sheet_names(package_bytes(inject(host, results)))
     if names is None:
         assert sheet_names(package_bytes(host)) is None

@@ -133,7 +133,8 @@ class Value:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        return np.broadcast_shapes(self.numbers.shape, self.kinds.shape)
+        own: tuple[int, ...] = self.numbers.shape
+        return own if self.kinds.shape == own else np.broadcast_shapes(own, self.kinds.shape)
 
     @property
     def errors(self) -> Codes:
@@ -268,6 +269,8 @@ def _kind(item: object) -> int:
 
 def constant(item: object) -> Value:
     """A Python object as a constant, `(1,)`."""
+    if type(item) is float:  # as nearly every cell of a table
+        return Value(flushed(np.array([item])), np.full(1, NUMBER, np.uint8))
     box = np.empty(1, object)
     box[0] = item
     return from_objects(box)

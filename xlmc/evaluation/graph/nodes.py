@@ -163,7 +163,8 @@ def _if_error(value: Value, instead: Value, only_na: bool) -> Value:
 
 def _stack(rows: list[list[Value]]) -> Value:
     cells = [single(value) for row in rows for value in row]
-    n = max(max(value.numbers.size, value.kinds.size) for value in cells)  # shapes cost more than all the rest
+    sizes = {value.numbers.size for value in cells} | {value.kinds.size for value in cells}
+    (n,) = (sizes - {1}) or {1}
     size = (n, len(rows), len(rows[0]))
     texts = None
     if any(value.texts is not None for value in cells):

@@ -11,29 +11,29 @@ PAGE = Path(__file__).with_name("distributions.md")
 HEAD = """\
 # Distributions
 
-What `Distribution` in the assumptions table may be. Case, blanks, hyphens and underscores do not count, in names and in
-headings alike. Each parameter has a column of its own; a heading in brackets means the same. A parameter may be a
-formula, also one that depends on other assumptions. `Lower cutoff` and `Upper cutoff` truncate any of them.
+What `Distribution` in the assumptions table may be. Case, blanks, hyphens and underscores do not matter, in names and
+in headings. Each parameter has a column of its own; a heading in brackets means the same. A parameter may be a formula,
+even one that depends on other assumptions. `Lower cutoff` and `Upper cutoff` truncate any of them but Custom.
 
 Quantiles are computed in double precision with SciPy's special functions, upper tails from the probability above, so
-that a distribution cut off far out keeps its digits. A trial in which the parameters are no distribution is an error
-trial; numbers that are none are refused with the cell. The same holds for parameters so extreme that a draw would pass
-the largest number of a workbook, 1.8E308: Student's t with 0.01 degrees of freedom, Pareto with shape 0.01. Cutoffs at
-both ends make a distribution of them.
+that a distribution cut off far out keeps its digits. Impossible parameters, such as Low above High, are refused with
+the cell; a trial in which they vary and become impossible is lost to an error. The same holds for parameters so extreme
+that a draw would exceed the largest number of a workbook, 1.8E308: Student's t with 0.01 degrees of freedom, Pareto
+with shape 0.01. With cutoffs at both ends these are allowed.
 """
 
 PERCENTILES = """\
 ## Percentiles in place of parameters
 
 Instead of some or all of its parameters, {families} may be given percentiles: columns named `P10`, `P50`, `P97.5`, any
-number above 0 and below 100. As many percentiles are needed as parameters are left blank; a Location that is left blank
-is 0, unless there is a percentile for it too. `P10` is the value that 10 % of the draws do not exceed, before any
-cutoff. So Triangular with `P10`, `Likeliest` and `P90` is Crystal Ball's alternate form, and @RISK's TriangAlt.
+number above 0 and below 100. As many percentiles are needed as parameters are left blank; a blank Location is 0, unless
+there is a percentile for it too. `P10` is the value that 10 % of the draws do not exceed, before any cutoff. So
+Triangular with `P10`, `Likeliest` and `P90` is Crystal Ball's alternate form, and @RISK's TriangAlt.
 
-Location and scale come out in closed form; a shape is the root of one equation, and limits such as Low and High are
-solved for together. Where no member of the family has the percentiles, or where any shape has them (Student's t, told
-by symmetric ones), the row is refused. Should several fit, the one whose shape is nearest to 1 is taken, or else the
-narrowest. Percentiles may be formulas, but not such as depend on another assumption.
+Location and scale have closed formulas; a shape is the root of one equation, and limits such as Low and High are solved
+for together. If no parameters give the percentiles, or if every shape does (Student's t with symmetric percentiles),
+the row is refused. If several fit, the one whose shape is nearest to 1 is taken, or else the narrowest. Percentiles may
+be formulas, but must not depend on another assumption.
 """
 
 

@@ -14,31 +14,31 @@ PAGE = Path(__file__).with_name("functions.md")
 
 RANGES = """## Ranges in plain formulas
 
-A formula that was entered neither with Ctrl-Shift-Enter nor as a dynamic array takes, of a range that stands where
-one value is wanted, the cell beside the formula: in its row of a column, in its column of a row, else `#VALUE!`. Some
-arguments have what is computed in them taken cell by cell all the same. Excel's file format keeps this for each
+Take a formula that was entered neither with Ctrl-Shift-Enter nor as a dynamic array. Where it has a range but one value
+is wanted, it uses the cell beside the formula: of a column the one in its row, of a row the one in its column, else
+`#VALUE!`. But what is computed in some arguments is taken cell by cell. Excel's file format stores this for each
 argument of each function as its class: reference, value or array ("OpenOffice.org's Documentation of the Microsoft
-Excel File Format", section 3.2). The rows of the registry keep it too. What is computed of ranges is taken
+Excel File Format", section 3.2). xlmc has the same classes. A calculation with ranges is taken
 
-- cell by cell in all arguments of `SUMPRODUCT`, `MMULT`, `MDETERM`, `MINVERSE`, `FREQUENCY`, `MODE`, `CORREL`,
-  `COVAR`, `SLOPE` and kin, `SUMX2MY2` and kin, `CHITEST` and `FTEST`; in the data of `INDEX`, `LOOKUP`, `LINEST`,
-  `LOGEST`, `TREND`, `GROWTH`, `FORECAST`, `IRR`, `MIRR`, `PROB`, `TTEST` and `AGGREGATE` 14 to 19; and in the ranges
-  of `XLOOKUP`, `XMATCH`, `FILTER`, `SORT` and the other dynamic-array functions;
+- cell by cell in all arguments of `SUMPRODUCT`, `MMULT`, `MDETERM`, `MINVERSE`, `FREQUENCY`, `MODE`, `CORREL`, `COVAR`,
+  `SLOPE` and similar ones, `SUMX2MY2` and similar ones, `CHITEST` and `FTEST`; in the data of `INDEX`, `LOOKUP`,
+  `LINEST`, `LOGEST`, `TREND`, `GROWTH`, `FORECAST`, `IRR`, `MIRR`, `PROB`, `TTEST` and `AGGREGATE` 14 to 19; and in the
+  ranges of `XLOOKUP`, `XMATCH`, `FILTER`, `SORT` and the other dynamic-array functions;
 - as the cell beside the formula, even within `SUMPRODUCT`, in conditions and branches of `IF`, `IFS`, `SWITCH`,
   `CHOOSE`, `IFERROR` and `IFNA`, in the arguments of `VLOOKUP`, `HLOOKUP` and `TRANSPOSE`, and in the numbers of
   `INDEX`. A range that is a branch, or the table of `VLOOKUP`, stays whole;
-- as around the call in all others, such as `SUM`, `AND`, `LARGE`, `MATCH`, `NPV`: cell by cell within `SUMPRODUCT`,
-  else as the cell beside the formula.
+- in the same way as the call itself in all others, such as `SUM`, `AND`, `LARGE`, `MATCH`, `NPV`: cell by cell within
+  `SUMPRODUCT`, else as the cell beside the formula.
 
 So `SUM(INDEX((C1:C3>3)*C1:C3,0))` and `MATCH(1,INDEX((A1:A3="x")*(B1:B3=3),0),0)` need no Ctrl-Shift-Enter, and
 `SUMPRODUCT(IF(C1:C3>3,C1:C3))` needs it. In `VLOOKUP`, `CHOOSE({1,2},A1:A3,B1:B3)` does not need it, and
 `CHOOSE({1,2},A1:A3&C1:C3,B1:B3)` does. `OFFSET` that leads to several ranges at once is refused. A row or column
 number 0 of `INDEX` gives the same whether it is typed or drawn.
 
-The functions of the former Analysis ToolPak, such as `EDATE`, `EOMONTH`, `WEEKNUM`, `YEARFRAC`, `NETWORKDAYS`,
-`ISODD`, `MROUND`, `QUOTIENT`, `CONVERT`, `DEC2BIN`, `IMABS`, `BESSELJ`, `ERF`, `PRICE` and kin, and `NETWORKDAYS.INTL`
+The functions of the former Analysis ToolPak, such as `EDATE`, `EOMONTH`, `WEEKNUM`, `YEARFRAC`, `NETWORKDAYS`, `ISODD`,
+`MROUND`, `QUOTIENT`, `CONVERT`, `DEC2BIN`, `IMABS`, `BESSELJ`, `ERF`, `PRICE` and similar ones, and `NETWORKDAYS.INTL`
 and `WORKDAY.INTL`, give `#VALUE!` for a range of several cells where one value is wanted: in plain formulas, array
-formulas and dynamic arrays, and within `SUMPRODUCT`. An array is computed element by element, so that
+formulas and dynamic arrays, and within `SUMPRODUCT`. Arrays are computed element by element. So
 `SUMPRODUCT(--(WEEKNUM(A1:A3)=1))` is `#VALUE!`, and `SUMPRODUCT(--(WEEKNUM(+A1:A3)=1))` is a count. Holidays, the
 payments and dates of `XIRR` and `XNPV`, and the arguments of `GCD`, `LCM`, `MULTINOMIAL`, `IMSUM` and `IMPRODUCT` take
 ranges.
@@ -46,12 +46,12 @@ ranges.
 ## Hidden rows and spilled ranges
 
 `SUBTOTAL` 1 to 11 leaves out the rows that a filter hides, and counts those hidden by hand; 101 to 111 leave out both.
-The file marks both alike: a hidden row counts as filtered where it lies within a filter, of the sheet or of a table,
-that has a condition. An advanced filter leaves no such condition in the file, so that the rows it hides count as hidden
-by hand; `xlmc verify` shows where the saved value says otherwise. Where rows are hidden and the function number of
+The file marks both in the same way: a hidden row counts as filtered if it lies within a filter, of the sheet or of a
+table, that has a condition. An advanced filter leaves no condition in the file, so the rows it hides count as hidden by
+hand; `xlmc verify` shows where the saved value contradicts this. Where rows are hidden and the function number of
 `SUBTOTAL` varies, it is refused.
 
-`A1#` is the range that the dynamic array in A1 fills, `#REF!` where there is none (an array formula entered with
+`A1#` is the range that the dynamic array in A1 fills, or `#REF!` if there is none (an array formula entered with
 Ctrl-Shift-Enter does not spill). Where its size varies, it is what the formula gives in each trial.
 """
 
@@ -62,11 +62,11 @@ in each trial, with the engines `numpy` and `jit` alike:
 
 - `=` `<>` `<` `<=` `>` `>=` between numbers compare both rounded to 15 significant decimal digits, halves away from
   zero. `0.1+0.2=0.3` and `1-0.9=0.1` are TRUE, `1.1*3>3.3` is FALSE, `10.1-10=0.1` is FALSE (the 15th digit differs).
-  Texts and logicals are compared as ever.
-- The `+` or `-` that a cell's formula ends with gives 0 where the size of the result is less than 8 units in the last
-  place of its first number: `=0.5-0.4-0.1` is 0. In brackets, `=(0.5-0.4-0.1)`, or where another operation or a
-  function comes last, `=1*(0.5-0.4-0.1)` and `=0.5-0.4-0.1+0`, it is -2.78E-17. In an array
-  formula the rule is used for each cell, and a defined name's formula is not a cell's: no source tells of these two.
+  Texts and logicals are compared as usual.
+- The last `+` or `-` of a cell's formula gives 0 where the size of the result is less than 8 units in the last place of
+  its first number: `=0.5-0.4-0.1` is 0. In brackets, `=(0.5-0.4-0.1)`, or where another operation or a function comes
+  last, `=1*(0.5-0.4-0.1)` and `=0.5-0.4-0.1+0`, it is -2.78E-17. In an array formula the rule holds for each cell; the
+  formula of a defined name is not a cell's. No source confirms these two.
 - A sum or difference is that of the doubles everywhere else.
 - A number below 2^-1022 (2.2250738585072014E-308) in size is 0, as a result, as a cell's value, as a text that is read
   as a number and as a draw: `=1/(1E-160*1E-150)` is `#DIV/0!` (Microsoft, article 78113). With the engine `numpy` one
@@ -74,9 +74,8 @@ in each trial, with the engines `numpy` and `jit` alike:
 
 All bits are kept by `MATCH`, `XLOOKUP` and the other lookups, criteria such as those of `COUNTIF`, `SWITCH` and
 `CHOOSE`, `SUM` (which Excel makes 0 in some cases and not in others, by no rule that is known), and the limits in the
-tables of xlmc. Bounds, derivatives, `xlmc stability` and its recomputation with 50 digits leave the last sum as it is,
-and small numbers, too. LibreOffice differs: it
-makes 0 of every sum that cancels to some 16 units, in brackets, too.
+tables of xlmc. Bounds, derivatives, `xlmc stability` and its recomputation with 50 digits change neither the last sum
+nor small numbers. LibreOffice differs: it makes every sum 0 that cancels to some 16 units, also in brackets.
 
 Sources. Comparisons: Apache POI, `NumberComparer` and the doubles at which Excel's answer changes in its
 `NumberComparisonExamples` (all 33 steps are met to the last bit); S. Byrne, Stack Overflow 40293983. The last sum:
@@ -87,40 +86,41 @@ article 78113 says no more than "at or very close to zero". Lookups: Microsoft A
 
 DIFFERENCES = """## What differs from Excel on purpose
 
-- `ERF`, `GAMMALN`, `BESSELI` and kin, distributions and their inverses are right to the last digits of a double, where
-  Excel's own have 7 to 15 right digits.
+- `ERF`, `GAMMALN`, `BESSELI` and similar ones, distributions and their inverses are right to the last digits of a
+  double, where Excel's own have 7 to 15 right digits.
 - `SIN`, `COS` and `TAN` are exact near multiples of pi/2: `COS(PI()/2)` is 6.123E-17. 32-bit Excel gives 6.126E-17;
   `xlmc verify` takes either.
 - Dates and numbers as texts, and `TEXT`, are as in Excel for the United States: month before day, points for decimals.
   `ASC` leaves every text as it is: full-width letters change only in Chinese, Japanese and Korean versions.
   A book does not hold the settings of the machine that it was last opened on. A date without its year is `#VALUE!`:
   it would be one of the year of the run.
-- A function or a name that Excel does not know is `#NAME?` only where the file bears it out: what Excel saved in the
-  cell is `#NAME?`, or what the formula makes of that error (`IFERROR(NOSUCH(1),0)`), and the book has no code of its
-  own, the function no mark of an add-in or of a newer Excel. `xlmc check` says so. It is refused in all other cases.
-- A `LAMBDA` by the name of a function of Excel, as `Sum`, is never called by that name: `Sum(2)` is `SUM`. A function
-  that came after Excel 2007 bears the mark `_xlfn.` in the file; without the mark its name is the `LAMBDA`'s. No source
-  says so of a `LAMBDA`: it is how Excel takes names of ranges and of functions in Visual Basic.
-- `NOW` and `TODAY` are what Excel saved, so that a run can be repeated. `RAND`, `RANDBETWEEN` and kin are assumptions,
-  drawn anew in each trial. `CELL("filename")` has no folder.
+- A function or a name that Excel does not know is `#NAME?` only if the file confirms it: the value that Excel saved is
+  `#NAME?`, or what the formula makes of that error (`IFERROR(NOSUCH(1),0)`); the book has no code of its own; and the
+  function has no mark of an add-in or of a newer Excel. `xlmc check` says so. In all other cases it is refused.
+- A `LAMBDA` with the name of an Excel function, such as `Sum`, is never called by that name: `Sum(2)` is `SUM`. A
+  function that is newer than Excel 2007 has the mark `_xlfn.` in the file; without the mark the name means the
+  `LAMBDA`. No source confirms this for a `LAMBDA`: Excel treats names of ranges, and of functions in Visual Basic, in
+  this way.
+- `NOW` and `TODAY` are what Excel saved, so that a run can be repeated. `RAND`, `RANDBETWEEN` and `RANDARRAY` are
+  assumptions, drawn anew in each trial. `CELL("filename")` has no folder.
 - Formulas that read other workbooks get the values that Excel stored in this one, with a notice. Where Excel computes
   with precision as displayed, xlmc computes with full precision, with a notice.
-- `OFFSET`, `INDIRECT` and `INDEX(…):INDEX(…)` that lead elsewhere in each trial are refused (`TAKE` and `DROP` do the
-  same with numbers that vary), and so are `MAKEARRAY` of a size that varies (`SEQUENCE` takes one), a `LAMBDA` that
-  calls itself with ranges or arrays that change, where it is more than 60 calls deep, and formulas that need iteration.
+- Refused are `OFFSET`, `INDIRECT` and `INDEX(…):INDEX(…)` that lead to other cells in each trial (use `TAKE` or `DROP`,
+  which accept numbers that vary); `MAKEARRAY` of a size that varies (`SEQUENCE` accepts one); a `LAMBDA` that calls
+  itself with changing ranges or arrays more than 60 calls deep; and formulas that need iteration.
 - Sums from the last row up are rounded in another order where 64 or more of them end at one cell (below).
-- `AND("",…)`, `XLOOKUP` of the nearest across numbers and texts, and which of several equal keys a binary search gives,
-  are not documented by Microsoft: Excel may do otherwise. So are `ACCRINT` with FALSE for its method after the first
-  coupon, `YEARFRAC` of basis 1 in 1900, and `WORKDAY.INTL` of a range of several dates, which is `#VALUE!` here.
+- Microsoft does not document these, and Excel may do otherwise: `AND("",…)`; `XLOOKUP` of the nearest across numbers
+  and texts; which of several equal keys a binary search finds; `ACCRINT` with FALSE for its method after the first
+  coupon; `YEARFRAC` of basis 1 in 1900; and `WORKDAY.INTL` of a range of several dates, which is `#VALUE!` here.
 """
 
 LIMITS = """## Limits
 
-A workbook may ask for more than a machine has. xlmc asks before it takes memory, and refuses with the cell, the size
-and what to do (exit code 2); where no assumption reaches the cell and Excel saved its value, that value is used, with a
-notice. Whole columns and rows, and ranges that go on far beyond the last filled cell, are read up to that cell and keep
-their size: the empty cells beyond are counted, not read. A function that would take them one by one, such as `SORT` or
-`TRANSPOSE`, is refused.
+A workbook may need more memory than a machine has. xlmc checks before it takes memory, and refuses with the cell, the
+size and what to do (exit code 2). If the cell depends on no assumption and Excel saved its value, that value is used,
+with a notice. Whole columns and rows, and ranges that go far beyond the last filled cell, are read up to that cell and
+keep their size: the empty cells beyond are counted, not read. A function that would need them one by one, such as
+`SORT` or `TRANSPOSE`, is refused.
 
 | what | limit |
 |---|---|
@@ -139,11 +139,11 @@ their size: the empty cells beyond are counted, not read. A function that would 
 | characters of a text | 32,767, as in Excel: a longer one is `#VALUE!` |
 
 Formulas filled down over ranges that begin at one cell, as `=SUM(B$1:B7)`, `=MAX(A$1:B7)` and the same with `COUNT`,
-`COUNTA`, `MIN`, `AVERAGE` and `PRODUCT`, take one step a row, to the same numbers. So do those over ranges that end at
-one cell, as `=SUM(B7:B$5000)`: where 64 or more end there, their sums, means and products are taken from the last row
-up, and may differ from Excel's by their rounding, in the last of 17 digits.
+`COUNTA`, `MIN`, `AVERAGE` and `PRODUCT`, take one step for each row, and give the same numbers. So do those over ranges
+that end at one cell, as `=SUM(B7:B$5000)`. Where 64 or more end there, their sums, means and products are computed from
+the last row up, and may differ from Excel's in the last of 17 digits.
 
-The first limits count one trial. Where arrays are large, fewer trials are evaluated at a time, to the same numbers.
+The first limits count one trial. Where arrays are large, fewer trials are evaluated at a time, with the same results.
 """
 
 
@@ -163,8 +163,8 @@ def page() -> str:
         "# Functions",
         "",
         f"xlmc computes these {len(names())} functions of Excel, for all trials at once. Where a formula uses another",
-        "one, or `OFFSET` and `INDIRECT` with arguments that vary, `xlmc check` names its cell; where no assumption",
-        "reaches that cell, the value that Excel saved is used, with a note.",
+        "one, or `OFFSET` and `INDIRECT` with arguments that vary, `xlmc check` names its cell; where that cell",
+        "depends on no assumption, the value that Excel saved is used, with a note.",
         "",
         "This page is written by `python docs/list_functions.py`.",
         "",

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.criteria import is_pattern, met, pattern_of
+from xlmc.functions.criteria import is_pattern, pattern_of, which_meet
 from xlmc.functions.ordering import order_key
 from xlmc.functions.values import constant, from_objects
 
@@ -72,7 +72,7 @@ def _named(items):
 
 @pytest.mark.parametrize(("criterion", "expected"), TABLE)
 def test_table(criterion, expected):
-    held = met(constant(criterion), _range(CELLS))[0]
+    held = which_meet(constant(criterion), _range(CELLS))[0]
     assert _named([item for item, holds in zip(CELLS, held, strict=True) if holds]) == _named(expected)
 
 
@@ -88,15 +88,15 @@ def test_table(criterion, expected):
     ],
 )
 def test_database_functions_ask_for_the_beginning_of_a_text(criterion, expected):
-    held = met(constant(criterion), _range(CELLS), begins=True)[0]
+    held = which_meet(constant(criterion), _range(CELLS), begins=True)[0]
     assert _named([item for item, holds in zip(CELLS, held, strict=True) if holds]) == _named(expected)
 
 
 @pytest.mark.parametrize(("date1904", "expected"), [(False, [False, True, True]), (True, [True, False, True])])
 def test_dates_are_numbers(date1904, expected):
     cells = _range([42369.0, 43831.0, "1/1/2020"])
-    assert met(constant("1/1/2020"), cells, date1904=date1904)[0].tolist() == expected
-    assert met(constant(">=1/1/2020"), _range([43830.0, 43831.0])).tolist() == [[False, True]]
+    assert which_meet(constant("1/1/2020"), cells, date1904=date1904)[0].tolist() == expected
+    assert which_meet(constant(">=1/1/2020"), _range([43830.0, 43831.0])).tolist() == [[False, True]]
 
 
 ORDERS = {"<=": operator.le, ">=": operator.ge, "<": operator.lt, ">": operator.gt}
@@ -121,13 +121,13 @@ def _kind(item):
     return float if type(item) is int else type(item)
 
 
-def _equals(cell, operand):
+def _equals(cell, operand, *, texts_read):
     if isinstance(operand, str):
         if not operand and cell is None:
             return True
         return isinstance(cell, str) and fnmatchcase(cell.casefold(), operand.casefold())
     if type(operand) is float and isinstance(cell, str):
-        return _number(cell) == operand
+        return texts_read and _number(cell) == operand
     return _kind(cell) is _kind(operand) and cell == operand
 
 
@@ -136,7 +136,7 @@ def _meets(cell, criterion):
     if criterion is None:
         criterion = 0.0
     if not isinstance(criterion, str):
-        return _equals(cell, criterion)
+        return _equals(cell, criterion, texts_read=True)
     sign = next((sign for sign in ("<=", ">=", "<>", "<", ">", "=") if criterion.startswith(sign)), "")
     rest = criterion.removeprefix(sign)
     if not rest and sign in ("=", "<>"):
@@ -147,7 +147,7 @@ def _meets(cell, criterion):
             return False
         cell, operand = (order_key(item) if isinstance(item, str) else item for item in (cell, operand))
         return ORDERS[sign](cell, operand)
-    return _equals(cell, operand) != (sign == "<>")
+    return _equals(cell, operand, texts_read=sign != "<>") != (sign == "<>")
 
 
 cells = st.sampled_from([0.0, 1.0, 2.0, 2.5, "1", "2.5", "ab", "AB", "b", "bc", "", None, True, False, NA, DIV0])
@@ -165,7 +165,7 @@ def test_as_the_model_has_it_in_every_trial(trials, constant_range):
     box = np.empty((1 if constant_range else len(trials), 1, 3), object)
     for place, row in enumerate(rows[: len(box)]):
         box[place, 0] = row
-    found = np.broadcast_to(met(from_objects(wanted), from_objects(box)), (len(trials), 3))
+    found = np.broadcast_to(which_meet(from_objects(wanted), from_objects(box)), (len(trials), 3))
     expected = [[_meets(cell, trial[0]) for cell in row] for trial, row in zip(trials, rows, strict=True)]
     assert found.tolist() == expected
 

@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from xlmc.functions.denormals import TINIEST, Underflow, flush, flushed
+from xlmc.functions.denormals import TINIEST, Underflow, flush, tiny_to_zero
 from xlmc.functions.registry import row_of
-from xlmc.functions.values import DIV0, Value, boxed_codes, constant, parse_number
+from xlmc.functions.values import DIV0, Value, constant, parse_number, unbox_errors
 
 ANY = st.floats() | st.floats(-1e-300, 1e-300)
 SMALL = st.floats(-1e-140, 1e-140).filter(lambda x: x == 0 or abs(x) > 1e-170)
@@ -21,7 +21,7 @@ def same(x, y):
 @given(arrays(np.float64, st.integers(0, 8), elements=ANY))
 def test_numbers_that_excel_has_stay_and_smaller_ones_are_0(x):
     expected = [0.0 if abs(number) < TINIEST else number for number in x.tolist()]
-    assert same(flushed(x), np.array(expected))
+    assert same(tiny_to_zero(x), np.array(expected))
     own = x.copy()
     flush(own)
     assert same(own, np.array(expected))
@@ -29,8 +29,8 @@ def test_numbers_that_excel_has_stay_and_smaller_ones_are_0(x):
 
 def test_an_array_without_them_is_not_copied_and_errors_keep_their_codes():
     x = np.array([1.0, 0.0, TINIEST])
-    assert flushed(x) is x
-    assert boxed_codes(flushed(np.array([DIV0, 1e-310]))).tolist() == boxed_codes(np.array([DIV0, 0.0])).tolist()
+    assert tiny_to_zero(x) is x
+    assert unbox_errors(tiny_to_zero(np.array([DIV0, 1e-310]))).tolist() == unbox_errors(np.array([DIV0, 0.0])).tolist()
 
 
 def test_truth_values_stay():

@@ -33,7 +33,7 @@ from xlmc.run.rare.ways import _OF_AREAS
 PACKAGE = Path(__file__).resolve().parents[2] / "xlmc"
 
 ROWS = {row.name: row for row in REGISTRY.values()}
-MADE = {"shown", "settled", *(row.name for row in SO_FAR.values())}
+MADE = {"shown", "snap to zero", *(row.name for row in SO_FAR.values())}
 """Rows that no formula calls by name."""
 
 OURS = {*REGISTRY, *CHOICES, *REFERENCE_FUNCTIONS, *LAMBDAS, *WRITTEN_OUT, "LET", "LAMBDA"}
@@ -197,7 +197,7 @@ FEW = {
     "what spills": ({"SORT", "MMULT", "INDEX", "XLOOKUP", "LINEST"}, lambda facts: facts.spills),
     "what its numbers size": ({"TAKE", "SEQUENCE"}, lambda facts: facts.sized_by_numbers),
     "what looks up": ({"MATCH", "XLOOKUP", "LOOKUP"}, lambda facts: facts.mode_argument is not None),
-    "what is bounded": ({"SIN", "COS", "TANH"}, lambda facts: facts.between is not None),
+    "what is bounded": ({"SIN", "COS", "TANH"}, lambda facts: facts.result_range is not None),
     "what has a domain": ({"SQRT", "LN", "ACOS"}, lambda facts: facts.domain is not None),
     "what ignores empty cells": ({"SUM", "NPV"}, lambda facts: facts.empty_cells is EmptyCells.IGNORED),
     "what adds up": ({"SUM", "COUNT", "SUMSQ"}, lambda facts: facts.repeats is Repeats.ADD_UP),
@@ -217,8 +217,8 @@ def test_a_lookup_says_how_by_an_argument_that_it_has_or_always_looks_up_by_halv
 
 def test_what_lies_between_two_numbers_does():
     for row in ROWS.values():
-        if row.facts.between is not None:
-            low, high = row.facts.between
+        if row.facts.result_range is not None:
+            low, high = row.facts.result_range
             found = [row([constant(x)]).numbers[0] for x in (-1e5, -2.0, 0.0, 0.5, 1.5, 4.7, 700.0)]
             assert low <= min(found)
             assert max(found) <= high

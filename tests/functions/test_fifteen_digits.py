@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from xlmc.functions.denormals import TINIEST
 from xlmc.functions.families import function_named
-from xlmc.functions.fifteen_digits import COMPARISONS, SETTLED, Settled, equals, keep, never_cancels
+from xlmc.functions.fifteen_digits import COMPARISONS, SNAP_TO_ZERO, SnapToZero, copy_sum, equal_range, never_cancels
 from xlmc.functions.operators import ALL_BITS
 from xlmc.functions.values import from_objects
 
@@ -120,7 +120,7 @@ def test_just_one_of_less_equal_and_more_holds_and_both_ways_alike(pair):
 
 @given(NUMBERS)
 def test_the_ends_are_the_last_doubles_that_are_equal(number):
-    least, most = equals(number)
+    least, most = equal_range(number)
     assert least <= number <= most or abs(number) < TINIEST
     assert rounded(least) == rounded(number) == rounded(most)
     outside = math.nextafter(least, -math.inf), math.nextafter(most, math.inf)
@@ -153,7 +153,7 @@ LIMITS = st.floats(-1e6, 1e6)
 
 
 def settled(total, first):
-    return SETTLED.ufunc(np.atleast_1d(total), np.atleast_1d(first))
+    return SNAP_TO_ZERO.ufunc(np.atleast_1d(total), np.atleast_1d(first))
 
 
 @given(NUMBERS_OF_LAST_SUM, st.integers(-20, 20))
@@ -167,11 +167,11 @@ def test_it_is_the_same_for_each_trial_alone_and_in_any_memory(pairs):
     total, first = np.array(pairs).T.copy()
     alone = [settled(*pair)[0] for pair in pairs]
     assert settled(total, first).tolist() == alone
-    assert Settled(float(np.abs(first).max()))(total, first).tolist() == alone
+    assert SnapToZero(float(np.abs(first).max()))(total, first).tolist() == alone
     for out in (total.copy(), first.copy()):
         a, b = total.copy(), first.copy()
-        assert SETTLED.ufunc(a, b, out=out).tolist() == alone
-    assert SETTLED.ufunc(total.copy(), first, out=first).tolist() == alone
+        assert SNAP_TO_ZERO.ufunc(a, b, out=out).tolist() == alone
+    assert SNAP_TO_ZERO.ufunc(total.copy(), first, out=first).tolist() == alone
 
 
 def test_numbers_that_cancel_beside_numbers_that_do_not():
@@ -189,7 +189,7 @@ def test_what_never_cancels_is_kept(a, b, c, d, adds, seed):
     rng = np.random.default_rng(seed)
     x, y = (rng.uniform(*ends, 20) for ends in (first, second))
     total = x + y if adds else x - y
-    assert settled(total, x).tolist() == total.tolist() == keep(total, x, out=x).tolist()
+    assert settled(total, x).tolist() == total.tolist() == copy_sum(total, x, out=x).tolist()
 
 
 @pytest.mark.parametrize(

@@ -218,5 +218,5 @@ def test_what_spills_must_see_its_values():
             ValueError, match="MADEUP spills: it takes `Anything`, `Cells` or `Arrays`, and has no ufunc"
         ):
             Function("MADEUP", parameters, np.negative, Kind.ANY, ufunc, facts=Facts(spills=True))
-    with pytest.raises(ValueError, match="what is sized by its numbers spills"):
+    with pytest.raises(ValueError, match="a function whose numbers decide on its size spills"):
         Facts(sized_by_numbers=True)

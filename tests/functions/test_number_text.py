@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.functions.number_text import general_text, parse_number, shown
+from xlmc.functions.number_text import general_text, parse_number, round_to_15_digits
 
 NUMBERS = [
     ("$1,234.50", 1234.5),
@@ -124,4 +124,4 @@ def test_numbers_take_twenty_characters_at_most(number, text):
     ("number", "decimal"), [(0.1 + 0.2, "0.3"), (1.005, "1.005"), (123456789012345.67, "123456789012346"), (0.5, "0.5")]
 )
 def test_fifteen_digits_are_shown(number, decimal):
-    assert shown(number) == Decimal(decimal)
+    assert round_to_15_digits(number) == Decimal(decimal)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.ordering import order_key, ordered, searched
+from xlmc.functions.ordering import order_key, search_each_trial, to_ordered
 from xlmc.functions.values import Value, from_objects
 
 
@@ -13,14 +13,14 @@ def _value(rows):
 
 
 def test_texts_of_all_values_share_one_order():
-    left, right = ordered(_value(["b", 2.0, "A"]), _value([[["a", "C"], [None, ErrorCode.NA]]]))
+    left, right = to_ordered(_value(["b", 2.0, "A"]), _value([[["a", "C"], [None, ErrorCode.NA]]]))
     assert left.texts == right.texts == ("", "a", "b", "c")
     assert left.order.tolist() == [[2], [2], [1]]
     assert right.order.tolist() == [[1, 3, 0, 0]]
 
 
 def test_what_stands_under_an_error_does_not_count():
-    (found,) = ordered(Value(np.array([5.0, 6.0]), np.array([0, 17], np.uint8)))
+    (found,) = to_ordered(Value(np.array([5.0, 6.0]), np.array([0, 17], np.uint8)))
     assert found.order.tolist() == [[5], [0]]
 
 
@@ -34,9 +34,9 @@ def test_keys_of_any_shape_are_sought_in_vectors_of_any_trials():
     keys = _value([[[1.0, 3.0]], [[2.0, 1.0]]])
     one = _value([[[3.0, 2.0, 1.0]]])
     two = _value([[[3.0, 2.0, 1.0]], [[1.0, 2.0, 3.0]]])
-    assert searched(keys, one, find).tolist() == [[[2, 0]], [[1, 2]]]
-    assert searched(keys, two, find).tolist() == [[[2, 0]], [[1, 0]]]
-    assert searched(_value([3.0]), two, find).tolist() == [0, 2]
+    assert search_each_trial(keys, one, find).tolist() == [[[2, 0]], [[1, 2]]]
+    assert search_each_trial(keys, two, find).tolist() == [[[2, 0]], [[1, 0]]]
+    assert search_each_trial(_value([3.0]), two, find).tolist() == [0, 2]
     assert shapes == [((4, 1), (1, 3)), ((2, 1), (2, 3)), ((2, 1), (2, 3)), ((2, 1), (2, 3))]
 
 

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.called_functions import as_set
 from xlmc.functions import Function, Kind
-from xlmc.functions.denormals import flushed
+from xlmc.functions.denormals import tiny_to_zero
 from xlmc.functions.families import REGISTRY, function_named
 from xlmc.functions.registry import Logical, Number, Numbers, Text, excel
 from xlmc.functions.values import ShapeVaries, Value, constant, from_objects
@@ -118,7 +118,7 @@ def _as_body_takes_them(function: Function, columns: list[np.ndarray]) -> list[n
 
 def _flushing(ufunc, x, y):
     """As the fast path folds: numbers too small for Excel are 0 at each step."""
-    return flushed(np.float64(ufunc(x, y)))
+    return tiny_to_zero(np.float64(ufunc(x, y)))
 
 
 @pytest.mark.parametrize("name", FAST)
@@ -128,7 +128,7 @@ def test_the_ufunc_is_the_function_where_no_flag_is_raised_and_the_guard_holds(n
     function = FAST[name]
     n = data.draw(st.integers(1, 9))
     k = data.draw(st.sampled_from([1, 2, 12])) if function.takes_sets else function.arity()[1]
-    columns = [flushed(np.array(data.draw(st.lists(plain_numbers, min_size=n, max_size=n)))) for _ in range(k)]
+    columns = [tiny_to_zero(np.array(data.draw(st.lists(plain_numbers, min_size=n, max_size=n)))) for _ in range(k)]
     arrays = _as_body_takes_them(function, columns)
     if function.guard is not None and not function.guard(*arrays):
         return
@@ -142,7 +142,7 @@ def test_the_ufunc_is_the_function_where_no_flag_is_raised_and_the_guard_holds(n
     expected = function([Value.of_numbers(x) for x in columns])
     assert not expected.has_errors
     zero = 0.0  # the sign of a zero is no value of Excel's, and MIN and MAX may take either
-    assert np.array_equal(flushed(np.float64(found)) + zero, expected.numbers + zero)
+    assert np.array_equal(tiny_to_zero(np.float64(found)) + zero, expected.numbers + zero)
 
 
 def test_ordinary_numbers_raise_no_flag(subtests):

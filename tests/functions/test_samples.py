@@ -52,7 +52,7 @@ def test_a_body_is_asked_at_every_place_of_every_trial(value):
     @at_each()
     def above(sample, places):
         """How many numbers lie above; 9 is refused."""
-        return np.where(places == 9, NUM, sample.how_many(np.greater, places))
+        return np.where(places == 9, NUM, sample.count_where(np.greater, places))
 
     places = Value.of_numbers(np.array([[[0.0, 1.0]], [[2.0, 9.0]]]))
     assert above(value([[1, 2]]), places).objects().tolist() == [[[2.0, 1.0]], [[0.0, ErrorCode.NUM]]]

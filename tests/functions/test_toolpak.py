@@ -7,7 +7,7 @@ from xlmc.errors import ErrorCode
 from xlmc.functions.families import function_named
 from xlmc.functions.per_element import per_object
 from xlmc.functions.registry import REGISTRY, Kind, Logical, Number
-from xlmc.functions.toolpak import Date, flattened, number_of, numbers_only, toolpak
+from xlmc.functions.toolpak import Date, all_strict_numbers, numbers_only, strict_number, toolpak
 from xlmc.functions.values import Value, constant, from_objects
 
 NUM, VALUE, NA = ErrorCode.NUM, ErrorCode.VALUE, ErrorCode.NA
@@ -47,7 +47,7 @@ def test_a_logical_is_no_number(check, name):
     [(2.5, 2.5), (None, 0.0), ("1e3", 1000.0), ("x", VALUE), ("", VALUE), (True, VALUE), (NA, NA)],
 )
 def test_the_number_of_an_object_is_that_of_a_value(item, number):
-    assert number_of(item) == number
+    assert strict_number(item) == number
     found = numbers_only(lambda x: x)(constant(item)).objects()[0]
     assert (type(found), found) == (type(number), number)
 
@@ -66,7 +66,7 @@ def test_a_value_for_all_goes_with_each_of_the_trials_and_cells():
 
 def test_arguments_side_by_side():
     cells = from_objects(np.array([[["7", None]], [[True, NA]]], object))
-    numbers, errors = flattened([constant(2.0), cells])
+    numbers, errors = all_strict_numbers([constant(2.0), cells])
     assert numbers.tolist() == [[2.0, 7.0, 0.0], [2.0, 1.0, 0.0]]
     assert errors.tolist() == [[0, 0, 0], [0, VALUE, NA]]
 

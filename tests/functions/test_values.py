@@ -20,12 +20,11 @@ from xlmc.functions.values import (
     TEXT,
     VALUE,
     Value,
-    boxed_codes,
     constant,
     from_objects,
     general_text,
     parse_number,
-    shapes,
+    unbox_errors,
 )
 
 
@@ -50,7 +49,7 @@ def _of(*items: object) -> Value:
     ],
 )
 def test_codes_in_floats(boxed, code):
-    assert boxed_codes(np.array([1.0, boxed])).tolist() == [0, code]
+    assert unbox_errors(np.array([1.0, boxed])).tolist() == [0, code]
 
 
 def test_a_code_outlives_where():
@@ -211,7 +210,3 @@ def test_a_scalar_as_a_range_has_one_cell():
     assert value.shape == (2, 1, 1)
     assert value.objects()[:, 0, 0].tolist() == [1.0, "a"]
     assert value.as_range() is value
-
-
-def test_shapes_broadcast():
-    assert shapes([constant(1.0), _of(1.0, 2.0, 3.0)]) == (3,)

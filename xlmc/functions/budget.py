@@ -1,11 +1,11 @@
-"""How much memory and work one value may take: asked for before it is taken.
+"""How much memory and work one value may take. A function asks for it before it takes it.
 
 Excel's own limits give Excel's own errors (a text of more than 32,767 characters is `#VALUE!`). The limits here are
 xlmc's: a workbook is untrusted, and no formula of it may fill the memory. They count cells × trials, so that a block of
-trials that is too large is evaluated in smaller portions; only what is too large for a single trial is refused.
+trials that is too large is evaluated in smaller portions; a formula is refused only if one trial alone is too large.
 
-`work_arrays` are arrays that a function works in, kept by each thread from call to call: pages of fresh memory cost
-much time.
+`work_arrays` gives arrays for intermediate results. Each thread keeps its own from call to call, because pages of fresh
+memory cost much time.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ __all__ = [
     "ask_for_texts",
     "ask_for_work",
     "bytes_of",
-    "counted",
+    "count_characters",
     "work_arrays",
 ]
 
@@ -47,7 +47,7 @@ MOST_CELLS: Final = 1 << 23
 """Cells × trials of one array: 8 bytes each, and a function needs several arrays of the size at a time."""
 
 MOST_TEXTS: Final = 1 << 21
-"""Cells × trials that are taken one by one, as texts are: a microsecond each, and a hundred bytes."""
+"""Cells × trials that are computed one by one, as texts are: each takes a microsecond and a hundred bytes."""
 
 MOST_CHARACTERS: Final = 1 << 26
 """Characters of all texts of one array."""
@@ -59,10 +59,10 @@ MOST_CALLS_TOGETHER: Final = 500_000
 """Calls of LAMBDAs in all formulas of a workbook."""
 
 MOST_STEPS: Final = 100_000
-"""Steps of all calls of a LAMBDA by itself, once its calls are not written out any more: 50 microseconds each."""
+"""Steps of all calls that a LAMBDA makes of itself and that are not written out: 50 microseconds each."""
 
 MOST_READ: Final = 1 << 21
-"""Cells of one area of a sheet, after whole columns and rows end where the last cell is filled."""
+"""Cells of one area of a sheet; whole columns and rows are counted up to the last filled cell."""
 
 MOST_KEPT: Final = 1 << 28
 """Bytes of all constants of a workbook together."""
@@ -75,7 +75,7 @@ MOST_WORK: Final = 1 << 31
 
 
 class TooLargeError(FormulaError):
-    """What a formula asks for is more than xlmc takes. With fewer trials at a time it may be less.
+    """A formula asks for more than xlmc takes. With fewer trials at a time it may ask for less.
 
     Attributes:
         node: the node of the graph that asked for it; None where that is not known.
@@ -99,7 +99,7 @@ def ask_for_cells(trials: int, rows: int, columns: int = 1) -> None:
 
 
 def ask_for_texts(count: int) -> None:
-    """Ask for values that are computed one by one.
+    """Ask to compute so many values one by one.
 
     Raises:
         TooLargeError: they are too many.
@@ -112,7 +112,7 @@ def ask_for_texts(count: int) -> None:
 
 
 def ask_for_characters(count: int) -> None:
-    """Ask for the texts of one array, all their characters counted.
+    """Ask for so many characters in all texts of one array.
 
     Raises:
         TooLargeError: they are too many.
@@ -124,11 +124,11 @@ def ask_for_characters(count: int) -> None:
         )
 
 
-def counted(items: Iterable[object]) -> Iterator[object]:
-    """The items as they come, the characters of the texts among them counted.
+def count_characters(items: Iterable[object]) -> Iterator[object]:
+    """Pass the items on and count the characters of the texts among them.
 
     Raises:
-        TooLargeError: they are too many.
+        TooLargeError: there are too many characters.
     """
     total = 0
     for item in items:
@@ -173,7 +173,7 @@ class CallCount:
         self._in_formula = self._together = 0
 
     def next_formula(self) -> None:
-        """What is counted from here on belongs to another formula."""
+        """Begin to count the calls of another formula."""
         self._in_formula = 0
 
     def add(self) -> None:
@@ -218,15 +218,15 @@ def ask_for_live(bytes_: int) -> None:
 
 
 def bytes_of(arrays: tuple[np.ndarray[Any, Any] | None, ...]) -> int:
-    """The memory of numbers, kinds and texts: what is repeated without being written out counts once."""
+    """Return the memory of numbers, kinds and texts. An array that only repeats one element counts as that element."""
     numbers, kinds, texts = arrays
-    size = _own(numbers) + _own(kinds)
+    size = _own_bytes(numbers) + _own_bytes(kinds)
     if texts is not None:
         size += 64 * texts.size + sum(map(len, texts.ravel().tolist()))
     return size
 
 
-def _own(array: np.ndarray[Any, Any] | None) -> int:
+def _own_bytes(array: np.ndarray[Any, Any] | None) -> int:
     if array is None:
         return 0
     return array.nbytes if 0 not in array.strides or array.size < 2 else array.itemsize
@@ -238,7 +238,7 @@ _MEMORY = threading.local()
 
 
 def work_arrays(n: int, arrays: int) -> list[NDArray[np.float64]]:
-    """One or two arrays `(n,)` of this thread's own, until it asks again."""
+    """Return one or two arrays `(n,)` that this thread may write to until it calls this again."""
     kept: list[NDArray[np.float64]] = getattr(_MEMORY, "arrays", [])
     if len(kept) < arrays or kept[0].size < n:
         _MEMORY.arrays = kept = [np.empty(n) for _ in range(_KEPT)]

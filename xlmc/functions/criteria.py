@@ -1,17 +1,17 @@
-"""Criteria, as `COUNTIF` and its kin take them: `5`, `">=1/31/2024"`, `"b*"`, `TRUE`, `#N/A`, an empty cell.
+"""The criteria of `COUNTIF` and similar functions: `5`, `">=1/31/2024"`, `"b*"`, `TRUE`, `#N/A`, an empty cell.
 
-A criterion of one trial is held against the cells of the same trial. Letters: n trials, k cells.
+The criterion of a trial is compared with the cells of the same trial. Letters: n trials, k cells.
 
-* Without an operator, or with `=`, a number meets equal numbers and the texts that read as one; a text meets texts,
-  with wildcards and whatever their case; a logical or an error meets its like. An empty cell as criterion is the number
-  0.
-* `<>` is the opposite in every cell, be it empty or an error; but `<>5` meets the text `5`, which `5` meets too.
-* `<`, `<=`, `>` and `>=` meet cells of the operand's kind only.
-* `""` meets what is empty or an empty text, `"="` what is empty, `"<>"` what is not.
+* Without an operator, or with `=`, a number matches equal numbers and the texts that read as it; a text matches equal
+  texts, in upper or lower case, and may hold wildcards; a logical or an error matches equal ones. An empty cell as
+  criterion is the number 0.
+* `<>` matches every cell that `=` does not, even an empty one or an error. Only `<>5` matches the text `5` as well.
+* `<`, `<=`, `>` and `>=` match only cells of the operand's kind.
+* `""` matches empty cells and empty texts, `"="` empty cells, `"<>"` all other cells.
 
-Wildcards make a pattern that a whole text fits or not: `*` for any characters, `?` for one, `~` before one taken as it
-is. A pattern is cut at its stars into pieces of fixed length, so that a text takes no more than one pass a piece: a
-chain of stars in one regular expression could take for ever.
+A text with wildcards is a pattern for a whole text: `*` stands for any characters, `?` for one, and the character
+after `~` for itself. A pattern is cut at its stars into pieces of fixed length, so that each piece goes over the text
+once at most: one regular expression with many stars could take for ever.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from typing import Any, Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import if_blank
+from xlmc.functions.arguments import fill_blanks
 from xlmc.functions.logical import choose
 from xlmc.functions.number_text import parse_number
-from xlmc.functions.ordering import Ordered, ordered
+from xlmc.functions.ordering import Ordered, to_ordered
 from xlmc.functions.values import BLANK, ERROR, NUMBER, TEXT, Bools, Floats, Objects, Value, from_objects
 
-__all__ = ["is_pattern", "met", "pattern_of"]
+__all__ = ["is_pattern", "pattern_of", "which_meet"]
 
 _Read = Callable[[str], float | None]
 """How a text reads as a number."""
@@ -47,31 +47,31 @@ _RELATIONS: Final[dict[str, Callable[[Any, Any], Any]]] = {
 }
 
 
-def met(criterion: Value, cells: Value, *, begins: bool = False, date1904: bool = False) -> Bools:
-    """Which cells meet the criterion.
+def which_meet(criterion: Value, cells: Value, *, begins: bool = False, date1904: bool = False) -> Bools:
+    """Return which cells match the criterion.
 
     Args:
         criterion: (n,).
         cells: (n, r, c).
-        begins: a text without an operator meets the texts that begin with it: so it is in database functions.
+        begins: a text without an operator matches the texts that begin with it, as in database functions.
         date1904: dates in texts count from 1904.
 
     Returns:
         (n, k), the cells row by row.
     """
     read = partial(parse_number, date1904=date1904)
-    operators, operand = _parsed(criterion, _BEGINS if begins else "=", read)
-    wanted, found = ordered(operand, cells)
+    operators, operand = _parse(criterion, _BEGINS if begins else "=", read)
+    wanted, found = to_ordered(operand, cells)
     present = sorted(set(operators.tolist()))
-    result = _holds(present[0], wanted, found, read)
+    result = _match(present[0], wanted, found, read)
     for operator in present[1:]:
-        result = np.where((operators == operator)[:, None], _holds(operator, wanted, found, read), result)
+        result = np.where((operators == operator)[:, None], _match(operator, wanted, found, read), result)
     return result
 
 
-def _parsed(criterion: Value, plain: str, read: _Read) -> tuple[Objects, Value]:
-    """The operator and the operand of each criterion; `plain` is the operator of a text without one."""
-    operand = if_blank(criterion)
+def _parse(criterion: Value, plain: str, read: _Read) -> tuple[Objects, Value]:
+    """Return the operator and the operand of each criterion; `plain` is the operator of a text without one."""
+    operand = fill_blanks(criterion)
     if criterion.texts is None:
         return np.full(1, "=", object), operand
     written = criterion.texts.tolist()
@@ -85,16 +85,16 @@ def _parsed(criterion: Value, plain: str, read: _Read) -> tuple[Objects, Value]:
 
 
 def _split(text: str, plain: str, read: _Read) -> tuple[str, object]:
-    """`">=5"` as `>=` and 5."""
+    """Split `">=5"` into `>=` and 5."""
     found = _OPERATOR.fullmatch(text)
     assert found is not None
     operator, rest = found.groups()
     if not rest:
         return (operator, None) if operator else ("=", "")
-    return operator or plain, _operand(rest, read)
+    return operator or plain, _read_operand(rest, read)
 
 
-def _operand(text: str, read: _Read) -> object:
+def _read_operand(text: str, read: _Read) -> object:
     number = read(text)
     if number is not None:
         return number
@@ -107,44 +107,44 @@ def _operand(text: str, read: _Read) -> object:
         return text
 
 
-def _holds(operator: str, wanted: Ordered, found: Ordered, read: _Read) -> Bools:
+def _match(operator: str, wanted: Ordered, found: Ordered, read: _Read) -> Bools:
     if operator in _RELATIONS:
         comparable = (found.kinds == wanted.kinds) & (found.kinds != BLANK) & (found.kinds < ERROR)
         return np.asarray(comparable & _RELATIONS[operator](found.order, wanted.order))
-    equal = _equal(wanted, found, operator == _BEGINS, read if operator != "<>" else None)
+    equal = _match_equal(wanted, found, operator == _BEGINS, read if operator != "<>" else None)
     return ~equal if operator == "<>" else equal
 
 
-def _equal(wanted: Ordered, found: Ordered, begins: bool, read: _Read | None) -> Bools:
-    """Which cells equal the operand; of a number also the texts that read as it, where `read` is given."""
+def _match_equal(wanted: Ordered, found: Ordered, begins: bool, read: _Read | None) -> Bools:
+    """Return which cells equal the operand; with `read`, the texts that read as a number equal it too."""
     result = (found.kinds == wanted.kinds) & (found.order == wanted.order)
     is_number, is_text = wanted.kinds == NUMBER, wanted.kinds == TEXT
     if read is not None and is_number.any() and (found.kinds == TEXT).any():
-        result = result | (is_number & (_text_numbers(found, read) == wanted.order))
+        result = result | (is_number & (_numbers_of_texts(found, read) == wanted.order))
     for index in np.unique(wanted.order[is_text]).astype(np.intp):
         text = wanted.texts[index]
         if not text or begins or is_pattern(text):
-            fitting = found.kinds == BLANK if not text else _fitting(found, text, begins)
+            fitting = found.kinds == BLANK if not text else _match_pattern(found, text, begins)
             result = np.where(is_text & (wanted.order == index), result | fitting if not text else fitting, result)
     return np.asarray(result)
 
 
-def _text_numbers(found: Ordered, read: _Read) -> Floats:
-    """The number each text reads as; NaN where it is none, or is no text."""
+def _numbers_of_texts(found: Ordered, read: _Read) -> Floats:
+    """Return the number that each text reads as; NaN where there is no such number, or no text."""
     numbers = [read(text) for text in found.texts]
     table = np.array([np.nan if number is None else number for number in numbers])
-    return np.asarray(_by_text(found, table, np.nan))
+    return np.asarray(_look_up_texts(found, table, np.nan))
 
 
-def _fitting(found: Ordered, pattern: str, begins: bool) -> Bools:
+def _match_pattern(found: Ordered, pattern: str, begins: bool) -> Bools:
     fits = pattern_of(pattern, begins).fits
     present = set(np.unique(found.order[found.kinds == TEXT]).astype(np.intp).tolist())
     table = np.array([index in present and fits(text) for index, text in enumerate(found.texts)])
-    return np.asarray(_by_text(found, table, False))
+    return np.asarray(_look_up_texts(found, table, False))
 
 
-def _by_text(found: Ordered, table: Any, otherwise: Any) -> Any:
-    """What a table says of each text; something else where there is none."""
+def _look_up_texts(found: Ordered, table: Any, otherwise: Any) -> Any:
+    """Return the table's entry for each text, and `otherwise` where a cell holds none."""
     is_text = found.kinds == TEXT
     return np.where(is_text, table[np.where(is_text, found.order, 0).astype(np.intp)], otherwise)
 
@@ -163,7 +163,7 @@ class _Pattern:
     pieces: tuple[tuple[re.Pattern[str], int], ...]
 
     def fits(self, text: str) -> bool:
-        """Whether the whole text fits, whatever its case."""
+        """Return whether the whole text fits, in upper or lower case."""
         folded = text.casefold()
         head, length = self.pieces[0]
         if head.match(folded) is None:
@@ -181,13 +181,13 @@ class _Pattern:
 
 
 def is_pattern(text: str) -> bool:
-    """Whether the text holds a wildcard or a `~`."""
+    """Return whether the text holds a wildcard or a `~`."""
     return any(mark in text for mark in "*?~")
 
 
 @lru_cache(maxsize=4096)
 def pattern_of(text: str, begins: bool = False) -> _Pattern:
-    """The pattern that a text stands for; with `begins` anything may follow it."""
+    """Compile the pattern that a text stands for; with `begins` any characters may follow it."""
     pieces: list[list[str]] = [[]]
     for token in _TOKEN.findall(text.casefold() + ("*" if begins else "")):
         if token == "*":

@@ -1,7 +1,7 @@
 """Numbers below 2^-1022 in size: Excel has none ("denormalized numbers", Microsoft, article 78113), and takes 0.
 
-The fast path has NumPy's underflow flag tell of them, so that a block in which there are none costs nothing. The flag
-tells of what is rounded: of a product, a quotient, a power or an exponential, not of a difference, which is exact.
+The fast path learns of them from NumPy's underflow flag, so that a block without them costs nothing. The flag is raised
+by rounded results only: of a product, a quotient, a power or an exponential, not of a difference, which is exact.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TINIEST", "Underflow", "flush", "flushed"]
+__all__ = ["TINIEST", "Underflow", "flush", "tiny_to_zero"]
 
 Floats = NDArray[np.float64]
 
 TINIEST: Final = 2.0**-1022
-"""The smallest number that is not 0 to Excel."""
+"""The smallest positive number that Excel has."""
 
 
 class Underflow:
@@ -37,10 +37,10 @@ class Underflow:
         self.raised = True
 
 
-def flushed(x: Any) -> Any:
-    """Numbers of any shape, 0 instead of those that are too small; the same array where there are none.
+def tiny_to_zero(x: Any) -> Any:
+    """Return the numbers, of any shape, with 0 for those that are too small; the same array where there are none.
 
-    >>> flushed(np.array([1.0, 5e-324, 0.0, -1e-310])).tolist()
+    >>> tiny_to_zero(np.array([1.0, 5e-324, 0.0, -1e-310])).tolist()
     [1.0, 0.0, 0.0, 0.0]
     """
     sizes = np.abs(x)

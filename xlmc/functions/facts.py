@@ -1,7 +1,7 @@
-"""What a row of the registry states of its function beside what it takes and computes.
+"""What a row of the registry states about its function, beside its arguments and its body.
 
-Whoever needs such a fact reads it here: there is no list of names elsewhere. Each default is what may be assumed of a
-function of which nothing is known: it costs time, or something is refused or not said, but no number is wrong.
+Whoever needs such a fact reads it here: there is no list of names elsewhere. Each default is safe for a function of
+which nothing is known: it may cost time, or refuse a formula, or leave a note out, but it never makes a number wrong.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ __all__ = ["NOTHING", "Domain", "EmptyCells", "Facts", "Repeats"]
 
 
 class EmptyCells(Enum):
-    """What the empty cells at the end of a whole column, which is an argument, are to a function."""
+    """What a function makes of the empty cells at the end of a whole column that is its argument."""
 
     REFUSED = "nobody knows, and a whole column is refused"
     IGNORED = "nothing"
@@ -26,7 +26,7 @@ class EmptyCells(Enum):
 
 
 class Repeats(Enum):
-    """What cells that are all alike, at the end of an array, are to a function of one array, or of several."""
+    """What a function of arrays makes of cells that are all alike, at the end of an array."""
 
     REFUSED = "nobody knows, and an array of a whole column is refused"
     ADD_UP = "what one of them gives, times their number, is added to the result"
@@ -42,7 +42,7 @@ class Domain:
 
     Attributes:
         low, high: the least and the largest.
-        with_ends: whether it takes these, too.
+        with_ends: whether it takes these two themselves.
     """
 
     low: float
@@ -55,24 +55,25 @@ class Facts:
     """What is known of a function.
 
     Attributes:
-        spills: it gives many cells, or may, though its arguments of single values are single.
-        sized_by_numbers: it spills, and arguments of single values decide how many cells it gives.
-        never_errs: with numbers and logicals it gives no error, infinity apart, so that it may be computed in trials
+        spills: its result is many cells, or may be, even where each argument is a single value.
+        sized_by_numbers: it spills, and arguments that are single values decide how many cells the result has.
+        never_errs: it gives no error for numbers and logicals, infinity apart, so that it may be computed in trials
             that do not need it.
-        factor: it is a multiplication by this number, to the last bit.
+        factor: it multiplies by this number, to the last bit.
         empty_cells, repeats: see the classes.
-        ends_tell: of numbers that rise by the same from cell to cell, the first and the last tell all: the mean of what
-            they give is that of what all give (where repeats add up), or no other one matters (where they count once).
-        mode_argument: it looks something up, and this argument, counted from 0, says how: 0 and FALSE exactly, from the
-            first cell on. It is one that the function does not have where it always looks up by halves.
-        finds: its result steps from one cell of a range to the next.
+        ends_suffice: of numbers that rise by equal steps from cell to cell, the first and the last are enough: either
+            the mean of their results is the mean of all (where repeats add up), or no other cell changes the result
+            (where repeats count once).
+        mode_argument: it is a lookup, and this argument, counted from 0, says how it searches: for 0 and FALSE it wants
+            an equal value and starts at the first cell. The number is that of no argument where it always halves.
+        jumps: its result jumps from one cell of a range to the next.
         exact_steps: it gives a whole number, a multiple or a logical, which is exact if its arguments are.
-        unrounded: its result is not rounded: an argument, that with another sign, or a whole number.
+        unrounded: its result is not rounded: it is an argument, or minus an argument, or a whole number.
         adds: it adds or subtracts its arguments.
-        measures: a number typed in as its argument, one that is no count, counts as a measurement in `xlmc stability`.
+        measures: `xlmc stability` takes a number typed into its arguments for a measurement, unless it is a count.
         condition: it compares, or joins conditions.
-        between: the least and the largest number that it gives, whatever it takes.
-        domain: which numbers it takes; None where it takes all, or nobody has said.
+        result_range: the least and the largest number that it ever gives.
+        domain: which numbers it takes; None where it takes all, or where it is not known.
     """
 
     spills: bool = False
@@ -81,22 +82,22 @@ class Facts:
     factor: float | None = None
     empty_cells: EmptyCells = EmptyCells.REFUSED
     repeats: Repeats = Repeats.REFUSED
-    ends_tell: bool = False
+    ends_suffice: bool = False
     mode_argument: int | None = None
-    finds: bool = False
+    jumps: bool = False
     exact_steps: bool = False
     unrounded: bool = False
     adds: bool = False
     measures: bool = False
     condition: bool = False
-    between: tuple[float, float] | None = None
+    result_range: tuple[float, float] | None = None
     domain: Domain | None = None
 
     def __post_init__(self) -> None:
         """Refuse facts that do not go together."""
         if self.sized_by_numbers and not self.spills:
-            raise ValueError("what is sized by its numbers spills")
+            raise ValueError("a function whose numbers decide on its size spills")
 
 
 NOTHING: Final = Facts()
-"""Of a function of which nothing is said."""
+"""The facts of a function of which nothing is stated."""

@@ -1,19 +1,19 @@
-"""Excel's 15 digits: how it compares numbers, and what it makes of the last sum of a formula.
+"""Excel's 15 digits: how it compares numbers, and when the last sum of a formula becomes 0.
 
 `=`, `<>`, `<`, `<=`, `>` and `>=` compare both numbers rounded to 15 significant decimal digits, halves away from zero:
-0.1+0.2 equals 0.3. Numbers of the same digits are equal; all others are ordered as they are. What is below 2^-1022 in
-size is 0. Doubles were tried in Excel for where its answer changes (Apache POI, `NumberComparisonExamples`): the rule
-gives each of these 33 steps to the last bit.
+0.1+0.2 equals 0.3. Numbers with the same digits are equal; all others compare as doubles. A number below 2^-1022 in
+size is 0. The doubles at which Excel's answer changes are known for 33 numbers (Apache POI,
+`NumberComparisonExamples`): this rule gives all of them to the last bit.
 
-Digits are counted only where they may matter. All doubles that are equal to a constant lie between two, so that to
-compare with the constant is to compare with one of these. Of two numbers that vary, their difference nearly always
-tells that they are not equal.
+Numbers are rounded only where it may matter. The doubles that are equal to a constant form a range, so a comparison
+with the constant is one with an end of that range. Two numbers that vary are nearly always so far apart that their
+difference shows they are not equal.
 
-Of the `+` or `-` that a formula ends with, Excel makes 0 where the result cancels but for the last bits:
+If a formula ends with a `+` or `-` that cancels all but the last bits, Excel gives 0:
 
     0 where |result| < 8 units in the last digit of the first number
 
-It was found by trying numbers in Excel: `n` units with n from 1 to 7 give 0, 8 do not, at sizes from 1E-7 to 1E308
+This was found by trying numbers in Excel: `n` units with n from 1 to 7 give 0, 8 do not, at sizes from 1E-7 to 1E308
 (joeu2004 and J. W. Lewis, microsoft.public.excel.worksheet.functions, April 2009; S. Byrne, Stack Overflow 40293983,
 2016, who names the first number). Microsoft says no more than "at or very close to zero" (article 78113). A result that
 is too small a number for Excel is 0, too; see `denormals`.
@@ -34,59 +34,61 @@ from numpy.typing import NDArray
 from xlmc.functions.budget import work_arrays
 from xlmc.functions.denormals import TINIEST
 from xlmc.functions.facts import Facts
-from xlmc.functions.number_text import shown
+from xlmc.functions.number_text import round_to_15_digits
 from xlmc.functions.registry import Function, Kind, Number
 from xlmc.functions.values import Bools, Floats
 
 __all__ = [
     "COMPARISONS",
     "EIGHT_UNITS",
+    "EXCHANGED",
     "NEAR",
-    "SETTLED",
-    "TWINS",
+    "SNAP_TO_ZERO",
     "Comparison",
-    "Settled",
-    "equals",
-    "keep",
+    "SnapToZero",
+    "copy_sum",
+    "equal_range",
     "never_cancels",
 ]
 
 NEAR: Final = 1.01e-14
-"""As a share of either of two numbers: those that are equal at 15 digits differ by no more."""
+"""Two numbers that are equal at 15 digits differ by at most this share of either."""
 
 _FARTHEST: Final = 128
-"""Doubles between which and a number there is one of other digits."""
+"""Within this many doubles above or below a number, its 15 digits change."""
 
-TWINS: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "<>": "<>"}
-"""What the second number is to the first, where that is to it what stands on the left."""
+EXCHANGED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "<>": "<>"}
+"""Each comparison, and the one that gives the same answer with the two numbers exchanged."""
 
 
-def _alike(x: float, y: float) -> bool:
-    """Whether two finite numbers are equal at 15 digits."""
+def _are_equal(x: float, y: float) -> bool:
+    """Return whether two finite numbers are equal at 15 digits."""
     x, y = (0.0 if abs(number) < TINIEST else number for number in (x, y))
-    return x == y or shown(x) == shown(y)
+    return x == y or round_to_15_digits(x) == round_to_15_digits(y)
 
 
 @lru_cache(maxsize=4096)
-def equals(number: float) -> tuple[float, float]:
-    """The least and the largest double that are equal to a number at 15 digits; of one that is not finite, itself.
+def equal_range(number: float) -> tuple[float, float]:
+    """Return the least and the largest double that are equal to a number at 15 digits.
 
-    >>> equals(0.3)[0] < 0.3 < 0.1 + 0.2 <= equals(0.3)[1]
+    For an infinity or NaN, both are the number itself.
+
+    >>> equal_range(0.3)[0] < 0.3 < 0.1 + 0.2 <= equal_range(0.3)[1]
     True
     """
     if not math.isfinite(number):
         return number, number
     if number < 0.0:
-        least, most = equals(-number)
+        least, most = equal_range(-number)
         return -most, -least
     if number < TINIEST:
         most = math.nextafter(TINIEST, 0.0)
         return -most, most
-    return _end(number, -1), _end(number, 1)
+    return _last_equal(number, -1), _last_equal(number, 1)
 
 
-def _end(number: float, way: int) -> float:
-    """The last double above, or below, that is equal to a positive number."""
+def _last_equal(number: float, way: int) -> float:
+    """Return the last double above (`way` 1) or below (-1) that is equal to a positive number."""
     (bits,) = struct.unpack("<q", struct.pack("<d", number))  # doubles are in the order of their bits
 
     def at(steps: int) -> float:
@@ -97,7 +99,7 @@ def _end(number: float, way: int) -> float:
     while far - near > 1:
         middle = (near + far) // 2
         found = at(middle)
-        if math.isfinite(found) and _alike(found, number):
+        if math.isfinite(found) and _are_equal(found, number):
             near = middle
         else:
             far = middle
@@ -106,20 +108,20 @@ def _end(number: float, way: int) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Compares at 15 digits, called as a ufunc of two arrays is."""
+    """Compares two arrays at 15 digits, and is called like a ufunc."""
 
     symbol: str
     plain: np.ufunc
     nin: int = 2
 
     def __call__(self, x: Any, y: Any, out: Bools | None = None) -> Bools:
-        """Of numbers whose shapes go together."""
+        """Compare numbers whose shapes broadcast."""
         if np.size(y) == 1:
-            return _with_constant(self.symbol, x, equals(_only(y)), out)
+            return _compare_with_constant(self.symbol, x, equal_range(_only(y)), out)
         if np.size(x) == 1:
-            return _with_constant(TWINS[self.symbol], y, equals(_only(x)), out)
+            return _compare_with_constant(EXCHANGED[self.symbol], y, equal_range(_only(x)), out)
         found: Bools = self.plain(x, y, out=out)
-        equal = _nearly_equal(x, y)
+        equal = _find_equal(x, y)
         if equal is not None:
             found[equal] = self.symbol in ("=", "<=", ">=")
         return found
@@ -129,8 +131,8 @@ def _only(number: Any) -> float:
     return float(np.asarray(number).reshape(-1)[0])
 
 
-def _with_constant(symbol: str, x: Any, equal: tuple[float, float], out: Bools | None) -> Bools:
-    """How `x` compares with a constant, given between which doubles all lie that are equal to that."""
+def _compare_with_constant(symbol: str, x: Any, equal: tuple[float, float], out: Bools | None) -> Bools:
+    """Compare `x` with a constant, of which the least and the largest equal double are given."""
     least, most = equal
     match symbol:
         case "<":
@@ -149,22 +151,22 @@ def _with_constant(symbol: str, x: Any, equal: tuple[float, float], out: Bools |
             return np.asarray(np.logical_or(found, np.greater(x, most), out=found))
 
 
-def _nearly_equal(x: Floats, y: Floats) -> tuple[NDArray[np.intp], ...] | None:
-    """Where numbers differ and are equal at 15 digits all the same; None where none are."""
-    largest = max(-float(x.min(initial=0.0)), float(x.max(initial=0.0)))
-    apart = _apart(x, y)
-    near = apart <= NEAR * largest + TINIEST
+def _find_equal(x: Floats, y: Floats) -> tuple[NDArray[np.intp], ...] | None:
+    """Return the indices of numbers that differ but are equal at 15 digits; None if there are none."""
+    largest = _size(x)
+    distances = _distances(x, y)
+    near = distances <= NEAR * largest + TINIEST
     if not near.any():
         return None
     x, y = np.broadcast_arrays(x, y)
     indices = np.nonzero(near & (x != y))
     pairs = zip(x[indices].tolist(), y[indices].tolist(), strict=True)
-    alike = np.array([abs(a - b) <= NEAR * abs(a) + TINIEST and _alike(a, b) for a, b in pairs], bool)
+    alike = np.array([abs(a - b) <= NEAR * abs(a) + TINIEST and _are_equal(a, b) for a, b in pairs], bool)
     return tuple(index[alike] for index in indices) if alike.any() else None
 
 
-def _apart(x: Floats, y: Floats) -> Floats:
-    """The sizes of the differences, in memory that is soon written to again."""
+def _distances(x: Floats, y: Floats) -> Floats:
+    """Return |x - y|, in memory that the next call writes to again."""
     if x.shape == y.shape:
         (work,) = work_arrays(x.size, 1)
         work = work.reshape(x.shape)
@@ -189,35 +191,35 @@ EIGHT_UNITS: Final = 2.0**-49
 """Eight units in the last digit, as a share of a power of two."""
 
 _SURELY: Final = 2.0**-30
-"""The share above which a result is no matter of the last bits, even where its bounds are rounded."""
+"""A result above this share is surely more than the last bits, even if its bounds are rounded."""
 
 
 @dataclass(frozen=True, slots=True)
-class Settled:
-    """Makes the last sum of a formula what Excel makes of it, called as a ufunc of two arrays is.
+class SnapToZero:
+    """Sets the last sum of a formula to 0 where Excel does; called like a ufunc with the sum and its first number.
 
-    The second may be the memory that the result goes to.
+    The result may be written over either.
 
     Args:
-        largest: the size that the first number never exceeds, but for rounding, where that is known beforehand.
+        largest: the size that the first number never exceeds (rounding apart), if that is known beforehand.
     """
 
     largest: float | None = None
     nin: ClassVar[int] = 2
 
     def __call__(self, result: Any, first: Any, out: Floats | None = None) -> Floats:
-        """0 where the sum is within the last bits of the first number, else the sum."""
+        """Return 0 where the sum is only the last bits of the first number, else the sum."""
         result, first = np.asarray(result), np.asarray(first)
         limit = 2.0 * EIGHT_UNITS * (_size(first) if self.largest is None else self.largest)
-        dust = None if _is_far_from_0(result, max(limit, TINIEST)) else _dust(result, first)
+        last_bits = None if _is_far_from_0(result, max(limit, TINIEST)) else _is_last_bits(result, first)
         if out is None:
-            found: Floats = np.array(result if dust is None else np.broadcast_to(result, dust.shape))
+            found: Floats = np.array(result if last_bits is None else np.broadcast_to(result, last_bits.shape))
         else:
             found = out
             if found is not result:
                 np.copyto(found, result)
-        if dust is not None:
-            found[dust] = 0.0
+        if last_bits is not None:
+            found[last_bits] = 0.0
         return found
 
 
@@ -226,32 +228,32 @@ def _size(x: Floats) -> float:
 
 
 def _is_far_from_0(result: Floats, limit: float) -> bool:
-    """Whether each result is of this size or larger."""
+    """Return whether all results are at least this large, all positive or all negative."""
     below = np.count_nonzero(result < limit)
     return below == 0 or bool(below == np.count_nonzero(result <= -limit))
 
 
-def _dust(result: Floats, first: Floats) -> Bools:
-    """Where the result is nothing but the last bits of the first number."""
+def _is_last_bits(result: Floats, first: Floats) -> Bools:
+    """Return where the result is only the last bits of the first number."""
     _, exponents = np.frexp(first)
     eight = np.where(first == 0, 0.0, np.ldexp(0.5 * EIGHT_UNITS, exponents))
     return np.asarray(np.abs(result) < np.maximum(eight, TINIEST))
 
 
-def keep(result: Floats, first: Floats, out: Floats) -> Floats:
-    """The sum as it is, where that is known to be no matter of the last bits."""
+def copy_sum(result: Floats, first: Floats, out: Floats) -> Floats:
+    """Return the sum as it is: for sums that are known to be more than the last bits."""
     if out is not result:
         np.copyto(out, result)
     return out
 
 
 def never_cancels(result: tuple[float, float], first: tuple[float, float], second: tuple[float, float] | None) -> bool:
-    """Whether bounds tell that no result is 0 but for the last bits.
+    """Return whether the bounds show that no sum is only the last bits of its first number.
 
     Args:
-        result: of the sum.
-        first: of the number in it that comes first.
-        second: of the number that is added to it, if it is a sum and not a difference.
+        result: the bounds of the sum.
+        first: the bounds of its first number.
+        second: the bounds of the number that is added; None if it is subtracted.
     """
     if second is not None and (min(*first, *second) >= 0 or max(*first, *second) <= 0):
         return True
@@ -259,9 +261,9 @@ def never_cancels(result: tuple[float, float], first: tuple[float, float], secon
     return result[0] > limit or result[1] < -limit
 
 
-_SETTLES: Final = Settled()
+_SNAP: Final = SnapToZero()
 
-SETTLED: Final = Function(
-    "settled", (Number, Number), _SETTLES, Kind.NUMBER, ufunc=_SETTLES, facts=Facts(never_errs=True)
+SNAP_TO_ZERO: Final = Function(
+    "snap to zero", (Number, Number), _SNAP, Kind.NUMBER, ufunc=_SNAP, facts=Facts(never_errs=True)
 )
-"""The function of a sum, and of the number in it that comes first."""
+"""The function takes a sum, and the first number of that sum."""

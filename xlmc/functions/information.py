@@ -1,4 +1,4 @@
-"""What kind of thing a value is."""
+"""Functions that tell what kind of value a cell holds."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def not_available() -> Floats:
 
 @excel("ERROR.TYPE", Anything)
 def error_type(value: Value) -> Value:
-    """The number of an error: 1 `#NULL!`, 2 `#DIV/0!`, … 7 `#N/A`; `#N/A` for what is no error."""
+    """The number of an error: 1 `#NULL!`, 2 `#DIV/0!`, … 7 `#N/A`; `#N/A` for any other value."""
     return Value.of_numbers(np.where(value.errors > 0, value.errors.astype(np.float64), NA))
 
 

@@ -1,6 +1,8 @@
-"""Conditions. Every branch is a value per trial; the branch not taken poisons nothing."""
+"""Conditions. Every branch is a value per trial; an error in the branch not taken does no harm."""
 
 from __future__ import annotations
+
+from typing import Final
 
 import numpy as np
 
@@ -24,9 +26,12 @@ from xlmc.functions.values import (
 
 __all__ = ["choose", "zero_if_blank"]
 
+_NA: Final = ERROR + ErrorCode.NA
+"""The kind of `#N/A`."""
+
 
 def choose(condition: Bools, yes: Value, no: Value, errors: Codes | None = None) -> Value:
-    """`yes` where the condition holds, else `no`; an error of the condition itself goes before both."""
+    """Return `yes` where the condition holds, else `no`; an error of the condition itself goes before both."""
     if yes.numbers.ndim == 3 or no.numbers.ndim == 3 or condition.ndim == 3:
         yes, no = yes.as_range(), no.as_range()
         condition = condition if condition.ndim == 3 else condition.reshape(-1, 1, 1)
@@ -52,7 +57,7 @@ def if_(condition: Value, yes: Value, no: Value | None = None) -> Value:
 
 
 def zero_if_blank(value: Value) -> Value:
-    """What a formula gives for an empty cell: 0."""
+    """Put 0 in place of each blank: that is what a formula gives for an empty cell."""
     return Value(value.numbers, np.where(value.kinds == BLANK, np.uint8(NUMBER), value.kinds), value.texts)
 
 
@@ -65,17 +70,17 @@ def if_error(value: Value, instead: Value) -> Value:
 @excel("IFNA", Anything, Anything, returns=Kind.ANY)
 def if_na(value: Value, instead: Value) -> Value:
     """The first argument, or the second where the first is `#N/A`."""
-    return choose(value.kinds == ERROR + ErrorCode.NA, zero_if_blank(instead), zero_if_blank(value))
+    return choose(value.kinds == _NA, zero_if_blank(instead), zero_if_blank(value))
 
 
 @excel("NOT", Logical, returns=Kind.LOGICAL, ufunc=np.logical_not, facts=Facts(never_errs=True, condition=True))
 def not_(x: Bools) -> Bools:
-    """The opposite."""
+    """TRUE for FALSE, and FALSE for TRUE."""
     return np.logical_not(x)
 
 
-def _of_what_counts(x: Bools, counts: Bools, result: Bools) -> Floats:
-    """`#VALUE!` where an argument list holds no logical at all."""
+def _unless_none_counts(counts: Bools, result: Bools) -> Floats:
+    """Return the result, or `#VALUE!` where the arguments hold no logical at all."""
     return np.where(counts.any(axis=1), result, VALUE)
 
 
@@ -88,7 +93,7 @@ def _of_what_counts(x: Bools, counts: Bools, result: Bools) -> Floats:
 )
 def and_(x: Bools, counts: Bools) -> Value:
     """Whether all are TRUE."""
-    return _logical(_of_what_counts(x, counts, np.asarray((x | ~counts).all(axis=1))))
+    return _logical(_unless_none_counts(counts, np.asarray((x | ~counts).all(axis=1))))
 
 
 @excel(
@@ -100,7 +105,7 @@ def and_(x: Bools, counts: Bools) -> Value:
 )
 def or_(x: Bools, counts: Bools) -> Value:
     """Whether any is TRUE."""
-    return _logical(_of_what_counts(x, counts, np.asarray((x & counts).any(axis=1))))
+    return _logical(_unless_none_counts(counts, np.asarray((x & counts).any(axis=1))))
 
 
 @excel(
@@ -111,8 +116,8 @@ def or_(x: Bools, counts: Bools) -> Value:
     facts=Facts(empty_cells=EmptyCells.IGNORED, condition=True),
 )
 def xor(x: Bools, counts: Bools) -> Value:
-    """Whether an odd number is TRUE."""
-    return _logical(_of_what_counts(x, counts, (x & counts).sum(axis=1) % 2 == 1))
+    """Whether an odd number of them is TRUE."""
+    return _logical(_unless_none_counts(counts, (x & counts).sum(axis=1) % 2 == 1))
 
 
 def _logical(x: Floats) -> Value:
@@ -132,7 +137,7 @@ def false() -> Bools:
     return np.zeros(1, bool)
 
 
-def _is(name: str, meaning: str, test: object) -> None:
+def _register_test(name: str, meaning: str, test: object) -> None:
     def body(x: Value) -> Value:
         return Value.of_logicals(np.broadcast_to(test(x.kinds), x.shape))  # type: ignore[operator]
 
@@ -140,11 +145,11 @@ def _is(name: str, meaning: str, test: object) -> None:
     excel(name, Anything, returns=Kind.LOGICAL, facts=Facts(exact_steps=True))(body)
 
 
-_is("ISERROR", "Whether it is any error.", lambda kinds: kinds >= ERROR)
-_is("ISERR", "Whether it is an error other than `#N/A`.", lambda k: (k >= ERROR) & (k != ERROR + ErrorCode.NA))
-_is("ISNA", "Whether it is `#N/A`.", lambda kinds: kinds == ERROR + ErrorCode.NA)
-_is("ISNUMBER", "Whether it is a number.", lambda kinds: kinds == NUMBER)
-_is("ISLOGICAL", "Whether it is TRUE or FALSE.", lambda kinds: kinds == LOGICAL)
-_is("ISTEXT", "Whether it is a text.", lambda kinds: kinds == TEXT)
-_is("ISNONTEXT", "Whether it is anything but a text.", lambda kinds: kinds != TEXT)
-_is("ISBLANK", "Whether the cell is empty.", lambda kinds: kinds == BLANK)
+_register_test("ISERROR", "Whether it is any error.", lambda kinds: kinds >= ERROR)
+_register_test("ISERR", "Whether it is an error other than `#N/A`.", lambda k: (k >= ERROR) & (k != _NA))
+_register_test("ISNA", "Whether it is `#N/A`.", lambda kinds: kinds == _NA)
+_register_test("ISNUMBER", "Whether it is a number.", lambda kinds: kinds == NUMBER)
+_register_test("ISLOGICAL", "Whether it is TRUE or FALSE.", lambda kinds: kinds == LOGICAL)
+_register_test("ISTEXT", "Whether it is a text.", lambda kinds: kinds == TEXT)
+_register_test("ISNONTEXT", "Whether it is anything but a text.", lambda kinds: kinds != TEXT)
+_register_test("ISBLANK", "Whether the cell is empty.", lambda kinds: kinds == BLANK)

@@ -1,4 +1,4 @@
-"""Numbers as texts and texts as numbers, as Excel for the United States turns one into the other."""
+"""Numbers as texts and texts as numbers, converted as Excel for the United States does it."""
 
 from __future__ import annotations
 
@@ -10,35 +10,35 @@ from typing import Final
 from xlmc.functions.dates.date_text import parse_moment
 from xlmc.functions.denormals import TINIEST
 
-__all__ = ["SPACES", "general_text", "parse_number", "parse_plain_number", "shown"]
+__all__ = ["SPACES", "general_text", "parse_number", "parse_plain_number", "round_to_15_digits"]
 
 SPACES: Final = " \t\r\n"
-"""What may stand around a number; a no-break space may not."""
+"""Characters that may stand before and after a number; a no-break space may not."""
 
-_SHOWN: Final = Context(prec=15, rounding=ROUND_HALF_UP)
-_SHOWN_FAR_OUT: Final = Context(prec=14, rounding=ROUND_HALF_UP)
+_15_DIGITS: Final = Context(prec=15, rounding=ROUND_HALF_UP)
+_14_DIGITS: Final = Context(prec=14, rounding=ROUND_HALF_UP)
 _LONGEST: Final = 20
-"""Characters of a number; what needs more is written with an exponent."""
+"""The most characters of a number; a longer one is written with an exponent."""
 
 
-def shown(number: float) -> Decimal:
-    """The number that Excel shows and rounds: 15 significant digits, halves away from zero."""
-    return _SHOWN.create_decimal_from_float(number)
+def round_to_15_digits(number: float) -> Decimal:
+    """Round to the 15 significant digits that Excel shows, halves away from zero."""
+    return _15_DIGITS.create_decimal_from_float(number)
 
 
 def general_text(number: float) -> str:
-    """A number as `&` writes it: 15 significant digits, in at most 20 characters."""
-    size = shown(abs(number))
+    """Write a number as `&` does: 15 significant digits, in at most 20 characters."""
+    size = round_to_15_digits(abs(number))
     if not size:
         return "0"
     if abs(size.adjusted()) > 98:
-        size = _SHOWN_FAR_OUT.plus(size)
+        size = _14_DIGITS.plus(size)
     digits, exponent = "".join(map(str, size.as_tuple().digits)).rstrip("0"), size.adjusted()
-    return ("-" if number < 0 else "") + _written(digits, exponent)
+    return ("-" if number < 0 else "") + _write_digits(digits, exponent)
 
 
-def _written(digits: str, exponent: int) -> str:
-    """`digits`, the first of them worth 10^exponent."""
+def _write_digits(digits: str, exponent: int) -> str:
+    """Write `digits`, the first of which counts 10^exponent."""
     if exponent >= _LONGEST or len(digits) - exponent + 1 > _LONGEST:
         return f"{digits[0]}{'.' * (len(digits) > 1)}{digits[1:]}E{exponent:+03d}"
     if exponent < 0:
@@ -58,7 +58,7 @@ _MARKS: Final = re.compile(r"[+-]?|\(\)")
 
 
 def parse_number(text: str, date1904: bool = False) -> float | None:
-    """The number that a text stands for in arithmetic; None when it is not one.
+    """Read the number that a text stands for in arithmetic; None if it is no number.
 
     `$1,234.50`, `(5)`, `12%`, `1E-3` and `1 1/2` are numbers, and so are dates and times.
     """
@@ -71,35 +71,35 @@ def parse_number(text: str, date1904: bool = False) -> float | None:
 
 
 def parse_plain_number(text: str) -> float | None:
-    """The number of a text that is neither a date nor a time; None when it is no number."""
+    """Read a number that is neither a date nor a time; None if the text is no such number."""
     match = _NUMBER.fullmatch(text)
     if match is None or not (match["whole"] or match["decimals"]):
         return None
     marks = (match["before"] + match["after"]).replace(" ", "")
-    size = _size(match, marks.count("%")) if _marks_fit(marks) else None
+    size = _read_size(match, marks.count("%")) if _marks_fit(marks) else None
     if size is None or not math.isfinite(size):
         return None
     return 0.0 if size < TINIEST else -size if "-" in marks or "(" in marks else size
 
 
 def _marks_fit(marks: str) -> bool:
-    """At most one of `$ € %`, and at most one sign: `+`, `-`, or brackets around."""
+    """Return whether there is at most one of `$ € %`, and at most one of `+`, `-` and a pair of brackets."""
     signs = re.sub("[$€%]", "", marks)
     return len(marks) - len(signs) <= 1 and _MARKS.fullmatch(signs) is not None
 
 
-def _size(match: re.Match[str], percents: int) -> float | None:
-    """The number without its sign. Digits after the 15th are lost, as in Excel."""
+def _read_size(match: re.Match[str], percents: int) -> float | None:
+    """Read the number without its sign. Digits after the 15th are lost, as in Excel."""
     whole, decimals = (match["whole"] or "").replace(",", ""), match["decimals"] or ""
     if match["top"]:
-        return _mixed(match, whole, percents)
+        return _read_mixed(match, whole, percents)
     digits = (whole + decimals).lstrip("0")
     exponent = int(match["exponent"] or 0) - len(decimals) + max(len(digits) - 15, 0) - 2 * percents
     return float(f"{digits[:15] or 0}E{exponent}")
 
 
-def _mixed(match: re.Match[str], whole: str, percents: int) -> float | None:
-    """`1 1/2`."""
+def _read_mixed(match: re.Match[str], whole: str, percents: int) -> float | None:
+    """Read a mixed number such as `1 1/2`."""
     if not whole or match["point"] or match["exponent"] or not int(match["bottom"]):
         return None
     return (float(whole) + int(match["top"]) / int(match["bottom"])) / float(100**percents)

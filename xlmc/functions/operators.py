@@ -1,4 +1,4 @@
-"""The operators of formulas, as functions of one or two arguments. `x - y` and `-x` are `-` and `u-`.
+"""The operators of formulas, as functions of one or two arguments; `-x` is called `u-`, and `+x` `u+`.
 
 Comparisons are those of Excel, at 15 digits; see `fifteen_digits`.
 """
@@ -30,13 +30,13 @@ excel("u+", Anything, returns=Kind.ANY, facts=Facts(never_errs=True, unrounded=T
 
 @excel("/", Number, Number, ufunc=np.divide, facts=Facts(measures=True))
 def divide(x: Floats, y: Floats) -> Floats:
-    """Quotient; `#DIV/0!` by zero."""
+    """Quotient; `#DIV/0!` if the divisor is 0."""
     return np.where(y == 0, DIV0, x / y)
 
 
 @excel("%", Number, facts=Facts(never_errs=True))
 def percent(x: Floats) -> Floats:
-    """A hundredth."""
+    """A hundredth of the number."""
     return x / 100
 
 
@@ -53,13 +53,13 @@ def power(x: Floats, y: Floats) -> Floats:
 
 
 def compare(relation: _Relation, of_numbers: _Relation, x: Value, y: Value) -> Value:
-    """Excel's order: numbers before texts before logicals; texts without case; a blank is 0, "" or FALSE.
+    """Compare in Excel's order: numbers before texts before logicals; case does not count; a blank is 0, "" or FALSE.
 
     Args:
-        relation: of what is not a number.
-        of_numbers: the same, of numbers.
-        x: what stands on the left.
-        y: what stands on the right.
+        relation: the comparison, for kinds and texts.
+        of_numbers: the same comparison, for numbers.
+        x: the value on the left.
+        y: the value on the right.
     """
     if x.numbers.ndim != y.numbers.ndim:
         x, y = x.as_range(), y.as_range()
@@ -76,13 +76,13 @@ def compare(relation: _Relation, of_numbers: _Relation, x: Value, y: Value) -> V
 
 
 def _mixed(x: Value, y: Value) -> bool:
-    """Whether a logical meets a number."""
+    """Return whether there are both logicals and numbers."""
     kinds = {int(k) for v in (x, y) for k in np.unique(v.kinds)} - {BLANK}
     return len(kinds) > 1
 
 
 def _ranks(x: Value, other: Value) -> Any:
-    """0 number, 2 text, 3 logical; a blank takes the rank of what it meets."""
+    """Rank the kinds: 0 number, 2 text, 3 logical; a blank takes the rank of the other value."""
     ranks = np.array([0, 3, 2, 0], np.uint8)
     own = ranks[np.where(x.kinds >= ERROR, 0, x.kinds)]
     met = ranks[np.where(other.kinds >= ERROR, 0, other.kinds)]
@@ -90,14 +90,14 @@ def _ranks(x: Value, other: Value) -> Any:
 
 
 def _text_order(x: Value, y: Value) -> Floats:
-    """-1, 0 or 1 as x's text comes before, with or after y's; 0 where either is not a text."""
+    """Return -1, 0 or 1 where x's text comes before, equals or comes after y's."""
     (left, _), (right, _) = x.to_texts(), y.to_texts()
     order = np.frompyfunc(lambda a, b: (a.casefold() > b.casefold()) - (a.casefold() < b.casefold()), 2, 1)
     return np.asarray(order(left, right), np.float64)
 
 
 ALL_BITS: Final[dict[str, Function]] = {}
-"""Comparisons to the last bit, as SWITCH and CHOOSE and the limits in the tables of xlmc make them."""
+"""Comparisons of all bits, not of 15 digits: for SWITCH, CHOOSE and the limits in the tables of xlmc."""
 
 
 def _register(symbol: str, relation: _Relation) -> None:
@@ -105,8 +105,8 @@ def _register(symbol: str, relation: _Relation) -> None:
     body = partial(compare, relation, digits)
     facts = Facts(never_errs=True, condition=True)
     excel(symbol, Anything, Anything, returns=Kind.LOGICAL, ufunc=digits, facts=facts)(body)
-    strict = partial(compare, relation, digits.plain)
-    ALL_BITS[symbol] = Function(symbol, (Anything, Anything), strict, Kind.LOGICAL, ufunc=digits.plain, facts=facts)
+    exact = partial(compare, relation, digits.plain)
+    ALL_BITS[symbol] = Function(symbol, (Anything, Anything), exact, Kind.LOGICAL, ufunc=digits.plain, facts=facts)
 
 
 _register("=", operator.eq)

@@ -1,4 +1,4 @@
-"""Bodies that call Python once an element: for functions that have no vectorised form, texts above all."""
+"""Bodies that call a Python function for each element: for functions without a vectorised form, mostly of texts."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import leveled
-from xlmc.functions.budget import ask_for_texts, counted
+from xlmc.functions.arguments import align_ranges
+from xlmc.functions.budget import ask_for_texts, count_characters
 from xlmc.functions.number_text import general_text
 from xlmc.functions.values import Value, from_objects
 
@@ -17,9 +17,9 @@ __all__ = ["object_text", "per_element", "per_object"]
 
 
 def per_element(function: Callable[..., object]) -> Callable[..., Value]:
-    """A body for element arguments from a function of plain Python values.
+    """Make a body for element arguments from a function of plain Python values.
 
-    The function takes floats, bools and strings (defaults as they are). It returns one of these, an `ErrorCode`, or
+    The function takes floats, bools and strings, and defaults as they are. It returns one of these, an `ErrorCode`, or
     None for a blank.
     """
 
@@ -30,7 +30,7 @@ def per_element(function: Callable[..., object]) -> Callable[..., Value]:
         ask_for_texts(out.size)
         columns = [array.ravel().tolist() for array in spread]
         items = zip(*columns, strict=True) if columns else [()] * out.size
-        out.reshape(-1)[:] = list(counted(function(*parts) for parts in items))
+        out.reshape(-1)[:] = list(count_characters(function(*parts) for parts in items))
         return from_objects(out)
 
     body.__doc__, body.__name__, body.__module__ = function.__doc__, function.__name__, function.__module__
@@ -42,33 +42,34 @@ def _is_array(array: object) -> bool:
 
 
 def per_object(function: Callable[..., object]) -> Callable[..., Value]:
-    """A body for `Anything` arguments from a function of floats, bools, strings and None, which it gets for a blank.
+    """Make a body for `Anything` arguments from a function of floats, bools, strings and None (a blank).
 
-    An error among the arguments is the result, the first of them first. The function returns what it may get, or an
+    If arguments are errors, the first of them is the result. The function returns one of the types it takes, or an
     `ErrorCode`.
     """
 
     def body(*values: Value, **options: object) -> Value:
-        columns = [value.objects() for value in leveled(*values)]
+        columns = [value.objects() for value in align_ranges(*values)]
         shape = np.broadcast_shapes(*(column.shape for column in columns))
         spread = [np.broadcast_to(column, shape) for column in columns]
         out = np.empty(shape, object)
         ask_for_texts(out.size)
         rows = zip(*(column.ravel().tolist() for column in spread), strict=True)
-        out.reshape(-1)[:] = list(counted(_unless_error(function, items, options) for items in rows))
+        out.reshape(-1)[:] = list(count_characters(_call(function, items, options) for items in rows))
         return from_objects(out)
 
     body.__doc__, body.__name__, body.__module__ = function.__doc__, function.__name__, function.__module__
     return body
 
 
-def _unless_error(function: Callable[..., object], items: tuple[object, ...], options: Mapping[str, object]) -> object:
+def _call(function: Callable[..., object], items: tuple[object, ...], options: Mapping[str, object]) -> object:
+    """Call the function, unless an argument is an error: the first one is the result then."""
     error = next((item for item in items if isinstance(item, ErrorCode)), None)
     return function(*items, **options) if error is None else error
 
 
 def object_text(item: object) -> str:
-    """A value as `&` writes it; an error by its name."""
+    """Write a value as `&` does, and an error by its name."""
     match item:
         case None:
             return ""

@@ -1,22 +1,23 @@
 """One row per Excel function: what it takes, what it gives, and one small pure body.
 
 A body of *element* arguments (`Number`, `Logical`, `Text`) gets arrays that broadcast, trials first, and returns one
-array; it knows nothing of errors but those it makes itself (see `values.NUM` and its like). A body of *set* arguments
-(`Numbers`, `Logicals`) gets all of its arguments flattened to one `(n, k)` array and a mask of what counts. A body with
-an `Anything` or `Cells` argument gets `Value`s and minds kinds and errors itself; only sets and `Cells` take ranges.
+array; it sees no errors, and puts its own into the result (see `values.NUM`). A body of *set* arguments (`Numbers`,
+`Logicals`) gets all of its arguments flattened to one `(n, k)` array, and a mask of the cells that count. A body with
+an `Anything` or `Cells` argument gets `Value`s, and handles kinds and errors itself; only sets and `Cells` take ranges.
 
-A row with a `ufunc` promises: where no floating-point flag is raised and `guard` holds, the ufunc alone gives the
-body's values. That is what the fast engine runs.
+A row with a `ufunc` promises that the ufunc alone gives the body's values wherever no floating-point flag is raised and
+`guard` holds. That is what the fast engine runs.
 
 To add a function, write its body below `@excel("NAME", …)` in a file of the folder of its category: all files below
 `xlmc/functions` are imported, and no other is edited. The parameters say what the body gets; one that gives many cells
 takes `Anything`, `Cells` or `Arrays`, and its row says `facts=Facts(spills=True)`: `array_function`, in
-`functions/arrays`, writes that row. Whatever else is known of the function goes into `facts`, where each fact is
-described, with what is assumed while it is not stated. The engines `numpy` and `jit` then compute it, derivatives are
-taken by differences, and `xlmc stability`, where it computes a cell again with 50 digits, says that it could not do so
-with this function. Where that is not enough, give the function a row in `evaluation/llvm/operations`,
-`evaluation/passes/derivatives` or `evaluation/passes/exact`. Test it in the folder of `tests/functions` of the same
-name, and write the list of functions anew: `python docs/list_functions.py`. docs/adding.md has an example of each.
+`functions/arrays`, writes that row. Whatever else is known of the function goes into `facts`; the class `Facts`
+describes each fact, and what is assumed while it is not stated. Then the engines `numpy` and `jit` compute the
+function, its derivatives are taken by differences, and `xlmc stability`, which computes cells again with 50 digits,
+says that it could not do so with this function. Where that is not enough, give the function a row in
+`evaluation/llvm/operations`, `evaluation/passes/derivatives` or `evaluation/passes/exact`. Test it in the folder of
+`tests/functions` with the same name, and write the list of functions anew: `python docs/list_functions.py`.
+docs/adding.md has an example of each.
 """
 
 from __future__ import annotations
@@ -33,8 +34,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import FormulaError
+from xlmc.functions.arguments import first_error_in_row, with_errors
 from xlmc.functions.budget import ask_for_cells
 from xlmc.functions.facts import NOTHING, Facts
+from xlmc.functions.lookup.picked_cells import flatten_cells, join_cells
 from xlmc.functions.values import ERROR, LOGICAL, NUMBER, Bools, Codes, Value, from_objects
 
 __all__ = [
@@ -70,7 +73,7 @@ class Kind(Enum):
 
 
 class Called(Protocol):
-    """What is called as a NumPy ufunc is."""
+    """An object that is called like a NumPy ufunc."""
 
     @property
     def nin(self) -> int: ...
@@ -89,17 +92,17 @@ _REQUIRED: Final = _Required.REQUIRED
 
 
 class Ranges(Enum):
-    """How what is computed in an argument takes its ranges, in a formula that is no array formula.
+    """How an expression that is an argument takes ranges, in a formula that is no array formula.
 
-    `ONE_CELL` holds in array formulas, too. Excel keeps this for each argument of each function, as a class of its own
-    file format: reference, value or array.
+    `ONE_CELL` holds in array formulas, too. Excel keeps this for each argument of each function: its file format has
+    three classes, reference, value and array.
     """
 
-    AROUND = "as what stands around the call: cell by cell within SUMPRODUCT, else the cell beside the formula"
+    AROUND = "as the expression around the call: cell by cell within SUMPRODUCT, else the cell beside the formula"
     CELLS = "cell by cell: as in an array formula"
-    BESIDE = "the cell beside the formula, even within SUMPRODUCT; a range that is all of the argument stays whole"
-    SINGLE = "the cell beside the formula, even within SUMPRODUCT, and even of a range that is all of the argument"
-    ONE_CELL = "as what stands around the call; a range of several cells that is all of the argument is #VALUE!"
+    BESIDE = "the cell beside the formula, even within SUMPRODUCT; a range that is the whole argument stays a range"
+    SINGLE = "the cell beside the formula, even within SUMPRODUCT, and even of a range that is the whole argument"
+    ONE_CELL = "as the expression around the call; a range of several cells that is the whole argument is #VALUE!"
 
     __hash__ = object.__hash__
 
@@ -109,9 +112,9 @@ class Parameter:
     """One argument of a function; call it to give a default or to let it repeat: `Number(default=0)`.
 
     Attributes:
-        as_set: it and all others are flattened to one set.
-        ranged: it takes a range whole; any other argument takes the cell of the range beside the formula.
-        ranges: how what is computed there takes ranges; but for `ONE_CELL` it makes no difference in array formulas.
+        as_set: all arguments of the function are flattened to one set.
+        ranged: it takes a whole range; any other argument takes the cell of the range beside the formula.
+        ranges: how an expression there takes ranges; in array formulas only `ONE_CELL` makes a difference.
     """
 
     kind: Kind
@@ -145,14 +148,14 @@ class Function:
 
     Attributes:
         ufunc: see the module; with set arguments it folds them from left to right.
-        guard: takes the body's float arrays, says whether all of them lie where `ufunc` and Excel agree.
-        volatile: its value changes without its arguments.
-        dated: the body takes `date1904`, keyword only: whether serial dates count from 1904.
-        macintosh: the body takes `macintosh`, keyword only: whether the book was made by Excel for the Macintosh.
+        guard: takes the body's float arrays and returns whether `ufunc` and Excel agree for all of them.
+        volatile: its value may change though its arguments do not.
+        dated: the body takes the keyword `date1904`: whether serial dates count from 1904.
+        macintosh: the body takes the keyword `macintosh`: whether Excel for the Macintosh made the book.
         facts: what else is known of it.
         home: the module that registers it.
         takes_values, takes_sets: whether any argument is of `ANY` kind, or all are one set.
-        on_numbers: with arguments that are all numbers, the ufunc alone may be run.
+        on_numbers: if all arguments are numbers, the ufunc may replace the body.
         fast_arity: how many arguments that ufunc takes, one or two; 0 where there is none or it takes more.
     """
 
@@ -173,10 +176,10 @@ class Function:
     fast_arity: int = field(init=False)
 
     def __post_init__(self) -> None:
-        """Answer once what is asked of every node.
+        """Compute the last four attributes, which are read for every node.
 
         Raises:
-            ValueError: it spills, and its body does not get the values to see what to spill.
+            ValueError: it spills, but its body does not get `Value`s, and so cannot see what to spill.
         """
         values = any(parameter.kind is Kind.ANY for parameter in self.parameters)
         sets = any(parameter.as_set for parameter in self.parameters)
@@ -190,26 +193,26 @@ class Function:
             raise ValueError(f"{self.name} spills: it takes `Anything`, `Cells` or `Arrays`, and has no ufunc")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """A row goes to another process by its name, where it is looked up; one that was made for a workbook whole."""
+        """Pickle a row of the registry by its name, and any other function, made for a workbook, with all its parts."""
         if REGISTRY.get(self.name) is self:
             return row_of, (self.name, self.home)
         options = self.volatile, self.dated, self.macintosh, self.facts
         return Function, (self.name, self.parameters, self.body, self.returns, self.ufunc, self.guard, *options)
 
     def parameter(self, position: int) -> Parameter:
-        """The parameter of an argument; the last ones repeat where they may."""
+        """Return the parameter of an argument; those that may repeat follow each other in turn."""
         if position < len(self.parameters):
             return self.parameters[position]
         cycle = [p for p in self.parameters if p.repeat]
         return cycle[(position - len(self.parameters)) % len(cycle)]
 
     def arity(self) -> tuple[int, int]:
-        """The fewest and the most arguments it takes."""
+        """Return the fewest and the most arguments that it takes."""
         fewest = sum(1 for p in self.parameters if p.required)
         return fewest, 255 if any(p.repeat for p in self.parameters) else len(self.parameters)
 
     def __call__(self, arguments: Sequence[Value]) -> Value:
-        """The function of Excel: any values in, values out, errors kept per trial. Absent arguments are filled in."""
+        """Compute the function as Excel does, errors trial by trial; arguments left out take their defaults."""
         if any(argument.numbers.ndim == 3 for argument in arguments):
             self._ask_for(arguments)
         with np.errstate(all="ignore"):
@@ -219,25 +222,25 @@ class Function:
                 return self._of_sets(arguments)
             return self._of_elements(arguments)
 
-    def checked(self, result: Value, arguments: Sequence[Value]) -> Value:
-        """The result, of which many cells come only of arguments of single values that are many.
+    def check_spill(self, result: Value, arguments: Sequence[Value]) -> Value:
+        """Return the result, which may be many cells only if it spills or an argument for a single value is many.
 
         Raises:
-            FormulaError: none of them is, and the row does not say that the function spills.
+            FormulaError: neither is so.
         """
         if result.numbers.ndim < 3 or self.facts.spills:
             return result
         if any(a.numbers.ndim == 3 and not self.parameter(i).ranged for i, a in enumerate(arguments)):
             return result
-        raise self.not_single()
+        raise self.spill_error()
 
-    def not_single(self) -> FormulaError:
-        """What is said where it gives many cells for single ones, against what its row says."""
+    def spill_error(self) -> FormulaError:
+        """Make the error for a function that gives many cells though its row does not say that it spills."""
         hint = "write `facts=Facts(spills=True)` into its row in xlmc/functions"
         return FormulaError(f"{self.name} gives many cells, which its row in the registry does not say", hint=hint)
 
     def _ask_for(self, arguments: Sequence[Value]) -> None:
-        """Ask for the array that the arguments spread to, and for that of all those that are put side by side."""
+        """Ask for the array that single arguments broadcast to, and for that of all cells put side by side."""
         shapes = [argument.shape for argument in arguments]
         n = max(shape[0] for shape in shapes)
         parameters = [self.parameter(position) for position in range(len(arguments))]
@@ -256,11 +259,11 @@ class Function:
         for position, argument in enumerate(arguments):
             key = id(argument), self.parameter(position).kind
             if key not in known:
-                known[key] = _coerced(argument, key[1])
+                known[key] = _coerce(argument, key[1])
             array, found = known[key]
             arrays.append(array)
             errors = np.where(errors > 0, errors, found).astype(np.uint8)
-        if errors.all():  # a body would compute what its arguments' errors cover, text by text at worst
+        if errors.all():  # else the body would compute, text by text at worst, results that the errors replace
             shape = np.broadcast_shapes(errors.shape, *(array.shape for array in arrays))
             return Value.of_errors(np.broadcast_to(errors, shape))
         arrays += [p.default for p in self.parameters[len(arguments) :] if not p.repeat]
@@ -268,11 +271,11 @@ class Function:
 
     def _of_sets(self, arguments: Sequence[Value]) -> Value:
         kind = self.parameters[0].kind
-        x, counts, errors = _flattened(arguments, kind)
+        x, counts, errors = _flatten(arguments, kind)
         return _as_value(self.body(x, counts), self.returns, errors if errors.any() else None)
 
 
-def _coerced(value: Value, kind: Kind) -> tuple[NDArray[Any], Codes]:
+def _coerce(value: Value, kind: Kind) -> tuple[NDArray[Any], Codes]:
     if kind is Kind.NUMBER:
         return value.to_numbers()
     return value.to_logicals() if kind is Kind.LOGICAL else value.to_texts()
@@ -280,61 +283,47 @@ def _coerced(value: Value, kind: Kind) -> tuple[NDArray[Any], Codes]:
 
 def _as_value(result: Any, returns: Kind, errors: Codes | None) -> Value:
     if isinstance(result, Value):
-        return result if errors is None else _overlaid(result, errors)
+        return result if errors is None else _put_errors_over(result, errors)
     array = np.atleast_1d(np.asarray(result))
     if errors is not None and array.ndim > errors.ndim:
         errors = errors[:, None, None]
     if errors is not None:
         array = np.broadcast_to(array, np.broadcast_shapes(array.shape, errors.shape))
     if array.dtype == object:
-        return _overlaid(from_objects(array), errors)
+        value = from_objects(array)
+        return value if errors is None else _put_errors_over(value, errors)
     if returns is Kind.LOGICAL:
         return Value.of_logicals(array.astype(bool), errors)
     return Value.of_numbers(array.astype(np.float64, copy=False), errors)
 
 
-def _overlaid(value: Value, errors: Codes | None) -> Value:
-    """Argument errors go before whatever the body made of those trials."""
-    if errors is None:
-        return value
-    if value.numbers.ndim > errors.ndim:
-        errors = errors[:, None, None]
-    kinds = np.where(errors > 0, errors + np.uint8(ERROR), value.kinds).astype(np.uint8)
-    return Value(value.numbers, kinds, value.texts)
+def _put_errors_over(value: Value, errors: Codes) -> Value:
+    """Put the errors of arguments in place of whatever the body computed in those trials."""
+    return with_errors(value, errors[:, None, None] if value.numbers.ndim > errors.ndim else errors)
 
 
-def _flattened(arguments: Sequence[Value], kind: Kind) -> tuple[NDArray[Any], Bools, Codes]:
-    """All arguments side by side, `(n, k)`: the values, which of them count, and the first error of each trial.
+def _flatten(arguments: Sequence[Value], kind: Kind) -> tuple[NDArray[Any], Bools, Codes]:
+    """Put all arguments side by side, `(n, k)`: the values, which of them count, and the first error of each trial.
 
-    A value given directly is coerced, a cell of a range (n, r, c) counts only when it is of the kind itself.
+    A value given directly is converted; a cell of a range (n, r, c) counts only if it is of the kind itself.
     """
     columns, counted, errors = [], [], []
     for argument in arguments:
         in_range = argument.numbers.ndim == 3
-        x, found = (argument.numbers, argument.errors) if in_range else _coerced(argument, kind)
+        x, found = (argument.numbers, argument.errors) if in_range else _coerce(argument, kind)
         wanted = (argument.kinds == NUMBER) if kind is Kind.NUMBER else (argument.kinds <= LOGICAL)
         counts = (wanted if in_range else argument.kinds < ERROR) & (found == 0)
-        columns.append(_two_axes(x, argument.shape))
-        counted.append(_two_axes(counts, argument.shape))
-        errors.append(_two_axes(found, argument.shape))
-    n = max((column.shape[0] for column in columns), default=1)
-    x, counts, found = (np.concatenate([_tall(a, n) for a in part], axis=1) for part in (columns, counted, errors))
-    first = np.take_along_axis(found, (found > 0).argmax(axis=1, keepdims=True), axis=1)[:, 0]
-    return (x if kind is Kind.NUMBER else x != 0), counts, first
-
-
-def _two_axes(array: NDArray[Any], shape: tuple[int, ...]) -> NDArray[Any]:
-    return np.broadcast_to(array, shape).reshape(shape[0], -1)
-
-
-def _tall(array: NDArray[Any], n: int) -> NDArray[Any]:
-    return np.broadcast_to(array, (n, array.shape[1]))
+        columns.append(flatten_cells(x, argument))
+        counted.append(flatten_cells(counts, argument))
+        errors.append(flatten_cells(found, argument))
+    x, counts, found = (join_cells(part) for part in (columns, counted, errors))
+    return (x if kind is Kind.NUMBER else x != 0), counts, first_error_in_row(found)
 
 
 REGISTRY: Final[dict[str, Function]] = {}
 
 _FAMILIES: Final = "xlmc.functions.families"
-"""What imports all of them."""
+"""The module that imports all functions."""
 
 
 def excel(
@@ -350,7 +339,7 @@ def excel(
     facts: Facts = NOTHING,
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Register a body as the Excel function `name`."""
-    home = str(sys._getframe(1).f_globals["__name__"])  # a body may be NumPy's, which does not say
+    home = str(sys._getframe(1).f_globals["__name__"])  # a body may be NumPy's, which does not know its module
 
     def register(body: Callable[..., Any]) -> Callable[..., Any]:
         row = Function(name, parameters, body, returns, ufunc, guard, volatile, dated, macintosh, facts, home)
@@ -364,16 +353,16 @@ def excel(
 
 
 def function_named(name: str) -> Function | None:
-    """The row of an Excel function, its name in capitals and without `_xlfn.`; None when there is none."""
+    """Return the row of an Excel function, its name in capitals and without `_xlfn.`; None if there is none."""
     return REGISTRY.get(name)
 
 
 def row_of(name: str, module: str = _FAMILIES) -> Function:
-    """The row of a name that has one, imported first if need be.
+    """Return the row of a name that has one, and import its module first if need be.
 
     Args:
         name: in capitals.
-        module: where it is likely to be registered.
+        module: the module that is likely to register it.
     """
     for home in (module, _FAMILIES):
         if name not in REGISTRY:

@@ -1,12 +1,12 @@
 """How the functions of the former Analysis ToolPak take their arguments, and how they are registered.
 
-To them a logical is no number but `#VALUE!`; a text that stands for a number is one wherever it stands, in a range
-too, and a blank is 0. Where they want one value, a range of several cells is `#VALUE!`, in array formulas too; an array
-is not: `EDATE(A1:A3,1)` is `#VALUE!`, and `EDATE(+A1:A3,1)` in an array formula gives three dates. The file format has
-these arguments as references, not values.
+They give `#VALUE!` for a logical; they read a text that stands for a number as that number, in a range too, and a
+blank as 0. Where they want one value, a range of several cells is `#VALUE!`, in array formulas too; an array is not:
+`EDATE(A1:A3,1)` is `#VALUE!`, and `EDATE(+A1:A3,1)` in an array formula gives three dates. In the file format these
+arguments are references, not values.
 
-Their dates are whole days of Excel's calendar, anything else is `#NUM!`; bodies get them as serials of the 1900 system,
-whichever system the workbook has.
+Their dates are whole days of Excel's calendar, anything else is `#NUM!`. Bodies get them as serials of the 1900 system
+even if the workbook counts from 1904.
 """
 
 from __future__ import annotations
@@ -17,12 +17,11 @@ from functools import wraps
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import earliest, leveled
+from xlmc.functions.arguments import align_ranges, first_error
 from xlmc.functions.dates.calendar import in_calendar
-from xlmc.functions.lookup.picked_cells import flattened as in_rows
+from xlmc.functions.lookup.picked_cells import flatten_cells, join_cells
 from xlmc.functions.registry import Anything, Kind, Parameter, Ranges, excel
 from xlmc.functions.values import LOGICAL, NUM, Bools, Codes, Floats, Value, parse_number
 
@@ -30,9 +29,9 @@ __all__ = [
     "DAYS_TO_1904",
     "Date",
     "OneCell",
-    "flattened",
-    "number_of",
+    "all_strict_numbers",
     "numbers_only",
+    "strict_number",
     "strict_numbers",
     "toolpak",
     "whole_days",
@@ -51,7 +50,7 @@ Date: Final = _DateParameter(Kind.NUMBER)
 
 
 def whole_days(serial: Floats, date1904: bool) -> tuple[Floats, Bools]:
-    """Days of the 1900 system and where they are valid; a valid one stands in where they are not."""
+    """Return days of the 1900 system, and where they are valid; an invalid day is replaced by a valid one."""
     valid = in_calendar(serial, date1904)
     return np.where(valid, np.floor(serial), 1.0) + (DAYS_TO_1904 if date1904 else 0), valid
 
@@ -59,7 +58,7 @@ def whole_days(serial: Floats, date1904: bool) -> tuple[Floats, Bools]:
 def toolpak(
     name: str, *parameters: Parameter, gives_date: bool = False
 ) -> Callable[[Callable[..., Floats]], Callable[..., Floats]]:
-    """Register a body of numbers as the Excel function `name`; logicals are `#VALUE!`, `Date`s as the module says."""
+    """Register a body of numbers as the Excel function `name`; the module says how it takes logicals and dates."""
     taken = [replace(p, kind=Kind.ANY, ranges=Ranges.ONE_CELL) for p in parameters]
 
     def register(body: Callable[..., Floats]) -> Callable[..., Floats]:
@@ -80,7 +79,7 @@ def _of_values(
     arrays: list[Any] = []
     errors, all_valid = np.zeros(1, np.uint8), np.ones(1, bool)
     x: Any
-    for value, parameter in zip(leveled(*values), parameters, strict=False):
+    for value, parameter in zip(align_ranges(*values), parameters, strict=False):
         x, found = value.to_logicals() if parameter.kind is Kind.LOGICAL else strict_numbers(value)
         if isinstance(parameter, _DateParameter):
             x, valid = whole_days(x, date1904)
@@ -103,13 +102,13 @@ OneCell: Final = Anything(ranges=Ranges.ONE_CELL)
 
 
 def strict_numbers(value: Value) -> tuple[Floats, Codes]:
-    """The numbers and their errors, `#VALUE!` for a logical."""
+    """Return the numbers and their errors, `#VALUE!` for a logical."""
     numbers, errors = value.to_numbers()
     return numbers, np.where(value.kinds == LOGICAL, np.uint8(ErrorCode.VALUE), errors).astype(np.uint8)
 
 
-def number_of(item: object) -> float | ErrorCode:
-    """The same for one Python object of `Value.objects`."""
+def strict_number(item: object) -> float | ErrorCode:
+    """Do the same for one Python object of `Value.objects`."""
     match item:
         case None:
             return 0.0
@@ -125,26 +124,20 @@ def number_of(item: object) -> float | ErrorCode:
 
 
 def numbers_only(body: Callable[..., Any]) -> Callable[..., Value]:
-    """A body for `Anything` arguments from one that takes and gives arrays, as those of `Number` arguments do."""
+    """Make a body for `Anything` arguments from one that takes and gives arrays of numbers."""
 
     @wraps(body)
     def strict(*values: Value) -> Value:
-        pairs = [strict_numbers(value) for value in leveled(*values)]
+        pairs = [strict_numbers(value) for value in align_ranges(*values)]
         result = np.atleast_1d(body(*(numbers for numbers, _ in pairs)))
-        errors = earliest(*(found for _, found in pairs))
+        errors = first_error(*(found for _, found in pairs))
         return Value.of_logicals(result, errors) if result.dtype == bool else Value.of_numbers(result, errors)
 
     return strict
 
 
-def flattened(values: Sequence[Value]) -> tuple[Floats, Codes]:
-    """All cells of all arguments side by side as strict numbers, and their errors: (n, k), (n, k)."""
+def all_strict_numbers(values: Sequence[Value]) -> tuple[Floats, Codes]:
+    """Put all cells of all arguments side by side, as strict numbers and their errors: (n, k), (n, k)."""
     parts = [(value, *strict_numbers(value)) for value in values]
-    n = max(value.shape[0] for value in values)
-    numbers = np.concatenate([_tall(in_rows(x, value), n) for value, x, _ in parts], axis=1)
-    errors = np.concatenate([_tall(in_rows(codes, value), n) for value, _, codes in parts], axis=1)
-    return numbers, errors
-
-
-def _tall(rows: NDArray[Any], n: int) -> NDArray[Any]:
-    return np.broadcast_to(rows, (n, rows.shape[1]))
+    numbers = join_cells([flatten_cells(x, value) for value, x, _ in parts])
+    return numbers, join_cells([flatten_cells(codes, value) for value, _, codes in parts])

@@ -1,11 +1,11 @@
-"""Excel values over trials: numbers, logicals, texts, blanks and errors side by side in one array.
+"""Excel values over trials: numbers, logicals, texts, blanks and errors, all in one array.
 
 Trials are axis 0: a scalar cell is `(n,)`, a range `(n, r, c)`; a constant has n = 1 and broadcasts.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.budget import ask_for_characters, ask_for_texts, bytes_of
-from xlmc.functions.denormals import flushed
+from xlmc.functions.denormals import tiny_to_zero
 from xlmc.functions.number_text import general_text, parse_number
 
 __all__ = [
@@ -34,11 +34,11 @@ __all__ = [
     "Objects",
     "ShapeVaries",
     "Value",
-    "boxed_codes",
     "constant",
     "from_objects",
     "general_text",
     "parse_number",
+    "unbox_errors",
 ]
 
 Floats = NDArray[np.float64]
@@ -56,21 +56,21 @@ ERROR: Final = 16
 _QUIET_NAN = 0x7FF8_0000_0000_0000
 
 
-def _boxed(code: ErrorCode) -> float:
+def _box(code: ErrorCode) -> float:
     return float(np.array(_QUIET_NAN | int(code), dtype=np.uint64).view(np.float64))
 
 
-DIV0: Final = _boxed(ErrorCode.DIV0)
-VALUE: Final = _boxed(ErrorCode.VALUE)
-REF: Final = _boxed(ErrorCode.REF)
-NUM: Final = _boxed(ErrorCode.NUM)
-NA: Final = _boxed(ErrorCode.NA)
-"""Errors that a function body puts in its float result: NaNs that carry their code. Put them there last, by `np.where`:
-arithmetic on a NaN may lose the code."""
+DIV0: Final = _box(ErrorCode.DIV0)
+VALUE: Final = _box(ErrorCode.VALUE)
+REF: Final = _box(ErrorCode.REF)
+NUM: Final = _box(ErrorCode.NUM)
+NA: Final = _box(ErrorCode.NA)
+"""Errors that a function body puts into its float result: NaNs that carry their code. Put them there last, with
+`np.where`: arithmetic on a NaN may lose the code."""
 
 
-def boxed_codes(x: Floats) -> Codes:
-    """The error of every element, 0 for none: the code a NaN carries, `#NUM!` for a plain NaN or an infinity."""
+def unbox_errors(x: Floats) -> Codes:
+    """Return each element's error, 0 for none: the code that a NaN carries, `#NUM!` for a plain NaN or infinity."""
     bad = ~np.isfinite(x)
     if not bad.any():
         return np.zeros(x.shape, np.uint8)
@@ -79,8 +79,8 @@ def boxed_codes(x: Floats) -> Codes:
     return np.where(bad, np.where(carried, payload, np.uint8(ErrorCode.NUM)), np.uint8(0))
 
 
-class ShapeVaries(Exception):  # noqa: N818 - it is no error: a body asks to be called otherwise
-    """The result's shape differs between trials: evaluate trial by trial."""
+class ShapeVaries(Exception):  # noqa: N818 - it is no error: the body asks to be called for one trial at a time
+    """The shape of the result differs between trials: evaluate trial by trial."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,7 +88,7 @@ class Value:
     """One Excel value per trial (and per cell of a range).
 
     Attributes:
-        numbers: `(n,)` or `(n, r, c)`; a logical as 1.0 or 0.0; 0.0 where the kind is another.
+        numbers: `(n,)` or `(n, r, c)`; 1.0 or 0.0 for a logical; 0.0 for any other kind.
         kinds: the same shape, or one that broadcasts to it.
         texts: strings where the kind is TEXT; None when there is none.
     """
@@ -99,20 +99,20 @@ class Value:
 
     @classmethod
     def of_numbers(cls, x: Floats, errors: Codes | None = None) -> Value:
-        """Floats, with errors boxed in them or beside them; those too small for Excel as 0."""
-        x = flushed(x)
-        codes = boxed_codes(x) if errors is None else np.where(errors > 0, errors, boxed_codes(x))
+        """Make numbers of floats, with errors boxed in them or beside them; 0 where they are too small for Excel."""
+        x = tiny_to_zero(x)
+        codes = unbox_errors(x) if errors is None else np.where(errors > 0, errors, unbox_errors(x))
         return cls._with_errors(x, codes, NUMBER)
 
     @classmethod
     def of_logicals(cls, x: Bools, errors: Codes | None = None) -> Value:
-        """Booleans, with errors beside them."""
+        """Make logicals of booleans, with errors beside them."""
         codes = np.zeros(1, np.uint8) if errors is None else errors
         return cls._with_errors(x.astype(np.float64), codes, LOGICAL)
 
     @classmethod
     def of_texts(cls, x: Objects, errors: Codes | None = None) -> Value:
-        """Strings, with errors beside them."""
+        """Make texts of strings, with errors beside them."""
         zeros = np.zeros(x.shape)
         kinds = np.full(x.shape, TEXT, np.uint8)
         if errors is not None:
@@ -121,7 +121,7 @@ class Value:
 
     @classmethod
     def of_errors(cls, codes: Codes) -> Value:
-        """An error everywhere."""
+        """Make errors of codes, none of which is 0."""
         return cls(np.zeros(codes.shape), (codes + np.uint8(ERROR)).astype(np.uint8))
 
     @classmethod
@@ -138,7 +138,7 @@ class Value:
 
     @property
     def errors(self) -> Codes:
-        """Error codes, 0 where there is none; broadcasts to the shape."""
+        """The error codes, 0 where there is none; they broadcast to the shape."""
         return np.where(self.kinds >= ERROR, self.kinds - np.uint8(ERROR), np.uint8(0)).astype(np.uint8)
 
     @property
@@ -147,29 +147,29 @@ class Value:
 
     @property
     def plain(self) -> bool:
-        """Numbers, logicals and blanks only: arithmetic needs no look at the kinds."""
+        """Whether there is neither a text nor an error, so that arithmetic may ignore the kinds."""
         return not (self.kinds >= ERROR).any() and not (self.kinds == TEXT).any()
 
     def take(self, index: NDArray[np.intp]) -> Value:
-        """The trials of `index`; a constant stays as it is."""
+        """Return the trials of `index`; a constant stays as it is."""
         if self.shape[0] == 1:
             return self
         pick = [None if a is None else (a if a.shape[0] == 1 else a[index]) for a in self.arrays()]
         return Value(pick[0], pick[1], pick[2])  # type: ignore[arg-type]  # only texts may be None
 
     def arrays(self) -> tuple[NDArray[Any] | None, ...]:
-        """Numbers, kinds and texts."""
+        """Return numbers, kinds and texts."""
         return self.numbers, self.kinds, self.texts
 
     def as_range(self) -> Value:
-        """A scalar `(n,)` as the range `(n, 1, 1)`; a range as it is."""
+        """Return a scalar `(n,)` as the range `(n, 1, 1)`, and a range as it is."""
         if self.numbers.ndim == 3:
             return self
         parts = [None if a is None else a.reshape(-1, 1, 1) for a in self.arrays()]
         return Value(parts[0], parts[1], parts[2])  # type: ignore[arg-type]  # only texts may be None
 
     def to_numbers(self) -> tuple[Floats, Codes]:
-        """As arithmetic sees it: logicals 1 and 0, blanks 0, texts read as numbers or `#VALUE!`."""
+        """Convert for arithmetic: logicals to 1 and 0, blanks to 0, texts to the numbers they read as or `#VALUE!`."""
         if self.texts is None or not (self.kinds == TEXT).any():
             return self.numbers, self.errors
         numbers, errors = (np.array(np.broadcast_to(a, self.shape)) for a in (self.numbers, self.errors))
@@ -181,7 +181,7 @@ class Value:
         return numbers, errors
 
     def to_logicals(self) -> tuple[Bools, Codes]:
-        """As a condition sees it: numbers by `<> 0`, blanks FALSE, the texts TRUE and FALSE, others `#VALUE!`."""
+        """Convert for a condition: numbers by `<> 0`, blanks to FALSE; texts but TRUE and FALSE to `#VALUE!`."""
         truth, errors = self.numbers != 0, self.errors
         if self.texts is None or not (self.kinds == TEXT).any():
             return truth, errors
@@ -192,31 +192,31 @@ class Value:
         return truth, np.where(bad, np.uint8(ErrorCode.VALUE), errors).astype(np.uint8)
 
     def to_texts(self) -> tuple[Objects, Codes]:
-        """As `&` sees it: numbers in General format, `TRUE`, `FALSE`, blanks empty."""
+        """Convert as `&` does: numbers to General format, logicals to `TRUE` and `FALSE`, blanks to empty texts."""
         errors = np.broadcast_to(self.errors, self.shape)
         if self.texts is not None and (self.kinds == TEXT).all():
             return np.broadcast_to(self.texts, self.shape), errors
         if errors.all():
             return np.full(self.shape, "", object), errors
-        return self._each(_text), errors
+        return self._map(_text), errors
 
     def objects(self) -> Objects:
-        """Every element as a Python object: float, bool, str, `ErrorCode`, or None for a blank."""
-        return self._each(_object)
+        """Return each element as a Python object: float, bool, str, `ErrorCode`, or None for a blank."""
+        return self._map(_object)
 
-    def _each(self, made: Callable[[float, int, str], object]) -> Objects:
-        """What `made` makes of every element's number, kind and text."""
+    def _map(self, function: Callable[[float, int, str], object]) -> Objects:
+        """Call the function with the number, kind and text of each element."""
         shape = self.shape
         out: Objects = np.empty(shape, object)
         ask_for_texts(out.size)
         numbers, kinds = (np.broadcast_to(part, shape).ravel().tolist() for part in (self.numbers, self.kinds))
         texts = [""] * out.size if self.texts is None else np.broadcast_to(self.texts, shape).ravel().tolist()
-        out.reshape(-1)[:] = [made(*parts) for parts in zip(numbers, kinds, texts, strict=True)]
+        out.reshape(-1)[:] = [function(*parts) for parts in zip(numbers, kinds, texts, strict=True)]
         return out
 
     @property
     def nbytes(self) -> int:
-        """The memory that it takes, about."""
+        """About how much memory it takes."""
         return bytes_of(self.arrays())
 
 
@@ -235,11 +235,11 @@ def _object(number: float, kind: int, text: str) -> object:
 
 
 def from_objects(items: Objects) -> Value:
-    """The inverse of `Value.objects`."""
+    """Make a value of Python objects: the inverse of `Value.objects`."""
     ask_for_texts(items.size)
     flat = items.ravel().tolist()
     kinds = np.array([_kind(item) for item in flat], np.uint8).reshape(items.shape)
-    numbers = flushed(np.array([_number(item) for item in flat], np.float64).reshape(items.shape))
+    numbers = tiny_to_zero(np.array([_number(item) for item in flat], np.float64).reshape(items.shape))
     if not (kinds == TEXT).any():
         return Value(numbers, kinds)
     written = [item if isinstance(item, str) else "" for item in flat]
@@ -268,14 +268,9 @@ def _kind(item: object) -> int:
 
 
 def constant(item: object) -> Value:
-    """A Python object as a constant, `(1,)`."""
+    """Make a constant, `(1,)`, of a Python object."""
     if type(item) is float:  # as nearly every cell of a table
-        return Value(flushed(np.array([item])), np.full(1, NUMBER, np.uint8))
+        return Value(tiny_to_zero(np.array([item])), np.full(1, NUMBER, np.uint8))
     box = np.empty(1, object)
     box[0] = item
     return from_objects(box)
-
-
-def shapes(values: Iterable[Value]) -> tuple[int, ...]:
-    """The shape that all of `values` broadcast to."""
-    return np.broadcast_shapes(*(value.shape for value in values))

@@ -25,10 +25,10 @@ def names(found):
 @pytest.mark.parametrize(
     ("formula", "expected"),
     [
-        ("A1+A2", ["Input", "Input", "+", "settled"]),
+        ("A1+A2", ["Input", "Input", "+", "snap to zero"]),
         ("(A1+A2)", ["Input", "Input", "+"]),
         ("(A1+A2)*(A1+A2)", ["Input", "Input", "+", "*"]),  # a common part is computed once
-        ("A1+2*3", ["Input", "+", "settled"]),
+        ("A1+2*3", ["Input", "+", "snap to zero"]),
         ("0+A1", ["Input"]),  # and what is known before the run
         ("SQRT(2)*A1", ["Input", "*"]),
         ("A1^2", ["Input", "*"]),
@@ -47,7 +47,7 @@ def names(found):
         ("SUM(A1:A2)", ["Input", "Input", "Range", "SUM"]),
         ("SUM((A1,A2))", ["Input", "Input", "Range", "Range", "SUM"]),
         ("POWER(A1,A2)", ["Input", "Input", "^"]),
-        ("A1:A1+1", ["Input", "+", "settled"]),
+        ("A1:A1+1", ["Input", "+", "snap to zero"]),
     ],
 )
 def test_the_nodes_of_a_formula(nodes, formula, expected):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from xlmc.evaluation.llvm.loop_arithmetic import HALF_PI
-from xlmc.functions.denormals import flushed
+from xlmc.functions.denormals import tiny_to_zero
 
 pytest.importorskip("llvmlite")
 
@@ -62,7 +62,7 @@ ANGLES = {
 @pytest.mark.parametrize("angles", ANGLES)
 def test_within_a_unit_in_the_last_place(compiled, distance, angles):
     with mpmath.workprec(300):
-        exact = [mpmath.mpf(float(angle)) for angle in flushed(ANGLES[angles])]  # Excel knows no smaller ones
+        exact = [mpmath.mpf(float(angle)) for angle in tiny_to_zero(ANGLES[angles])]  # Excel knows no smaller ones
         sine, cosine, tangent = compiled({"B1": "=SIN(A1)", "B2": "=COS(A1)", "B3": "=TAN(A1)"})(ANGLES[angles])
         assert distance(sine, map(mpmath.sin, exact)) < 1
         assert distance(cosine, map(mpmath.cos, exact)) < 1
@@ -114,7 +114,7 @@ HARD = np.array(
 
 def exactly(function, *arrays):
     """Of numbers that are 0 where Excel knows none so small."""
-    return [function(*map(mpmath.mpf, map(float, row))) for row in zip(*map(flushed, arrays), strict=True)]
+    return [function(*map(mpmath.mpf, map(float, row))) for row in zip(*map(tiny_to_zero, arrays), strict=True)]
 
 
 def test_arctangents(compiled, distance):
@@ -128,7 +128,7 @@ def test_angles_of_points(compiled, distance):
     x, y = (ARC_GENERATOR.permutation(np.concatenate([SIZES, -SIZES, np.ones(100), -np.ones(100)])) for _ in range(2))
     near = np.exp(ARC_GENERATOR.uniform(-3, 3, 3000)) * ARC_GENERATOR.choice([-1, 1], 3000)
     x, y = np.concatenate([x, near, near, near]), np.concatenate([y, near, -near[::-1], np.nextafter(near, 0)])
-    apart = (flushed(x) != 0) | (flushed(y) != 0)
+    apart = (tiny_to_zero(x) != 0) | (tiny_to_zero(y) != 0)
     x, y = x[apart], y[apart]
     with mpmath.workprec(1200):
         exact = exactly(mpmath.atan2, y, x)
@@ -156,7 +156,7 @@ def test_remainders_are_exact(compiled):
     x = x[np.abs(x) < 1e15]
     divisor = ARC_GENERATOR.choice([360.0, -360.0, 0.1, -0.1, 1.0, np.pi, 1e-3, -7.25], x.size)
     found = compiled({"B1": "=MOD(A1,A2)"}, ("A1", "A2"))(x, divisor)[0]
-    expected = flushed(np.remainder(flushed(x), divisor))
+    expected = tiny_to_zero(np.remainder(tiny_to_zero(x), divisor))
     np.testing.assert_array_equal(found.view(np.int64), expected.view(np.int64))
 
 

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from xlmc.functions.lookup.picked_cells import (
+    arrange,
     by_portions,
     cell_of,
-    flattened,
-    joined,
-    picked,
-    side_by_side,
-    transposed,
+    flatten_cells,
+    join_values,
+    pick,
+    transpose_cells,
     width_of,
 )
 from xlmc.functions.values import TEXT, ShapeVaries, Value, constant, from_objects
@@ -21,17 +21,17 @@ VARYING = Value.of_numbers(np.arange(12.0).reshape(2, 2, 3))
 
 
 def test_rows_become_columns():
-    assert transposed(CELLS).objects().tolist() == [[[1, None], ["b", 5], [True, "f"]]]
+    assert transpose_cells(CELLS).objects().tolist() == [[[1, None], ["b", 5], [True, "f"]]]
 
 
 def test_one_cell_of_each_trial():
-    assert picked(CELLS, np.array([0, 1, 1]), np.array([1, 0, 2])).objects().tolist() == ["b", None, "f"]
-    assert picked(VARYING, np.array([1, 0]), np.array([2])).numbers.tolist() == [5, 8]
+    assert pick(CELLS, np.array([0, 1, 1]), np.array([1, 0, 2])).objects().tolist() == ["b", None, "f"]
+    assert pick(VARYING, np.array([1, 0]), np.array([2])).numbers.tolist() == [5, 8]
 
 
 def test_many_cells_of_each_trial():
     rows, columns = np.array([[[1], [0]]]), np.array([[[2, 0]], [[1, 1]]])
-    assert picked(VARYING, rows, columns).numbers.tolist() == [[[5, 3], [2, 0]], [[10, 10], [7, 7]]]
+    assert pick(VARYING, rows, columns).numbers.tolist() == [[[5, 3], [2, 0]], [[10, 10], [7, 7]]]
 
 
 @pytest.mark.parametrize(("row", "column", "expected"), [(1, 2, "f"), (0, 1, "b")])
@@ -45,17 +45,17 @@ def test_a_cell_of_what_stands_for_all():
 
 
 def test_side_by_side():
-    found = side_by_side([constant("a"), Value.of_numbers(np.array([1.0, 2.0])), constant(None), constant(True)], 2, 2)
+    found = arrange([constant("a"), Value.of_numbers(np.array([1.0, 2.0])), constant(None), constant(True)], 2, 2)
     assert found.objects().tolist() == [[["a", 1], [None, True]], [["a", 2], [None, True]]]
 
 
 def test_joined():
-    assert joined([VARYING, VARYING], axis=2).shape == (2, 2, 6)
-    assert joined([CELLS, transposed(transposed(CELLS))], axis=0).objects().tolist() == [ROWS, ROWS]
+    assert join_values([VARYING, VARYING], axis=2).shape == (2, 2, 6)
+    assert join_values([CELLS, transpose_cells(transpose_cells(CELLS))], axis=0).objects().tolist() == [ROWS, ROWS]
 
 
 def test_flattened():
-    assert flattened(np.zeros((1, 1, 1)), VARYING).shape == (2, 6)
+    assert flatten_cells(np.zeros((1, 1, 1)), VARYING).shape == (2, 6)
 
 
 N = 1000

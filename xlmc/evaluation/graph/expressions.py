@@ -23,7 +23,7 @@ from xlmc.formula import Graph, ir
 from xlmc.functions import Function
 from xlmc.functions.budget import CallCount, ask_for_reading
 from xlmc.functions.families import function_named
-from xlmc.functions.fifteen_digits import SETTLED
+from xlmc.functions.fifteen_digits import SNAP_TO_ZERO
 from xlmc.functions.operators import ALL_BITS
 from xlmc.functions.registry import Ranges
 from xlmc.functions.values import constant
@@ -105,7 +105,7 @@ class ExpressionLowering(TreeLowering):
                 before, node = node, self.call(operator, (node, part))
         if not tree.last or node in (before, parts[-1]):
             return node
-        return self.apply(SETTLED, (node, before))
+        return self.apply(SNAP_TO_ZERO, (node, before))
 
     def _join(self, tree: ir.Binary, scope: Scope) -> int:
         """References put together, where one value is wanted."""

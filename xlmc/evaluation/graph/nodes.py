@@ -21,7 +21,7 @@ from xlmc.errors import ErrorCode
 from xlmc.functions import Function
 from xlmc.functions.budget import ask_for_cells, ask_for_live
 from xlmc.functions.logical import if_, if_error, if_na
-from xlmc.functions.lookup.picked_cells import joined
+from xlmc.functions.lookup.picked_cells import join_values
 from xlmc.functions.values import ERROR, ShapeVaries, Value, constant
 
 __all__ = [
@@ -128,7 +128,7 @@ def _evaluate(node: Apply | Select | IfErrorNode | Range, values: Mapping[int, V
     match node:
         case Apply(function, arguments):
             given = arguments_of(function, [values[node_id] for node_id in arguments])
-            return function.checked(function(given), given)
+            return function.check_spill(function(given), given)
         case Select(condition, yes, no):
             _ask_for_all(values[condition], values[yes], values[no])
             return _select(values[condition], values[yes], values[no])
@@ -271,7 +271,7 @@ def by_trial(evaluate: Callable[[Mapping[int, Value]], Value], values: Mapping[i
         ask_for_live(size)
     if len({value.shape for value in found}) > 1:
         return Ragged(found)
-    return joined(found, axis=0)
+    return join_values(found, axis=0)
 
 
 def _trial(value: Value, i: int) -> Value:

@@ -18,7 +18,7 @@ from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph.nodes import Apply, IfErrorNode, Ragged, Range, Select, corner, evaluate_node, uses
 from xlmc.functions.budget import MOST_STEPS, ask_for_live
 from xlmc.functions.logical import zero_if_blank
-from xlmc.functions.lookup.picked_cells import each_part, joined
+from xlmc.functions.lookup.picked_cells import join_values, map_parts
 from xlmc.functions.values import BLANK, ERROR, Codes, Value, constant
 
 __all__ = ["Body", "SelfCall", "call_lambda"]
@@ -333,12 +333,12 @@ def _find_marked(taken: NDArray[np.bool_], frame: _Frame) -> Trials:
 
 def _one_after_another(frames: Sequence[_Frame], values: Sequence[Value]) -> Value:
     """The values of several frames as those of one."""
-    return joined([_spread(value, frame.trials.size) for frame, value in zip(frames, values, strict=True)], axis=0)
+    return join_values([_spread(value, frame.trials.size) for frame, value in zip(frames, values, strict=True)], axis=0)
 
 
 def _spread(value: Value, n: int) -> Value:
     """A value that is the same in all trials, as one of each."""
-    return each_part(value, lambda part: np.broadcast_to(part, (n, *part.shape[1:])))
+    return map_parts(value, lambda part: np.broadcast_to(part, (n, *part.shape[1:])))
 
 
 def _find_taken(frame: _Frame, slot: int) -> Value:

@@ -214,7 +214,7 @@ def _ends(call: _Call, further: Arguments) -> list[Arguments]:
 
 def _ends_tell(call: _Call) -> bool:
     """Whether the first and the last of the further cells say all; a lookup takes the last alone."""
-    return call.function.facts.ends_tell or call.function.facts.mode_argument is not None
+    return call.function.facts.ends_suffice or call.function.facts.mode_argument is not None
 
 
 def _degree(call: _Call, position: int) -> int:

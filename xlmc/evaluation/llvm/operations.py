@@ -20,7 +20,7 @@ from xlmc.evaluation.llvm.loop_rules import PLAIN, Emit, Emitter, LoopRule, Oper
 from xlmc.evaluation.llvm.sets import over_cells
 from xlmc.functions import Kind
 from xlmc.functions.denormals import TINIEST
-from xlmc.functions.fifteen_digits import EIGHT_UNITS, NEAR, SETTLED, TWINS, Comparison, equals
+from xlmc.functions.fifteen_digits import EIGHT_UNITS, EXCHANGED, NEAR, SNAP_TO_ZERO, Comparison, equal_range
 
 __all__ = ["loop_rule_of"]
 
@@ -185,7 +185,7 @@ def _compare(dag: Dag, node: Apply, symbol: str) -> Emit:
     if right is not None:
         return _with_constant(symbol, 0, float(right.value))
     if left is not None:
-        return _with_constant(TWINS[symbol], 1, float(left.value))
+        return _with_constant(EXCHANGED[symbol], 1, float(left.value))
 
     def emit(body: Emitter, parts: Sequence[Any]) -> Any:
         body.flag(_nearly_equal(body, *parts))
@@ -205,7 +205,7 @@ def _nearly_equal(body: Emitter, x: Any, y: Any) -> Any:
 
 def _with_constant(symbol: str, varying: int, number: float) -> Emit:
     """How the loop compares one of its operands with a constant."""
-    least, most = equals(number)
+    least, most = equal_range(number)
 
     def emit(body: Emitter, parts: Sequence[Any]) -> Any:
         def is_(relation: str, limit: float) -> Any:
@@ -261,7 +261,7 @@ _ROWS: Final[Mapping[str, _Row]] = {
     "<=": _comparison("<="),
     ">": _comparison(">"),
     ">=": _comparison(">="),
-    SETTLED.name: _Row(_last_sum, makes=False),
+    SNAP_TO_ZERO.name: _Row(_last_sum, makes=False),
     "NOT": _Row(lambda body, parts: body.builder.not_(parts[0])),
     "ABS": _Row(lambda body, parts: body.intrinsic("llvm.fabs", parts[0]), makes=False),
     "SQRT": _Row(_root),

@@ -17,7 +17,7 @@ from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Select, us
 from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, is_elementwise_ufunc, make_step
 from xlmc.evaluation.passes.bounds import Bounds, of_constant
 from xlmc.functions import Kind
-from xlmc.functions.fifteen_digits import SETTLED, Settled, keep, never_cancels
+from xlmc.functions.fifteen_digits import SNAP_TO_ZERO, SnapToZero, copy_sum, never_cancels
 from xlmc.functions.math.trigonometry import Within, sine_and_cosine
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.values import Value
@@ -147,12 +147,12 @@ class Steps:
             and (types[node.arguments[0]] is types[node.arguments[-1]] is Kind.NUMBER)
         ):
             function, used = node
-            if function.name == SETTLED.name:
+            if function.name == SNAP_TO_ZERO.name:
                 done.sort(key=used[0].__eq__)  # the memory that was given back last is taken: nothing is copied then
             buffer = self._buffers.exchange(done, node_id, self._loose)  # it may write over what it reads
             if buffer is not None:
                 second = used[1] if len(used) == 2 else -1
-                ufunc = self._last_sum(node) if function.name == SETTLED.name else function.ufunc
+                ufunc = self._last_sum(node) if function.name == SNAP_TO_ZERO.name else function.ufunc
                 self._lines.append((ufunc, node_id, used[0], second, buffer, self._guard(node_id)))
                 return
         elif is_elementwise_ufunc(self._dag, node_id):
@@ -238,10 +238,10 @@ class Steps:
         second = self._bounds(added.arguments[1]) if type(added) is Apply and added.function.name == "+" else None
         of_total, of_first = self._bounds(total), self._bounds(first)
         if of_first is None:
-            return Settled()
+            return SnapToZero()
         if of_total is not None and never_cancels(of_total, of_first, second):
-            return keep
-        return Settled(max(abs(of_first[0]), abs(of_first[1])))
+            return copy_sum
+        return SnapToZero(max(abs(of_first[0]), abs(of_first[1])))
 
     def _bounds(self, node: int) -> Bounds | None:
         return self._between.get(node) or of_constant(self._dag, node)

@@ -27,7 +27,7 @@ from xlmc.evaluation.graph.nodes import (
 )
 from xlmc.functions import Function, Kind
 from xlmc.functions.budget import ask_for_live
-from xlmc.functions.denormals import Underflow, flush, flushed
+from xlmc.functions.denormals import Underflow, flush, tiny_to_zero
 from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value
@@ -207,12 +207,12 @@ def _body(function: Function, node: int, readers: list[Reader]) -> Step:
     def step(frame: Frame) -> None:
         result = function.body(*(read(frame.values) for read in readers), *defaults)
         if np.ndim(result.numbers if isinstance(result, Value) else result) > 1:
-            raise function.not_single()
+            raise function.spill_error()
         if isinstance(result, Value):
             result = _plain(result, function.returns)
         elif not logical and not np.isfinite(result).all():
             raise LeaveFastPath
-        frame.values[node] = np.broadcast_to(result if logical else flushed(result), (frame.n,))
+        frame.values[node] = np.broadcast_to(result if logical else tiny_to_zero(result), (frame.n,))
 
     return step
 

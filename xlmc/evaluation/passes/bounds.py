@@ -8,7 +8,7 @@ from typing import Final
 
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, Input, Select
-from xlmc.functions.fifteen_digits import SETTLED
+from xlmc.functions.fifteen_digits import SNAP_TO_ZERO
 from xlmc.functions.values import NUMBER
 
 __all__ = ["Bounds", "bounds", "of_constant"]
@@ -40,10 +40,10 @@ def bounds(dag: Dag, nodes: Iterable[int], inputs: Mapping[str, Bounds]) -> dict
                 between = _around((*of(yes), *of(no)))
             case Apply(function, (first, second)) if function.name in ("+", "-", "*", "/"):
                 between = _combine(function.name, of(first), of(second))
-            case Apply(function, (result, _)) if function.name == SETTLED.name:
+            case Apply(function, (result, _)) if function.name == SNAP_TO_ZERO.name:
                 between = of(result)
-            case Apply(function) if function.facts.between is not None:
-                between = function.facts.between
+            case Apply(function) if function.facts.result_range is not None:
+                between = function.facts.result_range
             case Apply(function, (only,)) if function.name in _OF_ONE:
                 between = _OF_ONE[function.name](*of(only))
             case _:

@@ -19,7 +19,7 @@ from xlmc.errors import ErrorCode
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select
 from xlmc.evaluation.passes.random_rounding import formula_of
-from xlmc.functions.fifteen_digits import SETTLED
+from xlmc.functions.fifteen_digits import SNAP_TO_ZERO
 from xlmc.functions.values import ShapeVaries, Value, constant, from_objects
 
 __all__ = ["DIGITS", "Exact", "exactly"]
@@ -294,7 +294,7 @@ EXACT: Final[Mapping[str, Callable[..., Item]]] = {
     "u-": _of_numbers(lambda x: -x),
     "%": _of_numbers(lambda x: x / 100),
     "u+": _single,
-    SETTLED.name: lambda result, first: _single(result),
+    SNAP_TO_ZERO.name: lambda result, first: _single(result),
     "shown": lambda item: _zero_if_blank(_single(item)),
     "PI": lambda: +mp.pi,
     "SQRT": _real(mp.sqrt, 0),

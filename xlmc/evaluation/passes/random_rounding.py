@@ -28,7 +28,7 @@ from xlmc.evaluation.graph.nodes import (
     uses,
 )
 from xlmc.functions import Kind
-from xlmc.functions.fifteen_digits import SETTLED
+from xlmc.functions.fifteen_digits import SNAP_TO_ZERO
 from xlmc.functions.values import ERROR, LOGICAL, Floats, Value
 
 __all__ = [
@@ -143,7 +143,7 @@ def evaluation(
             values[node_id] = drawn if of_inputs is None else of_inputs.moved(drawn, n, whole_too=True)
         elif isinstance(node, Constant):
             values[node_id] = node.value
-        elif isinstance(node, Apply) and node.function.name == SETTLED.name:
+        elif isinstance(node, Apply) and node.function.name == SNAP_TO_ZERO.name:
             values[node_id] = values[node.arguments[0]]
         else:
             assert isinstance(node, Apply | Select | IfErrorNode | Range)
@@ -170,7 +170,7 @@ def follow(dag: Dag, nodes: Sequence[int], values: Mapping[int, Value], given: M
         node = formula_of(dag, node_id)
         if node_id in given or isinstance(node, Input | Constant) or not any(part in found for part in uses(node)):
             continue
-        if isinstance(node, Apply) and node.function.name == SETTLED.name:
+        if isinstance(node, Apply) and node.function.name == SNAP_TO_ZERO.name:
             found[node_id] = found.get(node.arguments[0], values[node.arguments[0]])
         else:
             found[node_id] = evaluate_node(node, {part: found.get(part, values[part]) for part in uses(node)})

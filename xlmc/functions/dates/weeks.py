@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import earliest, first_errors, leveled, where_wrong
+from xlmc.functions.arguments import align_ranges, error_where, first_error, first_error_in_row
 from xlmc.functions.dates.calendar import in_calendar, parts_of, serial_of, weekday_of
 from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.registry import Anything, Cells, Number, excel
@@ -160,11 +160,11 @@ def _holidays(value: Value | None, date1904: bool) -> tuple[Floats, Codes]:
         np.broadcast_to(array, value.shape).reshape(value.shape[0], -1) for array in (x, errors, value.kinds == BLANK)
     )
     days, valid = whole_days(x, date1904)
-    errors = np.where(errors > 0, errors, where_wrong(~valid & ~blank, ErrorCode.NUM))
+    errors = np.where(errors > 0, errors, error_where(~valid & ~blank, ErrorCode.NUM))
     days = np.sort(np.where(blank, np.inf, days), axis=1)
     again = np.zeros(days.shape, bool)
     again[:, 1:] = days[:, 1:] == days[:, :-1]
-    return np.where(again, np.inf, days), first_errors(errors)
+    return np.where(again, np.inf, days), first_error_in_row(errors)
 
 
 def _passed(weeks: Weeks, holidays: Floats, first: Floats, last: Floats) -> Floats:
@@ -210,14 +210,14 @@ _Rule = Callable[[Weeks, Floats, Floats, Floats], tuple[Floats, Codes]]
 
 def _by_weeks(rule: _Rule, start: Value, other: Value, weekend: Value, holidays: Value | None, date1904: bool) -> Value:
     """What a rule makes of a date, a number, a weekend and holidays, in the shape of the first three together."""
-    values = leveled(start, other, weekend)
+    values = align_ranges(start, other, weekend)
     shape = np.broadcast_shapes(*(value.shape for value in values))
     (x, x_errors), (y, y_errors) = strict_numbers(values[0]), strict_numbers(values[1])
     worked, weekend_errors = worked_days(values[2])
     days_off, holiday_errors = _holidays(holidays, date1904)
     result, wrong = rule(Weeks(_cells(worked, (*shape, 7))), days_off, _cells(x, shape), _cells(y, shape))
     of_arguments = [_cells(errors, shape) for errors in (x_errors, y_errors, weekend_errors)]
-    result, errors = np.broadcast_arrays(result, earliest(*of_arguments, holiday_errors[:, None], wrong))
+    result, errors = np.broadcast_arrays(result, first_error(*of_arguments, holiday_errors[:, None], wrong))
     return Value.of_numbers(result.reshape(-1, *shape[1:]), errors.reshape(-1, *shape[1:]))
 
 
@@ -230,7 +230,7 @@ def _cells(array: NDArray[Any], shape: tuple[int, ...]) -> NDArray[Any]:
 def _network_days(start: Value, end: Value, weekend: Value, holidays: Value | None, date1904: bool) -> Value:
     def rule(weeks: Weeks, days_off: Floats, x: Floats, y: Floats) -> tuple[Floats, Codes]:
         (first, first_valid), (last, last_valid) = whole_days(x, date1904), whole_days(y, date1904)
-        wrong = where_wrong(~(first_valid & last_valid), ErrorCode.NUM)
+        wrong = error_where(~(first_valid & last_valid), ErrorCode.NUM)
         return _counted(weeks, days_off, first, last), wrong
 
     return _by_weeks(rule, start, end, weekend, holidays, date1904)
@@ -240,8 +240,8 @@ def _work_day(start: Value, days: Value, weekend: Value, holidays: Value | None,
     def rule(weeks: Weeks, days_off: Floats, x: Floats, y: Floats) -> tuple[Floats, Codes]:
         first, valid = whole_days(x, date1904)
         result = _moved(weeks, days_off, first, np.trunc(y)) - (DAYS_TO_1904 if date1904 else 0)
-        outside = where_wrong(np.asarray(~(valid & in_calendar(result, date1904))), ErrorCode.NUM)
-        return result, earliest(where_wrong(weeks.none, ErrorCode.VALUE), outside)
+        outside = error_where(np.asarray(~(valid & in_calendar(result, date1904))), ErrorCode.NUM)
+        return result, first_error(error_where(weeks.none, ErrorCode.VALUE), outside)
 
     return _by_weeks(rule, start, days, weekend, holidays, date1904)
 

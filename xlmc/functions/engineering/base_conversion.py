@@ -15,7 +15,7 @@ from xlmc.errors import ErrorCode
 from xlmc.functions.math.numerals import digits_of, read_digits
 from xlmc.functions.per_element import per_object
 from xlmc.functions.registry import Kind, Number, excel
-from xlmc.functions.toolpak import OneCell, number_of
+from xlmc.functions.toolpak import OneCell, strict_number
 from xlmc.functions.values import NUM, Bools, Floats, general_text
 
 __all__: list[str] = []
@@ -37,7 +37,7 @@ def _read(item: object, base: int) -> int | ErrorCode:
 
 
 def _whole(item: object) -> int | ErrorCode:
-    number = number_of(item)
+    number = strict_number(item)
     return number if isinstance(number, ErrorCode) else int(number)
 
 

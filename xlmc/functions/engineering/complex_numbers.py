@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from xlmc.errors import ErrorCode
 from xlmc.functions.per_element import per_object
 from xlmc.functions.registry import Anything, Cells, Kind, Parameter, excel
-from xlmc.functions.toolpak import OneCell, number_of
+from xlmc.functions.toolpak import OneCell, strict_number
 from xlmc.functions.values import Value, from_objects
 
 __all__ = ["common_suffix", "read", "written"]
@@ -101,7 +101,7 @@ def _digits(x: float) -> str:
 @per_object
 def complex_(real: object, imaginary: object, suffix: object = None) -> str | ErrorCode:
     """The text of a complex number from its coefficients; `#VALUE!` for another suffix than i or j."""
-    x, y = number_of(real), number_of(imaginary)
+    x, y = strict_number(real), strict_number(imaginary)
     if isinstance(x, ErrorCode) or isinstance(y, ErrorCode):
         return x if isinstance(x, ErrorCode) else ErrorCode(int(y))
     if suffix not in (None, "", "i", "j"):
@@ -193,7 +193,7 @@ def _to_the_power(z: complex, power: float) -> complex:
 @per_object
 def power(item: object, exponent: object) -> str | ErrorCode:
     """The number to a real power."""
-    number, found = read(item), number_of(exponent)
+    number, found = read(item), strict_number(exponent)
     if isinstance(found, ErrorCode) and not isinstance(number, ErrorCode):
         return found
     return _applied(_to_the_power, [number], float(found))

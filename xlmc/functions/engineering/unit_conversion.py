@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.functions.arguments import earliest, leveled
+from xlmc.functions.arguments import align_ranges, first_error
 from xlmc.functions.registry import excel
 from xlmc.functions.toolpak import OneCell, strict_numbers
 from xlmc.functions.values import NA, Floats, Value
@@ -161,7 +161,7 @@ def _groups(units: NDArray[Any]) -> NDArray[Any]:
 @excel("CONVERT", OneCell, OneCell, OneCell)
 def convert(number: Value, source: Value, target: Value) -> Value:
     """A measurement in another unit; `#N/A` for units that are unknown or measure different things."""
-    number, source, target = leveled(number, source, target)
+    number, source, target = align_ranges(number, source, target)
     x, errors = strict_numbers(number)
     old, new = _units(source), _units(target)
     proportional = _part(old, "absolute") * _part(new, "absolute") > 0  # else a tiny one would lose its digits
@@ -170,4 +170,4 @@ def convert(number: Value, source: Value, target: Value) -> Value:
     result = (base / _part(new, "scale") + to_zero) / _part(new, "prefix")
     groups = _groups(old)
     found = np.where((groups == _groups(new)) & (groups != ""), result, NA)
-    return Value.of_numbers(found, earliest(errors, source.errors, target.errors))
+    return Value.of_numbers(found, first_error(errors, source.errors, target.errors))

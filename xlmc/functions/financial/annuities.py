@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import earliest, where_wrong
+from xlmc.functions.arguments import error_where, first_error
 from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.financial.roots import growth_root
 from xlmc.functions.math.arithmetic import powered
@@ -209,13 +209,13 @@ def scheduled_growth(principal: Value, schedule: Value) -> Value:
     """What a principal grows to at one rate after the other; blank rates are 0, texts and logicals `#VALUE!`."""
     result, errors = strict_numbers(principal)
     rates = schedule.as_range()
-    wrong = where_wrong((rates.kinds == TEXT) | (rates.kinds == LOGICAL), ErrorCode.VALUE)
+    wrong = error_where((rates.kinds == TEXT) | (rates.kinds == LOGICAL), ErrorCode.VALUE)
     codes = np.broadcast_to(np.where(wrong > 0, wrong, rates.errors), rates.shape)
     numbers = np.where(rates.kinds == BLANK, 0.0, rates.numbers)
     per_trial = (-1,) + (1,) * (result.ndim - 1)
     for row, column in np.ndindex(*rates.shape[1:]):
         result = result * (1 + numbers[:, row, column].reshape(per_trial))
-        errors = earliest(errors, codes[:, row, column].reshape(per_trial))
+        errors = first_error(errors, codes[:, row, column].reshape(per_trial))
     return Value.of_numbers(result, np.broadcast_to(errors, np.broadcast_shapes(result.shape, errors.shape)))
 
 

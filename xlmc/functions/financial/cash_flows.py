@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import earliest, first_errors, where_wrong
+from xlmc.functions.arguments import error_where, first_error, first_error_in_row
 from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.financial.annuities import growth
 from xlmc.functions.financial.roots import growth_root
@@ -47,7 +47,7 @@ def _flows(values: Sequence[Value]) -> tuple[Floats, Bools, Codes]:
     x, counts, errors = (
         np.concatenate([np.broadcast_to(part[i], (n, part[i].shape[1])) for part in parts], axis=1) for i in range(3)
     )
-    return x, counts, first_errors(errors)
+    return x, counts, first_error_in_row(errors)
 
 
 def _discounted(rate: Floats, flows: Floats, counts: Bools) -> Floats:
@@ -71,7 +71,7 @@ def net_present_value(rate: Value, *values: Value) -> Value:
         errors = errors.reshape(-1, 1, 1)
     else:
         result = _discounted(r, flows, counts)
-    return Value.of_numbers(result, earliest(r_errors, errors, where_wrong(r == -1, ErrorCode.DIV0)))
+    return Value.of_numbers(result, first_error(r_errors, errors, error_where(r == -1, ErrorCode.DIV0)))
 
 
 def _packed(flows: Floats, counts: Bools) -> tuple[Floats, NDArray[np.intp]]:
@@ -112,7 +112,7 @@ def internal_rate(values: Value, guess: Value | None = None) -> Value:
 
     rate = growth_root(worth, np.broadcast_to(start, (n,)))
     rate = np.where(_has_both_signs(flows, counts), rate, np.nan)
-    return Value.of_numbers(rate, earliest(np.broadcast_to(errors, (n,)), start_errors))
+    return Value.of_numbers(rate, first_error(np.broadcast_to(errors, (n,)), start_errors))
 
 
 def _guess_of(guess: Value | None) -> tuple[Floats, Codes]:
@@ -135,8 +135,8 @@ def modified_rate(values: Value, finance: Value, reinvest: Value) -> Value:
     receives = (counts & (flows > 0)).any(axis=1)
     ratio = np.where(pays, -received / np.where(paid == 0, np.nan, paid), 1.0)
     rate = np.where(receives, np.expm1(np.log(np.where(receives, ratio, 1.0)) / np.where(k > 1, k - 1, 1)), -1.0)
-    divided = where_wrong(~pays | (k < 2) | (borrowed == -1) | (invested == -1), ErrorCode.DIV0)
-    return Value.of_numbers(rate, earliest(errors, borrowed_errors, invested_errors, divided))
+    divided = error_where(~pays | (k < 2) | (borrowed == -1) | (invested == -1), ErrorCode.DIV0)
+    return Value.of_numbers(rate, first_error(errors, borrowed_errors, invested_errors, divided))
 
 
 def _dated(values: Value, dates: Value, date1904: bool) -> tuple[Floats, Floats, Codes]:
@@ -151,7 +151,7 @@ def _dated(values: Value, dates: Value, date1904: bool) -> tuple[Floats, Floats,
     days, valid = whole_days(np.where(dated, serials[:, :k], serials[:, :1]), date1904)
     years = (days - days[:, :1]) / 365
     wrong = (how_many != how_many_dates) | (how_many == 0) | ~valid.all(axis=1) | (years < 0).any(axis=1)
-    return flows[:, :k], np.maximum(years, 0.0), earliest(errors, date_errors, where_wrong(wrong, ErrorCode.NUM))
+    return flows[:, :k], np.maximum(years, 0.0), first_error(errors, date_errors, error_where(wrong, ErrorCode.NUM))
 
 
 def _filled(value: Value) -> tuple[Floats, NDArray[np.intp], Codes]:
@@ -160,7 +160,7 @@ def _filled(value: Value) -> tuple[Floats, NDArray[np.intp], Codes]:
     filled = _rows(value.kinds != BLANK, value)
     order = np.argsort(~filled, axis=1, kind="stable")
     packed = np.take_along_axis(np.where(filled, _rows(x, value), 0.0), order, axis=1)
-    return packed, filled.sum(axis=1), first_errors(_rows(errors, value))
+    return packed, filled.sum(axis=1), first_error_in_row(_rows(errors, value))
 
 
 @excel("XNPV", OneCell, Cells, Cells, dated=True)
@@ -173,7 +173,7 @@ def dated_present_value(rate: Value, values: Value, dates: Value, *, date1904: b
     total = np.zeros(1)
     for column in range(flows.shape[1]):
         total = total + flows[:, column] * np.exp(-years[:, column] * log_growth)
-    return Value.of_numbers(total, earliest(rate_errors, errors, where_wrong(lost, ErrorCode.NUM)))
+    return Value.of_numbers(total, first_error(rate_errors, errors, error_where(lost, ErrorCode.NUM)))
 
 
 @excel("XIRR", Cells, Cells, OneCell(default=None), dated=True)
@@ -200,4 +200,4 @@ def dated_rate(values: Value, dates: Value, guess: Value | None = None, *, date1
 
     usable = _has_both_signs(flows, np.ones_like(alive)) & (errors == 0)
     rate = growth_root(worth, np.broadcast_to(start, (n,)))
-    return Value.of_numbers(np.where(usable, rate, np.nan), earliest(np.broadcast_to(errors, (n,)), start_errors))
+    return Value.of_numbers(np.where(usable, rate, np.nan), first_error(np.broadcast_to(errors, (n,)), start_errors))

@@ -10,17 +10,17 @@ import numpy as np
 from xlmc.address import MAX_COLUMN, MAX_ROW, column_letters, quote_sheet
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import (
-    direct_errors,
-    earliest,
-    if_blank,
-    leveled,
-    same_in_all_trials,
-    where_wrong,
+    align_ranges,
+    error_where,
+    errors_unless_range,
+    fill_blanks,
+    first_error,
+    require_same_in_all_trials,
     whole_numbers,
     with_errors,
 )
 from xlmc.functions.facts import Facts
-from xlmc.functions.lookup.picked_cells import Indices, cell_of, picked
+from xlmc.functions.lookup.picked_cells import Indices, cell_of, pick
 from xlmc.functions.per_element import per_element
 from xlmc.functions.registry import Anything, Arrays, Cells, Kind, Number, Ranges, Text, excel
 from xlmc.functions.values import Codes, Floats, Value, constant
@@ -37,7 +37,7 @@ _NUMBER = Number(ranges=Ranges.SINGLE)
     _NUMBER(default=None),
     _NUMBER(default=1.0),
     returns=Kind.ANY,
-    facts=Facts(spills=True, finds=True),
+    facts=Facts(spills=True, jumps=True),
 )
 def index(cells: Value, row: Value, column: Value | None = None, area: Value | None = None) -> Value:
     """The cell in a row and a column; row 0 stands for a whole column, column 0 for a whole row.
@@ -50,15 +50,15 @@ def index(cells: Value, row: Value, column: Value | None = None, area: Value | N
     """
     grid = cells.as_range()
     row, column = (row, column) if column is not None else _alone(row, grid)
-    row, column, area = leveled(row, column, constant(1) if area is None else area)
+    row, column, area = align_ranges(row, column, constant(1) if area is None else area)
     (rows, wrong_row), (columns, wrong_column), (areas, wrong_area) = map(whole_numbers, (row, column, area))
     row_indices, off_rows = _indices(rows, wrong_row, grid.shape[1], axis=1)
     column_indices, off_columns = _indices(columns, wrong_column, grid.shape[2], axis=2)
-    no_area = earliest(where_wrong(areas < 1, ErrorCode.VALUE), where_wrong(areas > 1, ErrorCode.REF))
-    codes = (direct_errors(cells), wrong_row, wrong_column, wrong_area, off_rows, off_columns, no_area)
+    no_area = first_error(error_where(areas < 1, ErrorCode.VALUE), error_where(areas > 1, ErrorCode.REF))
+    codes = (errors_unless_range(cells), wrong_row, wrong_column, wrong_area, off_rows, off_columns, no_area)
     many = max(row_indices.ndim, column_indices.ndim) == 3
     indices = [_spread(indices, many) for indices in (row_indices, column_indices)]
-    found = with_errors(picked(grid, *indices), earliest(*(_spread(part, many) for part in codes)))
+    found = with_errors(pick(grid, *indices), first_error(*(_spread(part, many) for part in codes)))
     return cell_of(found, 0, 0) if cells.numbers.ndim == 1 else found
 
 
@@ -72,9 +72,9 @@ def _alone(number: Value, grid: Value) -> tuple[Value, Value]:
 
 def _indices(numbers: Floats, errors: Codes, size: int, axis: int) -> tuple[Indices, Codes]:
     """Indices counted from 0, and where they are off the range; all along the axis if the number is 0."""
-    if numbers.ndim == 1 and same_in_all_trials((numbers == 0) & (errors == 0)):
+    if numbers.ndim == 1 and require_same_in_all_trials((numbers == 0) & (errors == 0)):
         return np.arange(size).reshape(1, *(size if a == axis else 1 for a in (1, 2))), np.zeros(1, np.uint8)
-    off = earliest(where_wrong(numbers < 1, ErrorCode.VALUE), where_wrong(numbers > size, ErrorCode.REF))
+    off = first_error(error_where(numbers < 1, ErrorCode.VALUE), error_where(numbers > size, ErrorCode.REF))
     off = np.where(errors > 0, np.uint8(0), off)
     sound = (off == 0) & (errors == 0)
     return np.where(sound, numbers - 1, 0).astype(np.intp), off
@@ -102,14 +102,14 @@ def columns(cells: Value) -> Value:
 
 
 def _size(cells: Value, axis: int) -> Value:
-    return with_errors(Value.of_numbers(np.full(1, float(cells.as_range().shape[axis]))), direct_errors(cells))
+    return with_errors(Value.of_numbers(np.full(1, float(cells.as_range().shape[axis]))), errors_unless_range(cells))
 
 
 @excel("HYPERLINK", Text, Anything(default=None), returns=Kind.ANY)
 def hyperlink(link: Value, shown: Value | None = None) -> Value:
     """What the cell of a link shows: its second argument, or else the link."""
     if shown is not None:
-        link, shown = leveled(link, shown)
+        link, shown = align_ranges(link, shown)
         return with_errors(shown, np.broadcast_to(link.errors, link.shape))
     texts, errors = link.to_texts()
     return Value.of_texts(texts, errors)
@@ -123,13 +123,13 @@ def address(
 
     Without `a1` in the style R1C1. An argument left empty takes its default, but an empty `sheet` leaves its `!`.
     """
-    row, column, *options = leveled(row, column, *(value for value in (fixed, a1, sheet) if value is not None))
+    row, column, *options = align_ranges(row, column, *(value for value in (fixed, a1, sheet) if value is not None))
     fixed_, a1_, sheet_ = [*options, *[constant(None)] * (3 - len(options))]
-    numbers = [value.to_numbers() for value in (row, column, if_blank(fixed_, 1.0))]
-    style, unclear = if_blank(a1_, 1.0).to_logicals()
+    numbers = [value.to_numbers() for value in (row, column, fill_blanks(fixed_, 1.0))]
+    style, unclear = fill_blanks(a1_, 1.0).to_logicals()
     names, wrong = sheet_.to_texts()
     parts = [*(array for array, _ in numbers), style, None if sheet is None else names]
-    return with_errors(per_element(_address)(*parts), earliest(*(found for _, found in numbers), unclear, wrong))
+    return with_errors(per_element(_address)(*parts), first_error(*(found for _, found in numbers), unclear, wrong))
 
 
 def _address(row: float, column: float, fixed: float, a1: bool, sheet: str | None) -> str | ErrorCode:

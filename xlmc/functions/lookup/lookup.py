@@ -16,21 +16,21 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import (
-    direct_errors,
-    earliest,
-    if_blank,
-    leveled,
-    refused,
-    same_in_all_trials,
-    where_wrong,
+    align_ranges,
+    error_everywhere,
+    error_where,
+    errors_unless_range,
+    fill_blanks,
+    first_error,
+    require_same_in_all_trials,
     whole_numbers,
     with_errors,
 )
 from xlmc.functions.facts import Facts
 from xlmc.functions.logical import choose
-from xlmc.functions.lookup.picked_cells import Indices, by_portions, each_part, picked, transposed, width_of
+from xlmc.functions.lookup.picked_cells import Indices, by_portions, map_parts, pick, transpose_cells, width_of
 from xlmc.functions.lookup.vector_search import EXACT, LARGER, SMALLER, last_not_beyond, nearest
-from xlmc.functions.ordering import ordered
+from xlmc.functions.ordering import to_ordered
 from xlmc.functions.registry import Anything, Arrays, Cells, Kind, Logical, Number, Ranges, excel
 from xlmc.functions.values import BLANK, Codes, Floats, Value, constant
 
@@ -52,7 +52,7 @@ def _is_vector(cells: Value) -> bool:
 
 def _classic_index(key: Value, vector: Value, order: Floats) -> Indices:
     """As MATCH searches: `order` is 1 for rising values, -1 for falling ones, 0 for the first equal one of any."""
-    key = if_blank(key)
+    key = fill_blanks(key)
     result = np.full(1, -1)
     for wanted in np.unique(order):
         if wanted == EXACT:
@@ -63,7 +63,7 @@ def _classic_index(key: Value, vector: Value, order: Floats) -> Indices:
     return result
 
 
-@excel("MATCH", Anything, Cells, Number(default=1.0), facts=Facts(mode_argument=2, finds=True, exact_steps=True))
+@excel("MATCH", Anything, Cells, Number(default=1.0), facts=Facts(mode_argument=2, jumps=True, exact_steps=True))
 def match(key: Value, cells: Value, order: Value | None = None) -> Value:
     """Position of the key, or of the last value before it, in a row or column in rising (1) or falling order (-1).
 
@@ -73,48 +73,48 @@ def match(key: Value, cells: Value, order: Value | None = None) -> Value:
 
 
 def _match(key: Value, cells: Value, order: Value) -> Value:
-    key, order = leveled(key, order)
+    key, order = align_ranges(key, order)
     numbers, wrong = order.to_numbers()
-    errors = earliest(key.errors, direct_errors(cells, key), wrong)
+    errors = first_error(key.errors, errors_unless_range(cells, key), wrong)
     if not _is_vector(cells.as_range()):
-        return refused(key, _NOT_FOUND, errors)
+        return error_everywhere(key, _NOT_FOUND, errors)
     return _counted_from_1(_classic_index(key, cells.as_range(), np.sign(numbers)), errors)
 
 
 def _counted_from_1(indices: Indices, errors: Codes) -> Value:
-    return Value.of_numbers((indices + 1).astype(np.float64), earliest(errors, where_wrong(indices < 0, _NOT_FOUND)))
+    return Value.of_numbers((indices + 1).astype(np.float64), first_error(errors, error_where(indices < 0, _NOT_FOUND)))
 
 
-@excel("VLOOKUP", *_IN_A_TABLE, returns=Kind.ANY, facts=Facts(mode_argument=3, finds=True))
+@excel("VLOOKUP", *_IN_A_TABLE, returns=Kind.ANY, facts=Facts(mode_argument=3, jumps=True))
 def vlookup(key: Value, table: Value, column: Value, near: Value | None = None) -> Value:
     """What stands in a column of the table, in the row whose first cell is the key; or the last up to it if `near`."""
     return by_portions(_vlookup, [key, table, column, constant(True) if near is None else near], width_of(table))
 
 
-@excel("HLOOKUP", *_IN_A_TABLE, returns=Kind.ANY, facts=Facts(mode_argument=3, finds=True))
+@excel("HLOOKUP", *_IN_A_TABLE, returns=Kind.ANY, facts=Facts(mode_argument=3, jumps=True))
 def hlookup(key: Value, table: Value, row: Value, near: Value | None = None) -> Value:
     """What stands in a row of the table, in the column whose first cell is the key; or the last up to it if `near`."""
-    turned = transposed(table) if table.numbers.ndim == 3 else table
+    turned = transpose_cells(table) if table.numbers.ndim == 3 else table
     return by_portions(_vlookup, [key, turned, row, constant(True) if near is None else near], width_of(table))
 
 
 def _vlookup(key: Value, table: Value, column: Value, near: Value) -> Value:
-    key, column, near = leveled(key, column, near)
+    key, column, near = align_ranges(key, column, near)
     close, unclear = near.to_logicals()
     cells = table.as_range()
-    rows = _classic_index(key, each_part(cells, lambda part: part[:, :, :1]), close.astype(np.float64))
+    rows = _classic_index(key, map_parts(cells, lambda part: part[:, :, :1]), close.astype(np.float64))
     columns, wrong = whole_numbers(column)
-    errors = earliest(
-        *(key.errors, direct_errors(table, key), unclear),
-        *(where_wrong(rows < 0, _NOT_FOUND), wrong),
-        *(where_wrong(columns < 1, ErrorCode.VALUE), where_wrong(columns > cells.shape[2], ErrorCode.REF)),
+    errors = first_error(
+        *(key.errors, errors_unless_range(table, key), unclear),
+        *(error_where(rows < 0, _NOT_FOUND), wrong),
+        *(error_where(columns < 1, ErrorCode.VALUE), error_where(columns > cells.shape[2], ErrorCode.REF)),
     )
     sound = errors == 0
-    found = picked(cells, np.where(sound, rows, 0), np.where(sound, columns - 1, 0).astype(np.intp))
+    found = pick(cells, np.where(sound, rows, 0), np.where(sound, columns - 1, 0).astype(np.intp))
     return with_errors(found, errors)
 
 
-@excel("LOOKUP", Anything, Arrays, Arrays(default=None), returns=Kind.ANY, facts=Facts(mode_argument=3, finds=True))
+@excel("LOOKUP", Anything, Arrays, Arrays(default=None), returns=Kind.ANY, facts=Facts(mode_argument=3, jumps=True))
 def lookup(key: Value, cells: Value, results: Value | None = None) -> Value:
     """What stands beside the last value up to the key.
 
@@ -129,17 +129,17 @@ def lookup(key: Value, cells: Value, results: Value | None = None) -> Value:
 def _lookup_in_array(key: Value, cells: Value) -> Value:
     grid = cells.as_range()
     if grid.shape[2] > grid.shape[1]:
-        grid = transposed(grid)
-    errors = earliest(key.errors, direct_errors(cells, key))
-    first, last = each_part(grid, lambda part: part[:, :, :1]), each_part(grid, lambda part: part[:, :, -1:])
+        grid = transpose_cells(grid)
+    errors = first_error(key.errors, errors_unless_range(cells, key))
+    first, last = map_parts(grid, lambda part: part[:, :, :1]), map_parts(grid, lambda part: part[:, :, -1:])
     return _beside(key, first, last, errors)
 
 
 def _lookup_in_vector(key: Value, cells: Value, results: Value) -> Value:
-    errors = earliest(key.errors, direct_errors(cells, key), direct_errors(results, key))
+    errors = first_error(key.errors, errors_unless_range(cells, key), errors_unless_range(results, key))
     if not (_is_vector(cells.as_range()) and _is_vector(results.as_range())):
-        return refused(key, _NOT_FOUND, errors)
-    return _beside(key, cells.as_range(), each_part(results.as_range(), _as_column), errors)
+        return error_everywhere(key, _NOT_FOUND, errors)
+    return _beside(key, cells.as_range(), map_parts(results.as_range(), _as_column), errors)
 
 
 def _as_column(part: Floats) -> Floats:
@@ -148,9 +148,9 @@ def _as_column(part: Floats) -> Floats:
 
 def _beside(key: Value, vector: Value, results: Value, errors: Codes) -> Value:
     """The result, (n, k, 1), at the index of the last value up to the key."""
-    indices = last_not_beyond(if_blank(key), vector)
-    errors = earliest(errors, where_wrong((indices < 0) | (indices >= results.shape[1]), _NOT_FOUND))
-    return with_errors(picked(results, np.where(errors == 0, indices, 0), np.zeros(1, np.intp)), errors)
+    indices = last_not_beyond(fill_blanks(key), vector)
+    errors = first_error(errors, error_where((indices < 0) | (indices >= results.shape[1]), _NOT_FOUND))
+    return with_errors(pick(results, np.where(errors == 0, indices, 0), np.zeros(1, np.intp)), errors)
 
 
 _WILDCARDS: Final = 2
@@ -162,7 +162,10 @@ _DIRECTIONS: Final = (1, _FROM_THE_END, _RISING, _FALLING)
 
 def _indices(key: Value, vector: Value, mode: Value, direction: Value) -> tuple[Indices, Codes]:
     """The key's index, counted from 0, or -1; and the errors of the last two arguments."""
-    (modes, wrong), (directions, wrong_too) = whole_numbers(if_blank(mode)), whole_numbers(if_blank(direction, 1.0))
+    (modes, wrong), (directions, wrong_too) = (
+        whole_numbers(fill_blanks(mode)),
+        whole_numbers(fill_blanks(direction, 1.0)),
+    )
     result = np.full(key.shape, -1)
     known = np.zeros(1, bool)
     for wanted, towards in product(_MODES, _DIRECTIONS):
@@ -170,7 +173,7 @@ def _indices(key: Value, vector: Value, mode: Value, direction: Value) -> tuple[
         if chosen.any() and not (wanted == _WILDCARDS and abs(towards) == _RISING):
             result = np.where(chosen, _found_at(key, vector, wanted, towards), result)
             known = known | chosen
-    return result, earliest(wrong, wrong_too, where_wrong(~known, ErrorCode.VALUE))
+    return result, first_error(wrong, wrong_too, error_where(~known, ErrorCode.VALUE))
 
 
 def _found_at(key: Value, vector: Value, mode: int, direction: int) -> Indices:
@@ -185,8 +188,8 @@ def _by_halves(key: Value, vector: Value, side: int, falling: bool) -> Indices:
     before = last_not_beyond(key, vector, falling=falling)
     if side == (LARGER if falling else SMALLER):
         return before
-    column = each_part(vector, lambda part: part.reshape(part.shape[0], -1, 1))
-    wanted, found = ordered(key, picked(column, np.maximum(before, 0), np.zeros(1, np.intp)))
+    column = map_parts(vector, lambda part: part.reshape(part.shape[0], -1, 1))
+    wanted, found = to_ordered(key, pick(column, np.maximum(before, 0), np.zeros(1, np.intp)))
     equal = ((wanted.kinds == found.kinds) & (wanted.order == found.order)).reshape(before.shape) & (before >= 0)
     after = np.where(before + 1 < column.shape[1], before + 1, -1)
     return np.where(equal, before, -1 if side == EXACT else after)
@@ -198,7 +201,7 @@ def _by_halves(key: Value, vector: Value, side: int, falling: bool) -> Indices:
     Arrays,
     Number(default=0.0),
     Number(default=1.0),
-    facts=Facts(mode_argument=3, finds=True, exact_steps=True),
+    facts=Facts(mode_argument=3, jumps=True, exact_steps=True),
 )
 def xmatch(key: Value, cells: Value, mode: Value | None = None, direction: Value | None = None) -> Value:
     """Position of the key in a row or column: its equal, or the next smaller (-1) or larger (1); 2 for wildcards."""
@@ -207,14 +210,14 @@ def xmatch(key: Value, cells: Value, mode: Value | None = None, direction: Value
 
 
 def _xmatch(key: Value, cells: Value, mode: Value, direction: Value) -> Value:
-    key, mode, direction = leveled(key, mode, direction)
-    errors = earliest(key.errors, direct_errors(cells, key))
+    key, mode, direction = align_ranges(key, mode, direction)
+    errors = first_error(key.errors, errors_unless_range(cells, key))
     vector = cells.as_range()
     if 1 not in vector.shape[1:]:
-        return refused(key, ErrorCode.VALUE, errors)
+        return error_everywhere(key, ErrorCode.VALUE, errors)
     indices, wrong = _indices(key, vector, mode, direction)
     return Value.of_numbers(
-        (indices + 1).astype(np.float64), earliest(errors, wrong, where_wrong(indices < 0, ErrorCode.NA))
+        (indices + 1).astype(np.float64), first_error(errors, wrong, error_where(indices < 0, ErrorCode.NA))
     )
 
 
@@ -228,7 +231,7 @@ _OPTIONS: Final = (Anything(default=None), Number(default=0.0), Number(default=1
     Arrays,
     *_OPTIONS,
     returns=Kind.ANY,
-    facts=Facts(spills=True, mode_argument=5, finds=True),
+    facts=Facts(spills=True, mode_argument=5, jumps=True),
 )
 def xlookup(
     key: Value,
@@ -249,16 +252,16 @@ def xlookup(
 
 
 def _xlookup(key: Value, cells: Value, results: Value, instead: Value, mode: Value, direction: Value) -> Value:
-    key, instead, mode, direction = leveled(key, instead, mode, direction)
-    instead = with_errors(instead, where_wrong(instead.kinds == BLANK, ErrorCode.NA))
-    errors = earliest(key.errors, direct_errors(cells, key), direct_errors(results, key))
+    key, instead, mode, direction = align_ranges(key, instead, mode, direction)
+    instead = with_errors(instead, error_where(instead.kinds == BLANK, ErrorCode.NA))
+    errors = first_error(key.errors, errors_unless_range(cells, key), errors_unless_range(results, key))
     vector, grid = cells.as_range(), results.as_range()
     if _goes_down(vector, grid):
         return _found(key, vector, grid, instead, mode, direction, errors)
-    if _goes_down(transposed(vector), transposed(grid)):
-        row = _found(key, transposed(vector), transposed(grid), instead, mode, direction, errors)
-        return row if row.shape[1:] == key.shape[1:] else transposed(row)
-    return refused(key, ErrorCode.VALUE, errors)
+    if _goes_down(transpose_cells(vector), transpose_cells(grid)):
+        row = _found(key, transpose_cells(vector), transpose_cells(grid), instead, mode, direction, errors)
+        return row if row.shape[1:] == key.shape[1:] else transpose_cells(row)
+    return error_everywhere(key, ErrorCode.VALUE, errors)
 
 
 def _goes_down(vector: Value, results: Value) -> bool:
@@ -271,11 +274,11 @@ def _found(
 ) -> Value:
     """A single key finds a whole row of `results`, keys in an array formula the first cell of theirs."""
     indices, wrong = _indices(key, vector, mode, direction)
-    errors = earliest(errors, wrong)
+    errors = first_error(errors, wrong)
     found = (indices >= 0) & (errors == 0)
     rows = np.where(found, indices, 0)
     if results.shape[2] == 1 or indices.ndim == 3:
-        return choose(found, picked(results, rows, np.zeros(1, np.intp)), with_errors(instead, errors))
-    if not same_in_all_trials(found):
+        return choose(found, pick(results, rows, np.zeros(1, np.intp)), with_errors(instead, errors))
+    if not require_same_in_all_trials(found):
         return with_errors(instead, errors)
-    return picked(results, rows[:, None, None], np.arange(results.shape[2])[None, None, :])
+    return pick(results, rows[:, None, None], np.arange(results.shape[2])[None, None, :])

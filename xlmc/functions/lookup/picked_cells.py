@@ -1,4 +1,4 @@
-"""Cells taken from ranges and put together; of wide ranges a portion of the trials at a time, to bound memory.
+"""How cells are picked from ranges, rearranged and joined, and wide ranges computed in portions of the trials.
 
 Letters: n trials, (r, c) cells of a range, k cells in a row.
 """
@@ -15,65 +15,73 @@ from xlmc.functions.values import Objects, ShapeVaries, Value
 
 __all__ = [
     "Indices",
+    "arrange",
     "by_portions",
     "cell_of",
-    "each_part",
-    "flattened",
-    "joined",
-    "picked",
-    "side_by_side",
-    "transposed",
+    "flatten_cells",
+    "join_cells",
+    "join_values",
+    "map_parts",
+    "pick",
+    "repeat_trials",
+    "transpose_cells",
     "width_of",
 ]
 
 Indices = NDArray[np.intp]
 
 
-def each_part(value: Value, change: Callable[[NDArray[Any]], NDArray[Any]]) -> Value:
-    """Numbers, kinds and texts, each spread to the full shape and changed alike."""
+def map_parts(value: Value, change: Callable[[NDArray[Any]], NDArray[Any]]) -> Value:
+    """Spread numbers, kinds and texts to the full shape, and change each of them in the same way."""
     shape = value.shape
     texts = None if value.texts is None else change(np.broadcast_to(value.texts, shape))
     return Value(change(np.broadcast_to(value.numbers, shape)), change(np.broadcast_to(value.kinds, shape)), texts)
 
 
-def flattened(part: NDArray[Any], value: Value) -> NDArray[Any]:
-    """A part of a value, or what broadcasts to it, with the cells of each trial in a row: (n, k)."""
+def flatten_cells(part: NDArray[Any], value: Value) -> NDArray[Any]:
+    """Put the cells of each trial in a row, (n, k): of a part of the value, or of an array that broadcasts to it."""
     return np.broadcast_to(part, value.shape).reshape(value.shape[0], -1)
 
 
-def transposed(cells: Value) -> Value:
-    """Rows as columns: (n, r, c) -> (n, c, r)."""
-    return each_part(cells, lambda part: part.swapaxes(1, 2))
+def join_cells(rows: Sequence[NDArray[Any]]) -> NDArray[Any]:
+    """Put rows of cells side by side: (n, k) or (1, k) each -> (n, the sum of all k)."""
+    n = max(row.shape[0] for row in rows)
+    return np.concatenate([np.broadcast_to(row, (n, row.shape[1])) for row in rows], axis=1)
 
 
-def picked(cells: Value, rows: Indices, columns: Indices) -> Value:
-    """The cell at a row and a column, counted from 0, of each trial; all must lie inside.
+def transpose_cells(cells: Value) -> Value:
+    """Turn rows into columns: (n, r, c) -> (n, c, r)."""
+    return map_parts(cells, lambda part: part.swapaxes(1, 2))
+
+
+def pick(cells: Value, rows: Indices, columns: Indices) -> Value:
+    """Return, for each trial, the cell at a row and a column, counted from 0; all must lie inside.
 
     `rows` and `columns`, (n,) or (n, r, c) each, broadcast to the result's shape.
     """
     dimensions = max(rows.ndim, columns.ndim)
     n = cells.shape[0]
     trials = np.arange(n).reshape(n, *(1,) * (dimensions - 1))
-    return each_part(cells, lambda part: part[trials, rows, columns])
+    return map_parts(cells, lambda part: part[trials, rows, columns])
 
 
 def cell_of(values: Value, row: int, column: int) -> Value:
-    """One cell of a range: (n, r, c) -> (n,). A single row, column or value stands for all of them."""
+    """Return one cell of a range: (n, r, c) -> (n,). A single row, column or value counts as repeated."""
     if values.numbers.ndim == 1:
         return values
     row, column = (min(index, size - 1) for index, size in zip((row, column), values.shape[1:], strict=True))
-    return each_part(values, lambda part: part[:, row, column])
+    return map_parts(values, lambda part: part[:, row, column])
 
 
-def side_by_side(cells: Sequence[Value], rows: int, columns: int) -> Value:
-    """Values (n,), row by row, as a range (n, r, c)."""
+def arrange(cells: Sequence[Value], rows: int, columns: int) -> Value:
+    """Arrange values (n,) row by row as a range (n, r, c)."""
     n = max(cell.shape[0] for cell in cells)
-    tall = [each_part(cell, lambda part: np.broadcast_to(part, (n,))[:, None]) for cell in cells]
-    return each_part(joined(tall, axis=1), lambda part: part.reshape(n, rows, columns))
+    tall = [map_parts(cell, lambda part: np.broadcast_to(part, (n,))[:, None]) for cell in cells]
+    return map_parts(join_values(tall, axis=1), lambda part: part.reshape(n, rows, columns))
 
 
-def joined(values: Sequence[Value], axis: int) -> Value:
-    """Values along an axis; in the others they have one shape."""
+def join_values(values: Sequence[Value], axis: int) -> Value:
+    """Join values along an axis; along the others they have the same length."""
     texts = None
     if any(value.texts is not None for value in values):
         texts = np.concatenate([_texts(value) for value in values], axis)
@@ -88,33 +96,33 @@ def _texts(value: Value) -> Objects:
 
 
 _MOST: Final = 2**21
-"""Cells of all trials together that a body spreads out at once."""
+"""The most cells, of all trials together, that a body computes at once."""
 
 
 def width_of(*values: Value) -> int:
-    """How many cells a trial has, in those values that differ between trials."""
+    """Return how many cells a trial has in the largest value that differs between trials."""
     return max((int(np.prod(value.shape[1:])) for value in values if value.shape[0] > 1), default=0)
 
 
 def by_portions(compute: Callable[..., Value], values: Sequence[Value], width: int) -> Value:
-    """`compute(*values)`, where each trial takes memory for `width` cells.
+    """Compute `compute(*values)` in portions of the trials, each trial taking memory for `width` cells.
 
     Raises:
-        ShapeVaries: the portions' results differ in shape.
+        ShapeVaries: the results of the portions differ in shape.
     """
     n = max(value.shape[0] for value in values)
     size = max(1, _MOST // max(1, width))
     if n <= size:
         return compute(*values)
     parts = [slice(start, min(start + size, n)) for start in range(0, n, size)]
-    results = [_tall(compute(*(_trials(v, part) for v in values)), part.stop - part.start) for part in parts]
+    results = [repeat_trials(compute(*(_trials(v, part) for v in values)), part.stop - part.start) for part in parts]
     if len({result.shape[1:] for result in results}) > 1:
         raise ShapeVaries
-    return joined(results, axis=0)
+    return join_values(results, axis=0)
 
 
 def _trials(value: Value, part: slice) -> Value:
-    """Some of the trials; a constant stays as it is."""
+    """Return some of the trials; a constant stays as it is."""
     texts = None if value.texts is None else _some(value.texts, part)
     return Value(_some(value.numbers, part), _some(value.kinds, part), texts)
 
@@ -123,5 +131,6 @@ def _some(array: NDArray[Any], part: slice) -> NDArray[Any]:
     return array if array.shape[0] == 1 else array[part]
 
 
-def _tall(value: Value, n: int) -> Value:
-    return each_part(value, lambda part: np.broadcast_to(part, (n, *part.shape[1:])))
+def repeat_trials(value: Value, n: int) -> Value:
+    """Repeat a constant for n trials; a value that has n stays as it is."""
+    return map_parts(value, lambda part: np.broadcast_to(part, (n, *part.shape[1:])))

@@ -18,7 +18,7 @@ import numpy as np
 
 from xlmc.functions.criteria import is_pattern, pattern_of
 from xlmc.functions.lookup.picked_cells import Indices
-from xlmc.functions.ordering import Ordered, searched
+from xlmc.functions.ordering import Ordered, search_each_trial
 from xlmc.functions.values import ERROR, LOGICAL, NUMBER, TEXT, Bools, Floats, Value
 
 __all__ = ["EXACT", "LARGER", "SMALLER", "last_not_beyond", "nearest"]
@@ -46,7 +46,7 @@ def nearest(keys: Value, vector: Value, side: int = EXACT, *, last: bool = False
         result = _in_one(keys, vector, side, last) if len(vector.order) == 1 else _in_many(keys, vector, side, last)
         return _patterns_over(result, keys, vector, last) if wildcards else result
 
-    return searched(keys, vector, find)
+    return search_each_trial(keys, vector, find)
 
 
 def _in_one(keys: Ordered, vector: Ordered, side: int, last: bool) -> Indices:
@@ -131,7 +131,7 @@ def last_not_beyond(keys: Value, vector: Value, *, falling: bool = False) -> Ind
                 )
         return result
 
-    return searched(keys, vector, find)
+    return search_each_trial(keys, vector, find)
 
 
 def _halved(keys: Floats, comparable: Bools, order: Floats) -> Indices:

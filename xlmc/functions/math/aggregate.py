@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import direct_errors, earliest, with_errors
+from xlmc.functions.arguments import errors_unless_range, first_error, with_errors
 from xlmc.functions.denormals import TINIEST
 from xlmc.functions.facts import EmptyCells, Facts, Repeats
 from xlmc.functions.registry import REGISTRY, Arrays, Cells, Function, Kind, Number, Numbers, excel
@@ -39,7 +39,7 @@ def _total(x: Floats) -> Floats:
         never_errs=True,
         empty_cells=EmptyCells.IGNORED,
         repeats=Repeats.ADD_UP,
-        ends_tell=True,
+        ends_suffice=True,
         adds=True,
         measures=True,
     ),
@@ -66,7 +66,9 @@ def product(x: Floats, counts: Bools) -> Floats:
     "MIN",
     Numbers,
     ufunc=np.minimum,
-    facts=Facts(never_errs=True, empty_cells=EmptyCells.IGNORED, repeats=Repeats.ONCE, ends_tell=True, unrounded=True),
+    facts=Facts(
+        never_errs=True, empty_cells=EmptyCells.IGNORED, repeats=Repeats.ONCE, ends_suffice=True, unrounded=True
+    ),
 )
 def minimum(x: Floats, counts: Bools) -> Floats:
     """Smallest; 0 of nothing."""
@@ -77,7 +79,9 @@ def minimum(x: Floats, counts: Bools) -> Floats:
     "MAX",
     Numbers,
     ufunc=np.maximum,
-    facts=Facts(never_errs=True, empty_cells=EmptyCells.IGNORED, repeats=Repeats.ONCE, ends_tell=True, unrounded=True),
+    facts=Facts(
+        never_errs=True, empty_cells=EmptyCells.IGNORED, repeats=Repeats.ONCE, ends_suffice=True, unrounded=True
+    ),
 )
 def maximum(x: Floats, counts: Bools) -> Floats:
     """Largest; 0 of nothing."""
@@ -188,7 +192,7 @@ def _how_many(parts: Iterable[Bools]) -> Floats:
 @excel(
     "COUNT",
     Cells(repeat=True),
-    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.ADD_UP, ends_tell=True, exact_steps=True),
+    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.ADD_UP, ends_suffice=True, exact_steps=True),
 )
 def count(*values: Value) -> Floats:
     """How many are numbers; given directly, also logicals and the texts of numbers. Errors do not count."""
@@ -198,7 +202,7 @@ def count(*values: Value) -> Floats:
 @excel(
     "COUNTA",
     Cells(repeat=True),
-    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.ADD_UP, ends_tell=True, exact_steps=True),
+    facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.ADD_UP, ends_suffice=True, exact_steps=True),
 )
 def count_anything(*values: Value) -> Floats:
     """How many are not blank; an argument left out between commas counts, as in Excel."""
@@ -211,7 +215,7 @@ def count_blank(cells: Value) -> Value:
     empty = np.asarray(cells.kinds == BLANK)
     if cells.texts is not None:
         empty = empty | ((cells.kinds == TEXT) & (cells.texts == ""))
-    return Value.of_numbers(_how_many([_rows(empty, cells)]), direct_errors(cells))
+    return Value.of_numbers(_how_many([_rows(empty, cells)]), errors_unless_range(cells))
 
 
 def _first(errors: Iterable[Codes]) -> Codes:
@@ -226,7 +230,7 @@ def _first(errors: Iterable[Codes]) -> Codes:
 @excel(
     "SUMPRODUCT",
     Arrays(repeat=True),
-    facts=Facts(empty_cells=EmptyCells.PAIRED, repeats=Repeats.ADD_UP, ends_tell=True, measures=True),
+    facts=Facts(empty_cells=EmptyCells.PAIRED, repeats=Repeats.ADD_UP, ends_suffice=True, measures=True),
 )
 def sum_product(*values: Value) -> Value:
     """Sum of the products of the cells in one position; what is not a number is 0; `#VALUE!` for unequal shapes.
@@ -236,7 +240,7 @@ def sum_product(*values: Value) -> Value:
     ranges = [value.as_range() for value in values]
     shapes = {cells.shape[1:] for cells in ranges}
     if len(shapes) > 1:
-        return with_errors(constant(ErrorCode.VALUE), earliest(*(direct_errors(value) for value in values)))
+        return with_errors(constant(ErrorCode.VALUE), first_error(*(errors_unless_range(value) for value in values)))
     products = np.ones(1)
     errors = []
     for cells in ranges:

@@ -12,10 +12,10 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import direct_errors, earliest, first_errors, with_errors
-from xlmc.functions.criteria import met
+from xlmc.functions.arguments import errors_unless_range, first_error, first_error_in_row, with_errors
+from xlmc.functions.criteria import which_meet
 from xlmc.functions.facts import EmptyCells, Facts
-from xlmc.functions.lookup.picked_cells import by_portions, cell_of, each_part, flattened, side_by_side
+from xlmc.functions.lookup.picked_cells import arrange, by_portions, cell_of, flatten_cells, map_parts
 from xlmc.functions.math.aggregate import average, maximum, minimum, sum_
 from xlmc.functions.registry import Anything, Cells, excel
 from xlmc.functions.values import BLANK, NUMBER, Bools, Floats, Value, constant
@@ -34,9 +34,9 @@ def numbers_held(fold: Callable[[Floats, Bools], Floats]) -> Reduce:
     """A fold of the numbers among the cells; an error among them is the result."""
 
     def reduce(cells: Value, held: Bools) -> Value:
-        counts = held & (flattened(cells.kinds, cells) == NUMBER)
-        errors = np.where(held, flattened(cells.errors, cells), np.uint8(0))
-        return Value.of_numbers(fold(flattened(cells.numbers, cells), counts), first_errors(errors))
+        counts = held & (flatten_cells(cells.kinds, cells) == NUMBER)
+        errors = np.where(held, flatten_cells(cells.errors, cells), np.uint8(0))
+        return Value.of_numbers(fold(flatten_cells(cells.numbers, cells), counts), first_error_in_row(errors))
 
     return reduce
 
@@ -52,7 +52,7 @@ def _conditional(values: Value, pairs: Sequence[Value], reduce: Reduce, date1904
     criteria = pairs[1::2]
     everything = (values, *pairs[::2])
     cells = [value.as_range() for value in everything]
-    errors = earliest(*(direct_errors(value) for value in everything))
+    errors = first_error(*(errors_unless_range(value) for value in everything))
     if len({value.shape[1:] for value in cells}) > 1 or len(pairs) % 2:
         return with_errors(constant(ErrorCode.VALUE), errors)
     shape = np.broadcast_shapes(*(criterion.shape[1:] for criterion in criteria))
@@ -62,7 +62,7 @@ def _conditional(values: Value, pairs: Sequence[Value], reduce: Reduce, date1904
         ranges, criteria = others[: len(cells) - 1], others[len(cells) - 1 :]
         held = np.ones((1, width), bool)
         for cells_, criterion in zip(ranges, criteria, strict=True):
-            held = held & met(criterion, cells_, date1904=date1904)
+            held = held & which_meet(criterion, cells_, date1904=date1904)
         return reduce(values, held)
 
     if not shape:
@@ -71,7 +71,7 @@ def _conditional(values: Value, pairs: Sequence[Value], reduce: Reduce, date1904
         by_portions(compute, [*cells, *(cell_of(criterion, *index) for criterion in criteria)], width)
         for index in np.ndindex(*shape)
     ]
-    return with_errors(side_by_side(results, *shape), errors.reshape(-1, 1, 1))
+    return with_errors(arrange(results, *shape), errors.reshape(-1, 1, 1))
 
 
 def _beside(values: Value | None, cells: Value, criterion: Value, reduce: Reduce, date1904: bool) -> Value:
@@ -80,7 +80,7 @@ def _beside(values: Value | None, cells: Value, criterion: Value, reduce: Reduce
         return _conditional(cells, (cells, criterion), reduce, date1904)
     _, rows, columns = cells.as_range().shape
     result = _conditional(_resized(values.as_range(), rows, columns), (cells, criterion), reduce, date1904)
-    errors = earliest(direct_errors(cells), direct_errors(values))
+    errors = first_error(errors_unless_range(cells), errors_unless_range(values))
     return with_errors(result, errors if result.numbers.ndim == 1 else errors.reshape(-1, 1, 1))
 
 
@@ -90,7 +90,7 @@ def _resized(values: Value, rows: int, columns: int) -> Value:
     What it lacks is taken for empty: Excel goes on to the cells below and to the right, so that the caller gives the
     range in its full size, as far as the used part of the sheet goes.
     """
-    cut = each_part(values, lambda part: part[:, :rows, :columns])
+    cut = map_parts(values, lambda part: part[:, :rows, :columns])
     edges = ((0, 0), (0, rows - cut.shape[1]), (0, columns - cut.shape[2]))
     texts = None if cut.texts is None else np.pad(cut.texts, edges, constant_values="")
     return Value(np.pad(cut.numbers, edges), np.pad(cut.kinds, edges, constant_values=BLANK), texts)

@@ -12,18 +12,18 @@ import numpy as np
 
 from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import (
-    direct_errors,
-    earliest,
-    first_errors,
-    leveled,
-    same_in_all_trials,
-    where_wrong,
+    align_ranges,
+    error_where,
+    errors_unless_range,
+    first_error,
+    first_error_in_row,
+    require_same_in_all_trials,
     whole_numbers,
     with_errors,
 )
 from xlmc.functions.budget import ask_for_cells, ask_for_work
 from xlmc.functions.facts import EmptyCells, Facts
-from xlmc.functions.lookup.picked_cells import cell_of, flattened, transposed
+from xlmc.functions.lookup.picked_cells import cell_of, flatten_cells, transpose_cells
 from xlmc.functions.registry import Anything, Arrays, Cells, Kind, Ranges, excel
 from xlmc.functions.toolpak import OneCell, strict_numbers
 from xlmc.functions.values import BLANK, DIV0, ERROR, NUM, NUMBER, Codes, Floats, Value, constant
@@ -39,7 +39,7 @@ def _matrix(value: Value) -> tuple[Floats, Codes]:
     cells = value.as_range()
     other = np.where(cells.kinds >= ERROR, cells.kinds - np.uint8(ERROR), np.uint8(ErrorCode.VALUE))
     codes = np.where(cells.kinds == NUMBER, np.uint8(0), other).astype(np.uint8)
-    return np.broadcast_to(cells.numbers, cells.shape), first_errors(flattened(codes, cells))[:, None, None]
+    return np.broadcast_to(cells.numbers, cells.shape), first_error_in_row(flatten_cells(codes, cells))[:, None, None]
 
 
 @excel("MMULT", Arrays, Arrays, returns=Kind.ANY, facts=Facts(spills=True))
@@ -50,7 +50,9 @@ def product(left: Value, right: Value) -> Value:
     """
     (a, a_errors), (b, b_errors) = _matrix(left), _matrix(right)
     if a.shape[2] != b.shape[1]:
-        return with_errors(constant(ErrorCode.VALUE), earliest(direct_errors(left), direct_errors(right)))
+        return with_errors(
+            constant(ErrorCode.VALUE), first_error(errors_unless_range(left), errors_unless_range(right))
+        )
     n, rows, columns = max(a.shape[0], b.shape[0]), a.shape[1], b.shape[2]
     ask_for_cells(n, rows, columns)
     ask_for_work(n * rows * a.shape[2] * columns)
@@ -111,9 +113,9 @@ def unit_matrix(dimension: Value) -> Value:
         ShapeVaries: the size is not the same in every trial.
     """
     size, errors = whole_numbers(cell_of(dimension, 0, 0))
-    outside = where_wrong((size < 1) | (size > _WIDEST), ErrorCode.VALUE)
-    refused = earliest(errors, outside)
-    common = int(same_in_all_trials(np.where(refused > 0, 0.0, size)))
+    outside = error_where((size < 1) | (size > _WIDEST), ErrorCode.VALUE)
+    refused = first_error(errors, outside)
+    common = int(require_same_in_all_trials(np.where(refused > 0, 0.0, size)))
     if not common:
         return Value.of_numbers(np.zeros(refused.shape), refused)
     ask_for_cells(1, common, common)
@@ -123,23 +125,23 @@ def unit_matrix(dimension: Value) -> Value:
 @excel("TRANSPOSE", Cells(ranges=Ranges.SINGLE), returns=Kind.ANY, facts=Facts(spills=True))
 def transpose(cells: Value) -> Value:
     """Rows as columns: (n, r, c) -> (n, c, r)."""
-    return transposed(cells.as_range())
+    return transpose_cells(cells.as_range())
 
 
 def _cells(value: Value) -> tuple[Floats, Codes]:
     """The numbers and kinds of a range, or of one value, cell by cell: (n, k), (n, k)."""
-    return flattened(value.numbers, value), flattened(value.kinds, value)
+    return flatten_cells(value.numbers, value), flatten_cells(value.kinds, value)
 
 
 def _over_pairs(x: Value, y: Value, term: Callable[[Floats, Floats], Floats]) -> Value:
     """Sum of `term` over the pairs in which both are numbers; `#N/A` for unequal counts, `#DIV/0!` of no pair."""
     (left, left_kinds), (right, right_kinds) = _cells(x), _cells(y)
     if left.shape[1] != right.shape[1]:
-        return with_errors(constant(ErrorCode.NA), earliest(direct_errors(x), direct_errors(y)))
+        return with_errors(constant(ErrorCode.NA), first_error(errors_unless_range(x), errors_unless_range(y)))
     counts = (left_kinds == NUMBER) & (right_kinds == NUMBER)
     total = np.add.accumulate(np.where(counts, term(left, right), 0.0), axis=1)[:, -1]
     kinds = np.concatenate(np.broadcast_arrays(left_kinds, right_kinds), axis=1)
-    errors = first_errors(np.where(kinds >= ERROR, kinds - np.uint8(ERROR), np.uint8(0)).astype(np.uint8))
+    errors = first_error_in_row(np.where(kinds >= ERROR, kinds - np.uint8(ERROR), np.uint8(0)).astype(np.uint8))
     return Value.of_numbers(np.where(counts.any(axis=1), total, DIV0), errors)
 
 
@@ -164,13 +166,13 @@ def sum_of_squares_of_differences(x: Value, y: Value) -> Value:
 @excel("SERIESSUM", OneCell, OneCell, OneCell, Cells)
 def series_sum(x: Value, first: Value, step: Value, coefficients: Value) -> Value:
     """Sum of a·x^first + b·x^(first + step) + …, the coefficients read row by row; a blank one is 0."""
-    values = leveled(x, first, step)
+    values = align_ranges(x, first, step)
     (base, _), (power, _), (more, _) = numbers = [strict_numbers(value) for value in values]
     factors, kinds = _cells(coefficients)
     other = np.where(kinds >= ERROR, kinds - np.uint8(ERROR), np.uint8(ErrorCode.VALUE))
-    refused = first_errors(np.where((kinds == NUMBER) | (kinds == BLANK), np.uint8(0), other).astype(np.uint8))
+    refused = first_error_in_row(np.where((kinds == NUMBER) | (kinds == BLANK), np.uint8(0), other).astype(np.uint8))
     spread = (-1,) + (1,) * (values[0].numbers.ndim - 1)
     total = np.zeros(spread[1:] or 1)
     for i in range(factors.shape[1]):
         total = total + factors[:, i].reshape(spread) * np.float_power(base, power + i * more)
-    return Value.of_numbers(total, earliest(*(codes for _, codes in numbers), refused.reshape(spread)))
+    return Value.of_numbers(total, first_error(*(codes for _, codes in numbers), refused.reshape(spread)))

@@ -9,10 +9,10 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import first_errors
-from xlmc.functions.lookup.picked_cells import flattened as in_rows
+from xlmc.functions.arguments import first_error_in_row
+from xlmc.functions.lookup.picked_cells import flatten_cells
 from xlmc.functions.registry import Cells, Kind, Number, excel
-from xlmc.functions.toolpak import OneCell, flattened, numbers_only
+from xlmc.functions.toolpak import OneCell, all_strict_numbers, numbers_only
 from xlmc.functions.values import BLANK, NUM, Bools, Codes, Floats, Value
 
 __all__: list[str] = []
@@ -37,13 +37,13 @@ _DOUBLE_FACTORIALS: Final = np.array([_double_factorial(n) for n in range(-1, 30
 def _refused(x: Floats, errors: Codes, bad: Bools) -> Codes:
     """The first error of each trial, `#NUM!` where a number is bad: (n, k) -> (n,)."""
     found = np.where((errors == 0) & bad, np.uint8(ErrorCode.NUM), errors).astype(np.uint8)
-    return first_errors(found)
+    return first_error_in_row(found)
 
 
 @excel("GCD", Cells(repeat=True))
 def gcd(*values: Value) -> Value:
     """Greatest common divisor; `#NUM!` below 0 and from 2^53 on."""
-    x, errors = flattened(values)
+    x, errors = all_strict_numbers(values)
     bad = (x < 0) | (x >= _EXACT)
     whole = np.where(bad, 0.0, x).astype(np.int64)
     return Value.of_numbers(np.gcd.reduce(whole, axis=1).astype(np.float64), _refused(x, errors, bad))
@@ -52,7 +52,7 @@ def gcd(*values: Value) -> Value:
 def _without_blanks(values: Sequence[Value], x: Floats) -> Floats:
     """1 for each empty cell, which changes no multiple, unless there is nothing else: (n, k)."""
     empty = [
-        in_rows((value.kinds == BLANK) & (value.numbers.ndim == 3), value)  # what is left out of a call is 0
+        flatten_cells((value.kinds == BLANK) & (value.numbers.ndim == 3), value)  # what is left out of a call is 0
         for value in values
     ]
     blank = np.concatenate([np.broadcast_to(part, (x.shape[0], part.shape[1])) for part in empty], axis=1)
@@ -65,7 +65,7 @@ def lcm(*values: Value) -> Value:
 
     Empty cells are left out; of these alone it is 0.
     """
-    x, errors = flattened(values)
+    x, errors = all_strict_numbers(values)
     x = _without_blanks(values, x)
     bad = (x < 0) | (x >= _EXACT)
     result = np.ones(x.shape[0])
@@ -138,7 +138,7 @@ def factdouble(x: Floats) -> Floats:
 @excel("MULTINOMIAL", Cells(repeat=True))
 def multinomial(*values: Value) -> Value:
     """Factorial of the sum by the product of the factorials; `#NUM!` for a negative number."""
-    x, errors = flattened(values)
+    x, errors = all_strict_numbers(values)
     bad = (x < 0) | (x >= _MOST)
     counts = np.where(bad, 0.0, np.trunc(x))
     sums = np.add.accumulate(counts, axis=1)

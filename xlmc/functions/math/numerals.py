@@ -7,7 +7,7 @@ from typing import Final
 from xlmc.errors import ErrorCode
 from xlmc.functions.per_element import per_element, per_object
 from xlmc.functions.registry import Anything, Kind, Number, Text, excel
-from xlmc.functions.toolpak import number_of
+from xlmc.functions.toolpak import strict_number
 
 __all__ = ["digits_of", "read_digits"]
 
@@ -23,8 +23,8 @@ _EXACT: Final = 2.0**53
 @per_object
 def roman(number: object, form: object = 0.0) -> str | ErrorCode:
     """Roman numeral, from the classic form 0 (also TRUE) to the shortest, 4 (also FALSE); `#VALUE!` above 3999."""
-    value = float(number) if isinstance(number, bool) else number_of(number)
-    level = (0.0 if form else 4.0) if isinstance(form, bool) else number_of(form)
+    value = float(number) if isinstance(number, bool) else strict_number(number)
+    level = (0.0 if form else 4.0) if isinstance(form, bool) else strict_number(form)
     for found in (value, level):
         if isinstance(found, ErrorCode):
             return found

@@ -13,9 +13,9 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.functions.arguments import leveled, refused, whole_numbers
+from xlmc.functions.arguments import align_ranges, error_everywhere, whole_numbers
 from xlmc.functions.logical import choose
-from xlmc.functions.lookup.picked_cells import each_part, flattened
+from xlmc.functions.lookup.picked_cells import flatten_cells, map_parts
 from xlmc.functions.registry import Arrays, Cells, Number, excel, row_of
 from xlmc.functions.values import BLANK, ERROR, ShapeVaries, Value, constant
 
@@ -93,7 +93,7 @@ def aggregate(number: int, options: int, values: Sequence[Value]) -> Value:
 
 def _rank(value: Value) -> Value:
     """Which number is wanted; of one cell a single value, so that the result is one too."""
-    return each_part(value, lambda part: part[:, 0, 0]) if value.shape[1:] == (1, 1) else value
+    return map_parts(value, lambda part: part[:, 0, 0]) if value.shape[1:] == (1, 1) else value
 
 
 def _ranges(values: Sequence[Value]) -> list[Value]:
@@ -114,8 +114,8 @@ def _by_number(number: Value, compute: Callable[[int], Value]) -> Value:
         FormulaError: the number is an array, and so are these, of a size that does not fit it.
     """
     numbers, errors = whole_numbers(number)
-    result = refused(number, ErrorCode.VALUE, errors)
-    present = np.unique(flattened(numbers, number)[flattened(errors, number) == 0]).tolist()
+    result = error_everywhere(number, ErrorCode.VALUE, errors)
+    present = np.unique(flatten_cells(numbers, number)[flatten_cells(errors, number) == 0]).tolist()
     found = {wanted: compute(int(wanted)) for wanted in present}
     shapes = {value.shape[1:] for value in found.values()} | ({()} if errors.any() else set())
     if number.numbers.ndim == 1 and len(shapes) > 1:
@@ -139,7 +139,7 @@ def _subtotal(number: Value, *values: Value) -> Value:
 @excel("AGGREGATE", Number, Number, Arrays(repeat=True))
 def _aggregate(number: Value, options: Value, *values: Value) -> Value:
     """A function by number of ranges, errors left out with options 2, 3, 6 and 7: as SUBTOTAL, and 12 MEDIAN to 19."""
-    number, options = leveled(number, options)
+    number, options = align_ranges(number, options)
     cells = np.broadcast_shapes(number.shape[1:], options.shape[1:])
-    number = each_part(number, lambda part: np.broadcast_to(part, (part.shape[0], *cells)))
+    number = map_parts(number, lambda part: np.broadcast_to(part, (part.shape[0], *cells)))
     return _by_number(number, lambda chosen: _by_number(options, lambda wanted: aggregate(chosen, wanted, values)))

@@ -126,7 +126,7 @@ excel("ACOS", Number, ufunc=np.arccos, facts=Facts(domain=Domain(-1.0, 1.0)))(np
 excel("ATAN", Number, ufunc=np.arctan)(np.arctan)
 excel("SINH", Number, ufunc=np.sinh)(np.sinh)
 excel("COSH", Number, ufunc=np.cosh)(np.cosh)
-excel("TANH", Number, ufunc=np.tanh, facts=Facts(between=(-1.0, 1.0)))(np.tanh)
+excel("TANH", Number, ufunc=np.tanh, facts=Facts(result_range=(-1.0, 1.0)))(np.tanh)
 excel("ASINH", Number, ufunc=np.arcsinh)(np.arcsinh)
 excel("ACOSH", Number, ufunc=np.arccosh, facts=Facts(domain=Domain(1.0)))(np.arccosh)
 excel("ATANH", Number, ufunc=np.arctanh, facts=Facts(domain=Domain(-1.0, 1.0)))(np.arctanh)
@@ -142,13 +142,13 @@ def _small(x: Floats) -> Bools:
 _ALL_SMALL: Final = Within(_LIMIT)
 
 
-@excel("SIN", Number, ufunc=_SINE, guard=_ALL_SMALL, facts=Facts(measures=True, between=(-1.0, 1.0)))
+@excel("SIN", Number, ufunc=_SINE, guard=_ALL_SMALL, facts=Facts(measures=True, result_range=(-1.0, 1.0)))
 def sin(x: Floats) -> Floats:
     """Sine."""
     return np.where(_small(x), _SINE(x), NUM)
 
 
-@excel("COS", Number, ufunc=_COSINE, guard=_ALL_SMALL, facts=Facts(measures=True, between=(-1.0, 1.0)))
+@excel("COS", Number, ufunc=_COSINE, guard=_ALL_SMALL, facts=Facts(measures=True, result_range=(-1.0, 1.0)))
 def cos(x: Floats) -> Floats:
     """Cosine."""
     return np.where(_small(x), _COSINE(x), NUM)

@@ -10,7 +10,7 @@ from typing import Final
 
 from xlmc.functions.number_format.placeholders import Written, count_digits, fill_decimals, fill_whole, settle_commas
 from xlmc.functions.number_format.tokens import FormatError, Mark, Token
-from xlmc.functions.number_text import shown
+from xlmc.functions.number_text import round_to_15_digits
 
 __all__ = ["decimal_layout", "exponent_layout", "fraction_layout"]
 
@@ -38,7 +38,7 @@ class _DecimalLayout:
         return count_digits(self.after or ())
 
     def write(self, size: float, date1904: bool = False) -> Written:
-        number = shown(size).scaleb(self.scale).quantize(Decimal(1).scaleb(-self.decimals), context=_WIDE)
+        number = round_to_15_digits(size).scaleb(self.scale).quantize(Decimal(1).scaleb(-self.decimals), context=_WIDE)
         whole, _, decimals = f"{number:f}".partition(".")
         return self.filled(whole.lstrip("0"), decimals), not number
 
@@ -73,7 +73,7 @@ class _ExponentLayout:
     power: tuple[Token, ...]
 
     def write(self, size: float, date1904: bool = False) -> Written:
-        number = shown(size)
+        number = round_to_15_digits(size)
         if not number:
             zeros = "0" * count_digits(self.mantissa.before)
             return self.mantissa.filled(zeros, "") + self._power(0), False

@@ -11,7 +11,7 @@ from decimal import ROUND_HALF_UP, Context, Decimal
 from typing import Final, Protocol
 
 from xlmc.functions.number_format.tokens import FormatError, Mark, Token, literal
-from xlmc.functions.number_text import shown
+from xlmc.functions.number_text import round_to_15_digits
 
 __all__ = [
     "BareLayout",
@@ -94,7 +94,7 @@ _SIX: Final = Context(prec=6, rounding=ROUND_HALF_UP)
 
 def general_in_cell(size: float) -> str:
     """A number, 0 or more, in General format as a cell shows it: in 11 characters, with an exponent if need be."""
-    number = shown(size)
+    number = round_to_15_digits(size)
     exponent = number.adjusted() if number else 0
     if -10 < exponent < _WIDTH:
         decimals = max(_WIDTH - 2 - max(exponent, 0), 0)

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.functions.arguments import earliest
+from xlmc.functions.arguments import first_error
 from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.registry import Arrays, Number, excel
-from xlmc.functions.samples import laid_out, mean_of, of_pairs, pairs_of, points_of, row_sums
+from xlmc.functions.samples import mean_of, of_pairs, pairs_of, points_of, restore_shape, row_sums
 from xlmc.functions.values import DIV0, NA, Bools, Floats, Value
 
 __all__: list[str] = []
@@ -99,8 +99,8 @@ def forecast(at: Value, ys: Value, xs: Value) -> Value:
     (points,), codes, shape = points_of(at)
     pairs = pairs_of(ys, xs)
     if pairs is None:
-        return laid_out(np.full((1, 1), NA), codes[0], shape)
+        return restore_shape(np.full((1, 1), NA), codes[0], shape)
     y, x, counts, errors = pairs
     mean_x, mean_y, steepness, varies = (part[:, None] for part in _line(y, x, counts))
     result = np.where(varies, mean_y + steepness * (points - mean_x), DIV0)
-    return laid_out(result, earliest(codes[0], errors[:, None]), shape)
+    return restore_shape(result, first_error(codes[0], errors[:, None]), shape)

@@ -9,9 +9,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from xlmc.functions.arguments import earliest, first_errors
+from xlmc.functions.arguments import first_error, first_error_in_row
 from xlmc.functions.facts import EmptyCells, Facts, Repeats
-from xlmc.functions.lookup.picked_cells import flattened
+from xlmc.functions.lookup.picked_cells import flatten_cells
 from xlmc.functions.math.rounding import int_
 from xlmc.functions.registry import Cells, Number, Numbers, excel
 from xlmc.functions.samples import Sample, at_each, mean_of, row_sums, spread_of
@@ -109,7 +109,7 @@ def _columns(value: Value) -> tuple[Floats, Bools, Codes]:
     in_range = value.numbers.ndim == 3
     x, errors = (value.numbers, value.errors) if in_range else value.to_numbers()
     counts = (value.kinds != BLANK) | (not in_range)
-    x, counts, errors = (flattened(array, value) for array in (x, counts & (errors == 0), errors))
+    x, counts, errors = (flatten_cells(array, value) for array in (x, counts & (errors == 0), errors))
     return x, counts, errors
 
 
@@ -124,10 +124,10 @@ def _over_all(
         x, counts = (
             np.concatenate([np.broadcast_to(part[i], (n, part[i].shape[1])) for part in parts], axis=1) for i in (0, 1)
         )
-        return Value.of_numbers(body(x, counts), earliest(*(first_errors(codes) for _, _, codes in parts)))
+        return Value.of_numbers(body(x, counts), first_error(*(first_error_in_row(codes) for _, _, codes in parts)))
 
     apply.__doc__ = meaning
-    facts = Facts(empty_cells=EmptyCells.IGNORED, repeats=repeats, ends_tell=repeats is Repeats.ONCE)
+    facts = Facts(empty_cells=EmptyCells.IGNORED, repeats=repeats, ends_suffice=repeats is Repeats.ONCE)
     excel(name, Cells(repeat=True), facts=facts)(apply)
 
 

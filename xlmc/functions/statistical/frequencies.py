@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong
+from xlmc.functions.arguments import error_where, first_error, first_error_in_row, require_same_in_all_trials
 from xlmc.functions.facts import EmptyCells, Facts
-from xlmc.functions.lookup.picked_cells import Indices, flattened
+from xlmc.functions.lookup.picked_cells import Indices, flatten_cells
 from xlmc.functions.registry import Arrays, Kind, Number, excel
-from xlmc.functions.samples import laid_out, pairs_of, points_of, row_sums, sample_of
+from xlmc.functions.samples import pairs_of, points_of, restore_shape, row_sums, sample_of
 from xlmc.functions.values import ERROR, NA, NUM, NUMBER, Bools, Codes, Floats, Value
 
 __all__: list[str] = []
@@ -44,16 +44,16 @@ def _modes_of(values: tuple[Value, ...]) -> _Modes:
     x = np.concatenate([np.broadcast_to(x, (n, x.shape[1])) for x, _, _ in parts], axis=1)
     counts = np.concatenate([np.broadcast_to(counts, (n, counts.shape[1])) for _, counts, _ in parts], axis=1)
     indices = _first_indices(x, counts)
-    errors = earliest(*(first_errors(codes) for _, _, codes in parts))
+    errors = first_error(*(first_error_in_row(codes) for _, _, codes in parts))
     return _Modes(x, indices, (indices < x.shape[1]).sum(axis=1), np.broadcast_to(errors, (n,)))
 
 
 def _listed(value: Value) -> tuple[Floats, Bools, Codes]:
     """Numbers, which cells hold one, and errors: (n, k) each. A value or cell by itself must be a number."""
     alone = value.shape[1:] in ((), (1, 1))
-    kinds = flattened(value.kinds, value)
-    wrong = where_wrong(alone & (kinds != NUMBER) & (kinds < ERROR), ErrorCode.VALUE)
-    return flattened(value.numbers, value), kinds == NUMBER, earliest(flattened(value.errors, value), wrong)
+    kinds = flatten_cells(value.kinds, value)
+    wrong = error_where(alone & (kinds != NUMBER) & (kinds < ERROR), ErrorCode.VALUE)
+    return flatten_cells(value.numbers, value), kinds == NUMBER, first_error(flatten_cells(value.errors, value), wrong)
 
 
 def _first_indices(x: Floats, counts: Bools) -> Indices:
@@ -85,7 +85,7 @@ def modes_in_a_column(*values: Value) -> Value:
         ShapeVaries: not all trials have as many.
     """
     modes = _modes_of(values)
-    rows = int(same_in_all_trials(np.where(modes.errors > 0, 1, np.maximum(modes.how_many, 1))))
+    rows = int(require_same_in_all_trials(np.where(modes.errors > 0, 1, np.maximum(modes.how_many, 1))))
     found = np.take_along_axis(modes.x, np.minimum(modes.indices[:, :rows], modes.x.shape[1] - 1), axis=1)
     found = np.where(modes.how_many[:, None] > 0, found, NA)
     return Value.of_numbers(found[:, :, None], modes.errors.reshape(-1, 1, 1))
@@ -101,15 +101,15 @@ def frequency(values: Value, bins: Value) -> Value:
         ShapeVaries: not all trials have the same cells for bins.
     """
     sample, given = sample_of(values), sample_of(bins)
-    limits = given.x[:, same_in_all_trials(given.counts | (given.codes > 0))]
+    limits = given.x[:, require_same_in_all_trials(given.counts | (given.codes > 0))]
     order = np.argsort(limits, axis=1, kind="stable")
     rising = np.concatenate([np.take_along_axis(limits, order, axis=1), np.full((limits.shape[0], 1), np.inf)], axis=1)
-    up_to = sample.how_many(np.less_equal, rising)
+    up_to = sample.count_where(np.less_equal, rising)
     each = np.diff(up_to, axis=1, prepend=0.0)
     back = np.argsort(order, axis=1, kind="stable")
     back = np.concatenate([back, np.full((back.shape[0], 1), back.shape[1])], axis=1)
     result = np.take_along_axis(each, np.broadcast_to(back, each.shape), axis=1)
-    errors = earliest(sample.errors, given.errors)
+    errors = first_error(sample.errors, given.errors)
     return Value.of_numbers(result[:, :, None], errors[:, None, None])
 
 
@@ -122,11 +122,11 @@ def probability_between(values: Value, shares: Value, low: Value, high: Value | 
     pairs = pairs_of(values, shares)
     points, codes, shape = points_of(low, low if high is None else high)
     if pairs is None:
-        return laid_out(np.full((1, 1), NA), earliest(*codes), shape)
+        return restore_shape(np.full((1, 1), NA), first_error(*codes), shape)
     x, p, counts, errors = pairs
     p = np.where(counts, p, 0.0)
     proper = ((p > 0) & (p <= 1) | ~counts).all(axis=1) & (np.abs(row_sums(p) - 1) < _WHOLE)
     columns = zip(*(point.T for point in points), strict=True)
     sums = [row_sums(np.where((x >= a[:, None]) & (x <= b[:, None]), p, 0.0)) for a, b in columns]
     result = np.where(proper[:, None], np.stack(sums, axis=1), NUM)
-    return laid_out(result, earliest(errors[:, None], *codes), shape)
+    return restore_shape(result, first_error(errors[:, None], *codes), shape)

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from xlmc.functions.arguments import earliest
+from xlmc.functions.arguments import first_error
 from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.registry import Arrays, Cells, Number, excel
 from xlmc.functions.samples import (
     Sample,
     at_each,
-    laid_out,
     mean_of,
     pairs_of,
     points_of,
+    restore_shape,
     row_sums,
     sample_of,
 )
@@ -82,7 +82,7 @@ def t_test(first: Value, second: Value, tails: Value, kind: Value) -> Value:
         result = np.where(kinds == number, found[:, None], result)
     halved = np.where((sides == 1) & (result >= 0), result / 2, result)
     result = np.where((sides == 1) | (sides == 2), halved, NUM)
-    return laid_out(result, earliest(one.errors[:, None], other.errors[:, None], *codes), shape)
+    return restore_shape(result, first_error(one.errors[:, None], other.errors[:, None], *codes), shape)
 
 
 @excel("F.TEST", Arrays, Arrays, aliases=("FTEST",), facts=Facts(empty_cells=EmptyCells.PAIRED))
@@ -94,7 +94,7 @@ def f_test(first: Value, second: Value) -> Value:
     m, n = np.where(proper, k1 - 1, 1.0), np.where(proper, k2 - 1, 1.0)
     ratio = np.where(proper, total1, 1.0) / m / (np.where(proper, total2, 1.0) / n)
     smaller = np.minimum(f_below(ratio, m, n), f_above(ratio, m, n))
-    return Value.of_numbers(np.where(proper, 2 * smaller, DIV0), earliest(one.errors, other.errors))
+    return Value.of_numbers(np.where(proper, 2 * smaller, DIV0), first_error(one.errors, other.errors))
 
 
 def _freedom_of_table(rows: int, columns: int) -> int:
@@ -108,7 +108,7 @@ def chi_square_test(actual: Value, expected: Value) -> Value:
     pairs = pairs_of(actual, expected)
     freedom = _freedom_of_table(*actual.as_range().shape[1:])
     if pairs is None or freedom == 0:
-        return Value.of_numbers(np.full(1, NA), earliest(sample_of(actual).errors, sample_of(expected).errors))
+        return Value.of_numbers(np.full(1, NA), first_error(sample_of(actual).errors, sample_of(expected).errors))
     found, wanted, counts, errors = pairs
     divisor = np.where(counts & (wanted != 0), wanted, 1.0)
     total = row_sums(np.where(counts, (found - wanted) / divisor * (found - wanted), 0.0))

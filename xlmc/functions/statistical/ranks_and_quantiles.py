@@ -89,7 +89,7 @@ def quartile_exclusive(sample: Sample, quarters: Floats) -> Floats:
 
 def _rank_of(sample: Sample, x: Floats) -> tuple[Floats, Bools]:
     """The rank of numbers (n, m) in the sample, counted from 0, and whether they lie inside it."""
-    below, equal = sample.how_many(np.less, x), sample.how_many(np.equal, x)
+    below, equal = sample.count_where(np.less, x), sample.count_where(np.equal, x)
     inside = (equal > 0) | ((below > 0) & (below < sample.size))
     ordered = np.where(np.isinf(ordered := sample.ordered()), 0.0, ordered)
     after = np.clip(below, 0.0, np.maximum(sample.size - 1, 0.0))
@@ -135,8 +135,8 @@ def percent_rank_exclusive(sample: Sample, x: Floats, digits: Floats = _THREE) -
 
 def _rank(x: Floats, sample: Sample, rising: Floats) -> tuple[Floats, Floats]:
     """One more than how many stand before each number, and how many equal it; `rising` 0 for the largest first."""
-    ahead = np.where(rising == 0, sample.how_many(np.greater, x), sample.how_many(np.less, x))
-    return ahead + 1, sample.how_many(np.equal, x)
+    ahead = np.where(rising == 0, sample.count_where(np.greater, x), sample.count_where(np.less, x))
+    return ahead + 1, sample.count_where(np.equal, x)
 
 
 @excel("RANK.EQ", Number, Cells, Number(default=0.0), aliases=("RANK",), facts=Facts(empty_cells=EmptyCells.IGNORED))

@@ -17,9 +17,9 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import earliest, first_errors, same_in_all_trials, where_wrong
+from xlmc.functions.arguments import error_where, first_error, first_error_in_row, require_same_in_all_trials
 from xlmc.functions.facts import Facts
-from xlmc.functions.lookup.picked_cells import flattened
+from xlmc.functions.lookup.picked_cells import flatten_cells
 from xlmc.functions.registry import Anything, Arrays, Kind, Ranges, excel
 from xlmc.functions.samples import mean_of, row_sums
 from xlmc.functions.values import BLANK, ERROR, NA, NUM, NUMBER, Bools, Codes, Floats, Value, constant
@@ -57,15 +57,17 @@ def _given(value: Value | None) -> Value | None:
     """An argument, None for one left empty between commas."""
     if value is None or value.numbers.ndim == 3:
         return value
-    return None if same_in_all_trials(value.kinds == BLANK) else value
+    return None if require_same_in_all_trials(value.kinds == BLANK) else value
 
 
 def _numbers(value: Value) -> tuple[Floats, Codes]:
     """A range all of numbers (n, r, c), and its first error: (n,)."""
     cells = value.as_range()
-    kinds = flattened(cells.kinds, cells)
-    wrong = where_wrong((kinds != NUMBER) & (kinds < ERROR), ErrorCode.VALUE)
-    return np.broadcast_to(cells.numbers, cells.shape), first_errors(earliest(flattened(cells.errors, cells), wrong))
+    kinds = flatten_cells(cells.kinds, cells)
+    wrong = error_where((kinds != NUMBER) & (kinds < ERROR), ErrorCode.VALUE)
+    return np.broadcast_to(cells.numbers, cells.shape), first_error_in_row(
+        first_error(flatten_cells(cells.errors, cells), wrong)
+    )
 
 
 def _known(ys: Value, xs: Value | None) -> _Known | None:
@@ -81,7 +83,7 @@ def _known(ys: Value, xs: Value | None) -> _Known | None:
     variables = _variables(x, in_row, shape)
     if variables is None:
         return None
-    return _Known(y.reshape(y.shape[0], -1), variables, earliest(wrong_y, wrong_x), in_row, shape)
+    return _Known(y.reshape(y.shape[0], -1), variables, first_error(wrong_y, wrong_x), in_row, shape)
 
 
 def _variables(x: Floats, in_row: bool, shape: tuple[int, ...]) -> Floats | None:
@@ -99,13 +101,13 @@ def _switch(value: Value | None, otherwise: bool) -> tuple[Bools, Codes]:
         return np.full(1, otherwise), np.zeros(1, np.uint8)
     truth, errors = value.to_logicals()
     truth = np.where((value.kinds == BLANK) & (value.numbers.ndim == 1), otherwise, truth)
-    return flattened(truth, value)[:, 0], flattened(errors, value)[:, 0]
+    return flatten_cells(truth, value)[:, 0], flatten_cells(errors, value)[:, 0]
 
 
 def _logarithms(known: _Known) -> _Known:
     """The observations of ln y; `#NUM!` where some y is not above 0."""
     positive = np.asarray(known.y > 0)
-    errors = earliest(known.errors, where_wrong(np.asarray((known.y <= 0).any(axis=1)), ErrorCode.NUM))
+    errors = first_error(known.errors, error_where(np.asarray((known.y <= 0).any(axis=1)), ErrorCode.NUM))
     return _Known(np.log(np.where(positive, known.y, 1.0)), known.x, errors, known.in_row, known.shape)
 
 
@@ -143,9 +145,9 @@ def _estimate(known: _Known | None, const: Value | None, stats: Value | None, *,
     (free, wrong), (whole, wrong_too) = _switch(const, True), _switch(stats, False)
     found = fit(known.y, known.x, free)
     first = _coefficients(found, exponential=exponential)
-    in_full = bool(same_in_all_trials(whole))
+    in_full = bool(require_same_in_all_trials(whole))
     result = _table(found, free, first) if in_full else first[:, None, :]
-    return Value.of_numbers(result, earliest(known.errors, wrong, wrong_too)[:, None, None])
+    return Value.of_numbers(result, first_error(known.errors, wrong, wrong_too)[:, None, None])
 
 
 @excel("LINEST", Arrays, *_OPTIONS, returns=Kind.ANY, facts=Facts(spills=True))
@@ -197,7 +199,7 @@ def _predict(ys: Value, xs: Value | None, new: Value | None, const: Value | None
     free, wrong = _switch(const, True)
     y = fit(known.y, known.x, free).at(x)
     y = np.exp(y) if exponential else y
-    return Value.of_numbers(y.reshape(y.shape[0], *shape), earliest(known.errors, wrong_x, wrong)[:, None, None])
+    return Value.of_numbers(y.reshape(y.shape[0], *shape), first_error(known.errors, wrong_x, wrong)[:, None, None])
 
 
 _NEW = (Arrays(default=None), Arrays(default=None), _SETTING)

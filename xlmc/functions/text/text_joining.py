@@ -7,8 +7,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import earliest, first_errors, with_errors
-from xlmc.functions.budget import ask_for_texts, counted
+from xlmc.functions.arguments import first_error, first_error_in_row, with_errors
+from xlmc.functions.budget import ask_for_texts, count_characters
 from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.per_element import object_text, per_element, per_object
 from xlmc.functions.registry import Anything, Cells, Kind, Logical, Text, excel
@@ -50,9 +50,9 @@ def text_join(delimiters: Value, ignore_empty: Value, *values: Value) -> Value:
     out = np.empty(skip.shape, object)
     trials = np.broadcast_to(np.arange(n).reshape(n, *(1,) * (skip.ndim - 1)), skip.shape).ravel().tolist()
     rows = zip(trials, skip.ravel().tolist(), strict=True)
-    out.reshape(-1)[:] = list(counted(_joined(marks[i].tolist(), words[i].tolist(), flag) for i, flag in rows))
+    out.reshape(-1)[:] = list(count_characters(_joined(marks[i].tolist(), words[i].tolist(), flag) for i, flag in rows))
     inner = (-1, *(1,) * (ignore.ndim - 1))
-    return with_errors(from_objects(out), earliest(wrong.reshape(inner), unclear, errors.reshape(inner)))
+    return with_errors(from_objects(out), first_error(wrong.reshape(inner), unclear, errors.reshape(inner)))
 
 
 def _joined(delimiters: list[str], texts: list[str], ignore_empty: bool) -> object:
@@ -76,7 +76,7 @@ def _side_by_side(values: Iterable[Value]) -> tuple[Objects, Codes]:
     n = max(column.shape[0] for column in columns)
     ask_for_texts(n * sum(column.shape[1] for column in columns))
     texts, errors = (np.concatenate([_tall(part, n) for part in parts], axis=1) for parts in (columns, codes))
-    return texts, first_errors(errors)
+    return texts, first_error_in_row(errors)
 
 
 def _tall(rows: Objects, n: int) -> Objects:
@@ -96,7 +96,7 @@ def _cut_off(texts: Objects) -> Value:
     codes = [0 if fits_in_a_cell(text) else ErrorCode.VALUE for text in flat]
     kept = ["" if code else text for text, code in zip(flat, codes, strict=True)]
     box: Objects = np.empty(texts.shape, object)
-    box.reshape(-1)[:] = list(counted(kept))
+    box.reshape(-1)[:] = list(count_characters(kept))
     return Value.of_texts(box, np.array(codes, np.uint8).reshape(texts.shape))
 
 

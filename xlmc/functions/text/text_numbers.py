@@ -8,7 +8,7 @@ from typing import Final
 
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.functions.number_format import FormatError, UnknownFormat, parse_format
-from xlmc.functions.number_text import parse_number, parse_plain_number, shown
+from xlmc.functions.number_text import parse_number, parse_plain_number, round_to_15_digits
 from xlmc.functions.per_element import object_text, per_element, per_object
 from xlmc.functions.registry import Anything, Kind, Logical, Number, Text, excel
 
@@ -64,7 +64,7 @@ def _rounded(number: float, decimals: float, whole: str, negative: str) -> objec
     digits = math.trunc(max(decimals, -400.0))
     if digits > _MOST_DECIMALS:
         return ErrorCode.VALUE
-    size = float(shown(number).quantize(Decimal(1).scaleb(-digits), context=_WIDE))
+    size = float(round_to_15_digits(number).quantize(Decimal(1).scaleb(-digits), context=_WIDE))
     if math.isinf(size):
         return ErrorCode.NUM
     text = parse_format(whole + "." * (digits > 0) + "0" * digits).number(abs(size))

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import leveled
+from xlmc.functions.arguments import align_ranges
 from xlmc.functions.facts import Facts
 from xlmc.functions.per_element import object_text
 from xlmc.functions.registry import Anything, Cells, Kind, excel
@@ -27,7 +27,7 @@ def _edge(name: str, meaning: str, cut: Cut) -> None:
     """Register `TEXTBEFORE` or `TEXTAFTER`, which differ in the side of the delimiter that they keep."""
 
     def body(text: Value, delimiters: Value, *options: Value) -> Value:
-        texts, *others = leveled(text, *options)
+        texts, *others = align_ranges(text, *options)
         marks = _marks(delimiters, texts.numbers.ndim)
         piece = np.frompyfunc(lambda *items: _piece(cut, *items), 2 + len(others), 1)
         return from_objects(np.asarray(piece(texts.objects(), marks, *(value.objects() for value in others)), object))

@@ -96,7 +96,7 @@ def _division(case: Case, cell: Cell, tree: ir.Expression, factor: ir.Expression
 def _is_bounded(tree: ir.Expression) -> bool:
     """Whether it is a sine or its like, which could be as large as 1."""
     row = function_named(tree.name) if isinstance(tree, ir.Call) else None
-    return row is not None and row.facts.between == (-1.0, 1.0)
+    return row is not None and row.facts.result_range == (-1.0, 1.0)
 
 
 def cancellation(case: Case, cell: Cell, trial: int) -> Cancellation | None:

@@ -270,7 +270,7 @@ def jumps(case: Case) -> Iterator[Finding]:
                     yield finding
     for kink in case.derivatives.kinks:
         row = function_named(kink.function)
-        if row is not None and row.facts.finds and kink.cell in case.node:
+        if row is not None and row.facts.jumps and kink.cell in case.node:
             text = f"{kink.function} finds {kink.ways} different cells among the trials"
             yield _jump_finding(case, kink.cell, text, "the result steps from one cell to the next", kink.share)
 

@@ -195,5 +195,5 @@ def test_every_rule_is_for_a_function_of_the_registry():
     from xlmc.functions.families import REGISTRY
     from xlmc.functions.math.aggregate import SO_FAR
 
-    names = {row.name for row in [*REGISTRY.values(), *SO_FAR.values()]} | {"shown", "settled"}
+    names = {row.name for row in [*REGISTRY.values(), *SO_FAR.values()]} | {"shown", "snap to zero"}
     assert set(RULES) - names == set()

@@ -9,7 +9,7 @@ import numpy as np
 from xlmc.evaluation.passes.derivatives.jet import Jet, chain
 from xlmc.evaluation.passes.derivatives.rules import Operand, Outcome, elementwise, level_jets, rule
 from xlmc.functions import Function
-from xlmc.functions.fifteen_digits import SETTLED
+from xlmc.functions.fifteen_digits import SNAP_TO_ZERO
 from xlmc.functions.values import Floats, Value
 
 __all__: list[str] = []
@@ -26,7 +26,7 @@ elementwise("RADIANS", lambda y, x: (np.pi / 180,), lambda y, x: (0.0,))
 elementwise("DEGREES", lambda y, x: (180 / np.pi,), lambda y, x: (0.0,))
 
 
-@rule("u+", "shown", SETTLED.name)
+@rule("u+", "shown", SNAP_TO_ZERO.name)
 def same(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
     """What gives a number as it is, or but for its last bits."""
     return Outcome(operands[0].jet)

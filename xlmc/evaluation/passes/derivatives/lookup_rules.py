@@ -16,7 +16,7 @@ from xlmc.evaluation.passes.derivatives.conditions import hold_still
 from xlmc.evaluation.passes.derivatives.jet import Jet, align, concatenate, flat
 from xlmc.evaluation.passes.derivatives.rules import RULES, DerivativeRule, Operand, Outcome, level_jets, rule
 from xlmc.functions import Function
-from xlmc.functions.lookup.picked_cells import each_part, joined, transposed
+from xlmc.functions.lookup.picked_cells import join_values, map_parts, transpose_cells
 from xlmc.functions.values import ERROR, LOGICAL, NUMBER, Bools, Value
 
 __all__ = ["Drawer"]
@@ -133,8 +133,8 @@ def table_lookup(function: Function, result: Value, operands: Sequence[Operand])
 def _beside(table: Value, tags: Value, axis: int) -> Value:
     left, right = table.as_range(), tags.as_range()
     n = max(left.shape[0], right.shape[0])
-    tall = [each_part(v, lambda part: np.broadcast_to(part, (n, *part.shape[1:]))) for v in (left, right)]
-    return joined(tall, axis)
+    tall = [map_parts(v, lambda part: np.broadcast_to(part, (n, *part.shape[1:]))) for v in (left, right)]
+    return join_values(tall, axis)
 
 
 @rule("LOOKUP", why=_AT_A_STEP, jumps=True)
@@ -148,9 +148,9 @@ def lookup(function: Function, result: Value, operands: Sequence[Operand]) -> Ou
     def call(values: Values) -> Value:
         grid, tags = values[1].as_range(), drawer.tags[0].as_range()
         if grid.shape[2] > grid.shape[1]:
-            grid, tags = transposed(grid), transposed(tags)
-        first = each_part(grid, lambda part: part[:, :, :1])
-        return function([values[0], first, each_part(tags, lambda part: part[:, :, -1:])])
+            grid, tags = transpose_cells(grid), transpose_cells(tags)
+        first = map_parts(grid, lambda part: part[:, :, :1])
+        return function([values[0], first, map_parts(tags, lambda part: part[:, :, -1:])])
 
     return _look_up(call, result, operands, drawer)
 

@@ -163,6 +163,12 @@ ZERO = [
 OUTSIDE = [
     ("INDEX(C1:C3,-1)", VALUE),
     ("INDEX(C1:C3,4)", REF),
+    ("INDEX(C1:D3,2)", REF),  # a reference of rows and columns wants both numbers, an array does not
+    ("SUM(INDEX(C1:D3,2))", REF),
+    ("SUM(INDEX(C1:D3,E2))", REF),
+    ("SUM(INDEX(C1:D3,2,))", 4.0),
+    ("SUM(INDEX(C1:D3+0,2))", 4.0),
+    ("SUM(INDEX(INDEX(C1:D3,0,0),2))", REF),
     ("INDEX(C1:D3,1,-1)", VALUE),
     ("INDEX(C1:D3,1,3)", REF),
     ("INDEX(C1:C3,0-D1)", VALUE),

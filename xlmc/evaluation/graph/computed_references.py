@@ -261,8 +261,15 @@ def many_numbers(lowering: TreeLowering, numbers: Arguments, scope: Scope) -> bo
 
 
 def _index(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
-    """INDEX of a reference of a known row and column; None leaves it to the function of values."""
+    """INDEX of a reference of a known row and column; None leaves it to the function of values.
+
+    Raises:
+        NoReference: the cell lies outside, or one number is given for several rows and columns: what is a row of an
+            array is `#REF!` of a reference.
+    """
     areas = areas_of(lowering, arguments[0], scope)
+    if areas and len(arguments) == 2 and areas[0].whole.rows > 1 and areas[0].whole.columns > 1:
+        raise NoReference
     if areas is None or scope.array or many_numbers(lowering, arguments[1:], scope):
         return None
     try:
@@ -276,9 +283,10 @@ def _index(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[A
     if which > len(areas):
         raise NoReference
     area = areas[which - 1].whole
-    row, column = (numbers[0], numbers[1]) if len(numbers) > 1 else (numbers[0], 0 if area.columns > 1 else 1)
-    if len(numbers) == 1 and area.rows == 1:
-        row, column = 1, numbers[0]
+    if len(numbers) == 1:
+        row, column = (1, numbers[0]) if area.rows == 1 else (numbers[0], 1)
+    else:
+        row, column = numbers[:2]
     if row > area.rows or column > area.columns:
         raise NoReference
     top, bottom = (area.top, area.bottom) if row == 0 else (area.top + row - 1,) * 2

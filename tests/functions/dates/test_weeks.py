@@ -20,11 +20,11 @@ def test_days_of_work_are_counted_and_found_again(pattern, day):
     """Day 2 is a Monday."""
     weeks = Weeks(np.array([[pattern]]))
     worked = [pattern[(d - 2) % 7] for d in range(-200, 201)]
-    counted = weeks.before(np.array([[float(day)]]))[0, 0]
+    counted = weeks.count_before(np.array([[float(day)]]))[0, 0]
     assert counted == sum(worked[: day + 200]) - sum(worked[:202])
     assert weeks.is_worked(np.array([[float(day)]]))[0, 0] == worked[day + 200]
     if worked[day + 200]:
-        assert weeks.numbered(np.array([[counted]]))[0, 0] == day
+        assert weeks.day_at_count(np.array([[counted]]))[0, 0] == day
 
 
 OFF = [

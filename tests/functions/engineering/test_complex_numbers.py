@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.engineering.complex_numbers import common_suffix, read, written
+from xlmc.functions.engineering.complex_numbers import common_suffix, read, write
 from xlmc.functions.families import function_named
 from xlmc.functions.values import constant, from_objects
 
@@ -86,8 +86,8 @@ WRITTEN = [
 
 
 @pytest.mark.parametrize(("number", "expected"), WRITTEN)
-def test_written(number, expected):
-    assert written(*number) == expected
+def test_write(number, expected):
+    assert write(*number) == expected
 
 
 parts = st.floats(-1e300, 1e300, allow_subnormal=False)
@@ -96,12 +96,12 @@ parts = st.floats(-1e300, 1e300, allow_subnormal=False)
 @given(parts, parts, st.sampled_from("ij"))
 @settings(max_examples=300, deadline=None)
 def test_what_is_written_reads_as_itself_to_15_digits(x, y, suffix):
-    text = written(complex(x, y), suffix)
+    text = write(complex(x, y), suffix)
     number, found = read(text)
     assert math.isclose(number.real, x, rel_tol=1e-14, abs_tol=1e-300)
     assert math.isclose(number.imag, y, rel_tol=1e-14, abs_tol=1e-300)
     assert found == (suffix if y else "")
-    assert written(number, suffix) == text
+    assert write(number, suffix) == text
 
 
 @pytest.mark.parametrize(
@@ -240,7 +240,7 @@ coefficients = st.floats(-5, 5).filter(lambda x: abs(x) > 1e-3)
     ],
 )
 def test_functions_are_what_their_formulas_say(evaluate, name, formula, x, y):
-    argument = written(complex(x, y), "i")
+    argument = write(complex(x, y), "i")
     (found, _), (z, _) = read(evaluate(name, argument)), read(argument)
     assert found == pytest.approx(formula(z), rel=1e-10, abs=1e-13)
 

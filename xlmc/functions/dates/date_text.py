@@ -1,9 +1,9 @@
-"""Dates and times as people type them, read as Excel for the United States reads them: month before day.
+"""Read dates and times as Excel for the United States does: month before day.
 
     1/15/2020   15-Jan-20   January 15, 2020   2020-01-15   Jan 2020   13:45   1:30:15 PM   2020-01-15 13:45
 
-A date without its year would be one of this year. It is not read: what a workbook says must not depend on the day it is
-computed.
+Excel takes a date without a year for one of this year. xlmc does not read it: results must not depend on the day they
+are computed.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ MONTHS: Final = (
 
 @dataclass(frozen=True, slots=True)
 class _Moment:
-    """What a text says: a day, a time, or both.
+    """The day, the time, or both that a text gives.
 
     Attributes:
         day: the serial of the date; None when the text has none.
@@ -80,7 +80,7 @@ _HOUR: Final = re.compile(r"(?P<hour>[0-9]{1,2}) +(?P<half>[ap])m?")
 
 
 def parse_moment(text: str, date1904: bool = False) -> _Moment | None:
-    """The date, the time, or the date followed by the time that a text is; None for any other."""
+    """Read a date, a time, or a date followed by a time; None for any other text."""
     time = parse_time(text)
     if time is not None:
         return _Moment(None, time)
@@ -95,7 +95,7 @@ def parse_moment(text: str, date1904: bool = False) -> _Moment | None:
 
 
 def parse_date(text: str, date1904: bool = False) -> float | None:
-    """The serial of a date; None when the text is none, or none of Excel's calendar."""
+    """Read a date as a serial; None if the text is no date of Excel's calendar."""
     folded = text.lower()
     for form in _WITH_DAY:
         if match := form.fullmatch(folded):
@@ -107,7 +107,7 @@ def parse_date(text: str, date1904: bool = False) -> float | None:
 
 
 def _is_day_of_this_year(match: re.Match[str]) -> bool:
-    """Whether Excel takes what stands for a year for a day: `Oct 7` against `Oct 82`."""
+    """Return whether Excel reads the number after a month as a day of this year: `Oct 7`, but not `Oct 82`."""
     month, number = _month(match), match["year"]
     if month is None or len(number) == 4 or int(number) == 0:
         return False
@@ -133,25 +133,25 @@ def _serial(match: re.Match[str], day: int, date1904: bool) -> float | None:
 
 
 def parse_time(text: str) -> float | None:
-    """A time in days; None when the text is none. `h:mm`, `h:mm:ss` and, with a fraction of a second, `mm:ss.0`."""
+    """Read a time in days: `h:mm`, `h:mm:ss` or, with a fraction of a second, `mm:ss.0`; None for any other text."""
     folded = text.lower()
     if match := _HOUR.fullmatch(folded):
-        return _of_clock(int(match["hour"]), 0, 0, match["half"])
+        return _to_days(int(match["hour"]), 0, 0, match["half"])
     match = _TIME.fullmatch(folded)
     if match is None or (match["part"] and not (match["third"] or (match["second"] and not match["colon"]))):
         return None
     first, second, third = (int(match[name] or 0) for name in ("first", "second", "third"))
     if match["part"] and not match["third"]:
         first, second, third = 0, first, second
-    return _of_clock(first, second, third, match["half"], _milliseconds(match["part"]))
+    return _to_days(first, second, third, match["half"], _milliseconds(match["part"]))
 
 
 def _milliseconds(part: str | None) -> int:
     return round(float(f"0{part}0") * 1000) if part else 0
 
 
-def _of_clock(hours: int, minutes: int, seconds: int, half: str | None, milliseconds: int = 0) -> float | None:
-    """Only one of the three may run over (`13:60`), and none with AM or PM."""
+def _to_days(hours: int, minutes: int, seconds: int, half: str | None, milliseconds: int = 0) -> float | None:
+    """Convert a time to days; None if two of the three run over, or one (as in `13:60`) with AM or PM."""
     over = [hours > (12 if half else 23), minutes > 59, seconds > 59].count(True)
     if over > (0 if half else 1):
         return None

@@ -1,6 +1,6 @@
 """Dates, times of day and their parts.
 
-Serial dates count as `calendar` says, and times are their fractions; what lies outside Excel's calendar is `#NUM!`.
+`calendar` describes serial dates; times are their fractions. Dates outside Excel's calendar are `#NUM!`.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ _FIRST_FULL_YEAR = 1900
 _LAST_YEAR = 9999
 
 
-def _of_calendar(serial: Any, date1904: bool, part: Callable[[Floats], Any]) -> Floats:
-    """A part of the date where there is one, else `#NUM!`."""
+def _part_of_date(serial: Any, date1904: bool, part: Callable[[Floats], Any]) -> Floats:
+    """Return a part of the date; `#NUM!` outside Excel's calendar."""
     inside = in_calendar(np.asarray(serial), date1904)
     return np.where(inside, part(np.where(inside, serial, 1.0)), NUM)
 
@@ -47,29 +47,29 @@ def date(year: Any, month: Any, day: Any, *, date1904: bool = False) -> Floats:
 def date_value(text: Objects, *, date1904: bool = False) -> Value:
     """Serial of the date in a text; 0 if it holds a time only, `#VALUE!` if neither."""
 
-    def value(written: str) -> float | ErrorCode:
+    def read(written: str) -> float | ErrorCode:
         moment = parse_moment(written.strip(SPACES), date1904)
         return ErrorCode.VALUE if moment is None else moment.day or 0.0
 
-    return per_element(value)(text)
+    return per_element(read)(text)
 
 
 @excel("YEAR", Number, dated=True)
 def year(serial: Any, *, date1904: bool = False) -> Floats:
     """Year of a date."""
-    return _of_calendar(serial, date1904, lambda s: parts_of(s, date1904)[0])
+    return _part_of_date(serial, date1904, lambda s: parts_of(s, date1904)[0])
 
 
 @excel("MONTH", Number, dated=True)
 def month(serial: Any, *, date1904: bool = False) -> Floats:
     """Month of a date, 1 to 12."""
-    return _of_calendar(serial, date1904, lambda s: parts_of(s, date1904)[1])
+    return _part_of_date(serial, date1904, lambda s: parts_of(s, date1904)[1])
 
 
 @excel("DAY", Number, dated=True)
 def day(serial: Any, *, date1904: bool = False) -> Floats:
     """Day of the month."""
-    return _of_calendar(serial, date1904, lambda s: parts_of(s, date1904)[2])
+    return _part_of_date(serial, date1904, lambda s: parts_of(s, date1904)[2])
 
 
 @excel("DAYS", Number, Number, dated=True)
@@ -83,7 +83,8 @@ def days(end: Any, start: Any, *, date1904: bool = False) -> Floats:
 def days_360(start: Any, end: Any, european: Any, *, date1904: bool = False) -> Floats:
     """Days between two dates with months of 30 days.
 
-    The US way, the last day of February counts as a 30th at the start only, and a 31st at the end only after a 30th.
+    By the US rule, a start on the last day of February counts as a 30th, an end on it does not; an end on a 31st counts
+    as a 30th only if the start does.
     """
     inside = in_calendar(np.asarray(start), date1904) & in_calendar(np.asarray(end), date1904)
     start, end = np.where(inside, start, 1.0), np.where(inside, end, 1.0)
@@ -95,26 +96,26 @@ def days_360(start: Any, end: Any, european: Any, *, date1904: bool = False) -> 
 
 
 @toolpak("EDATE", Date, Number, gives_date=True)
-def months_from(start: Any, months: Any) -> Floats:
-    """The same day so many months later, or the last of the month if it has no such day."""
+def date_months_later(start: Any, months: Any) -> Floats:
+    """The same day so many months later, or the last day of that month if it has no such day."""
     return months_later(start, np.trunc(months))
 
 
 @toolpak("EOMONTH", Date, Number, gives_date=True)
-def month_end_from(start: Any, months: Any) -> Floats:
+def month_end_months_later(start: Any, months: Any) -> Floats:
     """The last day of the month so many months later."""
     return months_later(start, np.trunc(months), to_end=True)
 
 
 @excel("TODAY", volatile=True, dated=True)
 def today(*, date1904: bool = False) -> Floats:
-    """The day it is computed."""
+    """The day on which it is computed."""
     return np.asarray(np.floor(now(date1904=date1904)))
 
 
 @excel("NOW", volatile=True, dated=True)
 def now(*, date1904: bool = False) -> Floats:
-    """The day and time it is computed, by the clock of the machine."""
+    """The day and time at which it is computed, by the clock of the machine."""
     moment = datetime.now()
     since_midnight = moment - moment.replace(hour=0, minute=0, second=0, microsecond=0)
     today = serial_of(moment.year, moment.month, moment.day, date1904)
@@ -122,11 +123,11 @@ def now(*, date1904: bool = False) -> Floats:
 
 
 _MOST_IN_TIME = 32767
-"""More hours, minutes or seconds than these `TIME` refuses."""
+"""`TIME` refuses more hours, minutes or seconds than this."""
 
 
 def _part_of_time(serial: Any, which: int, date1904: bool) -> Floats:
-    """Hour, minute or second, `#NUM!` outside Excel's calendar."""
+    """Return the hour, minute or second; `#NUM!` outside Excel's calendar."""
     inside = in_calendar(np.asarray(serial), date1904)
     return np.where(inside, time_of(np.where(inside, serial, 0.0))[which], NUM)
 
@@ -151,7 +152,7 @@ def second(serial: Any, *, date1904: bool = False) -> Floats:
 
 @excel("TIME", Number, Number, Number)
 def time(hours: Any, minutes: Any, seconds: Any) -> Floats:
-    """Time of day as a fraction; hours, minutes and seconds may run over, whole days drop out."""
+    """Time of day as a fraction; hours, minutes and seconds may run over, whole days are dropped."""
     parts = [np.trunc(part) for part in (hours, minutes, seconds)]
     total = parts[0] * 3600 + parts[1] * 60 + parts[2]
     wrong = (total < 0) | (parts[0] > _MOST_IN_TIME) | (parts[1] > _MOST_IN_TIME) | (parts[2] > _MOST_IN_TIME)

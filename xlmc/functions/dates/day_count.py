@@ -1,11 +1,11 @@
-"""How many days, months and years lie between dates, and steps of months through the calendar.
+"""How many days, months and years lie between dates, and which day comes so many months later.
 
 Bond markets count by five rules, Excel's `basis` argument. 0: months of 30 days (US), years of 360; 1: true days and
-years; 2: true days, years of 360; 3: true days, years of 365; 4: months of 30 days (European), years of 360. There,
+years; 2: true days, years of 360; 3: true days, years of 365; 4: months of 30 days (European), years of 360. Their
 dates are serials of the 1900 system. `DATEDIF` counts whole years, months and days.
 
-Sources: D. A. Wheeler, "YEARFRAC Incompatibilities between Excel 2007 and OOXML" (2008), for what Excel does; values
-that Excel computed, for the rest.
+Sources for what Excel does: D. A. Wheeler, "YEARFRAC Incompatibilities between Excel 2007 and OOXML" (2008), and values
+that Excel computed.
 """
 
 from __future__ import annotations
@@ -35,26 +35,26 @@ __all__ = [
 
 
 def is_leap_year(year: Any) -> Bools:
-    """Whether a year of the Gregorian calendar has a 29 February."""
+    """Return whether a year of the Gregorian calendar has a 29 February."""
     year = np.asarray(year)
     return np.asarray((year % 4 == 0) & ((year % 100 != 0) | (year % 400 == 0)))
 
 
 def month_length(year: Any, month: Any, date1904: bool = False) -> Floats:
-    """How many days a month has; months may run over. February 1900 has 29 in the 1900 system."""
+    """Return how many days a month has; months may run over. February 1900 has 29 in the 1900 system."""
     return serial_of(year, month + 1, 1, date1904) - serial_of(year, month, 1, date1904)
 
 
 def is_month_end(serial: Any) -> Bools:
-    """Whether a day of the 1900 system is the last of its month."""
+    """Return whether a day of the 1900 system is the last of its month."""
     year, month, day = parts_of(serial)
     return np.asarray(day == month_length(year, month))
 
 
 def months_later(serial: Any, months: Any, to_end: Any = False) -> Floats:
-    """The same day so many months later, or the last day of that month where it has no such day or `to_end` holds.
+    """Return the same day so many months later, or the last day of that month if it has no such day or `to_end` holds.
 
-    In the 1900 system. What lies outside Excel's calendar comes out outside of `in_calendar`.
+    Days are of the 1900 system. For a day outside Excel's calendar, `in_calendar` of the result is FALSE.
     """
     year, month, day = parts_of(serial)
     length = month_length(year, month + months)
@@ -62,12 +62,12 @@ def months_later(serial: Any, months: Any, to_end: Any = False) -> Floats:
 
 
 def is_basis(basis: Any) -> Bools:
-    """Whether a number, its fraction dropped, is one of the five bases."""
+    """Return whether a number, without its fraction, is one of the five bases."""
     return np.asarray((np.asarray(basis) >= 0) & (np.asarray(basis) < 5))
 
 
 def by_basis(basis: Any, *choices: Callable[[], Any]) -> Floats:
-    """Of five results the one of each trial's basis; those that no trial needs are not computed. NaN for no basis."""
+    """Choose one of five results by each trial's basis, NaN for no basis; compute only what some trial needs."""
     codes = np.floor(basis)
     result = np.asarray(np.nan)
     for code, choice in enumerate(choices):
@@ -78,9 +78,9 @@ def by_basis(basis: Any, *choices: Callable[[], Any]) -> Floats:
 
 
 def us_360(start: Any, end: Any, *, end_too: bool = False) -> Floats:
-    """Days between two dates with months of 30 days, the US way: a 31st is a 30th, and so is the last of February.
+    """Count days with months of 30 days by the US rule: a 31st counts as a 30th, and so does the last of February.
 
-    At the end that holds only where the start is such a day too, unless `end_too`.
+    For the end this holds only if the start is such a day too, or with `end_too`.
     """
     (year, month, day), (last_year, last_month, last_day) = parts_of(start), parts_of(end)
     from_february = (month == 2) & is_month_end(start)
@@ -92,14 +92,14 @@ def us_360(start: Any, end: Any, *, end_too: bool = False) -> Floats:
 
 
 def european_360(start: Any, end: Any) -> Floats:
-    """Days between two dates with months of 30 days, the European way: a 31st is a 30th."""
+    """Count days with months of 30 days by the European rule: a 31st counts as a 30th."""
     (year, month, day), (last_year, last_month, last_day) = parts_of(start), parts_of(end)
     days = np.minimum(last_day, 30) - np.minimum(day, 30)
     return np.asarray((last_year - year) * 360 + (last_month - month) * 30 + days, np.float64)
 
 
 def days_between(start: Any, end: Any, basis: Any) -> Floats:
-    """Days from one date to a later one."""
+    """Count the days from one date to a later one."""
 
     def true_days() -> Floats:
         return np.asarray(end - start, np.float64)
@@ -110,13 +110,16 @@ def days_between(start: Any, end: Any, basis: Any) -> Floats:
 
 
 def days_in_year(start: Any, end: Any, basis: Any) -> Floats:
-    """Length of the year by which the days from one date to a later one are divided."""
+    """Return the length of the year by which the days from one date to a later one are divided."""
     return by_basis(basis, lambda: 360.0, lambda: _true_year(start, end), lambda: 360.0, lambda: 365.0, lambda: 360.0)
 
 
 def _true_year(start: Any, end: Any) -> Floats:
-    """Up to a year apart: 366 days if a 29 February lies between the dates, or both lie in one leap year; else 365.
-    Further apart: the mean length of all years that they touch. 1900 has a 29 February, as it has in Excel's calendar.
+    """Return the length of a year for basis 1.
+
+    If the dates are at most a year apart, it is 366 days if a 29 February lies between them or both lie in one leap
+    year, else 365. If they are further apart, it is the mean length of all years from the first to the last. 1900 has a
+    29 February, as in Excel's calendar.
     """
     (year, month, day), (last_year, last_month, last_day) = parts_of(start), parts_of(end)
     passed = (month > last_month) | ((month == last_month) & (day >= last_day))
@@ -136,7 +139,7 @@ def year_fraction(start: Any, end: Any, basis: Any) -> Floats:
 
 
 _Dates = tuple[Any, Any, bool]
-"""Start, end, and whether they count from 1904."""
+"""The start, the end, and whether they count from 1904."""
 
 
 def _days(dates: _Dates) -> Floats:
@@ -161,8 +164,9 @@ def _months_beyond_years(dates: _Dates) -> Floats:
 
 
 def _days_beyond_months(dates: _Dates) -> Floats:
-    """From the day of the start in the month of the end, or in the one before, which may have no such day: then Excel
-    counts on into the next month, and may come to less than 0.
+    """Count from the start's day in the month of the end, or in the month before.
+
+    If that month has no such day, Excel counts on into the next one, and the result may be below 0.
     """
     start, end, date1904 = dates
     day, (last_year, last_month, last_day) = parts_of(start, date1904)[2], parts_of(end, date1904)
@@ -171,7 +175,10 @@ def _days_beyond_months(dates: _Dates) -> Floats:
 
 
 def _days_beyond_years(dates: _Dates) -> Floats:
-    """To the day of the end within the year from the start on; a start on 29 February is 1 March in another year."""
+    """Count to the first day, from the start on, that has the end's month and day.
+
+    A start on 29 February counts as 1 March if the end is in another year.
+    """
     start, end, date1904 = dates
     (year, month, day), (last_year, last_month, last_day) = (parts_of(serial, date1904) for serial in (start, end))
     next_year = (last_month < month) | ((last_month == month) & (last_day < day))
@@ -192,7 +199,7 @@ _UNITS: Final[dict[str, Callable[[_Dates], Floats]]] = {
 
 @excel("DATEDIF", Number, Number, Text, dated=True)
 def difference(start: Any, end: Any, unit: Objects, *, date1904: bool = False) -> Floats:
-    """What the unit names, from one date to a later one; `#NUM!` for other units and for dates in the wrong order."""
+    """Time from one date to a later one in the unit; `#NUM!` for unknown units and for dates in the wrong order."""
     names = np.vectorize(lambda text: str(text).upper(), otypes=[object])(unit)
     inside = in_calendar(np.asarray(start), date1904) & in_calendar(np.asarray(end), date1904)
     wrong = ~inside | np.greater(np.floor(start), np.floor(end))

@@ -1,7 +1,7 @@
 """Numbers in other bases, and their bits.
 
-`BIN2DEC` and its like take ten digits at most; the larger half of what these can count stands for negative numbers.
-`BITAND` and its like take whole numbers of at most 48 bits, from 0 on; anything else is `#NUM!`.
+`BIN2DEC` and similar functions take ten digits at most; the upper half of all ten-digit numbers stands for negative
+ones. `BITAND` and similar functions take whole numbers of at most 48 bits, from 0 on; others are `#NUM!`.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _BASES: Final = {"BIN": ("binary", 2), "OCT": ("octal", 8), "HEX": ("hexadecimal
 
 
 def _read(item: object, base: int) -> int | ErrorCode:
-    """The number of up to ten digits, or of a number that looks like them; "" and a blank are 0."""
+    """Read up to ten digits, in a text or as a number; "" and a blank are 0."""
     if isinstance(item, bool):
         return ErrorCode.VALUE
     text = general_text(item) if isinstance(item, float) else str(item or "")
@@ -36,24 +36,24 @@ def _read(item: object, base: int) -> int | ErrorCode:
     return number if number < base**_MOST_DIGITS // 2 else number - int(base**_MOST_DIGITS)
 
 
-def _whole(item: object) -> int | ErrorCode:
+def _read_whole(item: object) -> int | ErrorCode:
     number = strict_number(item)
     return number if isinstance(number, ErrorCode) else int(number)
 
 
-def _length(digits_wanted: object) -> int | ErrorCode | None:
-    """How many digits are asked for; None if none are; `#NUM!` for fewer than 1 or more than 10."""
+def _read_length(digits_wanted: object) -> int | ErrorCode | None:
+    """Read how many digits are asked for; None if the argument is left out; `#NUM!` unless 1 to 10."""
     if digits_wanted is _ANY_LENGTH:
         return None
-    length = _whole(digits_wanted)
+    length = _read_whole(digits_wanted)
     if isinstance(length, ErrorCode) or 1 <= length <= _MOST_DIGITS:
         return length
     return ErrorCode.NUM
 
 
-def _written(number: int | ErrorCode, base: int, digits_wanted: object) -> str | ErrorCode:
-    """The digits, up to the length asked for; a negative number always has ten. The length is looked at first."""
-    length = _length(digits_wanted)
+def _write(number: int | ErrorCode, base: int, digits_wanted: object) -> str | ErrorCode:
+    """Write the digits with the length asked for; a negative number always has ten. Errors of the length go first."""
+    length = _read_length(digits_wanted)
     if isinstance(length, ErrorCode) or isinstance(number, ErrorCode):
         return length if isinstance(length, ErrorCode) else ErrorCode(number)
     most = base**_MOST_DIGITS // 2
@@ -67,9 +67,9 @@ def _written(number: int | ErrorCode, base: int, digits_wanted: object) -> str |
     return digits.zfill(length) if len(digits) <= length else ErrorCode.NUM
 
 
-def _between(source: int, target: int) -> Callable[..., str | ErrorCode]:
+def _convert_between(source: int, target: int) -> Callable[..., str | ErrorCode]:
     def convert(digits: object, digits_wanted: object = _ANY_LENGTH) -> str | ErrorCode:
-        return _written(_read(digits, source), target, digits_wanted)
+        return _write(_read(digits, source), target, digits_wanted)
 
     return convert
 
@@ -84,7 +84,7 @@ def _to_decimal(source: int) -> Callable[..., float | ErrorCode]:
 
 def _from_decimal(target: int) -> Callable[..., str | ErrorCode]:
     def convert(number: object, digits_wanted: object = _ANY_LENGTH) -> str | ErrorCode:
-        return _written(_whole(number), target, digits_wanted)
+        return _write(_read_whole(number), target, digits_wanted)
 
     return convert
 
@@ -101,7 +101,7 @@ for _name, (_word, _base) in _BASES.items():
     for _other, (_new_word, _new_base) in _BASES.items():
         if _other != _name:
             _meaning = f"The {_new_word} digits of a number in {_word} digits."
-            _register(f"{_name}2{_other}", _meaning, _between(_base, _new_base), text=True)
+            _register(f"{_name}2{_other}", _meaning, _convert_between(_base, _new_base), text=True)
 
 
 _END_OF_BITS: Final = 2.0**48
@@ -128,19 +128,19 @@ _register_bits("BITXOR", "Bits that only one of the numbers has.", np.bitwise_xo
 
 
 @excel("BITLSHIFT", Number, Number)
-def shifted_left(x: Floats, count: Floats) -> Floats:
-    """Bits moved left by up to 53 bits, or right by a negative number; what falls off on the right is lost.
+def shift_left(x: Floats, count: Floats) -> Floats:
+    """Bits shifted left by up to 53 places, or right by a negative number; bits that leave on the right are lost.
 
     `#NUM!` where the result has more than 48 bits.
     """
     shift = np.trunc(count)
     fit = _has_bits(x) & (np.abs(shift) <= _FURTHEST_SHIFT)
-    moved = np.floor(np.ldexp(np.where(fit, x, 0.0), np.where(fit, shift, 0.0).astype(np.intc)))
-    return np.where(fit & (moved < _END_OF_BITS), moved, NUM)
+    shifted = np.floor(np.ldexp(np.where(fit, x, 0.0), np.where(fit, shift, 0.0).astype(np.intc)))
+    return np.where(fit & (shifted < _END_OF_BITS), shifted, NUM)
 
 
 @excel("BITRSHIFT", Number, Number)
-def shifted_right(x: Floats, count: Floats) -> Floats:
-    """Bits moved right by up to 53 bits, or left by a negative number."""
-    result: Floats = shifted_left(x, -count)
+def shift_right(x: Floats, count: Floats) -> Floats:
+    """Bits shifted right by up to 53 places, or left by a negative number."""
+    result: Floats = shift_left(x, -count)
     return result

@@ -1,6 +1,6 @@
 """Complex numbers: how texts hold them, and functions of them.
 
-Where there is no value, a pole or an overflow, the functions are `#NUM!`.
+The functions give `#NUM!` where they have no value: at poles, and for overflows.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from xlmc.functions.registry import Anything, Cells, Kind, Parameter, excel
 from xlmc.functions.toolpak import OneCell, strict_number
 from xlmc.functions.values import Value, from_objects
 
-__all__ = ["common_suffix", "read", "written"]
+__all__ = ["common_suffix", "read", "write"]
 
 _Read = tuple[complex, str] | ErrorCode
-"""A number and its suffix, `i` or `j` ("" when it has none), or why it is none."""
+"""A number and its suffix, `i` or `j` ("" if it has none), or the error of a value that is no number."""
 
 _UNSIGNED: Final = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[Ee][+-]?[0-9]+)?"
 _REAL: Final = rf"(?P<real>[+-]?{_UNSIGNED})"
@@ -36,9 +36,9 @@ _LONGEST: Final = 21
 
 
 def read(item: object) -> _Read:
-    """The complex number of an Excel value: a text, a number, or 0 for a blank or an empty text.
+    """Read a complex number from an Excel value: a text, or a number; 0 for a blank or an empty text.
 
-    A logical is `#VALUE!`, a text in no such form `#NUM!`.
+    A logical is `#VALUE!`, any other text `#NUM!`.
     """
     match item:
         case None | "":
@@ -46,39 +46,39 @@ def read(item: object) -> _Read:
         case bool():
             return ErrorCode.VALUE
         case str():
-            return _parsed(item)
+            return _parse(item)
         case float():
             return complex(item), ""
         case _:
             raise TypeError(f"{item!r} is no Excel value")
 
 
-def _parsed(text: str) -> _Read:
+def _parse(text: str) -> _Read:
     found = _NUMBER.fullmatch(text)
     if found is None:
         return ErrorCode.NUM
-    number = complex(_coefficient(found["real"]), _coefficient(found["imaginary"]))
+    number = complex(_read_coefficient(found["real"]), _read_coefficient(found["imaginary"]))
     return (number, found["suffix"] or "") if isfinite(number) else ErrorCode.NUM
 
 
-def _coefficient(text: str | None) -> float:
-    """What stands before a suffix: a number, a sign alone for 1, None for 0."""
+def _read_coefficient(text: str | None) -> float:
+    """Read the text before a suffix: a number, a sign alone for 1, None for 0."""
     if text is None:
         return 0.0
     return float(text + "1") if text in ("", "+", "-") else float(text)
 
 
 def common_suffix(*suffixes: str) -> str | ErrorCode:
-    """The suffix that all share, numbers without one aside; `#VALUE!` when `i` meets `j`."""
+    """Return the suffix of all numbers that have one; `#VALUE!` if some have `i` and some `j`."""
     found = set(suffixes) - {""}
     return ErrorCode.VALUE if len(found) > 1 else "".join(found)
 
 
-def written(number: complex, suffix: str) -> str | ErrorCode:
-    """As Excel writes it, each part to 15 digits; `#NUM!` when a part is not finite."""
+def write(number: complex, suffix: str) -> str | ErrorCode:
+    """Write a number as Excel does, each part to 15 digits; `#NUM!` if a part is not finite."""
     if not isfinite(number):
         return ErrorCode.NUM
-    real, imaginary = _digits(number.real), _digits(number.imag)
+    real, imaginary = _write_part(number.real), _write_part(number.imag)
     if number.imag == 0:
         return real
     imaginary = {"1": "", "-1": "-"}.get(imaginary, imaginary) + (suffix or "i")
@@ -87,8 +87,8 @@ def written(number: complex, suffix: str) -> str | ErrorCode:
     return real + ("" if imaginary.startswith("-") else "+") + imaginary
 
 
-def _digits(x: float) -> str:
-    """Up to 15 significant digits, plain as long as they fit, else with an exponent of two digits or more."""
+def _write_part(x: float) -> str:
+    """Write up to 15 significant digits; with an exponent, of two digits or more, if they are too long without."""
     rounded = Decimal(f"{x + 0.0:.15g}")
     plain = f"{rounded:f}"
     if len(plain.removeprefix("-")) <= _LONGEST:
@@ -106,11 +106,11 @@ def complex_(real: object, imaginary: object, suffix: object = None) -> str | Er
         return x if isinstance(x, ErrorCode) else ErrorCode(int(y))
     if suffix not in (None, "", "i", "j"):
         return ErrorCode.VALUE
-    return written(complex(x, y), str(suffix or "i"))
+    return write(complex(x, y), str(suffix or "i"))
 
 
-def _measure(name: str, meaning: str, function: Callable[[complex], float | ErrorCode]) -> None:
-    """Register a real number of a complex one."""
+def _register_measure(name: str, meaning: str, function: Callable[[complex], float | ErrorCode]) -> None:
+    """Register a function that gives a real number for a complex one."""
 
     def measure(item: object) -> float | ErrorCode:
         found = read(item)
@@ -120,16 +120,16 @@ def _measure(name: str, meaning: str, function: Callable[[complex], float | Erro
     excel(name, OneCell)(per_object(measure))
 
 
-_measure("IMREAL", "The real coefficient.", lambda z: z.real)
-_measure("IMAGINARY", "The imaginary coefficient.", lambda z: z.imag)
-_measure("IMABS", "The distance from 0.", abs)
-_measure(
+_register_measure("IMREAL", "The real coefficient.", lambda z: z.real)
+_register_measure("IMAGINARY", "The imaginary coefficient.", lambda z: z.imag)
+_register_measure("IMABS", "The distance from 0.", abs)
+_register_measure(
     "IMARGUMENT", "The angle, above -π and up to π; `#DIV/0!` of 0.", lambda z: cmath.phase(z) if z else ErrorCode.DIV0
 )
 
 
-def _applied(function: Callable[..., complex], numbers: Sequence[_Read], *more: float) -> str | ErrorCode:
-    """The text of a function of complex numbers; the first that is none, or unlike suffixes, make an error."""
+def _apply(function: Callable[..., complex], numbers: Sequence[_Read], *more: float) -> str | ErrorCode:
+    """Write what a function gives for complex numbers; an error if one is no number, or if their suffixes differ."""
     error = next((number for number in numbers if isinstance(number, ErrorCode)), None)
     if error is not None:
         return error
@@ -138,23 +138,23 @@ def _applied(function: Callable[..., complex], numbers: Sequence[_Read], *more: 
         return suffix
     try:
         result = function(*(number[0] for number in numbers if not isinstance(number, ErrorCode)), *more)
-    except (ArithmeticError, ValueError):  # how cmath tells of poles and overflows
+    except (ArithmeticError, ValueError):  # what cmath raises at poles and for overflows
         return ErrorCode.NUM
-    return written(result, suffix)
+    return write(result, suffix)
 
 
 def _register(name: str, meaning: str, function: Callable[..., complex], *parameters: Parameter) -> None:
-    """Register a complex number of one or two complex ones."""
+    """Register a function that gives a complex number for one or two complex ones."""
 
     def apply(*items: object) -> str | ErrorCode:
-        return _applied(function, [read(item) for item in items])
+        return _apply(function, [read(item) for item in items])
 
     apply.__doc__ = meaning
     excel(name, *(parameters or (OneCell,)), returns=Kind.TEXT)(per_object(apply))
 
 
 def _square_root(z: complex) -> complex:
-    """By length and angle, as Excel documents it, so that the root of -1 keeps a real part of 6E-17."""
+    """Compute the root from length and angle, as Excel documents it: that of -1 has a real part of 6E-17."""
     return cmath.rect(math.sqrt(abs(z)), cmath.phase(z) / 2)
 
 
@@ -182,8 +182,8 @@ _register("IMSUB", "The difference.", lambda z, w: z - w, OneCell, OneCell)
 _register("IMDIV", "The quotient.", lambda z, w: z / w, OneCell, OneCell)
 
 
-def _to_the_power(z: complex, power: float) -> complex:
-    """By length and angle, as Excel documents it."""
+def _raise_to(z: complex, power: float) -> complex:
+    """Compute a power from length and angle, as Excel documents it."""
     if z == 0 and power == 0:
         raise ValueError("0^0")
     return cmath.rect(abs(z) ** power, cmath.phase(z) * power)
@@ -196,11 +196,11 @@ def power(item: object, exponent: object) -> str | ErrorCode:
     number, found = read(item), strict_number(exponent)
     if isinstance(found, ErrorCode) and not isinstance(number, ErrorCode):
         return found
-    return _applied(_to_the_power, [number], float(found))
+    return _apply(_raise_to, [number], float(found))
 
 
-def _folded(name: str, meaning: str, operation: Callable[[complex, complex], complex]) -> None:
-    """Register an operation on any number of complex numbers; blank cells do not count."""
+def _register_fold(name: str, meaning: str, operation: Callable[[complex, complex], complex]) -> None:
+    """Register an operation on any number of complex numbers, which ignores blank cells."""
 
     def fold(*values: Value) -> Value:
         rows = [value.objects().reshape(value.shape[0], -1) for value in values]
@@ -216,8 +216,8 @@ def _folded(name: str, meaning: str, operation: Callable[[complex, complex], com
 def _fold(operation: Callable[[complex, complex], complex], rows: Sequence[NDArray[Any]]) -> str | ErrorCode:
     items = [item for row in rows for item in row if item is not None]
     numbers = [item if isinstance(item, ErrorCode) else read(item) for item in items]
-    return _applied(lambda *z: reduce(operation, z or (0j,)), numbers)
+    return _apply(lambda *z: reduce(operation, z or (0j,)), numbers)
 
 
-_folded("IMSUM", "The sum.", lambda z, w: z + w)
-_folded("IMPRODUCT", "The product.", lambda z, w: z * w)
+_register_fold("IMSUM", "The sum.", lambda z, w: z + w)
+_register_fold("IMPRODUCT", "The product.", lambda z, w: z * w)

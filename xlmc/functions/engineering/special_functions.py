@@ -1,4 +1,4 @@
-"""Error functions, Bessel functions of whole order, and two steps. SciPy computes what is not elementary."""
+"""Error functions, Bessel functions of whole order, and two step functions. SciPy computes the first two kinds."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ __all__: list[str] = []
 @excel("ERF", OneCell, OneCell(default=None))
 @numbers_only
 def erf_between(lower: Floats, upper: Floats | None = None) -> Floats:
-    """Error function, or how much it grows from one number to another.
+    """Error function, or the difference of its values at two numbers.
 
-    Far from 0 the difference is that of the complements, which keeps the digits that 1 - 1 would lose.
+    Far from 0 the difference is that of the complements, because 1 - 1 would lose the digits.
     """
     from scipy.special import erf, erfc
 
@@ -48,8 +48,8 @@ def erf_complement(x: Floats) -> Floats:
     return np.asarray(erfc(x))
 
 
-def _of_order(function: Callable[[Floats, Floats], Floats], x: Floats, order: Floats) -> Floats:
-    """A Bessel function of whole order; `#NUM!` for an order below 0."""
+def _compute_bessel(function: Callable[[Floats, Floats], Floats], x: Floats, order: Floats) -> Floats:
+    """Compute a Bessel function of whole order; `#NUM!` for an order below 0."""
     n = np.trunc(order)
     return np.where(n < 0, NUM, function(np.where(n < 0, 0.0, n), x))
 
@@ -60,7 +60,7 @@ def bessel_j(x: Floats, order: Floats) -> Floats:
     """Bessel function of the first kind."""
     from scipy.special import jv
 
-    return _of_order(jv, x, order)
+    return _compute_bessel(jv, x, order)
 
 
 @excel("BESSELI", OneCell, OneCell)
@@ -69,7 +69,7 @@ def bessel_i(x: Floats, order: Floats) -> Floats:
     """Modified Bessel function of the first kind."""
     from scipy.special import iv
 
-    return _of_order(iv, x, order)
+    return _compute_bessel(iv, x, order)
 
 
 @excel("BESSELY", OneCell, OneCell)
@@ -78,7 +78,7 @@ def bessel_y(x: Floats, order: Floats) -> Floats:
     """Bessel function of the second kind; `#NUM!` unless `x` is above 0."""
     from scipy.special import yv
 
-    return np.where(x <= 0, NUM, _of_order(yv, np.where(x <= 0, 1.0, x), order))
+    return np.where(x <= 0, NUM, _compute_bessel(yv, np.where(x <= 0, 1.0, x), order))
 
 
 @excel("BESSELK", OneCell, OneCell)
@@ -87,18 +87,18 @@ def bessel_k(x: Floats, order: Floats) -> Floats:
     """Modified Bessel function of the second kind; `#NUM!` unless `x` is above 0."""
     from scipy.special import kv
 
-    return np.where(x <= 0, NUM, _of_order(kv, np.where(x <= 0, 1.0, x), order))
+    return np.where(x <= 0, NUM, _compute_bessel(kv, np.where(x <= 0, 1.0, x), order))
 
 
 @excel("DELTA", OneCell, OneCell(default=None))
 @numbers_only
 def delta(x: Floats, y: Floats | None = None) -> Floats:
-    """1 where the numbers are equal, else 0; the second is 0 when left out."""
+    """1 if the numbers are equal, else 0; the second one is 0 if left out."""
     return np.where(x == (0.0 if y is None else y), 1.0, 0.0)
 
 
 @excel("GESTEP", OneCell, OneCell(default=None))
 @numbers_only
 def step(x: Floats, threshold: Floats | None = None) -> Floats:
-    """1 from a threshold on, else 0; the threshold is 0 when left out."""
+    """1 from a threshold on, else 0; the threshold is 0 if left out."""
     return np.where(x >= (0.0 if threshold is None else threshold), 1.0, 0.0)

@@ -1,7 +1,7 @@
 """CONVERT: a measurement in another unit of the same kind.
 
-The constants are those of Excel 2010 and later, most of them by definition (an inch is 25.4 mm); the electron volt and
-the atomic mass unit are of CODATA 2006.
+The constants are those of Excel 2010 and later. Most are exact by definition (an inch is 25.4 mm); the electron volt
+and the atomic mass unit are those of CODATA 2006.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ __all__ = ["unit_named"]
 
 @dataclass(frozen=True, slots=True)
 class _Unit:
-    """A measurement `x` in it is `(x·prefix - zero)·scale` in the unit of its group.
+    """A unit: a measurement `x` in it is `(x·prefix - zero)·scale` in the base unit of its group.
 
     Attributes:
         group: what it measures, such as "length".
-        scale: as above.
-        zero: where the scale of a temperature begins.
-        prefix: the prefix's factor, 1 without one.
-        absolute: it is a temperature that is counted from absolute zero.
+        scale: see above.
+        zero: the reading of a thermometer in this unit at 0 °C; 0 for other units.
+        prefix: the factor of the prefix, 1 without one.
+        absolute: it measures temperatures from absolute zero.
     """
 
     group: str
@@ -87,7 +87,7 @@ _SCALES: Final[dict[str, dict[str, float]]] = {
         "admkn": 6080 * _FT / 3600, "kn": _NMI / 3600, "m/h m/hr": 1 / 3600, "m/s m/sec": 1.0, "mph": _MI / 3600,
     },
 }  # fmt: skip
-"""Names of one unit stand in one key."""
+"""A key holds all names of a unit."""
 
 _TEMPERATURES: Final = {  # degrees Celsius
     "C": _Unit("temperature", 1.0), "cel": _Unit("temperature", 1.0), "F": _Unit("temperature", 5 / 9, 32.0),
@@ -109,7 +109,7 @@ m/h m/hr m/s m/sec ang2 ang^2 m2 m^2 ang3 ang^3 m3 m^3
 _TAKE_PREFIXES: Final = frozenset(_METRIC.split())
 
 _POWERS: Final = {"2": 2, "3": 3}
-"""A prefix of a square or a cube is of its side: km2 are squares of a kilometre."""
+"""The power of the prefix in units of area and volume: km2 is the square of a kilometre."""
 
 _PREFIXES: Final = {
     "Y": 1e24, "Z": 1e21, "E": 1e18, "P": 1e15, "T": 1e12, "G": 1e9, "M": 1e6, "k": 1e3, "h": 1e2, "da": 1e1,
@@ -121,7 +121,7 @@ _BINARY_PREFIXES: Final = {f"{letter}i": 2.0 ** (10 * i) for i, letter in enumer
 
 @lru_cache(maxsize=1024)
 def unit_named(name: str) -> _Unit | None:
-    """The unit of a name, capitals as they are, a prefix before it or not; None when there is none."""
+    """Return the unit of a name, with or without a prefix, case-sensitive; None if there is none."""
     if name in _UNITS:
         return _UNITS[name]
     return next(_with_prefix(name), None)
@@ -142,7 +142,7 @@ _UNKNOWN = _Unit("", 1.0)
 
 
 def _units(value: Value) -> NDArray[Any]:
-    """The unit that each text names, `_UNKNOWN` where it names none."""
+    """Return the unit that each text names, `_UNKNOWN` if it names none."""
     names, _ = value.to_texts()
     units = np.empty(names.shape, object)
     for index in np.ndindex(*names.shape):
@@ -164,7 +164,7 @@ def convert(number: Value, source: Value, target: Value) -> Value:
     number, source, target = align_ranges(number, source, target)
     x, errors = strict_numbers(number)
     old, new = _units(source), _units(target)
-    proportional = _part(old, "absolute") * _part(new, "absolute") > 0  # else a tiny one would lose its digits
+    proportional = _part(old, "absolute") * _part(new, "absolute") > 0  # zeros would cost digits
     from_zero, to_zero = (np.where(proportional, 0.0, _part(part, "zero")) for part in (old, new))
     base = (x * _part(old, "prefix") - from_zero) * _part(old, "scale")
     result = (base / _part(new, "scale") + to_zero) / _part(new, "prefix")

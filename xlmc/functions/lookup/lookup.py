@@ -1,10 +1,10 @@
-"""Lookups: a key's position in a vector, and what stands at that position elsewhere.
+"""Lookups: they find the position of a key in a vector, and the cell at that position elsewhere.
 
-Keys and tables may differ between trials. Errors of arguments go before `#N/A`, and `#N/A` before a column that the
-table does not have. An empty cell found stays one: formulas take it for 0 or "".
+Keys and tables may differ between trials. Errors of arguments go before `#N/A`, and `#N/A` before the error for a
+column that the table does not have. If the cell found is empty, so is the result: formulas take it for 0 or "".
 
-`XMATCH` and `XLOOKUP` ask for no order of the values. To them a key that is an empty cell finds an empty cell, and
-arguments left empty take their defaults.
+`XMATCH` and `XLOOKUP` need no order of the values. With them an empty cell as key finds an empty cell, and arguments
+left empty take their defaults.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def _is_vector(cells: Value) -> bool:
 
 
 def _classic_index(key: Value, vector: Value, order: Floats) -> Indices:
-    """As MATCH searches: `order` is 1 for rising values, -1 for falling ones, 0 for the first equal one of any."""
+    """Search as MATCH does: `order` is 1 for rising values, -1 for falling ones, 0 for the first equal value."""
     key = fill_blanks(key)
     result = np.full(1, -1)
     for wanted in np.unique(order):
@@ -67,7 +67,7 @@ def _classic_index(key: Value, vector: Value, order: Floats) -> Indices:
 def match(key: Value, cells: Value, order: Value | None = None) -> Value:
     """Position of the key, or of the last value before it, in a row or column in rising (1) or falling order (-1).
 
-    These are searched by halves, see `vector_search`. With `order` 0 the first equal value; then wildcards hold.
+    `vector_search` says how these are halved. With `order` 0 it is that of the first equal value, and wildcards count.
     """
     return by_portions(_match, [key, cells, constant(1) if order is None else order], width_of(cells))
 
@@ -87,13 +87,13 @@ def _counted_from_1(indices: Indices, errors: Codes) -> Value:
 
 @excel("VLOOKUP", *_IN_A_TABLE, returns=Kind.ANY, facts=Facts(mode_argument=3, jumps=True))
 def vlookup(key: Value, table: Value, column: Value, near: Value | None = None) -> Value:
-    """What stands in a column of the table, in the row whose first cell is the key; or the last up to it if `near`."""
+    """The cell in a column of the table and the row that begins with the key or, if `near`, the last value up to it."""
     return by_portions(_vlookup, [key, table, column, constant(True) if near is None else near], width_of(table))
 
 
 @excel("HLOOKUP", *_IN_A_TABLE, returns=Kind.ANY, facts=Facts(mode_argument=3, jumps=True))
 def hlookup(key: Value, table: Value, row: Value, near: Value | None = None) -> Value:
-    """What stands in a row of the table, in the column whose first cell is the key; or the last up to it if `near`."""
+    """The cell in a row of the table and the column that begins with the key or, if `near`, the last value up to it."""
     turned = transpose_cells(table) if table.numbers.ndim == 3 else table
     return by_portions(_vlookup, [key, turned, row, constant(True) if near is None else near], width_of(table))
 
@@ -116,10 +116,10 @@ def _vlookup(key: Value, table: Value, column: Value, near: Value) -> Value:
 
 @excel("LOOKUP", Anything, Arrays, Arrays(default=None), returns=Kind.ANY, facts=Facts(mode_argument=3, jumps=True))
 def lookup(key: Value, cells: Value, results: Value | None = None) -> Value:
-    """What stands beside the last value up to the key.
+    """The cell beside the last value up to the key.
 
-    Without `results`, the key is sought in the first row of a wide range or the first column of another, and the result
-    taken from its last row or column.
+    Without `results`, the key is searched in the first column of the range, and the result is in its last column; in a
+    range that is wider than high, these are rows.
     """
     if results is None:
         return by_portions(_lookup_in_array, [key, cells], width_of(cells))
@@ -132,22 +132,22 @@ def _lookup_in_array(key: Value, cells: Value) -> Value:
         grid = transpose_cells(grid)
     errors = first_error(key.errors, errors_unless_range(cells, key))
     first, last = map_parts(grid, lambda part: part[:, :, :1]), map_parts(grid, lambda part: part[:, :, -1:])
-    return _beside(key, first, last, errors)
+    return _take_beside(key, first, last, errors)
 
 
 def _lookup_in_vector(key: Value, cells: Value, results: Value) -> Value:
     errors = first_error(key.errors, errors_unless_range(cells, key), errors_unless_range(results, key))
     if not (_is_vector(cells.as_range()) and _is_vector(results.as_range())):
         return error_everywhere(key, _NOT_FOUND, errors)
-    return _beside(key, cells.as_range(), map_parts(results.as_range(), _as_column), errors)
+    return _take_beside(key, cells.as_range(), map_parts(results.as_range(), _as_column), errors)
 
 
 def _as_column(part: Floats) -> Floats:
     return part.reshape(part.shape[0], -1, 1)
 
 
-def _beside(key: Value, vector: Value, results: Value, errors: Codes) -> Value:
-    """The result, (n, k, 1), at the index of the last value up to the key."""
+def _take_beside(key: Value, vector: Value, results: Value, errors: Codes) -> Value:
+    """Take from the results, (n, k, 1), the one at the index of the last value up to the key."""
     indices = last_not_beyond(fill_blanks(key), vector)
     errors = first_error(errors, error_where((indices < 0) | (indices >= results.shape[1]), _NOT_FOUND))
     return with_errors(pick(results, np.where(errors == 0, indices, 0), np.zeros(1, np.intp)), errors)
@@ -157,11 +157,11 @@ _WILDCARDS: Final = 2
 _MODES: Final = (EXACT, SMALLER, LARGER, _WILDCARDS)
 _FROM_THE_END, _RISING, _FALLING = -1, 2, -2
 _DIRECTIONS: Final = (1, _FROM_THE_END, _RISING, _FALLING)
-"""From end to end either way, or by halves of values in order."""
+"""Cell by cell from either end, or by halving values that are in order."""
 
 
-def _indices(key: Value, vector: Value, mode: Value, direction: Value) -> tuple[Indices, Codes]:
-    """The key's index, counted from 0, or -1; and the errors of the last two arguments."""
+def _find_indices(key: Value, vector: Value, mode: Value, direction: Value) -> tuple[Indices, Codes]:
+    """Find the key's index, counted from 0, or -1; and the errors of the last two arguments."""
     (modes, wrong), (directions, wrong_too) = (
         whole_numbers(fill_blanks(mode)),
         whole_numbers(fill_blanks(direction, 1.0)),
@@ -171,20 +171,20 @@ def _indices(key: Value, vector: Value, mode: Value, direction: Value) -> tuple[
     for wanted, towards in product(_MODES, _DIRECTIONS):
         chosen = (modes == wanted) & (directions == towards)
         if chosen.any() and not (wanted == _WILDCARDS and abs(towards) == _RISING):
-            result = np.where(chosen, _found_at(key, vector, wanted, towards), result)
+            result = np.where(chosen, _search(key, vector, wanted, towards), result)
             known = known | chosen
     return result, first_error(wrong, wrong_too, error_where(~known, ErrorCode.VALUE))
 
 
-def _found_at(key: Value, vector: Value, mode: int, direction: int) -> Indices:
+def _search(key: Value, vector: Value, mode: int, direction: int) -> Indices:
     if abs(direction) == _RISING:
-        return _by_halves(key, vector, mode, direction == _FALLING)
+        return _search_by_halves(key, vector, mode, direction == _FALLING)
     by_pattern = mode == _WILDCARDS
     return nearest(key, vector, EXACT if by_pattern else mode, last=direction == _FROM_THE_END, wildcards=by_pattern)
 
 
-def _by_halves(key: Value, vector: Value, side: int, falling: bool) -> Indices:
-    """As MATCH searches; a neighbour that is asked for may be of any kind."""
+def _search_by_halves(key: Value, vector: Value, side: int, falling: bool) -> Indices:
+    """Search as MATCH does; the next smaller or larger value may be of any kind."""
     before = last_not_beyond(key, vector, falling=falling)
     if side == (LARGER if falling else SMALLER):
         return before
@@ -215,7 +215,7 @@ def _xmatch(key: Value, cells: Value, mode: Value, direction: Value) -> Value:
     vector = cells.as_range()
     if 1 not in vector.shape[1:]:
         return error_everywhere(key, ErrorCode.VALUE, errors)
-    indices, wrong = _indices(key, vector, mode, direction)
+    indices, wrong = _find_indices(key, vector, mode, direction)
     return Value.of_numbers(
         (indices + 1).astype(np.float64), first_error(errors, wrong, error_where(indices < 0, ErrorCode.NA))
     )
@@ -241,10 +241,10 @@ def xlookup(
     mode: Value | None = None,
     direction: Value | None = None,
 ) -> Value:
-    """What stands in `results` where the key stands in `cells`, else `instead`: a cell, or the whole row or column.
+    """The cell, row or column of `results` at the position of the key in `cells`; `instead` if it is not found.
 
     Raises:
-        ShapeVaries: the result is a row or column, and not found in some of the trials.
+        ShapeVaries: the result is a row or column, and some trials do not find the key.
     """
     absent = constant(None)
     options = [absent if value is None else value for value in (instead, mode, direction)]
@@ -256,29 +256,30 @@ def _xlookup(key: Value, cells: Value, results: Value, instead: Value, mode: Val
     instead = with_errors(instead, error_where(instead.kinds == BLANK, ErrorCode.NA))
     errors = first_error(key.errors, errors_unless_range(cells, key), errors_unless_range(results, key))
     vector, grid = cells.as_range(), results.as_range()
-    if _goes_down(vector, grid):
-        return _found(key, vector, grid, instead, mode, direction, errors)
-    if _goes_down(transpose_cells(vector), transpose_cells(grid)):
-        row = _found(key, transpose_cells(vector), transpose_cells(grid), instead, mode, direction, errors)
+    if _is_column_beside(vector, grid):
+        return _take_found(key, vector, grid, instead, mode, direction, errors)
+    if _is_column_beside(transpose_cells(vector), transpose_cells(grid)):
+        row = _take_found(key, transpose_cells(vector), transpose_cells(grid), instead, mode, direction, errors)
         return row if row.shape[1:] == key.shape[1:] else transpose_cells(row)
     return error_everywhere(key, ErrorCode.VALUE, errors)
 
 
-def _goes_down(vector: Value, results: Value) -> bool:
-    """Whether the vector is a column, as long as the results."""
+def _is_column_beside(vector: Value, results: Value) -> bool:
+    """Return whether the vector is a column as long as the results."""
     return vector.shape[2] == 1 and vector.shape[1] == results.shape[1]
 
 
-def _found(
+def _take_found(
     key: Value, vector: Value, results: Value, instead: Value, mode: Value, direction: Value, errors: Codes
 ) -> Value:
-    """A single key finds a whole row of `results`, keys in an array formula the first cell of theirs."""
-    indices, wrong = _indices(key, vector, mode, direction)
+    """Take the row of `results` that a single key finds; for the keys of an array formula, its first cell."""
+    indices, wrong = _find_indices(key, vector, mode, direction)
     errors = first_error(errors, wrong)
     found = (indices >= 0) & (errors == 0)
     rows = np.where(found, indices, 0)
     if results.shape[2] == 1 or indices.ndim == 3:
         return choose(found, pick(results, rows, np.zeros(1, np.intp)), with_errors(instead, errors))
-    if not require_same_in_all_trials(found):
+    found_in_all = require_same_in_all_trials(found)
+    if not found_in_all:
         return with_errors(instead, errors)
     return pick(results, rows[:, None, None], np.arange(results.shape[2])[None, None, :])

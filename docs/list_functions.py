@@ -102,7 +102,7 @@ DIFFERENCES = """## What differs from Excel on purpose
   `LAMBDA`. No source confirms this for a `LAMBDA`: Excel treats names of ranges, and of functions in Visual Basic, in
   this way.
 - `NOW` and `TODAY` are what Excel saved, so that a run can be repeated. `RAND`, `RANDBETWEEN` and `RANDARRAY` are
-  assumptions, drawn anew in each trial. `CELL("filename")` has no folder.
+  assumptions, drawn anew in each trial.
 - Formulas that read other workbooks get the values that Excel stored in this one, with a notice. Where Excel computes
   with precision as displayed, xlmc computes with full precision, with a notice.
 - Refused are `OFFSET`, `INDIRECT` and `INDEX(…):INDEX(…)` that lead to other cells in each trial (use `TAKE` or `DROP`,

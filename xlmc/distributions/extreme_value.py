@@ -5,12 +5,28 @@ from __future__ import annotations
 import numpy as np
 
 from xlmc.distributions.base import Array, Family, Values, ends
-from xlmc.distributions.parameters import LIKELIEST, SCALE, above_zero
+from xlmc.distributions.parameters import LIKELIEST, SCALE, Constraint, ParameterSpec, Role, above_zero
 
 __all__ = ["MaximumExtreme", "MinimumExtreme"]
 
 
-class MaximumExtreme(Family):
+class _Extreme:
+    """What both have in common, as mirror images of each other."""
+
+    parameters: tuple[ParameterSpec, ...] = (LIKELIEST, SCALE)
+    roles: tuple[Role, ...] = ("location", "scale")
+    rules: tuple[Constraint, ...] = (above_zero(parameters, "scale"),)
+    open_below = True
+    source = "Johnson, Kotz and Balakrishnan, Continuous Univariate Distributions, vol. 2, ch. 22"
+
+    def _variance(self, likeliest: Values, scale: Values) -> Values:
+        return scale**2 * (np.pi**2 / 6) + 0 * likeliest
+
+    def _support(self, likeliest: Values, scale: Values) -> tuple[Values, Values]:
+        return ends(-np.inf, np.inf, likeliest, scale)
+
+
+class MaximumExtreme(_Extreme, Family):
     """Maximum Extreme with its likeliest value and scale; it has a long tail above.
 
     >>> largest = MaximumExtreme()
@@ -24,12 +40,7 @@ class MaximumExtreme(Family):
 
     name = "Maximum Extreme"
     aliases = ("Max Extreme", "Extvalue", "Gumbel", "Extreme value")
-    parameters = (LIKELIEST, SCALE)
-    roles = ("location", "scale")
-    rules = (above_zero(parameters, "scale"),)
-    open_below = True
     formula = "P(X ≤ x) = exp(−exp(−(x − Likeliest)/Scale)); mean Likeliest + 0.5772·Scale"
-    source = "Johnson, Kotz and Balakrishnan, Continuous Univariate Distributions, vol. 2, ch. 22"
     elsewhere = ("Crystal Ball Maximum Extreme (likeliest, scale)", "@RISK Extvalue(mode, scale)")
 
     def _ppf(self, u: Array, likeliest: Values, scale: Values) -> Array:
@@ -54,14 +65,8 @@ class MaximumExtreme(Family):
     def _mean(self, likeliest: Values, scale: Values) -> Values:
         return likeliest + np.euler_gamma * scale
 
-    def _variance(self, likeliest: Values, scale: Values) -> Values:
-        return scale**2 * (np.pi**2 / 6) + 0 * likeliest
 
-    def _support(self, likeliest: Values, scale: Values) -> tuple[Values, Values]:
-        return ends(-np.inf, np.inf, likeliest, scale)
-
-
-class MinimumExtreme(Family):
+class MinimumExtreme(_Extreme, Family):
     """Minimum Extreme with its likeliest value and scale; it has a long tail below.
 
     >>> smallest = MinimumExtreme()
@@ -75,12 +80,7 @@ class MinimumExtreme(Family):
 
     name = "Minimum Extreme"
     aliases = ("Min Extreme", "ExtvalueMin")
-    parameters = (LIKELIEST, SCALE)
-    roles = ("location", "scale")
-    rules = (above_zero(parameters, "scale"),)
-    open_below = True
     formula = "P(X > x) = exp(−exp((x − Likeliest)/Scale)); mean Likeliest − 0.5772·Scale"
-    source = "Johnson, Kotz and Balakrishnan, Continuous Univariate Distributions, vol. 2, ch. 22"
     elsewhere = ("Crystal Ball Minimum Extreme (likeliest, scale)", "@RISK ExtvalueMin(mode, scale)")
 
     def _ppf(self, u: Array, likeliest: Values, scale: Values) -> Array:
@@ -105,9 +105,3 @@ class MinimumExtreme(Family):
 
     def _mean(self, likeliest: Values, scale: Values) -> Values:
         return likeliest - np.euler_gamma * scale
-
-    def _variance(self, likeliest: Values, scale: Values) -> Values:
-        return scale**2 * (np.pi**2 / 6) + 0 * likeliest
-
-    def _support(self, likeliest: Values, scale: Values) -> tuple[Values, Values]:
-        return ends(-np.inf, np.inf, likeliest, scale)

@@ -1,17 +1,17 @@
-"""Rank correlation by a Gaussian copula: uniforms in, uniforms out, trial by trial.
+"""Rank correlation by a Gaussian copula, which turns independent uniforms into correlated ones, trial by trial.
 
-**Contradictions.** No draws can have correlations that contradict each other: the nearest matrix that some can have is
-used instead (`nearest_correlation`).
+**Contradictions.** No draws can have correlations that contradict each other. Instead the nearest matrix is used that
+draws can have (`nearest_correlation`).
 
 **Ties.** Assumptions that take few values, such as Yes-No, have equal draws, which share their mean rank. The Spearman
-correlation of two draws is Pearson's of their mean ranks, F(x) less half of P(x). With a Gaussian copula of parameter
-r, cuts h and k of the normals between the values, and steps w and v of the mean ranks there,
+correlation of two draws is Pearson's of their mean ranks, F(x) − P(x)/2. With a Gaussian copula of parameter r, cuts h
+and k of the normals between the values, and steps w and v of the mean ranks there,
 
     both step      cov = Σ Σ w v ∫ exp(-(h² + k² - 2hk·sin t) / (2cos² t)) dt / 2π        t from 0 to asin r
     one does not   cov = Σ w ∫ exp(-h² / (2cos² t)) dt / 2π                               t from 0 to asin(r/√2)
 
 (Plackett 1954: the derivative of the bivariate normal probability is its density; sin t for the correlation as in
-Drezner and Wesolowsky 1990). The most and the least are those of r = ±1, Fréchet's bounds.
+Drezner and Wesolowsky 1990). The largest and the smallest are those of r = ±1, Fréchet's bounds.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ __all__ = ["GaussianCopula", "Ties", "bounds", "nearest_correlation", "parameter
 Floats = NDArray[np.float64]
 
 Quantiles = Callable[[Floats], Floats]
-"""Takes uniforms `(n,)`, gives the draws that are made of them."""
+"""Takes uniforms `(n,)` and gives the draws made from them."""
 
 _HALF_STEP: Final = 2.0**-54
 
@@ -38,29 +38,29 @@ _LEAST: Final = 2.0**-80
 """The least probability that a draw is made from: less has a chance of 1e-24."""
 
 _ROUNDING: Final = 1e-9
-"""An eigenvalue so little below 0 is one of 0: no correlation need change by more than this."""
+"""An eigenvalue that is below 0 by less counts as 0: no correlation need change by more than this."""
 
 _PROJECTIONS: Final = 10_000
 _CLOSE: Final = 1e-12
-"""The change of a round, beside the size of the matrix, at which the projections have met."""
+"""The projections have met when a round changes the matrix by less than this share."""
 
 _GRID: Final = 4096
-"""Probabilities at which a draw is looked at."""
+"""The number of probabilities at which draws are computed to find ties."""
 
 _FEW: Final = 512
-"""Changes of value between these: with no more of them the ends are looked at as well, where rare values lie."""
+"""If the value changes no more often between these, draws are computed at the ends as well, where rare values lie."""
 
 _ENDS: Final = 0.5 ** np.arange(13, 50)
-"""Probabilities beyond the first and the last of the grid."""
+"""Probabilities below the first of the grid; 1 minus these lie above the last."""
 
 _NEGLIGIBLE: Final = 1e-4
-"""Ties that take away less of the variance of ranks than this are left out: the correlation differs by half of it."""
+"""Ties that reduce the variance of ranks by less are ignored: the correlation differs by half of it."""
 
 _FINE: Final = 1 / 256
-"""Values less probable than that are taken together."""
+"""Values less probable than this are joined."""
 
 _NEAR: Final = 1e-12
-"""What is so near to a bound is the bound."""
+"""A correlation this near to a bound counts as the bound."""
 
 _HALVINGS: Final = 60
 _NODES: Final = 64
@@ -77,13 +77,13 @@ class GaussianCopula:
         ties: the values that each of the k takes, None for a continuous one; by default all are continuous.
 
     Attributes:
-        wanted: the target, each number brought to what ties let its pair have.
-        spearman: the matrix that the draws have.
-        repaired: whether that is another one than was wanted, because no joint distribution of this kind has it.
+        wanted: the target, each number limited to what ties allow its pair.
+        spearman: the Spearman correlations that the draws have.
+        repaired: whether they differ from `wanted`, because no joint distribution of this kind has it.
 
-    Source: Pearson correlation of the normals ρ = 2 sin(π r_s / 6) (Kruskal 1958), which is exact; for draws with few
-    values see `Ties`. These are what must be positive semidefinite, so it is they that are repaired (Higham 2002), and
-    the ranks follow from them.
+    Source: the Pearson correlation of the normals is ρ = 2 sin(π r_s / 6) (Kruskal 1958), which is exact; the module
+    says what it is for draws with few values. The matrix of these must be positive semidefinite, so it is repaired
+    (Higham 2002), and the rank correlations follow from it.
     """
 
     def __init__(self, target: Floats, ties: Sequence[Ties | None] = ()) -> None:
@@ -91,7 +91,7 @@ class GaussianCopula:
         pearson = 2 * np.sin(np.pi / 6 * target)
         np.fill_diagonal(pearson, 1.0)
         self.wanted = target.copy()
-        for i, j in self._tied():
+        for i, j in self._tied_pairs():
             least, most = bounds(ties[i], ties[j])
             self.wanted[i, j] = self.wanted[j, i] = min(max(float(target[i, j]), least), most)
             pearson[i, j] = pearson[j, i] = parameter(ties[i], ties[j], float(target[i, j])) if target[i, j] else 0.0
@@ -99,11 +99,11 @@ class GaussianCopula:
         self._mix = _triangular_root(nearest_correlation(pearson) if self.repaired else pearson)
         normals = np.clip(self._mix @ self._mix.T, -1.0, 1.0)
         self.spearman = 6 / np.pi * np.arcsin(normals / 2)
-        for i, j in self._tied():
+        for i, j in self._tied_pairs():
             self.spearman[i, j] = self.spearman[j, i] = spearman(ties[i], ties[j], float(normals[i, j]))
 
-    def _tied(self) -> Iterator[tuple[int, int]]:
-        """The pairs of which one takes few values."""
+    def _tied_pairs(self) -> Iterator[tuple[int, int]]:
+        """Yield the pairs of which at least one takes few values."""
         rows = range(len(self._ties))
         return ((i, j) for i, j in combinations(rows, 2) if self._ties[i] or self._ties[j])
 
@@ -120,10 +120,11 @@ class GaussianCopula:
 
 
 def _triangular_root(matrix: Floats) -> Floats:
-    """The lower triangle (k, k), rows of length 1, that times its transpose is the matrix, which may be singular.
+    """Return the lower triangle (k, k) that, times its transpose, is the matrix, which may be singular.
 
-    A square root by eigenvalues, turned until it is triangular: as accurate where correlations are ±1 as elsewhere. An
-    eigenvalue that is nothing but rounding, 1e-16, would have a root of 1e-8, and ±1 would not be ±1.
+    A square root by eigenvalues is rotated until it is triangular, which is accurate even for correlations of ±1. An
+    eigenvalue of 1e-16, which is only rounding, would have a root of 1e-8, and ±1 would not remain ±1. The rows have
+    length 1.
     """
     values, vectors = np.linalg.eigh(matrix)
     values[values < 4.0 * len(matrix) * np.finfo(np.float64).eps] = 0.0
@@ -133,10 +134,10 @@ def _triangular_root(matrix: Floats) -> Floats:
 
 
 def nearest_correlation(matrix: Floats) -> Floats:
-    """The correlation matrix (k, k) nearest to a symmetric one in the Frobenius norm.
+    """Find the correlation matrix (k, k) nearest to a symmetric one in the Frobenius norm.
 
-    Projections by turns on the positive semidefinite matrices and on those with a diagonal of 1; Dykstra's correction
-    of the first makes them meet at the nearest point rather than at any (Higham 2002, algorithm 3.3).
+    The matrix is projected by turns on the positive semidefinite matrices and on those with a diagonal of 1; Dykstra's
+    correction of the first makes the turns meet at the nearest point, not just at any (Higham 2002, algorithm 3.3).
 
     >>> nearest_correlation(np.array([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0]]))[0].round(4).tolist()
     [1.0, 0.7607, 0.1573]
@@ -145,7 +146,7 @@ def nearest_correlation(matrix: Floats) -> Floats:
     for _ in range(_PROJECTIONS):
         before = found
         corrected = before - correction
-        inside = _semidefinite(corrected)
+        inside = _drop_negative_eigenvalues(corrected)
         correction = inside - corrected
         found = inside.copy()
         np.fill_diagonal(found, 1.0)
@@ -154,18 +155,18 @@ def nearest_correlation(matrix: Floats) -> Floats:
     return found
 
 
-def _semidefinite(matrix: Floats) -> Floats:
-    """Without its negative eigenvalues."""
+def _drop_negative_eigenvalues(matrix: Floats) -> Floats:
+    """Return the matrix without its negative eigenvalues."""
     values, vectors = np.linalg.eigh(matrix)
     return np.asarray((vectors * np.maximum(values, 0.0)) @ vectors.T)
 
 
 @dataclass(frozen=True, eq=False)
 class Ties:
-    """The values that a draw takes.
+    """The probabilities of the values that a draw takes.
 
     Attributes:
-        cuts: the probabilities, rising, at which it goes from one value to the next, `(m - 1,)` of m values.
+        cuts: the rising probabilities at which one value ends and the next begins, `(m - 1,)` of m values.
     """
 
     cuts: Floats
@@ -182,7 +183,7 @@ class Ties:
 
     @cached_property
     def normals(self) -> Floats:
-        """The cuts of a normal number."""
+        """The cuts as quantiles of the normal distribution, `(m - 1,)`."""
         from scipy.special import ndtri
 
         return np.asarray(ndtri(self.cuts))
@@ -194,7 +195,7 @@ class Ties:
 
 
 def ties_of(quantiles: Quantiles) -> Ties | None:
-    """The values that a draw takes; None where hardly any two draws are equal, or all."""
+    """Find the values that a draw takes; None if hardly any two draws are equal, or all."""
     u = (np.arange(_GRID) + 0.5) / _GRID
     found = quantiles(u)
     new = np.flatnonzero(found[1:] != found[:-1])
@@ -204,12 +205,12 @@ def ties_of(quantiles: Quantiles) -> Ties | None:
         new = np.flatnonzero(found[1:] != found[:-1])
     if new.size in (0, u.size - 1):
         return None
-    ties = Ties(_coarse(_refined_cuts(quantiles, u, found, new)))
+    ties = Ties(_join_rare_values(_refined_cuts(quantiles, u, found, new)))
     return ties if np.sum(ties.chances**3) > _NEGLIGIBLE else None
 
 
 def _refined_cuts(quantiles: Quantiles, u: Floats, found: Floats, new: NDArray[np.intp]) -> Floats:
-    """Where the value changes after each of some probabilities, by halving."""
+    """Find by halving where the value changes after each of some probabilities."""
     low, high, before = u[new].copy(), u[new + 1].copy(), found[new]
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
@@ -218,8 +219,8 @@ def _refined_cuts(quantiles: Quantiles, u: Floats, found: Floats, new: NDArray[n
     return high
 
 
-def _coarse(cuts: Floats) -> Floats:
-    """The cuts without those between values that are all improbable."""
+def _join_rare_values(cuts: Floats) -> Floats:
+    """Return the cuts without those between improbable values."""
     following = np.append(cuts[1:], 1.0)
     kept, last = [], 0.0
     for cut, after in zip(cuts, following, strict=True):
@@ -230,7 +231,7 @@ def _coarse(cuts: Floats) -> Floats:
 
 
 def spearman(first: Ties | None, second: Ties | None, r: float) -> float:
-    """The rank correlation of two draws that a Gaussian copula of parameter r joins; None for a continuous one."""
+    """Return the rank correlation of two draws under a copula of parameter r; None stands for a continuous draw."""
     if first is None and second is None:
         return float(6 / np.pi * np.arcsin(np.clip(r, -1.0, 1.0) / 2))
     if first is None or second is None:
@@ -243,7 +244,7 @@ def spearman(first: Ties | None, second: Ties | None, r: float) -> float:
 
 
 def _quadrature(end: float) -> tuple[Floats, Floats]:
-    """Points and weights from 0 to the end (Gauss and Legendre)."""
+    """Return Gauss and Legendre's points and weights from 0 to `end`."""
     x, w = np.polynomial.legendre.leggauss(_NODES)
     return end * (x + 1) / 2, end * w / 2
 
@@ -264,19 +265,19 @@ def _both_tied(first: Ties, second: Ties, r: float) -> float:
 
 
 def _at_the_bound(first: Ties, second: Ties, r: float) -> float:
-    """The covariance of mean ranks where both draws come from one uniform, or from u and 1-u."""
+    """Return the covariance of mean ranks if both draws come from one uniform, or from u and 1-u."""
     above, beyond = 1 - first.cuts[:, None], 1 - second.cuts[None, :]
     both = np.minimum(above, beyond) if r > 0 else np.maximum(above + beyond - 1, 0.0)
     return float(first.steps @ (both - above * beyond) @ second.steps)
 
 
 def bounds(first: Ties | None, second: Ties | None) -> tuple[float, float]:
-    """The least and the most that the rank correlation can be."""
+    """Return the smallest and the largest rank correlation that is possible."""
     return spearman(first, second, -1.0), spearman(first, second, 1.0)
 
 
 def parameter(first: Ties | None, second: Ties | None, wanted: float) -> float:
-    """The copula's parameter that gives a rank correlation; ±1 where it is out of reach.
+    """Find the parameter of the copula that gives a rank correlation; ±1 if it is out of reach.
 
     >>> round(parameter(None, Ties(np.array([0.5])), 0.5), 4)
     0.6195

@@ -1,7 +1,7 @@
 """Latin hypercube: in every replicate, each of its equally likely intervals holds one draw of every assumption.
 
-Source: McKay, Beckman & Conover 1979. The order of the intervals is a sort of random numbers, one a trial, so it is
-uniform over all orders but for ties in 50 bits or more, and needs nothing that was drawn before.
+Source: McKay, Beckman & Conover 1979. Sorting random numbers, one for each trial, gives the order of the intervals. So
+all orders are equally likely (ties in 50 bits or more apart), and no earlier draw is needed.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class LatinHypercube:
     Args:
         seed: of the run.
         name: of the assumption.
-        strata: intervals, and trials, in a replicate; 1 to 16,384.
+        strata: the intervals in a replicate, and so its trials; 1 to 16,384.
 
     Within its interval a trial keeps the position that it would have in [0, 1) under Monte Carlo.
     """
@@ -41,7 +41,7 @@ class LatinHypercube:
         np.minimum(out, _LARGEST, out=out)
 
     def _intervals(self, first: int, last: int) -> NDArray[np.uint64]:
-        """The interval of every trial of the replicates from `first` to before `last`."""
+        """Return the interval of every trial of the replicates from `first` to before `last`."""
         shape = last - first, self._strata
         keys = self._order.raw(first * self._strata, shape[0] * shape[1]).reshape(shape)
         low = np.uint64((1 << (self._strata - 1).bit_length()) - 1)

@@ -1,8 +1,8 @@
 """The sampling methods, a row each: the command line, settings, records and `xlmc methods` know them from here.
 
-To add one, write a module beside this one with what draws the uniforms of one assumption (a `Margin`), and its row
-below; describe it in docs/sampling.md. docs/adding.md has an example. Nothing is imported before a method draws, so
-that `--help` is quick.
+To add one, write a module beside this one with a `Margin`, which draws the uniforms of one assumption, and its row
+below; describe it in docs/sampling.md. docs/adding.md has an example. A method imports its module only when it draws,
+so that `--help` is quick.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ __all__ = ["GENERATOR", "METHODS", "REPLICATES", "Margin", "SamplingMethod"]
 GENERATOR: Final = "PCG64DXSM"
 
 REPLICATES: Final = 16
-"""The fewest of a run: their spread, and so every error, is known to 1/√30 = 18 %."""
+"""The fewest replicates of a run: their spread, and so every error, is known to 1/√30 = 18 %."""
 
 _STRATA: Final = 16_384
-"""The most trials in a replicate. More intervals gain nothing: of the variance that one input alone explains, 16,384
-leave some 4·10⁻⁹ where the forecast is smooth."""
+"""The most trials in a replicate. More intervals gain nothing: with 16,384, some 4·10⁻⁹ remains of the variance that
+one input alone explains, if the forecast is smooth."""
 
 _STREAMS: Final = f"{GENERATOR}: a stream for each assumption, seeded by (seed, name), positioned by trial number"
 _SORTED: Final = f"{_STREAMS}; a second stream for each puts the intervals of a replicate in order"
@@ -45,11 +45,11 @@ class SamplingMethod(NamedTuple):
         key: its name in options, settings, records and saved runs.
         name: its name in sentences.
         generator: where its numbers come from, for the record.
-        margins: seed, name -> dimension, trials in a replicate -> what draws each assumption, in the order of names.
-        replicate: trials asked for -> trials in each replicate; None where the trials are independent of each other,
-            and so are a sample wherever the run ends.
+        margins: takes the seed, the dimension of each name and the trials in a replicate; gives a margin for each name.
+        replicate: takes the trials asked for and gives those in each replicate; None if trials are independent of each
+            other, so that a run may end after any of them.
         also: other names that a workbook may give it, as `distributions.naming.plain` makes them.
-        ordered: it spreads the first dimensions best, so that a short run finds out which assumptions matter most.
+        ordered: it spreads the first dimensions best, so a short run finds which assumptions matter most.
         compared: `xlmc methods` tries it.
         limit: why more trials may not bring the accuracy asked for, in a clause; empty where they always do.
     """
@@ -96,13 +96,13 @@ def _scrambled_sobol(seed: int, dimensions: Mapping[str, int], size: int) -> lis
     return [ScrambledSobol(seed, name, dimension, size) for name, dimension in dimensions.items()]
 
 
-def _intervals(most: int) -> Callable[[int], int]:
-    """Replicates of at most so many trials."""
+def _at_most(most: int) -> Callable[[int], int]:
+    """Return a rule for replicates of at most so many trials."""
     return lambda trials: min(most, -(-trials // REPLICATES))
 
 
 def _power_of_two(trials: int) -> int:
-    """The trials of a Sobol replicate: 16 to 31 of them are at most a sixteenth more than were asked for."""
+    """Return the trials of a Sobol replicate: 16 to 31 replicates are at most a sixteenth more than were asked for."""
     size = 1 << max(0, (trials // REPLICATES).bit_length() - 1)
     return size if trials <= (2 * REPLICATES - 1) * size else 2 * size
 
@@ -114,7 +114,7 @@ _ROWS: Final = (
         "Latin hypercube",
         _SORTED,
         _latin_hypercube,
-        _intervals(_STRATA),
+        _at_most(_STRATA),
         also=("latinhypercube",),
         limit="filters take its gain away: what they accept is no marginal",
     ),
@@ -123,7 +123,7 @@ _ROWS: Final = (
         "Latin hypercube in blocks of 500",
         _SORTED,
         _latin_hypercube,
-        _intervals(500),
+        _at_most(500),
         compared=False,
     ),
     SamplingMethod(

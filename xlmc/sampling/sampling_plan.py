@@ -1,4 +1,4 @@
-"""Which method draws, and how the trials of a run are divided into independent replicates."""
+"""The plan of a run: its sampling method, and how its trials are divided into independent replicates."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ __all__ = ["SamplingPlan"]
 
 @dataclass(frozen=True, slots=True)
 class SamplingPlan:
-    """The method and its replicates, a range of trials each, one after the other.
+    """A method and its replicates, each a range of trials, one after the other.
 
     Attributes:
         method: a key of `METHODS`.
-        trials: that are run: whole replicates, and so sometimes more than were asked for.
+        trials: how many are run: whole replicates, and so sometimes more than were asked for.
         size: trials in a replicate; 0 where the trials themselves are independent.
         order: the assumptions in the order of their Sobol dimensions; empty to take them as they are listed.
     """
@@ -31,7 +31,7 @@ class SamplingPlan:
 
     @classmethod
     def of(cls, method: str, trials: int) -> SamplingPlan:
-        """The plan for at least `trials` trials; that for its own number of trials is the same plan.
+        """Make the plan for at least `trials` trials; the plan for its own number of trials is the same.
 
         Raises:
             ValueError: there is no such method.
@@ -51,11 +51,11 @@ class SamplingPlan:
 
     @property
     def replicates(self) -> int:
-        """How many; 0 where the trials themselves are independent."""
+        """How many replicates there are; 0 if the trials themselves are independent."""
         return self.trials // self.size if self.size else 0
 
     def margins(self, seed: int, names: Sequence[str]) -> Sequence[Margin]:
-        """What draws each assumption.
+        """Return, for each assumption, the object that draws its uniforms.
 
         Raises:
             SimulationError: the method cannot draw so many assumptions.
@@ -64,5 +64,5 @@ class SamplingPlan:
         return METHODS[self.method].margins(seed, {name: dimensions[name] for name in names}, self.size)
 
     def replicate_of(self, trials: NDArray[np.int64]) -> NDArray[np.int64] | None:
-        """The replicate of each trial, (n,); None where the trials themselves are independent."""
+        """Return the replicate of each trial, (n,); None if the trials themselves are independent."""
         return trials // self.size if self.size else None

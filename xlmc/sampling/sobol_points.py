@@ -1,11 +1,11 @@
 """Scrambled Sobol points: every replicate a digital net, scrambled anew.
 
 Each digit of a point is replaced by itself plus a random sum of the digits before it (Matoušek 1998, a random linear
-scramble), and a random digital shift is added, all modulo 2. Every point is then uniform, what makes a net is kept, and
-replicates are independent of each other, so that their differences give the error (Owen 1997; L'Ecuyer 2018).
+scramble), and a random digital shift is added, all modulo 2. Then every point is uniform, the points are still a net,
+and replicates are independent of each other, so that their differences give the error (Owen 1997; L'Ecuyer 2018).
 
 The direction numbers are those of Joe and Kuo 2008 (`new-joe-kuo-6.21201`). The table was copied from SciPy's; the
-folder `joe_kuo` holds it with the licences of both. To import `scipy.stats`, which has a generator of its own, takes
+folder `joe_kuo` holds it with the licences of both. `scipy.stats` has a generator of its own, but importing it takes
 most of a second.
 """
 
@@ -25,13 +25,13 @@ __all__ = ["DIMENSIONS", "PRECISION", "ScrambledSobol", "direction_numbers"]
 Words = NDArray[np.uint64]
 
 _RESERVED = 64
-"""Random numbers set apart for each replicate: one for every digit, and one for the shift."""
+"""Random numbers reserved for each replicate, which uses one for every digit, and one for the shift."""
 
 _TABLE_BITS = 12
-"""Points of a table that others differ from by one number only: it fits into the cache."""
+"""A table of 2^12 points fits into the cache; the next points differ from it by a single number."""
 
 DIMENSIONS: Final = 21_201
-"""As many as the table has, and so the most assumptions that can be drawn."""
+"""The dimensions of the table, and so the most assumptions that can be drawn."""
 
 PRECISION: Final = 53
 """Binary digits of a point."""
@@ -71,7 +71,7 @@ class ScrambledSobol:
             done += points.size
 
     def _scramble(self, replicate: int) -> None:
-        """Make the columns of a replicate and the table of its first points, unless they are there."""
+        """Make the columns of a replicate and the table of its first points, unless that is done."""
         if replicate == self._replicate:
             return
         random = self._random.raw(replicate * _RESERVED, PRECISION + 1)
@@ -84,7 +84,7 @@ class ScrambledSobol:
         self._table, self._replicate = table, replicate
 
     def _offset(self, number: int) -> np.uint64:
-        """What the points of the table numbered `number` differ by from those of the first."""
+        """Return the number by which the points of table `number` differ from those of the first."""
         columns = self._columns[_TABLE_BITS:]
         chosen = [column for bit, column in enumerate(columns) if number >> bit & 1]
         return np.uint64(np.bitwise_xor.reduce(chosen)) if chosen else np.uint64(0)
@@ -92,7 +92,7 @@ class ScrambledSobol:
 
 @cache
 def direction_numbers(dimension: int, bits: int) -> NDArray[np.uint64]:
-    """The generating matrix of a dimension, `(bits,)` columns of 53 binary digits, the first digit the highest.
+    """Return the generating matrix of a dimension, `(bits,)` columns of 53 binary digits, the first digit the highest.
 
     Point i is the exclusive or of the columns whose bits are set in i. Column j < s stands in the table, s the degree
     of the dimension's primitive polynomial x^s + a₁x^(s−1) + … + 1; the others follow by
@@ -116,6 +116,6 @@ def direction_numbers(dimension: int, bits: int) -> NDArray[np.uint64]:
 
 @cache
 def _table() -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
-    """The polynomials (d,) and the first numbers (d, 18)."""
+    """Read the polynomials (d,) and the first numbers (d, 18)."""
     with np.load(Path(__file__).parent / "joe_kuo" / "direction_numbers.npz") as table:
         return table["polynomials"], table["starts"]

@@ -1,4 +1,4 @@
-"""One random stream per assumption, known by (seed, name) and positioned by trial index.
+"""One random stream for each assumption, identified by (seed, name) and positioned by trial index.
 
 A draw depends on nothing else: not on the other assumptions, not on the block size, not on the thread.
 """
@@ -19,7 +19,7 @@ class Stream:
     Args:
         seed: of the run.
         name: of the assumption, as `name_key` folds it.
-        purpose: what the numbers are for, where they are not the draws themselves: a stream of its own.
+        purpose: what the numbers are for, unless they are the draws themselves; each purpose has its own stream.
 
     The generator is PCG64DXSM with `SeedSequence(seed, spawn_key=SHA-256(name))`; trial i takes its i-th number. A
     purpose adds the words of its own SHA-256 to the key.
@@ -34,7 +34,7 @@ class Stream:
 
     @property
     def beginning(self) -> tuple[int, int]:
-        """The generator's state before the first trial, 128 bits, and its increment."""
+        """The generator's 128-bit state before the first trial, and its increment."""
         inner = self._start["state"]
         return int(inner["state"]), int(inner["inc"])
 

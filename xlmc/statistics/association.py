@@ -14,7 +14,7 @@ __all__ = ["rank_correlation"]
 Floats = NDArray[np.float64]
 
 LEAST_TRIALS = 10
-"""Fewer in a replicate say nothing of its correlation."""
+"""With fewer trials, a replicate says nothing about its correlation."""
 
 
 def rank_correlation(
@@ -22,8 +22,9 @@ def rank_correlation(
 ) -> Estimate:
     """Spearman's correlation of (n,) x and y, ties sharing their mean rank; nan where one of them does not vary.
 
-    Independent trials: error √((1 + r²/2)/(n − 3)) of Fisher's z (Bonett & Wright 2000), and its interval brought back.
-    Replicates: the error is their standard deviation over √R, without one where some have fewer than 10 trials.
+    With independent trials, Fisher's z has the error √((1 + r²/2)/(n − 3)) (Bonett & Wright 2000), and its interval is
+    converted back. With R replicates, the error is their standard deviation over √R; there is none if some have fewer
+    than 10 trials.
 
     Raises:
         ValueError: the lengths differ.
@@ -36,7 +37,7 @@ def rank_correlation(
         raise ValueError(f"two columns of one length, not of shapes {first.shape} and {second.shape}")
     value, n = _spearman(first, second), first.size
     if replicate is None:
-        return _of_independent_trials(value, n, confidence)
+        return _estimate_from_trials(value, n, confidence)
     names, ids = np.unique(np.asarray(replicate), return_inverse=True)
     if names.size < 2 or np.bincount(ids).min() < LEAST_TRIALS:
         return Estimate(value, n=n)
@@ -45,7 +46,7 @@ def rank_correlation(
     return with_error(value, float(np.std(each, ddof=1)) / math.sqrt(names.size), names.size - 1.0, confidence, n)
 
 
-def _of_independent_trials(value: float, n: int, confidence: float) -> Estimate:
+def _estimate_from_trials(value: float, n: int, confidence: float) -> Estimate:
     if n <= 3 or not abs(value) < 1.0:
         return Estimate(value, n=n)
     error = math.sqrt((1.0 + value**2 / 2.0) / (n - 3.0))
@@ -63,7 +64,7 @@ def _spearman(x: Floats, y: Floats) -> float:
 
 
 def _centred_ranks(x: Floats) -> Floats:
-    """(n,) ranks less their mean."""
+    """Return the (n,) ranks minus their mean."""
     order = np.argsort(x)
     ascending = x[order]
     starts = np.flatnonzero(np.concatenate([[True], ascending[1:] != ascending[:-1]]))

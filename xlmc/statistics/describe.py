@@ -17,15 +17,15 @@ from xlmc.statistics.sample import Sample, Values
 __all__ = ["Description", "describe"]
 
 PERCENTS = tuple(float(percent) for percent in range(0, 101, 5))
-"""Crystal Ball's deciles, and the ones between."""
+"""Crystal Ball's deciles, and the percentiles halfway between them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """The statistics of one forecast's accepted trials, in the order people know them in.
+    """The statistics of one forecast's accepted trials, in their usual order.
 
     Attributes:
-        trials: how many values there are (with weights: that carry any).
+        trials: how many values there are; with weights, how many have a weight above 0.
         percentiles: percent -> estimate.
         central: the lower and upper end of the central range.
         probability_above: P(> threshold), None where no threshold was given.

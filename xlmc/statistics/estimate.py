@@ -1,4 +1,4 @@
-"""A number and how well it is known: value, standard error, interval; printed with the digits that the error allows."""
+"""A number and how well it is known: its value, standard error and interval, and how many digits are printed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LEAST_DOF = 1.0 - 1e-9
 """Fewer degrees of freedom give no error; the margin is for the rounding of an effective sample size."""
 
 LENGTHENED = 0.15
-"""A sample shows too little of its skewness: intervals are longer by so much of it."""
+"""Intervals are longer by this share of the skewness, because a sample shows too little of it."""
 
 MOST_DIGITS = 15  # all that a double holds for certain
 
@@ -39,15 +39,15 @@ class Estimate:
 
 
 def with_error(value: float, error: float, dof: float, confidence: float, n: int, skewness: float = 0.0) -> Estimate:
-    """Value ± Student's t times its error; without an error where fewer than two independent units stand behind it.
+    """Make an estimate with the interval value ± t·error; no error if there are fewer than two independent units.
 
     Args:
-        value: of the estimate.
+        value: the number.
         error: its standard error.
-        dof: independent units less one.
-        confidence: of the interval.
+        dof: independent units minus one.
+        confidence: the probability that the interval holds the truth.
         n: trials.
-        skewness: of the estimate from run to run, which makes the interval longer on one side.
+        skewness: that of the number from run to run; it makes the interval longer on one side.
     """
     if dof < LEAST_DOF or not (math.isfinite(value) and math.isfinite(error)):
         return Estimate(value, n=n)
@@ -58,7 +58,7 @@ def with_error(value: float, error: float, dof: float, confidence: float, n: int
 def with_relative_error(
     value: float, error: float, dof: float, confidence: float, n: int, skewness: float = 0.0
 ) -> Estimate:
-    """As `with_error` for a positive scale: the interval is made for the logarithm, so that it stays positive."""
+    """Do as `with_error` for a positive number: the interval is that of the logarithm, so that it stays positive."""
     plain = with_error(value, error, dof, confidence, n)
     if plain.interval is None or error == 0.0:
         return plain
@@ -69,20 +69,20 @@ def with_relative_error(
 
 
 def t_range(dof: float, confidence: float, skewness: float = 0.0) -> tuple[float, float]:
-    """Between which two numbers (estimate − truth)/error lies with this confidence.
+    """Return the two numbers between which (estimate − truth)/error lies with this confidence.
 
-    Student's t, and Hall's correction of it for an estimate that is skewed from run to run: with r a sixth of the
-    skewness, t + 2 r t² + 4/3 r² t³ + r is nearly symmetric. Neither end comes nearer than without a skewness.
+    They are quantiles of Student's t, with Hall's correction for an estimate that is skewed from run to run: with r a
+    sixth of the skewness, t + 2 r t² + 4/3 r² t³ + r is nearly symmetric. Neither is nearer to 0 than without skewness.
     """
     t = t_quantile(dof, confidence)
     if skewness == 0.0:
         return -t, t
     longer, r = t * (1.0 + LENGTHENED * abs(skewness)), skewness / 6.0
-    return min(-longer, _uncorrected(-longer, r)), max(longer, _uncorrected(longer, r))
+    return min(-longer, _invert_cubic(-longer, r)), max(longer, _invert_cubic(longer, r))
 
 
-def _uncorrected(y: float, r: float) -> float:
-    """The t at which Hall's cubic is y: ((1 + 2 r t)³ − 1)/(6 r) + r."""
+def _invert_cubic(y: float, r: float) -> float:
+    """Return the t at which Hall's cubic is y: ((1 + 2 r t)³ − 1)/(6 r) + r."""
     inner = 6.0 * r * (y - r)
     if abs(inner) < 1e-3:  # where the difference of cube roots would lose digits
         return float(math.expm1(math.log1p(inner) / 3.0) / (2.0 * r))
@@ -90,14 +90,14 @@ def _uncorrected(y: float, r: float) -> float:
 
 
 def t_quantile(dof: float, confidence: float) -> float:
-    """The two-sided quantile of Student's t; with infinite `dof` that of the normal distribution."""
+    """Return the two-sided quantile of Student's t; with infinite `dof`, that of the normal distribution."""
     from scipy.special import stdtrit
 
     return float(stdtrit(dof, 1.0 - one_tail(confidence)))
 
 
 def one_tail(confidence: float) -> float:
-    """The probability left on either side.
+    """Return the probability beyond either end of the interval.
 
     Raises:
         ValueError: the confidence is not between 0 and 1.
@@ -108,9 +108,9 @@ def one_tail(confidence: float) -> float:
 
 
 def supported_digits(estimate: Estimate) -> int | None:
-    """Decimals for the value printed alone: the last one is good to ± 1 with 95 % confidence (2 errors ≤ 1 unit).
+    """Return the decimals of a value printed alone: the last is good to ± 1 with 95 % confidence (2 errors ≤ 1 unit).
 
-    Negative for tens, hundreds, …; None where no error limits the digits.
+    The number is negative for tens, hundreds, …, and None where no error limits the digits.
 
     >>> supported_digits(Estimate(17.0213, error=0.0023))
     2
@@ -121,7 +121,7 @@ def supported_digits(estimate: Estimate) -> int | None:
 
 
 def format_estimate(value: float, error: float | None) -> str:
-    """The error to two significant digits and the value to the same decimal; six digits where there is no error.
+    """Write the error to two significant digits and the value to the same decimal; six digits without an error.
 
     >>> format_estimate(17.02134, 0.00231)
     '17.0213 ± 0.0023'
@@ -141,13 +141,13 @@ def format_estimate(value: float, error: float | None) -> str:
     decimals = 1 - two_digit_exponent(error)
     if decimals + size >= MOST_DIGITS:  # an error below the last bit of the value
         return f"{value:.{MOST_DIGITS}g} ± {error:.1e}"
-    return f"{_rounded(value, decimals)} ± {_rounded(error, decimals)}"
+    return f"{_write_rounded(value, decimals)} ± {_write_rounded(error, decimals)}"
 
 
 def two_digit_exponent(number: float) -> int:
-    """The power of ten of a number rounded to two digits: 0.00996 -> -2."""
+    """Return the power of ten of a number rounded to two digits: 0.00996 -> -2."""
     return int(f"{number:.1e}".partition("e")[2])
 
 
-def _rounded(number: float, decimals: int) -> str:
+def _write_rounded(number: float, decimals: int) -> str:
     return f"{round(number, decimals) + 0.0:.{max(decimals, 0)}f}"  # + 0.0: no negative zero

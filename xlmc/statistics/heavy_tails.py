@@ -1,12 +1,12 @@
-"""Numbers that a few far trials decide: does the mean hang on one trial, and how heavy is the tail?
+"""Two tests of forecasts that a few far trials decide: how much one trial contributes, and how heavy the tail is.
 
-**One trial.** Of a forecast with a variance, the part that the farthest trial has in it goes to 0 as trials are added:
-1,000 trials of a normal forecast give it about 1 %, of an exponential one 4 %. Of a forecast without one it never does:
-of a ratio whose denominator passes 0 (Cauchy) it is 25 to 100 %, however many trials there are. The mean of such a
-forecast does not exist; the number printed for it is an accident of the seed, and so is its error.
+**One trial.** If a forecast has a variance, the part of it that comes from the farthest trial goes to 0 as trials are
+added: with 1,000 trials it is about 1 % for a normal forecast, 4 % for an exponential one. If it has none, the part
+does not go to 0: for a ratio whose denominator passes 0 (Cauchy) it is 25 to 100 %, however many trials there are. The
+mean of such a forecast does not exist; the number printed for it depends on the seed alone, and so does its error.
 
-**The tail.** Hill's estimator of its index α: P(|x - median| > t) falls as t^-α. The mean exists above 1, the standard
-deviation above 2. A ratio whose denominator passes 0 has α = 1.
+**The tail.** Hill's estimator gives its index α: P(|x - median| > t) falls as t^-α. The mean exists if α is above 1,
+the standard deviation if it is above 2. A ratio whose denominator passes 0 has α = 1.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ __all__ = ["farthest_part", "heavy_tail"]
 
 
 def farthest_part(values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None) -> float:
-    """The part that the trial farthest from the mean has in the sum of squares about it; nan where nothing varies.
+    """Return the part of the sum of squares about the mean that the farthest trial gives; nan if nothing varies.
 
     >>> round(farthest_part([0.0, 0.0, 0.0, 4.0]), 12)
     0.75
@@ -41,18 +41,18 @@ Floats = NDArray[np.float64]
 
 _SHARE: Final = 0.02
 _FEWEST: Final = 40
-"""Of the numbers, and how many at least, that count as the tail: α is known to a sixth of itself, or better."""
+"""The share of the numbers that counts as the tail, and the fewest: the error of α is a sixth of it, or less."""
 
 _FAR: Final = 0.25
-"""Of the tail: there it must be as heavy, or it is but a few trials that lie apart from the rest."""
+"""The share of the tail that must be as heavy by itself; if it is not, only a few trials lie apart from the rest."""
 
 
 def _tail_index(x: Floats, part: float = 1.0) -> tuple[float, float]:
-    """Hill's index of the heavier tail, and its standard error; infinite where there are too few numbers.
+    """Return Hill's index of the heavier tail, and its standard error; infinite if there are too few numbers.
 
     Args:
         x: the numbers.
-        part: of the tail, from the far end.
+        part: the share of the tail that is used, from the far end.
     """
     known = x[np.isfinite(x)]
     k = int(max(_FEWEST, _SHARE * known.size))
@@ -71,6 +71,6 @@ _LIMIT: Final = 2.0
 
 
 def heavy_tail(x: Floats) -> tuple[float, float] | None:
-    """Index and its standard error where the tail is so heavy that the standard deviation does not converge."""
+    """Return index and standard error of a tail so heavy that the standard deviation does not converge, else None."""
     index, error = _tail_index(x)
     return (index, error) if index + 2 * error < _LIMIT and _tail_index(x, _FAR)[0] < _LIMIT else None

@@ -2,16 +2,16 @@
 
 **Value.** Half-sample mode (Robertson & Cryer 1974, Bickel 2002): keep the half of the trials that lies in the shortest
 interval, then the densest half of those, until two or three are left. There is no bandwidth to choose, and outliers do
-not matter. It is meant for continuous forecasts: where there are at most half as many different values as trials, as of
+not matter. It is meant for continuous forecasts: if there are at most half as many different values as trials, as for
 counts, the mode is the most frequent value.
 
 **Error.** In a window of width h about a rounded peak the noise of a count, √(nh), hides the curvature, nh³, until h
 is about n^(−1/5): the mode converges no faster, and the bootstrap fails for such statistics. Subsampling does not
-(Politis & Romano 1994). So: the trials are dealt by a fixed shuffle into 32 equal groups (fewer if one would hold under
-8 trials), the mode of each group is taken, and the groups' standard deviation is scaled from the group's size to n by
-the fifth-root law. With replicates the groups are the replicates. At a peak with a kink or an edge the mode converges
-as n^(−1/3) and this error is up to about twice too large. It is one of spread: the pull of a skewed peak, which shrinks
-with n as well, is not in it.
+(Politis & Romano 1994). Therefore a fixed shuffle deals the trials into 32 equal groups (fewer if one would hold under
+8 trials), and the standard deviation of the groups' modes is scaled from the group's size to n by the fifth-root law.
+With replicates, the groups are the replicates. At a peak with a kink or an edge the mode converges as n^(−1/3), and
+this error is up to about twice too large. It measures the spread only: the bias of a skewed peak, which shrinks with n
+as well, is not in it.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ ROUNDING = 1e-9  # widths that differ by less are equal: 0.3 − 0.2 and 0.2 −
 def mode(
     values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None, *, confidence: float = 0.95
 ) -> Estimate:
-    """Half-sample mode of (n,) values, of counts the most frequent; without an error below 16 trials or two replicates.
+    """Half-sample mode of (n,) values, or the most frequent of counts; no error below 16 trials or two replicates.
 
     >>> mode([1.0, 4.0, 4.25, 4.5, 9.0]).value
     4.25
@@ -50,7 +50,7 @@ def mode(
     if sample.n == 0:
         return Estimate(np.nan)
     value = half_sample_mode(sample)
-    sizes_and_modes = [(group.n, half_sample_mode(group)) for group in _dealt(sample)]
+    sizes_and_modes = [(group.n, half_sample_mode(group)) for group in _deal(sample)]
     if len(sizes_and_modes) < 2:
         return Estimate(value, n=sample.n)
     sizes, modes = np.array(sizes_and_modes).T
@@ -61,9 +61,9 @@ def mode(
 
 
 def half_sample_mode(sample: Sample) -> float:
-    """The mode of at least one ascending value, weighted or not."""
+    """Return the mode of at least one ascending value, weighted or not."""
     x, w = sample.x, sample.w
-    if _counts(x):
+    if _are_counts(x):
         return _most_frequent(x, w)
     with np.errstate(over="ignore"):  # a half that is wider than all doubles is not the densest
         while x.size > 3:
@@ -74,8 +74,8 @@ def half_sample_mode(sample: Sample) -> float:
     return _mode_of_three(x, np.ones(x.size) if w is None else w)
 
 
-def _counts(x: Floats) -> bool:
-    """Whether there are at most half as many different values as trials."""
+def _are_counts(x: Floats) -> bool:
+    """Return whether there are at most half as many different values as trials."""
     different = 1
     for start in range(1, x.size, PART):
         stop = min(start + PART, x.size)
@@ -87,7 +87,7 @@ def _counts(x: Floats) -> bool:
 
 
 def _most_frequent(x: Floats, w: Floats | None) -> float:
-    """The value that carries most; of several the middle one."""
+    """Return the value with the most weight; the middle one if there are several."""
     most, found = 0.0, [np.empty(0)]
     for values, carried in _runs(x, w):
         largest = float(carried.max(initial=0.0))
@@ -99,7 +99,7 @@ def _most_frequent(x: Floats, w: Floats | None) -> float:
 
 
 def _runs(x: Floats, w: Floats | None) -> Iterator[tuple[Floats, Floats]]:
-    """The different values in ascending order and what each carries, a part at a time."""
+    """Yield the different values in ascending order and the weight of each, a part at a time."""
     last, carried = np.empty(0), np.empty(0)
     for start in range(0, x.size, PART):
         here = np.concatenate([last, x[start : start + PART]])
@@ -116,7 +116,7 @@ def _densest_half(x: Floats) -> slice:
     size = (x.size + 1) // 2
 
     if x.size <= PART:
-        start = _middle_smallest_of(x[size - 1 :] - x[: x.size - size + 1])
+        start = _find_smallest(x[size - 1 :] - x[: x.size - size + 1])
         return slice(start, start + size)
 
     def widths() -> Iterator[Floats]:
@@ -125,29 +125,29 @@ def _densest_half(x: Floats) -> slice:
             yield x[start + size - 1 : stop + size - 1] - x[start:stop]
             release(x)
 
-    start = _middle_smallest(widths)
+    start = _find_smallest_in_parts(widths)
     return slice(start, start + size)
 
 
 def _densest_weighted_half(x: Floats, w: Floats) -> slice:
-    """The run of trials with half the weight or just over that is shortest for the weight it holds."""
+    """Return the run of trials with at least half the weight that is shortest for its weight."""
     reached = np.concatenate([[0.0], np.cumsum(w)])
     needed = reached[:-1] + reached[-1] / 2.0 * (1.0 - 1e-12)  # rounding must not ask for one trial more
     stops = np.searchsorted(reached, needed)
     stops = stops[stops <= x.size]
     starts = np.arange(stops.size)
-    start = _middle_smallest_of((x[stops - 1] - x[starts]) / (reached[stops] - reached[starts]))
+    start = _find_smallest((x[stops - 1] - x[starts]) / (reached[stops] - reached[starts]))
     return slice(start, int(stops[start]))
 
 
-def _middle_smallest_of(widths: Floats) -> int:
-    """Where the smallest stands; of several the middle one, so that evenly spaced values do not give an end."""
+def _find_smallest(widths: Floats) -> int:
+    """Return the index of the smallest; of several the middle one, so that evenly spaced values do not give an end."""
     smallest = np.flatnonzero(widths <= widths.min() * (1.0 + ROUNDING))
     return int(smallest[(smallest.size - 1) // 2])
 
 
-def _middle_smallest(widths: Callable[[], Iterator[Floats]]) -> int:
-    """The same of widths that are made a part at a time, anew with every call."""
+def _find_smallest_in_parts(widths: Callable[[], Iterator[Floats]]) -> int:
+    """Do the same for widths that each call yields anew, a part at a time."""
     smallest = min(float(part.min()) for part in widths()) * (1.0 + ROUNDING)
     wanted = (sum(int(np.count_nonzero(part <= smallest)) for part in widths()) - 1) // 2
     passed = 0
@@ -160,7 +160,7 @@ def _middle_smallest(widths: Callable[[], Iterator[Floats]]) -> int:
 
 
 def _mode_of_three(x: Floats, w: Floats) -> float:
-    """One value; the mean of two; of three the mean of the closer pair, or the middle one if neither is closer."""
+    """Return one value; the mean of two; of three that of the closer pair, or the middle one if neither is closer."""
     if x.size == 3:
         left, right = (x[1] - x[0]) / (w[0] + w[1]), (x[2] - x[1]) / (w[1] + w[2])
         if abs(left - right) <= ROUNDING * (left + right):
@@ -170,8 +170,8 @@ def _mode_of_three(x: Floats, w: Floats) -> float:
     return float(x[0] + np.sum(w * (x - x[0])) / np.sum(w))
 
 
-def _dealt(sample: Sample) -> Iterator[Sample]:
-    """The sample's independent parts: its replicates, or groups dealt by rank, whatever the order of the trials was."""
+def _deal(sample: Sample) -> Iterator[Sample]:
+    """Yield independent parts: the replicates, or groups dealt by rank, which do not depend on the order of trials."""
     if sample.group is not None:
         yield from (sample.replicate(each) for each in range(sample.groups))
         return

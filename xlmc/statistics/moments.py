@@ -21,14 +21,14 @@ __all__ = ["Moments", "moments_of"]
 Floats = NDArray[np.float64]
 
 Slices = Callable[[slice], Floats]
-"""Gives the values of some of the trials, centred or standardised."""
+"""Gives the values of a part of the trials, centred or standardised."""
 
 
 _SUMMABLE = 1e290
 """Sums of larger values may pass the largest number."""
 
 _SHRUNK = 100
-"""So many times halved, no sum of values can."""
+"""After so many halvings, no sum of values can."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class Moments:
         covariance: (4, 4) of the sample means of z, z², z³, z⁴.
         noise: relative standard error of the mean's own standard error.
         fifth, sixth: the means of z⁵ and z⁶; nan where all values are equal.
-        totals: (4, replicates) how far each pulls the means of z, z², z³, z⁴; None of independent trials.
+        totals: (4, replicates) how far each pulls the means of z, z², z³, z⁴; None for independent trials.
     """
 
     mean: float
@@ -57,9 +57,9 @@ class Moments:
 
 
 def moments_of(x: Floats, w: Floats | None, group: NDArray[np.intp] | None, groups: int, units: float) -> Moments:
-    """Moments of (n,) ascending values with weights that sum to 1, counting errors in `units` independent units.
+    """Compute moments of (n,) ascending values with weights that sum to 1, and errors from `units` independent units.
 
-    Two passes, the first from a pivot inside the data, so that 1e9 ± 1 keeps its digits.
+    There are two passes, the first from a pivot inside the data, so that 1e9 ± 1 keeps its digits.
     """
     if x.size == 0:
         return Moments(np.nan, np.nan, np.nan, np.nan, np.zeros((4, 4)), np.nan)
@@ -73,14 +73,14 @@ def moments_of(x: Floats, w: Floats | None, group: NDArray[np.intp] | None, grou
         release(x)
         return np.asarray(x[here] - pivot - shift)
 
-    centred = _held(about_the_mean, x)
+    centred = _keep_if_in_memory(about_the_mean, x)
     largest = max(float(np.abs(centred(here)).max()) for here in _slices(x.size))
     if largest == 0.0:
         return Moments(pivot + shift, 0.0, np.nan, np.nan, np.zeros((4, 4)), 0.0)
     # Scaled before squaring: tiny and huge units neither vanish nor overflow.
     root = _average(lambda here: np.square(centred(here) / largest), x.size, w) ** 0.5
 
-    z = _held(lambda here: centred(here) / largest / root, x)
+    z = _keep_if_in_memory(lambda here: centred(here) / largest / root, x)
     means = np.sum([_sums(powers, share) for powers, share, _ in _blocks(z, x.size, w, None)], axis=0)
     totals = None if group is None else _totals(z, x.size, w, group, groups, means)
     pulls = _pulls(z, x.size, w, means) if totals is None else iter([totals])
@@ -90,14 +90,14 @@ def moments_of(x: Floats, w: Floats | None, group: NDArray[np.intp] | None, grou
 
 
 def _sums(powers: Floats, share: Floats | float) -> Floats:
-    """(6,) sums of z to z⁶, each trial with its share, from (4, b) powers up to the fourth."""
+    """Return the (6,) sums of z to z⁶, each trial with its share, from (4, b) powers up to the fourth."""
     shared = powers * share
     return np.concatenate([shared.sum(axis=1), (shared[2] * powers[1:3]).sum(axis=1)])
 
 
-def _held(made: Slices, x: Floats) -> Slices:
-    """The values made once, if `x` itself is in memory; else whenever they are needed, and never all at once."""
-    return made if on_disk(x) else made(slice(0, x.size)).__getitem__
+def _keep_if_in_memory(compute: Slices, x: Floats) -> Slices:
+    """Compute all values once if `x` is in memory; else each part whenever it is needed."""
+    return compute if on_disk(x) else compute(slice(0, x.size)).__getitem__
 
 
 def _slices(n: int) -> Iterator[slice]:
@@ -113,7 +113,7 @@ def _average(values: Slices, n: int, w: Floats | None) -> float:
 def _blocks(
     z: Slices, n: int, w: Floats | None, group: NDArray[np.intp] | None
 ) -> Iterator[tuple[Floats, Floats | float, NDArray[np.intp] | None]]:
-    """Block by block: (4, b) powers of z, the share of each trial in the whole, its replicate."""
+    """Yield, block by block, (4, b) powers of z, the share of each trial in the whole, and its replicate."""
     for here in _slices(n):
         block = z(here)
         square = block * block
@@ -125,12 +125,12 @@ def _blocks(
 
 
 def _pulls(z: Slices, n: int, w: Floats | None, means: Floats) -> Iterator[Floats]:
-    """(4, b) how far each trial pulls the means of z, z², z³, z⁴, block by block."""
+    """Yield, block by block, (4, b) how far each trial pulls the means of z, z², z³, z⁴."""
     return ((powers - means[:4, None]) * share for powers, share, _ in _blocks(z, n, w, None))
 
 
 def _totals(z: Slices, n: int, w: Floats | None, group: NDArray[np.intp], groups: int, means: Floats) -> Floats:
-    """(4, groups) the same of each replicate."""
+    """Return (4, groups) how far each replicate pulls them."""
     totals = np.zeros((4, groups))
     for powers, share, ids in _blocks(z, n, w, group):
         pulls = (powers - means[:4, None]) * share
@@ -140,7 +140,7 @@ def _totals(z: Slices, n: int, w: Floats | None, group: NDArray[np.intp], groups
 
 
 def _variation(influences: Iterator[Floats], units: float) -> tuple[Floats, float]:
-    """The covariance of the four means, and the relative error of the first one's standard error."""
+    """Return the covariance of the four means, and the relative error of the first one's standard error."""
     covariance, fourth, count = np.zeros((4, 4)), 0.0, 0
     for pulls in influences:
         covariance += np.einsum("iu,ju->ij", pulls, pulls)  # not a matrix product: threads must not change the last bit

@@ -1,21 +1,21 @@
 """Shares of trials: acceptance, certainty, the probability above a threshold.
 
-**Interval.** Wilson's, or Clopper and Pearson's, which never covers less than asked and is wider. Wilson's lower end is
-too high where there are a few hits (where 0.17 are expected, it holds the truth in 84 % of the runs): there it is
-lowered as by Brown, Cai & DasGupta (2001, 4.1.1), and the upper end raised where there are a few misses. With weights
-or replicates the share counts as that of the number of independent trials that would give the same error, reduced for
-the quantile of Student's t (Korn & Graubard 1998); where replicates differ by one hit at most, the interval also holds
-that of the share of them that have one more.
+**Interval.** It is Wilson's, or Clopper and Pearson's, which is wider and never covers less than asked. Wilson's lower
+end is too high for a few hits (where 0.17 are expected, the interval holds the truth in 84 % of the runs): there it is
+lowered as in Brown, Cai & DasGupta (2001, 4.1.1), and the upper end is raised for a few misses. With weights or
+replicates, the interval is that of as many independent trials as would give the same error, or of fewer, to allow for
+Student's t (Korn & Graubard 1998). If replicates differ by one hit at most, it also holds the interval that follows
+from the share of replicates with one hit more.
 
-**Error.** √(p(1 − p)/n), or the spread between weighted trials or replicates (ratio estimate: replicates may differ in
-size). It is never less than that of a share of 0 in n trials, Wilson's half width over 1.96: no trial seen is no proof
-of none, so a share is never 0 ± 0.
+**Error.** It is √(p(1 − p)/n), or comes from the spread between weighted trials or replicates (as that of a ratio,
+because replicates may differ in size). It is never less than the error of a share of 0, half of Wilson's interval over
+1.96: that no trial was seen does not prove that there are none, so a share is never 0 ± 0.
 
-**Until there are enough successes.** Where trials go on until the N-th success, their number n has a negative binomial
+**Until there are enough successes.** If trials go on until the N-th success, their number n has a negative binomial
 distribution. N/n is then too large on average; (N − 1)/(n − 1) is right on average (Haldane 1945), and p(1 − p)/(n − 2)
-is so for its variance (Finney 1949). The interval is exact: at either end as many trials or more, or as few or fewer,
-have the probability of one tail (George & Elston 1993). As n ≤ k just where k trials have N successes or more, the ends
-are quantiles of beta distributions, like Clopper and Pearson's.
+is so for its variance (Finney 1949). The interval is exact (George & Elston 1993): at its lower end, so few trials or
+fewer have the probability of one tail, at its upper end so many or more. That n ≤ k means that k trials have N
+successes or more, so the ends are quantiles of beta distributions, like Clopper and Pearson's.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ Method = Literal["wilson", "clopper-pearson"]
 
 
 def proportion(successes: int, trials: int, *, confidence: float = 0.95, method: Method = "wilson") -> Estimate:
-    """Successes of independent trials, as accepted of all.
+    """Estimate the share of successes among independent trials, such as the accepted ones.
 
     Raises:
         ValueError: successes outside 0 … trials.
@@ -68,7 +68,7 @@ def proportion(successes: int, trials: int, *, confidence: float = 0.95, method:
 def replicated_proportion(
     successes: ArrayLike, trials: ArrayLike, *, confidence: float = 0.95, method: Method = "wilson"
 ) -> Estimate:
-    """Successes of trials pooled over R independent replicates, both (R,) counts; the error is that between replicates.
+    """Estimate the share of successes from (R,) counts of R independent replicates; the error is that between them.
 
     Raises:
         ValueError: successes outside 0 … trials in a replicate, or counts of different length.
@@ -79,11 +79,11 @@ def replicated_proportion(
     n = float(totals.sum())
     if n == 0.0:
         return Estimate(np.nan)
-    return _pooled(hits, totals, n, hits.size - 1.0, int(n), confidence, method)
+    return _pool(hits, totals, n, hits.size - 1.0, int(n), confidence, method)
 
 
 def inverse_proportion(successes: int, trials: int, *, confidence: float = 0.95) -> Estimate:
-    """The share of successes, of which so many were waited for; the last trial is one.
+    """Estimate the share of successes if trials went on until there were so many; the last trial is one.
 
     Raises:
         ValueError: fewer than 2 successes, or fewer trials than successes.
@@ -111,7 +111,7 @@ def share(
     confidence: float = 0.95,
     method: Method = "wilson",
 ) -> Estimate:
-    """The share of (n,) trials that are TRUE."""
+    """Estimate the share of (n,) trials that are TRUE."""
     return probability_above(hits, 0.5, weights, replicate, confidence=confidence, method=method)
 
 
@@ -124,7 +124,7 @@ def probability_above(
     confidence: float = 0.95,
     method: Method = "wilson",
 ) -> Estimate:
-    """P(value > threshold) among (n,) values.
+    """Estimate P(value > threshold) from (n,) values.
 
     >>> probability_above([1.0, 2.0, 3.0, 4.0], 3.0).value
     0.25
@@ -132,7 +132,7 @@ def probability_above(
     sample = Sample.of(values, weights, replicate)
     first = int(np.searchsorted(sample.x, threshold, side="right"))
     release(sample.x)
-    return _between_ranks(sample, first, sample.n, confidence, method)
+    return _estimate_between(sample, first, sample.n, confidence, method)
 
 
 def probability_between(
@@ -145,7 +145,7 @@ def probability_between(
     confidence: float = 0.95,
     method: Method = "wilson",
 ) -> Estimate:
-    """P(low ≤ value ≤ high) among (n,) values, what Crystal Ball calls certainty; an end may be infinite.
+    """Estimate P(low ≤ value ≤ high) from (n,) values, which Crystal Ball calls certainty; an end may be infinite.
 
     Raises:
         ValueError: the range ends below its beginning.
@@ -158,11 +158,11 @@ def probability_between(
     sample = Sample.of(values, weights, replicate)
     first, stop = int(np.searchsorted(sample.x, low, "left")), int(np.searchsorted(sample.x, high, "right"))
     release(sample.x)
-    return _between_ranks(sample, first, stop, confidence, method)
+    return _estimate_between(sample, first, stop, confidence, method)
 
 
-def _between_ranks(sample: Sample, first: int, stop: int, confidence: float, method: Method) -> Estimate:
-    """The share of the trials from one rank to before another, counted from 0."""
+def _estimate_between(sample: Sample, first: int, stop: int, confidence: float, method: Method) -> Estimate:
+    """Estimate the share of the trials from rank `first` to before `stop`, counted from 0."""
     if sample.w is None and sample.group is None:
         return proportion(stop - first, sample.n, confidence=confidence, method=method)
     if sample.n == 0:
@@ -170,15 +170,13 @@ def _between_ranks(sample: Sample, first: int, stop: int, confidence: float, met
     w = np.ones(sample.n) if sample.w is None else sample.w
     hits = np.zeros(sample.n)
     hits[first:stop] = w[first:stop]
-    return _pooled(
-        sample.per_unit(hits), sample.per_unit(w), sample.effective, sample.dof, sample.n, confidence, method
-    )
+    return _pool(sample.per_unit(hits), sample.per_unit(w), sample.effective, sample.dof, sample.n, confidence, method)
 
 
-def _pooled(
+def _pool(
     hits: Floats, totals: Floats, effective: float, dof: float, n: int, confidence: float, method: Method
 ) -> Estimate:
-    """The ratio of two sums over independent units, each (units,), worth `effective` equal trials."""
+    """Estimate the ratio of two sums over independent units, (units,) each, worth `effective` equal trials."""
     p = float(hits.sum() / totals.sum())
     if dof < LEAST_DOF:
         return Estimate(p, n=n)
@@ -188,16 +186,16 @@ def _pooled(
     widening = t_quantile(dof, confidence) / t_quantile(np.inf, confidence)
     equal_trials = p * (1.0 - p) / (error * widening) ** 2
     low, high = _INTERVALS[method](p, equal_trials, confidence)
-    least, most = _nearly_equal(hits, totals, confidence, method)
+    least, most = _one_hit_interval(hits, totals, confidence, method)
     return Estimate(p, error, (min(low, least), max(high, most)), n)
 
 
-def _nearly_equal(hits: Floats, totals: Floats, confidence: float, method: Method) -> tuple[float, float]:
-    """The interval where replicates of one size differ by one hit at most, (1, 0) where they do not.
+def _one_hit_interval(hits: Floats, totals: Floats, confidence: float, method: Method) -> tuple[float, float]:
+    """Return the interval for replicates of one size that differ by one hit at most; (1, 0), an empty one, for others.
 
-    Where one input decides, m even draws have k hits or k + 1, never another number. How many have one more is binomial
-    of as many trials as there are replicates, and bounds the share to one trial in each. If all have k, it may be that
-    few would have one more, or one less.
+    If one input decides, m evenly spread draws have k or k + 1 hits, and no other number. How many replicates have
+    k + 1 is a binomial number, with a trial for each replicate; its interval gives that of the share. If all have k,
+    others might have one hit more, or one less.
     """
     k = float(hits.min())
     if not (np.all(totals == totals[0]) and np.all((hits == k) | (hits == k + 1.0))):
@@ -209,13 +207,13 @@ def _nearly_equal(hits: Floats, totals: Floats, confidence: float, method: Metho
 
 
 def error_of_share(hits: Floats, totals: Floats, effective: float, dof: float) -> float:
-    """Standard error of Σhits/Σtotals, two sums over independent units worth `effective` equal trials in all."""
+    """Return the standard error of Σhits/Σtotals over independent units, together worth `effective` equal trials."""
     apart = (hits - hits.sum() / totals.sum() * totals) / totals.sum()
     return max(math.sqrt(np.sum(apart**2) * (dof + 1.0) / dof), least_error(effective))
 
 
 def least_error(trials: float) -> float:
-    """The error of a share of 0: half of Wilson's 95 % interval over 1.96."""
+    """Return the error of a share of 0: half of Wilson's 95 % interval over 1.96."""
     z = t_quantile(np.inf, 0.95)
     return z / (2.0 * (trials + z * z))
 
@@ -226,16 +224,16 @@ def _wilson(p: float, trials: float, confidence: float) -> tuple[float, float]:
     centre = (p + pull / 2.0) / (1.0 + pull)
     half = (pull * (p * (1.0 - p) + pull / 4.0)) ** 0.5 / (1.0 + pull)
     hits, misses = p * trials, (1.0 - p) * trials
-    low = min(centre - half, _lowered(hits, misses, confidence))
-    high = max(centre + half, 1.0 - _lowered(misses, hits, confidence))
+    low = min(centre - half, _lower_for_few(hits, misses, confidence))
+    high = max(centre + half, 1.0 - _lower_for_few(misses, hits, confidence))
     # At 0 and 1 one end is the share itself; rounding must not say otherwise.
     return 0.0 if p == 0.0 else low, 1.0 if p == 1.0 else high
 
 
-def _lowered(hits: float, misses: float, confidence: float) -> float:
-    """The share with which so many hits or more have the probability of both tails: below Wilson's end for a few.
+def _lower_for_few(hits: float, misses: float, confidence: float) -> float:
+    """Return the share with which so many hits or more have the probability of both tails; 1, no bound, for no hits.
 
-    No hits are never fewer than expected, and bound nothing.
+    For a few hits it is below Wilson's lower end.
     """
     from scipy.special import betaincinv
 

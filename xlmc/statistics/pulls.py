@@ -1,22 +1,22 @@
-"""How unevenly single trials pull a number, and so how much of its error the far ones decide.
+"""How unevenly the trials pull a number, and how much of its error a few far trials decide.
 
-The mean, the variance, the standard deviation and the coefficient of variation are, but for what is negligible, means
-of a pull of each trial, a·z + b·(z² − 1) with z the standardised value. The skewness of the pulls over the root of the
-number of units is the skewness of the number itself from run to run, to first order. Where it is large, the runs in
-which the far trials have not come have too small a number and too small an error at once, and symmetric intervals miss.
+Apart from negligible terms, the mean, the variance, the standard deviation and the coefficient of variation are means
+over all trials of a pull, a·z + b·(z² − 1), where z is the standardised value. The skewness of the pulls over the root
+of the number of units is, to first order, the skewness of the number itself from run to run. If it is large, runs
+without far trials have too small a number and too small an error at once, and symmetric intervals miss the truth.
 
-**Interval.** Student's t of a skewed sample is brought to that of a symmetric one by Hall's monotone cubic (Hall 1992,
-J. R. Statist. Soc. B 54, 221), on either side no shorter than without it, and longer by 0.15 of the skewness, for
-a sample shows too little of its skewness.
+**Interval.** Hall's monotone cubic (Hall 1992, J. R. Statist. Soc. B 54, 221) corrects Student's t for the skewness.
+Neither side becomes shorter than without it, and both are longer by 0.15 of the skewness, because a sample shows too
+little of its skewness.
 
-**Replicates.** Of a forecast that one input decides, each replicate of a Latin hypercube or of Sobol points has one
-trial in the outermost interval, and the error comes from these few, however many trials there are: 16 draws from the
-tail. Where the pulls of all trials say that this tail is heavy, the 16 do not show it, and the error is that of
-independent trials, which even draws keep below.
+**Replicates.** If one input decides a forecast, each replicate of a Latin hypercube or of Sobol points has one trial in
+the outermost interval. The error comes from these few, 16 draws from the tail, however many trials there are. If the
+pulls of all trials say that this tail is heavy, the 16 draws do not show it; then the error is that of independent
+trials, which evenly spread draws do not exceed.
 
-**Steps.** Of a forecast that takes few values, or that jumps, a replicate of even draws has k trials on one side of a
-step or k + 1, and with 16 replicates that agree, one in five may yet differ. So the interval reaches at least as far as
-what so many trials would change that cross the largest step between neighbouring values.
+**Steps.** If a forecast takes few values, or jumps, a replicate of evenly spread draws has k trials on one side of a
+step or k + 1. Even if 16 replicates agree, one in five of all replicates may differ. So the interval is at least as
+wide as the change that so many trials would make by crossing the largest step between neighbouring values.
 """
 
 from __future__ import annotations
@@ -48,19 +48,19 @@ Pull = tuple[float, float]
 """The factors of z and of z²."""
 
 SKEWED, SKEWED_BESIDE_ROOT = 7.0, 0.1
-"""Skewness of the trials' pulls, and over √n, from which on the replicates do not show the error: 2 for the mean of an
-exponential forecast, 2.8 for the SD of a normal one, 6 for the mean of a lognormal one with σ = 1, 11 for the SD of an
-exponential one (docs/sampling.md has the coverage)."""
+"""The replicates do not show the error if the skewness of the trials' pulls is above the first number, or over √n above
+the second. It is 2 for the mean of an exponential forecast, 2.8 for the SD of a normal one, 6 for the mean of a
+lognormal one with σ = 1, 11 for the SD of an exponential one (docs/sampling.md has the coverage)."""
 
 BEYOND, BEYOND_POWER = 0.63, 0.4
-"""Above 0.63 n^0.4 not even the interval of a skewed sample holds: n pulls cannot have a skewness above √n."""
+"""Above a skewness of 0.63 n^0.4 even the corrected interval is too short: that of n pulls cannot exceed √n."""
 
 PEAKED_BESIDE_ROOT = 0.7
-"""Kurtosis over √n, below which no tail is too heavy; a normal forecast has a kurtosis of 3, an exponential one 9."""
+"""No tail is too heavy if the kurtosis over √n is below this. A normal forecast has 3, an exponential one 9."""
 
 
 class Shaped(Protocol):
-    """What has the means of the powers of standardised values."""
+    """An object that has the means of powers of the standardised values."""
 
     @property
     def skewness(self) -> float: ...
@@ -82,7 +82,7 @@ class Shape(NamedTuple):
 
 
 def trial_skewness(m: Shaped, pull: Pull, n: float) -> float:
-    """Skewness of the trials' pulls over √n; 0 where they do not vary."""
+    """Return the skewness of the trials' pulls over √n; 0 if they do not vary."""
     a, b = pull
     variance = _variance(m, pull)
     if not variance > 0.0:
@@ -93,7 +93,7 @@ def trial_skewness(m: Shaped, pull: Pull, n: float) -> float:
 
 
 def trial_error(m: Shaped, pull: Pull, n: float) -> float:
-    """The standard error of the mean pull of n independent trials."""
+    """Return the standard error of the mean pull of n independent trials."""
     return float((max(_variance(m, pull), 0.0) / (n - 1.0)) ** 0.5)
 
 
@@ -103,7 +103,7 @@ def _variance(m: Shaped, pull: Pull) -> float:
 
 
 def replicate_skewness(m: Moments, pull: Pull) -> float:
-    """Skewness of the replicates' pulls over the root of their number; 0 where they do not vary."""
+    """Return the skewness of the replicates' pulls over the root of their number; 0 if they do not vary."""
     assert m.totals is not None
     pulls = pull[0] * m.totals[0] + pull[1] * m.totals[1]
     square = float(np.sum(pulls * pulls))
@@ -111,15 +111,15 @@ def replicate_skewness(m: Moments, pull: Pull) -> float:
 
 
 def step_error(x: Floats, m: Moments, pull: Pull, replicates: int, n: float, confidence: float) -> float:
-    """The error, times Student's t, of as many crossings of the largest step as replicates that agree may hide.
+    """Return the error that, times Student's t, is the change by the crossings that agreeing replicates may hide.
 
     Args:
         x: (n,) values in ascending order.
         m: their moments.
-        pull: what a value pulls by.
-        replicates: how many.
+        pull: the factors of z and z².
+        replicates: how many there are.
         n: trials of equal weight.
-        confidence: of the interval.
+        confidence: the confidence of the interval.
     """
     z = (x - m.mean) / m.scale
     steps = np.abs(np.diff(pull[0] * z + pull[1] * z * z))
@@ -128,18 +128,18 @@ def step_error(x: Floats, m: Moments, pull: Pull, replicates: int, n: float, con
 
 
 def few_decide(skewness: float, n: float) -> bool:
-    """Whether the error of n trials in replicates is decided by a few far ones; the skewness is over √n."""
+    """Return whether a few far trials decide the error of n trials in replicates; the skewness is that over √n."""
     return abs(skewness) > min(SKEWED_BESIDE_ROOT, SKEWED / math.sqrt(n))
 
 
 def beyond_reach(m: Shaped, pull: Pull, n: float) -> bool:
-    """Whether the tail of n trials is so heavy that their interval may be too short."""
+    """Return whether the tail of n trials is so heavy that their interval may be too short."""
     skewness = abs(trial_skewness(m, pull, n)) * math.sqrt(n)
     return m.kurtosis > PEAKED_BESIDE_ROOT * math.sqrt(n) and skewness > BEYOND * n**BEYOND_POWER
 
 
 def wider(one: Estimate, other: Estimate) -> Estimate:
-    """The estimate with the larger error, and both intervals."""
+    """Return the first estimate with the larger error and with an interval that holds both intervals."""
     if one.interval is None or other.interval is None or one.error is None or other.error is None:
         return one
     (low, high), (lower, higher) = one.interval, other.interval

@@ -4,10 +4,10 @@
 weight below it is to the weight above it as p to 1 − p; equal weights give PERCENTILE.INC again, and whole-number
 weights agree at every trial with a sample in which each trial is repeated that often.
 
-**Interval, independent trials.** How many of n trials fall below the true quantile is binomial (n, p), whatever the
+**Interval, independent trials.** The number of n trials below the true quantile is binomial (n, p), whatever the
 distribution. Its α/2 and 1 − α/2 quantiles, continued between the integers, are the ranks of the two ends, and ranks
-between two trials are interpolated (Hutson 1999, fractional order statistics). Coverage is nominal to about 1/n; where
-even the outermost trial does not suffice, that end is infinite. With weights the binomial has the n at which its error
+between two trials are interpolated (Hutson 1999, fractional order statistics). Coverage is nominal to about 1/n; if
+even the outermost trial is not far enough, that end is infinite. With weights the binomial has the n at which its error
 equals that of the weighted share below the quantile (Woodruff 1952, Korn & Graubard 1998).
 
 **Error.** The half width of the 95 % interval over 1.96.
@@ -16,12 +16,12 @@ equals that of the weighted share below the quantile (Woodruff 1952, Korn & Grau
 is taken from the differences between replicates. For the interval n is multiplied by (z/t)², which widens it by
 Student's t with R − 1 degrees of freedom, as for shares.
 
-(Two others were tried. Leaving out one replicate at a time and taking the quantile anew covers 75 to 93 %, because too
-few trials about the quantile decide it. A symmetric interval of t errors covers 93.6 % with 12 accepted trials in each
-of 16 replicates, where this covers 95 %.)
+(Two other ways were tried. To leave out one replicate at a time and compute the quantile again covers 75 to 93 %,
+because too few trials about the quantile decide it. A symmetric interval of t errors covers 93.6 % with 12 accepted
+trials in each of 16 replicates, where this one covers 95 %.)
 
-**Extremes.** Minimum, maximum and range width are facts about the trials, without an error to state: what lies beyond
-the largest of n trials no sample can bound without assuming a distribution.
+**Extremes.** Minimum, maximum and range width are facts about the trials and have no error: without assuming a
+distribution, no sample can bound what lies beyond the largest of n trials.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ def central_interval(
     *,
     confidence: float = 0.95,
 ) -> tuple[Estimate, Estimate]:
-    """The range that leaves (1 − share)/2 on either side: 24.5 to 75.5 % for 51 %. It is not the shortest range.
+    """Return the range that leaves (1 − share)/2 on either side: 24.5 to 75.5 % for 51 %. It is not the shortest range.
 
     Raises:
         ValueError: the share is not between 0 and 1.
@@ -137,20 +137,20 @@ def range_width(values: Values, weights: ArrayLike | None = None, replicate: Arr
 def _estimates(sample: Sample, p: Floats, confidence: float) -> list[Estimate]:
     if sample.n == 0:
         return [Estimate(np.nan) for _ in p]
-    found = _by_rank if sample.group is None else _by_replicate
-    inner = iter(found(sample, p[(p > 0.0) & (p < 1.0)], confidence))
+    estimate = _from_trials if sample.group is None else _from_replicates
+    inner = iter(estimate(sample, p[(p > 0.0) & (p < 1.0)], confidence))
     ends = {0.0: Estimate(float(sample.x[0]), n=sample.n), 1.0: Estimate(float(sample.x[-1]), n=sample.n)}
     return [ends[each] if each in ends else next(inner) for each in p.tolist()]
 
 
-def _by_rank(sample: Sample, p: Floats, confidence: float) -> list[Estimate]:
-    """Quantiles at 0 < p < 1 of independent trials, with intervals from order statistics."""
+def _from_trials(sample: Sample, p: Floats, confidence: float) -> list[Estimate]:
+    """Estimate quantiles at 0 < p < 1 of independent trials, with intervals from order statistics."""
     n = _binomial_trials(sample, p)
     return _estimates_by_rank(sample, p, n, n, confidence)
 
 
-def _by_replicate(sample: Sample, p: Floats, confidence: float) -> list[Estimate]:
-    """Quantiles at 0 < p < 1 of replicates; no error where a single one stands behind them."""
+def _from_replicates(sample: Sample, p: Floats, confidence: float) -> list[Estimate]:
+    """Estimate quantiles at 0 < p < 1 of replicates; no error if there is only one."""
     if sample.dof < LEAST_DOF:
         return [Estimate(float(point), n=sample.n) for point in sample.quantile(p)]
     n = p * (1.0 - p) / _errors_below(sample, p) ** 2
@@ -161,7 +161,7 @@ def _by_replicate(sample: Sample, p: Floats, confidence: float) -> list[Estimate
 def _estimates_by_rank(
     sample: Sample, p: Floats, n: Floats, n_of_interval: Floats, confidence: float
 ) -> list[Estimate]:
-    """Errors and intervals of binomial counts of so many equal trials, (len(p),) each."""
+    """Estimate quantiles with the errors and intervals of binomial counts of n equal trials, (len(p),) each."""
     intervals = _rank_intervals(sample, p, n_of_interval, confidence)
     halves = np.diff(_rank_intervals(sample, p, n, 0.95) / 2.0).ravel() / t_quantile(np.inf, 0.95)
     return [
@@ -176,7 +176,7 @@ def _estimates_by_rank(
 
 
 def _rank_intervals(sample: Sample, p: Floats, n: Floats, confidence: float) -> Floats:
-    """(len(p), 2) ends; infinite where the binomial count asks for a trial beyond the outermost."""
+    """Return (len(p), 2) ends; infinite where the binomial count asks for a trial beyond the outermost."""
     from scipy.special import bdtrik
 
     p = p.clip(_LEAST_SHARE, 1.0 - _LEAST_SHARE)
@@ -191,7 +191,7 @@ def _rank_intervals(sample: Sample, p: Floats, n: Floats, confidence: float) -> 
 
 
 def _binomial_trials(sample: Sample, p: Floats) -> Floats:
-    """(len(p),) the number of equal trials whose share below the quantile is known as well as here.
+    """Return (len(p),) the number of equal trials whose share below the quantile would be known as well as here.
 
     The share's variance is (1 − p)² Σw² below and p² Σw² above; Σw² is split where the quantile splits Σw.
     """
@@ -202,7 +202,7 @@ def _binomial_trials(sample: Sample, p: Floats) -> Floats:
 
 
 def _errors_below(sample: Sample, p: Floats) -> Floats:
-    """(len(p),) the error of the share of trials below the quantile, from how it varies between replicates."""
+    """Return (len(p),) the error of the share of trials below the quantile, from its spread between replicates."""
     w = np.ones(sample.n) if sample.w is None else sample.w
     totals = sample.per_unit(w)
     below = [sample.per_unit(np.where(sample.positions <= each, w, 0.0)) for each in p]

@@ -1,4 +1,4 @@
-"""The values every statistic starts from: checked, sorted once, with their weights and replicates."""
+"""The sample that every statistic starts from: values checked and sorted once, with weights and replicates."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Floats = NDArray[np.float64]
 Groups = NDArray[np.intp]
 
 LEAST_WEIGHT = 1e-30
-"""Of the largest weight; less counts as none, for no sum could show it and its powers would overflow."""
+"""A weight below this share of the largest counts as 0: it would change no sum, and its powers would overflow."""
 
 MOST_GROUPS = 64
-"""More replicates than this are joined: 63 degrees of freedom lose nothing, and the work for each stays small."""
+"""More replicates than this are joined: 63 degrees of freedom are enough, and the work stays small."""
 
 
 @dataclass(frozen=True)
@@ -58,9 +58,9 @@ class Sample:
             raise ValueError(f"values must be one column, not of shape {x.shape}")
         if not all(np.isfinite(part).all() for part in parts(x)):
             raise ValueError("values must be finite; trials without a number are left out before")
-        w = None if weights is None else _normalised(np.asarray(weights, dtype=np.float64), x)
-        ids = None if replicate is None else _matching(np.asarray(replicate), x, "replicate ids")
-        return cls(*_sorted(x, w, ids))
+        w = None if weights is None else _normalise(np.asarray(weights, dtype=np.float64), x)
+        ids = None if replicate is None else _check_shape(np.asarray(replicate), x, "replicate ids")
+        return cls(*_sort(x, w, ids))
 
     @property
     def n(self) -> int:
@@ -89,31 +89,31 @@ class Sample:
 
     @cached_property
     def positions(self) -> Floats:
-        """(n,) the probability each trial stands at on the quantile curve: 0 for the first, 1 for the last."""
+        """(n,) the probability of each trial on the quantile curve: 0 for the first, 1 for the last."""
         return np.linspace(0.0, 1.0, self.n) if self.w is None else positions_of(self.w)
 
     def quantile(self, p: Floats) -> Floats:
-        """The quantile curve at probabilities p: straight lines between the trials at their positions."""
+        """Return the quantile curve at probabilities p: straight lines between the trials at their positions."""
         if self.w is not None and self.n > 1:
             return np.interp(p, self.positions, self.x)
         rank = p * (self.n - 1)
         low = np.floor(rank).astype(np.intp)
         left, right = picked(self.x, low), picked(self.x, np.minimum(low + 1, self.n - 1))
-        return _between(left, right, rank - low)
+        return _interpolate(left, right, rank - low)
 
     def per_unit(self, amounts: Floats) -> Floats:
-        """Sums of (n,) amounts over each independent unit: (replicates,), or (n,) as they are."""
+        """Sum (n,) amounts over each independent unit: (replicates,), or (n,) as they are."""
         if self.group is None:
             return amounts
         return np.bincount(self.group, weights=amounts, minlength=self.groups).astype(np.float64)
 
     def part(self, where: Groups) -> Sample:
-        """The trials at these ascending positions, as independent ones."""
+        """Return the trials at these ascending positions, as independent ones."""
         w = None if self.w is None else self.w[where]
         return Sample(picked(self.x, where), None if w is None else w / w.sum())
 
     def replicate(self, number: int) -> Sample:
-        """One replicate alone."""
+        """Return one replicate alone."""
         return self.part(np.flatnonzero(self.group == number))
 
 
@@ -121,8 +121,8 @@ Values = ArrayLike | Sample
 """(n,) values, or a `Sample` made of them, so that many statistics share one sort."""
 
 
-def _between(left: Floats, right: Floats, share: Floats) -> Floats:
-    """So much of the way from left to right; also where the way is longer than the largest number."""
+def _interpolate(left: Floats, right: Floats, share: Floats) -> Floats:
+    """Interpolate from left to right, even where their distance is larger than the largest double."""
     with np.errstate(over="ignore"):
         way = right - left
     if np.isfinite(way).all():
@@ -131,21 +131,21 @@ def _between(left: Floats, right: Floats, share: Floats) -> Floats:
 
 
 def positions_of(w: Floats) -> Floats:
-    """(n,) for each of n ≥ 2 weights, what stands before it as a share of all but itself."""
+    """Return (n,) for each of n ≥ 2 weights, the sum of those before it as a share of all others."""
     below = np.concatenate([[0.0], np.cumsum(w[:-1])])
     above = np.concatenate([np.cumsum(w[:0:-1])[::-1], [0.0]])
     return np.asarray(below / (below + above))
 
 
-def _matching(column: NDArray[np.generic], x: Floats, what: str) -> NDArray[np.generic]:
+def _check_shape(column: NDArray[np.generic], x: Floats, what: str) -> NDArray[np.generic]:
     if column.shape != x.shape:
         raise ValueError(f"{what} must match the values: shape {column.shape} beside {x.shape}")
     return column
 
 
-def _normalised(w: Floats, x: Floats) -> Floats:
-    """Weights that sum to 1; all zero if none carries weight."""
-    _matching(w, x, "weights")
+def _normalise(w: Floats, x: Floats) -> Floats:
+    """Make the weights sum to 1; all are 0 if they were."""
+    _check_shape(w, x, "weights")
     if not np.all((w >= 0.0) & (w < np.inf)):
         raise ValueError("weights must be finite and not negative")
     largest = w.max(initial=0.0)
@@ -156,7 +156,7 @@ def _normalised(w: Floats, x: Floats) -> Floats:
     return np.asarray(w / w.sum())
 
 
-def _sorted(
+def _sort(
     x: Floats, w: Floats | None, ids: NDArray[np.generic] | None
 ) -> tuple[Floats, Floats | None, Groups | None, int]:
     if w is None and ids is None:
@@ -164,11 +164,11 @@ def _sorted(
     order = np.argsort(x, kind="stable")  # ties stay in trial order: the same sums on every machine
     if w is not None:
         order = order[w[order] > 0.0]
-    group, groups = (None, 0) if ids is None else _grouped(ids[order])
+    group, groups = (None, 0) if ids is None else _number_replicates(ids[order])
     return x[order], None if w is None else w[order], group, groups
 
 
-def _grouped(ids: NDArray[np.generic]) -> tuple[Groups, int]:
-    """Replicates numbered from 0; beyond 64 the 65th joins the first, and so on."""
+def _number_replicates(ids: NDArray[np.generic]) -> tuple[Groups, int]:
+    """Number the replicates from 0; the 65th joins the first, and so on."""
     names, group = np.unique(ids, return_inverse=True)
     return (group % MOST_GROUPS).astype(np.intp), min(names.size, MOST_GROUPS)

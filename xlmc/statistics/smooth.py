@@ -1,6 +1,6 @@
 """Mean, spread and shape: the statistics that are smooth functions of the moments.
 
-Each is a value and its gradient in the means of z, z², z³, z⁴ (see `moments`); errors follow by the delta method and
+Each has a value and a gradient in the means of z, z², z³, z⁴ (see `moments`). The delta method gives the errors, which
 hold for any distribution with the moments they use (twice the order of the statistic). Intervals take Student's t
 with one degree of freedom less than there are independent units: trials, effective trials, or replicates. Those of
 mean, variance, standard deviation and coefficient of variation allow for skewed errors: see `pulls`.
@@ -45,8 +45,8 @@ __all__ = [
 Gradient = tuple[float, float, float, float]
 
 
-class Made(Protocol):
-    """Makes an estimate; see `with_error`."""
+class MakeEstimate(Protocol):
+    """A function that makes an estimate, as `with_error` does."""
 
     def __call__(
         self, value: float, error: float, dof: float, confidence: float, n: int, skewness: float = 0.0, /
@@ -55,7 +55,7 @@ class Made(Protocol):
 
 MEAN: Final[Pull] = (1.0, 0.0)
 SQUARE: Final[Pull] = (0.0, 1.0)
-"""Of the variance and the standard deviation, over its value and over half of it."""
+"""The pull of the variance, in units of the variance, and of the standard deviation, in units of half of it."""
 
 
 def mean(
@@ -76,11 +76,11 @@ def mean(
 def variance(
     values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None, *, confidence: float = 0.95
 ) -> Estimate:
-    """Sample variance, nan where it is too large for a number; divided by n − 1 as Excel's VAR.S;
-    with weights by the effective size less one; of replicates
-    the mean square about the mean, and the squared error of the mean.
+    """Sample variance, divided by n − 1 as Excel's VAR.S, or with weights by the effective size minus one.
 
-    Error from the fourth moment, for independent trials Var(s²) ≈ (m₄ − s⁴(n − 3)/(n − 1))/n. One trial has none: nan.
+    With replicates it is the mean square about the mean plus the squared error of the mean. It is nan for one trial,
+    or if it is too large for a number. Its error comes from the fourth moment; for independent trials
+    Var(s²) ≈ (m₄ − s⁴(n − 3)/(n − 1))/n.
 
     >>> round(variance([1.0, 2.0, 4.0]).value, 12)
     2.333333333333
@@ -155,66 +155,66 @@ def mean_standard_error(
 def errors_from_trials(
     values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None
 ) -> list[str]:
-    """Which of mean and standard deviation have the error of independent trials, although there are replicates."""
+    """Name which of mean and standard deviation have the error of independent trials although there are replicates."""
     sample = Sample.of(values, weights, replicate)
     if sample.group is None or sample.dof < LEAST_DOF or sample.n < 2:
         return []
     n = sample.effective
-    return [name for name, pull in _TOLD.items() if few_decide(trial_skewness(sample.moments, pull, n), n)]
+    return [name for name, pull in _NAMED.items() if few_decide(trial_skewness(sample.moments, pull, n), n)]
 
 
 def too_short(values: Values, weights: ArrayLike | None = None, replicate: ArrayLike | None = None) -> list[str]:
-    """Which of mean and standard deviation may have an interval that is too short, for the tail of the values."""
+    """Name which of mean and standard deviation may have too short an interval, because the tail is heavy."""
     sample = Sample.of(values, weights, replicate)
     if sample.n < 2:
         return []
-    return [name for name, pull in _TOLD.items() if beyond_reach(sample.moments, pull, sample.effective)]
+    return [name for name, pull in _NAMED.items() if beyond_reach(sample.moments, pull, sample.effective)]
 
 
-_TOLD: Final = {"mean": MEAN, "standard deviation": SQUARE}
+_NAMED: Final = {"mean": MEAN, "standard deviation": SQUARE}
 
 
 def _estimate(
-    sample: Sample, value: float, size: float, pull: Pull, error: float, confidence: float, made: Made
+    sample: Sample, value: float, size: float, pull: Pull, error: float, confidence: float, make: MakeEstimate
 ) -> Estimate:
-    """The interval of a number that the trials or replicates pull by so much; see `pulls`.
+    """Estimate a number from the pull of the trials or replicates; see `pulls`.
 
     Args:
         sample: the trials.
         value: the number.
-        size: what the pull is multiplied by, in the unit of the number.
-        pull: factors of z and z².
-        error: of the number over its size.
-        confidence: of the interval.
-        made: makes an estimate.
+        size: the unit of the pull.
+        pull: the factors of z and z².
+        error: the error of the number over `size`.
+        confidence: the confidence of the interval.
+        make: the function that makes the estimate.
     """
     n, m = sample.effective, sample.moments
     if sample.dof < LEAST_DOF or not m.scale > 0.0:
-        return made(value, size * error, sample.dof, confidence, sample.n)
+        return make(value, size * error, sample.dof, confidence, sample.n)
     of_trials = trial_skewness(m, pull, n)
     if sample.group is None:
-        return made(value, size * error, sample.dof, confidence, sample.n, of_trials)
-    found = made(value, size * error, sample.dof, confidence, sample.n, replicate_skewness(m, pull))
+        return make(value, size * error, sample.dof, confidence, sample.n, of_trials)
+    found = make(value, size * error, sample.dof, confidence, sample.n, replicate_skewness(m, pull))
     if sample.n > sample.groups:  # there is more than one trial in a replicate
         step = step_error(sample.x, m, pull, sample.groups, n, confidence)
-        found = wider(found, made(value, size * step, sample.dof, confidence, sample.n))
+        found = wider(found, make(value, size * step, sample.dof, confidence, sample.n))
     if not few_decide(of_trials, n):
         return found
-    return wider(found, made(value, size * trial_error(m, pull, n), n - 1.0, confidence, sample.n, of_trials))
+    return wider(found, make(value, size * trial_error(m, pull, n), n - 1.0, confidence, sample.n, of_trials))
 
 
 def _error(sample: Sample, gradient: Gradient) -> float:
-    """Delta method: the standard error of a function of the moments with this gradient."""
+    """Return the standard error of a function of the moments with this gradient: the delta method."""
     g = np.asarray(gradient)
     return float(np.sqrt(np.maximum(g @ sample.moments.covariance @ g, 0.0)))
 
 
 def _deviation(sample: Sample) -> float:
-    """Square root of the sample variance, which for very large or small units could not be formed first.
+    """Return the root of the sample variance; of very large or small values the variance itself might not be a number.
 
-    The mean square about the sample's own mean falls short of the variance by what the mean itself varies: s²/n for
-    independent trials, which dividing by n − 1 makes good; between replicates the squared error of the mean, which
-    stratified trials make much smaller than that.
+    The mean square about the sample's own mean is less than the variance by the variance of that mean. For independent
+    trials it is s²/n, and dividing by n − 1 corrects for it; for replicates it is the squared error of the mean, which
+    is much smaller if the trials are stratified.
     """
     if sample.effective <= 1.0:
         return float("nan")
@@ -224,7 +224,7 @@ def _deviation(sample: Sample) -> float:
 
 
 def _relative_error_of_variance(sample: Sample) -> float:
-    """The delta method, and what estimating the mean adds to it: negligible but for a handful of trials."""
+    """Return the delta method's error with what estimating the mean adds, which is negligible but for a few trials."""
     if sample.dof < LEAST_DOF:
         return float("nan")
     about_the_mean = _error(sample, (1.0, 0.0, 0.0, 0.0)) ** 4 * 2.0 * sample.dof / sample.units

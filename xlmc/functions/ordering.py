@@ -2,7 +2,7 @@
 
 A number becomes itself, a logical 1 or 0, a text its rank among all texts that are compared. This is Excel's order of
 texts when it sorts and in approximate lookups: case does not count; symbols come before digits, digits before letters;
-accents do not count; hyphens and apostrophes count only between texts that are otherwise equal.
+accents, hyphens and apostrophes count only between texts that are otherwise equal.
 Letters: n trials, k values of a trial.
 """
 

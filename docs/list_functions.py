@@ -33,7 +33,8 @@ Excel File Format", section 3.2). xlmc has the same classes. A calculation with 
 So `SUM(INDEX((C1:C3>3)*C1:C3,0))` and `MATCH(1,INDEX((A1:A3="x")*(B1:B3=3),0),0)` need no Ctrl-Shift-Enter, and
 `SUMPRODUCT(IF(C1:C3>3,C1:C3))` needs it. In `VLOOKUP`, `CHOOSE({1,2},A1:A3,B1:B3)` does not need it, and
 `CHOOSE({1,2},A1:A3&C1:C3,B1:B3)` does. `OFFSET` that leads to several ranges at once is refused. A row or column
-number 0 of `INDEX` gives the same whether it is typed or drawn.
+number 0 of `INDEX` gives the same whether it is typed or drawn. With one number, `INDEX` gives a row of an array, but
+`#REF!` for a reference of several rows and columns, as in Excel.
 
 The functions of the former Analysis ToolPak, such as `EDATE`, `EOMONTH`, `WEEKNUM`, `YEARFRAC`, `NETWORKDAYS`, `ISODD`,
 `MROUND`, `QUOTIENT`, `CONVERT`, `DEC2BIN`, `IMABS`, `BESSELJ`, `ERF`, `PRICE` and similar ones, and `NETWORKDAYS.INTL`

@@ -17,7 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.evaluation.graph.called_functions import as_set
+from xlmc.evaluation.graph.called_functions import with_settings
 from xlmc.functions import Function, Kind
 from xlmc.functions.denormals import tiny_to_zero
 from xlmc.functions.families import REGISTRY, function_named
@@ -244,7 +244,7 @@ def test_where_nothing_is_imported_yet_it_is_found(name):
 
 
 def test_one_made_for_a_workbook_goes_whole():
-    made = as_set(function_named("YEAR"), date1904=True, macintosh=False)
+    made = with_settings(function_named("YEAR"), date1904=True, macintosh=False)
     found = pickle.loads(pickle.dumps(made))
     assert found is not made
     assert found([from_objects(np.array([0.5], object))]).numbers.tolist() == [1904.0]

@@ -1,1 +1,1 @@
-"""Graph of formulas → one callable over blocks of trials, by the engine of one's choice."""
+"""From the graph of formulas to one callable over blocks of trials, by the chosen engine."""

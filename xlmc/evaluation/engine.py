@@ -89,19 +89,19 @@ class KeptBlock:
 
 
 BlockRunner = Callable[[int, bool], KeptBlock | None]
-"""Takes a block's first trial and whether to keep draws; None where a trial must be computed on the careful path."""
+"""Takes a block's first trial and whether to keep draws; gives None where a trial needs the careful path."""
 
 
 @runtime_checkable
 class RunsWholeBlocks(Protocol):
-    """What an evaluator may do besides: run a whole block at once, which needs less memory, calls and locks."""
+    """An evaluator that can also run a whole block at once, with less memory, fewer calls and fewer locks."""
 
     def block_runner(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> BlockRunner | None:
-        """A runner of whole blocks that gives the same numbers; None where the model does not allow one.
+        """A runner of whole blocks, which gives the same numbers; None where the model does not allow one.
 
         Args:
             draw: makes the draws of a block from its first trial on, `(block,)` each.
-            linear: makes them too, where each is an offset plus a factor times a uniform.
+            linear: another way to make them, if each is an offset plus a factor times a uniform; None if not.
         """
 
 
@@ -112,7 +112,7 @@ class Program(Protocol):
     node of a `Target`; the targets of the filters and the forecasts; the inputs whose draws may be errors.
 
     Attributes:
-        largest_block: more trials than these at once are no faster.
+        largest_block: blocks of more trials are no faster.
     """
 
     largest_block: int
@@ -122,7 +122,7 @@ class Program(Protocol):
 
 
 def column_of(value: Value, n: int) -> Column:
-    """A value as the numbers of `n` trials; of an array its upper left one."""
+    """A value as the numbers of `n` trials; an array gives its upper left value."""
     value = corner(value)
     codes = np.where(value.kinds >= ERROR, value.kinds - np.uint8(ERROR), np.uint8(0)).astype(np.uint8)
     codes = np.where(value.kinds == TEXT, np.uint8(TEXT_RESULT), codes)

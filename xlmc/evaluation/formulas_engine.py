@@ -24,7 +24,7 @@ _OTHER_ENGINE = "use the engine `numpy`"
 
 
 class FormulasProgram:
-    """The needed cells as `formulas` computes them. Same answers as the fast engine, some 100,000 times slower."""
+    """The needed cells as `formulas` computes them: the answers of the fast engine, some 100,000 times slower."""
 
     largest_block = 16
 
@@ -79,7 +79,7 @@ class _FormulasEvaluator:
 
 
 class _Compiled:
-    """A tree compiled by `formulas`, its references under plain addresses: how sheets are written is then no matter."""
+    """A tree compiled by `formulas`. Its references get plain addresses, so that names of sheets do not matter."""
 
     def __init__(self, tree: ir.Expression, cell: Cell) -> None:
         self._cell, self._tree = cell, tree
@@ -94,7 +94,7 @@ class _Compiled:
         try:
             self._call = compile_with_formulas(formula_text(tree, self._names.__getitem__))
         except FormulaError as error:
-            raise self._told(error) from None
+            raise self._naming_cell(error) from None
 
     def __call__(self, values: Cells, content: Callable[[Cell], object]) -> object:
         def value(cell: Cell) -> object:
@@ -103,16 +103,16 @@ class _Compiled:
         if self._single is not None:
             return value(self._single)
         try:
-            return self._call({name: _held(reference, value) for reference, name in self._names.items()})
+            return self._call({name: _argument_of(reference, value) for reference, name in self._names.items()})
         except FormulaError as error:
-            raise self._told(error) from None
+            raise self._naming_cell(error) from None
 
-    def _told(self, error: FormulaError) -> FormulaError:
-        """The error of the cell, with the formula's own references."""
+    def _naming_cell(self, error: FormulaError) -> FormulaError:
+        """The error, naming the cell and showing the formula with its own references."""
         return FormulaError(error.message, where=self._cell, hint=error.hint, text=formula_text(self._tree))
 
 
-def _held(reference: Cell | Area, value: Callable[[Cell], object]) -> Any:
+def _argument_of(reference: Cell | Area, value: Callable[[Cell], object]) -> Any:
     if isinstance(reference, Cell):
         return value(reference)
     grid = np.empty((reference.rows, reference.columns), object)

@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 __all__ = ["TrackingEvaluator", "array_bytes", "fitting_block"]
 
 _MOST_BYTES: Final = 1 << 26
-"""Of the arrays and texts of a block: functions need several times that while they work."""
+"""The most bytes of a block's arrays and texts; functions need several times that while they work."""
 
 _WIDE: Final = 1_000
-"""Cells of an array that is worth a look."""
+"""An array of more cells is measured."""
 
 Inputs = Mapping[str, Floats]
 Trials = NDArray[np.intp]
@@ -61,11 +61,11 @@ class TrackingEvaluator:
         self._inputs, self._values = inputs, None
         if n <= self._portion:
             try:
-                self._values = self._early(inputs)
+                self._values = self._run_early(inputs)
                 return _columns(self._values, self._filters, n)
             except TooLargeError as error:
                 self._shrink(n, error)
-        return self._by_portions(n, lambda at: _columns(self._early(_pick(inputs, at)), self._filters, at.size))
+        return self._by_portions(n, lambda at: _columns(self._run_early(_pick(inputs, at)), self._filters, at.size))
 
     def forecasts(self, survivors: Trials) -> list[Column]:
         """See `Evaluator`.
@@ -75,7 +75,7 @@ class TrackingEvaluator:
         """
         if self._values is not None:
             try:
-                return self._finish(self._values, survivors, self._inputs)
+                return self._run_late(self._values, survivors, self._inputs)
             except TooLargeError as error:
                 self._shrink(survivors.size, error)
                 self._values = None
@@ -84,29 +84,29 @@ class TrackingEvaluator:
         )
 
     def peak(self, inputs: Inputs) -> int:
-        """The bytes that values take at a time, of the trials of these inputs.
+        """The most bytes that values take at a time, in the trials of these inputs.
 
         Raises:
             TooLargeError: they are too many.
         """
-        early = self._early(inputs)
+        early = self._run_early(inputs)
         (n,) = {column.size for column in inputs.values()} or {1}
-        self._finish(early, np.arange(n), inputs)
+        self._run_late(early, np.arange(n), inputs)
         return max(self._first.peak, self._late.peak)
 
-    def _early(self, inputs: Inputs) -> dict[int, Value]:
+    def _run_early(self, inputs: Inputs) -> dict[int, Value]:
         values = dict(self._constants)
         self._first.run(values, inputs)
         return values
 
-    def _finish(self, early: Mapping[int, Value], survivors: Trials, inputs: Inputs) -> list[Column]:
+    def _run_late(self, early: Mapping[int, Value], survivors: Trials, inputs: Inputs) -> list[Column]:
         values = self._constants | {node: early[node].take(survivors) for node in self._carried}
         self._late.run(values, {name: inputs[name][survivors] for name in self._late.inputs})
         return _columns(values, self._forecasts, survivors.size)
 
     def _repeat_forecasts(self, inputs: Inputs, n: int) -> list[Column]:
         """The forecasts of a portion, whose filters are evaluated again for what they share."""
-        return self._finish(self._early(inputs), np.arange(n), inputs)
+        return self._run_late(self._run_early(inputs), np.arange(n), inputs)
 
     def _by_portions(self, n: int, run: Callable[[Trials], list[Column]]) -> list[Column]:
         parts, start = [], 0
@@ -135,7 +135,7 @@ class _Part:
 
     Attributes:
         inputs: the names of the inputs among the nodes.
-        peak: the bytes of the values at a time, in the last run.
+        peak: the most bytes that values took at a time in the last run.
     """
 
     def __init__(self, dag: Dag, nodes: Sequence[int], kept: set[int]) -> None:
@@ -195,7 +195,7 @@ def _side_by_side(columns: Sequence[Column]) -> Column:
 
 
 def array_bytes(lowering: Lowering, filters: Sequence[int], forecasts: Sequence[int]) -> int:
-    """The bytes that values take at a time in one trial, measured with the inputs at their base values.
+    """The most bytes that values take at a time in one trial, measured with the inputs at their base values.
 
     It is 0, unmeasured, for a model without texts or wide arrays that vary.
     """

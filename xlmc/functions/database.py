@@ -19,7 +19,7 @@ from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.logical import choose
 from xlmc.functions.lookup.picked_cells import Indices, arrange, by_portions, cell_of, map_parts, pick
 from xlmc.functions.math import aggregate
-from xlmc.functions.math.conditional import Reduce, numbers_held
+from xlmc.functions.math.conditional import Reduce, fold_of_numbers
 from xlmc.functions.ordering import to_ordered
 from xlmc.functions.registry import Anything, Cells, Kind, excel
 from xlmc.functions.values import BLANK, NUMBER, TEXT, Bools, Value, constant
@@ -110,15 +110,15 @@ def _register(name: str, meaning: str, reduce: Reduce, returns: Kind = Kind.NUMB
     excel(name, Cells, Anything, Cells, returns=returns, dated=True, facts=facts)(body)
 
 
-_register("DSUM", "Sum of the field's numbers.", numbers_held(aggregate.sum_))
-_register("DPRODUCT", "Product of the field's numbers; 0 of none.", numbers_held(aggregate.product))
-_register("DAVERAGE", "Mean of the field's numbers; `#DIV/0!` of none.", numbers_held(aggregate.average))
-_register("DMIN", "Smallest of the field's numbers; 0 of none.", numbers_held(aggregate.minimum))
-_register("DMAX", "Largest of the field's numbers; 0 of none.", numbers_held(aggregate.maximum))
-_register("DVAR", "Variance, the records being a sample.", numbers_held(aggregate.sample_variance))
-_register("DVARP", "Variance of the records.", numbers_held(aggregate.population_variance))
-_register("DSTDEV", "Standard deviation, the records being a sample.", numbers_held(aggregate.sample_deviation))
-_register("DSTDEVP", "Standard deviation of the records.", numbers_held(aggregate.population_deviation))
+_register("DSUM", "Sum of the field's numbers.", fold_of_numbers(aggregate.sum_))
+_register("DPRODUCT", "Product of the field's numbers; 0 of none.", fold_of_numbers(aggregate.product))
+_register("DAVERAGE", "Mean of the field's numbers; `#DIV/0!` of none.", fold_of_numbers(aggregate.average))
+_register("DMIN", "Smallest of the field's numbers; 0 of none.", fold_of_numbers(aggregate.minimum))
+_register("DMAX", "Largest of the field's numbers; 0 of none.", fold_of_numbers(aggregate.maximum))
+_register("DVAR", "Variance, the records being a sample.", fold_of_numbers(aggregate.sample_variance))
+_register("DVARP", "Variance of the records.", fold_of_numbers(aggregate.population_variance))
+_register("DSTDEV", "Standard deviation, the records being a sample.", fold_of_numbers(aggregate.sample_deviation))
+_register("DSTDEVP", "Standard deviation of the records.", fold_of_numbers(aggregate.population_deviation))
 
 
 def _only_cell(column: Value, held: Bools) -> Value:

@@ -6,19 +6,20 @@ In a range only numbers count; a value given directly is converted as in arithme
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import wraps
 
 import numpy as np
 
 from xlmc.functions.arguments import align_ranges, errors_unless_range, first_error, first_error_in_row
-from xlmc.functions.lookup.picked_cells import flatten_cells
+from xlmc.functions.lookup.picked_cells import flatten_cells, join_cells
 from xlmc.functions.values import NA, NUMBER, Bools, Codes, Floats, Value
 
 __all__ = [
     "Sample",
     "at_each",
+    "join_samples",
     "mean_of",
     "of_pairs",
     "pairs_of",
@@ -98,6 +99,12 @@ def sample_of(value: Value) -> Sample:
     x, errors = (value.numbers, value.errors) if in_range else value.to_numbers()
     counts = value.kinds == NUMBER if in_range else errors == 0
     return Sample(flatten_cells(x, value), flatten_cells(counts, value), flatten_cells(errors, value))
+
+
+def join_samples(samples: Sequence[Sample]) -> Sample:
+    """Put samples side by side, as one: (n, k) or (1, k) each -> (n, the sum of all k)."""
+    x, counts, codes = (join_cells([getattr(sample, part) for sample in samples]) for part in ("x", "counts", "codes"))
+    return Sample(x, counts, codes)
 
 
 def pairs_of(first: Value, second: Value) -> tuple[Floats, Floats, Bools, Codes] | None:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.definitions.definitions import name_key
-from xlmc.evaluation.passes.random_rounding import RandomRounding, closure, evaluation, numbers, term_sizes
+from xlmc.evaluation.passes.random_rounding import RandomRounding, closure, evaluate, numbers_of, term_sizes
 from xlmc.functions.budget import TooLargeError
 
 if TYPE_CHECKING:
@@ -82,13 +82,13 @@ def _lost(
     model: Model, draws: Mapping[str, Floats], n: int, nodes: Mapping[str, int], needed: Sequence[int]
 ) -> list[str]:
     """The sentences of `lost_digits` on forecasts at these nodes, which need those at `needed`."""
-    plain = evaluation(model.lowering.dag, needed, draws)
+    plain = evaluate(model.lowering.dag, needed, draws)
     lost = {name: np.zeros(n, bool) for name in nodes}
     blurred: dict[str, int] = {}
     for replica in range(_REPLICAS):
-        found = evaluation(model.lowering.dag, needed, draws, RandomRounding(replica))
+        found = evaluate(model.lowering.dag, needed, draws, RandomRounding(replica))
         for name, node in nodes.items():
-            one, other = numbers(plain[node], n), numbers(found[node], n)
+            one, other = numbers_of(plain[node], n), numbers_of(found[node], n)
             lost[name] |= _off(one, other)
             if _is_blurred(one, other):
                 blurred[name] = node
@@ -100,14 +100,14 @@ def _lost(
         f"the digits of {name!r} are not there: rounding alone moves it by more than a thousandth of its central range "
         f"in {np.count_nonzero(where):,} of {n:,} accepted trials (xlmc stability says where)"
         for name, where in lost.items()
-        if _is_confirmed(model, nodes[name], draws, numbers(plain[nodes[name]], n), where, DUST * dust[nodes[name]])
+        if _is_confirmed(model, nodes[name], draws, numbers_of(plain[nodes[name]], n), where, DUST * dust[nodes[name]])
     ]
     others = {name: node for name, node in blurred.items() if not any(repr(name) in sentence for sentence in told)}
     return told + [
         f"the digits of {name!r} are not there: its spread is rounding, which puts it off by {error:.1g} in the median "
         f"trial, where its true central range is {width:.1g} wide (xlmc stability says where)"
         for name, node in others.items()
-        for error, width in _blur(model, node, draws, numbers(plain[node], n))
+        for error, width in _blur(model, node, draws, numbers_of(plain[node], n))
         if width > 0 and error > MOST_OF_SPREAD * width
     ]
 
@@ -136,11 +136,11 @@ def _blur(model: Model, node: int, draws: Mapping[str, Floats], plain: Floats) -
 
 def _exact(model: Model, node: int, draws: Mapping[str, Floats], trials: NDArray[np.intp]) -> dict[int, float]:
     """Trial -> the number computed with 50 digits."""
-    from xlmc.evaluation.passes.exact import Exact, exactly  # mpmath is slow to import, and hardly ever needed
+    from xlmc.evaluation.passes.exact import Exact, as_double  # mpmath is slow to import, and hardly ever needed
 
     exact = Exact(model.lowering.dag, closure(model.lowering.dag, [node]))
     return {
-        int(trial): exactly(exact.trial({key: float(column[trial]) for key, column in draws.items()})[node])
+        int(trial): as_double(exact.trial({key: float(column[trial]) for key, column in draws.items()})[node])
         for trial in trials
     }
 

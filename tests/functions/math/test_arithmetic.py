@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.math.arithmetic import powered
+from xlmc.functions.math.arithmetic import raise_to_power
 
 DIV0, NUM, VALUE, NA = ErrorCode.DIV0, ErrorCode.NUM, ErrorCode.VALUE, ErrorCode.NA
 
@@ -116,8 +116,8 @@ def test_mod_takes_the_doubles_as_they_are(evaluate, dividend, divisor):
 def test_the_same_to_the_bit_for_one_trial_and_for_many(exponent):
     base = np.random.default_rng(1).uniform(0.1, 3, 1000)
     exponents = np.where(np.arange(1000) == 0, 7.1, exponent)
-    together = powered(base, exponents)
-    assert powered(base[1:], np.array([exponent])).tolist() == together[1:].tolist()
-    assert powered(base[1:], exponent).tolist() == together[1:].tolist()
-    assert all(powered(base[i : i + 1], exponents[i : i + 1])[0] == together[i] for i in range(1000))
-    assert all(powered(float(base[i]), float(exponents[i]))[0] == together[i] for i in range(1000))
+    together = raise_to_power(base, exponents)
+    assert raise_to_power(base[1:], np.array([exponent])).tolist() == together[1:].tolist()
+    assert raise_to_power(base[1:], exponent).tolist() == together[1:].tolist()
+    assert all(raise_to_power(base[i : i + 1], exponents[i : i + 1])[0] == together[i] for i in range(1000))
+    assert all(raise_to_power(float(base[i]), float(exponents[i]))[0] == together[i] for i in range(1000))

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.functions.number_format.numbers import approximated
+from xlmc.functions.number_format.numbers import approximate
 
 DIGITS = [
     ("0", 12345.6789, "12346"),
@@ -97,7 +97,7 @@ def test_an_exponent_has_digits_on_both_sides(written, code):
     ],
 )
 def test_fractions_that_excel_finds(x, largest, fraction):
-    assert approximated(x, largest) == fraction
+    assert approximate(x, largest) == fraction
 
 
 TABLE = [

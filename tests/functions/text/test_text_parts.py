@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.text.text_parts import in_units, units, whole
+from xlmc.functions.text.text_parts import from_units, in_units, to_units
 
 VALUE = ErrorCode.VALUE
 
@@ -124,13 +124,13 @@ def test_values_text_search(check, name, arguments, expected):
 
 @given(st.text())
 def test_units_join_again(text):
-    assert whole(units(text)) == text
-    assert len(units(text)) == len(text.encode("utf-16-le")) // 2
+    assert from_units(to_units(text)) == text
+    assert len(to_units(text)) == len(text.encode("utf-16-le")) // 2
 
 
 @pytest.mark.parametrize(("text", "shown"), [("\ud83d", "\ufffd"), ("a\ude00b", "a\ufffdb"), ("é", "é"), ("", "")])
 def test_half_a_pair_is_unknown(text, shown):
-    assert whole(text) == shown
+    assert from_units(text) == shown
 
 
 def test_functions_count_in_units():

@@ -106,9 +106,9 @@ def test_a_filter_without_a_quotient_decides_alike(case, book):
     (filter_,) = made.model.filters
     better = without_quotient(made, filter_, made.lowering.graph.formulas[cell])
     place = made.lowering.target(Target(better, cell))
-    from xlmc.evaluation.passes.random_rounding import closure, evaluation, numbers
+    from xlmc.evaluation.passes.random_rounding import closure, evaluate, numbers_of
 
-    found = numbers(evaluation(made.dag, closure(made.dag, [place]), made.draws)[place], made.n)
+    found = numbers_of(evaluate(made.dag, closure(made.dag, [place]), made.draws)[place], made.n)
     e = made.number(made.node[cell])
     assert (found == ((e >= -0.5) & (e < 0.25))).all()
     assert 0 < found.sum() < made.n

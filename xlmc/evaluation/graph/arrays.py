@@ -5,7 +5,7 @@ fast path like any other.
 
 A choice between values of different sizes is a node of its own: `IF(x>0,A1:A3,5)` is three cells in one trial and one
 in another. A function of it becomes the same choice between the function's two results, which for `SUM` and its like
-are single values again and run on the fast path; only what is left of it is computed trial by trial.
+are single values again and run on the fast path; only a choice that remains is computed trial by trial.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ __all__ = [
 ]
 
 MOST_WAYS: Final = 256
-"""In how many ways choices may come out together in the arguments of a function that is still shared out."""
+"""The most combinations of outcomes of the choices in a function's arguments for which `share_out` still works."""
 
 _LARGEST: Final = 10_000
 """Cells of a varying array that are made nodes of their own; a larger one is computed as a whole."""
@@ -82,7 +82,7 @@ def _picker(row: int, column: int) -> Function:
 
 
 def _pick(value: Value, row: int, column: int) -> Value:
-    """(n, r, c) -> (n,); as `element` for a size that is found out only now."""
+    """(n, r, c) -> (n,); does what `element` does, where the size is known only during the run."""
     if value.numbers.ndim == 1:
         return value
     _, rows, columns = value.shape
@@ -94,13 +94,13 @@ def _pick(value: Value, row: int, column: int) -> Value:
 
 
 def beside(dag: Dag, node: int, row: int, column: int) -> int:
-    """The node of a single value of what may be a whole column or row of a range: its cell beside the formula.
+    """The node of a single value: of a whole column or row of a range it is the cell beside the formula.
 
     Args:
         dag: of the nodes.
         node: a cell, column, row or all of a range.
-        row: the formula's, counted from the first cell of the range.
-        column: likewise.
+        row: that of the formula, counted from the first cell of the range.
+        column: that of the formula, counted likewise.
     """
     return node if dag.sizes[node] is None else dag.add(Apply(_picker_beside(row, column), (node,)))
 
@@ -126,11 +126,11 @@ def grid(dag: Dag, rows: int, columns: int, at: Callable[[int, int], int]) -> in
 
 
 def spread(dag: Dag, function: Function, loose: tuple[int, ...], apply: Callable[[tuple[int, ...]], int]) -> int | None:
-    """`cell_by_cell` of a function's arguments of single values, as far as it goes for that function.
+    """Do `cell_by_cell` for a function's arguments of single values, as far as the function allows it.
 
-    One that makes an array of a size that these decide makes one for each cell, also where all are constant. INDEX of
-    row or column 0, which gives whole columns or rows, does so for all cells at once; where 0 is one of many numbers,
-    each cell is looked up on its own.
+    A function whose result has a size that these arguments decide is called once for each cell, also where all are
+    constant. INDEX of row or column 0, which gives whole columns or rows, is called once for all cells; where 0 is one
+    of many numbers, once for each cell.
     """
     shaping = function.facts.sized_by_numbers
     if function.name == "INDEX":
@@ -142,7 +142,7 @@ def spread(dag: Dag, function: Function, loose: tuple[int, ...], apply: Callable
 
 
 def _has_zero(dag: Dag, node_id: int) -> bool:
-    """Whether any cell of it is known to count as 0 where whole numbers are wanted."""
+    """Whether any cell of a constant counts as 0 where whole numbers are wanted."""
     node = dag.nodes[node_id]
     if not isinstance(node, Constant):
         return False
@@ -155,11 +155,11 @@ def cell_by_cell(
 ) -> int | None:
     """The array of what `apply` makes of the cells of each of `nodes`; None where that is not worth it.
 
-    Nothing is gained for constants, which are computed at once unless `constants` is set, and nothing possible for
-    unknown sizes. Where sizes do not fit each other, what has no partner is `#N/A`.
+    Constants are computed at once, unless `constants` is set; values of unknown sizes cannot be taken apart. Where
+    sizes do not fit each other, a cell without a partner is `#N/A`.
 
     Raises:
-        FormulaError: `constants` is set, and there are too many cells.
+        FormulaError: `constants` is set and there are too many cells.
     """
     sizes = [size for node in nodes if (size := dag.sizes[node]) is not None]
     if not sizes or MANY in sizes:
@@ -175,7 +175,7 @@ def cell_by_cell(
 
 
 def _either(condition: Value, yes: Value, no: Value) -> Value:
-    """One of two values whole, or the condition's error: (n,) and values of any size.
+    """One of two values as a whole, or the condition's error: (n,) and values of any size.
 
     Raises:
         ShapeVaries: not all trials choose alike, so that their results may differ in size.
@@ -213,7 +213,7 @@ def _parts_of(dag: Dag, node_id: int) -> tuple[int, int, int] | None:
 
 
 def _ways(dag: Dag, node: int) -> int:
-    """In how many ways choices within each other come out, counted up to `MOST_WAYS` and a little beyond."""
+    """The number of outcomes of choices within each other, counted up to `MOST_WAYS` and a little beyond."""
     parts, ways = _parts_of(dag, node), 1
     while parts is not None and ways <= MOST_WAYS:
         ways += 1 + _ways(dag, parts[1])
@@ -228,9 +228,9 @@ def share_out(
     is_error: Callable[[int], int],
     select: Callable[[int, int, int], int],
 ) -> int | None:
-    """The choice between what `made` makes of the arguments, the first choice among them made both ways.
+    """The function of arguments of which one is a choice, as that choice between its results; `made` makes these.
 
-    None where there is no such choice, or too many of them. A condition that is an error stands for its argument.
+    None where there is no such choice, or too many of them. Where the condition is an error, it is the argument.
     """
     for position, node in enumerate(arguments):
         parts = _parts_of(dag, node)

@@ -1,6 +1,6 @@
-"""Nodes made of nodes while formulas are lowered.
+"""Makes nodes of nodes while formulas are lowered.
 
-A function that takes single values and is given many is made of them cell by cell.
+A function that takes single values and is given arrays becomes an array of calls, cell by cell.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class NodeBuilder:
     """Makes nodes of nodes.
 
     Attributes:
-        dag: takes them.
+        dag: takes the nodes.
     """
 
     def __init__(self, dag: Dag, totals: RunningTotals) -> None:
@@ -110,7 +110,7 @@ class NodeBuilder:
         )
 
     def _inverse(self, node_id: int) -> float | None:
-        """1 / the number, where to multiply by it is to divide by the number, to the last bit: of powers of two."""
+        """The inverse of a power of two: to multiply by it gives the quotient to the last bit. None of other nodes."""
         node = self.dag.nodes[node_id]
         if not isinstance(node, Constant) or self.dag.types[node_id] is not Kind.NUMBER:
             return None

@@ -1,7 +1,7 @@
 """What is known of a function that a formula calls, before it is lowered.
 
-How many arguments it takes (Excel refuses any other number as the formula is typed; xlmc names the cell), the error of
-one that xlmc does not compute, and what it is in this workbook, where that depends on the workbook's settings.
+How many arguments it takes (Excel refuses any other number as the formula is typed; xlmc names the cell), the error for
+a function that xlmc does not compute, and the function with the workbook's settings, where it depends on these.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from xlmc.formula import ir
 from xlmc.functions import Function
 from xlmc.functions.families import REGISTRY, function_named
 
-__all__ = ["LEFT_OUT", "MOST", "SPECIAL", "as_set", "check_count", "limits", "not_computed", "unknown_to_excel"]
+__all__ = ["LEFT_OUT", "MOST", "SPECIAL", "check_count", "limits", "not_computed", "unknown_to_excel", "with_settings"]
 
 MOST: Final = 255
 
@@ -57,7 +57,7 @@ SPECIAL: Final[Mapping[str, tuple[int, int]]] = {
 
 _ADD_INS: Final = ("CB.", "RISK")
 _CODE: Final = ("vbaproject", "macrosheets")
-"""In the names of the parts that hold the functions of a book's own."""
+"""Words in the names of the parts of a file that hold the workbook's own functions."""
 
 LEFT_OUT: Final = (
     frozenset({"DBCS", "JIS", "PHONETIC", "BAHTTEXT", "EUROCONVERT", "INFO"})
@@ -78,7 +78,7 @@ def check_count(name: str, arguments: Sequence[object]) -> None:
     """
     found = limits(name)
     if found is not None and not found[0] <= len(arguments) <= found[1]:
-        raise FormulaError(f"{name} has {_number(len(arguments))}; it takes {_range(*found)}")
+        raise FormulaError(f"{name} has {_count_arguments(len(arguments))}; it takes {_describe_limits(*found)}")
 
 
 def limits(name: str) -> tuple[int, int] | None:
@@ -89,20 +89,20 @@ def limits(name: str) -> tuple[int, int] | None:
     return None if function is None else function.arity()
 
 
-def _number(count: int) -> str:
+def _count_arguments(count: int) -> str:
     return f"{count} argument{'s' * (count != 1)}"
 
 
-def _range(fewest: int, most: int) -> str:
+def _describe_limits(fewest: int, most: int) -> str:
     if most == MOST:
         return f"{fewest} or more"
     return str(fewest) if fewest == most else f"{fewest} to {most}"
 
 
 def unknown_to_excel(call: ir.Call, parts: Iterable[str]) -> bool:
-    """Whether a function is none of Excel's, of an add-in or of the book's own code, by all that the file tells.
+    """Whether a function is none of Excel's, of an add-in's or of the book's own code, as far as the file tells.
 
-    What Excel saved in the cell must say the same: the add-in may have been there.
+    The caller checks that the value Excel saved in the cell agrees: an unknown add-in may have been there.
 
     Args:
         call: of the function.
@@ -124,18 +124,18 @@ def not_computed(name: str) -> FormulaError:
 
 
 @cache
-def as_set(function: Function, date1904: bool, macintosh: bool) -> Function:
-    """The function as a workbook with these settings has it; the same object each time, so that nodes are shared."""
+def with_settings(function: Function, date1904: bool, macintosh: bool) -> Function:
+    """The function with the settings of a workbook; the same object each time, so that nodes are shared."""
     if function.dated:
-        return replace(function, body=_Settled(function, "date1904", date1904))
+        return replace(function, body=_WithOption(function, "date1904", date1904))
     if macintosh and function.macintosh:
-        return replace(function, body=_Settled(function, "macintosh", macintosh))
+        return replace(function, body=_WithOption(function, "macintosh", macintosh))
     return function
 
 
 @dataclass(frozen=True, slots=True)
-class _Settled:
-    """The body of a row with one of its options settled. It is pickled with the row, of which only the name is."""
+class _WithOption:
+    """The body of a row with one of its options given. It is pickled with the row, and the row as its name."""
 
     row: Function
     option: str

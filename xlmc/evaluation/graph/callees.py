@@ -32,22 +32,22 @@ def check_depth(scope: Scope) -> None:
 
 
 def bind(value: ir.Expression, scope: Scope) -> Thunk | Closure:
-    """What a variable stands for that is bound to a tree."""
+    """What a variable bound to a tree stands for."""
     return Closure(value, scope) if isinstance(value, ir.Lambda) else Thunk(value, scope)
 
 
 def let_scope(tree: ir.Let, scope: Scope) -> Scope:
-    """The scope of the calculation of a LET."""
+    """The scope in which a LET calculates its result."""
     for name, value in tree.bindings:
         scope = scope.defining(name, value) if tree.recursive else scope.bound({name: bind(value, scope)})
     return scope
 
 
 def find_callee(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> Callee:
-    """What a tree gives to be called.
+    """The function that a tree gives.
 
     Raises:
-        FormulaError: it gives no function.
+        FormulaError: it gives none.
     """
     match tree:
         case ir.Lambda():
@@ -87,7 +87,7 @@ def _of_thunk(lowering: TreeLowering, thunk: Thunk) -> Callee:
 
 
 def _find_result(lowering: TreeLowering, called: Closure, arguments: Arguments, scope: Scope) -> Callee:
-    """What a call gives that is called again."""
+    """The function that a call gives, which is called in turn."""
     if not called.takes(len(arguments)):
         raise FormulaError("a LAMBDA that gives a LAMBDA is given another number of arguments than it has parameters")
     check_depth(scope)
@@ -103,7 +103,7 @@ def _of_if(lowering: TreeLowering, condition: int, yes: ir.Expression, no: ir.Ex
 
 
 def find_function(lowering: TreeLowering, argument: int | Thunk | Closure) -> Callee | None:
-    """The function that an argument is; None where it is a value, or that cannot be seen at once."""
+    """The function that an argument is; None where it is a value, or where its tree does not show it."""
     while isinstance(argument, Thunk):
         match argument.tree:
             case ir.Variable(name):

@@ -1,8 +1,8 @@
 """Functions that take one of their arguments: IF, IFS, SWITCH, CHOOSE, IFERROR, IFNA.
 
-A condition that is known decides while the formula is lowered, and the other branches are never looked at. In a plain
-formula, conditions and what is computed in branches take the cell of a range beside the formula, also within SUMPRODUCT
-and its like, as in Excel; a branch that is a range stays whole.
+A condition that is known decides while the formula is lowered, and the other branches are never lowered. In a plain
+formula, conditions and computed branches take the cell of a range beside the formula, also within SUMPRODUCT and its
+like, as in Excel; a branch that is a range stays whole.
 """
 
 from __future__ import annotations

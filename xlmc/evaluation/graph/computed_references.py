@@ -52,7 +52,7 @@ def areas_of(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[
 
     Raises:
         NotYetNeeded, NoReference: see the classes.
-        FormulaError: the reference depends on what varies.
+        FormulaError: the reference depends on a value that varies.
     """
     match tree:
         case Cell(sheet, row, column):
@@ -91,7 +91,7 @@ def _combine(
     lowering: TreeLowering, operator: str, left: ir.Expression, right: ir.Expression, scope: Scope
 ) -> list[Area] | None:
     found = _end(lowering, left, scope), _end(lowering, right, scope)
-    if operator == ":" and any(_may_vary(part, areas) for part, areas in zip((left, right), found, strict=True)):
+    if operator == ":" and any(_may_be_picked(part, areas) for part, areas in zip((left, right), found, strict=True)):
         hint = "TAKE and DROP give as much of a range as a value that varies says"
         raise FormulaError("an end of a range must be fixed: no value that varies may change it", hint=hint)
     a, b = ([area.whole for area in areas] if areas else [] for areas in found)
@@ -113,7 +113,7 @@ def _end(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area
     return areas_of(lowering, tree, scope)
 
 
-def _may_vary(end: ir.Expression, areas: list[Area] | None) -> bool:
+def _may_be_picked(end: ir.Expression, areas: list[Area] | None) -> bool:
     """Whether an end of a range is picked by a function, and may vary."""
     return areas is None and isinstance(end, ir.Call) and end.name in REFERENCES
 
@@ -295,7 +295,7 @@ def _index(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[A
 
 
 def _choose(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
-    """IF and CHOOSE of references, the choice being known."""
+    """CHOOSE of references; None where the choice is not known."""
     if not any(isinstance(part, Cell | Area | ir.Call) for part in arguments[1:]):
         return None
     known = lowering.lookup_constant(lowering.lower(arguments[0], scope.plainly()))
@@ -305,7 +305,7 @@ def _choose(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[
     return areas_of(lowering, arguments[which], scope.branch()) if 0 < which < len(arguments) else None
 
 
-def _either(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
+def _if(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
     node = lowering.lower(arguments[0], scope.plainly()) if len(arguments) > 1 else None
     condition = None if node is None else lowering.lookup_condition(node)
     if condition is None or (not condition and len(arguments) < 3):
@@ -338,14 +338,14 @@ REFERENCES: Mapping[str, Callable[[TreeLowering, Arguments, Scope], list[Area] |
     "OFFSET": _offset,
     "INDIRECT": _indirect,
     "INDEX": _index,
-    "IF": _either,
+    "IF": _if,
     "CHOOSE": _choose,
     "ANCHORARRAY": _spill,
 }
 
 
 def of_one_cell(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> ir.Expression:
-    """The argument with `#VALUE!` for every range of several cells that it may come to; arrays are as they were.
+    """The argument with `#VALUE!` for every range of several cells that it may give; arrays stay as they are.
 
     Args:
         lowering: of the workbook.
@@ -359,14 +359,16 @@ def of_one_cell(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> ir
                 return tree  # a condition of many cells gives an array
             return ir.Call(name, (test, *(of_one_cell(lowering, part, scope) for part in branches)))
         case Area() | ir.Binary(",") | ir.Binary(":") | ir.Binary(" ") | ir.Variable():
-            return _NOT_ONE_CELL if _is_several(lowering, tree, scope) else tree
+            return _NOT_ONE_CELL if _is_many_cells(lowering, tree, scope) else tree
         case ir.Call(name) if name in REFERENCES:
-            return _NOT_ONE_CELL if _is_several(lowering, tree, replace(scope, of_array=False, around=False)) else tree
+            return (
+                _NOT_ONE_CELL if _is_many_cells(lowering, tree, replace(scope, of_array=False, around=False)) else tree
+            )
         case _:
             return tree
 
 
-def _is_several(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
+def _is_many_cells(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
     """Whether a tree refers to more cells than one."""
     try:
         areas = areas_of(lowering, tree, scope)

@@ -22,11 +22,11 @@ Size = tuple[int, ...] | None
 """Rows and columns of a value that is many cells; None for a single one."""
 
 MANY: Final = (-1, -1)
-"""The size of a value that may be many cells, how many being known only during the run."""
+"""The size of a value that may be many cells; how many is known only during the run."""
 
 
 class Repeat(NamedTuple):
-    """A node to be made as it was made before: of `function`, or by `make` where that is None.
+    """A node to be made like an earlier one: of `function`, or by `make` where that is None.
 
     Attributes:
         slots: which of the nodes known by then it uses.
@@ -46,9 +46,9 @@ class Dag:
     Attributes:
         nodes: what each is.
         types: what each gives where it is no error; ANY where that is not known before the run, or is many cells.
-        sizes: of each.
-        origins: of constants that were computed here: the node that each came from.
-        recording: where it is a list, the nodes that are asked for are noted in it, new ones and others.
+        sizes: the size of each.
+        origins: constants that were computed here -> the node that each was computed from.
+        recording: where it is a list, every node that is asked for is noted in it, whether it is new or not.
         hosts, ends: the formula cells in the order in which they were lowered, and how many nodes there were then.
     """
 
@@ -89,7 +89,7 @@ class Dag:
         """
         if value.numbers.size > 1:
             self._keep(value)
-        return self._number(_constant_key(value), Constant(value), _constant_type(value), value.shape[1:] or None)
+        return self._register(_constant_key(value), Constant(value), _constant_type(value), value.shape[1:] or None)
 
     def _keep(self, value: Value) -> None:
         """Count the memory of an array's numbers, and of its copy in the key."""
@@ -103,7 +103,7 @@ class Dag:
     def input(self, name: str) -> int:
         """The node of an assumption."""
         node = Input(name)
-        return self._number(node, node, Kind.NUMBER, None)
+        return self._register(node, node, Kind.NUMBER, None)
 
     def add(self, node: Apply | Select | IfErrorNode | Range) -> int:
         """The index of the node; a node whose parts are all constant becomes a constant at once.
@@ -117,11 +117,11 @@ class Dag:
         return node_id
 
     def replay(self, steps: Sequence[Repeat], local: list[int]) -> None:
-        """Nodes like some added before, one after another; these are appended to `local`.
+        """Add nodes like earlier ones, one after another, and append each to `local`.
 
         Args:
             steps: what to make.
-            local: the nodes that the slots of the steps count.
+            local: the nodes that the slots of the steps refer to.
         """
         known, nodes, types, sizes = self._known, self.nodes, self.types, self.sizes
         for make, function, slots, kind, size in steps:
@@ -139,7 +139,7 @@ class Dag:
         if node in self._known:
             return self._known[node]
         if isinstance(node, Apply) and self._is_plain(node):
-            return self._number(node, node, node.function.returns, None)
+            return self._register(node, node, node.function.returns, None)
         folded = self._fold_choice(node)
         if folded is not None:
             return folded
@@ -152,27 +152,29 @@ class Dag:
             if node_id == new:  # else it was typed in, or computed before
                 self.origins[node_id] = node
             return node_id
-        return self._number(node, node, self._type(node) if size is None else Kind.ANY, size)
+        return self._register(node, node, self._type(node) if size is None else Kind.ANY, size)
 
     def _is_plain(self, node: Apply) -> bool:
-        """Whether it makes one value of single ones, some of which vary: the case of nearly every node."""
+        """Whether it makes one value of single ones, some of which vary, as nearly every node does."""
         if node.function.facts.spills or any(self.sizes[part] is not None for part in node.arguments):
             return False
         return not all(isinstance(self.nodes[part], Constant) for part in node.arguments)
 
     def _fold_choice(self, node: Apply | Select | IfErrorNode | Range) -> int | None:
-        """What an `IF` or an `IFERROR` gives where that is known before the run: steps take no single constant."""
+        """What an `IF` or an `IFERROR` gives whose condition or value is a constant, which steps do not take."""
         match node:
             case Select(condition, yes, no):
                 known = self._single_constant(condition)
-                return None if known is None or not known.plain else self._not_blank(yes if known.numbers[0] else no)
+                return (
+                    None if known is None or not known.plain else self._zero_if_blank(yes if known.numbers[0] else no)
+                )
             case IfErrorNode(value, instead, only_na):
                 known = self._single_constant(value)
                 if known is None:
                     return None
                 kind = int(known.kinds[0])
                 lost = kind == ERROR + ErrorCode.NA or (kind >= ERROR and not only_na)
-                return self._not_blank(instead if lost else value)
+                return self._zero_if_blank(instead if lost else value)
             case _:
                 return None
 
@@ -180,7 +182,7 @@ class Dag:
         node = self.nodes[node_id]
         return node.value if isinstance(node, Constant) and self.sizes[node_id] is None else None
 
-    def _not_blank(self, node: int) -> int:
+    def _zero_if_blank(self, node: int) -> int:
         known = self._single_constant(node)
         return self.constant(constant(0.0)) if known is not None and int(known.kinds[0]) == BLANK else node
 
@@ -195,7 +197,7 @@ class Dag:
             return MANY
         return np.broadcast_shapes(*sizes) if sizes else None
 
-    def _number(self, key: object, node: Node, kind: Kind, size: Size) -> int:
+    def _register(self, key: object, node: Node, kind: Kind, size: Size) -> int:
         if key not in self._known:
             self._known[key] = len(self.nodes)
             self.nodes.append(node)

@@ -1,8 +1,8 @@
-"""What a tree computes of whole columns cell by cell, found and changed: the ranges that are exposed in it.
+"""Finds and changes the ranges that are exposed in a tree: whole columns of which it computes something cell by cell.
 
-Over the further rows, which are empty, only `ROW(A:A)` among them differs from row to row. A tree that is a constant
-times ROW plus a constant, as `(A:A="x")*ROW(A:A)` is there, is largest and smallest at the first or the last of these
-rows, and on average half of the sum of the two.
+In the further rows, which are empty, only `ROW(A:A)` differs from row to row. A tree that is a constant times ROW plus
+a constant there, as `(A:A="x")*ROW(A:A)` is, has its largest and smallest value in the first or the last of these rows,
+and its mean is half of the sum of the two.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ from xlmc.functions.registry import Ranges
 __all__ = ["CURVED", "Change", "change_exposed", "degree", "find_areas", "has_exposed", "is_numbered", "is_spared"]
 
 Change = Callable[[Area], Area]
-"""What stands instead of a range that is cut."""
+"""Gives what stands for a range that is cut."""
 
 CURVED = 2
-"""The degree of what is neither the same in each row nor rises by the same from row to row."""
+"""The degree of a tree that is not the same in each row and does not rise by the same from row to row."""
 
 Taken = Callable[[ir.Call], Sequence[ir.Expression]]
 """The arguments of a call that are taken cell by cell."""
 
 
 def find_areas(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[Area] | None:
-    """What a tree refers to; None where it is no reference, or one that cannot be worked out."""
+    """The areas that a tree refers to; None where it is no reference, or one that gives an error."""
     if not isinstance(tree, Cell | Area | ir.Binary | ir.Call | ir.Variable):
         return None
     if isinstance(tree, ir.Call) and tree.name in CHOICES:
@@ -96,7 +96,7 @@ def change_exposed(lowering: TreeLowering, tree: ir.Expression, scope: Scope, ch
 
 
 def _change_branch(lowering: TreeLowering, tree: ir.Expression, scope: Scope, change: Change) -> ir.Expression:
-    """A branch in a plain formula: a range goes on whole, what is computed takes the cell of a range beside it."""
+    """Change a branch in a plain formula: a range stays whole; a computed branch takes the cell beside the formula."""
     goes_on = isinstance(tree, Area | ir.Variable) or (isinstance(tree, ir.Call) and tree.name in CHOICES)
     return change_exposed(lowering, tree, scope, change) if goes_on else tree
 

@@ -10,7 +10,7 @@ from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.evaluation.graph import lambdas, whole_columns
 from xlmc.evaluation.graph.arrays import element, grid, size_of
-from xlmc.evaluation.graph.called_functions import as_set, check_count, not_computed, unknown_to_excel
+from xlmc.evaluation.graph.called_functions import check_count, not_computed, unknown_to_excel, with_settings
 from xlmc.evaluation.graph.choices import CHOICES
 from xlmc.evaluation.graph.computed_references import NoReference, areas_of, of_one_cell
 from xlmc.evaluation.graph.dag import Dag
@@ -33,7 +33,7 @@ __all__ = ["WRITTEN_OUT", "ExpressionLowering"]
 _Arguments = tuple[ir.Expression, ...]
 
 _PASSING_ON = ir.Call | ir.Let | ir.Invoke
-"""Trees that may give a range whole where one is wanted: choices, INDEX, LET, LAMBDA."""
+"""Trees that may give a whole range where one is wanted: choices, INDEX, LET, LAMBDA."""
 
 
 def _percent_of(lowering: TreeLowering, arguments: _Arguments, scope: Scope) -> int:
@@ -108,7 +108,7 @@ class ExpressionLowering(TreeLowering):
         return self.apply(SNAP_TO_ZERO, (node, before))
 
     def _join(self, tree: ir.Binary, scope: Scope) -> int:
-        """References put together, where one value is wanted."""
+        """The node of references joined by an operator, where one value is wanted."""
         try:
             areas = areas_of(self, tree, scope)
         except NoReference as found:
@@ -140,7 +140,7 @@ class ExpressionLowering(TreeLowering):
         return self.call_by_name(name, arguments, scope)
 
     def _name_error(self, name: str, unless_saved: FormulaError | None) -> int:
-        """The node of a name or a function that Excel does not know; the error if what it saved does not say so."""
+        """The node of a name or function that Excel does not know; `unless_saved` is raised if it saved no #NAME?."""
         if self._unknown is not None:
             self._unknown[name] = unless_saved
         return self.error(ErrorCode.NAME)
@@ -183,7 +183,7 @@ class ExpressionLowering(TreeLowering):
             if position in first:
                 part = [self.apply(first[position], (node,)) for node in part]
             found += part if parameter.repeat else [self._stack(part)]
-        return self.apply(as_set(function, book.date1904, book.macintosh), tuple(found))
+        return self.apply(with_settings(function, book.date1904, book.macintosh), tuple(found))
 
     def _special(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int | None:
         """The node of a function that takes more than values; None of one that takes values alone."""

@@ -73,7 +73,7 @@ class FillDownCache:
         return local[pattern.result]
 
     def _record(self, leaves: Sequence[int], lower: Callable[[], int]) -> tuple[int, _Pattern | None]:
-        """The node, and how it came about; None where this cell does not tell."""
+        """The node, and the pattern of its nodes; None where this cell does not show a pattern."""
         dag = self._dag
         made: list[int] = []
         dag.recording = made
@@ -121,11 +121,11 @@ def _maker(node: Node) -> Callable[[tuple[int, ...]], Node]:
 
 
 _ASKING: Final = {*REFERENCE_FUNCTIONS, *LAMBDAS, "SINGLE"}
-"""Functions whose result depends on the cell they stand in, or on more of a cell than its value."""
+"""Functions whose result depends on the cell that they stand in, or on more of a cell than its value."""
 
 
 def _is_repeatable(tree: ir.Expression) -> bool:
-    """Whether how the tree is lowered depends on the nodes that it reads alone."""
+    """Whether the nodes that the tree reads decide alone how it is lowered."""
     match tree:
         case Cell() | ir.Number() | ir.Text() | ir.Logical() | ir.Missing() | ir.ErrorLiteral():
             return True

@@ -1,7 +1,7 @@
 """What stands for the further cells of a range that goes on beyond the last filled cell, as a whole column does.
 
-How far such ranges are read (as far as what is done with them needs), and what is said where nothing can stand for
-their empty cells.
+It says how far such ranges are read (as far as the function needs), and refuses them where nothing can stand for their
+empty cells.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _HINT: Final = "name only the rows and columns that hold something"
 
 
 def level(direct: Mapping[int, Sequence[Area]]) -> dict[int, list[Area]]:
-    """The areas of arguments, as long as each other where they are of one size with their further cells; else not."""
+    """The areas, read equally far where they have one size with their further cells; else read differently far."""
     rows = _lengths((area.rows, area.whole.rows) for areas in direct.values() for area in areas)
     columns = _lengths((area.columns, area.whole.columns) for areas in direct.values() for area in areas)
     return {
@@ -51,7 +51,7 @@ def level(direct: Mapping[int, Sequence[Area]]) -> dict[int, list[Area]]:
 
 
 def _lengths(sizes: Iterable[tuple[int, int]]) -> dict[int, int]:
-    """Size with the further cells -> how far to read; larger sizes are read further."""
+    """How far to read areas of each size, further cells included; larger sizes are read further."""
     longest: dict[int, int] = {}
     for held, whole in sizes:
         longest[whole] = max(held, longest.get(whole, 0))
@@ -72,7 +72,7 @@ def beyond(area: Area) -> Area:
 
 
 def resize(area: Area, length: int, across: bool) -> Area:
-    """The area with so many rows, or columns, read; the rest of its size is further ones."""
+    """The area with `length` rows, or columns, read; all others become further ones."""
     whole = area.whole
     if across:
         right = area.left + length - 1
@@ -82,7 +82,7 @@ def resize(area: Area, length: int, across: bool) -> Area:
 
 
 def one_behind(area: Area, length: int, across: bool) -> Area:
-    """The row, or column, behind so many."""
+    """The row, or column, behind the first `length`."""
     if across:
         return Area(area.sheet, area.top, area.left + length, area.bottom, area.left + length)
     return Area(area.sheet, area.top + length, area.left, area.top + length, area.right)
@@ -93,20 +93,23 @@ def to_filled(area: Area) -> Area:
 
 
 def one_further(area: Area) -> Area:
-    """With the first further row and column."""
+    """The area with the first further row and column."""
     rows, columns = area.rows + (area.further_rows > 0), area.columns + (area.further_columns > 0)
     return resize(resize(area, rows, False), columns, True)
 
 
 def by_halves(area: Area) -> Area:
-    """As far as a search by halves comes, which steps back from empty cells."""
+    """The area as far as a search by halves comes, which steps back from empty cells."""
     rows = _halve(area.rows, area.whole.rows, 0 if area.further_columns else area.columns)
     columns = _halve(area.columns, area.whole.columns, 0 if area.further_rows else area.rows + 1)
     return resize(resize(area, rows, False), columns, True)
 
 
 def _halve(held: int, whole: int, least: int) -> int:
-    """The end of a search of `whole` cells once its middle is among the first `held`; a range keeps its long side."""
+    """The end of a search of `whole` cells once its middle is below `held`, and no less than `least`.
+
+    With `least` a range keeps its long side.
+    """
     if held == whole:
         return held
     end = whole
@@ -122,14 +125,14 @@ def refusal(name: str) -> FormulaError:
 
 @cache
 def keep_within(held: int, whole: int, zero_is_all: bool) -> Function:
-    """Numbers of rows or columns beyond the `held` ones, as that of the last of them, if they are of the `whole`."""
+    """A function that makes `held` of numbers of rows or columns above it, up to `whole`."""
     body = partial(_within, held=held, whole=whole, zero_is_all=zero_is_all)
     return Function(f"within {held} of {whole}", (Number,), body, Kind.NUMBER)
 
 
 @cache
 def to_the_last(held: int, whole: int) -> Function:
-    """Numbers of rows or columns beyond the `held` ones, as that of the last of the `whole`."""
+    """A function that makes `whole` of numbers of rows or columns above `held`."""
     return Function(f"{held} or {whole}", (Number,), partial(_of_whole, held=held, whole=whole), Kind.NUMBER)
 
 

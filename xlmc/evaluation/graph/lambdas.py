@@ -111,33 +111,33 @@ def _takes(function: Callee, count: int) -> bool:
             return True
 
 
-def _array(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> int:
+def _lower_array(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> int:
     return lowering.lower(tree, scope.over_arrays())
 
 
-def _one(lowering: TreeLowering, function: Callee, arguments: Arguments, scope: Scope) -> int:
+def _call_for_one_value(lowering: TreeLowering, function: Callee, arguments: Arguments, scope: Scope) -> int:
     """A call that must give a single value; an array is `#CALC!`, as Excel has no arrays of arrays."""
-    return _only(lowering, _call(lowering, function, arguments, scope.over_arrays()))
+    return _one_value(lowering, _call(lowering, function, arguments, scope.over_arrays()))
 
 
 def _ask_for_calls(lowering: TreeLowering, function: Callee, calls: int) -> None:
-    """Ask for all calls of a LAMBDA over an array before the first; a function of Excel by its name makes none."""
+    """Ask for all calls of a LAMBDA over an array before the first; a function of Excel does not count."""
     if not isinstance(function, Native):
         lowering.calls.ask_for(calls)
 
 
-def _only(lowering: TreeLowering, node: int) -> int:
+def _one_value(lowering: TreeLowering, node: int) -> int:
     size = lowering.dag.sizes[node]
     if size == MANY:
-        return lowering.dag.add(Apply(_ONLY, (node,)))
+        return lowering.dag.add(Apply(_ONLY_CELL, (node,)))
     return lowering.first_cell(node) if size in (None, (1, 1)) else lowering.error(ErrorCode.CALC)
 
 
-_ONLY: Final = Function("only cell", (Cells,), single, Kind.ANY)
+_ONLY_CELL: Final = Function("only cell", (Cells,), single, Kind.ANY)
 
 
 class _Items:
-    """The cells of an array that a LAMBDA is called with: of a range, its cells, so that they know where they are."""
+    """The cells of an array that a LAMBDA is called with; those of a range are given as references."""
 
     def __init__(self, lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> None:
         self._lowering, self._scope = lowering, scope
@@ -146,7 +146,7 @@ class _Items:
         if self._area is not None:
             self.rows, self.columns = self._area.rows, self._area.columns
         else:
-            self._node = _array(lowering, tree, scope)
+            self._node = _lower_array(lowering, tree, scope)
             self.rows, self.columns = size_of(lowering.dag, self._node) or (1, 1)
 
     def at(self, row: int, column: int) -> int | Thunk:
@@ -182,7 +182,7 @@ def _range_of(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> Area
     return areas[0] if areas is not None and len(areas) == 1 and not areas[0].is_cut else None
 
 
-def _value(lowering: TreeLowering, item: int | Thunk) -> int:
+def _item_node(lowering: TreeLowering, item: int | Thunk) -> int:
     return item if isinstance(item, int) else lowering.lower(item.tree, item.scope.over_arrays())
 
 
@@ -195,7 +195,7 @@ def _map(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int:
     _ask_for_calls(lowering, function, rows * columns)
 
     def at(r: int, c: int) -> int:
-        return _one(lowering, function, tuple(array.at(r, c) for array in arrays), scope)
+        return _call_for_one_value(lowering, function, tuple(array.at(r, c) for array in arrays), scope)
 
     return grid(lowering.dag, rows, columns, at)
 
@@ -224,9 +224,11 @@ def _accumulate(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int |
         for c in range(array.columns):
             item = array.at(r, c)
             first = not states and isinstance(arguments[0], ir.Missing)
-            node = _value(lowering, item) if first else _call(lowering, function, (state, item), scope.over_arrays())
+            node = (
+                _item_node(lowering, item) if first else _call(lowering, function, (state, item), scope.over_arrays())
+            )
             state = states[r, c] = node
-    return grid(lowering.dag, array.rows, array.columns, lambda r, c: _only(lowering, states[r, c])), node
+    return grid(lowering.dag, array.rows, array.columns, lambda r, c: _one_value(lowering, states[r, c])), node
 
 
 def _by(rows: bool) -> Callable[[TreeLowering, Trees, Scope], int]:
@@ -236,8 +238,18 @@ def _by(rows: bool) -> Callable[[TreeLowering, Trees, Scope], int]:
             return lowering.error(ErrorCode.VALUE)
         _ask_for_calls(lowering, function, array.rows if rows else array.columns)
         if rows:
-            return grid(lowering.dag, array.rows, 1, lambda r, _: _one(lowering, function, (array.row(r),), scope))
-        return grid(lowering.dag, 1, array.columns, lambda _, c: _one(lowering, function, (array.column(c),), scope))
+            return grid(
+                lowering.dag,
+                array.rows,
+                1,
+                lambda r, _: _call_for_one_value(lowering, function, (array.row(r),), scope),
+            )
+        return grid(
+            lowering.dag,
+            1,
+            array.columns,
+            lambda _, c: _call_for_one_value(lowering, function, (array.column(c),), scope),
+        )
 
     return by
 
@@ -253,7 +265,7 @@ def _make_array(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int:
     _ask_for_calls(lowering, function, rows * columns)
 
     def at(r: int, c: int) -> int:
-        return _one(lowering, function, (lowering.number(r + 1.0), lowering.number(c + 1.0)), scope)
+        return _call_for_one_value(lowering, function, (lowering.number(r + 1.0), lowering.number(c + 1.0)), scope)
 
     return grid(lowering.dag, rows, columns, at)
 

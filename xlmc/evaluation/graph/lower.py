@@ -58,13 +58,13 @@ class Lowering(ExpressionLowering):
         graph: the needed cells, in dependency order.
         inputs: the assumption cells and the names of their inputs; any other cell that holds a value is constant.
         held: cells held at a value of their own: frozen assumptions.
-        audit: every formula sees what Excel saved in the cells it needs, so that each is checked on its own; one that
+        audit: every formula reads what Excel saved in the cells it needs, so that each is checked on its own; one that
             cannot be computed is a fault, not an exception.
 
     Attributes:
         graph, inputs, held: as given.
         saved: the cells that xlmc cannot compute, with the values that Excel saved.
-        faults: why it cannot.
+        faults: these cells -> why it cannot.
         more: formula cell -> cells that OFFSET and its like turned out to need and the graph does not hold. Where there
             are any, the graph must be built again with them.
         led_to: formula cell -> inputs and formula cells that OFFSET and its like lead to.

@@ -180,45 +180,45 @@ class Scope:
 
     @property
     def taking(self) -> tuple[bool, bool, bool]:
-        """All that says how ranges are taken."""
+        """The three flags that decide how ranges are taken."""
         return self.of_array, self.around, self.whole
 
     def over_arrays(self) -> Scope:
-        """The same, ranges taken cell by cell."""
+        """The same scope, but with ranges taken cell by cell."""
         return self if self.array else replace(self, around=True, whole=False)
 
     def plainly(self) -> Scope:
-        """The same, ranges taken as in the formula, whatever a function around has them taken as."""
+        """The same scope, but with ranges taken as in the formula, whatever the function around the tree wants."""
         return replace(self, around=False, whole=False) if self.around or self.whole else self
 
     def inside(self) -> Scope:
-        """That of a part of the tree."""
+        """The scope of a part of the tree."""
         return replace(self, whole=False) if self.whole else self
 
     def wanted_whole(self) -> Scope:
-        """The same, what a range gives wanted whole."""
+        """The same scope, but with a range that is all of the tree wanted whole."""
         return self if self.array or self.whole else replace(self, whole=True)
 
     def branch(self) -> Scope:
-        """That of a choice's branch: a range there is whole where the choice is wanted whole or cell by cell."""
+        """The scope of a choice's branch: a range there is whole where the choice is wanted whole or cell by cell."""
         return replace(self, around=False, whole=self.whole or self.around) if self.around else self
 
     def of(self, ranges: Ranges) -> Scope:
-        """That of an argument."""
+        """The scope of an argument that takes ranges so."""
         if ranges is Ranges.CELLS:
             return self.over_arrays()
         return self if ranges in (Ranges.AROUND, Ranges.ONE_CELL) else self.plainly()
 
     def seen_from(self, user: Scope) -> Scope:
-        """The same, taken as the scope takes ranges in which a variable of this one is used, and as deep."""
+        """The same scope, but with ranges taken, and as deep, as in the scope `user` that uses a variable of it."""
         return replace(self, of_array=user.of_array, around=user.around, whole=user.whole, depth=user.depth)
 
     def bound(self, variables: Mapping[str, int | Thunk | Closure]) -> Scope:
-        """The same with more variables."""
+        """The same scope with more variables."""
         return replace(self, variables={**self.variables, **variables})
 
     def defining(self, name: str, tree: ir.Expression) -> Scope:
-        """The same with a variable whose tree may name the variable itself."""
+        """The same scope with a variable whose tree may name the variable itself."""
         variables = dict(self.variables)
         inner = replace(self, variables=variables)
         variables[name] = Thunk(tree, inner)

@@ -4,8 +4,8 @@ A node is a constant, an input, a function of other nodes, or cells side by side
 `Dag.nodes`: `node`, or `node_id` where the node itself is at hand, too. Its value has errors, texts and blanks as in
 Excel.
 
-Arrays side by side may have sizes that are known only when they are computed: as in Excel, what one lacks is #N/A.
-Where an array's size differs from trial to trial, as that of `FILTER` of what varies, each trial is computed alone.
+Arrays that are computed together may have sizes that are known only during the run: as in Excel, a cell that one lacks
+is #N/A. Where an array's size differs between trials, as that of `FILTER` may, each trial is computed alone.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ __all__ = [
 ]
 
 _NA = np.uint8(ERROR + ErrorCode.NA)
-_NESTED = constant(ErrorCode.CALC)
+_CALC_ERROR = constant(ErrorCode.CALC)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -182,7 +182,7 @@ def _grid(columns: list[Any], size: tuple[int, int, int], dtype: Any) -> Any:
 
 
 def arguments_of(function: Function, values: Sequence[Value]) -> list[Value]:
-    """The arguments, those that are taken element by element of one size; ranges that are taken whole as they are."""
+    """The arguments: those that are taken element by element get one size, ranges that are taken whole stay."""
     loose = [i for i in range(len(values)) if not function.parameter(i).ranged]
     if sum(values[i].numbers.ndim == 3 for i in loose) < 2:
         return list(values)
@@ -206,7 +206,7 @@ def align(values: Sequence[Value]) -> list[Value]:
 
 
 def _pad(value: Value, rows: int, columns: int) -> Value:
-    """The array with #N/A below and to the right; one row or column goes on as it is, being repeated."""
+    """The array with #N/A below and to the right; a single row or column is not filled up, as it broadcasts."""
     shape = value.shape
     lacks = [(0, 0), *((0, 0 if has == 1 else to - has) for has, to in zip(shape[1:], (rows, columns), strict=True))]
     if not any(more for _, more in lacks):
@@ -219,25 +219,25 @@ def _pad(value: Value, rows: int, columns: int) -> Value:
 
 
 def single(value: Value) -> Value:
-    """What stands in one cell of an array: a value; an array of its own there is #CALC!, unless it is of one cell."""
+    """The value for one cell of an array: a single value, or an array of one cell; a larger array there is #CALC!."""
     if value.numbers.ndim == 1:
         return value
-    return corner(value) if value.shape[1:] == (1, 1) else _NESTED
+    return corner(value) if value.shape[1:] == (1, 1) else _CALC_ERROR
 
 
 def corner(value: Value) -> Value:
-    """What a cell shows of an array that it does not spill: its upper left value; #CALC! of an array of nothing."""
+    """What a cell shows of an array that it does not spill: its upper left value; #CALC! where it has no cell."""
     if value.numbers.ndim == 1:
         return value
     if 0 in value.shape[1:]:
-        return _NESTED
+        return _CALC_ERROR
     shape = value.shape
     parts: list[Any] = [None if part is None else np.broadcast_to(part, shape)[:, 0, 0] for part in value.arrays()]
     return Value(parts[0], parts[1], parts[2])
 
 
 class Ragged(Value):
-    """One value a trial, each of a size of its own. It is a `Value` only for those who take single trials of it."""
+    """One value for each trial, each with its own size. Only single trials may be read from it."""
 
     __slots__ = ("trials",)
 

@@ -1,7 +1,7 @@
 """A LAMBDA that calls itself, deeper than calls are written out: it is lowered once, and evaluated call by call.
 
-Its calculation is lowered with parameters of its own. What of it depends on them becomes a `Body`; what does not is
-worked out outside, once, and given to it. A parameter that is given a function, a range or nothing is no value: it is
+Its calculation is lowered with parameters of its own. The nodes that depend on them become a `Body`; the others are
+computed outside, once, and given to it. A parameter that is given a function, a range or nothing is no value: it is
 part of what is lowered, and another such argument makes another body.
 """
 
@@ -37,7 +37,7 @@ _MOST_CELLS: Final = 1_000
 
 @dataclass(frozen=True, slots=True)
 class _Given:
-    """An argument: what decides on the body, the values, and what the parameter stands for in a body."""
+    """An argument: the key that decides on the body, the values, and what the parameter stands for in the body."""
 
     key: object
     values: tuple[int, ...]
@@ -142,7 +142,7 @@ def _placeholder(dag: Dag) -> int:
 
 
 def _marker(name: str) -> Function:
-    """Stands for what has no value while it is lowered: `volatile`, so that it is not taken for a constant."""
+    """A function that stands for what has no value while it is lowered; `volatile`, so that it is no constant."""
     return Function(name, (Cells(repeat=True),), _never, Kind.ANY, volatile=True)
 
 
@@ -152,7 +152,7 @@ def _never(*_: Value) -> Value:
 
 def _body(dag: Dag, definition: RecursiveLambda, result: int, deepest: int) -> tuple[Body, tuple[int, ...]]:
     """The body, and the nodes that it takes from outside."""
-    steps = _dependent(dag, definition, result)
+    steps = _find_dependent(dag, definition, result)
     parameters = definition.parameters
     read = dict.fromkeys(used for node_id in [*steps, result] for used in (node_id, *uses(dag.nodes[node_id])))
     outer = [node_id for node_id in read if node_id not in steps and node_id not in parameters]
@@ -161,11 +161,11 @@ def _body(dag: Dag, definition: RecursiveLambda, result: int, deepest: int) -> t
     slots = {node_id: slot for slot, node_id in enumerate((*parameters, *taken, *constants, *steps))}
     values = {slots[node_id]: node.value for node_id in constants if isinstance(node := dag.nodes[node_id], Constant)}
     made = {slots[node_id]: _step(dag.nodes[node_id], definition.itself, slots) for node_id in steps}
-    last = _last(made, slots[result])
+    last = _find_last_calls(made, slots[result])
     return Body(len(parameters), len(taken), values, made, slots[result], last, deepest), taken
 
 
-def _last(steps: Mapping[int, Step], result: int) -> frozenset[int]:
+def _find_last_calls(steps: Mapping[int, Step], result: int) -> frozenset[int]:
     """The calls of itself that end the calculation, and the `IF`s on the way to them."""
     used = Counter(slot for step in steps.values() for slot in _uses(step))
     way, waiting = list[int](), [result]
@@ -190,7 +190,7 @@ def _uses(step: Step) -> tuple[int, ...]:
     return step.arguments if isinstance(step, SelfCall) else uses(step)
 
 
-def _dependent(dag: Dag, definition: RecursiveLambda, result: int) -> list[int]:
+def _find_dependent(dag: Dag, definition: RecursiveLambda, result: int) -> list[int]:
     """The nodes that the result needs and that depend on the parameters or call the LAMBDA itself, in order."""
     needed = dag.upstream([result])
     found = set(definition.parameters)

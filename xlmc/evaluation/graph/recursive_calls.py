@@ -1,6 +1,6 @@
 """A LAMBDA that calls itself, evaluated: each call takes the trials that come to it, and no call is written out.
 
-Values are worked out when they are asked for: of an `IF`, each branch on the trials that take it. So a trial ends its
+Values are computed when they are asked for: each branch of an `IF` on the trials that take it. So a trial ends its
 calls where its own numbers say so. What waits for a value stands on a list, and not on Python's stack, so that calls
 may be thousands deep.
 """
@@ -43,8 +43,8 @@ class Body:
         parameters, taken: how many there are.
         constants, steps: by slot.
         result: the slot of what a call gives.
-        last: the calls of itself whose value is the result as it is, and the `IF`s that lead to them: such a call is
-            the next round of the same one.
+        last: the calls of itself whose value is the result unchanged, and the `IF`s that lead to them: such a call is
+            computed as the next round of the same call.
         deepest: calls within calls; one more is `#NUM!`.
     """
 
@@ -92,7 +92,7 @@ class _Frame:
     bytes: int = 0
 
     def find(self, slot: int) -> Value | None:
-        """A value that was worked out here, or for more trials further out."""
+        """A value that was computed here, or for more trials further out."""
         found = self.values.get(slot)
         if found is None and self.parent is not None and self.index is not None:
             found = self.parent.find(slot)
@@ -109,7 +109,7 @@ class _Frame:
 
 @dataclass(slots=True)
 class _Round:
-    """What came of one round of a call: results, and the arguments of the next round, each with their trials."""
+    """The outcome of one round of a call: results, and the arguments of the next round, each with their trials."""
 
     results: list[tuple[Trials, Value]]
     next_calls: list[tuple[_Frame, list[Value]]]
@@ -135,12 +135,12 @@ def call_lambda(body: Body, *values: Value) -> Value:
         except _TooDeep as stopped:
             parts.append((left[stopped.trials], constant(ErrorCode.NUM)))
             left = np.delete(left, stopped.trials)
-            if len(parts) > _MOST_TIMES:
+            if len(parts) > _MOST_RESTARTS:
                 raise _too_often() from None
-    return _together(n, parts)
+    return _join_trials(n, parts)
 
 
-_MOST_TIMES: Final = 50
+_MOST_RESTARTS: Final = 50
 """How often the trials that call too deep are taken out, and the others evaluated again."""
 
 
@@ -157,7 +157,7 @@ def _too_often() -> FormulaError:
 
 @dataclass(slots=True)
 class _Work:
-    """Counts what is worked out in all calls, also in those that are made again."""
+    """Counts what is computed in all calls, also in those that are made again."""
 
     steps: int = 0
 
@@ -207,7 +207,7 @@ class _Run:
             yield from self._round(frame, body.result, found, False)
             self.live -= frame.bytes
             if not found.next_calls:
-                return _together(trials.size, results)
+                return _join_trials(trials.size, results)
             frame = self._next(frame, found.next_calls, taken)
 
     def _round(self, frame: _Frame, slot: int, found: _Round, chosen: bool) -> Asking:
@@ -306,7 +306,7 @@ class _Run:
                 inner = frame.of(index)
                 parts.append((index, (yield inner, slot)))
                 self.live -= 0 if inner is frame else inner.bytes
-        return _together(frame.trials.size, parts)
+        return _join_trials(frame.trials.size, parts)
 
 
 def _ask(frame: _Frame, slots: Sequence[int]) -> Asking:
@@ -347,8 +347,8 @@ def _find_taken(frame: _Frame, slot: int) -> Value:
     return found
 
 
-def _together(n: int, parts: list[tuple[Trials, Value]]) -> Value:
-    """Values of some trials each as one of all."""
+def _join_trials(n: int, parts: list[tuple[Trials, Value]]) -> Value:
+    """Join values of some trials each into one of all trials."""
     if len(parts) == 1 and np.array_equal(parts[0][0], np.arange(n)):
         return parts[0][1]
     sizes = {value.shape[1:] for _, value in parts}

@@ -1,4 +1,4 @@
-"""Functions that take references, not values: they ask where their arguments are, as ROW, CELL, SUBTOTAL, SUMIF do."""
+"""Functions that take references, not values: they need to know where their arguments are, as ROW or SUBTOTAL."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def _index(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int | 
 
 
 def _by_area(arguments: Arguments, areas: Sequence[Area]) -> ir.Expression:
-    """INDEX of several areas as that of the one which its fourth argument counts, which may vary.
+    """INDEX of several areas, as a choice by its fourth argument, which may vary.
 
     Of several errors among the numbers it is the first, as where all are known.
     """
@@ -123,7 +123,7 @@ def _is_reference(lowering: TreeLowering, arguments: Arguments, scope: Scope) ->
 
 
 def _may_be_reference(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
-    """Whether it picks a cell or a range out of others; asked where `areas_of` finds none."""
+    """Whether a tree may give a reference although `areas_of` finds none."""
     match tree:
         case ir.Call("INDEX", arguments):
             return isinstance(arguments[0], Cell | Area)
@@ -149,7 +149,7 @@ def _of_first_cell(name: str) -> Callable[[TreeLowering, Arguments, Scope], int 
     return lower
 
 
-def _formula(lowering: TreeLowering, arguments: Arguments, scope: Scope, of: Callable[[str | None], object]) -> int:
+def _of_formula(lowering: TreeLowering, arguments: Arguments, scope: Scope, of: Callable[[str | None], object]) -> int:
     """What `of` makes of the formula of the first cell, as Excel shows it."""
     area = _find_area(lowering, arguments, scope)
     cell = Cell(area.sheet, area.top, area.left)
@@ -158,11 +158,11 @@ def _formula(lowering: TreeLowering, arguments: Arguments, scope: Scope, of: Cal
 
 
 def _is_formula(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
-    return _formula(lowering, arguments, scope, lambda text: text is not None)
+    return _of_formula(lowering, arguments, scope, lambda text: text is not None)
 
 
 def _formula_text(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
-    return _formula(lowering, arguments, scope, lambda text: ErrorCode.NA if text is None else text)
+    return _of_formula(lowering, arguments, scope, lambda text: ErrorCode.NA if text is None else text)
 
 
 def _sheet(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
@@ -198,14 +198,14 @@ def _cell(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
     if what in ("contents", "type"):
         if lowering.awaits(cell):
             raise NotYetNeeded([cell])
-        return lowering.zero_if_blank(lowering.cell(cell)) if what == "contents" else _kind(lowering, cell, scope)
+        return lowering.zero_if_blank(lowering.cell(cell)) if what == "contents" else _cell_type(lowering, cell, scope)
     if what not in _OF_ADDRESS:
         told = ", ".join(("contents", "type", *_OF_ADDRESS))
         raise FormulaError(f"CELL({what!r}) is not supported", hint=f"xlmc knows {told}")
     return lowering.dag.constant(constant(_OF_ADDRESS[what](cell, lowering, host_of(scope.cell))))
 
 
-def _kind(lowering: TreeLowering, cell: Cell, scope: Scope) -> int:
+def _cell_type(lowering: TreeLowering, cell: Cell, scope: Scope) -> int:
     """`b` of a blank cell, `l` of a text, `v` of anything else."""
     otherwise = ir.Call("IF", (ir.Call("ISTEXT", (cell,)), ir.Text("l"), ir.Text("v")))
     return lowering.lower(ir.Call("IF", (ir.Call("ISBLANK", (cell,)), ir.Text("b"), otherwise)), scope)
@@ -221,7 +221,7 @@ def _absolute(cell: Cell, lowering: TreeLowering, host: Cell) -> str:
 
 
 def _file_name(cell: Cell, lowering: TreeLowering, host: Cell) -> str:
-    """As of a workbook without a folder, so that a run does not depend on where it is made."""
+    """The file name without a folder, so that a run does not depend on where it is made."""
     return f"[{lowering.graph.workbook.name}]{cell.sheet}"
 
 
@@ -231,7 +231,7 @@ _OF_ADDRESS: Mapping[str, Callable[[Cell, TreeLowering, Cell], float | str]] = {
     "address": _absolute,
     "filename": _file_name,
 }
-"""What CELL tells of a cell's address, without a look at what it holds."""
+"""What CELL tells of a cell's address, whatever the cell holds."""
 
 
 def _spill(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
@@ -268,7 +268,7 @@ def _sum_beside(name: str) -> Callable[[TreeLowering, Arguments, Scope], int | N
 
 
 def _count_if(name: str) -> Callable[[TreeLowering, Arguments, Scope], int | None]:
-    """Of a whole column, the cells up to the last filled one, and as many times one of the others as there are."""
+    """COUNTIF of a whole column: count the cells up to the last filled one; one further cell counts for all others."""
 
     def lower(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int | None:
         found = {i: areas_of(lowering, arguments[i], scope) for i in range(0, len(arguments), 2)}
@@ -276,19 +276,21 @@ def _count_if(name: str) -> Callable[[TreeLowering, Arguments, Scope], int | Non
         if len(areas) < len(found) or not any(area.is_cut for (area,) in areas.values()):
             return None
         even = {i: area for i, (area,) in level(areas).items()}
-        node = _with(lowering, name, arguments, {i: area.filled for i, area in even.items()}, scope)
+        node = _call_with_areas(lowering, name, arguments, {i: area.filled for i, area in even.items()}, scope)
         first = even[0]
         further = first.whole.rows * first.whole.columns - first.rows * first.columns
         same = {(area.whole.rows, area.whole.columns) for area in even.values()}
         if len(same) > 1 or not further:
             return node
-        one = _with(lowering, name, arguments, {i: beyond(area) for i, area in even.items()}, scope)
+        one = _call_with_areas(lowering, name, arguments, {i: beyond(area) for i, area in even.items()}, scope)
         return lowering.call("+", (node, lowering.call("*", (one, lowering.number(float(further))))))
 
     return lower
 
 
-def _with(lowering: TreeLowering, name: str, arguments: Arguments, areas: Mapping[int, Area], scope: Scope) -> int:
+def _call_with_areas(
+    lowering: TreeLowering, name: str, arguments: Arguments, areas: Mapping[int, Area], scope: Scope
+) -> int:
     """The call with other areas in some of its arguments."""
     parts = [require(lowering, areas[i]) if i in areas else argument for i, argument in enumerate(arguments)]
     return lowering.lower(ir.Call(name, tuple(parts)), scope)

@@ -1,4 +1,4 @@
-"""Running totals: `SUM(B$1:B9)` beside `SUM(B$1:B8)` is that and one cell more, to the last bit.
+"""Running totals: `SUM(B$1:B9)` beside `SUM(B$1:B8)` is made of that sum and one more cell, to the last bit.
 
 Formulas filled down over n rows, each over a range that begins (or ends) where those of the others do, then cost n
 steps instead of n²/2. All such ranges are known before the first is lowered: their order does not matter.
@@ -7,8 +7,8 @@ A range that begins where others do is folded from its first cell on, as one tha
 that ends where many others do, as `SUM(B8:B$5000)` filled down, is folded from its last row to its first. Extremes and
 counts are the same either way; a sum, mean or product may differ by its rounding. Either way the first error counts.
 
-Of no numbers at all the largest, the smallest and the product are 0, but not when numbers follow. Up to the first cell
-that is surely a number, such a fold is therefore one that is blank while there are none.
+The largest, the smallest and the product of no numbers are 0; but this 0 must not count when numbers follow. So up to
+the first cell that is surely a number, such a fold gives a blank while there are no numbers.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ FOLDS: Final = frozenset({"SUM", "COUNT", "COUNTA", "AVERAGE", *SO_FAR})
 """Functions of which the result for a longer range follows from that for a shorter one."""
 
 _SHORTEST: Final = 16
-"""Cells of a range worth looking up."""
+"""The fewest cells of a range that is worth looking up."""
 
 _NUMBERS: Final = "how many are numbers where none is an error"
 
 _MANY_UPWARDS: Final = 64
-"""Ranges that end at one cell from which on they are taken upwards: fewer are no burden, each taken by itself."""
+"""The fewest ranges ending at one cell that are folded upwards together; fewer are cheap enough one by one."""
 
 
 class RunningTotals:
@@ -81,7 +81,7 @@ class RunningTotals:
         return self._dag.add(Apply(REGISTRY[name], (self._dag.add(Range(((state,),))),)))
 
     def _state(self, name: str, area: Area) -> int:
-        """What is known of the cells of an area; of all shorter ones of its chain as well."""
+        """The fold of an area before its last step; the folds of all shorter areas of its chain are noted as well."""
         chain = self._ranges.chain(area, by_rows=name in ("SUM", "PRODUCT"))
         assert chain is not None
         known = self._states
@@ -102,42 +102,42 @@ class RunningTotals:
         return [self._cell(cell) for cell in more.cells()]
 
     def _join(self, name: str, before: int | None, cells: list[int], upwards: bool) -> int:
-        """What is known with more cells, which stand behind those before; upwards in front of them."""
+        """The fold with more cells, which stand behind those of `before`, or in front of them if `upwards`."""
         if name == _NUMBERS:
-            return self._plus(before, self._how_many(cells))
+            return self._add_to(before, self._how_many(cells))
         if name in ("COUNT", "COUNTA"):
-            return self._plus(before, self._of(REGISTRY[name], cells))
+            return self._add_to(before, self._apply_to_row(REGISTRY[name], cells))
         if before is None:
-            return self._of(self._function(name, cells), cells)
-        if all(map(self._is_nothing, cells)):
+            return self._apply_to_row(self._function(name, cells), cells)
+        if all(map(self._never_counts, cells)):
             return before
         if name == "SUM" or self._dag.types[before] is Kind.NUMBER:
             range_ = self._row(cells)
             return self._dag.add(Apply(REGISTRY[name], (range_, before) if upwards else (before, range_)))
         both = [*cells, before] if upwards else [before, *cells]
-        return self._of(self._function(name, both), both)
+        return self._apply_to_row(self._function(name, both), both)
 
     def _function(self, name: str, cells: Sequence[int]) -> Function:
-        """What folds cells: the function itself where one is surely a number."""
+        """The function that folds cells: the one of that name where a cell is surely a number, else its `SO_FAR`."""
         surely = name == "SUM" or any(self._dag.types[cell] is Kind.NUMBER for cell in cells)
         return REGISTRY[name] if surely else SO_FAR[name]
 
-    def _of(self, function: Function, cells: Sequence[int]) -> int:
+    def _apply_to_row(self, function: Function, cells: Sequence[int]) -> int:
         return self._dag.add(Apply(function, (self._row(cells),)))
 
     def _row(self, cells: Sequence[int]) -> int:
         return self._dag.add(Range((tuple(cells),)))
 
-    def _plus(self, before: int | None, more: int) -> int:
+    def _add_to(self, before: int | None, more: int) -> int:
         return more if before is None else self._dag.add(Apply(REGISTRY["+"], (before, more)))
 
     def _how_many(self, cells: Sequence[int]) -> int:
         surely = sum(self._dag.types[cell] is Kind.NUMBER for cell in cells)
         node = self._dag.constant(constant(float(surely)))
-        maybe = [cell for cell in cells if self._dag.types[cell] is Kind.ANY and not self._is_nothing(cell)]
-        return self._plus(node, self._of(REGISTRY["COUNT"], maybe)) if maybe else node
+        maybe = [cell for cell in cells if self._dag.types[cell] is Kind.ANY and not self._never_counts(cell)]
+        return self._add_to(node, self._apply_to_row(REGISTRY["COUNT"], maybe)) if maybe else node
 
-    def _is_nothing(self, cell: int) -> bool:
+    def _never_counts(self, cell: int) -> bool:
         """Whether a cell is known to be neither a number nor an error."""
         node = self._dag.nodes[cell]
         return isinstance(node, Constant) and NUMBER < int(node.value.kinds.flat[0]) < ERROR
@@ -211,7 +211,7 @@ class _RunningRanges:
 
         Args:
             area: which may be in no group.
-            by_rows: upwards, step by single rows, so that the steps do not depend on which ranges there are.
+            by_rows: go upwards row by row, so that the steps do not depend on which ranges there are.
         """
         for groups, key, upwards in ((self._down, _start(area), False), (self._up, _end(area), True)):
             group = groups.get(key)

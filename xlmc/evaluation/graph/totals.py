@@ -1,4 +1,4 @@
-"""SUBTOTAL and AGGREGATE: what they leave out of ranges, and what of an array of ranks comes of them."""
+"""SUBTOTAL and AGGREGATE: which cells they leave out of ranges, and what they give for an array of ranks."""
 
 from __future__ import annotations
 
@@ -46,9 +46,9 @@ def without_totals(name: str) -> Callable[[TreeLowering, Arguments, Scope], int 
             elif ranked and len(areas) > 1:
                 return lowering.error(ErrorCode.VALUE)
             else:
-                found += [_counting_cells(lowering, area, skipped, nested) for area in areas]
+                found += [_range_that_counts(lowering, area, skipped, nested) for area in areas]
         by_rank = len(found) == 4 and name == "AGGREGATE" and lowering.dag.sizes[found[3]] not in (None, (1, 1))
-        return _of_ranks(lowering, function, found) if by_rank else lowering.apply(function, tuple(found))
+        return _apply_to_ranks(lowering, function, found) if by_rank else lowering.apply(function, tuple(found))
 
     return lower
 
@@ -63,22 +63,22 @@ def _is_ranked(lowering: TreeLowering, number: int) -> bool | None:
     return int(known.numbers[0]) in _OF_A_RANK if known is not None and known.plain else None
 
 
-def _of_ranks(lowering: TreeLowering, function: Function, found: Sequence[int]) -> int:
+def _apply_to_ranks(lowering: TreeLowering, function: Function, found: Sequence[int]) -> int:
     """AGGREGATE of a range and many cells: where these are ranks, one result for each of them."""
     ranked = _is_ranked(lowering, found[0])
     if ranked is None:
-        return lowering.apply(_spilling(function), tuple(found))
+        return lowering.apply(_mark_spilling(function), tuple(found))
     if not ranked:
         return lowering.apply(function, tuple(found))
     cells = cell_by_cell(
         lowering.dag, (found[3],), lambda rank: lowering.apply(function, (*found[:3], *rank)), constants=True
     )
-    return lowering.apply(_spilling(function), tuple(found)) if cells is None else cells
+    return lowering.apply(_mark_spilling(function), tuple(found)) if cells is None else cells
 
 
 @cache
-def _spilling(function: Function) -> Function:
-    """The function where it gives many cells, or may."""
+def _mark_spilling(function: Function) -> Function:
+    """The function, marked as one that may give many cells."""
     return replace(function, facts=replace(function.facts, spills=True))
 
 
@@ -86,7 +86,7 @@ _TOTAL = re.compile(r"\b(SUBTOTAL|AGGREGATE)\(", re.IGNORECASE)
 
 
 def _find_skips(lowering: TreeLowering, name: str, options: list[int]) -> Skips | None:
-    """What is left out of ranges; None where that varies."""
+    """Which cells are left out of ranges; None where that varies."""
     known = [lowering.lookup_constant(option) for option in options]
     numbers = [int(value.numbers[0]) if value is not None and value.plain else None for value in known]
     if numbers[-1] is None:
@@ -111,7 +111,7 @@ def _hidden_rows(lowering: TreeLowering, area: Area, skips: Skips | None) -> fro
     return rows & lowering.graph.workbook.filtered_rows(sheet) if skips.filtered else frozenset()
 
 
-def _counting_cells(lowering: TreeLowering, area: Area, skips: Skips | None, nested: bool | None) -> int:
+def _range_that_counts(lowering: TreeLowering, area: Area, skips: Skips | None, nested: bool | None) -> int:
     """The cells of an area that count; `nested` is whether totals are left out, None where that varies.
 
     Raises:

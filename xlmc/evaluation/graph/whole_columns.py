@@ -1,8 +1,8 @@
-"""Ranges that go on beyond all that a sheet holds, as whole columns do: read up to there, but not made shorter.
+"""Ranges that go on beyond all that a sheet holds, as whole columns do: read up to there, but computed as if whole.
 
-Their further rows (or columns) are all alike: empty. What a function makes of them is worked out from one of them, or
-does not matter; a function of which neither is known is refused with a whole column. An expression of whole columns,
-as in `SUMPRODUCT((A:A>0)*B:B)`, is taken up to the last filled cell of all of them, and once more of one further row.
+Their further rows (or columns) are all alike: empty. What a function makes of them follows from one of them, or does
+not matter; where neither is known, a whole column is refused. An expression of whole columns, as in
+`SUMPRODUCT((A:A>0)*B:B)`, is computed up to the last filled cell of all of them, and once more for one further row.
 """
 
 from __future__ import annotations
@@ -157,7 +157,7 @@ def _of_expressions(call: _Call) -> int:
     facts = call.function.facts
     if facts.mode_argument is not None:
         return _look_up(call, facts.mode_argument)
-    filled, further, count = _part(call)
+    filled, further, count = _split_at_filled(call)
     if facts.repeats is Repeats.ADD_UP:
         return _add_up(call, filled, _ends(call, further), count)
     if facts.repeats is Repeats.ONCE:
@@ -169,8 +169,8 @@ def _of_expressions(call: _Call) -> int:
     raise call.refusal()
 
 
-def _part(call: _Call) -> tuple[Arguments, Arguments, int]:
-    """The arguments up to the last filled row; those of one further row; and how many of these there are.
+def _split_at_filled(call: _Call) -> tuple[Arguments, Arguments, int]:
+    """The arguments up to the last filled row; the arguments of one further row; and the number of further rows.
 
     Empty cells of arguments that are ranges add nothing to a function that adds up.
     """
@@ -199,7 +199,7 @@ def _check(call: _Call, tree: ir.Expression, length: int, across: bool) -> None:
 
 
 def _ends(call: _Call, further: Arguments) -> list[Arguments]:
-    """The arguments of the first further row; and of the last where these differ, the others lying between them."""
+    """The arguments of the first further row, and of the last where the two differ; all others lie between them."""
     degrees = [_degree(call, i) for i in call.mixed]
     if not any(degrees):
         return [further]
@@ -213,12 +213,12 @@ def _ends(call: _Call, further: Arguments) -> list[Arguments]:
 
 
 def _ends_tell(call: _Call) -> bool:
-    """Whether the first and the last of the further cells say all; a lookup takes the last alone."""
+    """Whether the first and the last further cell decide the result; for a lookup the last one does."""
     return call.function.facts.ends_suffice or call.function.facts.mode_argument is not None
 
 
 def _degree(call: _Call, position: int) -> int:
-    """How an argument depends on the number of the row."""
+    """How an argument depends on the number of the row: see `degree`."""
 
     def taken(tree: ir.Call) -> list[ir.Expression]:
         function = function_named(tree.name)
@@ -244,13 +244,13 @@ def _add_up(call: _Call, filled: Arguments, ends: Sequence[Arguments], count: in
 
 
 def _look_up(call: _Call, mode: int) -> int:
-    """Lookups from the first cell on find the first of the empty ones; those by halves step as over all of them."""
+    """Lookups from the first cell on find the first empty cell; lookups by halves take the steps of the whole range."""
     name, arguments = call.name, call.arguments
     how = arguments[mode] if len(arguments) > mode else None
     if name in ("XMATCH", "XLOOKUP"):
         given = ir.Number(1.0) if how is None or isinstance(how, ir.Missing) else how
         if given == ir.Number(1.0) and not _degree(call, 1):
-            return call.make(_as_unequal(call), {})
+            return call.make(_with_one_further(call), {})
         if given == ir.Unary("-", ir.Number(1.0)) and not _degree(call, 1):
             return _from_behind(call)
         raise call.refusal()
@@ -258,12 +258,12 @@ def _look_up(call: _Call, mode: int) -> int:
     if call.mixed:
         return _search_computed(call, exact)
     made = call.change_all(lambda area: _reach(area, name, exact))
-    return call.make(made, _beside(call))
+    return call.make(made, _within_read(call))
 
 
 def _from_behind(call: _Call) -> int:
-    """XLOOKUP and XMATCH from the last cell on: the further cells come first, and of these the last."""
-    made = _as_unequal(call)
+    """XLOOKUP and XMATCH from the last cell on: they reach the further cells first, beginning with the last."""
+    made = _with_one_further(call)
     sizes = {(area.rows, area.whole.rows, area.columns, area.whole.columns) for area in call.cut()}
     if call.name == "XLOOKUP":
         if _degree(call, 2) and not _is_not_found(call):
@@ -280,11 +280,11 @@ def _from_behind(call: _Call) -> int:
 def _is_not_found(call: _Call) -> bool:
     """Whether what is looked for is TRUE, exactly, and the further cells are not."""
     exact = len(call.arguments) < 5 or call.arguments[4] in (ir.Missing(), ir.Number(0.0))
-    return exact and call.arguments[0] == ir.Logical(True) and _is_false(call, _part(call)[1][1])
+    return exact and call.arguments[0] == ir.Logical(True) and _is_false(call, _split_at_filled(call)[1][1])
 
 
 def _reach(area: Area, name: str, exact: bool) -> Area:
-    """As far as a lookup comes in it; beside where it searches, one further column or row."""
+    """The area as far as a lookup comes in it; across the direction of the search, one further column or row."""
     further = one_further(area)
     if exact:
         return further
@@ -297,7 +297,7 @@ def _reach(area: Area, name: str, exact: bool) -> Area:
 
 def _search_computed(call: _Call, exact: bool) -> int:
     """A lookup in something computed of whole columns."""
-    _, further, _ = _part(call)
+    _, further, _ = _split_at_filled(call)
     passed = 1 in call.mixed and _is_passed_over(call, further[1])
     if _degree(call, 1) and not passed:
         raise call.refusal()
@@ -310,7 +310,7 @@ def _search_computed(call: _Call, exact: bool) -> int:
 
 
 def _at_the_end(call: _Call, further: Arguments, otherwise: int) -> int:
-    """LOOKUP where what stands in the further rows may be found: then in the last of them, for they come first."""
+    """LOOKUP where it may find a further row: it then finds the last one, else what it finds before these."""
     dag = call.lowering.dag
     longest = max(max(area.rows, area.columns) for area in call.cut())
     shortest = min(max(area.whole.rows, area.whole.columns) for area in call.cut())
@@ -325,8 +325,8 @@ def _at_the_end(call: _Call, further: Arguments, otherwise: int) -> int:
     return dag.add(IfErrorNode(there, otherwise, True))
 
 
-def _beside(call: _Call) -> dict[int, Function]:
-    """What keeps the number of the column of VLOOKUP, or the row of HLOOKUP, within what is read."""
+def _within_read(call: _Call) -> dict[int, Function]:
+    """The function that keeps VLOOKUP's column number, or HLOOKUP's row number, within the cells that are read."""
     for area in call.direct.get(1, ()):
         if call.name == "VLOOKUP" and area.further_columns:
             return {2: keep_within(area.columns + 1, area.whole.columns, False)}
@@ -353,10 +353,10 @@ def _pick(call: _Call) -> int:
     return call.make(call.change_all(one_further), within)
 
 
-def _as_unequal(call: _Call) -> Arguments:
+def _with_one_further(call: _Call) -> Arguments:
     """The arguments of XLOOKUP and XMATCH with one further cell; different sizes must stay different."""
     if call.mixed:
-        _part(call)
+        _split_at_filled(call)
         sizes = {(area.whole.rows, area.further_columns > 0) for area in call.cut()}
         if len(sizes) > 1 or any(not area.is_cut for areas in call.direct.values() for area in areas):
             raise call.refusal()

@@ -59,7 +59,7 @@ def jit_program(
 def jit_filler(
     streams: Sequence[Any], maps: Sequence[tuple[float, float]], rows: NDArray[np.float64]
 ) -> Callable[[int], None]:
-    """See `uniforms.filler`; llvmlite is there."""
+    """See `uniforms.filler`; llvmlite must be installed."""
     from xlmc.evaluation.llvm.uniforms import filler
 
     return filler(streams, maps, rows)

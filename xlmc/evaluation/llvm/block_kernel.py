@@ -1,4 +1,4 @@
-"""A whole block in one native call: draw, filter, count, gather and forecast, a cacheful of trials at a time.
+"""A whole block in one native call: draw, filter, count, gather and forecast, as many trials at a time as caches hold.
 
 All that the call needs to know lies in one array of 64-bit words, the argument table: addresses, and lists of addresses
 for the loops that it calls. A `Layout` says what is where.
@@ -62,7 +62,7 @@ class Layout:
 
 @lru_cache(_KEPT)
 def compile_kernel(machine: Machine, layout: Layout) -> NativeLoop:
-    """Native code that takes the table's address and the number of chunks; it uses up the table.
+    """Native code that takes the table's address and the number of chunks; it overwrites the table.
 
     It gives the number of trials kept, or -1 as soon as a trial must be computed again.
     """
@@ -81,17 +81,17 @@ def compile_kernel(machine: Machine, layout: Layout) -> NativeLoop:
     for loop in layout.fills:
         table.call(loop, _LONG(layout.chunk))
     if layout.jump >= 0:
-        _step(builder, table.address(layout.jump, _LONG), layout.chunk)
+        _advance_jump(builder, table.address(layout.jump, _LONG), layout.chunk)
     for loop in layout.first:
-        _unless(builder, table.call(loop, _LONG(layout.chunk)), failed)
+        _fail_if(builder, table.call(loop, _LONG(layout.chunk)), failed)
     survivors = table.address(layout.survivors, _LONG)
     filters = [table.address(position, _BYTE) for position in layout.filters]
     kept = builder.call(sieve, [*filters, survivors, table.address(layout.counts, _LONG)])
     for loop in layout.late:
-        _unless(builder, table.call(loop, kept), failed)
+        _fail_if(builder, table.call(loop, kept), failed)
     trials = builder.gep(table.address(layout.trials, _LONG), [total])
     first_trial = builder.mul(chunk, _LONG(layout.chunk))
-    _for_each(builder, kept, lambda i: _shift(builder, survivors, trials, first_trial, i))
+    _for_each(builder, kept, lambda i: _store_shifted(builder, survivors, trials, first_trial, i))
     _for_each(
         builder, table.word(layout.gathers), lambda i: table.gather_column(gather, layout.gathers, i, survivors, kept)
     )
@@ -133,7 +133,7 @@ class _ArgumentTable:
         return self._builder.call(code, [self.address(position + 1, _BYTE.as_pointer()), n])
 
     def gather_column(self, gather: ir.Function, gathers: int, i: Any, survivors: Any, kept: Any) -> None:
-        """Gather a column; the next chunk's follows."""
+        """Gather a column, and move its target on for the next chunk."""
         builder = self._builder
         first = builder.add(builder.mul(i, _LONG(2)), _LONG(gathers + 1))
         source, target = self._at(first), self._at(builder.add(first, _LONG(1)))
@@ -145,15 +145,15 @@ class _ArgumentTable:
         return self._builder.gep(self._words, [position])
 
 
-def _unless(builder: ir.IRBuilder, wrong: Any, failed: Any) -> None:
-    """Go on where nothing went wrong."""
+def _fail_if(builder: ir.IRBuilder, wrong: Any, failed: Any) -> None:
+    """Go to `failed` where anything went wrong."""
     following = builder.append_basic_block("fine")
     builder.cbranch(builder.icmp_signed("!=", wrong, _LONG(0)), failed, following)
     builder.position_at_end(following)
 
 
 def _for_each(builder: ir.IRBuilder, n: Any, do: Any) -> None:
-    """`do` for 0 to n - 1."""
+    """Emit `do` for i from 0 to n - 1."""
     before = builder.block
     body, after = builder.append_basic_block("each"), builder.append_basic_block("done")
     builder.cbranch(builder.icmp_signed("<", _LONG(0), n), body, after)
@@ -167,13 +167,13 @@ def _for_each(builder: ir.IRBuilder, n: Any, do: Any) -> None:
     builder.position_at_end(after)
 
 
-def _shift(builder: ir.IRBuilder, source: Any, target: Any, offset: Any, i: Any) -> None:
+def _store_shifted(builder: ir.IRBuilder, source: Any, target: Any, offset: Any, i: Any) -> None:
     value = builder.add(builder.load(builder.gep(source, [i])), offset)
     builder.store(value, builder.gep(target, [i]))
 
 
-def _step(builder: ir.IRBuilder, halves: Any, chunk: int) -> None:
-    """The jump to a trial becomes the jump to the next chunk's: x ↦ a·x + c, after the jump so far."""
+def _advance_jump(builder: ir.IRBuilder, halves: Any, chunk: int) -> None:
+    """Change the jump to this chunk's first trial into that to the next chunk's: x ↦ a·x + c after the jump so far."""
     factor, summand = jump(chunk)
     factor_and_summand = [builder.bitcast(halves, _STATE.as_pointer()), builder.bitcast(halves, _STATE.as_pointer())]
     factor_and_summand[1] = builder.gep(factor_and_summand[1], [_LONG(1)])
@@ -183,7 +183,7 @@ def _step(builder: ir.IRBuilder, halves: Any, chunk: int) -> None:
 
 
 def _gather(module: ir.Module, chunk: int) -> ir.Function:
-    """The doubles of the survivors, one after another."""
+    """A function that copies the doubles of the survivors, one after another."""
     types = [_DOUBLE.as_pointer(), _DOUBLE.as_pointer(), _LONG.as_pointer(), _LONG]
     function = ir.Function(module, ir.FunctionType(ir.VoidType(), types), "gather")
     function.linkage = "internal"
@@ -205,7 +205,7 @@ def _gather(module: ir.Module, chunk: int) -> ir.Function:
 
 
 def _sieve(module: ir.Module, filters: int, chunk: int) -> ir.Function:
-    """What the filters reject of a chunk, counted, and the trials that they keep, listed; it gives how many."""
+    """A function that counts what the filters reject of a chunk, and lists and counts the trials that they keep."""
     types = [*[_BYTE.as_pointer()] * filters, _LONG.as_pointer(), _LONG.as_pointer()]
     function = ir.Function(module, ir.FunctionType(_LONG, types), "sieve")
     function.linkage = "internal"
@@ -243,7 +243,7 @@ def _rejected_bits(builder: ir.IRBuilder, answers: Any, first: Any) -> Any:
 
 
 def _list_bits(builder: ir.IRBuilder, bits: Any, first: Any, survivors: Any, kept: Any) -> None:
-    """Write down the trials of the bits that are set, after those of `kept`."""
+    """Add the trials of the bits that are set to the list of those kept."""
     target = builder.gep(survivors, [builder.load(kept)])
     with builder.if_else(builder.icmp_signed("==", bits, _LONG(-1))) as (whole, some):
         with whole:
@@ -254,7 +254,7 @@ def _list_bits(builder: ir.IRBuilder, bits: Any, first: Any, survivors: Any, kep
 
 
 def _list_some(builder: ir.IRBuilder, bits: Any, first: Any, target: Any) -> None:
-    """The trials of the bits that are set, one after another."""
+    """List the trials of the bits that are set, one after another."""
     before = builder.block
     body, after = builder.append_basic_block("next"), builder.append_basic_block("none")
     builder.cbranch(builder.icmp_unsigned("!=", bits, _LONG(0)), body, after)

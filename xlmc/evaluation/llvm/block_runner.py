@@ -36,10 +36,10 @@ _CHUNK: Final = 2048
 """Trials at a time: few enough for the second-level cache, enough that the calls of the loops cost nothing."""
 
 _MOST_FILTERS: Final = 16
-"""Every pair is counted."""
+"""The most filters: every pair of them is counted."""
 
 _PATIENCE: Final = 4
-"""Where more than one block of so many needs care, whole blocks are a waste."""
+"""Where more than one block in so many must be run in the usual way, whole blocks are not tried any more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +47,8 @@ class BlockParts:
     """A model of loops alone: the loops on all trials and on the survivors, and the nodes that are its results.
 
     Attributes:
-        filters: of each filter its node; None of one that keeps every trial.
-        forecasts: of each forecast its node, or the number that it always is.
+        filters: the node of each filter; None for one that keeps every trial.
+        forecasts: the node of each forecast, or the number that it always is.
     """
 
     dag: Dag
@@ -88,7 +88,7 @@ def block_parts(
 
 
 def _find_literal(dag: Dag, node: int, kind: Kind) -> Literal | None:
-    """What a node always is, if it is of that kind."""
+    """The constant that a node is, if it is one of that kind."""
     return literal(dag, Operand(node, kind)) if dag.types[node] is kind else None
 
 
@@ -121,7 +121,7 @@ class NativeBlockRunner:
         self._counts = np.zeros(f * (f + 1) // 2 + f, np.int64)
         rows_of, columns_of = np.maximum(*np.indices((f, f))), np.minimum(*np.indices((f, f)))
         self._pairs = rows_of * (rows_of + 1) // 2 + columns_of
-        self._write()
+        self._write_table()
 
     def __call__(self, start: int, inputs: bool) -> KeptBlock | None:
         """See `BlockRunner`."""
@@ -134,7 +134,7 @@ class NativeBlockRunner:
         else:
             drawn = self._draw(start)
             rows = [np.ascontiguousarray(drawn[name], np.float64) for name in self._names]
-            self._words[self._slots] = np.array([_start(row) for row in rows], np.uint64)[self._slot_rows]
+            self._words[self._slots] = np.array([_address_of(row) for row in rows], np.uint64)[self._slot_rows]
         if inputs:
             self._words[self._gathers] += len(self._names)
         self._counts.fill(0)
@@ -161,16 +161,18 @@ class NativeBlockRunner:
             only,
         )
 
-    def _write(self) -> None:
-        """The argument table as every block finds it, and the code that reads it."""
+    def _write_table(self) -> None:
+        """Write the argument table that every block starts from, and compile the code that reads it."""
         parts, fill = self._parts, self._fill
         table = _TableWriter()
-        fills = [table.add(call.address, _start(arguments)) for call, arguments in ([] if fill is None else fill.calls)]
-        jump = -1 if fill is None else table.add(_start(fill.jump))
+        fills = [
+            table.add(call.address, _address_of(arguments)) for call, arguments in ([] if fill is None else fill.calls)
+        ]
+        jump = -1 if fill is None else table.add(_address_of(fill.jump))
         first = [table.add(loop.call.address, 0) for loop in parts.first]
         late = [table.add(loop.call.address, 0) for loop in parts.late]
-        filters = [table.add(_start(self._memory.of(node, self._chunk))) for node in parts.rejecting.values()]
-        survivors, trials, counts = (table.add(_start(a)) for a in (self._survivors, self._trials, self._counts))
+        filters = [table.add(_address_of(self._memory.of(node, self._chunk))) for node in parts.rejecting.values()]
+        survivors, trials, counts = (table.add(_address_of(a)) for a in (self._survivors, self._trials, self._counts))
         lists = []
         for at, loop, wrong in zip(
             (*first, *late),
@@ -179,18 +181,18 @@ class NativeBlockRunner:
             strict=True,
         ):
             nodes = [*(load.operand.node for load in loop.loads), *loop.stores]
-            lists.append((at + 1, self._list(table, nodes, wrong)))
+            lists.append((at + 1, self._add_list(table, nodes, wrong)))
         gathered = [node for node in self._forecasts if node not in parts.computed_late]
         self._gathers = gathers = table.add(len(gathered))
         for node in gathered:
-            self._point(table, node)
-            table.add(_start(self._forecasts[node]))
+            self._add_address(table, node)
+            table.add(_address_of(self._forecasts[node]))
         for name, kept in zip(self._names, self._kept, strict=True):
-            self._point_to_draw(table, name)
-            table.add(_start(kept))
+            self._add_draw_address(table, name)
+            table.add(_address_of(kept))
         self._table = np.array(table.words, np.uint64)
         self._words = self._table.copy()
-        self._address = _start(self._words)
+        self._address = _address_of(self._words)
         for at, begin in lists:
             self._table[at] = self._address + 8 * begin
         drawn = sorted(table.draws)
@@ -205,26 +207,26 @@ class NativeBlockRunner:
             ),
         )
 
-    def _list(self, table: _TableWriter, nodes: Iterable[int], wrong: NDArray[np.uint8]) -> int:
-        """The addresses that a loop takes; where they begin."""
+    def _add_list(self, table: _TableWriter, nodes: Iterable[int], wrong: NDArray[np.uint8]) -> int:
+        """Add the addresses that a loop takes; give the position where they begin."""
         begin = len(table.words)
         for node in nodes:
-            self._point(table, node)
-        table.add(_start(self._survivors), _start(wrong))
+            self._add_address(table, node)
+        table.add(_address_of(self._survivors), _address_of(wrong))
         return begin
 
-    def _point(self, table: _TableWriter, node_id: int) -> None:
-        """The address of a node's array."""
+    def _add_address(self, table: _TableWriter, node_id: int) -> None:
+        """Add the address of a node's array."""
         node = self._parts.dag.nodes[node_id]
         if isinstance(node, Input):
-            self._point_to_draw(table, node.name)
+            self._add_draw_address(table, node.name)
         elif node_id in self._forecasts and node_id in self._parts.computed_late:
-            table.by_kept.append(table.add(_start(self._forecasts[node_id])))
+            table.by_kept.append(table.add(_address_of(self._forecasts[node_id])))
         else:
-            table.add(_start(self._memory.of(node_id, self._chunk)))
+            table.add(_address_of(self._memory.of(node_id, self._chunk)))
 
-    def _point_to_draw(self, table: _TableWriter, name: str) -> None:
-        table.draws[table.add(_start(self._rows[name]))] = name
+    def _add_draw_address(self, table: _TableWriter, name: str) -> None:
+        table.draws[table.add(_address_of(self._rows[name]))] = name
 
 
 class _TableWriter:
@@ -241,12 +243,12 @@ class _TableWriter:
         self.by_kept: list[int] = []
 
     def add(self, *words: int) -> int:
-        """Where the words begin."""
+        """Add words; give the position where they begin."""
         self.words += words
         return len(self.words) - len(words)
 
 
-def _start(array: Any) -> int:
+def _address_of(array: Any) -> int:
     """The address of an array, NumPy's or of ctypes."""
     if isinstance(array, ctypes.Array):
         return ctypes.addressof(array)

@@ -1,7 +1,7 @@
 """One trial's computation in a loop: values of nodes, and what went wrong so far, by context.
 
-The loop computes both branches of every `IF`; what goes wrong in one counts only in the trials that take it. Those
-trials are the branch's context. A node that is needed in several contexts belongs to the innermost one around them all.
+The loop computes both branches of every `IF`; what goes wrong in one counts only in the trials that take it. These
+trials are the branch's context. A node that is needed in several contexts belongs to the narrowest that holds them all.
 
 What went wrong is kept in two ways. A number that may be infinite or NaN is multiplied by 0 and added to a running sum
 before its trace is lost (in a comparison, a divisor, in memory); if it was one, the sum is NaN from then on. That costs
@@ -12,12 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
 from llvmlite import ir
 
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Constant, Select
+from xlmc.evaluation.graph.trial_sets import ALL_TRIALS, DEEPEST_BRANCHES, TrialSet, common_set
 from xlmc.evaluation.llvm.loop_arithmetic import Arithmetic, intrinsic, sine_and_cosine
 from xlmc.evaluation.llvm.loop_rules import Literal, LoopRule, Operand, literal, reads
 from xlmc.evaluation.llvm.machine import Machine
@@ -27,27 +28,6 @@ from xlmc.functions.denormals import TINIEST
 __all__ = ["Body", "Loaded", "contexts"]
 
 _BIT = ir.IntType(1)
-
-_DEEPEST: Final = 8
-"""Branches within branches; what errs in deeper ones counts in all trials of the one around them."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Context:
-    """The trials in which an `IF`, the node `select` of the context `parent`, takes the branch: 1 yes, 0 no."""
-
-    parent: _Context | None
-    select: int = -1
-    branch: int = 1
-    depth: int = 0
-
-
-_ROOT: Final = _Context(None)
-
-
-def _branch(parent: _Context, select: int, taken: int) -> _Context:
-    """The context of a branch."""
-    return parent if parent.depth == _DEEPEST else _Context(parent, select, taken, parent.depth + 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +42,7 @@ class Body:
     """Emits nodes one after another.
 
     Args:
-        loaded: the nodes from outside the loop, each as its own kind or, where that is none of the loop's, as wanted.
+        loaded: the nodes from outside the loop, each as its own kind or, if the loop has no such kind, as one it has.
         contexts: of the nodes of the loop.
         machine: the processor.
 
@@ -76,7 +56,7 @@ class Body:
         dag: Dag,
         builder: Any,
         loaded: Mapping[Operand, Loaded],
-        contexts: Mapping[int, _Context],
+        contexts: Mapping[int, TrialSet],
         machine: Machine,
     ) -> None:
         self.builder: Any = builder
@@ -84,11 +64,11 @@ class Body:
         self._dag, self._contexts, self._fused = dag, contexts, machine.fused
         self._flushes = machine.flushes
         self._known = dict(loaded)
-        self._checked: set[tuple[Operand, _Context]] = set()
-        self._sums: dict[_Context, Any] = {}
-        self._flags: dict[_Context, Any] = {}
-        self._turns: dict[int, tuple[Any, tuple[Any, Any]]] = {}
-        self._context = _ROOT
+        self._checked: set[tuple[Operand, TrialSet]] = set()
+        self._sums: dict[TrialSet, Any] = {}
+        self._flags: dict[TrialSet, Any] = {}
+        self._sines_and_cosines: dict[int, tuple[Any, tuple[Any, Any]]] = {}
+        self._context = ALL_TRIALS
 
     def number(self, value: float) -> Any:
         """A constant."""
@@ -108,9 +88,9 @@ class Body:
 
     def sine_and_cosine(self, angle: Any) -> tuple[Any, Any]:
         """Both, computed once for each angle."""
-        if id(angle) not in self._turns:
-            self._turns[id(angle)] = angle, sine_and_cosine(self.builder, angle, self._fused)
-        return self._turns[id(angle)][1]
+        if id(angle) not in self._sines_and_cosines:
+            self._sines_and_cosines[id(angle)] = angle, sine_and_cosine(self.builder, angle, self._fused)
+        return self._sines_and_cosines[id(angle)][1]
 
     def flag(self, wrong: Any) -> None:
         """The trial must be computed again where `wrong` holds, if it needs the node at hand."""
@@ -119,7 +99,7 @@ class Body:
 
     def compute(self, node: int, rule: LoopRule) -> None:
         """Emit a node whose operands were emitted or loaded."""
-        self._context = self._contexts.get(node, _ROOT)
+        self._context = self._contexts.get(node, ALL_TRIALS)
         values, fallible = [], rule.makes
         for position, part in enumerate(rule.operands):
             if isinstance(part, Operand) and not self._is_constant(part):
@@ -143,14 +123,14 @@ class Body:
 
     def result(self, node: int) -> Any:
         """A node's value as it leaves the loop."""
-        self._context = _ROOT
+        self._context = ALL_TRIALS
         own = Operand(node, self._dag.types[node])
         self._check(own)
         return self._value(own)
 
     def wrong(self) -> Any:
         """Whether the trial must be computed again; None where none ever needs to be."""
-        total, flag = self._sums.get(_ROOT), self._flags.get(_ROOT)
+        total, flag = self._sums.get(ALL_TRIALS), self._flags.get(ALL_TRIALS)
         if total is None:
             return flag
         lost = self.builder.fcmp_unordered("uno", total, total)
@@ -183,9 +163,9 @@ class Body:
         return part.kind is Kind.LOGICAL and bool(self._source(part)[1].value.type == self.real)
 
     def _check(self, part: Operand) -> None:
-        """Add a number that may be infinite or NaN to the running sum, once; see the module."""
+        """Add a number that may be infinite or NaN to the running sum, once; the module's docstring says why."""
         node, found = self._source(part)
-        if not found.fallible or any((node, context) in self._checked for context in _outwards(self._context)):
+        if not found.fallible or any((node, context) in self._checked for context in self._context.outwards()):
             return
         self._checked.add((node, self._context))
         self._add(found.value)
@@ -200,7 +180,7 @@ class Body:
             self._sums[self._context] = self.builder.fadd(self.builder.fmul(value, zero), so_far)
 
     def _join(self, node: int, condition: Any) -> None:
-        """What went wrong in a branch goes wrong in the context around it where the branch is taken."""
+        """Let what went wrong in a branch count in the context around it, in the trials that take the branch."""
         yes, no = (_branch(self._context, node, taken) for taken in (1, 0))
         if yes == self._context:
             return
@@ -212,25 +192,22 @@ class Body:
             self.flag(self.builder.select(condition, self._flags.get(yes, none), self._flags.get(no, none)))
 
 
-def _outwards(context: _Context | None) -> list[_Context]:
-    found = []
-    while context is not None:
-        found.append(context)
-        context = context.parent
-    return found
+def _branch(trials: TrialSet, select: int, branch: int) -> TrialSet:
+    """The trials that take a branch; where sets would lie too deep, all of those that are given."""
+    return trials if trials.depth == DEEPEST_BRANCHES else trials.taking(select, branch)
 
 
-def contexts(dag: Dag, rules: Mapping[int, LoopRule], results: Sequence[int]) -> dict[int, _Context]:
+def contexts(dag: Dag, rules: Mapping[int, LoopRule], results: Sequence[int]) -> dict[int, TrialSet]:
     """The context of every node that `rules` computes, `results` being needed in all trials."""
-    found: dict[int, _Context] = {node: _ROOT for node in results if node in rules}
+    found: dict[int, TrialSet] = {node: ALL_TRIALS for node in results if node in rules}
     for node in sorted(rules, reverse=True):
-        for used, context in _edges(dag, node, rules[node], found.get(node, _ROOT)):
+        for used, context in _edges(dag, node, rules[node], found.get(node, ALL_TRIALS)):
             if used in rules:
-                found[used] = _common(found[used], context) if used in found else context
+                found[used] = common_set(found.get(used), context)
     return found
 
 
-def _edges(dag: Dag, node_id: int, rule: LoopRule, context: _Context) -> Iterator[tuple[int, _Context]]:
+def _edges(dag: Dag, node_id: int, rule: LoopRule, context: TrialSet) -> Iterator[tuple[int, TrialSet]]:
     node = dag.nodes[node_id]
     if isinstance(node, Select):
         yield node.condition, context
@@ -239,12 +216,3 @@ def _edges(dag: Dag, node_id: int, rule: LoopRule, context: _Context) -> Iterato
     else:
         for used in reads(dag, node_id, rule):
             yield used, context
-
-
-def _common(a: _Context, b: _Context) -> _Context:
-    while a is not b and a != b:
-        if a.depth >= b.depth and a.parent is not None:
-            a = a.parent
-        elif b.parent is not None:
-            b = b.parent
-    return a

@@ -68,12 +68,12 @@ def _inner(
     loads: Sequence[Load],
     stores: Sequence[int],
 ) -> ir.Function:
-    """The loop itself; its arrays do not overlap, which is what lets it run several trials at once."""
+    """The loop itself; its arrays do not overlap, so that it can run several trials at once."""
     arrays = [*(load.stored for load in loads), *(dag.types[node] for node in stores)]
     types = [*map(_pointer_type, arrays), _LONG.as_pointer(), _BYTE.as_pointer(), _LONG]
     function = ir.Function(module, ir.FunctionType(_LONG, types), "loop")
     function.linkage = "internal"
-    function.attributes.add("noinline")  # put in its caller, each access would list all the arrays it does not overlap
+    function.attributes.add("noinline")  # in its caller, each access would list all the arrays that it does not overlap
     for argument in function.args[:-1]:
         argument.add_attribute("noalias")
     *pointers, survivors, wrongs, n = function.args

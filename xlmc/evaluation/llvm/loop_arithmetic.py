@@ -9,8 +9,8 @@ The arctangent of a number is within 1 ulp, that of two within 2. A number is re
 the arctangent of 1/2, 1, 3/2 or infinity, held as a sum of two doubles; the polynomial, of degree 23, is that of
 fdlibm's `s_atan.c`.
 
-Arcsine and arccosine are within 2 ulp. Up to 1/2 a number is taken as it is, above it the root of half of what it lacks
-of 1: with y for either, its arcsine is y + y·R(y²), and R the ratio of polynomials of fdlibm's `e_asin.c`.
+Arcsine and arccosine are within 2 ulp. For |x| up to 1/2 let y = x, above it y = √((1 - |x|)/2): the arcsine of y is
+y + y·R(y²), with R the ratio of polynomials of fdlibm's `e_asin.c`. One ulp is a unit of the last bit.
 """
 
 from __future__ import annotations
@@ -71,15 +71,15 @@ class Arithmetic:
         return self._intrinsic("llvm.copysign", size, x)
 
     def plus(self, z: Any, x: Any, y: Any) -> Any:
-        """Z + x·y, rounded once or twice."""
+        """The sum z + x·y, rounded once or twice."""
         return self._intrinsic("llvm.fma", x, y, z) if self._fused else self.add(z, self.mul(x, y))
 
     def minus(self, z: Any, x: Any, y: Any) -> Any:
-        """Z - x·y, rounded once or twice."""
+        """The difference z - x·y, rounded once or twice."""
         return self.plus(z, self.negative(x), y)
 
     def polynomial(self, x: Any, coefficients: Sequence[float]) -> Any:
-        """The coefficients from the lowest power up."""
+        """A polynomial of x; the coefficients from the lowest power up."""
         result = self.number(coefficients[-1])
         for coefficient in reversed(coefficients[:-1]):
             result = self.plus(self.number(coefficient), result, x)
@@ -94,7 +94,7 @@ class Arithmetic:
         return self.add(rest, self.mul(k, self.number(constant - high)))
 
     def less_multiple(self, angle: Any, k: Any, constant: float) -> Any:
-        """What k·constant leaves of the angle, exactly: the two nearly cancel."""
+        """The angle less k·constant, exactly: the two nearly cancel."""
         if self._fused:
             return self.minus(angle, k, self.number(constant))
         product = self.mul(k, self.number(constant))
@@ -132,11 +132,11 @@ _COSINE: Final = (
     *(-2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11),
 )
 _TO_WHOLE: Final = 1.5 * 2.0**52
-"""Added and taken off again, it leaves the nearest whole number, whose last bits then end the sum's mantissa."""
+"""A number plus this, less this, is the nearest whole number; its last bits are those of the sum's mantissa."""
 
 
 def sine_and_cosine(builder: Any, angle: Any, fused: bool) -> tuple[Any, Any]:
-    """The instructions for both; what is not used of them the compiler takes out again."""
+    """The instructions for both; the compiler drops those that are not used."""
     do = Arithmetic(builder, fused)
     x, rest, quadrant = _reduce_angle(do, angle)
     square = do.mul(x, x)
@@ -157,7 +157,7 @@ def _reduce_angle(do: Arithmetic, angle: Any) -> tuple[Any, Any, Any]:
     near = do.less_multiple(angle, k, first)
     product = do.mul(k, do.number(second))
     x = do.sub(near, product)
-    rounding = do.sub(do.sub(near, x), product)  # exact: `near` is a multiple of the product's last node, or k is 0
+    rounding = do.sub(do.sub(near, x), product)  # exact: `near` is a multiple of the product's last bit, or k is 0
     rest = do.minus(do.sub(rounding, do.lost(k, second, product)), k, do.number(third))
     whole = do.add(x, rest)
     return whole, do.add(do.sub(x, whole), rest), do.bits(shifted)
@@ -170,7 +170,7 @@ def _sine(do: Arithmetic, x: Any, rest: Any, square: Any, first: Any) -> Any:
 
 
 def _cosine(do: Arithmetic, x: Any, rest: Any, square: Any, first: Any) -> Any:
-    """1 - x²/2 + (x⁴·p - x·rest), with what the first difference loses."""
+    """The sum 1 - x²/2 + (x⁴·p - x·rest), and what rounding the first difference loses."""
     lost = do.minus(do.sub(do.number(1.0), first), do.number(0.5), square)
     fourth = do.minus(do.mul(do.mul(square, square), do.polynomial(square, _COSINE)), x, rest)
     return do.add(first, do.add(lost, fourth))
@@ -185,7 +185,7 @@ _ARCTANGENT_STEPS: Final = (
     (19 / 16, 9.82793723247329054082e-01, 1.39033110312309984516e-17),
     (39 / 16, *_HALF_PI),
 )
-"""From there on it is reduced by the arctangent of 1/2, 1, 3/2, infinity: that, as a sum."""
+"""From this number on it is reduced by the arctangent of 1/2, 1, 3/2 or infinity, which is the sum of the other two."""
 
 _ARCTANGENT: Final = (
     *(3.33333333333329318027e-01, -1.99999999998764832476e-01, 1.42857142725034663711e-01),
@@ -196,7 +196,7 @@ _ARCTANGENT: Final = (
 
 
 def arctangent(do: Arithmetic, x: Any) -> Any:
-    """Of any number."""
+    """The arctangent of any number."""
     return do.with_sign_of(x, _arctangent_of_size(do, do.size(x)))
 
 
@@ -206,13 +206,13 @@ def arctangent_of_two(do: Arithmetic, x: Any, y: Any) -> Any:
     steep = do.above(across, along)
     low, high = do.select(steep, along, across), do.select(steep, across, along)
     angle = _arctangent_of_size(do, do.div(low, high))
-    angle = do.select(steep, _less(do, _HALF_PI, angle), angle)
-    angle = do.select(do.above(do.number(0.0), x), _less(do, _PI, angle), angle)
+    angle = do.select(steep, _less_angle(do, _HALF_PI, angle), angle)
+    angle = do.select(do.above(do.number(0.0), x), _less_angle(do, _PI, angle), angle)
     return do.select(do.above(do.number(0.0), y), do.negative(angle), angle)
 
 
 def _arctangent_of_size(do: Arithmetic, x: Any) -> Any:
-    """Of a number from 0 up."""
+    """The arctangent of a number, 0 or more."""
     above, below = x, do.number(1.0)
     whole, rest = do.number(0.0), do.number(0.0)
     for (limit, first, second), (over, under) in zip(_ARCTANGENT_STEPS, _arctangent_steps(do, x), strict=True):
@@ -227,7 +227,7 @@ def _arctangent_of_size(do: Arithmetic, x: Any) -> Any:
 
 
 def _arctangent_steps(do: Arithmetic, x: Any) -> tuple[tuple[Any, Any], ...]:
-    """Of each step what is divided by what: (x - c) by (1 + c·x)."""
+    """Dividend and divisor of each step: (x - c) and (1 + c·x)."""
     one, half, two = do.number(1.0), do.number(1.5), do.number(2.0)
     return (
         (do.sub(do.add(x, x), one), do.add(two, x)),
@@ -237,8 +237,8 @@ def _arctangent_steps(do: Arithmetic, x: Any) -> tuple[tuple[Any, Any], ...]:
     )
 
 
-def _less(do: Arithmetic, whole: tuple[float, float], angle: Any) -> Any:
-    """What an angle leaves of a sum."""
+def _less_angle(do: Arithmetic, whole: tuple[float, float], angle: Any) -> Any:
+    """The number `whole`, a sum of two doubles, less an angle."""
     return do.sub(do.number(whole[0]), do.sub(angle, do.number(whole[1])))
 
 
@@ -253,7 +253,7 @@ _ARCSINE_BELOW: Final = (
 
 
 def arcsine(do: Arithmetic, x: Any) -> Any:
-    """Of a number from -1 to 1; NaN of others."""
+    """The arcsine of a number from -1 to 1; NaN of others."""
     near, root, ratio = _reduce_ratio(do, x)
     half, rest = (do.number(part) for part in HALF_PI[:2])
     double = do.add(root, root)
@@ -264,7 +264,7 @@ def arcsine(do: Arithmetic, x: Any) -> Any:
 
 
 def arccosine(do: Arithmetic, x: Any) -> Any:
-    """Likewise."""
+    """The arccosine of a number from -1 to 1; NaN of others."""
     near, root, ratio = _reduce_ratio(do, x)
     half, rest = (do.number(part) for part in HALF_PI[:2])
     middle = do.sub(half, do.sub(x, do.minus(rest, x, ratio)))
@@ -275,7 +275,7 @@ def arccosine(do: Arithmetic, x: Any) -> Any:
 
 
 def _reduce_ratio(do: Arithmetic, x: Any) -> tuple[Any, Any, Any]:
-    """Whether it is up to 1/2, what stands for it above, and R."""
+    """Whether |x| is below 1/2; y where it is not; and R. See the module's docstring."""
     size, half = do.size(x), do.number(0.5)
     near = do.above(half, size)
     square = do.select(near, do.mul(x, x), do.mul(half, do.sub(do.number(1.0), size)))

@@ -17,7 +17,7 @@ PLAIN: Final = (Kind.NUMBER, Kind.LOGICAL)
 
 
 class Emitter(Protocol):
-    """What a rule is given to emit the instructions of its node with: see `Body`, which is one.
+    """Emits the instructions of a node for its rule: see `Body`, which is one.
 
     Attributes:
         builder: where instructions go.
@@ -86,7 +86,7 @@ class LoopRule:
 
 
 def literal(dag: Dag, operand: Operand) -> Literal | None:
-    """A constant as the loop takes it; None where it varies, is an error, many cells, or a text that is no number."""
+    """The constant that a node is; None where it varies, is an error, many cells, or a text that is no number."""
     node = dag.nodes[operand.node]
     if not isinstance(node, Constant) or dag.sizes[operand.node] is not None:
         return None
@@ -97,7 +97,7 @@ def literal(dag: Dag, operand: Operand) -> Literal | None:
 
 
 def reads(dag: Dag, node: int, rule: LoopRule | None) -> tuple[int, ...]:
-    """The nodes that a node's computation needs: by its rule, or whole where it has none."""
+    """The nodes that a node's computation needs: by its rule, or all that it uses where it has no rule."""
     if rule is None:
         return uses(dag.nodes[node])
     return (*(part.node for part in rule.operands if isinstance(part, Operand)), *rule.beside)

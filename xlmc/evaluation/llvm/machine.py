@@ -1,9 +1,9 @@
 """LLVM: modules to native code for this machine's processor.
 
-Numbers below 2^-1022 are 0 to Excel: a loop runs while the processor makes 0 of them, as operands and as results.
-x86-64 does with the bits FTZ and DAZ of MXCSR (Intel SDM, vol. 1, 10.2.3), ARM with the bit FZ of FPCR. They are set as
-native code is entered and put back as it is left: all other code of the thread computes as ever. On any other processor
-each result is looked at.
+Numbers below 2^-1022 are 0 to Excel: during a loop the processor makes 0 of them, as operands and as results. x86-64
+does so with the bits FTZ and DAZ of MXCSR (Intel SDM, vol. 1, 10.2.3), ARM with the bit FZ of FPCR. They are set when
+native code is entered and put back when it is left: all other code of the thread computes as ever. On any other
+processor the loop checks each result.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class NativeLoop:
     """Takes the addresses of the arrays and the number of trials; gives how many of them must be computed again.
 
     Args:
-        keep: what must live as long as the code.
+        keep: the object that must live as long as the code.
 
     Attributes:
         address: of the code, for other native code.
@@ -67,7 +67,7 @@ class Machine:
         self.flushes = flushes(triple)
 
     def _target(self) -> Any:
-        """Made anew each time, for the code that comes of it takes it over."""
+        """A new target machine each time, for the compiled code takes it over."""
         found = binding.Target.from_default_triple()
         return found.create_target_machine(cpu=self._cpu, features=self._features, opt=3)
 
@@ -94,7 +94,7 @@ class Machine:
 
 
 def this_machine() -> Machine:
-    """The processor that runs this, its widest vectors in use: LLVM alone would take half of AVX-512."""
+    """The processor that runs this, with its widest vectors: by default LLVM uses half of AVX-512's."""
     binding.initialize_native_target()
     binding.initialize_native_asmprinter()
     found = binding.get_host_cpu_features()
@@ -106,7 +106,7 @@ machine = cache(this_machine)
 
 
 def flushes(triple: str) -> bool:
-    """Whether the processor of that name does it by itself."""
+    """Whether the processor of that name can make 0 of numbers too small for Excel."""
     return triple.startswith((*_X86, *_ARM))
 
 

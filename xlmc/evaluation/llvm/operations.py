@@ -1,8 +1,8 @@
 """How the loop computes each node: operators and functions of single values as instructions, and choices.
 
-A function that is neither here nor in `sets` has a body in NumPy, and runs there. A comparison at 15 digits (see
-`functions.fifteen_digits`) with a constant is one with the last double that is equal to it; two numbers that vary and
-nearly agree are left to the careful path, trial by trial.
+A function that is neither here nor in `sets` has a body in NumPy, and runs there. To compare with a constant at 15
+digits (see `functions.fifteen_digits`), the loop compares with the first or last double that is equal to it. Trials in
+which two numbers that vary nearly agree are left to the careful path.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _EXPONENT: Final = 0x7FF << 52
 _ALL: Final = range(255)
 
 _LARGEST_ANGLE: Final = 2.0**27
-"""Excel refuses the sine of a larger one: the trial is computed again."""
+"""Excel refuses the sine of a larger angle: the trial is computed again."""
 
 
 def loop_rule_of(dag: Dag, node: int) -> LoopRule | None:
@@ -55,7 +55,7 @@ def _rule(dag: Dag, node: Node, kind: Kind) -> LoopRule | None:
             operands = Operand(condition, Kind.LOGICAL), Operand(yes, kind), Operand(no, kind)
             return LoopRule(operands, lambda body, parts: body.builder.select(*parts), makes=False)
         case IfErrorNode(value) if dag.types[value] is kind:
-            # Where the value may be an error the trial is computed again: what stands in is never needed here.
+            # Where the value may be an error the trial is computed again: the other value is never needed here.
             return LoopRule((Operand(value, kind),), lambda body, parts: parts[0], makes=False)
         case _:
             return None
@@ -69,7 +69,7 @@ def _readable(dag: Dag, operand: Operand) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """See `LoopRule`. `kinds` are the kinds that an argument of any kind may be of."""
+    """See `LoopRule`. `kinds` are the kinds allowed for an argument that the function takes as any kind."""
 
     emit: Emit
     absorbs: Container[int] = ()
@@ -114,8 +114,8 @@ def _comparison(relation: str) -> _Row:
     return _Row(emit, _ALL)
 
 
-def _answer(answer: bool) -> _Row:
-    """The answer to a question about a value's kind, which is certain: of an error the trial is computed again."""
+def _fixed_answer(answer: bool) -> _Row:
+    """A question about a value's kind, which has one answer: a trial with an error is computed again."""
     return _Row(lambda body, parts: body.truth(answer), _ALL, kinds=PLAIN)
 
 
@@ -154,7 +154,7 @@ def _cosecant(body: Emitter, parts: Sequence[Any]) -> Any:
 
 
 def _remainder(body: Emitter, parts: Sequence[Any]) -> Any:
-    """Exact, then with the sign of the divisor, a zero too; NaN by zero."""
+    """The exact remainder with the sign of the divisor, also of a zero; NaN by zero."""
     builder, zero, divisor = body.builder, body.number(0.0), parts[1]
     rest = builder.frem(*parts)
     apart = builder.xor(builder.fcmp_ordered("<", rest, zero), builder.fcmp_ordered("<", divisor, zero))
@@ -188,14 +188,14 @@ def _compare(dag: Dag, node: Apply, symbol: str) -> Emit:
         return _with_constant(EXCHANGED[symbol], 1, float(left.value))
 
     def emit(body: Emitter, parts: Sequence[Any]) -> Any:
-        body.flag(_nearly_equal(body, *parts))
+        body.flag(_may_be_equal(body, *parts))
         return body.builder.fcmp_ordered(_RELATIONS[symbol], *parts)
 
     return emit
 
 
-def _nearly_equal(body: Emitter, x: Any, y: Any) -> Any:
-    """Whether two numbers differ by so little that their digits must be counted."""
+def _may_be_equal(body: Emitter, x: Any, y: Any) -> Any:
+    """Whether two numbers differ by so little that only their decimal digits tell whether they are equal."""
     builder = body.builder
     apart = body.intrinsic("llvm.fabs", builder.fsub(x, y))
     share = builder.fmul(body.intrinsic("llvm.fabs", x), body.number(NEAR))
@@ -225,7 +225,7 @@ def _with_constant(symbol: str, varying: int, number: float) -> Emit:
 
 
 def _last_sum(body: Emitter, parts: Sequence[Any]) -> Any:
-    """0 where a sum is within eight units in the last node of its first number, else the sum."""
+    """0 where a sum is less than eight units in the last bit of its first number, else the sum."""
     total, first = parts
     builder = body.builder
     exponent = builder.and_(builder.bitcast(first, _INTEGER), ir.Constant(_INTEGER, _EXPONENT))
@@ -276,10 +276,10 @@ _ROWS: Final[Mapping[str, _Row]] = {
     "ATAN2": _of_doubles(arctangent_of_two, 0, 1, makes=True),
     "ASIN": _of_doubles(arcsine, makes=True),
     "ACOS": _of_doubles(arccosine, makes=True),
-    "ISERROR": _answer(False),
-    "ISERR": _answer(False),
-    "ISNA": _answer(False),
-    "ISTEXT": _answer(False),
-    "ISBLANK": _answer(False),
-    "ISNONTEXT": _answer(True),
+    "ISERROR": _fixed_answer(False),
+    "ISERR": _fixed_answer(False),
+    "ISNA": _fixed_answer(False),
+    "ISTEXT": _fixed_answer(False),
+    "ISBLANK": _fixed_answer(False),
+    "ISNONTEXT": _fixed_answer(True),
 }

@@ -1,6 +1,6 @@
 """The nodes that are computed on one set of trials: on all of them, or on the survivors of the filters.
 
-They are parted into stages: loops, and between them what the loops cannot compute.
+They are divided into stages: loops, and between them what the loops cannot compute.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from xlmc.functions.values import Floats, Value
 __all__ = ["Loop", "Memory", "Phase", "Trials"]
 
 _LONGEST: Final = 250
-"""Nodes of one loop; the time to compile grows faster than the loop."""
+"""The most nodes of one loop; the time to compile grows faster than the loop."""
 
 
 class Trials:
-    """Values by node.
+    """The values of nodes in a set of trials.
 
     Args:
-        wider: the set that these trials were chosen from, by `survivors`: what was computed there is not again.
+        wider: the set that these trials were chosen from, by `survivors`; what was computed there is taken from there.
 
     Attributes:
         n: how many trials.
@@ -52,7 +52,7 @@ class Trials:
         self._converted: dict[Operand, Floats] = {}
 
     def array(self, operand: Operand) -> NDArray[Any]:
-        """What a loop reads of these trials: contiguous, `(n,)`; of a `Value` doubles, NaN for errors."""
+        """What a loop reads of these trials: contiguous, `(n,)`; a `Value` as doubles, with NaN for errors."""
         if operand.node in self.arrays:
             return self.arrays[operand.node]
         if operand not in self._converted:
@@ -82,7 +82,7 @@ class Trials:
         return self.wider.value(node).take(self.survivors)
 
     def column(self, node: int, fallible: bool) -> Column:
-        """A node as a result: numbers alone where it is a loop's, whose errors `wrong` marks, or sound draws."""
+        """A node as a result: numbers alone for draws without errors, or from a loop, whose errors `wrong` marks."""
         if not fallible and node in self.arrays:
             return Column(self.arrays[node])
         if not fallible and self.wider is not None and node in self.wider.arrays:
@@ -249,9 +249,9 @@ def _parts(nodes: Sequence[int], loop: bool) -> Iterable[_LoopStage]:
 
 
 class _Addresses:
-    """Where arrays lie in memory, asked once of those that come again with every block: asking takes NumPy a while.
+    """The addresses of arrays, looked up once for arrays that come with every block: the look-up takes NumPy a while.
 
-    It holds the arrays last seen under each key, and keeps them alive. For one thread.
+    It holds, and keeps alive, the array last seen under each key. For one thread.
     """
 
     def __init__(self) -> None:

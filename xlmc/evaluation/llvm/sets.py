@@ -32,7 +32,7 @@ class _NotForTheLoopError(Exception):
 
 @dataclass(slots=True)
 class _Members:
-    """What of the arguments counts, and the nodes that do not but may be errors."""
+    """The cells of the arguments that count, and the nodes that do not count but may be errors."""
 
     counting: list[Part]
     beside: list[int]
@@ -63,7 +63,7 @@ def _members(dag: Dag, node: Apply) -> _Members:
             members.counting.append(Operand(node_id, kind))
             continue
         for cell in cells:
-            found = _count(dag, cell, kind)
+            found = _counted(dag, cell, kind)
             if found is not None:
                 members.counting.append(found)
             elif isinstance(cell, int):
@@ -77,7 +77,7 @@ def _cells(dag: Dag, node_id: int) -> list[int | Value] | None:
     if isinstance(node, Range):
         return [_value_or_node(dag, cell) for row in node.rows for cell in row]
     if isinstance(node, Constant) and dag.sizes[node_id] is not None:
-        return list(_each(node.value))
+        return list(_cells_of_constant(node.value))
     if dag.sizes[node_id] is not None:
         raise _NotForTheLoopError
     return None
@@ -88,7 +88,7 @@ def _value_or_node(dag: Dag, cell: int) -> int | Value:
     return node.value if isinstance(node, Constant) else cell
 
 
-def _each(value: Value) -> Iterator[Value]:
+def _cells_of_constant(value: Value) -> Iterator[Value]:
     """The cells of a constant range, `(1,)` each."""
     _, rows, columns = value.shape
     spread = [None if a is None else np.broadcast_to(a, value.shape) for a in value.arrays()]
@@ -98,7 +98,7 @@ def _each(value: Value) -> Iterator[Value]:
             yield Value(parts[0], parts[1], parts[2])  # type: ignore[arg-type]  # only texts may be None
 
 
-def _count(dag: Dag, cell: int | Value, kind: Kind) -> Part | None:
+def _counted(dag: Dag, cell: int | Value, kind: Kind) -> Part | None:
     """A cell of a range where it counts; None where it does not."""
     if isinstance(cell, Value):
         return _counted_constant(cell, kind)
@@ -117,7 +117,7 @@ def _counted_constant(cell: Value, kind: Kind) -> Literal | None:
 
 
 def _sum_of_products(dag: Dag, node: Apply) -> LoopRule | None:
-    """`SUMPRODUCT`: cells that are no numbers are 0; of ranges of one size only."""
+    """The rule of `SUMPRODUCT`, for ranges of one size: a cell that is no number is 0."""
     columns, beside, shapes = [], [], set()
     for node_id in node.arguments:
         cells = _cells(dag, node_id)
@@ -128,7 +128,7 @@ def _sum_of_products(dag: Dag, node: Apply) -> LoopRule | None:
         for cell in cells:
             if isinstance(cell, Value) and int(cell.kinds.flat[0]) == TEXT and len(cells) == 1:
                 return None  # the careful path knows what Excel makes of it
-            found = _count(dag, cell, Kind.NUMBER)
+            found = _counted(dag, cell, Kind.NUMBER)
             parts.append(Literal(0.0) if found is None else found)
             if found is None and isinstance(cell, int):
                 beside.append(cell)
@@ -194,7 +194,7 @@ def _deviation(lost: int) -> Emit:
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """See `LoopRule`; of fewer than so many cells the result is an error or another rule holds."""
+    """See `LoopRule`; with fewer than `fewest` cells the result is an error, or follows another rule."""
 
     emit: Callable[[Emitter, Parts], Any]
     fewest: int = 1

@@ -1,7 +1,7 @@
 """The uniforms of several random streams in one loop: the numbers that NumPy's PCG64DXSM gives, to the last bit.
 
 One stream waits for its own last state at every step; four side by side keep the processor's multiplier busy. Each
-uniform u is written as offset + factor·u, rounded twice as NumPy would: what `Uniform` makes of it, at no cost.
+uniform u is written as offset + factor·u, rounded twice as by NumPy: this is the draw of a `Uniform`, at no cost.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ __all__ = ["Fill", "filler", "halves", "jump"]
 _NAME: Final = "fill"
 _SIDE_BY_SIDE: Final = 4
 _TILE: Final = 128
-"""Steps of a stream whose states are written down, in the first-level cache, before numbers are made of them."""
+"""Steps of a stream whose states are stored, in the first-level cache, before numbers are made of them."""
 
 _MULTIPLIER: Final = 0xDA942042E4DD58B5
 """PCG64DXSM's, O'Neill's "cheap" multiplier, of the state and of its output function."""
 
 _WORDS: Final = 6
-"""Of a stream: state and increment, 128 bits each, offset and factor."""
+"""The words of a stream: state and increment, 128 bits each, offset and factor."""
 
 _BYTE, _LONG, _STATE, _DOUBLE = ir.IntType(8), ir.IntType(64), ir.IntType(128), ir.DoubleType()
 
@@ -43,7 +43,7 @@ class _Stream(Protocol):
 
 
 def filler(streams: Sequence[_Stream], maps: Sequence[tuple[float, float]], rows: NDArray[np.float64]) -> Fill:
-    """What fills `rows` (k, block) with offset + factor·uniform, from a trial on.
+    """A `Fill` that fills `rows` (k, block) with offset + factor·uniform, from a trial on.
 
     Args:
         streams: k of them; `beginning` gives the state before trial 0 and the increment.
@@ -69,7 +69,7 @@ class Fill:
 
     Attributes:
         calls: the loops, with the addresses that each takes.
-        jump: `(4,)` where these take the first trial from; see `go_to`.
+        jump: `(4,)` the jump to the first trial, which the loops read; see `go_to`.
     """
 
     def __init__(
@@ -127,8 +127,8 @@ def _loop(k: int) -> NativeLoop:
     addresses, n = function.args
     arrays = [builder.load(builder.gep(addresses, [_LONG(i)])) for i in range(2 * k + 1)]
     rows = [builder.bitcast(array, _DOUBLE.as_pointer()) for array in arrays[:k]]
-    jump_ = _numbers(builder, arrays[-1])
-    held = [_hold(builder, array, jump_) for array in arrays[k:-1]]
+    jump_ = _load_numbers(builder, arrays[-1])
+    held = [_load_stream(builder, array, jump_) for array in arrays[k:-1]]
     buffers = [tuple(builder.alloca(_LONG, _TILE) for _ in range(2)) for _ in range(k)]
     before, body, after = builder.block, *(function.append_basic_block(name) for name in ("body", "after"))
     builder.cbranch(builder.icmp_signed("<", _LONG(0), n), body, after)
@@ -157,7 +157,7 @@ def _loop(k: int) -> NativeLoop:
 def _advance(
     builder: ir.IRBuilder, states: Sequence[Any], increments: Sequence[Any], buffers: Sequence[Any], n: Any
 ) -> list[Any]:
-    """The states `n` steps on; the states on the way are written down by halves, the upper first."""
+    """The states `n` steps on; the states on the way are stored in `buffers`, as upper and lower halves."""
     before, body, after = builder.block, *(builder.append_basic_block(name) for name in ("steps", "stepped"))
     builder.branch(body)
     builder.position_at_end(body)
@@ -179,7 +179,7 @@ def _advance(
 
 
 def _finish(module: ir.Module) -> ir.Function:
-    """States by halves to offset + factor·uniform, several at a time, for no number waits for another."""
+    """A function from halves of states to offset + factor·uniform; it does several at a time, as none needs another."""
     words, doubles = _LONG.as_pointer(), _DOUBLE.as_pointer()
     types = [words, words, doubles, _DOUBLE, _DOUBLE, _LONG]
     function = ir.Function(module, ir.FunctionType(ir.VoidType(), types), "finished")
@@ -205,7 +205,7 @@ def _finish(module: ir.Module) -> ir.Function:
     return function
 
 
-def _numbers(builder: ir.IRBuilder, words: Any) -> tuple[Any, Any]:
+def _load_numbers(builder: ir.IRBuilder, words: Any) -> tuple[Any, Any]:
     """Two numbers of 128 bits, lower half first."""
     longs = builder.bitcast(words, _LONG.as_pointer())
     parts = [builder.zext(builder.load(builder.gep(longs, [_LONG(i)])), _STATE) for i in range(4)]
@@ -213,9 +213,9 @@ def _numbers(builder: ir.IRBuilder, words: Any) -> tuple[Any, Any]:
     return first, second
 
 
-def _hold(builder: ir.IRBuilder, words: Any, jump: tuple[Any, Any]) -> tuple[Any, Any, Any, Any]:
+def _load_stream(builder: ir.IRBuilder, words: Any, jump: tuple[Any, Any]) -> tuple[Any, Any, Any, Any]:
     """State after the jump, increment, offset and factor of a stream."""
-    state, increment = _numbers(builder, words)
+    state, increment = _load_numbers(builder, words)
     state = builder.add(builder.mul(state, jump[0]), builder.mul(increment, jump[1]))
     doubles = builder.bitcast(words, _DOUBLE.as_pointer())
     offset, factor = (builder.load(builder.gep(doubles, [_LONG(i)])) for i in (4, 5))

@@ -1,6 +1,6 @@
 """The fast path: plain float and bool arrays, one ufunc a node, results in buffers that later nodes use again.
 
-A block runs with floating-point flags armed. Where one is raised, or a guard says that Excel and IEEE part ways, or a
+A block runs with floating-point flags armed. Where one is raised, or a guard says that Excel differs from IEEE, or a
 node's value turns out not to be a plain number, the block is evaluated again by `TrackingEvaluator`: errors cost
 nothing where there are none. Nor do numbers too small for Excel: the step that raises their flag makes 0 of them.
 """
@@ -17,7 +17,8 @@ from xlmc.errors import FormulaError
 from xlmc.evaluation.engine import Column, Evaluator, Target, column_of
 from xlmc.evaluation.graph.dag import Dag, constants
 from xlmc.evaluation.graph.nodes import Input
-from xlmc.evaluation.numpy.branches import ROOT, SURVIVORS, Context, Placement, branch_step
+from xlmc.evaluation.graph.trial_sets import ALL_TRIALS, TrialSet
+from xlmc.evaluation.numpy.branches import SURVIVORS, Placement, branch_step
 from xlmc.evaluation.numpy.sequence import Buffers, Steps
 from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, plain_constant
 from xlmc.evaluation.passes.bounds import Bounds, bounds
@@ -35,7 +36,7 @@ __all__ = ["NumpyProgram"]
 _LARGEST_BLOCK: Final = 1 << 15
 _SMALLEST_BLOCK: Final = 1 << 8
 _MOST_BYTES: Final = 1 << 25
-"""Of all buffers: what the caches of today's processors hold."""
+"""The most bytes of all buffers: what the caches of today's processors hold."""
 
 
 class NumpyProgram:
@@ -70,10 +71,10 @@ class NumpyProgram:
         for node, value in constants(dag):
             self._template[node] = plain_constant(value)
         self._carried = self._placement.externals(SURVIVORS, forecasts)
-        self._early_inputs, self._late_inputs = self._inputs(ROOT), self._inputs(SURVIVORS)
+        self._early_inputs, self._late_inputs = self._inputs(ALL_TRIALS), self._inputs(SURVIVORS)
         inputs = frozenset(name for _, name in self._early_inputs + self._late_inputs)
         self._buffers = Buffers(dag)
-        self._first = self._steps(ROOT, {*filters, *self._carried}, free_at_end=filters)
+        self._first = self._steps(ALL_TRIALS, {*filters, *self._carried}, free_at_end=filters)
         self._gathers = [(node, self._carry(node)) for node in self._carried]
         self._buffers.free(self._carried)
         self._late = self._steps(SURVIVORS, set(forecasts), free_at_end=())
@@ -136,14 +137,14 @@ class NumpyProgram:
             step(frame)
         return [_column(frame.values[node], survivors.size) for node in self._forecasts]
 
-    def _inputs(self, context: Context) -> list[tuple[int, str]]:
-        found = [(node, self._dag.nodes[node]) for node in self._placement.members(context)]
+    def _inputs(self, trials: TrialSet) -> list[tuple[int, str]]:
+        found = [(node, self._dag.nodes[node]) for node in self._placement.members(trials)]
         return [(node, input_.name) for node, input_ in found if isinstance(input_, Input)]
 
-    def _steps(self, context: Context, keep: set[int], free_at_end: Sequence[int]) -> list[Step]:
-        """The steps of one context; `keep` outlives them."""
+    def _steps(self, trials: TrialSet, keep: set[int], free_at_end: Sequence[int]) -> list[Step]:
+        """The steps of one set of trials; the values of `keep` are read after them."""
         nodes, branched = self._dag.nodes, self._placement.branched
-        computed = [node for node in self._placement.members(context) if type(nodes[node]) is not Input]
+        computed = [node for node in self._placement.members(trials) if type(nodes[node]) is not Input]
         read = self._placement.reads | {node: self._reads(node) for node in computed if node in branched}
         last = {needed: node for node in computed for needed in read[node]} | dict.fromkeys(keep, -1)
         steps = Steps(self._dag, self._buffers, computed, self._between)
@@ -163,7 +164,7 @@ class NumpyProgram:
         return (*self._placement.reads[node], *inner)
 
     def _carry(self, node: int) -> int | None:
-        """A buffer for the survivors of a node that the first steps computed."""
+        """A buffer for the survivors' values of a node that the first steps computed."""
         kind = self._dag.types[node]
         return self._buffers.take_for(kind) if kind in (Kind.NUMBER, Kind.LOGICAL) else None
 
@@ -177,7 +178,7 @@ class _NumpyEvaluator:
         self._left_fast_path = False
 
     def _armed(self) -> np.errstate:
-        """Where a number is lost the block leaves the fast path; one that is too small for Excel is reported."""
+        """Raise an error where a number is lost; report one that is too small for Excel."""
         return np.errstate(divide="raise", over="raise", invalid="raise", under="call", call=self._space.underflow)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -205,7 +206,7 @@ class _NumpyEvaluator:
 
 
 class _Space:
-    """The memory of one thread: buffers for blocks of up to `block` trials, and the frame of the block at hand.
+    """The memory of one thread: buffers for blocks of up to `block` trials, and the frame of the current block.
 
     Attributes:
         underflow: is called where NumPy raises that flag.

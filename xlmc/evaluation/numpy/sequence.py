@@ -1,6 +1,6 @@
-"""The steps of a program in a row. Nearly all are ufuncs of plain numbers, run in one loop from one table.
+"""The steps of a program in order. Nearly all are ufuncs of plain numbers, run in one loop from one table.
 
-A line of the table costs little to make and to run; what does not fit one gets a step of its own.
+A line of the table costs little to make and to run; what does not fit into a line gets a step of its own.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Buffers:
         """A buffer for the node's value; None where it makes its own array."""
         node, kind = self._dag.nodes[node_id], self._dag.types[node_id]
         if isinstance(node, IfErrorNode):
-            self._held.pop(node.value, None)  # the value lives on under another name: its buffer is never given back
+            self._held.pop(node.value, None)  # this node has the same array: its buffer is never given back
             return None
         if (kind is not Kind.NUMBER and kind is not Kind.LOGICAL) or not isinstance(node, (Apply, Select)):
             return None
@@ -61,7 +61,7 @@ class Buffers:
         return len(self._types) - 1
 
     def free(self, nodes: Iterable[int]) -> list[int]:
-        """Give back the buffers of values that nothing reads any more; those that are in no buffer."""
+        """Give back the buffers of values that nothing reads any more; return the nodes that are in no buffer."""
         held, loose = self._held, []
         for node in nodes:
             buffer = held.pop(node, None)
@@ -72,7 +72,7 @@ class Buffers:
         return loose
 
     def exchange(self, done: Iterable[int], node: int, loose: list[int]) -> int | None:
-        """`free`, what is in no buffer going to `loose`, and then `take` for a number or a logical."""
+        """Do `free`, appending to `loose` the nodes in no buffer; then `take`, for a number or a logical."""
         held, idle = self._held, self._idle
         for gone in done:
             buffer = held.pop(gone, None)
@@ -86,12 +86,12 @@ class Buffers:
         return taken
 
     def give_back(self, buffer: int) -> None:
-        """A buffer that nothing reads any more."""
+        """Give back a buffer that nothing reads any more."""
         self._idle[self._types[buffer]].append(buffer)
 
     @property
     def trial_bytes(self) -> int:
-        """What one trial takes in all of them."""
+        """The bytes of one trial in all buffers."""
         return sum(1 if kind is Kind.LOGICAL else 8 for kind in self._types)
 
     def allocate(self, block: int) -> list[NDArray[Any]]:
@@ -124,11 +124,11 @@ class Steps:
         self._lines: list[_Line] = []
         self._loose: list[int] = []
         self._pairs = _sines_with_cosines(dag, nodes)
-        self._had: set[int] = set()
+        self._paired: set[int] = set()
         self._between = between or {}
 
     def add(self, node_id: int, read: Sequence[int], done: list[int]) -> None:
-        """The step of a node.
+        """Add the step of a node.
 
         Args:
             node_id: of the node.
@@ -137,7 +137,7 @@ class Steps:
         """
         node, types = self._dag.nodes[node_id], self._dag.types
         if node_id in self._pairs:
-            if node_id not in self._had:
+            if node_id not in self._paired:
                 self._add_pair(*self._pairs[node_id])
             self._free(done)
             return
@@ -166,7 +166,7 @@ class Steps:
         self._append(make_step(self._dag, node_id, buffer))
 
     def add_free(self, step: Step, done: Iterable[int]) -> None:
-        """A step that has memory of its own; nothing reads `done` after it."""
+        """Add a step that has memory of its own; nothing reads `done` after it."""
         self._free(done)
         self._append(step)
 
@@ -175,20 +175,20 @@ class Steps:
         self._loose += self._buffers.free(done)
 
     def _append(self, step: Step) -> None:
-        self._close()
+        self._close_table()
         self._made.append(step)
         gone = [node for node in self._loose if type(self._dag.nodes[node]) is not Constant]
         if gone:
-            self._made.append(_let_go(gone))
+            self._made.append(_drop_values(gone))
         self._loose.clear()
 
     def finish(self) -> list[Step]:
-        """All of them."""
-        self._close()
+        """All steps."""
+        self._close_table()
         return self._made
 
     def _add_lines(self, node_id: int, read: Sequence[int], buffer: int) -> bool:
-        """A choice between numbers, or a fold of numbers, as lines."""
+        """Add a choice between numbers, or a fold of numbers, as lines; False where the node is neither."""
         node, types = self._dag.nodes[node_id], self._dag.types
         if types[node_id] is not Kind.NUMBER:
             return False
@@ -209,7 +209,7 @@ class Steps:
         return True
 
     def _add_pair(self, sine: int, cosine: int) -> None:
-        """The sine and the cosine of one angle in one step."""
+        """Add the sine and the cosine of one angle as one step."""
         (angle,) = uses(self._dag.nodes[sine])
         first, second = self._buffers.take(sine), self._buffers.take(cosine)
         if first is None or second is None:
@@ -219,7 +219,7 @@ class Steps:
             work = self._buffers.take_for(Kind.NUMBER)
             self._buffers.give_back(work)
             self._append(_pair(angle, self._guard(sine), (sine, cosine), (first, second, work)))
-        self._had |= {sine, cosine}
+        self._paired |= {sine, cosine}
 
     def _guard(self, node_id: int) -> Callable[..., bool] | None:
         """The guard of an `Apply`; None where there is none to ask."""
@@ -232,7 +232,7 @@ class Steps:
         return None if known is not None and guard.surely(*known) else guard
 
     def _last_sum(self, node: Apply) -> Callable[..., object]:
-        """What Excel makes of the last sum of a formula; a function that keeps it where that is known before."""
+        """The function for the last sum of a formula; one that keeps every sum where bounds show that none is dust."""
         total, first = node.arguments
         added = self._dag.nodes[total]
         second = self._bounds(added.arguments[1]) if type(added) is Apply and added.function.name == "+" else None
@@ -246,7 +246,7 @@ class Steps:
     def _bounds(self, node: int) -> Bounds | None:
         return self._between.get(node) or of_constant(self._dag, node)
 
-    def _close(self) -> None:
+    def _close_table(self) -> None:
         if self._lines:
             self._made.append(_run(self._lines))
             self._lines = []
@@ -276,7 +276,7 @@ def _pair(angle: int, guard: Callable[..., bool] | None, nodes: tuple[int, int],
     return step
 
 
-def _let_go(nodes: list[int]) -> Step:
+def _drop_values(nodes: list[int]) -> Step:
     def step(frame: Frame) -> None:
         for node in nodes:
             found, frame.values[node] = frame.values[node], None

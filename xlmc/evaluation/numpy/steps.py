@@ -44,7 +44,7 @@ class Frame:
     """The values of one set of `n` trials, and the buffers that steps may write to.
 
     Attributes:
-        underflow: whether a result may be too small a number for Excel; the step that made it sees to that.
+        underflow: whether a result may be too small a number for Excel; the step that made it then calls `flush`.
         live: the bytes of `Value`s.
     """
 
@@ -55,7 +55,7 @@ class Frame:
     live: int = 0
 
     def flush(self, node: int) -> None:
-        """0 instead of the node's numbers that are too small for Excel."""
+        """Set those of the node's numbers to 0 that are too small for Excel."""
         self.underflow.raised = False
         flush(self.values[node])
 
@@ -77,8 +77,8 @@ def plain_constant(value: Value) -> Any:
 def reads(dag: Dag, node_id: int) -> tuple[int, ...]:
     """The nodes whose values the step of a node needs.
 
-    Of a range that is folded these are its cells. Of an IFERROR it is the value: where that turns out to be an
-    error the block leaves the fast path, so that what would stand in is never needed here.
+    For a range that is folded these are its cells. For an IFERROR it is the value alone: where that turns out to be an
+    error, the block leaves the fast path, so that the other value is never needed here.
     """
     node = dag.nodes[node_id]
     if isinstance(node, Apply) and not node.function.takes_sets:
@@ -86,14 +86,14 @@ def reads(dag: Dag, node_id: int) -> tuple[int, ...]:
     if isinstance(node, IfErrorNode) and dag.sizes[node.instead] is None:
         return (node.value,)
     if isinstance(node, Apply) and _find_folded(dag, node) is not None:
-        return tuple(cell for cell, _ in _cells(dag, node))  # also what does not count: it may turn out an error
+        return tuple(cell for cell, _ in _cells_of(dag, node))  # also what does not count: it may turn out an error
     return uses(node)
 
 
 def make_step(dag: Dag, node_id: int, buffer: int | None) -> Step:
-    """The step of a node; it writes to that buffer where it is given one, else to fresh memory.
+    """The step of a node; it writes to that buffer where it is given one, else to new memory.
 
-    Whatever has no fast form runs as `Function` does; where it gives an error or a text the block leaves the fast path.
+    A node without a fast form runs as `Function` does; if it gives an error or a text, the block leaves the fast path.
     """
     node = dag.nodes[node_id]
     match node:
@@ -132,7 +132,7 @@ def _apply(dag: Dag, node_id: int, function: Function, arguments: tuple[int, ...
 
 
 def _on_numbers(dag: Dag, function: Function, arguments: tuple[int, ...]) -> bool:
-    """Whether all arguments are plain numbers for a ufunc: the case of nearly every node, seen at once."""
+    """Whether all arguments are plain numbers for a ufunc: true of nearly every node, and quickly seen."""
     if not function.on_numbers or function.ufunc is None or len(arguments) != function.ufunc.nin:
         return False
     return all(dag.types[argument] is Kind.NUMBER for argument in arguments)
@@ -149,7 +149,7 @@ def _fast_ufunc(dag: Dag, node: Apply) -> bool:
 
 
 def _wanted_kind(dag: Dag, function: Function, position: int) -> Kind:
-    """What an argument is read as; comparisons take numbers here, for that is what their ufunc orders."""
+    """The kind that an argument is read as; comparisons take numbers here, as their ufunc does."""
     kind = function.parameter(position).kind
     return Kind.NUMBER if kind is Kind.ANY and function.ufunc is not None else kind
 
@@ -158,7 +158,7 @@ Reader = Callable[[list[Any]], Any]
 
 
 def _reader(dag: Dag, node_id: int, kind: Kind) -> Reader | None:
-    """How a step gets an argument as plain numbers or logicals; None where that takes more than a look."""
+    """How a step gets an argument as plain numbers or logicals; None where only the careful path can tell."""
     node, found = dag.nodes[node_id], dag.types[node_id]
     if isinstance(node, Constant):
         return _constant_reader(node.value, kind)
@@ -181,7 +181,7 @@ def _constant_reader(value: Value, kind: Kind) -> Reader | None:
 
 
 def _compares_unlike_kinds(dag: Dag, node: Apply) -> bool:
-    """Beside a logical or a text Excel orders by kind, not by size."""
+    """Whether a comparison has an argument that is no number: Excel then orders by kind, not by size."""
     return node.function.takes_values and any(dag.types[argument] is not Kind.NUMBER for argument in node.arguments)
 
 
@@ -209,7 +209,7 @@ def _body(function: Function, node: int, readers: list[Reader]) -> Step:
         if np.ndim(result.numbers if isinstance(result, Value) else result) > 1:
             raise function.spill_error()
         if isinstance(result, Value):
-            result = _plain(result, function.returns)
+            result = _plain_array(result, function.returns)
         elif not logical and not np.isfinite(result).all():
             raise LeaveFastPath
         frame.values[node] = np.broadcast_to(result if logical else tiny_to_zero(result), (frame.n,))
@@ -218,17 +218,17 @@ def _body(function: Function, node: int, readers: list[Reader]) -> Step:
 
 
 def _find_folded(dag: Dag, node: Apply) -> list[int] | None:
-    """What a set function folds, ranges flattened and what does not count left out; None for the careful way."""
+    """The cells that a set function folds, without those that do not count; None where the careful path must do it."""
     function = node.function
     if not function.takes_sets or function.ufunc is None:
         return None
     kind = function.parameters[0].kind
-    folded = [cell for cell, in_range in _cells(dag, node) if not in_range or _counts(dag, cell, kind)]
+    folded = [cell for cell, in_range in _cells_of(dag, node) if not in_range or _counts(dag, cell, kind)]
     return folded if folded and all(_foldable(dag, cell, kind) for cell in folded) else None
 
 
-def _cells(dag: Dag, node: Apply) -> Iterator[tuple[int, bool]]:
-    """The arguments, ranges cell by cell, and whether each is a range's."""
+def _cells_of(dag: Dag, node: Apply) -> Iterator[tuple[int, bool]]:
+    """The arguments, ranges cell by cell, and whether each is a cell of a range."""
     for argument in node.arguments:
         part = dag.nodes[argument]
         if isinstance(part, Range):
@@ -250,9 +250,9 @@ def _readers(dag: Dag, nodes: Sequence[int], kind: Kind) -> list[Reader]:
 
 
 def _counts(dag: Dag, cell: int, kind: Kind) -> bool:
-    """Whether a range's cell may count; one whose kind is not known until the run may, and has no reader.
+    """Whether a range's cell may count. One whose kind is not known before the run may; it has no reader.
 
-    Nor has a text that varies: it never counts, but may be an error.
+    A text that varies has none either: it never counts, but it may be an error.
     """
     found = dag.types[cell]
     if found is kind:
@@ -300,9 +300,9 @@ def _select(dag: Dag, node: int, parts: tuple[int, int, int], buffer: int | None
 
 
 def _if_error(dag: Dag, node: int, value: int) -> Step:
-    """On the fast path the value is no error; a blank is 0 all the same.
+    """On the fast path the value is no error, and stays as it is; but a blank becomes 0.
 
-    Where many cells may stand in, there may be more of them than of the value, and it is evaluated whole.
+    An IFERROR whose other value has many cells may be larger than its value, and is evaluated by `_careful_step`.
     """
 
     def step(frame: Frame) -> None:
@@ -310,13 +310,13 @@ def _if_error(dag: Dag, node: int, value: int) -> Step:
         if isinstance(found, Value):
             if found.has_errors:
                 raise LeaveFastPath
-            found = _without_blanks(found)
+            found = _zeros_for_blanks(found)
         frame.values[node] = found if dag.types[node] is dag.types[value] else as_value(found, dag.types[value])
 
     return step
 
 
-def _without_blanks(value: Value) -> Value:
+def _zeros_for_blanks(value: Value) -> Value:
     if isinstance(value, Ragged):
         return by_trial(lambda trial: zero_if_blank(trial[0]), {0: value})
     return zero_if_blank(value)
@@ -334,7 +334,7 @@ def _careful_step(dag: Dag, node_id: int) -> Step:
         if isinstance(node, Apply):
             result = _in_own_memory(result, arguments.values())
         if kind in (Kind.NUMBER, Kind.LOGICAL):
-            frame.values[node_id] = np.broadcast_to(_plain(result, kind), (frame.n,))
+            frame.values[node_id] = np.broadcast_to(_plain_array(result, kind), (frame.n,))
         else:
             frame.values[node_id] = result
             frame.live += result.nbytes
@@ -344,13 +344,13 @@ def _careful_step(dag: Dag, node_id: int) -> Step:
 
 
 def _in_own_memory(result: Value, arguments: Iterable[Value]) -> Value:
-    """What a function gives, apart from its arguments: the buffers that these lie in are soon written to again."""
+    """The result in memory apart from the arguments, whose buffers are soon written to again."""
     if any(np.may_share_memory(result.numbers, argument.numbers) for argument in arguments):
         return Value(result.numbers.copy(), result.kinds, result.texts)
     return result
 
 
-def _plain(value: Value, kind: Kind) -> NDArray[Any]:
+def _plain_array(value: Value, kind: Kind) -> NDArray[Any]:
     if not value.plain:
         raise LeaveFastPath
     return value.numbers != 0 if kind is Kind.LOGICAL else value.numbers

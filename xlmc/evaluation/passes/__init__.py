@@ -1,1 +1,1 @@
-"""Other readings of the same graph: bounds, derivatives, many digits, roundings at random."""
+"""Other evaluations of the same graph: bounds, derivatives, many digits, random rounding."""

@@ -1,4 +1,4 @@
-"""Between which numbers the values of a node lie, as far as sums, products and choices tell."""
+"""Bounds of the values of nodes, as far as sums, products and choices tell."""
 
 from __future__ import annotations
 
@@ -82,6 +82,6 @@ def _combine(operator: str, left: Bounds, right: Bounds) -> Bounds:
 
 
 def _around(numbers: Iterable[float]) -> Bounds:
-    """The bounds that hold all the numbers; where one is NaN nothing is known."""
+    """The smallest bounds that hold all the numbers; where one is NaN, nothing is known."""
     numbers = tuple(numbers)
     return _ANY if any(math.isnan(number) for number in numbers) else (min(numbers), max(numbers))

@@ -22,11 +22,11 @@ from xlmc.evaluation.passes.random_rounding import formula_of
 from xlmc.functions.fifteen_digits import SNAP_TO_ZERO
 from xlmc.functions.values import ShapeVaries, Value, constant, from_objects
 
-__all__ = ["DIGITS", "Exact", "exactly"]
+__all__ = ["DIGITS", "Exact", "as_double"]
 
 DIGITS: Final = 50
 _NOTHING: Final = 10
-"""Digits of those that a result of 0 may differ from it."""
+"""A sum that cancels to within this many of the last digits is 0."""
 
 Item = Any
 """A number `mpf`, a logical, a text, None for a blank, an `ErrorCode`; rows of rows for a range."""
@@ -79,7 +79,7 @@ class Exact:
                 return _as_in_the_run(function, items)
 
 
-def exactly(value: Item) -> float:
+def as_double(value: Item) -> float:
     """As a double; NaN for what is no number."""
     value = _single(value)
     if isinstance(value, bool):
@@ -128,11 +128,11 @@ def _apply(body: Callable[..., Item], items: Sequence[Item]) -> Item:
         return ErrorCode.DIV0
     except (ValueError, OverflowError, mpmath.libmp.NoConvergence):
         return ErrorCode.NUM
-    except _IsError as found:
+    except _FoundError as found:
         return found.code
 
 
-class _IsError(Exception):
+class _FoundError(Exception):
     """An error as a value."""
 
     def __init__(self, code: ErrorCode) -> None:
@@ -141,12 +141,12 @@ class _IsError(Exception):
 
 
 def _number(item: Item) -> mpf:
-    """As arithmetic sees a single value."""
+    """A single value as arithmetic reads it."""
     item = _single(item)
     if isinstance(item, ErrorCode):
-        raise _IsError(item)
+        raise _FoundError(item)
     if isinstance(item, str):
-        raise _IsError(ErrorCode.VALUE)
+        raise _FoundError(ErrorCode.VALUE)
     return mpf(0) if item is None else mpf(item)
 
 
@@ -165,20 +165,20 @@ def _of_numbers(function: Callable[..., mpf]) -> Callable[..., Item]:
 
 
 def _dust_to_zero(result: mpf, size: mpf) -> mpf:
-    """0 where it is so but for the last digits of numbers of that size."""
+    """0 where the result differs from 0 only in the last digits of numbers of that size."""
     return mpf(0) if abs(result) < size * mpf(10) ** (_NOTHING - DIGITS) else result
 
 
 def _power(x: mpf, y: mpf) -> mpf:
     if x == 0 and y <= 0:
-        raise _IsError(ErrorCode.DIV0 if y < 0 else ErrorCode.NUM)
+        raise _FoundError(ErrorCode.DIV0 if y < 0 else ErrorCode.NUM)
     if x < 0 and y != int(y):
         raise ValueError
     return x**y
 
 
 def _real(function: Callable[[mpf], Any], low: float = -np.inf, high: float = np.inf) -> Callable[..., Item]:
-    """A function of a number between limits, which count."""
+    """A function of a number between limits; the limits themselves are allowed."""
 
     def bounded(x: mpf) -> mpf:
         if not low <= x <= high:
@@ -201,7 +201,7 @@ def _atan2(x: mpf, y: mpf) -> mpf:
 
 
 def _cells(items: Sequence[Item]) -> list[mpf]:
-    """What counts of the arguments of a sum: the numbers in ranges, and whatever is given directly as one."""
+    """The numbers that count in a sum: those in ranges, and all that is given directly, as numbers."""
     found: list[mpf] = []
     for item in items:
         if not isinstance(item, list):
@@ -209,7 +209,7 @@ def _cells(items: Sequence[Item]) -> list[mpf]:
             continue
         for cell in (cell for row in item for cell in row):
             if isinstance(cell, ErrorCode):
-                raise _IsError(cell)
+                raise _FoundError(cell)
             if isinstance(cell, mpf):
                 found.append(cell)
     return found
@@ -358,7 +358,7 @@ EXACT: Final[Mapping[str, Callable[..., Item]]] = {
 
 def _as_in_the_run(function: Any, items: Sequence[Item]) -> Item:
     """The run's own body, on doubles."""
-    arguments = [_box(item) for item in items]
+    arguments = [_to_value(item) for item in items]
     try:
         with np.errstate(all="ignore"):
             return _result_items(function(arguments))
@@ -366,7 +366,7 @@ def _as_in_the_run(function: Any, items: Sequence[Item]) -> Item:
         return ErrorCode.VALUE
 
 
-def _box(item: Item) -> Value:
+def _to_value(item: Item) -> Value:
     if isinstance(item, list):
         out = np.empty((1, len(item), len(item[0])), object)
         for r, row in enumerate(item):

@@ -1,10 +1,10 @@
 """A model evaluated with its roundings made at random: the digits that then differ mean nothing.
 
-Every result of a function is a little off, by up to half a unit of its last node; which way is chance. Here every
-other one, at random, is moved up or down by a unit (Vignes 1978, Parker 1997), and so are constants that were computed
+Every result of a function is off by up to half a unit of its last bit, up or down by chance. Here half of the results,
+at random, are moved up or down by one such unit (Vignes 1978, Parker 1997), and so are constants that were computed
 while the formulas were compiled. Such evaluations differ from the plain one about as much as that differs from the
-exact one. Functions that round, compare or choose give what they give; that Excel makes 0 of the last bits of the sum
-that a formula ends with is left out, for these bits are looked for.
+exact one. Results of functions that round, compare or choose are not moved. That Excel makes 0 of the last bits of the
+sum that a formula ends with is left out, for these bits are looked for.
 """
 
 from __future__ import annotations
@@ -35,30 +35,30 @@ __all__ = [
     "DOUBLE",
     "RandomRounding",
     "closure",
-    "evaluation",
-    "follow",
+    "evaluate",
+    "evaluate_changes",
     "formula_of",
-    "numbers",
+    "numbers_of",
     "term_sizes",
 ]
 
 DOUBLE: Final = 2.0**-53
-"""Half a unit of the last node, as a share of the number."""
+"""Half a unit of the last bit, as a share of the number."""
 
 _POOL: Final = 1 << 16
 
 _ALL_WHOLE: Final = 2.0**52
-"""From here on all doubles are whole, and it says nothing of them."""
+"""From here on all doubles are whole, so that a whole number need not be exact."""
 
 _SURELY: Final = 1.001
-"""Times half a unit of the last node: added to a number it makes it the next one."""
+"""This times half a unit of the last bit, added to a number, gives the next double."""
 
 
 class RandomRounding:
     """Moves every other number up or down at random.
 
     Args:
-        seed: of which way.
+        seed: of the directions.
         unit: by how much, as a share of the number.
     """
 
@@ -67,20 +67,20 @@ class RandomRounding:
         self._steps = ways * (_SURELY * unit)
         self._next = 0
 
-    def moved(self, value: Value, n: int, *, whole_too: bool = False) -> Value:
-        """Numbers up or down; a constant, too, differs from trial to trial.
+    def move(self, value: Value, n: int, *, whole_too: bool = False) -> Value:
+        """Move numbers up or down; a constant, too, then differs from trial to trial.
 
         Args:
-            value: of numbers; another is left as it is.
+            value: of numbers; another kind of value is left as it is.
             n: how many trials there are.
-            whole_too: whole numbers as well, which otherwise are taken to be exact.
+            whole_too: also move whole numbers, which otherwise count as exact.
         """
         if value.kinds.any():
             return value
         shape = (max(n, value.shape[0]), *value.shape[1:])
         size = int(np.prod(shape))
         if self._next + size > _POOL:
-            self._next = self._next % 1009  # another start than the last time
+            self._next = self._next % 1009  # not where it began the last time
         steps = self._steps[self._next : self._next + size] if size <= _POOL // 2 else np.resize(self._steps, size)
         self._next += size
         numbers_ = value.numbers
@@ -108,12 +108,12 @@ def closure(dag: Dag, targets: Collection[int]) -> list[int]:
 
 
 def formula_of(dag: Dag, node_id: int) -> Node:
-    """The node; of a computed constant, what computed it."""
+    """The node; for a computed constant, the node that it was computed from."""
     node = dag.nodes[node_id]
     return dag.origins.get(node_id, node) if isinstance(node, Constant) else node
 
 
-def evaluation(
+def evaluate(
     dag: Dag,
     nodes: Sequence[int],
     draws: Mapping[str, Floats],
@@ -133,31 +133,33 @@ def evaluation(
     n = next((draw.size for draw in draws.values()), 1)
     typed: dict[int, Value] = {}
     if of_inputs is not None:
-        constants = ((node_id, dag.nodes[node_id]) for node_id in _typed(dag, nodes))
+        constants = ((node_id, dag.nodes[node_id]) for node_id in _find_typed(dag, nodes))
         known = {node_id: node.value for node_id, node in constants if isinstance(node, Constant)}
-        typed = {node_id: of_inputs.moved(value, n, whole_too=True) for node_id, value in known.items()}
+        typed = {node_id: of_inputs.move(value, n, whole_too=True) for node_id, value in known.items()}
     for node_id in nodes:
         node = formula_of(dag, node_id)
         if isinstance(node, Input):
             drawn = Value.of_numbers(draws[node.name])
-            values[node_id] = drawn if of_inputs is None else of_inputs.moved(drawn, n, whole_too=True)
+            values[node_id] = drawn if of_inputs is None else of_inputs.move(drawn, n, whole_too=True)
         elif isinstance(node, Constant):
             values[node_id] = node.value
         elif isinstance(node, Apply) and node.function.name == SNAP_TO_ZERO.name:
             values[node_id] = values[node.arguments[0]]
         else:
             assert isinstance(node, Apply | Select | IfErrorNode | Range)
-            known = {part: typed[part] for part in _typed_of(node) if part in typed} if typed else {}
+            known = {part: typed[part] for part in _measured_arguments(node) if part in typed} if typed else {}
             found = evaluate_node(
                 node, {part: known.get(part, values[part]) for part in uses(node)} if known else values
             )
             moves = isinstance(node, Apply) and _rounds(node) and not isinstance(found, Ragged)
-            values[node_id] = rounding.moved(found, n) if rounding is not None and moves else found
+            values[node_id] = rounding.move(found, n) if rounding is not None and moves else found
     return values
 
 
-def follow(dag: Dag, nodes: Sequence[int], values: Mapping[int, Value], given: Mapping[int, Value]) -> dict[int, Value]:
-    """What becomes of nodes when some get other values: these, and all that follow from them.
+def evaluate_changes(
+    dag: Dag, nodes: Sequence[int], values: Mapping[int, Value], given: Mapping[int, Value]
+) -> dict[int, Value]:
+    """The nodes that change when some are given other values: these, and all that depend on them.
 
     Args:
         dag: the nodes.
@@ -177,16 +179,18 @@ def follow(dag: Dag, nodes: Sequence[int], values: Mapping[int, Value], given: M
     return found
 
 
-def _typed(dag: Dag, nodes: Sequence[int]) -> set[int]:
-    """Numbers that were typed in and are calculated with; not π or a small whole number, which are no measurements."""
+def _find_typed(dag: Dag, nodes: Sequence[int]) -> set[int]:
+    """Typed numbers that are calculated with, but not π or small whole numbers, which are no measurements."""
     found: set[int] = set()
     for node in nodes:
-        found.update(part for part in _typed_of(formula_of(dag, node)) if isinstance(formula_of(dag, part), Constant))
+        found.update(
+            part for part in _measured_arguments(formula_of(dag, node)) if isinstance(formula_of(dag, part), Constant)
+        )
     return {node for node in found if not _is_exact(dag.nodes[node])}
 
 
-def _typed_of(node: Node) -> tuple[int, ...]:
-    """The arguments that are calculated with; of a power the base, for an exponent is exact."""
+def _measured_arguments(node: Node) -> tuple[int, ...]:
+    """The arguments that are calculated with; of a power only the base, as an exponent is exact."""
     if not isinstance(node, Apply) or not node.function.facts.measures:
         return ()
     return node.arguments[:1] if node.function.name == "^" else node.arguments
@@ -224,8 +228,8 @@ def _rounds(node: Apply) -> bool:
     return node.function.returns is not Kind.LOGICAL and not node.function.facts.unrounded
 
 
-def numbers(value: Value, n: int) -> Floats:
-    """A single value's numbers, `(n,)`, logicals as 1 and 0, of many cells the first; NaN where there is none."""
+def numbers_of(value: Value, n: int) -> Floats:
+    """The numbers of a value, `(n,)`, logicals as 1 and 0, an array's first cell; NaN where there is no number."""
     if not value.numbers.size:
         return np.full(n, np.nan)
     found = np.where(value.kinds <= LOGICAL, value.numbers, np.nan)

@@ -1,9 +1,9 @@
 """Loans and savings of equal payments, and growth at compound interest.
 
-Rates are per period; money received is positive, money paid is negative. What concerns payments rests on one equation,
+Rates are per period; money received is positive, money paid is negative. All functions of payments solve one equation,
 pv·g + pmt·(1 + rate·due)·s + fv = 0, where g = (1 + rate)^nper is what one unit grows to and s = (g - 1)/rate what one
-unit paid at the end of every period comes to; `due` is 1 when payments fall due at the start. At the end stand prices
-that are quoted in fractions of a dollar.
+unit paid at the end of every period comes to; `due` is 1 when payments fall due at the start. The last functions
+convert prices that are quoted in fractions of a dollar.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from xlmc.errors import ErrorCode
 from xlmc.functions.arguments import error_where, first_error
 from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.financial.roots import growth_root
-from xlmc.functions.math.arithmetic import powered
+from xlmc.functions.math.arithmetic import raise_to_power
+from xlmc.functions.math.rounding import TENS
 from xlmc.functions.registry import Cells, Number, excel
 from xlmc.functions.toolpak import OneCell, strict_numbers, toolpak
 from xlmc.functions.values import BLANK, DIV0, LOGICAL, NUM, TEXT, Floats, Value
@@ -28,7 +29,7 @@ _SMALL_RATE: Final = 1e-4
 
 def growth(rate: Any, periods: Any) -> Floats:
     """What one unit grows to, (1 + rate)^periods; NaN for rates below -1 unless the periods are whole."""
-    return powered(1.0 + np.asarray(rate), periods)
+    return raise_to_power(1.0 + np.asarray(rate), periods)
 
 
 def _accumulation(rate: Any, periods: Any) -> Floats:
@@ -42,46 +43,46 @@ def _accumulation(rate: Any, periods: Any) -> Floats:
     return np.where(zero, periods, gain / np.where(zero, 1.0, rate))
 
 
-def _due(rate: Any, when: Any) -> Floats:
-    """What a payment is worth at the end of its period; any `when` but 0 is the period's start."""
+def _timing_factor(rate: Any, when: Any) -> Floats:
+    """What one unit paid is worth at the end of its period; any `when` but 0 means that it is paid at the start."""
     return np.where(np.asarray(when) != 0, 1.0 + np.asarray(rate), 1.0)
 
 
-def _nonzero(x: Any) -> Floats:
-    """A divisor: NaN for zero, which makes the quotient `#NUM!` without a flag."""
+def _nan_if_zero(x: Any) -> Floats:
+    """The divisor, NaN where it is 0: the quotient is then `#NUM!`, and no floating-point flag is raised."""
     return np.where(np.asarray(x) == 0, np.nan, x)
 
 
 @excel("FV", Number, Number, Number, Number(default=0.0), Number(default=0.0))
 def future_value(rate: Any, nper: Any, pmt: Any, pv: Any, when: Any) -> Floats:
     """Balance after the last payment."""
-    return np.asarray(-(pv * growth(rate, nper) + pmt * _due(rate, when) * _accumulation(rate, nper)) + 0.0)
+    return np.asarray(-(pv * growth(rate, nper) + pmt * _timing_factor(rate, when) * _accumulation(rate, nper)) + 0.0)
 
 
 @excel("PV", Number, Number, Number, Number(default=0.0), Number(default=0.0))
 def present_value(rate: Any, nper: Any, pmt: Any, fv: Any, when: Any) -> Floats:
     """What all payments are worth now; `#NUM!` at a rate of -100 %."""
-    later = fv + pmt * _due(rate, when) * _accumulation(rate, nper)
-    return np.asarray(-later / _nonzero(growth(rate, nper)) + 0.0)
+    later = fv + pmt * _timing_factor(rate, when) * _accumulation(rate, nper)
+    return np.asarray(-later / _nan_if_zero(growth(rate, nper)) + 0.0)
 
 
 @excel("PMT", Number, Number, Number, Number(default=0.0), Number(default=0.0))
 def payment(rate: Any, nper: Any, pv: Any, fv: Any, when: Any) -> Floats:
     """Payment per period; `#NUM!` without periods."""
-    worth = _due(rate, when) * _accumulation(rate, nper)
-    return np.asarray(-(fv + pv * growth(rate, nper)) / _nonzero(worth) + 0.0)
+    worth = _timing_factor(rate, when) * _accumulation(rate, nper)
+    return np.asarray(-(fv + pv * growth(rate, nper)) / _nan_if_zero(worth) + 0.0)
 
 
 @excel("NPER", Number, Number, Number, Number(default=0.0), Number(default=0.0))
 def periods_needed(rate: Any, pmt: Any, pv: Any, fv: Any, when: Any) -> Floats:
-    """How many periods it takes; `#NUM!` when the payments never do."""
+    """Number of periods; `#NUM!` where the payments never suffice."""
     zero = np.asarray(rate) == 0
-    paid = pmt * _due(rate, when)
-    ratio = (paid - np.multiply(fv, rate)) / _nonzero(paid + np.multiply(pv, rate))
+    paid = pmt * _timing_factor(rate, when)
+    ratio = (paid - np.multiply(fv, rate)) / _nan_if_zero(paid + np.multiply(pv, rate))
     possible = (ratio > 0) & (np.asarray(rate) > -1)
     log_growth = np.log1p(np.where(zero | ~possible, 1.0, rate))
     result = np.where(possible, np.log(np.where(possible, ratio, 1.0)) / log_growth, np.nan)
-    return np.where(zero, -np.add(pv, fv) / _nonzero(pmt), result) + 0.0
+    return np.where(zero, -np.add(pv, fv) / _nan_if_zero(pmt), result) + 0.0
 
 
 @excel("RATE", Number, Number, Number, Number(default=0.0), Number(default=0.0), Number(default=0.1))
@@ -96,19 +97,20 @@ def rate_of_annuity(nper: Any, pmt: Any, pv: Any, fv: Any, when: Any, guess: Any
     periods = np.where(possible, nper, 1.0)
 
     def balance(x: Floats) -> Floats:
-        """At present for positive rates, at the end for negative ones, so that nothing grows beyond bounds."""
+        """The balance, at present for positive rates and at the end for negative ones, so that nothing overflows."""
         rate, shrunk = np.expm1(x), np.exp(-periods * np.abs(x))
         zero = rate == 0
         paid = np.where(zero, periods, np.expm1(-periods * np.abs(x)) * -np.sign(x) / np.where(zero, 1.0, rate))
         ends = np.where(x >= 0, pv + fv * shrunk, pv * shrunk + fv)
-        return np.asarray(ends + pmt * _due(rate, when) * paid)
+        return np.asarray(ends + pmt * _timing_factor(rate, when) * paid)
 
     return np.where(possible, growth_root(balance, np.asarray(guess, np.float64)), np.nan)
 
 
 def _interest(rate: Any, per: Any, nper: Any, pv: Any, fv: Any, when: Any) -> Floats:
-    """Interest in the payment of a period: the rate on the balance before it, which earns for one period less when
-    payments fall due at the start; the first of those bears none.
+    """Interest in the payment of a period: the rate times the balance before it.
+
+    Payments at the start bear interest for one period less, and the first of them bears none.
     """
     at_start = np.asarray(when) != 0
     pmt = payment(rate, nper, pv, fv, when)
@@ -125,7 +127,7 @@ def interest_payment(rate: Any, per: Any, nper: Any, pv: Any, fv: Any, when: Any
 
 @excel("PPMT", Number, Number, Number, Number, Number(default=0.0), Number(default=0.0))
 def principal_payment(rate: Any, per: Any, nper: Any, pv: Any, fv: Any, when: Any) -> Floats:
-    """What a payment pays back; `#NUM!` for a period outside 1 to `nper`."""
+    """Principal in the payment of one period; `#NUM!` for a period outside 1 to `nper`."""
     paid = payment(rate, nper, pv, fv, when)
     return np.asarray(paid - interest_payment(rate, per, nper, pv, fv, when))
 
@@ -133,24 +135,24 @@ def principal_payment(rate: Any, per: Any, nper: Any, pv: Any, fv: Any, when: An
 @excel("ISPMT", Number, Number, Number, Number)
 def straight_interest(rate: Any, per: Any, nper: Any, pv: Any) -> Floats:
     """Interest after `per` periods of a loan paid back in equal parts; `#NUM!` without periods."""
-    return np.asarray(np.multiply(pv, rate) * (per / _nonzero(nper) - 1) + 0.0)
+    return np.asarray(np.multiply(pv, rate) * (per / _nan_if_zero(nper) - 1) + 0.0)
 
 
 def _totals(rate: Any, nper: Any, pv: Any, first: Any, last: Any, when: Any) -> tuple[Floats, Floats]:
     """Interest and principal paid from the first to the last period, both with the sign of the payments."""
     first, last, when = np.ceil(first), np.floor(last), np.trunc(when)
     pmt = payment(rate, nper, pv, 0.0, when)
-    owed_at_last = _owed_after(rate, last, pmt, pv, when)
-    principal = owed_at_last - _owed_after(rate, first - 1, pmt, pv, when)
+    owed_at_last = _find_owed(rate, last, pmt, pv, when)
+    principal = owed_at_last - _find_owed(rate, first - 1, pmt, pv, when)
     bearing = np.where((np.asarray(when) != 0) & (first == 1), 2.0, first)  # the first that bears interest
-    interest = pmt * (last - bearing + 1) - owed_at_last + _owed_after(rate, bearing - 1, pmt, pv, when)
+    interest = pmt * (last - bearing + 1) - owed_at_last + _find_owed(rate, bearing - 1, pmt, pv, when)
     wrong = (rate <= 0) | (nper <= 0) | (pv <= 0) | (first < 1) | (last < first) | (last > nper)
     wrong = wrong | ((when != 0) & (when != 1))
     return np.where(wrong, NUM, interest), np.where(wrong, NUM, principal)
 
 
-def _owed_after(rate: Any, paid: Any, pmt: Any, pv: Any, when: Any) -> Floats:
-    """What is owed just after so many payments; the first of those due at the start falls on the day of the loan."""
+def _find_owed(rate: Any, paid: Any, pmt: Any, pv: Any, when: Any) -> Floats:
+    """What is owed just after `paid` payments; of those due at the start, the first falls on the day of the loan."""
     interest_periods = np.where((np.asarray(when) != 0) & (paid > 0), paid - 1, paid)
     return np.asarray(pv * growth(rate, interest_periods) + pmt * _accumulation(rate, paid))
 
@@ -163,16 +165,13 @@ def interest_between(rate: Any, nper: Any, pv: Any, first: Any, last: Any, when:
 
 @toolpak("CUMPRINC", Number, Number, Number, Number, Number, Number)
 def principal_between(rate: Any, nper: Any, pv: Any, first: Any, last: Any, when: Any) -> Floats:
-    """What is paid back from one period to another; `#NUM!` unless rate, periods and loan are above 0."""
+    """Principal paid from one period to another; `#NUM!` unless rate, periods and loan are above 0."""
     return _totals(rate, nper, pv, first, last, when)[1]
-
-
-_TENS: Final = np.array([float(f"1e{n}") for n in range(309)])
 
 
 @toolpak("EFFECT", Number, Number)
 def effective_rate(nominal: Any, npery: Any) -> Floats:
-    """Effective yearly rate of a nominal one that is compounded so many times a year."""
+    """Effective yearly rate of a nominal one that is compounded `npery` times a year."""
     wrong = (nominal <= 0) | (npery < 1)
     times = np.where(wrong, 1.0, np.floor(npery))
     return np.where(wrong, NUM, np.expm1(times * np.log1p(np.where(wrong, 0.0, nominal) / times)))
@@ -180,7 +179,7 @@ def effective_rate(nominal: Any, npery: Any) -> Floats:
 
 @toolpak("NOMINAL", Number, Number)
 def nominal_rate(effective: Any, npery: Any) -> Floats:
-    """Nominal yearly rate that, compounded so many times a year, comes to the effective one."""
+    """Nominal yearly rate that, compounded `npery` times a year, comes to the effective one."""
     wrong = (effective <= 0) | (npery < 1)
     times = np.where(wrong, 1.0, np.floor(npery))
     return np.where(wrong, NUM, np.expm1(np.log1p(np.where(wrong, 0.0, effective)) / times) * times)
@@ -219,27 +218,28 @@ def scheduled_growth(principal: Value, schedule: Value) -> Value:
     return Value.of_numbers(result, np.broadcast_to(errors, np.broadcast_shapes(result.shape, errors.shape)))
 
 
-def _hundredths(fraction: Any) -> tuple[Floats, Floats]:
+def _denominator_and_scale(fraction: Any) -> tuple[Floats, Floats]:
     """The denominator, whole, and the power of ten that holds its digits."""
     whole = np.where(np.asarray(fraction) < 1, 1.0, np.floor(fraction))
-    return whole, _TENS[np.minimum(np.searchsorted(_TENS, whole), _TENS.size - 1)]
+    return whole, TENS[np.minimum(np.searchsorted(TENS, whole), TENS.size - 1)]
 
 
-def _refused(fraction: Any, result: Floats) -> Floats:
+def _with_errors_of_fraction(fraction: Any, result: Floats) -> Floats:
+    """The result; `#NUM!` for a fraction below 0, `#DIV/0!` below 1."""
     return np.where(np.asarray(fraction) < 0, NUM, np.where(np.asarray(fraction) < 1, DIV0, result))
 
 
 @toolpak("DOLLARDE", Number, Number)
 def decimal_dollars(price: Any, fraction: Any) -> Floats:
     """A price whose digits behind the point are a numerator, such as 1.02 for 1 + 2/16, as a decimal number."""
-    whole, digits = _hundredths(fraction)
+    whole, digits = _denominator_and_scale(fraction)
     dollars = np.trunc(price)
-    return _refused(fraction, dollars + (price - dollars) * digits / whole)
+    return _with_errors_of_fraction(fraction, dollars + (price - dollars) * digits / whole)
 
 
 @toolpak("DOLLARFR", Number, Number)
 def fractional_dollars(price: Any, fraction: Any) -> Floats:
     """A decimal price with a numerator for the digits behind its point: 1.125 in 16ths is 1.02."""
-    whole, digits = _hundredths(fraction)
+    whole, digits = _denominator_and_scale(fraction)
     dollars = np.trunc(price)
-    return _refused(fraction, dollars + (price - dollars) * whole / digits)
+    return _with_errors_of_fraction(fraction, dollars + (price - dollars) * whole / digits)

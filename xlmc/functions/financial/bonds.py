@@ -4,8 +4,8 @@ Formulas as in Excel's documentation of PRICE, YIELD and DURATION: n coupons are
 period, and p = 1 + yield/frequency is what one unit grows to in a period.
 
 The first or the last coupon period may be odd (`ODDFPRICE`, `ODDLPRICE` and kin). A long period is cut into
-*quasi-coupon* periods, as the coupons would fall if they went on; in sums over them each counts by its own length. What
-Excel's documentation leaves open follows values that Excel computed.
+*quasi-coupon* periods, the periods there would be if the coupons went on; in sums each counts by its own length. Where
+Excel's documentation leaves a rule open, the rule was found from values that Excel computed.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ def annuity(log_growth: Floats, n: Any) -> Floats:
 
 
 class _Bond:
-    """What price and yield share: coupon, accrued interest and the share of a period to the next coupon."""
+    """What price and yield need both: coupon, accrued interest and the share of a period to the next coupon."""
 
     def __init__(self, settlement: Any, maturity: Any, rate: Any, redemption: Any, frequency: Any, basis: Any) -> None:
         coupons = Coupons(settlement, maturity, frequency, basis)
         self.refused = coupons.refused | (np.asarray(rate) < 0) | (np.asarray(redemption) <= 0)
-        self.a_year = 12 / months_between(frequency)
-        self.n, self.redemption, self.coupon = coupons.count, redemption, 100 * rate / self.a_year
+        self.per_year = 12 / months_between(frequency)
+        self.n, self.redemption, self.coupon = coupons.count, redemption, 100 * rate / self.per_year
         gone = coupons.days_before / coupons.days
         self.accrued, self.share = self.coupon * gone, 1 - gone
 
@@ -60,7 +60,7 @@ def price(
     """Price at a yield; `#NUM!` for negative rates."""
     bond = _Bond(settlement, maturity, rate, redemption, frequency, basis)
     wrong = bond.refused | (np.asarray(yield_) < 0)
-    return np.where(wrong, NUM, bond.price(np.log1p(np.where(wrong, 0.0, yield_) / bond.a_year)))
+    return np.where(wrong, NUM, bond.price(np.log1p(np.where(wrong, 0.0, yield_) / bond.per_year)))
 
 
 @toolpak("YIELD", Date, Date, Number, Number, Number, Number, Number(default=0.0))
@@ -71,10 +71,12 @@ def yield_to_maturity(
     bond = _Bond(settlement, maturity, rate, redemption, frequency, basis)
     wrong = bond.refused | (np.asarray(pr) <= 0)
     paid = np.where(wrong, 100.0, pr + bond.accrued)
-    guess = np.broadcast_to(_FIRST_GUESS / bond.a_year, np.broadcast_shapes(paid.shape, bond.n.shape, bond.share.shape))
+    guess = np.broadcast_to(
+        _FIRST_GUESS / bond.per_year, np.broadcast_shapes(paid.shape, bond.n.shape, bond.share.shape)
+    )
     per_period = growth_root(lambda x: bond.price(x) - pr, guess)
     last = ((bond.redemption + bond.coupon) / paid - 1) / bond.share
-    return np.where(wrong, NUM, np.where(bond.n == 1, last, per_period) * bond.a_year)
+    return np.where(wrong, NUM, np.where(bond.n == 1, last, per_period) * bond.per_year)
 
 
 def _duration(
@@ -83,18 +85,18 @@ def _duration(
     """Mean time of all payments in years, weighted by what they are worth; and what a unit grows to in a period."""
     coupons = Coupons(settlement, maturity, frequency, basis)
     wrong = coupons.refused | (np.asarray(coupon) < 0) | (np.asarray(yield_) < 0)
-    a_year = 12 / months_between(frequency)
-    grown = 1 + np.where(wrong, 0.0, yield_) / a_year
+    per_year = 12 / months_between(frequency)
+    grown = 1 + np.where(wrong, 0.0, yield_) / per_year
     share = 1 - coupons.days_before / coupons.days
     n = np.where(wrong, 0.0, coupons.count)
     last = share + n - 1
     worth, moment = 1 / growth(grown - 1, last), last / growth(grown - 1, last)
-    payment, factor = np.asarray(coupon) / a_year, 1 / growth(grown - 1, share)
+    payment, factor = np.asarray(coupon) / per_year, 1 / growth(grown - 1, share)
     for k in range(int(n.max())):
         due = np.where(k < n, payment * factor, 0.0)
         worth, moment = worth + due, moment + due * (share + k)
         factor = factor / grown
-    return np.where(wrong, NUM, moment / worth / a_year), grown
+    return np.where(wrong, NUM, moment / worth / per_year), grown
 
 
 @toolpak("DURATION", Date, Date, Number, Number, Number, Number(default=0.0))
@@ -111,12 +113,12 @@ def modified_duration(settlement: Any, maturity: Any, coupon: Any, yield_: Any, 
 
 
 def _days(start: Any, end: Any, basis: Any) -> Floats:
-    """Days between two dates, none if they come in the wrong order."""
+    """Days between two dates; 0 if the end comes before the start."""
     return np.maximum(days_between(start, end, basis), 0.0)
 
 
-def _is_of_true_days(basis: Any) -> Bools:
-    """Whether true days go with years of 360 or 365 days."""
+def _counts_true_days(basis: Any) -> Bools:
+    """Whether the basis counts true days in years of 360 or 365 days."""
     return np.asarray((np.floor(basis) == 2) | (np.floor(basis) == 3))
 
 
@@ -139,15 +141,17 @@ class _OddFirst:
         in_order = np.less(issue, settlement) & np.less(settlement, first) & np.less(first, maturity)
         wrong = ~in_order | ~is_frequency(frequency) | ~is_basis(basis)
         self.refused = wrong | (np.asarray(rate) < 0) | (np.asarray(redemption) < 0)
-        issue = np.where(self.refused, first, issue)  # where no time need be spent on its periods
-        self.a_year, self.redemption = 12 / months_between(frequency), redemption
-        self.coupon = 100 * rate / self.a_year
+        issue = np.where(self.refused, first, issue)  # refused trials get no periods: they take no time
+        self.per_year, self.redemption = 12 / months_between(frequency), redemption
+        self.coupon = 100 * rate / self.per_year
         self.coupons = Coupons(first, maturity, frequency, basis).count
         to_first = Coupons(settlement, first, frequency, basis)
         length, days = to_first.days, _days(issue, first, basis)
         short = days < length
         quasi_first, quasi_gone = _quasi_periods(to_first, issue)
-        left = np.where(_is_of_true_days(basis), _days(settlement, to_first.next, basis), length - to_first.days_before)
+        left = np.where(
+            _counts_true_days(basis), _days(settlement, to_first.next, basis), length - to_first.days_before
+        )
         self.first = np.where(short, days / length, quasi_first)
         self.gone = np.where(short, _days(issue, settlement, basis) / length, quasi_gone)
         self.ahead = np.where(short, _days(settlement, first, basis) / length, to_first.count - 1 + left / length)
@@ -160,7 +164,7 @@ class _OddFirst:
 
 
 def _quasi_periods(to_first: Coupons, issue: Any) -> tuple[Floats, Floats]:
-    """A long first period in normal ones: the whole of it, and what has gone of it at settlement."""
+    """The length of a long first period in normal periods, and how much of it has gone at settlement."""
     basis, length = to_first.basis, to_first.days
     count = Coupons(issue, to_first.maturity, to_first.frequency, basis).count
     whole = gone = np.zeros(1)
@@ -192,7 +196,7 @@ def odd_first_price(
     bond = _OddFirst((settlement, maturity, issue, first), rate, redemption, frequency, basis)
     in_step = Coupons(first, maturity, frequency, basis).previous == first
     wrong = bond.refused | ~in_step | (np.asarray(yield_) < 0)
-    return np.where(wrong, NUM, bond.price(np.log1p(np.where(wrong, 0.0, yield_) / bond.a_year)))
+    return np.where(wrong, NUM, bond.price(np.log1p(np.where(wrong, 0.0, yield_) / bond.per_year)))
 
 
 @toolpak("ODDFYIELD", Date, Date, Date, Date, Number, Number, Number, Number, Number(default=0.0))
@@ -211,7 +215,7 @@ def odd_first_yield(
     bond = _OddFirst((settlement, maturity, issue, first), rate, redemption, frequency, basis)
     shape = np.broadcast_shapes(bond.refused.shape, bond.gone.shape, bond.coupons.shape, np.shape(pr))
     per_period = growth_root(lambda x: bond.price(x) - pr, np.full(shape, 0.025))
-    return np.where(bond.refused | (np.asarray(pr) < 0), NUM, per_period * bond.a_year)
+    return np.where(bond.refused | (np.asarray(pr) < 0), NUM, per_period * bond.per_year)
 
 
 def _odd_last(
@@ -243,7 +247,7 @@ def _odd_last(
 
 
 def _long_days(start: Any, end: Any, basis: Any) -> Floats:
-    """As `_days`; by the US way the end of February is a 30th at both ends."""
+    """Days as `_days` counts them, but with US months of 30 days the end of February is a 30th at both ends."""
 
     def plain() -> Floats:
         return days_between(start, end, basis)

@@ -1,6 +1,6 @@
 """Coupon dates of bonds, the days around them, and the interest that has accrued since a bond's issue.
 
-Coupons fall due every 12/frequency months, counted back from maturity; where that is the end of a month, so are they.
+Coupons fall due every 12/frequency months, counted back from maturity; if that is the end of a month, all are.
 Dates are serials of the 1900 system.
 """
 
@@ -83,14 +83,14 @@ class Coupons:
     @property
     def days(self) -> Floats:
         """Length of the period by the day count."""
-        a_year = 12 / self._step
+        per_year = 12 / self._step
         return by_basis(
             self.basis,
-            lambda: 360 / a_year,
+            lambda: 360 / per_year,
             lambda: self.next - self.previous,
-            lambda: 360 / a_year,
-            lambda: 365 / a_year,
-            lambda: 360 / a_year,
+            lambda: 360 / per_year,
+            lambda: 365 / per_year,
+            lambda: 360 / per_year,
         )
 
     @property
@@ -129,7 +129,7 @@ def days_in_period(settlement: Any, maturity: Any, frequency: Any, basis: Any) -
 
 @toolpak("COUPDAYBS", Date, Date, Number, Number(default=0.0))
 def days_from_coupon(settlement: Any, maturity: Any, frequency: Any, basis: Any) -> Floats:
-    """Days from the coupon before settlement to it."""
+    """Days from the coupon before settlement to settlement."""
     coupons = Coupons(settlement, maturity, frequency, basis)
     return np.where(coupons.refused, NUM, coupons.days_before)
 
@@ -163,12 +163,12 @@ def next_coupon(settlement: Any, maturity: Any, frequency: Any, basis: Any) -> F
 
 
 class _Schedule:
-    """Coupon dates that would be, numbered from the first coupon on, which is number 0."""
+    """Coupon dates without end, before the first coupon too, which is number 0."""
 
     def __init__(self, first: Any, frequency: Any, basis: Any) -> None:
         self._first, self._to_end, self._basis = first, is_month_end(first), basis
         self._step = months_between(frequency)
-        self.a_year = 12 / self._step
+        self.per_year = 12 / self._step
 
     def date(self, number: Any) -> Floats:
         return months_later(self._first, number * self._step, self._to_end)
@@ -181,25 +181,25 @@ class _Schedule:
 
     def length(self, number: Any) -> Floats:
         """Length of the period from a coupon to the next by the day count."""
-        a_year = self.a_year
+        per_year = self.per_year
         return by_basis(
             self._basis,
-            lambda: 360 / a_year,
+            lambda: 360 / per_year,
             lambda: self.date(number + 1) - self.date(number),
-            lambda: 360 / a_year,
-            lambda: 365 / a_year,
-            lambda: 360 / a_year,
+            lambda: 360 / per_year,
+            lambda: 365 / per_year,
+            lambda: 360 / per_year,
         )
 
     def counted_length(self, number: Any) -> Floats:
-        """The same as Excel has it for the period of the issue: by the dates, but with months of 30 days."""
+        """The same length as Excel counts it for the period of the issue: by the dates, with months of 30 days."""
         start, end = self.date(number), self.date(number + 1)
         return by_basis(
             self._basis,
             lambda: us_360(start, end, end_too=True),
             lambda: end - start,
             lambda: us_360(start, end),
-            lambda: 365 / self.a_year,
+            lambda: 365 / self.per_year,
             lambda: european_360(start, end),
         )
 
@@ -210,8 +210,8 @@ def accrued_interest(
 ) -> Floats:
     """Interest accrued from issue to settlement, period by period.
 
-    Without `from_issue`, and settled after the first coupon, only from that on. `#NUM!` unless rate and par are above
-    0.
+    Without `from_issue`, a bond settled after its first coupon accrues only from there. `#NUM!` unless rate and par
+    are above 0.
     """
     wrong = np.greater_equal(issue, settlement) | ~is_frequency(frequency) | ~is_basis(basis)
     wrong = wrong | (np.asarray(rate) <= 0) | (np.asarray(par) <= 0)
@@ -226,4 +226,4 @@ def accrued_interest(
     whole = schedule.date(first_period) == begin
     at_begin = np.where(whole, 1.0, days_between(begin, next_date, basis) / schedule.counted_length(first_period))
     before = np.where(first_period < last, last - first_period - 1 + at_begin, 0.0)
-    return np.where(wrong, NUM, par * rate / schedule.a_year * (before + at_end))
+    return np.where(wrong, NUM, par * rate / schedule.per_year * (before + at_end))

@@ -1,4 +1,4 @@
-"""What an asset loses in value, period by period; at the end by French accounting rules.
+"""What an asset loses in value, period by period; the last functions follow French accounting rules.
 
 Letters of the formulas: C cost, S salvage value, L life, r = factor/L the declining rate. Time runs from 0 to L; within
 a period the loss is spread evenly.
@@ -15,7 +15,7 @@ import numpy as np
 
 from xlmc.functions.dates.calendar import parts_of
 from xlmc.functions.dates.day_count import by_basis, days_between, is_basis, is_leap_year
-from xlmc.functions.math.arithmetic import powered
+from xlmc.functions.math.arithmetic import raise_to_power
 from xlmc.functions.registry import Logical, Number, excel
 from xlmc.functions.toolpak import Date, toolpak
 from xlmc.functions.values import DIV0, NUM, Bools, Floats
@@ -23,7 +23,7 @@ from xlmc.functions.values import DIV0, NUM, Bools, Floats
 __all__: list[str] = []
 
 _MOST_PERIODS: Final = 2.0**53
-"""So many a double can count."""
+"""A double counts up to here."""
 
 
 @excel("SLN", Number, Number, Number)
@@ -43,31 +43,31 @@ def sum_of_years(cost: Any, salvage: Any, life: Any, per: Any) -> Floats:
 
 @excel("DB", Number, Number, Number, Number, Number(default=12.0))
 def fixed_declining(cost: Any, salvage: Any, life: Any, period: Any, month: Any) -> Floats:
-    """Loss at a fixed rate, 1 - (S/C)^(1/L) to three decimals; `month` is how many months the first year has."""
+    """Loss at a fixed rate, 1 - (S/C)^(1/L) to three decimals; the first year has `month` months."""
     cost, salvage, life = (np.asarray(x, np.float64) for x in (cost, salvage, life))
     whole, months = np.floor(period), np.floor(month)
     years = np.floor(life) + (months < 12)
     wrong = (cost < 0) | (salvage < 0) | (life <= 0) | (whole < 1) | (whole > years) | (months < 1) | (months > 12)
     gone = wrong | (cost == 0)
-    kept = powered(salvage / np.where(gone, 1.0, cost), 1 / np.where(gone, 1.0, life))
+    kept = raise_to_power(salvage / np.where(gone, 1.0, cost), 1 / np.where(gone, 1.0, life))
     rate = np.floor((1 - kept) * 1000 + 0.5) / 1000
     first = cost * rate * months / 12
-    later = (cost - first) * powered(1 - rate, np.maximum(whole - 2, 0.0)) * rate
+    later = (cost - first) * raise_to_power(1 - rate, np.maximum(whole - 2, 0.0)) * rate
     last = np.where(whole > life, (12 - months) / 12, 1.0)
     return np.where(wrong, NUM, np.where(gone, 0.0, np.where(whole == 1, first, later * last)))
 
 
-def _refused(cost: Any, salvage: Any, life: Any, factor: Any) -> Bools:
+def _is_refused(cost: Any, salvage: Any, life: Any, factor: Any) -> Bools:
     below = (np.asarray(cost) < 0) | (np.asarray(salvage) < 0)
     return np.asarray(below | (np.asarray(life) <= 0) | (np.asarray(factor) <= 0))
 
 
 @excel("DDB", Number, Number, Number, Number, Number(default=2.0))
 def double_declining(cost: Any, salvage: Any, life: Any, period: Any, factor: Any) -> Floats:
-    """Loss at the rate factor/L of what is left, never below the salvage value; parts of the first period count as all
-    of it.
+    """Loss at the rate factor/L of what is left, never below the salvage value; a part of the first period counts
+    as the whole period.
     """
-    wrong = _refused(cost, salvage, life, factor) | (np.asarray(period) <= 0) | np.greater(period, life)
+    wrong = _is_refused(cost, salvage, life, factor) | (np.asarray(period) <= 0) | np.greater(period, life)
     asset = _Declining(cost, salvage, np.where(wrong, 1.0, life), np.where(wrong, 1.0, factor))
     end = np.where(wrong, 1.0, np.maximum(period, 1.0))
     start = np.where(end < 2, 0.0, end - 1)
@@ -78,11 +78,10 @@ def double_declining(cost: Any, salvage: Any, life: Any, period: Any, factor: An
 def variable_declining(cost: Any, salvage: Any, life: Any, start: Any, end: Any, factor: Any, no_switch: Any) -> Floats:
     """Loss between two times, declining; unless `no_switch`, in equal parts as soon as these are more.
 
-    With the switch, Excel counts whole periods from `start`: what comes before is a part of a first period and whole
-    ones.
+    With the switch, Excel counts whole periods from `start`, so that the time before it begins with a part of a period.
     """
     start, end = np.asarray(start, np.float64), np.asarray(end, np.float64)
-    wrong = _refused(cost, salvage, life, factor) | (start < 0) | (end < start) | np.greater(end, life)
+    wrong = _is_refused(cost, salvage, life, factor) | (start < 0) | (end < start) | np.greater(end, life)
     start, end = np.where(wrong, 0.0, start), np.where(wrong, 0.0, end)
     switches = ~np.asarray(no_switch, bool)
     part = np.where(switches, start - np.floor(start), 0.0)
@@ -111,7 +110,7 @@ class _Declining:
     def _after(self, periods: Floats) -> Floats:
         """The value at the end of the shortened period and so many whole ones."""
         kept = np.maximum(1 - self._rate, 0.0)
-        grown = self._after_part * powered(kept, periods)
+        grown = self._after_part * raise_to_power(kept, periods)
         return np.where(self._after_part > self._salvage, np.maximum(grown, self._salvage), self._after_part)
 
     def left(self, time: Floats) -> Floats:
@@ -123,7 +122,7 @@ class _Declining:
         return np.where(since < 0, self._cost - time * self._loss(self._cost), later)
 
     def left_switching(self, time: Floats) -> Floats:
-        """The value at a time when the asset goes over to equal losses as soon as these are more."""
+        """The value at a time, if the asset changes to equal losses as soon as these are more."""
         switch = self._switch()
         value = self.left(switch)
         ahead = np.maximum(self._life - switch, np.finfo(float).tiny)
@@ -131,7 +130,7 @@ class _Declining:
         return np.where((time <= switch) | (value <= self._salvage), self.left(time), even)
 
     def _switch(self) -> Floats:
-        """The first end of a period from which on equal losses are more than declining ones; the end of life if none.
+        """The end of the first period after which equal losses are more than declining ones; the end of life if none.
 
         With V(t) the declining value, equal losses are more where factor·(1 - t/L) + S/V(t) < 1. The left side is
         convex in t, so that up to its lowest point it falls, and halving finds that period.
@@ -152,7 +151,7 @@ class _Declining:
         return self._is_less(self._after(periods), self._life - self._part - periods)
 
     def _is_less(self, value: Floats, ahead: Floats) -> Bools:
-        """Whether a value loses less by declining than in equal parts over the time ahead."""
+        """Whether a value loses less by the rate than in equal parts over the time ahead."""
         return np.asarray((self._loss(value) * ahead < value - self._salvage) & (ahead > 0))
 
     def _lowest(self) -> Floats:
@@ -164,7 +163,7 @@ class _Declining:
         return np.where(some, period_before, np.where(self._salvage > 0, 0.0, np.inf))
 
 
-def _refused_french(cost: Any, salvage: Any, bought: Any, first: Any, period: Any, rate: Any, basis: Any) -> Bools:
+def _is_refused_french(cost: Any, salvage: Any, bought: Any, first: Any, period: Any, rate: Any, basis: Any) -> Bools:
     below = (np.asarray(salvage) < 0) | (np.asarray(period) < 0) | (np.asarray(rate) <= 0)
     wrong_basis = ~is_basis(basis) | (np.floor(basis) == 2)
     return np.asarray(below | np.less(cost, salvage) | np.greater(bought, first) | wrong_basis)
@@ -174,12 +173,12 @@ def _first_loss(cost: Any, bought: Any, first: Any, rate: Any, basis: Any) -> Fl
     """Loss from the day of purchase to the end of the first period, at a rate a year; 0 where they are one day."""
     true_year = np.where(is_leap_year(parts_of(bought)[0]), 366.0, 365.0)
     year = by_basis(basis, lambda: 360.0, lambda: true_year, lambda: 360.0, lambda: 365.0, lambda: 360.0)
-    days = days_between(_not_leap_day(bought, basis), _not_leap_day(first, basis), basis)
+    days = days_between(_leap_day_as_28th(bought, basis), _leap_day_as_28th(first, basis), basis)
     return np.asarray(days / year * rate * cost)
 
 
-def _not_leap_day(serial: Any, basis: Any) -> Floats:
-    """Where days are counted truly, 29 February counts as the 28th."""
+def _leap_day_as_28th(serial: Any, basis: Any) -> Floats:
+    """The date, but 29 February as the 28th where the basis counts true days."""
     _, month, day = parts_of(serial)
     true_days = (np.floor(basis) == 1) | (np.floor(basis) == 3)
     return np.where(true_days & (month == 2) & (day == 29), np.asarray(serial) - 1, serial)
@@ -188,7 +187,7 @@ def _not_leap_day(serial: Any, basis: Any) -> Floats:
 @toolpak("AMORLINC", Number, Date, Date, Number, Number, Number, Number(default=0.0))
 def linear(cost: Any, bought: Any, first: Any, salvage: Any, period: Any, rate: Any, basis: Any) -> Floats:
     """The same loss in each period, down to the salvage value."""
-    wrong = _refused_french(cost, salvage, bought, first, period, rate, basis)
+    wrong = _is_refused_french(cost, salvage, bought, first, period, rate, basis)
     yearly = np.multiply(cost, np.where(wrong, 1.0, rate))
     to_lose = np.subtract(cost, salvage)
     at_first = _first_loss(cost, bought, first, rate, basis)
@@ -199,42 +198,42 @@ def linear(cost: Any, bought: Any, first: Any, salvage: Any, period: Any, rate: 
     return np.where(wrong, NUM, np.where(gone, 0.0, np.where(np.asarray(period) == 0, at_first, later)))
 
 
-def _factor(life: Floats) -> Floats:
-    """By how much the rate is raised: 1.5 for assets of 3 or 4 years, 2 for 5 or 6, 2.5 beyond."""
+def _rate_factor(life: Floats) -> Floats:
+    """The factor on the rate: 1.5 for assets of 3 or 4 years, 2 for 5 or 6, 2.5 beyond."""
     return np.select([life > 6, life >= 5, life >= 3], [2.5, 2.0, 1.5], 1.0)
 
 
 def _to_whole(x: Floats) -> Floats:
-    """To the nearest whole number, halves upwards, as Excel sees them in the first 13 digits."""
+    """Round to the nearest whole number, halves upwards; what is a half in its first 13 digits counts as one."""
     return np.asarray(np.floor(x * (1 + 1e-13) + 0.5))
 
 
 @toolpak("AMORDEGRC", Number, Date, Date, Number, Number, Number, Number(default=0.0))
 def degressive(cost: Any, bought: Any, first: Any, salvage: Any, period: Any, rate: Any, basis: Any) -> Floats:
-    """A loss at a raised rate of what is left, to whole numbers; half of what is left in the last period but one, and
-    all of it in the last. `#NUM!` for assets of less than 3 years, or of 4 to 5.
+    """A loss at a raised rate of what is left, in whole numbers; the last period but one takes half of what is left,
+    and the last takes all. `#NUM!` for assets of less than 3 years, or of 4 to 5.
     """
-    wrong = _refused_french(cost, salvage, bought, first, period, rate, basis)
+    wrong = _is_refused_french(cost, salvage, bought, first, period, rate, basis)
     years = 1 / np.where(wrong, 1.0, rate)
     wrong = wrong | (years <= 3) | ((years >= 4) & (years <= 5))
     life = np.ceil(years)
-    raised = np.where(wrong, 0.5, rate) * _factor(life)
+    raised = np.where(wrong, 0.5, rate) * _rate_factor(life)
     at_first = _first_loss(cost, bought, first, raised, basis)
     life = np.where(at_first == 0, life, life + 1)
     at_first = np.where(at_first == 0, np.multiply(cost, raised), at_first)
     at_first = _to_whole(np.minimum(at_first, np.subtract(cost, salvage)))
-    later = _degressed(cost - at_first, salvage, raised, life, np.floor(period))
+    later = _degressive_loss(cost - at_first, salvage, raised, life, np.floor(period))
     gone = np.greater(period, np.ceil(years)) | np.equal(cost, salvage)
     return np.where(wrong, NUM, np.where(gone, 0.0, np.where(np.asarray(period) == 0, at_first, _to_whole(later))))
 
 
-def _degressed(value: Floats, salvage: Any, rate: Floats, life: Floats, period: Floats) -> Floats:
+def _degressive_loss(value: Floats, salvage: Any, rate: Floats, life: Floats, period: Floats) -> Floats:
     """Loss in a period from 1 on, of an asset that starts it at `value`; 0 before.
 
-    The value falls by the rate in each period until it lies below the salvage value, from when on nothing is lost.
+    The value falls by the rate in each period until it lies below the salvage value; then nothing more is lost.
     """
-    half = life - 3  # the period in which half of the value goes: the last but one, of those after the first
-    declined = value * powered(np.maximum(1 - rate, 0.0), np.clip(period - 1, 0.0, half - 1))
+    half = life - 3  # the last period but one, which takes half of the value; counted without the first period
+    declined = value * raise_to_power(np.maximum(1 - rate, 0.0), np.clip(period - 1, 0.0, half - 1))
     before = np.where(period > half, declined / 2, declined)
     share = np.select([period < half, period == half, period == half + 1], [rate, 0.5, 1.0], 0.0)
     return np.where((period < 1) | (before < salvage), 0.0, before * share)

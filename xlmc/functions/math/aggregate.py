@@ -9,26 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import errors_unless_range, first_error, with_errors
+from xlmc.functions.arguments import errors_unless_range, first_error, first_error_in_row, with_errors
 from xlmc.functions.denormals import TINIEST
 from xlmc.functions.facts import EmptyCells, Facts, Repeats
+from xlmc.functions.lookup.picked_cells import Indices, flatten_cells
 from xlmc.functions.registry import REGISTRY, Arrays, Cells, Function, Kind, Number, Numbers, excel
-from xlmc.functions.values import BLANK, DIV0, ERROR, NUM, NUMBER, TEXT, Bools, Codes, Floats, Value, constant
+from xlmc.functions.samples import row_sums, sample_of
+from xlmc.functions.values import BLANK, DIV0, ERROR, NUM, NUMBER, TEXT, Bools, Floats, Value, constant
 
 __all__ = ["SO_FAR"]
-
-Indices = NDArray[np.intp]
-
-
-def _total(x: Floats) -> Floats:
-    """Sums of the rows: (n, k) -> (n,)."""
-    return np.asarray(np.add.accumulate(x, axis=1)[:, -1])
 
 
 @excel(
@@ -46,7 +40,7 @@ def _total(x: Floats) -> Floats:
 )
 def sum_(x: Floats, counts: Bools) -> Floats:
     """Sum."""
-    return _total(np.where(counts, x, 0.0))
+    return row_sums(np.where(counts, x, 0.0))
 
 
 @excel(
@@ -56,7 +50,7 @@ def sum_(x: Floats, counts: Bools) -> Floats:
     facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.NUMBERS_COUNT, measures=True),
 )
 def product(x: Floats, counts: Bools) -> Floats:
-    """Product; 0 of nothing, and from where it is too small a number on."""
+    """Product; 0 of nothing, and 0 from the first partial product on that is too small a number for Excel."""
     so_far = np.multiply.accumulate(np.where(counts, x, 1.0), axis=1)
     vanished = (np.abs(so_far) < TINIEST).any(axis=1)
     return np.where(counts.any(axis=1) & ~vanished, so_far[:, -1], 0.0)
@@ -114,10 +108,10 @@ def _picked(ordered: Floats, indices: Indices) -> Floats:
 
 
 def _variance(x: Floats, counts: Bools, lost: int) -> tuple[Floats, Bools]:
-    """Mean squared distance from the mean, by k - `lost`, and whether there are enough numbers for it: (n,), (n,)."""
+    """Sum of the squared distances from the mean, divided by k - `lost`; and whether k is large enough: (n,), (n,)."""
     k = counts.sum(axis=1)
     distance = np.where(counts, x - (sum_(x, counts) / k)[:, None], 0.0)
-    return _total(distance * distance) / (k - lost), k > lost
+    return row_sums(distance * distance) / (k - lost), k > lost
 
 
 @excel(
@@ -168,21 +162,8 @@ def population_deviation(x: Floats, counts: Bools) -> Floats:
     return np.where(enough, np.sqrt(variance), DIV0)
 
 
-def _rows(array: NDArray[Any], value: Value) -> NDArray[Any]:
-    """An array that broadcasts to `value`, one row per trial: (n,) or (n, r, c) -> (n, k)."""
-    return np.broadcast_to(array, value.shape).reshape(value.shape[0], -1)
-
-
-def _numbers(value: Value) -> tuple[Floats, Bools, Codes]:
-    """The numbers of a range, or what is given directly as one; which cells count; their errors: (n, k) each."""
-    in_range = value.numbers.ndim == 3
-    x, errors = (value.numbers, value.errors) if in_range else value.to_numbers()
-    counts = value.kinds == NUMBER if in_range else errors == 0
-    return _rows(x, value), _rows(counts, value), _rows(errors, value)
-
-
 def _how_many(parts: Iterable[Bools]) -> Floats:
-    """How many cells count in each trial: (n, k), (n, k'), … -> (n,)."""
+    """The number of cells that count, in each trial: (n, k), (n, k'), … -> (n,)."""
     total = np.zeros(1)
     for counts in parts:
         total = total + counts.sum(axis=1)
@@ -196,7 +177,7 @@ def _how_many(parts: Iterable[Bools]) -> Floats:
 )
 def count(*values: Value) -> Floats:
     """How many are numbers; given directly, also logicals and the texts of numbers. Errors do not count."""
-    return _how_many(_numbers(value)[1] for value in values)
+    return _how_many(sample_of(value).counts for value in values)
 
 
 @excel(
@@ -206,7 +187,7 @@ def count(*values: Value) -> Floats:
 )
 def count_anything(*values: Value) -> Floats:
     """How many are not blank; an argument left out between commas counts, as in Excel."""
-    return _how_many(_rows((value.kinds != BLANK) | (value.numbers.ndim < 3), value) for value in values)
+    return _how_many(flatten_cells((value.kinds != BLANK) | (value.numbers.ndim < 3), value) for value in values)
 
 
 @excel("COUNTBLANK", Cells)
@@ -215,16 +196,7 @@ def count_blank(cells: Value) -> Value:
     empty = np.asarray(cells.kinds == BLANK)
     if cells.texts is not None:
         empty = empty | ((cells.kinds == TEXT) & (cells.texts == ""))
-    return Value.of_numbers(_how_many([_rows(empty, cells)]), errors_unless_range(cells))
-
-
-def _first(errors: Iterable[Codes]) -> Codes:
-    """The first error of each trial, 0 for none: (n, k), (n, k'), … -> (n,)."""
-    first = np.zeros(1, np.uint8)
-    for codes in errors:
-        found = np.take_along_axis(codes, (codes > 0).argmax(axis=1, keepdims=True), axis=1)[:, 0]
-        first = np.where(first > 0, first, found)
-    return first
+    return Value.of_numbers(_how_many([flatten_cells(empty, cells)]), errors_unless_range(cells))
 
 
 @excel(
@@ -246,20 +218,21 @@ def sum_product(*values: Value) -> Value:
     for cells in ranges:
         products = products * np.where(cells.kinds == NUMBER, cells.numbers, 0.0)
         refused = (cells.kinds == TEXT) & (shapes == {(1, 1)})
-        errors.append(_rows(np.where(refused, np.uint8(ErrorCode.VALUE), cells.errors), cells))
-    return Value.of_numbers(_total(products.reshape(products.shape[0], -1)), _first(errors))
+        errors.append(
+            first_error_in_row(flatten_cells(np.where(refused, np.uint8(ErrorCode.VALUE), cells.errors), cells))
+        )
+    return Value.of_numbers(row_sums(products.reshape(products.shape[0], -1)), first_error(*errors))
 
 
 def _ranked(values: Value, rank: Value, index_of: Callable[[Floats, Indices], Floats]) -> Value:
     """The numbers at `index_of(rank, k)` in rising order, in the shape of `rank`; `#NUM!` where there is none."""
-    x, counts, own = _numbers(values)
-    ordered, k = _ordered(x, counts)
-    ranks, errors = (_rows(array, rank) for array in rank.to_numbers())
+    sample = sample_of(values)
+    ordered, k = _ordered(sample.x, sample.counts)
+    ranks, errors = (flatten_cells(array, rank) for array in rank.to_numbers())
     indices = index_of(ranks, k[:, None])
     inside = (indices >= 0) & (indices < k[:, None])
     result = np.where(inside, _picked(ordered, np.where(inside, indices, 0).astype(np.intp)), NUM)
-    first = _first([own])[:, None]
-    errors = np.broadcast_to(np.where(first > 0, first, errors), result.shape)
+    errors = np.broadcast_to(first_error(sample.errors[:, None], errors), result.shape)
     shape = (result.shape[0], *rank.shape[1:])
     return Value.of_numbers(result.reshape(shape), errors.reshape(shape))
 
@@ -297,7 +270,7 @@ SO_FAR: Final[Mapping[str, Function]] = {
     )
     for name in ("MAX", "MIN", "PRODUCT")
 }
-"""Functions of the numbers so far, by the name of Excel's function: blank while there are none.
+"""Functions of the numbers so far, by the name of Excel's function; they give a blank while there are no numbers.
 
 Excel gives 0 for the largest, the smallest or the product of no numbers at all; 0 would count when more cells follow.
 """

@@ -1,4 +1,4 @@
-"""Signs, roots, powers, logarithms and remainders; `powered` gives one trial what it gives many."""
+"""Signs, roots, powers, logarithms and remainders; `raise_to_power` gives one trial what it gives many."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ import numpy as np
 
 from xlmc.functions.facts import Domain, EmptyCells, Facts, Repeats
 from xlmc.functions.registry import Number, Numbers, Ranges, excel
+from xlmc.functions.samples import row_sums
 from xlmc.functions.values import DIV0, NUM, Bools, Floats
 
-__all__ = ["powered"]
+__all__ = ["raise_to_power"]
 
 _ONE_CELL: Final = Number(ranges=Ranges.ONE_CELL)
 _FACTORIALS: Final = np.array([float(math.factorial(n)) for n in range(171)])
@@ -44,7 +45,8 @@ def log(x: Floats, base: Floats) -> Floats:
 def mod(x: Floats, divisor: Floats) -> Floats:
     """Remainder, with the sign of the divisor; `#DIV/0!` by zero.
 
-    It is that of the doubles, as in Excel since 2010: `MOD(10, 0.1)` is nearly 0.1, for 0.1 is a little more than that.
+    It is exact for the doubles, as in Excel since 2010: `MOD(10, 0.1)` is nearly 0.1, for the double 0.1 is a little
+    more than a tenth.
     """
     return np.where(divisor == 0, DIV0, np.remainder(x, divisor))
 
@@ -65,10 +67,10 @@ def fact(x: Floats) -> Floats:
 @excel("SUMSQ", Numbers, facts=Facts(empty_cells=EmptyCells.IGNORED, repeats=Repeats.ADD_UP, measures=True))
 def sum_of_squares(x: Floats, counts: Bools) -> Floats:
     """Sum of the squares, from left to right."""
-    return np.asarray(np.add.accumulate(np.where(counts, x * x, 0.0), axis=1)[:, -1])
+    return row_sums(np.where(counts, x * x, 0.0))
 
 
-def powered(base: Any, exponent: Any) -> Floats:
+def raise_to_power(base: Any, exponent: Any) -> Floats:
     """`base` to the power of `exponent`, both of at least one axis; NaN for a negative base and a fraction.
 
     Where the exponent is one number for all trials, NumPy squares, inverts and takes square roots by other means than

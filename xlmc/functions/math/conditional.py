@@ -20,7 +20,7 @@ from xlmc.functions.math.aggregate import average, maximum, minimum, sum_
 from xlmc.functions.registry import Anything, Cells, excel
 from xlmc.functions.values import BLANK, NUMBER, Bools, Floats, Value, constant
 
-__all__ = ["Reduce", "numbers_held"]
+__all__ = ["Reduce", "fold_of_numbers"]
 
 Reduce = Callable[[Value, Bools], Value]
 """One number per trial, from a range (n, r, c) and which of its cells, (n, k), meet all criteria."""
@@ -30,8 +30,8 @@ def _count(cells: Value, held: Bools) -> Value:
     return Value.of_numbers(held.sum(axis=1).astype(np.float64))
 
 
-def numbers_held(fold: Callable[[Floats, Bools], Floats]) -> Reduce:
-    """A fold of the numbers among the cells; an error among them is the result."""
+def fold_of_numbers(fold: Callable[[Floats, Bools], Floats]) -> Reduce:
+    """Make a `Reduce` of a function of numbers: it takes the numbers among the cells, and gives an error among them."""
 
     def reduce(cells: Value, held: Bools) -> Value:
         counts = held & (flatten_cells(cells.kinds, cells) == NUMBER)
@@ -41,10 +41,10 @@ def numbers_held(fold: Callable[[Floats, Bools], Floats]) -> Reduce:
     return reduce
 
 
-_SUM: Final = numbers_held(sum_)
-_AVERAGE: Final = numbers_held(average)
-_MAXIMUM: Final = numbers_held(maximum)
-_MINIMUM: Final = numbers_held(minimum)
+_SUM: Final = fold_of_numbers(sum_)
+_AVERAGE: Final = fold_of_numbers(average)
+_MAXIMUM: Final = fold_of_numbers(maximum)
+_MINIMUM: Final = fold_of_numbers(minimum)
 
 
 def _conditional(values: Value, pairs: Sequence[Value], reduce: Reduce, date1904: bool) -> Value:
@@ -74,8 +74,8 @@ def _conditional(values: Value, pairs: Sequence[Value], reduce: Reduce, date1904
     return with_errors(arrange(results, *shape), errors.reshape(-1, 1, 1))
 
 
-def _beside(values: Value | None, cells: Value, criterion: Value, reduce: Reduce, date1904: bool) -> Value:
-    """Reduce the range beside the cells, taken in their size; or the cells themselves."""
+def _reduce_beside(values: Value | None, cells: Value, criterion: Value, reduce: Reduce, date1904: bool) -> Value:
+    """Reduce the range `values`, cut or extended to the size of `cells`; or the cells themselves."""
     if values is None:
         return _conditional(cells, (cells, criterion), reduce, date1904)
     _, rows, columns = cells.as_range().shape
@@ -85,10 +85,10 @@ def _beside(values: Value | None, cells: Value, criterion: Value, reduce: Reduce
 
 
 def _resized(values: Value, rows: int, columns: int) -> Value:
-    """A range from its top left cell in another size.
+    """The range that has the same top left cell and another size.
 
-    What it lacks is taken for empty: Excel goes on to the cells below and to the right, so that the caller gives the
-    range in its full size, as far as the used part of the sheet goes.
+    Cells that it lacks count as empty. Excel goes on to the cells below and to the right, so the caller gives the range
+    in its full size, as far as the used part of the sheet goes.
     """
     cut = map_parts(values, lambda part: part[:, :rows, :columns])
     edges = ((0, 0), (0, rows - cut.shape[1]), (0, columns - cut.shape[2]))
@@ -111,7 +111,7 @@ def count_ifs(*pairs: Value, date1904: bool = False) -> Value:
 @excel("SUMIF", Cells, Anything, Cells(default=None), dated=True, facts=Facts(empty_cells=EmptyCells.IGNORED))
 def sum_if(cells: Value, criterion: Value, values: Value | None = None, *, date1904: bool = False) -> Value:
     """Sum of the numbers beside the cells that meet the criterion, or of these cells."""
-    return _beside(values, cells, criterion, _SUM, date1904)
+    return _reduce_beside(values, cells, criterion, _SUM, date1904)
 
 
 @excel(
@@ -125,7 +125,7 @@ def sum_ifs(values: Value, *pairs: Value, date1904: bool = False) -> Value:
 @excel("AVERAGEIF", Cells, Anything, Cells(default=None), dated=True, facts=Facts(empty_cells=EmptyCells.IGNORED))
 def average_if(cells: Value, criterion: Value, values: Value | None = None, *, date1904: bool = False) -> Value:
     """Mean of the numbers beside the cells that meet the criterion, or of these cells; `#DIV/0!` of none."""
-    return _beside(values, cells, criterion, _AVERAGE, date1904)
+    return _reduce_beside(values, cells, criterion, _AVERAGE, date1904)
 
 
 @excel(

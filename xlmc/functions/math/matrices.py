@@ -1,4 +1,4 @@
-"""Matrices, one of each trial: (n, r, c); and sums over pairs of cells and of a power series.
+"""Matrices, one for each trial: (n, r, c); sums over pairs of cells; and the sum of a power series.
 
 Letters: n trials, k cells of a range. A cell of a matrix that is no number, a blank too, makes the result `#VALUE!`.
 """
@@ -25,6 +25,7 @@ from xlmc.functions.budget import ask_for_cells, ask_for_work
 from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.lookup.picked_cells import cell_of, flatten_cells, transpose_cells
 from xlmc.functions.registry import Anything, Arrays, Cells, Kind, Ranges, excel
+from xlmc.functions.samples import row_sums
 from xlmc.functions.toolpak import OneCell, strict_numbers
 from xlmc.functions.values import BLANK, DIV0, ERROR, NUM, NUMBER, Codes, Floats, Value, constant
 
@@ -35,7 +36,7 @@ _WIDEST: Final = 16384
 
 
 def _matrix(value: Value) -> tuple[Floats, Codes]:
-    """The numbers, and the first error of each trial, as it is spread over a matrix: (n, r, c), (n, 1, 1)."""
+    """The numbers, and the first error of each trial, which broadcasts over the matrix: (n, r, c), (n, 1, 1)."""
     cells = value.as_range()
     other = np.where(cells.kinds >= ERROR, cells.kinds - np.uint8(ERROR), np.uint8(ErrorCode.VALUE))
     codes = np.where(cells.kinds == NUMBER, np.uint8(0), other).astype(np.uint8)
@@ -68,7 +69,7 @@ def determinant(matrix: Value) -> Value:
     a, errors = _matrix(matrix)
     if a.shape[1] != a.shape[2]:
         return constant(ErrorCode.VALUE)
-    work, sign = _eliminated(a)
+    work, sign = _eliminate(a)
     pivots = np.diagonal(work, axis1=1, axis2=2)
     return Value.of_numbers(sign * np.multiply.accumulate(pivots, axis=1)[:, -1], errors[:, 0, 0])
 
@@ -80,14 +81,16 @@ def inverse(matrix: Value) -> Value:
     size = a.shape[1]
     if size != a.shape[2]:
         return constant(ErrorCode.VALUE)
-    work, _ = _eliminated(np.concatenate([a, np.broadcast_to(np.eye(size), a.shape)], axis=2))
+    work, _ = _eliminate(np.concatenate([a, np.broadcast_to(np.eye(size), a.shape)], axis=2))
     pivots = np.diagonal(work, axis1=1, axis2=2)[:, :, None]
     regular = (pivots != 0).all(axis=1, keepdims=True)
     return Value.of_numbers(np.where(regular, work[:, :, size:] / pivots, NUM), errors)
 
 
-def _eliminated(matrix: Floats) -> tuple[Floats, Floats]:
-    """The matrix with its first columns made a diagonal, and the sign that exchanging rows brought: (n, r, c), (n,).
+def _eliminate(matrix: Floats) -> tuple[Floats, Floats]:
+    """Make a diagonal of the matrix's first columns; the sign is -1 where an odd number of rows was exchanged.
+
+    Shapes: (n, r, c) -> (n, r, c), (n,).
 
     Gauss and Jordan's elimination; the pivot is the largest of its column, as in LAPACK.
     """
@@ -133,13 +136,13 @@ def _cells(value: Value) -> tuple[Floats, Codes]:
     return flatten_cells(value.numbers, value), flatten_cells(value.kinds, value)
 
 
-def _over_pairs(x: Value, y: Value, term: Callable[[Floats, Floats], Floats]) -> Value:
+def _sum_over_pairs(x: Value, y: Value, term: Callable[[Floats, Floats], Floats]) -> Value:
     """Sum of `term` over the pairs in which both are numbers; `#N/A` for unequal counts, `#DIV/0!` of no pair."""
     (left, left_kinds), (right, right_kinds) = _cells(x), _cells(y)
     if left.shape[1] != right.shape[1]:
         return with_errors(constant(ErrorCode.NA), first_error(errors_unless_range(x), errors_unless_range(y)))
     counts = (left_kinds == NUMBER) & (right_kinds == NUMBER)
-    total = np.add.accumulate(np.where(counts, term(left, right), 0.0), axis=1)[:, -1]
+    total = row_sums(np.where(counts, term(left, right), 0.0))
     kinds = np.concatenate(np.broadcast_arrays(left_kinds, right_kinds), axis=1)
     errors = first_error_in_row(np.where(kinds >= ERROR, kinds - np.uint8(ERROR), np.uint8(0)).astype(np.uint8))
     return Value.of_numbers(np.where(counts.any(axis=1), total, DIV0), errors)
@@ -148,19 +151,19 @@ def _over_pairs(x: Value, y: Value, term: Callable[[Floats, Floats], Floats]) ->
 @excel("SUMX2MY2", Arrays, Arrays, facts=Facts(empty_cells=EmptyCells.PAIRED))
 def sum_of_differences_of_squares(x: Value, y: Value) -> Value:
     """Sum of x² - y²."""
-    return _over_pairs(x, y, lambda a, b: a * a - b * b)
+    return _sum_over_pairs(x, y, lambda a, b: a * a - b * b)
 
 
 @excel("SUMX2PY2", Arrays, Arrays, facts=Facts(empty_cells=EmptyCells.PAIRED))
 def sum_of_sums_of_squares(x: Value, y: Value) -> Value:
     """Sum of x² + y²."""
-    return _over_pairs(x, y, lambda a, b: a * a + b * b)
+    return _sum_over_pairs(x, y, lambda a, b: a * a + b * b)
 
 
 @excel("SUMXMY2", Arrays, Arrays, facts=Facts(empty_cells=EmptyCells.PAIRED))
 def sum_of_squares_of_differences(x: Value, y: Value) -> Value:
     """Sum of (x - y)²."""
-    return _over_pairs(x, y, lambda a, b: (a - b) * (a - b))
+    return _sum_over_pairs(x, y, lambda a, b: (a - b) * (a - b))
 
 
 @excel("SERIESSUM", OneCell, OneCell, OneCell, Cells)

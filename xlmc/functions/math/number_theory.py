@@ -18,13 +18,13 @@ from xlmc.functions.values import BLANK, NUM, Bools, Codes, Floats, Value
 __all__: list[str] = []
 
 _EXACT: Final = 2.0**53
-"""GCD and LCM refuse numbers from here on, for not every one is a double of its own."""
+"""GCD and LCM refuse numbers from here on: not every whole number is a double."""
 
 _MOST: Final = 2.0**31 - 1
 """The functions that count ways to choose refuse this number and larger ones."""
 
 _ALL_OVERFLOW: Final = 520
-"""The least number chosen, of at least twice as many, that always makes more ways than a double holds."""
+"""To choose so many of at least twice as many always makes more ways than a double holds."""
 
 
 def _double_factorial(n: int) -> float:
@@ -34,7 +34,7 @@ def _double_factorial(n: int) -> float:
 _DOUBLE_FACTORIALS: Final = np.array([_double_factorial(n) for n in range(-1, 301)])
 
 
-def _refused(x: Floats, errors: Codes, bad: Bools) -> Codes:
+def _first_error(x: Floats, errors: Codes, bad: Bools) -> Codes:
     """The first error of each trial, `#NUM!` where a number is bad: (n, k) -> (n,)."""
     found = np.where((errors == 0) & bad, np.uint8(ErrorCode.NUM), errors).astype(np.uint8)
     return first_error_in_row(found)
@@ -46,11 +46,11 @@ def gcd(*values: Value) -> Value:
     x, errors = all_strict_numbers(values)
     bad = (x < 0) | (x >= _EXACT)
     whole = np.where(bad, 0.0, x).astype(np.int64)
-    return Value.of_numbers(np.gcd.reduce(whole, axis=1).astype(np.float64), _refused(x, errors, bad))
+    return Value.of_numbers(np.gcd.reduce(whole, axis=1).astype(np.float64), _first_error(x, errors, bad))
 
 
 def _without_blanks(values: Sequence[Value], x: Floats) -> Floats:
-    """1 for each empty cell, which changes no multiple, unless there is nothing else: (n, k)."""
+    """The numbers, but 1 for each empty cell, which changes no multiple; unless all cells are empty: (n, k)."""
     empty = [
         flatten_cells((value.kinds == BLANK) & (value.numbers.ndim == 3), value)  # what is left out of a call is 0
         for value in values
@@ -72,7 +72,7 @@ def lcm(*values: Value) -> Value:
     for column in np.where(bad, 1.0, np.trunc(x)).T:
         divisor = np.gcd(np.where(result < _EXACT, result, 0).astype(np.int64), column.astype(np.int64))
         result = np.where(result < _EXACT, result / np.maximum(divisor, 1) * column, result)
-    return Value.of_numbers(np.where(result < _EXACT, result, NUM), _refused(x, errors, bad))
+    return Value.of_numbers(np.where(result < _EXACT, result, NUM), _first_error(x, errors, bad))
 
 
 def _ways(n: Floats, k: Floats) -> Floats:
@@ -137,7 +137,7 @@ def factdouble(x: Floats) -> Floats:
 
 @excel("MULTINOMIAL", Cells(repeat=True))
 def multinomial(*values: Value) -> Value:
-    """Factorial of the sum by the product of the factorials; `#NUM!` for a negative number."""
+    """Factorial of the sum, divided by the product of the factorials; `#NUM!` for a negative number."""
     x, errors = all_strict_numbers(values)
     bad = (x < 0) | (x >= _MOST)
     counts = np.where(bad, 0.0, np.trunc(x))
@@ -145,7 +145,7 @@ def multinomial(*values: Value) -> Value:
     result = np.ones(x.shape[0])
     for total, count in zip(sums.T, counts.T, strict=True):
         result = result * _ways(total, count)
-    return Value.of_numbers(result, _refused(x, errors, bad))
+    return Value.of_numbers(result, _first_error(x, errors, bad))
 
 
 @excel("ISEVEN", OneCell, returns=Kind.LOGICAL)

@@ -42,10 +42,10 @@ def _numeral(value: int, form: int) -> str:
 
 
 def _next_letters(value: int, form: int) -> tuple[str, int]:
-    """The letter, or the pair of one less another, that comes first in the numeral, and what it counts.
+    """What comes first in the numeral, a letter or a pair such as IV, and what it counts.
 
-    The letter that is subtracted is classically the next power of ten below; each further form allows one letter
-    smaller, and the smallest that still brings the large one down to the value is taken.
+    In the classic form, the letter that is subtracted is the next power of ten below. Each further form allows one
+    letter smaller; of those allowed, the smallest is taken that still brings the large letter down to the value.
     """
     names = list(_ROMAN)
     for large in reversed(range(len(names))):
@@ -64,7 +64,7 @@ def _next_letters(value: int, form: int) -> tuple[str, int]:
 @excel("ARABIC", Anything)
 @per_object
 def arabic(numeral: object) -> float | ErrorCode:
-    """Number of a Roman numeral, however written: a letter left of a larger one counts against; "" is 0."""
+    """Number of a Roman numeral in any form: a letter left of a larger one is subtracted; "" is 0."""
     if numeral is None:
         return 0.0
     if not isinstance(numeral, str) or len(numeral) > _LONGEST:
@@ -75,10 +75,10 @@ def arabic(numeral: object) -> float | ErrorCode:
         return ErrorCode.VALUE
     if text == "-":
         return ErrorCode.NUM
-    return -_total(letters) if text != letters else _total(letters)
+    return -_add_letters(letters) if text != letters else _add_letters(letters)
 
 
-def _total(letters: str) -> float:
+def _add_letters(letters: str) -> float:
     total = largest = 0
     for letter in reversed(letters):
         value = _ROMAN[letter]

@@ -1,9 +1,9 @@
 """Rounding to digits and to multiples.
 
 Excel rounds the number that it shows, which has 15 significant digits, not the double behind it: `ROUND(1.005, 2)` is
-1.01 and `INT(880000000*0.00849/3)` is 2490400, although both doubles lie just below. So a number that stands less than
+1.01 and `INT(880000000*0.00849/3)` is 2490400, although both doubles lie just below. So a number that lies less than
 half a unit of its 15th digit below a boundary counts as on it. Where doubles cannot tell on which side of that half a
-number stands, as for `TRUNC(0.09999999999999995, 1)`, decimals do.
+unit a number lies, as for `TRUNC(0.09999999999999995, 1)`, it is computed in decimals.
 """
 
 from __future__ import annotations
@@ -18,10 +18,12 @@ from xlmc.functions.facts import Facts
 from xlmc.functions.registry import Number, Ranges, excel
 from xlmc.functions.values import DIV0, NUM, Bools, Floats
 
-__all__: list[str] = []
+__all__ = ["TENS"]
 
 _ONE_CELL: Final = Number(ranges=Ranges.ONE_CELL)
-_TENS: Final = np.array([float(f"1e{n}") for n in range(309)])
+TENS: Final = np.array([float(f"1e{n}") for n in range(309)])
+"""The powers of ten that a double holds, from 1 on."""
+
 _DECADES: Final = np.array([float(f"1e{n}") for n in range(-290, 309)])
 _HALF_OF_15TH_DIGIT: Final = np.array([0.0, *(float(f"5e{n - 15}") for n in range(-290, 309))])
 
@@ -32,7 +34,7 @@ _LAST_BIT: Final = 2.3e-16
 _FIFTEEN_DIGITS: Final = 1e14
 _HALF: Final = np.asarray(0.5)
 _NO_FRACTION: Final = 2.0**52
-"""From here on doubles are whole: more digits than these cannot be rounded away."""
+"""From here on all doubles are whole numbers: there is nothing to round."""
 
 
 class _Grid:
@@ -49,7 +51,7 @@ class _Grid:
 
     def __init__(self, size: Floats, digits: Floats) -> None:
         whole = np.clip(np.trunc(digits), -308, 308).astype(np.intp)
-        self._up, self._down = _TENS[np.maximum(whole, 0)], _TENS[np.maximum(-whole, 0)]
+        self._up, self._down = TENS[np.maximum(whole, 0)], TENS[np.maximum(-whole, 0)]
         self._size, self._digits = size, whole
         seen = _HALF_OF_15TH_DIGIT[np.searchsorted(_DECADES, size, side="right")]
         self._tolerance = np.minimum(seen, self.multiple(_HALF))
@@ -65,28 +67,28 @@ class _Grid:
     def reaches(self, n: Floats) -> Bools:
         """Whether the size is seen at the n-th multiple or above it."""
         gap = self.multiple(n) - self._size
-        return self._told(gap <= self._tolerance, gap, n, above=False)
+        return self._correct(gap <= self._tolerance, gap, n, above=False)
 
     def passes(self) -> Bools:
         """Whether the size is seen above its n-th multiple."""
         gap = self._size - self.multiple(self.n)
-        return self._told(gap >= self._tolerance, gap, self.n, above=True) & (self._size > 0)
+        return self._correct(gap >= self._tolerance, gap, self.n, above=True) & (self._size > 0)
 
-    def _told(self, told: Bools, gap: Floats, n: Floats, *, above: bool) -> Bools:
-        """What the gap to the n-th multiple tells; where it is within the last bit of the tolerance, decimals do."""
+    def _correct(self, answer: Bools, gap: Floats, n: Floats, *, above: bool) -> Bools:
+        """Correct the answer of doubles by decimals where the gap to the n-th multiple nearly equals the tolerance."""
         near = np.abs(gap - self._tolerance) < _LAST_BIT * self._size
         if not near.any():
-            return np.asarray(told)
+            return np.asarray(answer)
         near = near & (self._tolerance < self.multiple(_HALF))
-        told, n, size, digits = (part.copy() for part in np.broadcast_arrays(told, n, self._size, self._digits))
+        answer, n, size, digits = (part.copy() for part in np.broadcast_arrays(answer, n, self._size, self._digits))
         for index in zip(*np.nonzero(near), strict=True):
             steps = _SHOWN.scaleb(_SHOWN.plus(Decimal(float(size[index]))), int(digits[index]))
-            told[index] = steps > float(n[index]) if above else steps >= float(n[index])
-        return np.asarray(told)
+            answer[index] = steps > float(n[index]) if above else steps >= float(n[index])
+        return np.asarray(answer)
 
 
-def _rounded(x: Floats, digits: Floats, further: Callable[[_Grid], Bools]) -> Floats:
-    """`x` to so many digits, towards zero, or one step further from zero where `further(grid)` says so."""
+def _round_on_grid(x: Floats, digits: Floats, further: Callable[[_Grid], Bools]) -> Floats:
+    """Round `x` to `digits` digits towards zero, or one step further from zero where `further(grid)` says so."""
     grid = _Grid(np.abs(x), digits)
     result = np.copysign(grid.multiple(grid.n + further(grid)), x) + 0.0
     return np.where(grid.fine, x, result)
@@ -94,19 +96,19 @@ def _rounded(x: Floats, digits: Floats, further: Callable[[_Grid], Bools]) -> Fl
 
 @excel("ROUND", Number, Number, facts=Facts(exact_steps=True))
 def round_(x: Floats, digits: Floats) -> Floats:
-    """To so many digits after the point (before it, if negative), halves away from zero."""
-    return _rounded(x, digits, lambda grid: grid.coarse & grid.reaches(grid.n + 0.5))
+    """Round to `digits` digits after the point (before it, if negative), halves away from zero."""
+    return _round_on_grid(x, digits, lambda grid: grid.coarse & grid.reaches(grid.n + 0.5))
 
 
 @excel("ROUNDUP", Number, Number, facts=Facts(exact_steps=True))
 def round_up(x: Floats, digits: Floats) -> Floats:
-    """To so many digits, away from zero."""
-    return _rounded(x, digits, _Grid.passes)
+    """Round to `digits` digits, away from zero."""
+    return _round_on_grid(x, digits, _Grid.passes)
 
 
 def _round_down(x: Floats, digits: Floats) -> Floats:
-    """To so many digits, towards zero."""
-    return _rounded(x, digits, lambda _: np.asarray(False))
+    """Round to `digits` digits, towards zero."""
+    return _round_on_grid(x, digits, lambda _: np.asarray(False))
 
 
 excel("ROUNDDOWN", Number, Number, facts=Facts(exact_steps=True))(_round_down)
@@ -116,29 +118,29 @@ excel("TRUNC", Number, Number(default=0.0), facts=Facts(exact_steps=True, unroun
 @excel("INT", Number, facts=Facts(unrounded=True))
 def int_(x: Floats) -> Floats:
     """Down to a whole number."""
-    return _rounded(x, np.asarray(0.0), lambda grid: (x < 0) & grid.passes())
+    return _round_on_grid(x, np.asarray(0.0), lambda grid: (x < 0) & grid.passes())
 
 
-def _down(x: Floats, multiple: Floats) -> Floats:
+def _down_to_multiple(x: Floats, multiple: Floats) -> Floats:
     """Down to a multiple, or up to one if that is negative; 0 for multiples of 0."""
     return np.asarray(int_(x / np.where(multiple == 0, 1.0, multiple)) * multiple + 0.0)
 
 
-def _up(x: Floats, multiple: Floats) -> Floats:
+def _up_to_multiple(x: Floats, multiple: Floats) -> Floats:
     """Up to a multiple, or down to one if that is negative; 0 for multiples of 0."""
-    return -_down(-x, multiple) + 0.0
+    return -_down_to_multiple(-x, multiple) + 0.0
 
 
 @excel("CEILING", Number, Number, facts=Facts(exact_steps=True))
 def ceiling(x: Floats, multiple: Floats) -> Floats:
     """Up to a multiple; away from zero when both are negative; `#NUM!` for a negative multiple of a positive number."""
-    return np.where((x > 0) & (multiple < 0), NUM, _up(x, multiple))
+    return np.where((x > 0) & (multiple < 0), NUM, _up_to_multiple(x, multiple))
 
 
 @excel("FLOOR", Number, Number, facts=Facts(exact_steps=True))
 def floor(x: Floats, multiple: Floats) -> Floats:
     """Down to a multiple; towards zero when both are negative; `#NUM!` as for CEILING, `#DIV/0!` for multiples of 0."""
-    result = np.where((multiple == 0) & (x != 0), DIV0, _down(x, multiple))
+    result = np.where((multiple == 0) & (x != 0), DIV0, _down_to_multiple(x, multiple))
     return np.where((x > 0) & (multiple < 0), NUM, result)
 
 
@@ -146,14 +148,14 @@ def floor(x: Floats, multiple: Floats) -> Floats:
 def ceiling_math(x: Floats, multiple: Floats, mode: Floats) -> Floats:
     """Up to a multiple, whatever its sign; a negative number away from zero when `mode` is not 0."""
     size = np.abs(multiple)
-    return np.where((x < 0) & (mode != 0), _down(x, size), _up(x, size))
+    return np.where((x < 0) & (mode != 0), _down_to_multiple(x, size), _up_to_multiple(x, size))
 
 
 @excel("FLOOR.MATH", Number, Number(default=1.0), Number(default=0.0), facts=Facts(exact_steps=True))
 def floor_math(x: Floats, multiple: Floats, mode: Floats) -> Floats:
     """Down to a multiple, whatever its sign; a negative number towards zero when `mode` is not 0."""
     size = np.abs(multiple)
-    return np.where((x < 0) & (mode != 0), _up(x, size), _down(x, size))
+    return np.where((x < 0) & (mode != 0), _up_to_multiple(x, size), _down_to_multiple(x, size))
 
 
 @excel("MROUND", _ONE_CELL, _ONE_CELL, facts=Facts(exact_steps=True))

@@ -1,7 +1,7 @@
 """SUBTOTAL and AGGREGATE: other functions by number.
 
-Of the cells in hidden rows, and of those that hold SUBTOTAL or AGGREGATE themselves, nothing is known here: whoever
-calls leaves them out of the ranges, as `skips` says, or makes them blank.
+Cells in hidden rows, and cells that hold SUBTOTAL or AGGREGATE themselves, are not known here: the caller leaves them
+out of the ranges, as `Skips` says, or makes them blank.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def subtotal(number: int, values: Sequence[Value]) -> Value:
 
 
 def aggregate(number: int, options: int, values: Sequence[Value]) -> Value:
-    """`AGGREGATE` of ranges that hold only what counts, errors apart: these are left out here, if `options` say so."""
+    """`AGGREGATE` of ranges that hold only what counts, and errors: these are left out here, if `options` say so."""
     if not 0 <= options <= 7:
         return constant(ErrorCode.VALUE)
     keep = _without_errors if options in _WITHOUT_ERRORS else lambda value: value
@@ -92,7 +92,7 @@ def aggregate(number: int, options: int, values: Sequence[Value]) -> Value:
 
 
 def _rank(value: Value) -> Value:
-    """Which number is wanted; of one cell a single value, so that the result is one too."""
+    """The rank that is asked for: a range of one cell becomes a single value, so that the result is single, too."""
     return map_parts(value, lambda part: part[:, 0, 0]) if value.shape[1:] == (1, 1) else value
 
 
@@ -107,11 +107,11 @@ def _without_errors(value: Value) -> Value:
 
 
 def _by_number(number: Value, compute: Callable[[int], Value]) -> Value:
-    """`compute(number)`, should the number differ between trials, for each that occurs.
+    """`compute(number)` for each number that occurs, should it differ between trials.
 
     Raises:
-        ShapeVaries: these are arrays of different shapes.
-        FormulaError: the number is an array, and so are these, of a size that does not fit it.
+        ShapeVaries: the results are arrays of different shapes.
+        FormulaError: the number is an array, and the results are arrays of a size that does not fit it.
     """
     numbers, errors = whole_numbers(number)
     result = error_everywhere(number, ErrorCode.VALUE, errors)
@@ -132,13 +132,16 @@ def _by_number(number: Value, compute: Callable[[int], Value]) -> Value:
 
 @excel("SUBTOTAL", Number, Cells(repeat=True))
 def _subtotal(number: Value, *values: Value) -> Value:
-    """A function by number of ranges: 1 AVERAGE, 2 COUNT, 3 COUNTA, 4 MAX, 5 MIN, 6 PRODUCT, 7 STDEV, …, 9 SUM, …."""
+    """The function of that number of the ranges: 1 AVERAGE, 2 COUNT, 3 COUNTA, 4 MAX, 5 MIN, 6 PRODUCT, …, 9 SUM, …."""
     return _by_number(number, lambda chosen: subtotal(chosen, values))
 
 
 @excel("AGGREGATE", Number, Number, Arrays(repeat=True))
 def _aggregate(number: Value, options: Value, *values: Value) -> Value:
-    """A function by number of ranges, errors left out with options 2, 3, 6 and 7: as SUBTOTAL, and 12 MEDIAN to 19."""
+    """The function of that number of the ranges: as SUBTOTAL, and 12 MEDIAN to 19 QUARTILE.EXC.
+
+    With options 2, 3, 6 and 7 errors are left out.
+    """
     number, options = align_ranges(number, options)
     cells = np.broadcast_shapes(number.shape[1:], options.shape[1:])
     number = map_parts(number, lambda part: np.broadcast_to(part, (part.shape[0], *cells)))

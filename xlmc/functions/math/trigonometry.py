@@ -1,8 +1,8 @@
 """Angles and hyperbolic functions. Angles are in radians.
 
-NumPy computes the tangent of eight numbers at a time on processors with AVX-512, the sine and the cosine one by one.
-There both are made of tangents here, within 4 units in the last digit of the exact values; elsewhere NumPy's own are
-used, within 1. Which it is depends on the processor alone, never on how many angles there are.
+On processors with AVX-512, NumPy computes the tangent of eight numbers at a time, but sine and cosine one by one. There
+this module makes sine and cosine of tangents, within 4 units in the last digit of the exact values; on other processors
+it uses NumPy's own, within 1 unit. The choice depends on the processor alone, never on how many angles there are.
 
     T = tan(x/2), sin x = 2T / (1 + T²), cos x = sin x / tan x
 
@@ -35,12 +35,12 @@ class Within:
     limit: float
 
     def __call__(self, x: Floats) -> bool:
-        """Whether they do; NaN does not."""
+        """Whether all numbers lie there; NaN does not."""
         least, most = np.minimum.reduce(x, axis=None, initial=0.0), np.maximum.reduce(x, axis=None, initial=0.0)
         return bool(least > -self.limit and most < self.limit)
 
     def surely(self, low: float, high: float) -> bool:
-        """Whether numbers do that lie between these two, or past them by rounding."""
+        """Whether all numbers between these two lie there, and those that rounding puts past them."""
         return -0.5 * self.limit < low and high < 0.5 * self.limit
 
 
@@ -53,13 +53,13 @@ BY_TANGENTS: Final = _tangent_is_fast()
 
 
 def sine_and_cosine(x: Floats, sine: Floats, cosine: Floats, work: Floats) -> None:
-    """Both of the same angles.
+    """Compute the sine and the cosine of the same angles.
 
     Args:
         x: radians, `(n,)`.
         sine: `(n,)`, for the result.
         cosine: `(n,)`, for the result.
-        work: `(n,)`, overwritten. All four lie apart from each other.
+        work: `(n,)`, overwritten. None of the four arrays may overlap another.
     """
     if not BY_TANGENTS:
         np.sin(x, out=sine)
@@ -98,7 +98,7 @@ class _Tangents:
         self._plain, self._by_tangents = plain, by_tangents
 
     def __call__(self, *x: Floats, out: Floats | None = None) -> Floats:
-        """Of radians, one array of any shape."""
+        """The function of one array of radians, of any shape."""
         if not BY_TANGENTS:
             return np.asarray(self._plain(*x, out=out))
         angles = np.ascontiguousarray(x[0], dtype=np.float64)
@@ -135,7 +135,7 @@ excel("RADIANS", Number, ufunc=np.radians, facts=Facts(factor=np.pi / 180))(np.r
 excel("DEGREES", Number, ufunc=np.degrees, facts=Facts(factor=180 / np.pi))(np.degrees)
 
 
-def _small(x: Floats) -> Bools:
+def _is_small(x: Floats) -> Bools:
     return np.abs(x) < _LIMIT
 
 
@@ -145,37 +145,37 @@ _ALL_SMALL: Final = Within(_LIMIT)
 @excel("SIN", Number, ufunc=_SINE, guard=_ALL_SMALL, facts=Facts(measures=True, result_range=(-1.0, 1.0)))
 def sin(x: Floats) -> Floats:
     """Sine."""
-    return np.where(_small(x), _SINE(x), NUM)
+    return np.where(_is_small(x), _SINE(x), NUM)
 
 
 @excel("COS", Number, ufunc=_COSINE, guard=_ALL_SMALL, facts=Facts(measures=True, result_range=(-1.0, 1.0)))
 def cos(x: Floats) -> Floats:
     """Cosine."""
-    return np.where(_small(x), _COSINE(x), NUM)
+    return np.where(_is_small(x), _COSINE(x), NUM)
 
 
 @excel("TAN", Number, ufunc=np.tan, guard=_ALL_SMALL, facts=Facts(measures=True))
 def tan(x: Floats) -> Floats:
     """Tangent."""
-    return np.where(_small(x), np.tan(x), NUM)
+    return np.where(_is_small(x), np.tan(x), NUM)
 
 
 @excel("SEC", Number)
 def sec(x: Floats) -> Floats:
     """1 / cosine."""
-    return np.where(_small(x), 1 / np.cos(x), NUM)
+    return np.where(_is_small(x), 1 / np.cos(x), NUM)
 
 
 @excel("CSC", Number)
 def csc(x: Floats) -> Floats:
     """1 / sine; `#DIV/0!` at 0."""
-    return np.where(x == 0, DIV0, np.where(_small(x), 1 / np.sin(x), NUM))
+    return np.where(x == 0, DIV0, np.where(_is_small(x), 1 / np.sin(x), NUM))
 
 
 @excel("COT", Number)
 def cot(x: Floats) -> Floats:
     """1 / tangent; `#DIV/0!` at 0."""
-    return np.where(x == 0, DIV0, np.where(_small(x), 1 / np.tan(x), NUM))
+    return np.where(x == 0, DIV0, np.where(_is_small(x), 1 / np.tan(x), NUM))
 
 
 @excel("ATAN2", Number, Number)

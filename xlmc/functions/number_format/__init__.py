@@ -2,8 +2,8 @@
 
 A format text becomes tokens (`tokens`), these become up to four sections (`sections`), and each section becomes one
 layout: of numbers (`numbers`), of dates and times (`date_times`), or of what needs no digit placeholders
-(`placeholders`). A layout writes a number without its sign; which section writes it, and whether a minus goes before,
-is for the format to say (`sections`).
+(`placeholders`). A layout writes a number without its sign; `sections` chooses the section that writes it, and decides
+whether a minus goes before.
 """
 
 from __future__ import annotations

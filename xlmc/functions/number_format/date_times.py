@@ -1,4 +1,4 @@
-"""Dates, times and durations, `d-mmm-yyyy`, `h:mm:ss.00 AM/PM`, `[h]:mm`, and how each of their parts is written."""
+"""Layouts of dates, times and durations: `d-mmm-yyyy`, `h:mm:ss.00 AM/PM`, `[h]:mm`."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ class MomentLayout:
 
     @cached_property
     def _decimals(self) -> int:
-        """Decimals of a second: the number is rounded to the last of them, to a whole second if there are none."""
+        """How many decimals of a second are written; the number is rounded to these."""
         return max((len(t.text) - 1 for t in self.tokens if t.mark is Mark.PART and t.text[0] == "."), default=0)
 
     @cached_property
-    def _half_days(self) -> bool:
+    def _twelve_hours(self) -> bool:
         return any(token.mark is Mark.HALF for token in self.tokens)
 
     @property
@@ -52,10 +52,10 @@ class MomentLayout:
         return all(token.mark in (Mark.ELAPSED, Mark.LITERAL) for token in self.tokens)
 
     def write(self, size: float, date1904: bool) -> Written:
-        clock = _Clock(min(size, _FAR), self._decimals, date1904, self._half_days)
+        clock = _Clock(min(size, _FAR), self._decimals, date1904, self._twelve_hours)
         if clock.day > last_serial(date1904):
             raise FormatError("a date after 9999")
-        return "".join(clock.written(token) for token in self.tokens), False
+        return "".join(clock.write_token(token) for token in self.tokens), False
 
 
 def is_moment(tokens: Sequence[Token]) -> bool:
@@ -87,10 +87,10 @@ def moment_layout(tokens: Sequence[Token]) -> MomentLayout:
         raise FormatError("parts of a date stand beside digit placeholders")
     if any(_has_name(t) for t in parts) and any(_is_foreign(t) for t in parts):
         raise UnknownFormat("the names of months and days are known in English only")
-    return MomentLayout(tuple(_settled(token) for token in parts if token.mark is not Mark.LANGUAGE))
+    return MomentLayout(tuple(_literal_unless_part(token) for token in parts if token.mark is not Mark.LANGUAGE))
 
 
-def _settled(token: Token) -> Token:
+def _literal_unless_part(token: Token) -> Token:
     return token if token.mark in (Mark.PART, Mark.ELAPSED, Mark.HALF) else literal(token.text)
 
 
@@ -157,9 +157,9 @@ class _Clock:
         self.day, ticks = divmod(self._ticks, SECONDS_A_DAY * self._unit)
         self._second = ticks // self._unit
         self._fraction = f"{ticks % self._unit:0{decimals}d}" if decimals else ""
-        self._date1904, self._half_days = date1904, half_days
+        self._date1904, self._twelve_hours = date1904, half_days
 
-    def written(self, token: Token) -> str:
+    def write_token(self, token: Token) -> str:
         """What a token writes."""
         match token.mark:
             case Mark.PART:
@@ -175,11 +175,11 @@ class _Clock:
         match letter:
             case "h":
                 hour = self._second // 3600
-                return _padded((hour + 11) % 12 + 1 if self._half_days else hour, count)
+                return _pad((hour + 11) % 12 + 1 if self._twelve_hours else hour, count)
             case "n":
-                return _padded(self._second // 60 % 60, count)
+                return _pad(self._second // 60 % 60, count)
             case "s":
-                return _padded(self._second % 60, count)
+                return _pad(self._second % 60, count)
             case ".":
                 return f".{self._fraction[: count - 1]}"
             case _:
@@ -195,11 +195,11 @@ class _Clock:
             case "b":
                 return f"{(year + _BUDDHIST) % 100:02d}" if count < 3 else str(year + _BUDDHIST)
             case "m":
-                return _named(month, count, MONTHS[month - 1])
+                return _number_or_name(month, count, MONTHS[month - 1])
             case "d":
-                return _named(day, count, _WEEKDAYS[int(weekday_of(self.day, self._date1904))])
+                return _number_or_name(day, count, _WEEKDAYS[int(weekday_of(self.day, self._date1904))])
             case _:
-                return ""  # eras, which our calendar has none of
+                return ""  # an era: our calendar has none
 
     def _half(self, text: str) -> str:
         afternoon = self._second >= SECONDS_A_DAY // 2
@@ -208,12 +208,12 @@ class _Clock:
         return "PM" if afternoon else "AM"
 
 
-def _padded(number: int, count: int) -> str:
+def _pad(number: int, count: int) -> str:
     return str(number).zfill(min(count, 2))
 
 
-def _named(number: int, count: int, name: str) -> str:
-    """A number, or its name in short (3 letters), in full (4), or by its first letter (5, months only)."""
+def _number_or_name(number: int, count: int, name: str) -> str:
+    """A number (1 or 2 letters), or its name: short (3), in full (4), or the first letter (5, months only)."""
     if count < 3:
-        return _padded(number, count)
+        return _pad(number, count)
     return name[:3] if count == 3 else name[0] if count == 5 and name in MONTHS else name

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from decimal import ROUND_HALF_UP, Context, Decimal
 from typing import Final
 
-from xlmc.functions.number_format.placeholders import Written, count_digits, fill_decimals, fill_whole, settle_commas
+from xlmc.functions.number_format.placeholders import Written, count_digits, fill_decimals, fill_whole, read_commas
 from xlmc.functions.number_format.tokens import FormatError, Mark, Token
 from xlmc.functions.number_text import round_to_15_digits
 
@@ -40,10 +40,10 @@ class _DecimalLayout:
     def write(self, size: float, date1904: bool = False) -> Written:
         number = round_to_15_digits(size).scaleb(self.scale).quantize(Decimal(1).scaleb(-self.decimals), context=_WIDE)
         whole, _, decimals = f"{number:f}".partition(".")
-        return self.filled(whole.lstrip("0"), decimals), not number
+        return self.fill(whole.lstrip("0"), decimals), not number
 
-    def filled(self, whole: str, decimals: str) -> str:
-        """The digits in their placeholders; without one before the point, whole digits stand before it all the same."""
+    def fill(self, whole: str, decimals: str) -> str:
+        """The digits in their placeholders; whole digits stand before the point even if no placeholder does."""
         text = fill_whole(self.before, whole, self.grouped)
         if self.after is None:
             return text
@@ -52,7 +52,7 @@ class _DecimalLayout:
 
 def decimal_layout(tokens: Sequence[Token]) -> _DecimalLayout:
     """The layout of a section with digit placeholders."""
-    settled, grouped, thousands = settle_commas(tokens)
+    settled, grouped, thousands = read_commas(tokens)
     percents = sum(token.mark is Mark.PERCENT for token in tokens)
     points = [index for index, token in enumerate(settled) if token.mark is Mark.POINT]
     split = points[0] if points else len(settled)
@@ -76,15 +76,15 @@ class _ExponentLayout:
         number = round_to_15_digits(size)
         if not number:
             zeros = "0" * count_digits(self.mantissa.before)
-            return self.mantissa.filled(zeros, "") + self._power(0), False
+            return self.mantissa.fill(zeros, "") + self._power(0), False
         step = max(count_digits(self.mantissa.before), 1)
         power = self._step_down(number.adjusted(), step)
         mantissa = self._rounded(number, power)
-        if mantissa.adjusted() >= power_limit(self.mantissa):
+        if mantissa.adjusted() >= count_digits(self.mantissa.before):
             power += step
             mantissa = self._rounded(number, power)
         whole, _, decimals = f"{mantissa:f}".partition(".")
-        return self.mantissa.filled(whole.lstrip("0"), decimals) + self._power(power), False
+        return self.mantissa.fill(whole.lstrip("0"), decimals) + self._power(power), False
 
     def _step_down(self, exponent: int, step: int) -> int:
         no_whole = not count_digits(self.mantissa.before)
@@ -100,11 +100,6 @@ class _ExponentLayout:
         return f"{self.mark[0]}{between}{sign}{fill_whole(self.power[start:], str(abs(power)))}"
 
 
-def power_limit(mantissa: _DecimalLayout) -> int:
-    """The power of ten that a mantissa does not reach."""
-    return count_digits(mantissa.before)
-
-
 def exponent_layout(tokens: Sequence[Token]) -> _ExponentLayout:
     """The layout of a section with an exponent.
 
@@ -112,7 +107,7 @@ def exponent_layout(tokens: Sequence[Token]) -> _ExponentLayout:
         FormatError: there is no digit placeholder before or behind the `E`.
     """
     split = next(index for index, token in enumerate(tokens) if token.mark is Mark.EXPONENT)
-    mantissa, power = tokens[:split], settle_commas(tokens[split + 1 :])[0]
+    mantissa, power = tokens[:split], read_commas(tokens[split + 1 :])[0]
     if not count_digits(mantissa) or not count_digits(power):
         raise FormatError("an exponent has digits before and behind its E")
     return _ExponentLayout(decimal_layout(mantissa), tokens[split].text, tuple(power))
@@ -122,7 +117,7 @@ _EXACT: Final = 5e-10
 """A remainder below this ends the continued fraction."""
 
 _MOST_DIGITS: Final = 7
-"""Digits of a denominator that Excel looks for."""
+"""The most digits that Excel gives to a denominator."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,25 +142,25 @@ class _FractionLayout:
     rest: tuple[Token, ...]
 
     def write(self, size: float, date1904: bool = False) -> Written:
-        n, d = self._approximated(size)
+        n, d = self._approximate(size)
         if self.whole is None:
             return f"{self.gap}{self._fraction(n, d)}{self._rest()}", False
         units, n = divmod(n, d)
         return f"{self._mixed(self.whole, units, n, d)}{self._rest()}", False
 
-    def _approximated(self, size: float) -> tuple[int, int]:
+    def _approximate(self, size: float) -> tuple[int, int]:
         if self.fixed is None:
-            return approximated(size, 10 ** min(count_digits(self.denominator), _MOST_DIGITS) - 1)
+            return approximate(size, 10 ** min(count_digits(self.denominator), _MOST_DIGITS) - 1)
         units = math.floor(size)
         return units * self.fixed + math.floor((size - units) * self.fixed + 0.5), self.fixed
 
     def _mixed(self, whole: tuple[Token, ...], units: int, n: int, d: int) -> str:
         if n == 0 and "0" not in _placeholders(self.numerator):
-            return self._whole(whole, str(units)) + self._no_fraction(whole)
+            return self._whole(whole, str(units)) + self._zero_fraction(whole)
         if units == 0 and n > 0 and "0" not in _placeholders(whole):
-            return f"{self._whole(whole, '')}{self._narrowed_gap(whole)}{self._fraction(n, d)}"
+            return f"{self._whole(whole, '')}{self._gap_without_whole(whole)}{self._fraction(n, d)}"
         if units == 0 and n == 0 and not set(_placeholders(whole)) & {"0", "?"}:
-            return f"{self._whole(whole, '')}{self._narrowed_gap(whole)}{self._fraction(n, d)}"
+            return f"{self._whole(whole, '')}{self._gap_without_whole(whole)}{self._fraction(n, d)}"
         return f"{self._whole(whole, str(units))}{self.gap}{self._fraction(n, d)}"
 
     def _whole(self, whole: tuple[Token, ...], digits: str) -> str:
@@ -175,21 +170,21 @@ class _FractionLayout:
         return f"{fill_whole(self.numerator, str(n))}{self.stroke}{self._denominator(d)}"
 
     def _denominator(self, d: int) -> str:
-        """Digits to the left, then what the empty placeholders write; with zeros first if the format has them."""
+        """The digits, then what unused placeholders write; or zeros before the digits if the format begins with 0."""
         placeholders = _placeholders(self.denominator)
         digits = str(d)
         if placeholders[:1] == "0":
             return digits.zfill(len(placeholders))
         return digits + placeholders[len(digits) :].replace("?", " ").replace("#", "")
 
-    def _no_fraction(self, whole: tuple[Token, ...]) -> str:
-        """A fraction of 0 is left out; where anything is aligned by `?`, it leaves its room."""
+    def _zero_fraction(self, whole: tuple[Token, ...]) -> str:
+        """What stands for a fraction of 0: spaces where any `?` aligns the number, else nothing."""
         room = len(self.gap) + len(self.numerator) + len(self.stroke) + len(self.denominator)
         aligned = "?" in _placeholders(whole) + _placeholders(self.numerator) + _placeholders(self.denominator)
         return " " * room if aligned else ""
 
-    def _narrowed_gap(self, whole: tuple[Token, ...]) -> str:
-        """The gap behind a whole number that is left out."""
+    def _gap_without_whole(self, whole: tuple[Token, ...]) -> str:
+        """What stands for the gap behind a whole number that is left out."""
         return " " * len(self.gap) if "?" in _placeholders(whole) + _placeholders(self.numerator) else ""
 
     def _rest(self) -> str:
@@ -200,7 +195,7 @@ def _placeholders(tokens: Sequence[Token]) -> str:
     return "".join(token.text for token in tokens if _is_placeholder(token))
 
 
-def approximated(x: float, largest: int) -> tuple[int, int]:
+def approximate(x: float, largest: int) -> tuple[int, int]:
     """Numerator and denominator, at most `largest`: the last convergent of the continued fraction of `x`.
 
     Excel takes convergents only, and in doubles: 0.3 in ninths and less is 2/7, 1.3 is 4/3.
@@ -229,7 +224,7 @@ def fraction_layout(tokens: Sequence[Token]) -> _FractionLayout:
     whole_end = _end_of_digits(tokens[:start])
     bottom, rest = _denominator(tokens[slash + 1 :])
     between = tokens[slash + 1 : len(tokens) - len(bottom) - len(rest)]
-    whole, grouped, _ = settle_commas(tokens[:whole_end])
+    whole, grouped, _ = read_commas(tokens[:whole_end])
     if start == top or not bottom:
         raise FormatError("a fraction has a numerator and a denominator")
     return _FractionLayout(

@@ -23,7 +23,7 @@ __all__ = [
     "fill_decimals",
     "fill_whole",
     "general_in_cell",
-    "settle_commas",
+    "read_commas",
     "text_layout",
 ]
 
@@ -35,7 +35,7 @@ class Layout(Protocol):
     """One section of a format."""
 
     def write(self, size: float, date1904: bool) -> Written:
-        """A number, 0 or more.
+        """Write a number, 0 or more.
 
         Raises:
             FormatError: it cannot be shown, as a date after 9999.
@@ -54,7 +54,7 @@ class BareLayout:
 
 @dataclass(frozen=True, slots=True)
 class GeneralLayout:
-    """`General`, with texts around."""
+    """`General`, with the texts before and after it."""
 
     before: str
     after: str
@@ -100,15 +100,15 @@ def general_in_cell(size: float) -> str:
         decimals = max(_WIDTH - 2 - max(exponent, 0), 0)
         rounded = number.quantize(Decimal(1).scaleb(-decimals), context=_WIDE)
         exact = exponent > -5 or rounded == number
-        text = _trimmed(f"{rounded:f}")
+        text = _trim_zeros(f"{rounded:f}")
         if exact and len(text) <= _WIDTH:
             return text
     six = _SIX.plus(number)
     exponent = six.adjusted()
-    return f"{_trimmed(f'{six.scaleb(-exponent):f}')}E{exponent:+03d}"
+    return f"{_trim_zeros(f'{six.scaleb(-exponent):f}')}E{exponent:+03d}"
 
 
-def _trimmed(text: str) -> str:
+def _trim_zeros(text: str) -> str:
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
@@ -121,7 +121,7 @@ def count_digits(tokens: Sequence[Token]) -> int:
 
 
 def fill_whole(tokens: Sequence[Token], digits: str, grouped: bool = False) -> str:
-    """Whole digits, from the right; what the placeholders do not hold goes before the first of them."""
+    """Write whole digits from the right; those that have no placeholder go before the first one."""
     written: list[str] = []
     unwritten, index, count = list(digits), 0, count_digits(tokens)
     for token in reversed(tokens):
@@ -137,14 +137,14 @@ def fill_whole(tokens: Sequence[Token], digits: str, grouped: bool = False) -> s
 
 
 def _separator(glyph: str, index: int) -> str:
-    """What stands to the right of every third placeholder: a comma, a space if that is empty."""
+    """What stands to the right of every third placeholder: a comma, or a space if the placeholder writes a space."""
     if index == 0 or index % 3 or not glyph:
         return ""
     return " " if glyph == " " else ","
 
 
 def fill_decimals(tokens: Sequence[Token], digits: str) -> str:
-    """Decimals, as many as there are placeholders; zeros at the end are not used."""
+    """Write decimals, one in each placeholder; zeros at the end count as unused."""
     used, index, written = digits.rstrip("0"), 0, []
     for token in tokens:
         if token.mark is Mark.DIGIT:
@@ -155,11 +155,11 @@ def fill_decimals(tokens: Sequence[Token], digits: str) -> str:
     return "".join(written)
 
 
-def settle_commas(tokens: Sequence[Token]) -> tuple[list[Token], bool, int]:
-    """The tokens without commas that mean something, whether thousands are set apart, and how often to divide by 1000.
+def read_commas(tokens: Sequence[Token]) -> tuple[list[Token], bool, int]:
+    """Read the commas: the other tokens, whether thousands are separated, and how often to divide by 1000.
 
-    A comma means something right after a digit placeholder: between those of the whole part it sets thousands apart,
-    behind the last one it divides, between decimals it is ignored. Any other stands for itself.
+    A comma right after a digit placeholder has a meaning: between two of the whole part it asks for separators, behind
+    the last one it divides, between decimals it is ignored. Any other comma stands for itself, and stays a token.
     """
     kept: list[Token] = []
     grouped, thousands, after_digit, in_whole = False, 0, False, True
@@ -178,7 +178,7 @@ def settle_commas(tokens: Sequence[Token]) -> tuple[list[Token], bool, int]:
 
 
 def _digits_follow(tokens: Sequence[Token], in_whole: bool) -> bool:
-    """Whether a digit placeholder comes, in the whole part only if this is it."""
+    """Whether a digit placeholder follows, before the point where `in_whole`."""
     for token in tokens:
         if token.mark is Mark.DIGIT:
             return True

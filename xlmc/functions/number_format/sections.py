@@ -2,7 +2,7 @@
 
 One section writes all numbers, a minus before the negative ones. Of two, the second is for negative numbers; of three,
 the third is for zero; the fourth, or a last one with `@`, is for texts. Conditions go before these rules. A section
-that only ever sees negative numbers writes its own minus, if any.
+that gets only negative numbers must hold a minus itself if one is wanted.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from xlmc.functions.number_text import general_text
 __all__ = ["NumberFormat", "parse_format"]
 
 _NO_SECTION: Final = "#" * 255
-"""What Excel writes of a number that no section is for."""
+"""What Excel writes for a number that no section is for."""
 
 _LONGEST: Final = 255
 
@@ -52,26 +52,26 @@ class NumberFormat:
         """
         if not self.sections:
             return general_text(x)
-        chosen = self._chosen(x)
+        chosen = self._choose(x)
         if chosen is None:
             return _NO_SECTION
-        layout, own_sign = chosen
-        if x < 0 and isinstance(layout, MomentLayout) and not (date1904 or layout.only_elapsed or own_sign):
+        layout, without_minus = chosen
+        if x < 0 and isinstance(layout, MomentLayout) and not (date1904 or layout.only_elapsed or without_minus):
             raise FormatError("a date before 1900")
         text, zero = layout.write(abs(x), date1904)
-        return f"-{text}" if x < 0 and not (own_sign or zero) else text
+        return f"-{text}" if x < 0 and not (without_minus or zero) else text
 
     def text(self, text: str) -> str:
         """A text as the format writes it: as it is, unless a section is for texts."""
         return text if self.for_texts is None else self.for_texts.write_text(text)
 
-    def _chosen(self, x: float) -> tuple[Layout, bool] | None:
-        """The layout for a number, and whether it minds the sign itself."""
+    def _choose(self, x: float) -> tuple[Layout, bool] | None:
+        """Choose the layout for a number; and whether it is written without a minus, even if negative."""
         first = self.sections[0]
-        if first.condition.holds(x) if first.condition else self._goes_first(x):
+        if first.condition.holds(x) if first.condition else self._first_writes(x):
             return first.layout, first.condition is not None and first.condition.only_negative
         if len(self.sections) == 1:
-            return _GENERAL, self._left_negative()
+            return _GENERAL, self._rest_is_negative()
         second = self.sections[1]
         if second.condition is None:
             return self._second_or_third(x)
@@ -79,16 +79,16 @@ class NumberFormat:
             return second.layout, second.condition.only_negative
         return (self.sections[2].layout, False) if len(self.sections) == 3 else None
 
-    def _goes_first(self, x: float) -> bool:
+    def _first_writes(self, x: float) -> bool:
         return {1: True, 2: x >= 0, 3: x > 0}[len(self.sections)]
 
     def _second_or_third(self, x: float) -> tuple[Layout, bool]:
         if len(self.sections) == 2:
-            return self.sections[1].layout, self._left_negative()
+            return self.sections[1].layout, self._rest_is_negative()
         return (self.sections[1].layout, True) if x < 0 else (self.sections[2].layout, False)
 
-    def _left_negative(self) -> bool:
-        """Whether what the first section leaves is taken for negative."""
+    def _rest_is_negative(self) -> bool:
+        """Whether Excel treats the numbers that the first section leaves over as negative."""
         condition = self.sections[0].condition
         return condition is None or condition.leaves_negative
 
@@ -135,13 +135,13 @@ class _Condition:
 
     @property
     def only_negative(self) -> bool:
-        """Whether it holds for negative numbers alone: then the section minds the sign itself."""
+        """Whether it holds for negative numbers alone: then no minus goes before what the section writes."""
         below = self.relation == "<" and self.limit <= 0
         return below or (self.relation in ("<=", "=") and self.limit < 0)
 
     @property
     def leaves_negative(self) -> bool:
-        """Whether Excel takes what it leaves over for negative: any `<`, and `<>` of a negative number."""
+        """Whether Excel treats what it leaves over as negative: after any `<`, and after `<>` of a negative number."""
         return self.relation in ("<", "<=") or (self.relation == "<>" and self.limit < 0)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from xlmc.functions.registry import Logical, Number, excel
 from xlmc.functions.statistical.probabilities import (
+    ROOT_2PI,
     binomial_mass,
     by_form,
     degrees_of_freedom,
@@ -51,34 +52,34 @@ def betadist(x: Floats, a: Floats, b: Floats, low: Floats, high: Floats) -> Floa
 
 @excel("BETA.INV", Number, Number, Number, Number(default=0.0), Number(default=1.0), aliases=("BETAINV",))
 def beta_inv(p: Floats, a: Floats, b: Floats, low: Floats, high: Floats) -> Floats:
-    """The beta number of a probability, between `low` and `high`."""
+    """Quantile of the beta distribution between `low` and `high`."""
     from scipy.special import betaincinv
 
-    inside = (np.asarray(p) > 0) & (p < 1) & (a > 0) & (b > 0) & (low < high)
+    inside = (np.asarray(p) > 0) & (p <= 1) & (a > 0) & (b > 0) & (low < high)
     z = betaincinv(*(np.where(inside, array, 0.5) for array in (a, b, p)))
     return np.where(inside, low + np.subtract(high, low) * z, NUM)
 
 
-def _shares(x: Floats, m: Floats, n: Floats) -> tuple[Floats, Floats]:
-    """The beta number of an F number and its complement: m·x and n as shares of their sum."""
+def _to_beta(x: Floats, m: Floats, n: Floats) -> tuple[Floats, Floats]:
+    """The beta-distributed number that belongs to an F number, and 1 less it: m·x and n as shares of their sum."""
     ratio = np.minimum(np.divide(m, n) * x, _HUGE)
     return ratio / (1 + ratio), 1 / (1 + ratio)
 
 
 def f_below(x: Floats, m: Floats, n: Floats) -> Floats:
     """Probability that an F number with m and n degrees of freedom is at most x, 0 or more; arrays that broadcast."""
-    share, rest = _shares(x, m, n)
+    share, rest = _to_beta(x, m, n)
     return incomplete_beta(m / 2, n / 2, share, rest)
 
 
 def f_above(x: Floats, m: Floats, n: Floats) -> Floats:
     """Probability that an F number with m and n degrees of freedom is above x, 0 or more; arrays that broadcast."""
-    share, rest = _shares(x, m, n)
+    share, rest = _to_beta(x, m, n)
     return incomplete_beta(n / 2, m / 2, rest, share)
 
 
 def _f_density(x: Floats, m: Floats, n: Floats) -> Floats:
-    share, rest = _shares(x, m, n)
+    share, rest = _to_beta(x, m, n)
     inside = binomial_mass(m / 2, n / 2, share, rest) * m / (m + n) * m / 2 * rest / _not_zero(share)
     at_zero = np.where(m < 2, NUM, np.where(m == 2, 1.0, 0.0))
     return np.where(share == 0, at_zero, inside)
@@ -103,7 +104,7 @@ def f_dist_rt(x: Floats, freedom1: Floats, freedom2: Floats) -> Floats:
 
 @excel("F.INV", Number, Number, Number)
 def f_inv(p: Floats, freedom1: Floats, freedom2: Floats) -> Floats:
-    """The F number that a probability lies below."""
+    """Quantile of the F distribution: p is the probability below it."""
     (valid1, m), (valid2, n) = degrees_of_freedom(freedom1), degrees_of_freedom(freedom2)
     inside = valid1 & valid2 & (p >= 0) & (p < 1)
     share, rest = inverse_beta(m / 2, n / 2, np.where(inside, p, 0.5))
@@ -112,7 +113,7 @@ def f_inv(p: Floats, freedom1: Floats, freedom2: Floats) -> Floats:
 
 @excel("F.INV.RT", Number, Number, Number, aliases=("FINV",))
 def f_inv_rt(p: Floats, freedom1: Floats, freedom2: Floats) -> Floats:
-    """The F number that a probability lies above."""
+    """Quantile of the F distribution: p is the probability above it."""
     (valid1, m), (valid2, n) = degrees_of_freedom(freedom1), degrees_of_freedom(freedom2)
     inside = valid1 & valid2 & (p > 0) & (p <= 1)
     rest, share = inverse_beta(n / 2, m / 2, np.where(inside, p, 0.5))
@@ -120,10 +121,9 @@ def f_inv_rt(p: Floats, freedom1: Floats, freedom2: Floats) -> Floats:
 
 
 _FAR: Final = 1e17
-"""From this t²/freedom on, the first term of the tail's series is all of it."""
+"""From this t²/freedom on, the first term of the tail's series is enough."""
 
 _HALF: Final = np.asarray(0.5)
-_ROOT_2PI: Final = float(np.sqrt(2 * np.pi))
 
 
 def _log_tail(freedom: Floats) -> Floats:
@@ -134,7 +134,7 @@ def _log_tail(freedom: Floats) -> Floats:
 
 
 def t_outside(t: Floats, freedom: Floats) -> Floats:
-    """Probability that a t number is farther from 0 than t, which is not below 0; arrays that broadcast."""
+    """Probability that the size of a t number is above t, 0 or more; arrays that broadcast."""
     root = t / np.sqrt(freedom)
     far = root > np.sqrt(_FAR)
     ratio = np.where(far, 1.0, root) * np.where(far, 1.0, root)
@@ -143,8 +143,8 @@ def t_outside(t: Floats, freedom: Floats) -> Floats:
     return np.where(far, tail, near)
 
 
-def _t_of_outside(p: Floats, freedom: Floats) -> Floats:
-    """The t number, 0 or more, that a t number is farther from 0 than with probability p; arrays that broadcast."""
+def _t_quantile(p: Floats, freedom: Floats) -> Floats:
+    """The t, 0 or more, that the size of a t number exceeds with probability p; arrays that broadcast."""
     rest, share = inverse_beta(freedom / 2, _HALF, p)
     far = rest < 1 / _FAR
     near = np.sqrt(freedom * (share / np.where(far, 1.0, rest)))
@@ -155,7 +155,7 @@ def _t_of_outside(p: Floats, freedom: Floats) -> Floats:
 def _student_density(t: Floats, freedom: Floats) -> Floats:
     more = (freedom + 1) / 2
     log_scale = stirling_error(more) - stirling_error(freedom / 2) - deviance(freedom / 2, more)
-    return np.exp(log_scale - more * np.log1p(t / freedom * t)) / _ROOT_2PI
+    return np.exp(log_scale - more * np.log1p(t / freedom * t)) / ROOT_2PI
 
 
 def _t_below(t: Floats, freedom: Floats) -> Floats:
@@ -165,7 +165,7 @@ def _t_below(t: Floats, freedom: Floats) -> Floats:
 
 @excel("T.DIST", Number, Number, Logical)
 def t_dist(t: Floats, freedom: Floats, cumulative: Bools) -> Floats:
-    """Student's t distribution; of the density with 0 degrees of freedom Excel says `#DIV/0!`."""
+    """Student's t distribution; the density with 0 degrees of freedom is `#DIV/0!`, as in Excel."""
     valid, k = degrees_of_freedom(freedom)
     result = by_form(cumulative, lambda: _t_below(t, k), lambda: _student_density(t, k))
     error = np.where((np.floor(freedom) == 0) & ~np.asarray(cumulative), DIV0, NUM)
@@ -181,34 +181,34 @@ def t_dist_rt(t: Floats, freedom: Floats) -> Floats:
 
 @excel("T.DIST.2T", Number, Number)
 def t_dist_2t(t: Floats, freedom: Floats) -> Floats:
-    """Probability that a t number is farther from 0 than t, which must not be negative."""
+    """Probability that the size of a t number is above t, which must not be negative."""
     valid, k = degrees_of_freedom(freedom)
     return np.where(valid & (t >= 0), t_outside(np.abs(t), k), NUM)
 
 
 @excel("TDIST", Number, Number, Number)
 def tdist(t: Floats, freedom: Floats, tails: Floats) -> Floats:
-    """Probability that a t number is above t (1 tail), or farther from 0 than t (2 tails); t must not be negative."""
+    """Probability that a t number (1 tail), or its size (2 tails), is above t, which must not be negative."""
     both, sides = t_dist_2t(t, freedom), np.floor(tails)
     return np.where((sides == 1) | (sides == 2), np.where(sides == 1, both / 2, both), NUM)
 
 
 @excel("T.INV", Number, Number)
 def t_inv(p: Floats, freedom: Floats) -> Floats:
-    """The t number that a probability lies below."""
+    """Quantile of Student's t distribution: p is the probability below it."""
     valid, k = degrees_of_freedom(freedom)
     inside = valid & (p > 0) & (p < 1)
     q = np.where(inside, p, 0.5)
-    size = _t_of_outside(2 * np.minimum(q, 1 - q), k)
+    size = _t_quantile(2 * np.minimum(q, 1 - q), k)
     return np.where(inside, np.where(q < 0.5, -size, size), NUM)
 
 
 @excel("T.INV.2T", Number, Number, aliases=("TINV",))
 def t_inv_2t(p: Floats, freedom: Floats) -> Floats:
-    """The t number, 0 or more, that a t number is farther from 0 than with a probability."""
+    """The t, 0 or more, that the size of a t number exceeds with probability p."""
     valid, k = degrees_of_freedom(freedom)
     inside = valid & (p > 0) & (p <= 1)
-    return np.where(inside, _t_of_outside(np.where(inside, p, 0.5), k), NUM)
+    return np.where(inside, _t_quantile(np.where(inside, p, 0.5), k), NUM)
 
 
 @excel("CONFIDENCE.T", Number, Number, Number)
@@ -216,6 +216,6 @@ def confidence_t(alpha: Floats, deviation: Floats, size: Floats) -> Floats:
     """Half the width of the interval that holds a mean with probability 1 - alpha; the deviation is of the sample."""
     k = np.floor(size)
     inside = (np.asarray(alpha) > 0) & (alpha < 1) & (deviation > 0) & (k > 1)
-    t = _t_of_outside(np.where(inside, alpha, 0.5), np.where(inside, k, 2.0) - 1)
+    t = _t_quantile(np.where(inside, alpha, 0.5), np.where(inside, k, 2.0) - 1)
     alone = (np.asarray(alpha) > 0) & (alpha < 1) & (deviation > 0) & (k == 1)
     return np.where(inside, t * deviation / np.sqrt(np.maximum(k, 1.0)), np.where(alone, DIV0, NUM))

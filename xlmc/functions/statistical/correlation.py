@@ -17,7 +17,7 @@ __all__: list[str] = []
 
 
 def _joint(x: Floats, y: Floats, counts: Bools) -> tuple[Floats, Floats, Floats, Floats]:
-    """The sums of squared distances of x and of y, that of their products, and how many pairs: (n,) each."""
+    """The sums of the squared distances of x and of y and of their products, and the number of pairs: (n,) each."""
     (_, dx, k), (_, dy, _) = mean_of(x, counts), mean_of(y, counts)
     return row_sums(dx * dx), row_sums(dy * dy), row_sums(dx * dy), k
 
@@ -47,7 +47,7 @@ def determination(y: Floats, x: Floats, counts: Bools) -> Floats:
 @excel("COVARIANCE.P", Arrays, Arrays, aliases=("COVAR",), facts=Facts(empty_cells=EmptyCells.PAIRED))
 @of_pairs
 def population_covariance(x: Floats, y: Floats, counts: Bools) -> Floats:
-    """Covariance of the pairs themselves; `#DIV/0!` of nothing."""
+    """Covariance of a whole population; `#DIV/0!` of nothing."""
     _, _, xy, k = _joint(x, y, counts)
     return _ratio(xy, k)
 

@@ -12,14 +12,14 @@ from xlmc.functions.values import NUM, Bools, Floats
 
 __all__: list[str] = []
 
-_SEEN: Final = 1e-14
-"""A probability that reaches another to within this reaches it: what is typed in decimals lies as far off."""
+_SLACK: Final = 1e-14
+"""A probability reaches another if it is below it by no more than this share: typed decimals are as far off."""
 
 _LARGEST: Final = 2.0**31
-"""Numbers of things from here on are refused by whatever has to count through them."""
+"""Functions that count through things one by one refuse so many."""
 
 
-def _probability(p: Floats) -> Bools:
+def _is_probability(p: Floats) -> Bools:
     return (np.asarray(p) >= 0) & (p <= 1)
 
 
@@ -37,7 +37,7 @@ def poisson_dist(x: Floats, mean: Floats, cumulative: Bools) -> Floats:
 def binom_dist(successes: Floats, trials: Floats, p: Floats, cumulative: Bools) -> Floats:
     """Binomial distribution of the successes among so many trials."""
     k, n = np.floor(successes), np.floor(trials)
-    inside = (k >= 0) & (k <= n) & _probability(p)
+    inside = (k >= 0) & (k <= n) & _is_probability(p)
     k, n, p = np.where(inside, k, 0.0), np.where(inside, n, 1.0), np.where(inside, p, 0.5)
     result = by_form(cumulative, lambda: _at_most(k, n, p), lambda: binomial_mass(k, n - k, p, 1 - p))
     return np.where(inside, result, NUM)
@@ -62,7 +62,7 @@ def binom_dist_range(trials: Floats, p: Floats, least: Floats, most: Floats | No
     """Probability of `least` to `most` successes; of `least` exactly, without `most`."""
     n, low = np.floor(trials), np.floor(least)
     high = low if most is None else np.floor(most)
-    inside = _probability(p) & (low >= 0) & (low <= high) & (high <= n)
+    inside = _is_probability(p) & (low >= 0) & (low <= high) & (high <= n)
     low, high = np.where(inside, low, 0.0), np.where(inside, high, 0.0)
     n, p = np.where(inside, n, 1.0), np.where(inside, p, 0.5)
     # The smaller of the two tails is the one whose difference keeps its digits.
@@ -74,9 +74,9 @@ def binom_dist_range(trials: Floats, p: Floats, least: Floats, most: Floats | No
 
 @excel("BINOM.INV", Number, Number, Number, aliases=("CRITBINOM",))
 def binom_inv(trials: Floats, p: Floats, alpha: Floats) -> Floats:
-    """The fewest successes that a share alpha of all outcomes does not exceed; less than 2³¹ trials."""
+    """The least number of successes whose cumulative probability reaches alpha; for less than 2³¹ trials."""
     n = np.floor(trials)
-    inside = (n >= 0) & (n < _LARGEST) & _probability(p) & (alpha > 0) & (alpha < 1)
+    inside = (n >= 0) & (n < _LARGEST) & _is_probability(p) & (alpha > 0) & (alpha < 1)
     n, p, alpha = np.where(inside, n, 0.0), np.where(inside, p, 0.5), np.where(inside, alpha, 0.5)
     low, high = np.full(np.shape(n), -1.0), n
     while np.any(high - low > 1):
@@ -87,18 +87,18 @@ def binom_inv(trials: Floats, p: Floats, alpha: Floats) -> Floats:
 
 
 def _reaches(k: Floats, n: Floats, p: Floats, alpha: Floats) -> Bools:
-    """Whether at most k successes, fewer than n, have the probability alpha; judged by the smaller tail."""
+    """Whether the probability of at most k successes, k below n, reaches alpha; judged by the smaller tail."""
     upper, more, less = alpha > 0.5, k + 1, np.maximum(n - k, 1.0)
     beta, share = np.where(upper, [more, less], [less, more]), np.where(upper, [p, 1 - p], [1 - p, p])
     tail = incomplete_beta(*beta, *share)
-    return np.where(upper, tail <= (1 - alpha) + _SEEN * alpha, tail >= alpha * (1 - _SEEN))
+    return np.where(upper, tail <= (1 - alpha) + _SLACK * alpha, tail >= alpha * (1 - _SLACK))
 
 
 @excel("NEGBINOM.DIST", Number, Number, Number, Logical)
 def negbinom_dist(failures: Floats, successes: Floats, p: Floats, cumulative: Bools) -> Floats:
     """Negative binomial distribution: how many failures come before so many successes."""
     k, n = np.floor(failures), np.floor(successes)
-    inside = (k >= 0) & (n >= 1) & _probability(p)
+    inside = (k >= 0) & (n >= 1) & _is_probability(p)
     k, n, p = np.where(inside, k, 0.0), np.where(inside, n, 1.0), np.where(inside, p, 0.5)
     result = by_form(
         cumulative,
@@ -110,24 +110,24 @@ def negbinom_dist(failures: Floats, successes: Floats, p: Floats, cumulative: Bo
 
 @excel("NEGBINOMDIST", Number, Number, Number)
 def negbinomdist(failures: Floats, successes: Floats, p: Floats) -> Floats:
-    """Probability of just so many failures before so many successes."""
+    """Probability of exactly so many failures before so many successes."""
     return np.asarray(negbinom_dist(failures, successes, p, np.asarray(False)))
 
 
 @excel("HYPGEOM.DIST", Number, Number, Number, Number, Logical)
 def hypgeom_dist(successes: Floats, drawn: Floats, marked: Floats, size: Floats, cumulative: Bools) -> Floats:
-    """Hypergeometric distribution: how many of those drawn are marked; of less than 2³¹ things in all."""
+    """Hypergeometric distribution: how many of the things drawn are marked, of less than 2³¹ in all."""
     counts = [np.floor(count) for count in (successes, drawn, marked, size)]
     x, n, m, total = counts
     inside = (x >= np.maximum(0.0, n - total + m)) & (x <= np.minimum(n, m)) & (n > 0) & (n <= total)
     inside = inside & (m > 0) & (m <= total) & (total < _LARGEST)
     x, n, m, total = (np.where(inside, count, 1.0) for count in counts)
-    result = by_form(cumulative, lambda: _drawn_at_most(x, n, m, total), lambda: _drawn(x, n, m, total))
+    result = by_form(cumulative, lambda: _probability_up_to(x, n, m, total), lambda: _probability_of(x, n, m, total))
     return np.where(inside, result, NUM)
 
 
-def _drawn(x: Floats, n: Floats, m: Floats, total: Floats) -> Floats:
-    """Probability of x marked among n drawn, where m of the total are marked; 0 of what cannot be."""
+def _probability_of(x: Floats, n: Floats, m: Floats, total: Floats) -> Floats:
+    """Probability of x marked among n drawn, where m of the total are marked; 0 where that is impossible."""
     possible = (x >= np.maximum(0.0, n - total + m)) & (x <= np.minimum(n, m))
     x = np.where(possible, x, np.maximum(0.0, n - total + m))
     share, rest = n / total, (total - n) / total
@@ -135,11 +135,11 @@ def _drawn(x: Floats, n: Floats, m: Floats, total: Floats) -> Floats:
     return np.where(possible, marked * (plain / binomial_mass(n, total - n, share, rest)), 0.0)
 
 
-def _drawn_at_most(x: Floats, n: Floats, m: Floats, total: Floats) -> Floats:
-    """Probability of at most x marked; above the mean, by that of the plain ones that are then drawn."""
+def _probability_up_to(x: Floats, n: Floats, m: Floats, total: Floats) -> Floats:
+    """Probability of at most x marked; above the mean it is 1 less the probability of fewer unmarked ones."""
     low = x * total <= n * m
     k, kind = np.where(low, x, n - x - 1), np.where(low, m, total - m)
-    tail = _drawn(k, n, kind, total) * _relative_tail(k, n, kind, total)
+    tail = _probability_of(k, n, kind, total) * _relative_tail(k, n, kind, total)
     return np.where(low, tail, 1 - tail)
 
 
@@ -156,5 +156,5 @@ def _relative_tail(k: Floats, n: Floats, m: Floats, total: Floats) -> Floats:
 
 @excel("HYPGEOMDIST", Number, Number, Number, Number)
 def hypgeomdist(successes: Floats, drawn: Floats, marked: Floats, size: Floats) -> Floats:
-    """Probability that just so many of those drawn are marked."""
+    """Probability that exactly so many of the things drawn are marked."""
     return np.asarray(hypgeom_dist(successes, drawn, marked, size, np.asarray(False)))

@@ -9,13 +9,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from xlmc.functions.arguments import first_error, first_error_in_row
 from xlmc.functions.facts import EmptyCells, Facts, Repeats
 from xlmc.functions.lookup.picked_cells import flatten_cells
+from xlmc.functions.math.aggregate import maximum, minimum
 from xlmc.functions.math.rounding import int_
 from xlmc.functions.registry import Cells, Number, Numbers, excel
-from xlmc.functions.samples import Sample, at_each, mean_of, row_sums, spread_of
-from xlmc.functions.values import BLANK, DIV0, NUM, Bools, Codes, Floats, Value
+from xlmc.functions.samples import Sample, at_each, join_samples, mean_of, row_sums, spread_of
+from xlmc.functions.values import BLANK, DIV0, NUM, Bools, Floats, Value
 
 __all__: list[str] = []
 
@@ -73,7 +73,7 @@ def skewness(x: Floats, counts: Bools) -> Floats:
 
 @excel("SKEW.P", Numbers, facts=Facts(empty_cells=EmptyCells.IGNORED))
 def population_skewness(x: Floats, counts: Bools) -> Floats:
-    """Skewness of the numbers themselves; `#DIV/0!` of fewer than three, or of equal ones."""
+    """Skewness of a whole population; `#DIV/0!` of fewer than three numbers, or of equal ones."""
     z, k, differ = _standardized(x, counts, 0)
     return np.where((k > 2) & differ, row_sums(z * z * z) / np.maximum(k, 1.0), DIV0)
 
@@ -91,7 +91,7 @@ def kurtosis(x: Floats, counts: Bools) -> Floats:
 @excel("TRIMMEAN", Cells, Number, facts=Facts(empty_cells=EmptyCells.IGNORED))
 @at_each()
 def trimmed_mean(sample: Sample, share: Floats) -> Floats:
-    """Mean without a share of the numbers, half of it at either end, whole numbers of them; `#NUM!` of nothing."""
+    """Mean without a share of the numbers, half of them from each end, rounded down; `#NUM!` of nothing."""
     inside = (share >= 0) & (share < 1) & (sample.size > 0)
     cut = int_(sample.size * np.where(inside, share, 0.0) / 2)
     ordered, index = sample.ordered(), np.arange(float(sample.x.shape[1]))
@@ -104,27 +104,22 @@ def _mean_between(ordered: Floats, index: Floats, cut: Floats, size: Floats) -> 
     return row_sums(np.where(kept, ordered, 0.0)) / np.maximum(row_sums(kept.astype(np.float64)), 1.0)
 
 
-def _columns(value: Value) -> tuple[Floats, Bools, Codes]:
-    """Numbers, which of them count, and errors of one argument: (n, k) each."""
+def _sample_of_all(value: Value) -> Sample:
+    """All values of one argument but blanks of a range: TRUE as 1, FALSE and texts as 0."""
     in_range = value.numbers.ndim == 3
     x, errors = (value.numbers, value.errors) if in_range else value.to_numbers()
-    counts = (value.kinds != BLANK) | (not in_range)
-    x, counts, errors = (flatten_cells(array, value) for array in (x, counts & (errors == 0), errors))
-    return x, counts, errors
+    counts = ((value.kinds != BLANK) | (not in_range)) & (errors == 0)
+    return Sample(flatten_cells(x, value), flatten_cells(counts, value), flatten_cells(errors, value))
 
 
-def _over_all(
+def _register(
     name: str, meaning: str, body: Callable[[Floats, Bools], Floats], repeats: Repeats = Repeats.REFUSED
 ) -> None:
     """Register a function of all values, (n, k) and which of them count -> (n,)."""
 
     def apply(*values: Value) -> Value:
-        parts = [_columns(value) for value in values]
-        n = max(x.shape[0] for x, _, _ in parts)
-        x, counts = (
-            np.concatenate([np.broadcast_to(part[i], (n, part[i].shape[1])) for part in parts], axis=1) for i in (0, 1)
-        )
-        return Value.of_numbers(body(x, counts), first_error(*(first_error_in_row(codes) for _, _, codes in parts)))
+        sample = join_samples([_sample_of_all(value) for value in values])
+        return Value.of_numbers(body(sample.x, sample.counts), sample.errors)
 
     apply.__doc__ = meaning
     facts = Facts(empty_cells=EmptyCells.IGNORED, repeats=repeats, ends_suffice=repeats is Repeats.ONCE)
@@ -134,14 +129,6 @@ def _over_all(
 def _average(x: Floats, counts: Bools) -> Floats:
     mean, _, k = mean_of(x, counts)
     return np.where(k > 0, mean, DIV0)
-
-
-def _largest(x: Floats, counts: Bools) -> Floats:
-    return np.where(counts.any(axis=1), np.where(counts, x, -np.inf).max(axis=1), 0.0)
-
-
-def _smallest(x: Floats, counts: Bools) -> Floats:
-    return np.where(counts.any(axis=1), np.where(counts, x, np.inf).min(axis=1), 0.0)
 
 
 def _variance(x: Floats, counts: Bools) -> Floats:
@@ -162,10 +149,10 @@ def _root(variance: Callable[[Floats, Bools], Floats]) -> Callable[[Floats, Bool
     return deviation
 
 
-_over_all("AVERAGEA", "Mean; `#DIV/0!` of nothing.", _average)
-_over_all("MAXA", "Largest; 0 of nothing.", _largest, Repeats.ONCE)
-_over_all("MINA", "Smallest; 0 of nothing.", _smallest, Repeats.ONCE)
-_over_all("VARA", "Variance, estimated from a sample; `#DIV/0!` of fewer than two.", _variance)
-_over_all("VARPA", "Variance of the values themselves; `#DIV/0!` of nothing.", _population_variance)
-_over_all("STDEVA", "Standard deviation, from a sample; `#DIV/0!` of fewer than two.", _root(_variance))
-_over_all("STDEVPA", "Standard deviation of the values themselves; `#DIV/0!` of nothing.", _root(_population_variance))
+_register("AVERAGEA", "Mean; `#DIV/0!` of nothing.", _average)
+_register("MAXA", "Largest; 0 of nothing.", maximum, Repeats.ONCE)
+_register("MINA", "Smallest; 0 of nothing.", minimum, Repeats.ONCE)
+_register("VARA", "Variance, estimated from a sample; `#DIV/0!` of fewer than two.", _variance)
+_register("VARPA", "Variance of the values themselves; `#DIV/0!` of nothing.", _population_variance)
+_register("STDEVA", "Standard deviation, from a sample; `#DIV/0!` of fewer than two.", _root(_variance))
+_register("STDEVPA", "Standard deviation of the values themselves; `#DIV/0!` of nothing.", _root(_population_variance))

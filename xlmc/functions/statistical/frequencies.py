@@ -8,17 +8,17 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import ErrorCode
-from xlmc.functions.arguments import error_where, first_error, first_error_in_row, require_same_in_all_trials
+from xlmc.functions.arguments import error_where, first_error, require_same_in_all_trials
 from xlmc.functions.facts import EmptyCells, Facts
 from xlmc.functions.lookup.picked_cells import Indices, flatten_cells
 from xlmc.functions.registry import Arrays, Kind, Number, excel
-from xlmc.functions.samples import pairs_of, points_of, restore_shape, row_sums, sample_of
+from xlmc.functions.samples import Sample, join_samples, pairs_of, points_of, restore_shape, row_sums, sample_of
 from xlmc.functions.values import ERROR, NA, NUM, NUMBER, Bools, Codes, Floats, Value
 
 __all__: list[str] = []
 
 _WHOLE: Final = 1e-9
-"""Probabilities that add up to 1 to within this add up to 1."""
+"""The sum of probabilities may differ from 1 by this."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,7 +27,7 @@ class _Modes:
 
     Attributes:
         x: all numbers, (n, k).
-        indices: where the modes first stand in it, in that order, and k behind them: (n, k).
+        indices: where each mode first stands in `x`, in rising order, filled up with k: (n, k).
         how_many: modes of each trial, (n,).
         errors: (n,).
     """
@@ -39,25 +39,23 @@ class _Modes:
 
 
 def _modes_of(values: tuple[Value, ...]) -> _Modes:
-    parts = [_listed(value) for value in values]
-    n = max(x.shape[0] for x, _, _ in parts)
-    x = np.concatenate([np.broadcast_to(x, (n, x.shape[1])) for x, _, _ in parts], axis=1)
-    counts = np.concatenate([np.broadcast_to(counts, (n, counts.shape[1])) for _, counts, _ in parts], axis=1)
-    indices = _first_indices(x, counts)
-    errors = first_error(*(first_error_in_row(codes) for _, _, codes in parts))
-    return _Modes(x, indices, (indices < x.shape[1]).sum(axis=1), np.broadcast_to(errors, (n,)))
+    sample = join_samples([_list_numbers(value) for value in values])
+    indices = _first_indices(sample.x, sample.counts)
+    return _Modes(sample.x, indices, (indices < sample.x.shape[1]).sum(axis=1), sample.errors)
 
 
-def _listed(value: Value) -> tuple[Floats, Bools, Codes]:
-    """Numbers, which cells hold one, and errors: (n, k) each. A value or cell by itself must be a number."""
+def _list_numbers(value: Value) -> Sample:
+    """The numbers of an argument; a value or cell by itself must be a number."""
     alone = value.shape[1:] in ((), (1, 1))
     kinds = flatten_cells(value.kinds, value)
     wrong = error_where(alone & (kinds != NUMBER) & (kinds < ERROR), ErrorCode.VALUE)
-    return flatten_cells(value.numbers, value), kinds == NUMBER, first_error(flatten_cells(value.errors, value), wrong)
+    return Sample(
+        flatten_cells(value.numbers, value), kinds == NUMBER, first_error(flatten_cells(value.errors, value), wrong)
+    )
 
 
 def _first_indices(x: Floats, counts: Bools) -> Indices:
-    """See `_Modes`: equal numbers side by side form runs, the longest of which, if of two at least, are the modes."""
+    """The `indices` of `_Modes`: sorted numbers form runs of equal ones; the longest, from two on, are the modes."""
     k = x.shape[1]
     order = np.argsort(np.where(counts, x, np.inf), axis=1, kind="stable")
     ordered, valid = np.take_along_axis(x, order, axis=1), np.take_along_axis(counts, order, axis=1)
@@ -93,9 +91,9 @@ def modes_in_a_column(*values: Value) -> Value:
 
 @excel("FREQUENCY", Arrays, Arrays, returns=Kind.ANY, facts=Facts(spills=True, empty_cells=EmptyCells.IGNORED_IN_FIRST))
 def frequency(values: Value, bins: Value) -> Value:
-    """How many numbers are at most each bin, and above the bin below it, and how many above all: (n, b + 1, 1).
+    """Count the numbers up to each bin and above the next lower one, and those above all bins: (n, b + 1, 1).
 
-    Bins need no order; of equal ones the first counts, the others are 0. What is no number is no bin.
+    Bins need no order; of equal bins the first counts, the others give 0. A cell that is no number is no bin.
 
     Raises:
         ShapeVaries: not all trials have the same cells for bins.

@@ -50,7 +50,7 @@ def _density(a: Floats, y: Floats) -> Floats:
 
 @excel("GAMMA.INV", Number, Number, Number, aliases=("GAMMAINV",))
 def gamma_inv(p: Floats, shape: Floats, scale: Floats) -> Floats:
-    """The gamma number of a probability."""
+    """Quantile of the gamma distribution."""
     from scipy.special import gammaincinv
 
     inside = (np.asarray(p) >= 0) & (p < 1) & (shape > 0) & (scale > 0)
@@ -81,14 +81,14 @@ def chisq_dist_rt(x: Floats, freedom: Floats) -> Floats:
 
 @excel("CHISQ.INV", Number, Number)
 def chisq_inv(p: Floats, freedom: Floats) -> Floats:
-    """The chi-square number that a probability lies below."""
+    """Quantile of the chi-square distribution: p is the probability below it."""
     valid, k = degrees_of_freedom(freedom)
     return np.where(valid, gamma_inv(p, k / 2, np.asarray(2.0)), NUM)
 
 
 @excel("CHISQ.INV.RT", Number, Number, aliases=("CHIINV",))
 def chisq_inv_rt(p: Floats, freedom: Floats) -> Floats:
-    """The chi-square number that a probability lies above."""
+    """Quantile of the chi-square distribution: p is the probability above it."""
     from scipy.special import gammainccinv
 
     valid, k = degrees_of_freedom(freedom)

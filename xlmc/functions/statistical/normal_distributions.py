@@ -1,18 +1,14 @@
-"""The normal and the lognormal distribution, and what is made of them."""
+"""The normal and the lognormal distribution, and functions based on them."""
 
 from __future__ import annotations
-
-from typing import Final
 
 import numpy as np
 
 from xlmc.functions.registry import Logical, Number, excel
-from xlmc.functions.statistical.probabilities import by_form
+from xlmc.functions.statistical.probabilities import ROOT_2PI, by_form
 from xlmc.functions.values import NUM, Bools, Floats
 
 __all__: list[str] = []
-
-_ROOT_2PI: Final = float(np.sqrt(2 * np.pi))
 
 
 def _below(z: Floats) -> Floats:
@@ -21,21 +17,21 @@ def _below(z: Floats) -> Floats:
     return np.asarray(ndtr(z))
 
 
-def _at(p: Floats) -> Floats:
+def _quantile(p: Floats) -> Floats:
     """The inverse of `_below`; any number where p is no probability above 0 and below 1."""
     from scipy.special import ndtri
 
-    return np.asarray(ndtri(np.where(_open(p), p, 0.5)))
+    return np.asarray(ndtri(np.where(_is_open_probability(p), p, 0.5)))
 
 
-def _open(p: Floats) -> Bools:
+def _is_open_probability(p: Floats) -> Bools:
     return (p > 0) & (p < 1)
 
 
 @excel("PHI", Number)
 def phi(z: Floats) -> Floats:
     """Density of the standard normal distribution."""
-    return np.exp(-z * z / 2) / _ROOT_2PI
+    return np.exp(-z * z / 2) / ROOT_2PI
 
 
 @excel("GAUSS", Number)
@@ -60,8 +56,8 @@ def normsdist(z: Floats) -> Floats:
 
 @excel("NORM.S.INV", Number, aliases=("NORMSINV",))
 def norm_s_inv(p: Floats) -> Floats:
-    """The standard normal number of a probability."""
-    return np.where(_open(p), _at(p), NUM)
+    """Quantile of the standard normal distribution."""
+    return np.where(_is_open_probability(p), _quantile(p), NUM)
 
 
 @excel("STANDARDIZE", Number, Number, Number)
@@ -82,8 +78,8 @@ def norm_dist(x: Floats, mean: Floats, deviation: Floats, cumulative: Bools) -> 
 
 @excel("NORM.INV", Number, Number, Number, aliases=("NORMINV",))
 def norm_inv(p: Floats, mean: Floats, deviation: Floats) -> Floats:
-    """The normal number of a probability."""
-    return np.where(_open(p) & (deviation > 0), mean + deviation * _at(p), NUM)
+    """Quantile of the normal distribution."""
+    return np.where(_is_open_probability(p) & (deviation > 0), mean + deviation * _quantile(p), NUM)
 
 
 @excel("LOGNORM.DIST", Number, Number, Number, Logical)
@@ -104,17 +100,17 @@ def lognormdist(x: Floats, mean: Floats, deviation: Floats) -> Floats:
 
 @excel("LOGNORM.INV", Number, Number, Number, aliases=("LOGINV",))
 def lognorm_inv(p: Floats, mean: Floats, deviation: Floats) -> Floats:
-    """The lognormal number of a probability; mean and standard deviation are those of its logarithm."""
-    inside = _open(p) & (deviation > 0)
-    return np.where(inside, np.exp(np.where(inside, mean + deviation * _at(p), 0.0)), NUM)
+    """Quantile of the lognormal distribution; mean and standard deviation are those of the logarithm."""
+    inside = _is_open_probability(p) & (deviation > 0)
+    return np.where(inside, np.exp(np.where(inside, mean + deviation * _quantile(p), 0.0)), NUM)
 
 
 @excel("CONFIDENCE.NORM", Number, Number, Number, aliases=("CONFIDENCE",))
 def confidence_norm(alpha: Floats, deviation: Floats, size: Floats) -> Floats:
     """Half the width of the interval that holds a mean with probability 1 - alpha; the deviation is known."""
     k = np.floor(size)
-    inside = _open(alpha) & (deviation > 0) & (k >= 1)
-    return np.where(inside, -_at(alpha / 2) * deviation / np.sqrt(np.maximum(k, 1.0)), NUM)
+    inside = _is_open_probability(alpha) & (deviation > 0) & (k >= 1)
+    return np.where(inside, -_quantile(alpha / 2) * deviation / np.sqrt(np.maximum(k, 1.0)), NUM)
 
 
 @excel("FISHER", Number)

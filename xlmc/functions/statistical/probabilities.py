@@ -1,12 +1,12 @@
 """What distribution functions share: their two forms, degrees of freedom, and probabilities without loss of digits.
 
-A probability mass is a ratio of factorials times powers, each of which may be enormous; their logarithms cancel, and
-with them the digits. Loader's saddle-point expansion splits the mass into deviances, which are small near the mode and
-exact far from it. Its arguments need not be whole, so that the densities of the gamma, beta, F and t distributions come
-from the same two masses. Source: C. Loader, "Fast and Accurate Computation of Binomial Probabilities", 2000.
+A probability mass is a ratio of factorials times powers, each of which may be enormous. Their logarithms nearly cancel,
+which would lose digits. Loader's saddle-point expansion splits the mass into deviances, which are small near the mode
+and exact far from it. Its arguments need not be whole, so that the densities of the gamma, beta, F and t distributions
+come from the same two masses. Source: C. Loader, "Fast and Accurate Computation of Binomial Probabilities", 2000.
 
-The incomplete beta function of x loses digits where x is near 1. So whoever calls also says what y = 1 - x is, as it
-knows it best, and the smaller of the two is worked with.
+The incomplete beta function of x loses digits where x is near 1. So the caller gives y = 1 - x as well, as exactly as
+it can, and the smaller of the two is used.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import numpy as np
 from xlmc.functions.values import Bools, Floats
 
 __all__ = [
+    "ROOT_2PI",
     "binomial_mass",
     "by_form",
     "degrees_of_freedom",
@@ -42,7 +43,7 @@ def incomplete_beta(a: Floats, b: Floats, x: Floats, y: Floats) -> Floats:
 
 
 def inverse_beta(a: Floats, b: Floats, p: Floats) -> tuple[Floats, Floats]:
-    """The beta number x of a probability, and 1 - x; arrays that broadcast."""
+    """The quantile x of the beta distribution, and 1 - x; arrays that broadcast."""
     from scipy.special import betainccinv, betaincinv
 
     return np.asarray(betaincinv(a, b, p)), np.asarray(betainccinv(b, a, p))
@@ -52,13 +53,13 @@ _MOST_FREEDOM: Final = 1e10
 
 
 def degrees_of_freedom(given: Floats) -> tuple[Bools, Floats]:
-    """Whether these are degrees of freedom, from 1 to 10¹⁰, and how many: the whole number; 1 where they are not."""
+    """Whether numbers are degrees of freedom, 1 to 10¹⁰; and the numbers without fractions, 1 where they are not."""
     valid = (np.asarray(given) >= 1) & (given <= _MOST_FREEDOM)
     return valid, np.floor(np.where(valid, given, 1.0))
 
 
 def by_form(cumulative: Bools, probability: Callable[[], Any], density: Callable[[], Any]) -> Floats:
-    """The probability up to a point where `cumulative`, else the density at it; neither is computed for nothing."""
+    """The probability up to a point where `cumulative`, else the density there; each is computed only if needed."""
     below = probability() if np.any(cumulative) else 0.0
     at = 0.0 if np.all(cumulative) else density()
     return np.where(cumulative, below, at)
@@ -73,10 +74,11 @@ _DEVIANCE_TERMS: Final = 9
 """With |v| < 0.1 the first term left out is below 1e-20 of the deviance."""
 
 _LOG_2PI: Final = float(np.log(2 * np.pi))
+ROOT_2PI: Final = float(np.sqrt(2 * np.pi))
 
 
 def stirling_error(x: Floats) -> Floats:
-    """Logarithm of Γ(x + 1) less Stirling's formula for it, x above 0; any shape -> the same."""
+    """Logarithm of Γ(x + 1) minus Stirling's formula for it, x above 0; any shape -> the same."""
     from scipy.special import gammaln
 
     large = np.maximum(x, _SERIES_FROM)

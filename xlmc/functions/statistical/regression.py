@@ -1,7 +1,7 @@
 """LINEST and its kin: planes of least squares, each trial by itself, in logarithms for exponential curves.
 
-Letters: n trials, m observations, p variables. Known y in a column go with known x whose columns are the variables,
-in a row with rows of them; of one variable, known x are of the same size as known y.
+Letters: n trials, m observations, p variables. If known y are a column, each column of known x is a variable; if they
+are a row, each row is. With one variable, known x have the same size as known y.
 
 The columns are made orthogonal one after the other (Gram-Schmidt, every column twice, which is as good as Householder's
 reflections: Giraud, Langou & Rozložník 2005), and the solution is refined once by its own residuals. Sums run from left
@@ -49,12 +49,12 @@ class _Known:
     shape: tuple[int, ...]
 
     @property
-    def several(self) -> bool:
+    def has_several_variables(self) -> bool:
         return bool(self.x.shape[2] > 1)
 
 
-def _given(value: Value | None) -> Value | None:
-    """An argument, None for one left empty between commas."""
+def _none_if_blank(value: Value | None) -> Value | None:
+    """The argument; None for one that is left out, or left empty between commas."""
     if value is None or value.numbers.ndim == 3:
         return value
     return None if require_same_in_all_trials(value.kinds == BLANK) else value
@@ -70,11 +70,11 @@ def _numbers(value: Value) -> tuple[Floats, Codes]:
     )
 
 
-def _known(ys: Value, xs: Value | None) -> _Known | None:
+def _read_known(ys: Value, xs: Value | None) -> _Known | None:
     """The observations; None where the sizes of y and x do not go together. Without x it is 1, 2, 3, …"""
     y, wrong_y = _numbers(ys)
     shape = y.shape[1:]
-    if (given := _given(xs)) is None:
+    if (given := _none_if_blank(xs)) is None:
         count = np.arange(1.0, y[0].size + 1).reshape(1, *shape)
         x, wrong_x = count, np.zeros(1, np.uint8)
     else:
@@ -95,7 +95,7 @@ def _variables(x: Floats, in_row: bool, shape: tuple[int, ...]) -> Floats | None
     return turned if fits else None
 
 
-def _switch(value: Value | None, otherwise: bool) -> tuple[Bools, Codes]:
+def _read_condition(value: Value | None, otherwise: bool) -> tuple[Bools, Codes]:
     """A condition that may be left out: (n,) each."""
     if value is None:
         return np.full(1, otherwise), np.zeros(1, np.uint8)
@@ -116,7 +116,7 @@ def _ratio(above: Floats, below: Floats) -> Floats:
 
 
 def _coefficients(found: _Fit, *, exponential: bool) -> Floats:
-    """The last variable's first, the intercept behind: (n, p + 1)."""
+    """The coefficients, that of the last variable first, then the intercept: (n, p + 1)."""
     result = np.concatenate([found.slopes[:, ::-1], found.intercept[:, None]], axis=1)
     return np.exp(result) if exponential else result
 
@@ -142,7 +142,7 @@ def _estimate(known: _Known | None, const: Value | None, stats: Value | None, *,
     if known is None:
         return constant(ErrorCode.REF)
     known = _logarithms(known) if exponential else known
-    (free, wrong), (whole, wrong_too) = _switch(const, True), _switch(stats, False)
+    (free, wrong), (whole, wrong_too) = _read_condition(const, True), _read_condition(stats, False)
     found = fit(known.y, known.x, free)
     first = _coefficients(found, exponential=exponential)
     in_full = bool(require_same_in_all_trials(whole))
@@ -154,14 +154,13 @@ def _estimate(known: _Known | None, const: Value | None, stats: Value | None, *,
 def linest(ys: Value, xs: Value | None = None, const: Value | None = None, stats: Value | None = None) -> Value:
     """Coefficients of the plane of least squares, the last variable's first: (n, 1, p + 1), with `stats` (n, 5, p + 1).
 
-    The rows: coefficients; their standard errors; r² and the standard error of y; F and the degrees of freedom; the
-    sums of squares explained and left. A variable that is a sum of others gets 0. `#REF!` for sizes that do not go
-    together.
+    The rows are: coefficients; their standard errors; r² and the standard error of y; F and the degrees of freedom; the
+    sums of squares explained and left. A variable that is a sum of others gets 0. `#REF!` for sizes that do not fit.
 
     Raises:
         ShapeVaries: `stats` differs between trials.
     """
-    return _estimate(_known(ys, xs), const, stats, exponential=False)
+    return _estimate(_read_known(ys, xs), const, stats, exponential=False)
 
 
 @excel("LOGEST", Arrays, *_OPTIONS, returns=Kind.ANY, facts=Facts(spills=True))
@@ -171,16 +170,16 @@ def logest(ys: Value, xs: Value | None = None, const: Value | None = None, stats
     Raises:
         ShapeVaries: `stats` differs between trials.
     """
-    return _estimate(_known(ys, xs), const, stats, exponential=True)
+    return _estimate(_read_known(ys, xs), const, stats, exponential=True)
 
 
-def _new(known: _Known, xs: Value | None, new: Value | None) -> tuple[Floats, Codes, tuple[int, ...]] | None:
+def _read_new(known: _Known, xs: Value | None, new: Value | None) -> tuple[Floats, Codes, tuple[int, ...]] | None:
     """New observations (n, m, p), their errors, and rows and columns of the result; None where they do not fit."""
-    given = _given(new)
+    given = _none_if_blank(new)
     if given is None:
         return known.x, np.zeros(1, np.uint8), known.shape
     x, errors = _numbers(given)
-    if not known.several:
+    if not known.has_several_variables:
         return x.reshape(x.shape[0], -1, 1), errors, x.shape[1:]
     turned = x.swapaxes(1, 2) if known.in_row else x
     if turned.shape[2] != known.x.shape[2]:
@@ -190,13 +189,13 @@ def _new(known: _Known, xs: Value | None, new: Value | None) -> tuple[Floats, Co
 
 
 def _predict(ys: Value, xs: Value | None, new: Value | None, const: Value | None, *, exponential: bool) -> Value:
-    known = _known(ys, xs)
-    found = None if known is None else _new(known, xs, new)
+    known = _read_known(ys, xs)
+    found = None if known is None else _read_new(known, xs, new)
     if known is None or found is None:
         return constant(ErrorCode.REF)
     known = _logarithms(known) if exponential else known
     x, wrong_x, shape = found
-    free, wrong = _switch(const, True)
+    free, wrong = _read_condition(const, True)
     y = fit(known.y, known.x, free).at(x)
     y = np.exp(y) if exponential else y
     return Value.of_numbers(y.reshape(y.shape[0], *shape), first_error(known.errors, wrong_x, wrong)[:, None, None])
@@ -221,7 +220,7 @@ def growth(ys: Value, xs: Value | None = None, new: Value | None = None, const: 
 
 
 _DEPENDENT: Final = 1e-10
-"""A column of which less than this is its own adds nothing to those before it: its coefficient is 0, as in Excel."""
+"""A column that differs from a sum of those before it by less than this share gets the coefficient 0, as in Excel."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -259,12 +258,12 @@ class _Fit:
 def fit(y: Floats, x: Floats, free: Bools) -> _Fit:
     """The plane through observations y (n, m) at x (n, m, p); with an intercept where `free` (n,), else through 0."""
     m = y.shape[1]
-    mean_y, centred = _about_the_mean(y, free)
-    means, columns = zip(*(_about_the_mean(x[:, :, j], free) for j in range(x.shape[2])), strict=True)
-    frame = _orthogonal(columns)
-    slopes = frame.solved(centred)
+    mean_y, centred = _centre(y, free)
+    means, columns = zip(*(_centre(x[:, :, j], free) for j in range(x.shape[2])), strict=True)
+    frame = _orthogonalize(columns)
+    slopes = frame.solve(centred)
     rest = frame.residual(centred, slopes)
-    slopes = [a + b for a, b in zip(slopes, frame.solved(rest), strict=True)]
+    slopes = [a + b for a, b in zip(slopes, frame.solve(rest), strict=True)]
     rest = frame.residual(centred, slopes)
     inverse = frame.inverse()
     leverage = [sum(mean * row[j] for mean, row in zip(means, inverse, strict=True)) for j in range(len(means))]
@@ -281,7 +280,7 @@ def fit(y: Floats, x: Floats, free: Bools) -> _Fit:
     )
 
 
-def _about_the_mean(x: Floats, free: Bools) -> tuple[Floats, Floats]:
+def _centre(x: Floats, free: Bools) -> tuple[Floats, Floats]:
     """The mean of each row and the distances from it, or 0 and the row where not `free`: (n, m) -> (n,), (n, m)."""
     mean, distance, _ = mean_of(x, np.ones(x.shape, bool))
     return np.where(free, mean, 0.0), np.where(free[:, None], distance, x)
@@ -307,8 +306,8 @@ class _Frame:
     parts: list[list[Floats]]
     kept: list[Bools]
 
-    def solved(self, y: Floats) -> list[Floats]:
-        """Coefficients of the columns that come closest to y: (n, m) -> p of (n,)."""
+    def solve(self, y: Floats) -> list[Floats]:
+        """Find the coefficients with which the columns come closest to y: (n, m) -> p of (n,)."""
         p = len(self.columns)
         found: list[Floats] = [np.zeros(1)] * p
         for i in reversed(range(p)):
@@ -319,7 +318,7 @@ class _Frame:
         return found
 
     def residual(self, y: Floats, slopes: list[Floats]) -> Floats:
-        """What of y the columns with these coefficients leave: (n, m)."""
+        """What remains of y without the columns times these coefficients: (n, m)."""
         for slope, column in zip(slopes, self.columns, strict=True):
             y = y - slope[:, None] * column
         return y
@@ -335,7 +334,7 @@ class _Frame:
         return rows
 
 
-def _orthogonal(columns: Sequence[Floats]) -> _Frame:
+def _orthogonalize(columns: Sequence[Floats]) -> _Frame:
     p = len(columns)
     directions: list[Floats] = []
     parts: list[list[Floats]] = [[np.zeros(1)] * p for _ in range(p)]

@@ -1,4 +1,4 @@
-"""Characters by their codes, letters large and small, and what is no letter at all."""
+"""Characters and their codes, capital and small letters, spaces and control characters."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ def code(texts: Objects, *, macintosh: bool = False) -> Value:
     return _CODES[macintosh](texts)
 
 
-def _of_set(characters: str) -> Callable[..., Value]:
-    """Codes to characters; `characters` stand in the order of their codes."""
+def _codes_to_characters(characters: str) -> Callable[..., Value]:
+    """A body that gives the characters of codes; `characters` stand in the order of their codes."""
     return per_element(lambda code: characters[math.trunc(code)] if 1 <= code < 256 else ErrorCode.VALUE)
 
 
-def _in_set(characters: str) -> Callable[..., Value]:
-    """First characters to codes."""
+def _characters_to_codes(characters: str) -> Callable[..., Value]:
+    """A body that gives the codes of first characters."""
     codes = {character: float(number) for number, character in enumerate(characters)}
     return per_element(lambda text: codes.get(text[0], _UNKNOWN) if text else ErrorCode.VALUE)
 
@@ -51,14 +51,14 @@ def _character_set(codec: str) -> str:
 
 
 _SETS: Final = (_character_set("cp1252"), _character_set("mac_roman"))
-_CHARACTERS: Final = tuple(map(_of_set, _SETS))
-_CODES: Final = tuple(map(_in_set, _SETS))
+_CHARACTERS: Final = tuple(map(_codes_to_characters, _SETS))
+_CODES: Final = tuple(map(_characters_to_codes, _SETS))
 
 
 @excel("UNICHAR", Number, returns=Kind.TEXT)
 @per_element
 def unichar(code: float) -> object:
-    """The character of a Unicode code point; `#N/A` for halves of pairs and what is no character."""
+    """The character of a Unicode code point; `#N/A` for surrogates and for code points without a character."""
     number = math.trunc(code)
     if not 1 <= number <= 0x10FFFF:
         return ErrorCode.VALUE
@@ -72,27 +72,27 @@ def unicode(text: str) -> object:
     return float(ord(text[0])) if text else ErrorCode.VALUE
 
 
-def _large(character: str) -> str:
+def _upper(character: str) -> str:
     """The capital of a letter, unless it is more than one character, as of ß."""
     return character.upper() if len(character.upper()) == 1 else character
 
 
-def _small(character: str) -> str:
+def _lower(character: str) -> str:
     return character.lower() if len(character.lower()) == 1 else character
 
 
 @excel("UPPER", Text, returns=Kind.TEXT)
 @per_element
 def upper(text: str) -> str:
-    """In capitals."""
-    return "".join(map(_large, text))
+    """The text in capitals."""
+    return "".join(map(_upper, text))
 
 
 @excel("LOWER", Text, returns=Kind.TEXT)
 @per_element
 def lower(text: str) -> str:
-    """In small letters."""
-    return "".join(map(_small, text))
+    """The text in small letters."""
+    return "".join(map(_lower, text))
 
 
 @excel("ASC", Text, returns=Kind.TEXT)
@@ -107,25 +107,25 @@ def half_width(text: str) -> str:
 def proper(text: str) -> str:
     """A capital for each letter that follows no letter, small letters for the others."""
     pairs = zip(" " + text, text, strict=False)
-    return "".join(_small(letter) if before.isalpha() else _large(letter) for before, letter in pairs)
+    return "".join(_lower(letter) if before.isalpha() else _upper(letter) for before, letter in pairs)
 
 
 @excel("TRIM", Text, returns=Kind.TEXT)
 @per_element
 def trim(text: str) -> str:
-    """Without spaces at its ends, and one for several between words; no-break spaces stay."""
+    """The text without spaces at its ends, and with single spaces between words; no-break spaces stay."""
     return _SPACES.sub(" ", text).strip(" ")
 
 
 @excel("CLEAN", Text, returns=Kind.TEXT)
 @per_element
 def clean(text: str) -> str:
-    """Without the control characters, 0 to 31."""
+    """The text without its control characters, 0 to 31."""
     return _CONTROLS.sub("", text)
 
 
 @excel("ENCODEURL", Text, returns=Kind.TEXT)
 @per_element
 def encode_url(text: str) -> str:
-    """As part of a web address: all but letters, digits and `-._~` by their UTF-8 bytes, `%20`."""
+    """The text as part of a web address: all but letters, digits and `-._~` become UTF-8 bytes such as `%20`."""
     return quote(text, safe="", errors="replace")

@@ -48,19 +48,19 @@ def _number_to_write(value: object, date1904: bool) -> float | None:
 @excel("FIXED", Number, Number(default=2.0), Logical(default=False), returns=Kind.TEXT)
 @per_element
 def fixed(number: float, decimals: float, no_commas: bool) -> object:
-    """A number rounded to so many decimals, with commas between thousands unless told otherwise."""
-    return _rounded(number, decimals, "0" if no_commas else "#,##0", "-{}")
+    """A number rounded to so many decimals, with commas between thousands unless `no_commas`."""
+    return _write_rounded(number, decimals, "0" if no_commas else "#,##0", "-{}")
 
 
 @excel("DOLLAR", Number, Number(default=2.0), returns=Kind.TEXT, aliases=("USDOLLAR",))
 @per_element
 def dollar(number: float, decimals: float) -> object:
     """An amount in dollars, rounded to so many decimals; in brackets if negative."""
-    return _rounded(number, decimals, "$#,##0", "({})")
+    return _write_rounded(number, decimals, "$#,##0", "({})")
 
 
-def _rounded(number: float, decimals: float, whole: str, negative: str) -> object:
-    """The number in the format `whole` with decimals; if negative, with what goes around it."""
+def _write_rounded(number: float, decimals: float, whole: str, negative: str) -> object:
+    """The rounded number in the format `whole` with decimals; a negative one inserted in the text `negative`."""
     digits = math.trunc(max(decimals, -400.0))
     if digits > _MOST_DECIMALS:
         return ErrorCode.VALUE
@@ -84,7 +84,7 @@ def value(item: object, *, date1904: bool = False) -> object:
 @excel("NUMBERVALUE", Text, Text(default="."), Text(default=","))
 @per_element
 def number_value(source: str, point: str, group: str) -> object:
-    """The number that a text stands for, with these signs for the decimal point and between thousands.
+    """The number that a text stands for, with these characters as decimal point and as separator of thousands.
 
     Spaces do not count, each percent sign divides by 100, and an empty text is 0.
     """

@@ -1,4 +1,4 @@
-"""Parts of texts by position and length, texts found in texts, and what is found replaced.
+"""Parts of texts by position and length; finding and replacing a text in another.
 
 Positions count from 1; fractions are dropped. Excel counts texts in UTF-16 units, two for a character beyond the first
 65,536.
@@ -18,38 +18,38 @@ from xlmc.errors import ErrorCode
 from xlmc.functions.per_element import per_element
 from xlmc.functions.registry import Kind, Number, Text, excel
 
-__all__ = ["LONGEST", "fits_in_a_cell", "in_units", "units", "whole"]
+__all__ = ["LONGEST", "fits_in_a_cell", "from_units", "in_units", "to_units"]
 
 LONGEST: Final = 32767
-"""Units of a text in a cell; Excel makes none longer."""
+"""The most UTF-16 units of a text; Excel makes none longer."""
 
 
 def fits_in_a_cell(text: str) -> bool:
-    """Whether Excel makes a text so long."""
-    return len(text) <= LONGEST // 2 or (len(text) <= LONGEST and len(units(text)) <= LONGEST)
+    """Whether a text is no longer than Excel allows."""
+    return len(text) <= LONGEST // 2 or (len(text) <= LONGEST and len(to_units(text)) <= LONGEST)
 
 
-def units(text: str) -> str:
-    """The text with a surrogate for each unit, so that Python counts as Excel does."""
+def to_units(text: str) -> str:
+    """The text with a character for each of its UTF-16 units, so that Python counts as Excel does."""
     if text.isascii() or max(text) < "\U00010000":
         return text
     return "".join(map(chr, np.frombuffer(text.encode("utf-16-le", "surrogatepass"), "<u2")))
 
 
-def whole(text: str) -> str:
-    """The text with its surrogates joined again; half a pair is shown as unknown."""
+def from_units(text: str) -> str:
+    """The text with its pairs of surrogates joined again; half a pair becomes U+FFFD."""
     if text.isascii() or not any("\ud800" <= character < "\ue000" for character in text):
         return text
     return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
 
 
 def in_units(function: Callable[..., object]) -> Callable[..., object]:
-    """The function, given its texts in units and its result joined again."""
+    """Wrap a function: it gets its texts in UTF-16 units, and its result is joined again."""
 
     @wraps(function)
     def counted(*arguments: object) -> object:
-        result = function(*(units(item) if isinstance(item, str) else item for item in arguments))
-        return whole(result) if isinstance(result, str) else result
+        result = function(*(to_units(item) if isinstance(item, str) else item for item in arguments))
+        return from_units(result) if isinstance(result, str) else result
 
     return counted
 
@@ -132,7 +132,7 @@ def find(wanted: str, text: str, start: float) -> object:
 @per_element
 @in_units
 def search(wanted: str, text: str, start: float) -> object:
-    """As `FIND`, but whatever the case and with the wildcards `?` and `*`, which `~` makes plain."""
+    """As `FIND`, but case does not count, and `?` and `*` are wildcards; `~` before one takes it as it is."""
     first = math.trunc(start) - 1
     found = _first_fit(wanted, text, first) if 0 <= first <= len(text) else None
     return ErrorCode.VALUE if found is None else found + 1.0
@@ -141,8 +141,8 @@ def search(wanted: str, text: str, start: float) -> object:
 def _first_fit(wanted: str, text: str, start: int) -> int | None:
     """The first position where the pattern fits.
 
-    Its pieces between stars follow each other at their first positions: if they do not do so from the first position of
-    the first piece, they do so from no later one.
+    Each piece between stars is looked for behind the piece before. If that fails after the first position of the first
+    piece, it fails after every later one.
     """
     pieces = _pieces(wanted)
     head = pieces[0].search(text, start)
@@ -172,7 +172,7 @@ def _pieces(wanted: str) -> tuple[re.Pattern[str], ...]:
 @excel("SUBSTITUTE", Text, Text, Text, Number(default=None), returns=Kind.TEXT)
 @per_element
 def substitute(text: str, old: str, new: str, which: float | None) -> object:
-    """The text with another for every occurrence of one, or for that occurrence alone; capitals count."""
+    """The text with `new` for every `old`, or for the occurrence `which` alone; capitals count."""
     if which is not None and which < 1:
         return ErrorCode.VALUE
     if not old:
@@ -189,11 +189,11 @@ def substitute(text: str, old: str, new: str, which: float | None) -> object:
 
 
 def _unless_too_long(text: str) -> object:
-    return text if len(units(text)) <= LONGEST else ErrorCode.VALUE
+    return text if len(to_units(text)) <= LONGEST else ErrorCode.VALUE
 
 
 @excel("EXACT", Text, Text, returns=Kind.LOGICAL)
 @per_element
 def exact(one: str, other: str) -> bool:
-    """Whether two texts are the same, capitals and all."""
-    return whole(one) == whole(other)
+    """Whether two texts are the same; capitals count."""
+    return from_units(one) == from_units(other)

@@ -13,7 +13,7 @@ from xlmc.functions.arguments import align_ranges
 from xlmc.functions.facts import Facts
 from xlmc.functions.per_element import object_text
 from xlmc.functions.registry import Anything, Cells, Kind, excel
-from xlmc.functions.text.text_parts import units
+from xlmc.functions.text.text_parts import to_units
 from xlmc.functions.values import Objects, ShapeVaries, Value, constant, from_objects
 
 __all__: list[str] = []
@@ -23,7 +23,7 @@ _LEFT_OUT: Final = constant(None)
 Cut = Callable[[str, tuple[int, int]], str]
 
 
-def _edge(name: str, meaning: str, cut: Cut) -> None:
+def _register(name: str, meaning: str, cut: Cut) -> None:
     """Register `TEXTBEFORE` or `TEXTAFTER`, which differ in the side of the delimiter that they keep."""
 
     def body(text: Value, delimiters: Value, *options: Value) -> Value:
@@ -58,13 +58,13 @@ def _piece(
     error = _first_error(text, *marks, which, fold, at_end)
     if error is not None:
         return error
-    number, case, end = _whole(which, 1), _whole(fold, 0), _whole(at_end, 0)
+    number, case, end = _whole_number(which, 1), _whole_number(fold, 0), _whole_number(at_end, 0)
     source = object_text(text)
     if not number or case not in (0, 1) or end not in (0, 1):
         return ErrorCode.VALUE
     if not source:
         return ""
-    if abs(number) > len(units(source)):
+    if abs(number) > len(to_units(source)):
         return ErrorCode.VALUE
     found = _occurrence(source, [object_text(mark) for mark in marks], number, bool(case), bool(end))
     if found is not None:
@@ -76,7 +76,7 @@ def _first_error(*items: object) -> ErrorCode | None:
     return next((item for item in items if isinstance(item, ErrorCode)), None)
 
 
-def _whole(item: object, default: int) -> int | None:
+def _whole_number(item: object, default: int) -> int | None:
     """A number without its fraction; a default for what is left out."""
     if item is None:
         return default
@@ -84,9 +84,9 @@ def _whole(item: object, default: int) -> int | None:
 
 
 def _occurrence(text: str, marks: list[str], number: int, fold: bool, at_end: bool) -> tuple[int, int] | None:
-    """Where the n-th delimiter starts and ends, counted from the end if negative; None when there are not so many.
+    """Where the n-th delimiter starts and ends, counted from the end if negative; None when there are fewer.
 
-    With `at_end`, the end the count runs to is one more. An empty delimiter is found at once.
+    With `at_end`, the end of the text that the count runs to is a delimiter, too. An empty delimiter is found at once.
     """
     far_end = (len(text), len(text)) if number > 0 else (0, 0)
     if "" in marks:
@@ -100,13 +100,13 @@ def _occurrence(text: str, marks: list[str], number: int, fold: bool, at_end: bo
 
 
 def _delimiter(marks: Iterable[str], fold: bool) -> re.Pattern[str]:
-    """Any of the delimiters, the longest first."""
+    """A pattern that finds any of the delimiters, the longest first."""
     longest_first = sorted(set(marks), key=len, reverse=True)
     return re.compile("|".join(map(re.escape, longest_first)), re.IGNORECASE if fold else 0)
 
 
-_edge("TEXTBEFORE", "What stands before the n-th delimiter; `#N/A` without it.", lambda text, span: text[: span[0]])
-_edge("TEXTAFTER", "What stands after the n-th delimiter; `#N/A` without it.", lambda text, span: text[span[1] :])
+_register("TEXTBEFORE", "What stands before the n-th delimiter; `#N/A` without it.", lambda text, span: text[: span[0]])
+_register("TEXTAFTER", "What stands after the n-th delimiter; `#N/A` without it.", lambda text, span: text[span[1] :])
 
 
 @excel(
@@ -121,7 +121,7 @@ _edge("TEXTAFTER", "What stands after the n-th delimiter; `#N/A` without it.", l
     facts=Facts(spills=True),
 )
 def text_split(text: Value, *options: Value) -> Value:
-    """A text cut into columns, and rows, at delimiters; short rows are filled up with `pad`. Of several texts, the
+    """A text cut into columns, and rows, at delimiters; short rows are filled up with `pad`. Several texts give the
     first piece of each.
 
     Raises:
@@ -131,13 +131,13 @@ def text_split(text: Value, *options: Value) -> Value:
     if text.numbers.ndim == 3 and text.shape[1:] != (1, 1):
         return _first_pieces(arguments)
     n = max(value.shape[0] for value in arguments)
-    tables = [_table(*[_trial(value, i) for value in arguments]) for i in range(n)]
+    tables = [_table(*[_cells_of_trial(value, i) for value in arguments]) for i in range(n)]
     if len({table.shape for table in tables}) > 1:
         raise ShapeVaries
     return from_objects(np.stack(tables))
 
 
-def _trial(value: Value, index: int) -> list[object]:
+def _cells_of_trial(value: Value, index: int) -> list[object]:
     """The cells of one trial."""
     objects = value.objects()
     return list(objects[index : index + 1].ravel() if len(objects) > 1 else objects.ravel())
@@ -145,7 +145,7 @@ def _trial(value: Value, index: int) -> list[object]:
 
 def _first_pieces(arguments: list[Value]) -> Value:
     n = max(value.shape[0] for value in arguments)
-    trials = [[_trial(value, i) for value in arguments] for i in range(n)]
+    trials = [[_cells_of_trial(value, i) for value in arguments] for i in range(n)]
     pieces = [_table([cell], *rest)[0, 0] for texts, *rest in trials for cell in texts]
     out = np.empty(len(pieces), object)
     out[:] = pieces
@@ -157,17 +157,17 @@ def _table(*cells: list[object]) -> Objects:
     text, columns, rows, ignore, fold, pad = cells
     error = _first_error(*text, *columns, *rows, *ignore, *fold)
     if error is not None:
-        return _one(error)
-    skip, case = _whole(ignore[0], 0), _whole(fold[0], 0)
+        return _single_cell(error)
+    skip, case = _whole_number(ignore[0], 0), _whole_number(fold[0], 0)
     marks = [[object_text(mark) for mark in part if mark is not None] for part in (rows, columns)]
     if skip is None or case not in (0, 1) or not any(marks) or "" in marks[0] + marks[1]:
-        return _one(ErrorCode.VALUE)
+        return _single_cell(ErrorCode.VALUE)
     lines = _cut(object_text(text[0]), marks[0], bool(skip), bool(case))
     pieces = [_cut(line, marks[1], bool(skip), bool(case)) for line in lines]
-    return _filled_up(pieces, ErrorCode.NA if pad[0] is None else pad[0])
+    return _fill_up(pieces, ErrorCode.NA if pad[0] is None else pad[0])
 
 
-def _one(item: object) -> Objects:
+def _single_cell(item: object) -> Objects:
     table = np.empty((1, 1), object)
     table[0, 0] = item
     return table
@@ -178,10 +178,10 @@ def _cut(text: str, marks: list[str], ignore_empty: bool, fold: bool) -> list[st
     return [piece for piece in pieces if piece] if ignore_empty else pieces
 
 
-def _filled_up(rows: list[list[str]], pad: object) -> Objects:
+def _fill_up(rows: list[list[str]], pad: object) -> Objects:
     width = max((len(row) for row in rows), default=0)
     if not width:
-        return _one(ErrorCode.CALC)
+        return _single_cell(ErrorCode.CALC)
     table = np.empty((len(rows), width), object)
     for index, row in enumerate(rows):
         table[index] = [*row, *[pad] * (width - len(row))]

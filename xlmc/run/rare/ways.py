@@ -3,7 +3,7 @@
 In `IF(A3=1, A1-68.3, A2-153200)` at least 0, how far a trial is from acceptance is in miles an hour in one branch and
 in pounds in the other. Each is explored apart, so that distances of one are never compared with those of the other. A
 *switch* is what divides: an IF, IFS, CHOOSE or SWITCH, an OR, the argument that a MAX or MIN takes, a discrete
-assumption. A *way* takes one alternative of every switch; together the _combine are all trials.
+assumption. A *way* takes one alternative of every switch; together the ways are all trials.
 """
 
 from __future__ import annotations

@@ -17,14 +17,14 @@ from xlmc.definitions.definitions import name_key
 from xlmc.evaluation.engine import Target
 from xlmc.evaluation.graph.nodes import Apply, Input, uses
 from xlmc.evaluation.passes.derivatives import Derivatives
-from xlmc.evaluation.passes.exact import Exact, exactly
+from xlmc.evaluation.passes.exact import Exact, as_double
 from xlmc.evaluation.passes.random_rounding import (
     DOUBLE,
     RandomRounding,
     closure,
-    evaluation,
+    evaluate,
     formula_of,
-    numbers,
+    numbers_of,
     term_sizes,
 )
 from xlmc.functions.values import Value
@@ -126,7 +126,7 @@ class Case:
     @cached_property
     def values(self) -> dict[int, Value]:
         """Node -> its values."""
-        return evaluation(self.dag, self.nodes, self.draws)
+        return evaluate(self.dag, self.nodes, self.draws)
 
     @cached_property
     def errors(self) -> dict[int, Floats]:
@@ -137,15 +137,15 @@ class Case:
         """The root mean square of what differs in evaluations that move something."""
         squares: dict[int, Floats] = {}
         for replica in range(_REPLICAS):
-            found = evaluation(self.dag, self.nodes, self.draws, **how(replica))
+            found = evaluate(self.dag, self.nodes, self.draws, **how(replica))
             for node in {*self.node.values()}:
-                off = numbers(found[node], self.n) - self.number(node)
+                off = numbers_of(found[node], self.n) - self.number(node)
                 squares[node] = squares.get(node, 0.0) + np.where(np.isnan(off), 0.0, off) ** 2
         return {node: np.sqrt(square / _REPLICAS) for node, square in squares.items()}
 
     def number(self, node: int) -> Floats:
         """A node's numbers, `(n,)`; NaN where it has none."""
-        return numbers(self.values[node], self.n)
+        return numbers_of(self.values[node], self.n)
 
     @cached_property
     def users(self) -> dict[int, list[int]]:
@@ -220,7 +220,7 @@ class Case:
 
     def exact_number(self, node: int, trial: int) -> float:
         """The same as a double; NaN where it is no number."""
-        return exactly(self.exact(node, trial))
+        return as_double(self.exact(node, trial))
 
     @property
     def recomputed(self) -> int:

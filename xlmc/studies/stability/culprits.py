@@ -14,7 +14,7 @@ import numpy as np
 
 from xlmc.address import Cell
 from xlmc.evaluation.graph.nodes import Input
-from xlmc.evaluation.passes.random_rounding import closure, evaluation, follow, formula_of, numbers
+from xlmc.evaluation.passes.random_rounding import closure, evaluate, evaluate_changes, formula_of, numbers_of
 from xlmc.formula import ir
 from xlmc.functions.families import function_named
 from xlmc.functions.values import Value
@@ -168,7 +168,9 @@ def _with(case: Case, whole: int, node: int, cured: Floats, trials: Sequence[int
     after = set(case.after(node))
     order = [one for one in closure(case.dag, [whole]) if one in after]
     held = {one: case.values[one].take(rows) for one in closure(case.dag, [whole])}
-    return np.array(numbers(follow(case.dag, order, held, {node: Value.of_numbers(cured)})[whole], rows.size))
+    return np.array(
+        numbers_of(evaluate_changes(case.dag, order, held, {node: Value.of_numbers(cured)})[whole], rows.size)
+    )
 
 
 def only_assumption(case: Case, node: int) -> str | None:
@@ -189,7 +191,7 @@ def zeros(case: Case, node: int, key: str) -> list[float]:
     nodes = closure(case.dag, [node])
 
     def at(x: np.ndarray[tuple[int], np.dtype[np.float64]]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-        return np.array(numbers(evaluation(case.dag, nodes, {key: x})[node], x.size))
+        return np.array(numbers_of(evaluate(case.dag, nodes, {key: x})[node], x.size))
 
     low, high = float(case.draws[key].min()), float(case.draws[key].max())
     width = (high - low) or max(abs(low), 1.0) / 100

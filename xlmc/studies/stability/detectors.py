@@ -9,7 +9,7 @@ import numpy as np
 
 from xlmc.address import Cell
 from xlmc.evaluation.graph.nodes import Constant, uses
-from xlmc.evaluation.passes.random_rounding import formula_of, numbers
+from xlmc.evaluation.passes.random_rounding import formula_of, numbers_of
 from xlmc.formula import ir
 from xlmc.functions.facts import Domain
 from xlmc.functions.families import function_named
@@ -323,7 +323,7 @@ def _numbers(case: Case, cell: Cell, tree: ir.Expression) -> Floats | None:
     formula = case.dag.nodes[node]
     if node in case.values:
         return case.number(node)
-    return numbers(formula.value, case.n) if isinstance(formula, Constant) else None
+    return numbers_of(formula.value, case.n) if isinstance(formula, Constant) else None
 
 
 def _jump_finding(

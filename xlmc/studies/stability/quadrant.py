@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from xlmc.address import Cell
 from xlmc.evaluation.graph.nodes import Apply, Ragged, uses
-from xlmc.evaluation.passes.random_rounding import follow, formula_of
+from xlmc.evaluation.passes.random_rounding import evaluate_changes, formula_of
 from xlmc.formula import ir
 from xlmc.functions.values import TEXT, Value
 from xlmc.studies.stability.case import RELATIONS, Bools, Case, Floats
@@ -158,7 +158,7 @@ def _signs(case: Case, divisor: int, values: Mapping[int, Value], negative: Bool
     for node in case.users.get(divisor, ()):
         formula = formula_of(case.dag, node)
         if isinstance(formula, Apply) and formula.function.name in (*RELATIONS, "SIGN"):
-            yield node, follow(case.dag, [node], values, {divisor: turned})[node]
+            yield node, evaluate_changes(case.dag, [node], values, {divisor: turned})[node]
     compared = [node for node in case.comparisons if divisor not in uses(formula_of(case.dag, node))]
     for node in compared if len(compared) <= _MOST_COMPARISONS else ():
         if _tells(case, node, negative):
@@ -203,7 +203,7 @@ class _Trial:
     def _with(self, turn: float, signs: Mapping[int, Value] | None = None) -> dict[int, Value]:
         angle = self.values[self._angle]
         given = {self._angle: Value(angle.numbers + turn, angle.kinds), **(signs or {})}
-        return follow(self._case.dag, self._case.after(*given), self.values, given)
+        return evaluate_changes(self._case.dag, self._case.after(*given), self.values, given)
 
 
 class _Taken(Mapping[int, Value]):

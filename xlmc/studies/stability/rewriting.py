@@ -15,7 +15,7 @@ import numpy as np
 
 from xlmc.address import Cell
 from xlmc.definitions.definitions import Filter
-from xlmc.evaluation.passes.exact import Exact, exactly
+from xlmc.evaluation.passes.exact import Exact, as_double
 from xlmc.evaluation.passes.random_rounding import closure
 from xlmc.formula import ir
 from xlmc.formula.substitute import substitute
@@ -158,9 +158,9 @@ def same(case: Case, cell: Cell, tree: ir.Expression, digits: int = 30) -> bool:
         for away in (1.0, _AWAY):
             found = exact.trial({key: float(draws[trial]) * away for key, draws in case.draws.items()})
             wanted = found[old]
-            if np.isnan(exactly(wanted)):
+            if np.isnan(as_double(wanted)):
                 continue
             compared += 1
-            if np.isnan(exactly(found[node])) or abs(found[node] - wanted) > abs(wanted) * 10.0**-digits:
+            if np.isnan(as_double(found[node])) or abs(found[node] - wanted) > abs(wanted) * 10.0**-digits:
                 return False
     return compared > 0

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.address import Cell
-from xlmc.evaluation.passes.random_rounding import RandomRounding, closure, evaluation, numbers
+from xlmc.evaluation.passes.random_rounding import RandomRounding, closure, evaluate, numbers_of
 from xlmc.formula import ir
 from xlmc.studies.stability.case import Case, Floats
 from xlmc.studies.stability.formula_trees import factors, replace_part
@@ -191,4 +191,4 @@ def _evaluate(case: Case, node: int, draws: Mapping[str, Floats], replicas: int 
     order = closure(case.dag, [node])
     count = next((draw.size for draw in draws.values()), 1)
     roundings = [None, *(RandomRounding((_OTHERS, replica)) for replica in range(replicas))]
-    return np.array([numbers(evaluation(case.dag, order, draws, one)[node], count) for one in roundings])
+    return np.array([numbers_of(evaluate(case.dag, order, draws, one)[node], count) for one in roundings])

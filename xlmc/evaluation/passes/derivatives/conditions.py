@@ -1,4 +1,4 @@
-"""Conditions stand still except at their limits, roundings except at their steps; a choice is like its branch."""
+"""Rules of conditions and roundings, whose derivative is 0 except where they jump, and of choices."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ __all__ = ["hold_still", "if_", "if_error"]
 _STEP: Final = "the value jumps there"
 
 _NEAR: Final = 1e-14
-"""As a share of a number: within it, Excel may take two numbers for one (it shows 15 digits)."""
+"""As a share of a number: Excel, which shows 15 digits, may take two numbers that differ by less for equal."""
 
 
 @rule("<", "<=", ">", ">=", why="the two sides are equal there", jumps=True)
 def ordered(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """Which is larger: no derivative where both are equal and do not change alike."""
+    """Comparisons by size: no derivative where both sides are equal and do not change alike."""
     ways = result.numbers
     if any((operand.value.kinds == TEXT).any() for operand in operands):
         return Outcome(Jet.still(result.numbers), ways)
@@ -36,19 +36,19 @@ def ordered(function: Function, result: Value, operands: Sequence[Operand]) -> O
 
 @rule("=", "<>", why="one side has no derivative there", jumps=True)
 def labels(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """Whether two are equal: what is compared so is a label, which does not change little by little."""
+    """Comparisons for equality: they are taken to compare labels, which do not change little by little."""
     if any((operand.value.kinds == TEXT).any() for operand in operands):
         return Outcome(Jet.still(result.numbers), result.numbers)
     return Outcome(_condition(result, level_jets(operands), np.zeros(1, bool)), result.numbers)
 
 
 def _condition(result: Value, jets: Sequence[Jet], edge: Bools) -> Jet:
-    """A condition: derivatives of 0; none where an operand has none, or is on the edge with a derivative that is not 0.
+    """The derivatives of a condition: 0, but none where an operand has none, or where it is about to change.
 
     Args:
-        result: what it is.
-        jets: of which it is the condition; their difference decides, if they are two.
-        edge: where the condition is about to change.
+        result: the condition's value.
+        jets: what it depends on; if these are two, their difference decides.
+        edge: where the condition changes as soon as the difference does.
     """
     if not edge.any() and all(np.isfinite(jet.first).all() for jet in jets):
         return Jet.still(result.numbers)
@@ -68,7 +68,7 @@ def _condition(result: Value, jets: Sequence[Jet], edge: Bools) -> Jet:
 
 @rule("AND", "OR", "XOR", "NOT", why="a condition is at its limit there", jumps=True)
 def joined(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """Conditions put together."""
+    """Conditions joined by AND, OR, XOR or NOT."""
     total = Jet.still(np.zeros(1))
     for operand in operands:
         jet = operand.jet
@@ -79,7 +79,7 @@ def joined(function: Function, result: Value, operands: Sequence[Operand]) -> Ou
 
 
 def if_(result: Value, operands: Sequence[Operand]) -> Outcome:
-    """`IF`: the branch taken, and the limit of the condition."""
+    """`IF`: the derivatives of the branch taken; none at the limit of the condition."""
     test, yes, no = level_jets(operands)
     truth, _ = operands[0].value.to_logicals()
     truth = truth.reshape(-1, 1, 1) if test.x.ndim > truth.ndim else truth
@@ -99,7 +99,7 @@ def if_error(result: Value, operands: Sequence[Operand], only_na: bool) -> Outco
 
 
 def _either(truth: Bools, yes: Jet, no: Jet) -> Jet:
-    """One where it holds, else the other."""
+    """`yes` where the condition holds, else `no`."""
     if not yes.active and not no.active:
         return Jet.still(np.where(truth, yes.x, no.x))
     live = yes if yes.active else no
@@ -135,7 +135,7 @@ def _find_nudged(function: Function, result: Value, operands: Sequence[Operand],
     jumps=True,
 )
 def steps(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """Steps: 0 in between."""
+    """Functions that go in steps: their derivative is 0 between two steps."""
     jets = level_jets(operands)
     where = _find_nudged(function, result, operands)
     if function.name == "SIGN":
@@ -150,7 +150,7 @@ def steps(function: Function, result: Value, operands: Sequence[Operand]) -> Out
     jumps=True,
 )
 def multiples(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """A multiple, the number of times standing still."""
+    """Multiples: the derivative is that of the multiple times the number of times, which stays the same."""
     jets = level_jets(operands)
     where = _find_nudged(function, result, operands)
     multiple = jets[1] if len(jets) > 1 else Jet.still(np.ones((1,) * result.numbers.ndim))

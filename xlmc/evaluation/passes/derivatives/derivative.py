@@ -1,7 +1,7 @@
-"""What differentiation finds, and the notes that are taken on the way.
+"""The results of differentiation, and the notes that are taken during it.
 
-Notes say where functions take different ways, where derivatives are lost, and what has no rule. Letters: n trials or
-points, k assumptions.
+Notes say where functions take different ways, where derivatives are lost, and which functions have no rule. Letters: n
+trials or points, k assumptions.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Derivative:
     among `Derivatives.undefined`.
 
     Attributes:
-        cell: whose.
+        cell: the one that is differentiated.
         value: `(n,)`, NaN where the cell is no number; TRUE and FALSE are 1 and 0.
         gradient: `(n, k)`, in units of the cell per unit of the assumption.
         gradient_error: `(n, k)`, estimates; 0 where every function on the way has a rule: only rounding is left then.
@@ -89,7 +89,7 @@ class Numerical:
         cell: whose formula it is in.
         function: its name in Excel.
         error: the largest estimate of the error of one of its first derivatives, as a share of that derivative; NaN
-            where there is none to speak of.
+            where there is no estimate.
     """
 
     cell: Cell
@@ -104,10 +104,10 @@ class Derivatives:
     Attributes:
         names: of the `k` assumptions, in the order of the columns of every gradient.
         points: `(n, k)` where they were taken.
-        forecasts: name -> of its cell.
-        filters: name -> of the cell that it tests (not of the test, whose derivative is 0).
-        cells: the cells asked for besides.
-        kinks: what takes different ways among the points; those of the most evenly divided first.
+        forecasts: name -> the derivative of its cell.
+        filters: name -> the derivative of the cell that it tests (not of the test, whose derivative is 0).
+        cells: other cells that were asked for -> their derivatives.
+        kinks: the functions that take different ways among the points, the most evenly divided first.
         undefined: why derivatives are NaN.
         numerical: the functions without a rule.
     """
@@ -124,7 +124,7 @@ class Derivatives:
 
 @dataclass
 class Notes:
-    """Collected over the portions of a run.
+    """Notes, collected over the portions of a run.
 
     Attributes:
         ways: node -> way -> in how many trials.
@@ -139,7 +139,7 @@ class Notes:
     jumping: set[int] = field(default_factory=set)
 
     def took(self, node: int, name: str, ways: NDArray[np.generic], jumps: bool) -> None:
-        """A function took these ways, one a trial."""
+        """Note the ways that a function took, one for each trial."""
         self.names[node] = name
         if jumps:
             self.jumping.add(node)
@@ -147,12 +147,12 @@ class Notes:
         self.ways[node].update(dict(zip(found.tolist(), counts.tolist(), strict=True)))
 
     def lose(self, node: int, name: str, why: str, trials: Bools, start: int) -> None:
-        """A function lost the derivatives in these trials of a portion that starts at `start`."""
+        """Note that a function lost the derivatives in these trials of a portion that starts at `start`."""
         self.names[node] = name
         self.lost[node].setdefault(why, []).append(np.flatnonzero(trials) + start)
 
     def note_difference(self, node: int, name: str, first: Floats, error: Floats | None) -> None:
-        """A function was differentiated by differences."""
+        """Note that a function was differentiated by differences."""
         self.names[node] = name
         with np.errstate(all="ignore"):
             share = np.abs((0.0 if error is None else error) / first)
@@ -162,7 +162,7 @@ class Notes:
         self.errors[node] = worst if np.isnan(known) else max(known, worst) if worst == worst else known
 
     def kinks(self, owners: Mapping[int, Cell]) -> tuple[Kink, ...]:
-        """What took more than one way, the most evenly divided first."""
+        """The functions that took more than one way, the most evenly divided first."""
         found = []
         for node, ways in self.ways.items():
             if len(ways) > 1:
@@ -171,7 +171,7 @@ class Notes:
         return tuple(sorted(found, key=lambda kink: -kink.share))
 
     def undefined(self, owners: Mapping[int, Cell], concerned: Iterable[int]) -> tuple[Undefined, ...]:
-        """Where derivatives were lost, of trials that concern a cell that was asked for; the most first."""
+        """Where derivatives were lost, in trials that concern a cell that was asked for; most trials first."""
         those = np.fromiter(concerned, np.intp)
         found = []
         for node, reasons in self.lost.items():

@@ -28,7 +28,7 @@ elementwise("DEGREES", lambda y, x: (180 / np.pi,), lambda y, x: (0.0,))
 
 @rule("u+", "shown", SNAP_TO_ZERO.name)
 def same(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """What gives a number as it is, or but for its last bits."""
+    """Functions that give a number unchanged, except for its last bits."""
     return Outcome(operands[0].jet)
 
 
@@ -72,7 +72,7 @@ elementwise("COT", lambda y, x: (-(1 + y * y),), lambda y, x: (2 * y * (1 + y * 
 
 
 def _rest(x: Floats) -> Floats:
-    """1 - x², of digits that are there near ±1."""
+    """1 - x², in a form that loses no digits near ±1."""
     return np.asarray((1 - x) * (1 + x))
 
 
@@ -141,7 +141,7 @@ def log(function: Function, result: Value, operands: Sequence[Operand]) -> Outco
 
 @rule("MOD", why="the remainder jumps there", jumps=True)
 def mod(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """`x - d⌊x/d⌋`, the whole part standing still; it jumps where the remainder is 0."""
+    """`x - d⌊x/d⌋`, where the whole part stays the same; it jumps where the remainder is 0."""
     x, divisor = level_jets(operands)
     whole = np.floor(x.x / divisor.x)
     jet = (x - divisor.times(whole)).lost(result.numbers == 0)

@@ -1,7 +1,7 @@
 """A value with its derivatives, and the chain rule, by which second derivatives follow from the rules of functions.
 
-Letters: `s` is the shape of the value, `(n,)` or `(n, r, c)`; `a` counts the assumptions that reach it. Derivatives
-have these first and then the shape of the value, or one that broadcasts to it.
+Letters: `s` is the shape of the value, `(n,)` or `(n, r, c)`; `a` is the number of assumptions that reach it. The shape
+of derivatives begins with one or two `a`; then comes the shape of the value, or one that broadcasts to it.
 """
 
 from __future__ import annotations
@@ -56,14 +56,14 @@ class Jet:
         return 1 if self.second is None else 2
 
     def each(self, change: Callable[[NDArray[Any], int], NDArray[Any]], x: Floats | None = None) -> Jet:
-        """Every part changed alike: `change(part, how many axes go before those of the value)`."""
+        """Change every part alike, by `change(part, how many axes go before those of the value)`."""
         parts = (self.first, 1), (self.second, 2), (self.error, 1), (self.second_error, 2)
         changed = [None if part is None else change(part, axes) for part, axes in parts]
         value = change(self.x, 0) if x is None else x
         return Jet(value, self.active, changed[0], *changed[1:])  # type: ignore[arg-type]  # `first` is never None
 
     def spread(self) -> Jet:
-        """The same with all derivatives of the value's full shape."""
+        """The same, but all derivatives have the value's full shape."""
         return self.each(lambda part, axes: np.broadcast_to(part, (*part.shape[:axes], *self.x.shape)))
 
     def as_range(self) -> Jet:
@@ -73,7 +73,7 @@ class Jet:
         return self.each(lambda part, axes: part.reshape(*part.shape, 1, 1))
 
     def times(self, factor: Any, x: Floats | None = None) -> Jet:
-        """Every derivative times a number, the size of it for the errors."""
+        """Every derivative times a number; errors times its size."""
         size = np.abs(factor)
         return Jet(
             self.x * factor if x is None else x,
@@ -85,7 +85,7 @@ class Jet:
         )
 
     def lost(self, where: NDArray[np.bool_]) -> Jet:
-        """Without derivatives in some trials, `s`."""
+        """The same without derivatives where `where` says so, `s`."""
         if not where.any():
             return self
 
@@ -95,7 +95,7 @@ class Jet:
         return self.each(change, self.x)
 
     def function(self, x: Floats, first: Any, second: Callable[[], Any]) -> Jet:
-        """A function of it: its value, derivative and second derivative here."""
+        """A function of the number, given its value, its derivative and its second derivative there."""
         return chain(x, [self], [first], lambda: {(0, 0): second()})
 
     def __add__(self, other: Jet) -> Jet:
@@ -133,7 +133,7 @@ class Jet:
 
 
 def align(jets: Sequence[Jet]) -> list[Jet]:
-    """All with the same active assumptions."""
+    """The jets, all with the same active assumptions."""
     active = tuple(sorted({number for jet in jets for number in jet.active}))
     return [_widen(jet, active) for jet in jets]
 
@@ -178,7 +178,7 @@ def chain(x: Floats, jets: Sequence[Jet], firsts: Sequence[Any], seconds: Second
 
 
 def _curves(wide: Mapping[int, Jet], seconds: Mapping[tuple[int, int], Any]) -> list[tuple[Floats, Floats | None]]:
-    """What the function's own second derivatives bring, and the error of it."""
+    """The terms of the function's own second derivatives, and the errors of these terms."""
     found = []
     for (i, j), second in seconds.items():
         nothing = isinstance(second, float) and second == 0.0
@@ -224,7 +224,7 @@ def flat(jet: Jet, value: Value) -> Jet:
 
 
 def concatenate(jets: Sequence[Jet], n: int) -> Jet:
-    """Cells side by side."""
+    """Jets of cells side by side, as one."""
 
     def side(name: str, axes: int) -> Any:
         parts = [getattr(jet, name) for jet in jets]

@@ -1,6 +1,6 @@
-"""Lookups: the derivatives of the cell found, and 0 in the key; and functions that only move cells about.
+"""Lookups have the derivatives of the cell found, and 0 in the key; other functions only move cells about.
 
-Which cells such a function picks is asked of the function itself, by numbering the cells.
+To see which cells such a function picks, it is called with the numbers of the cells in their place.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Values = list[Value]
 
 
 class Drawer(NamedTuple):
-    """The cells of some operands in one row, numbered from 1; 0 stands for what is none of them.
+    """The cells of some operands in one row, numbered from 1; 0 stands for anything else.
 
     Attributes:
         cells: `(n, m)`, none of them active where `active` is empty.
@@ -69,7 +69,7 @@ class Drawer(NamedTuple):
 
 
 def _tag(value: Value, numbers: NDArray[np.float64]) -> Value:
-    """Texts and errors stay what they are; logicals become numbers, that their tags are not cut to TRUE."""
+    """The value with other numbers; texts and errors stay, logicals become numbers, for a logical holds no tag."""
     kinds = np.where(value.kinds == LOGICAL, np.uint8(NUMBER), value.kinds)
     shape = np.broadcast_shapes(kinds.shape, numbers.shape)
     return Value(np.broadcast_to(numbers, shape), np.broadcast_to(kinds.astype(np.uint8), shape), value.texts)
@@ -77,13 +77,13 @@ def _tag(value: Value, numbers: NDArray[np.float64]) -> Value:
 
 @rule("MATCH", "XMATCH", why=_AT_A_STEP, jumps=True)
 def match(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """A position, which stands still."""
+    """A position, whose derivative is 0 except where it steps."""
     step = _steps(function, result, [operand.value for operand in operands])
     return Outcome(hold_still(result, level_jets([operands[0]]), step), result.numbers)
 
 
 def _steps(call: Callable[[Values], Value], found: Value, values: Values) -> Bools:
-    """Where another cell is found with a key that differs in the 15th digit; none at all is found by labels only."""
+    """Where a key that differs in the 15th digit finds another cell; if it finds none, the key is a label."""
     step = np.zeros(1, bool)
     for nudge in (1 - _NEAR, 1 + _NEAR):
         key = replace(values[0], numbers=values[0].numbers * nudge)
@@ -105,7 +105,7 @@ def _look_up(call: Callable[[Values], Value], result: Value, operands: Sequence[
 
 
 def _without(jet: Jet, operands: Sequence[Operand]) -> Jet:
-    """No derivatives where what decides on the cell has none."""
+    """The jet without derivatives where an operand that decides on the cell has none."""
     for operand in operands:
         first = operand.jet.first
         if not np.isfinite(first).all():
@@ -117,7 +117,7 @@ def _without(jet: Jet, operands: Sequence[Operand]) -> Jet:
 
 @rule("VLOOKUP", "HLOOKUP", why=_AT_A_STEP, jumps=True)
 def table_lookup(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """The table gets its own tags beside it (below it), and the column (row) is that of the tags."""
+    """The table gets its tags as further columns (rows), and the number of the column (row) is moved on to these."""
     drawer = Drawer.of([operands[1]])
     axis = 2 if function.name == "VLOOKUP" else 1
     width = operands[1].value.as_range().shape[axis]
@@ -157,7 +157,7 @@ def lookup(function: Function, result: Value, operands: Sequence[Operand]) -> Ou
 
 @rule("XLOOKUP", why=_AT_A_STEP, jumps=True)
 def xlookup(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """The results, and what stands in for them, are tagged."""
+    """The results, and the value for a key that is not found, are tagged."""
     drawer = Drawer.of(operands[2:4])
 
     def call(values: Values) -> Value:

@@ -1,9 +1,9 @@
 """Derivatives of a function without a rule, from differences of its own values, with an estimate of their error.
 
-Central differences at steps that are halved from one to the next are extrapolated to a step of 0 (Richardson; the
-choice among all orders is that of Ridders, 1982): the one is taken that differs least from its neighbours, and by how
-much is the estimate. Steps start at a share of the arguments' size, or of 1 where that gives a smaller estimate, and at
-a smaller share where the function turns or jumps within these steps: what they give must agree with a step close by.
+Central differences, each at half the step of the one before, are extrapolated to a step of 0 (Richardson; the choice
+among all orders is that of Ridders, 1982): the value is taken that differs least from its neighbours, and this
+difference estimates its error. Steps start at a share of the arguments' size, or of 1 where that gives a smaller
+estimate, and at a smaller share where the function turns or jumps within these steps: a very small step must agree.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ _STEPS: Final = 7
 
 _FINER: Final = 2.0**-12
 _CLOSE: Final = 2.0**-20
-"""Shares: of the steps, where a function turns nearby; and the step close by."""
+"""The share of the usual steps where a function turns nearby; and the very small step."""
 
 _SMALLEST: Final = 1e-100
 
 _TOLERANCE: Final = 1e-4
-"""Of a derivative: an estimate above it says that there is none, as at a jump."""
+"""As a share of a derivative: where the estimate of its error is larger, there is none, as at a jump."""
 
 Moved = Callable[[Sequence[Floats | None]], Floats]
 """Takes what is added to each operand's numbers, and gives the function's values."""
@@ -67,7 +67,7 @@ def _moved(operand: Operand, step: Floats | None) -> Value:
 
 
 def _through_text(result: Value, jets: Sequence[Jet]) -> Jet:
-    """0 where no text changes, as one that a condition chooses; otherwise none, for its digits are rounded."""
+    """Derivatives of 0 where no assumption changes a text; none where one does, for a text has rounded digits."""
     total = Jet.still(np.zeros(1))
     for jet in jets:
         cells = jet.spread().each(lambda part, axes: np.abs(part).reshape(*part.shape[: axes + 1], -1).sum(axis=-1))
@@ -133,7 +133,7 @@ def _with_errors(
     live: Sequence[int],
     second_errors: dict[tuple[int, int], Floats],
 ) -> Jet:
-    """With the errors of the partial derivatives added to those that came down."""
+    """The jet with the errors of the partial derivatives added to those of its operands."""
     wide = align(jets)
     own = sum((np.abs(part.first) * error for part, error in zip(wide, errors, strict=True)), np.zeros(1))
     second_error = jet.second_error
@@ -196,7 +196,7 @@ def _by_assumptions(moved: Moved, result: Value, operands: Sequence[Operand]) ->
 def _inherit(
     jets: dict[int, Jet], singles: Sequence[_Along], error: Floats, second_error: Floats | None
 ) -> tuple[Floats, Floats | None]:
-    """Errors of the operands' own derivatives: as large a share of the result's."""
+    """The errors, with the relative errors of the operands' derivatives added."""
     share = 0.0
     for jet in jets.values():
         if jet.error is not None:
@@ -210,12 +210,12 @@ def _inherit(
 
 
 def _scale(x: Floats) -> Floats:
-    """The size of an argument; 1 for 0, and for what is next to it."""
+    """The size of an argument; 1 where it is 0 or nearly so."""
     return np.where(np.abs(x) < _SMALLEST, 1.0, np.abs(x))
 
 
 def _weight(firsts: Sequence[Floats], x: Sequence[Floats], n: int) -> Floats:
-    """By how much an assumption is moved so that no cell moves by more than its size, `(n,)`."""
+    """How far an assumption may be moved so that no cell moves by more than its size, `(n,)`."""
     most = np.zeros(n)
     for first, numbers in zip(firsts, x, strict=True):
         share = np.abs(first) / _scale(numbers)
@@ -227,7 +227,7 @@ def _weight(firsts: Sequence[Floats], x: Sequence[Floats], n: int) -> Floats:
 class _Along:
     """The derivatives along a way, and estimates of their errors: NaN and infinite where there are none.
 
-    What a second derivative may be off by and count as known, even if it is 0, is its `fine`.
+    `fine` is the error that a second derivative may have and still count as known, even if it is 0.
     """
 
     first: Floats
@@ -237,7 +237,7 @@ class _Along:
     fine: Floats
 
     def or_better(self, other: _Along) -> _Along:
-        """Whichever has the smaller estimate."""
+        """The derivatives of this one or of the other, whichever has the smaller estimate."""
         first = other.first_error < self.first_error
         second = other.second_error < self.second_error
         return _Along(
@@ -250,7 +250,7 @@ class _Along:
 
 
 def _along(moved: Moved, result: Value, way: _Way) -> _Along:
-    """The better of the steps that suit the arguments' size, and those that suit a size of 1."""
+    """The better result of steps that suit the arguments' size, and of steps that suit a size of 1."""
     n = result.shape[0]
     most = np.zeros(n)
     for step in way.first:

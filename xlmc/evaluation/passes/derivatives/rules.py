@@ -1,4 +1,4 @@
-"""The rules: what a function of the registry does to derivatives. One row each, one file a family.
+"""Rules say what a function of the registry does to derivatives. Each is a row, each family of them a file.
 
 A rule gets the function, its result and its operands; the value is never computed again, so that it is the run's own.
 """
@@ -33,7 +33,7 @@ class Outcome(NamedTuple):
 
     Attributes:
         jet: the result with its derivatives; those that are not finite count as none.
-        ways: `(n,)` which way the function took in each trial, as any number; None where it has but one.
+        ways: `(n,)` which way the function took in each trial, as any number; None where it has only one.
         numerical: whether differences were taken.
     """
 
@@ -52,7 +52,7 @@ class DerivativeRule:
     Attributes:
         apply: the rule itself.
         why: where there is no derivative though the value is a number, in words.
-        jumps: whether the value jumps, or else turns, where the way changes.
+        jumps: whether the value jumps where the way changes; if not, it turns.
     """
 
     apply: Apply

@@ -18,7 +18,7 @@ __all__: list[str] = []
 
 
 def _counted(operands: Sequence[Operand]) -> tuple[list[Jet], list[Bools]]:
-    """The cells of each operand, `(n, m)`, and which of them count: given directly all, in a range the numbers."""
+    """The cells of each operand, `(n, m)`, and which count: all that is given directly, and the numbers of ranges."""
     jets, counts = [], []
     for value, jet in operands:
         in_range = value.numbers.ndim == 3
@@ -112,14 +112,14 @@ def product(function: Function, result: Value, operands: Sequence[Operand]) -> O
 
 @rule("MIN", "MAX", "MIN so far", "MAX so far", why="two of the numbers are equal there, and do not change alike")
 def extreme(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """The derivatives of the cell that is it."""
+    """The derivatives of the cell that is the largest or smallest."""
     jet, counts = _side_by_side(*_counted(operands))
     return Outcome(*by_value(jet, counts, np.broadcast_to(result.numbers, jet.x.shape[:1])))
 
 
 @rule("LARGE", "SMALL", why="two of the numbers are equal there, and do not change alike")
 def ranked(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """The derivatives of the cell that is it, for a single rank that no assumption changes."""
+    """The derivatives of the cell of that rank, if it is a single rank that no assumption changes."""
     if operands[1].jet.active or result.numbers.ndim != 1:
         return by_differences(function, result, operands)
     jet, counts = _side_by_side(*_counted(operands[:1]))
@@ -128,7 +128,7 @@ def ranked(function: Function, result: Value, operands: Sequence[Operand]) -> Ou
 
 @rule("MEDIAN", why="two of the numbers are equal there, and do not change alike")
 def median(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """The middle number, or half of each of the two."""
+    """The derivatives of the middle number, or the mean of those of the two in the middle."""
     jet, counts = _side_by_side(*_counted(operands))
     ordered = np.sort(np.where(counts, jet.x, np.inf), axis=1)
     k = counts.sum(axis=1)
@@ -168,7 +168,7 @@ def matrix_product(function: Function, result: Value, operands: Sequence[Operand
 
 @rule("SUMIF", "SUMIFS", "AVERAGEIF", "AVERAGEIFS", why="what decides which cells count has no derivative there")
 def conditional(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
-    """Sums are linear in their cells: the function itself, of the derivatives of these."""
+    """Sums and means are linear in their cells: the function itself is called with the cells' derivatives."""
     alone = function.name in ("SUMIF", "AVERAGEIF")
     slot = (2 if len(operands) > 2 else 0) if alone else 0
     cells = operands[slot]
@@ -187,7 +187,7 @@ def conditional(function: Function, result: Value, operands: Sequence[Operand]) 
 
 
 def _sum_of(function: Function, values: Sequence[Value], slot: int, row: Floats, cells: Operand) -> Floats:
-    """The function with other numbers in its cells; errors, which come of infinite ones, as NaN."""
+    """The function with other numbers in its cells; errors, which infinite numbers cause, become NaN."""
     own = Value(row, cells.value.kinds, cells.value.texts)
     given = [*values[:slot], own, *values[slot + 1 :]]
     found = function(given)

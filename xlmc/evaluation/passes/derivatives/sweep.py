@@ -1,7 +1,7 @@
-"""One sweep over the graph of nodes, forwards: every value, and its derivatives beside it.
+"""One forward sweep over the graph of nodes computes every value, and its derivatives beside it.
 
-The values are those of the careful path (`evaluation.tracking`), so that errors, texts and blanks are what they are in
-a run. A node's value is dropped as soon as nothing reads it any more.
+The values are those of the careful path (`evaluation.tracking`), so that errors, texts and blanks are as in a run. A
+node's value is dropped as soon as nothing reads it any more.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _NO_DERIVATIVE: Final = "the function has none there"
 
 
 class UnequalSizes(Exception):  # noqa: N818 - it asks for another way
-    """An array differs in size between trials: take them one by one."""
+    """An array differs in size between trials: evaluate these one by one."""
 
 
 def sweep_forward(
@@ -56,7 +56,7 @@ def sweep_forward(
         wanted: which of them.
         draws: of every input, `(n,)` each; derivatives count them in this order.
         order: 1 or 2.
-        notes: takes what is noted.
+        notes: notes are added to it.
         start: the number of the first trial, for the notes.
 
     Raises:
@@ -215,7 +215,7 @@ def _note_losses(
     notes: Notes,
     start: int,
 ) -> None:
-    """The trials in which this very function lost derivatives, or made an error."""
+    """Note the trials in which the function itself lost derivatives, or made an error."""
     n = max(result.shape[0], jet.first.shape[1])
     lost = _any_of_trial(np.isnan(jet.first), n, 1)
     if not lost.any():
@@ -239,7 +239,7 @@ def _note_losses(
 
 
 def _any_of_trial(part: Bools, n: int, axes: int) -> Bools:
-    """Whether any assumption, any cell is so, `(n,)`."""
+    """Whether it is so for any assumption and any cell of a trial, `(n,)`."""
     whole: Bools = np.logical_or.reduce(part, axis=0) if axes else part
     rows: Bools = np.logical_or.reduce(whole.reshape(whole.shape[0], -1), axis=1)
     return np.array(np.broadcast_to(rows, (n,)))

@@ -58,7 +58,9 @@ MUTANTS = {
     "criteria that differ": Mutant(
         '"<=": np.less_equal,\n    ">": np.greater,', '"<=": np.less,\n    ">": np.greater,', ("functions",)
     ),
-    "15 digits": Mutant("return x == y or shown(x) == shown(y)", "return x == y", ("functions",)),
+    "15 digits": Mutant(
+        "return x == y or round_to_15_digits(x) == round_to_15_digits(y)", "return x == y", ("functions",)
+    ),
     "payments at the start": Mutant("per - 1, pmt, pv, when", "per, pmt, pv, when", ("functions/financial",)),
     "a blank branch": Mutant(
         "np.where(value.kinds == BLANK, np.uint8(NUMBER), value.kinds)", "value.kinds", ("functions", "evaluation")

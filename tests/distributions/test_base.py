@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from xlmc.distributions import FAMILIES
-from xlmc.distributions.base import SMALLEST_U, Family
+from xlmc.distributions.base import SMALLEST_U, Family, Member
 
 GOOD = {
     "Uniform": (2.0, 6.0),
@@ -75,6 +75,18 @@ def test_u_is_left_alone_unless_it_is_out(family, params):
     np.testing.assert_array_equal(u, U)
     assert family.ppf(u, *params, out=u) is u
     np.testing.assert_array_equal(u, expected)
+
+
+@pytest.mark.parametrize(("family", "params"), CASES)
+def test_a_member_gives_what_the_family_gives_and_checks_nothing(family, params, monkeypatch):
+    names = "ppf", "isf", "cdf", "sf"
+    expected = [getattr(family, name)(U, *params) for name in names] + [family.mean(*params), family.variance(*params)]
+    ends = family.support(*params)
+    monkeypatch.setattr(family, "valid", None)
+    member = Member(family, params)
+    found = [getattr(member, name)(U) for name in names] + [member.mean(), member.variance()]
+    assert [each.tobytes() for each in found] == [each.tobytes() for each in expected]
+    assert member.support() == ends
 
 
 @pytest.mark.parametrize(("family", "params"), CASES)

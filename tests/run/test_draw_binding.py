@@ -11,8 +11,13 @@ from openpyxl.worksheet.table import Table
 from xlmc.address import Cell
 from xlmc.api import Model, load
 from xlmc.definitions.definitions import Assumption
-from xlmc.distributions import FAMILIES, ByPercentiles
+from xlmc.definitions.definitions_reader import read_definitions
+from xlmc.distributions import FAMILIES, ByPercentiles, Family
 from xlmc.errors import DefinitionError
+from xlmc.evaluation.engines import ENGINES
+from xlmc.studies.comparison.variations import with_changes
+from xlmc.workbook.reader import read_workbook
+from xlmc.workbook.workbook import CellContent
 
 UNIT = {"low": 0, "high": 1}
 
@@ -263,7 +268,7 @@ def test_what_cannot_be_taken_from_the_base_value_is_refused(book, cells, more, 
 HEADINGS = ["Name", "Value", "Low", "High", "Upper cutoff", "Frozen"]
 
 
-def saved_book(path, rows, headings=HEADINGS, corner="A1", outside=(), name=None):
+def saved_book(path, rows, headings=HEADINGS, corner="A1", outside=(), name=None, answer=None):
     """A workbook whose first sheet holds the assumptions, and whose forecast is the sum of their cells."""
     file = openpyxl.Workbook()
     sheet = file.active
@@ -279,7 +284,7 @@ def saved_book(path, rows, headings=HEADINGS, corner="A1", outside=(), name=None
     answers = file.create_sheet("Answers")
     for row in (["Name", "Cell"], ["speed", "=Answers!D1"]):
         answers.append(row)
-    answers["D1"] = "=Inputs!B2" if "Value" in headings else "=Inputs!J1"
+    answers["D1"] = answer or ("=Inputs!B2" if "Value" in headings else "=Inputs!J1")
     answers.add_table(Table(displayName="xlmc_forecasts", ref="A1:B2"))
     file.save(path)
     return path
@@ -307,3 +312,74 @@ def test_the_column_cell_of_a_saved_table(tmp_path):
     headings = ["Name", "Cell", "Low", "High"]
     path = saved_book(tmp_path / "a.xlsx", rows, headings, outside=[("J1", 40), ("K1", "=J1*1.03")])
     assert dict(load(path).assumptions[0].parameters) == pytest.approx({"low": 38.8, "high": 41.2}, rel=1e-15)
+
+
+CUT = ["Name", "Value", "Distribution", "Low", "High", "Lower cutoff"]
+FAMILIES_READ = [["speed", 40, None, 38, 42, None], ["time", 2, "Discrete Uniform", 1, 6, 2.5]]
+
+
+@pytest.fixture
+def read_book(tmp_path):
+    """A uniform and a discrete uniform, cut off, whose numbers are typed; the forecast is the first."""
+    return load(saved_book(tmp_path / "a.xlsx", FAMILIES_READ, CUT))
+
+
+def test_numbers_are_checked_once(tmp_path, monkeypatch):
+    checks, valid, broken_rule = [], Family.valid, Family.broken_rule
+
+    def rule(self, *values):
+        checks.append((self.name, values))
+        return broken_rule(self, *values)
+
+    monkeypatch.setattr(Family, "broken_rule", rule)
+    monkeypatch.setattr(Family, "valid", lambda *given: pytest.fail(f"checked again: {given}") and valid(*given))
+    path = saved_book(tmp_path / "a.xlsx", FAMILIES_READ, CUT, answer="=Inputs!B2+Inputs!B3")
+    load(path).simulate(1000, seed=1)
+    assert checks == [("Uniform", (38.0, 42.0)), ("Discrete Uniform", (1.0, 6.0))]
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"parameters": {"low": 43.0, "high": 42.0}}, "speed: Low (43) is above High (42)"),
+        ({"lower_cutoff": 50.0}, "speed: Lower cutoff (50) leaves nothing of the distribution"),
+        ({"upper_cutoff": np.nan}, "speed: Upper cutoff must be a number"),
+        ({"parameters": {"low": 38.0, "high": np.nan}}, "speed: High (nan) must be a number between -1E150 and 1E150"),
+        (
+            {"distribution": "Discrete Uniform", "parameters": {"low": 38.5, "high": 42.0}},
+            "speed: Low (38.5) must be a whole number from -1,000,000,000 to 1,000,000,000",
+        ),
+    ],
+)
+def test_numbers_that_take_the_place_of_those_that_were_read_are_checked(read_book, changed, message):
+    speed, *others = read_book.assumptions
+    definitions = replace(read_book.definitions, assumptions=(replace(speed, **changed), *others))
+    with pytest.raises(DefinitionError) as caught:
+        Model(read_book.workbook, definitions, read_book.path)
+    assert (caught.value.message, caught.value.where) == (message, "Inputs!A2")
+
+
+@pytest.mark.parametrize(
+    "changed", [{"distribution": "Discrete Uniform"}, {"own_family": FAMILIES["Discrete Uniform"]}]
+)
+def test_the_same_numbers_are_checked_for_another_family(tmp_path, changed):
+    model = load(saved_book(tmp_path / "a.xlsx", [["speed", 40, None, 38.5, 42, None]], CUT))
+    with pytest.raises(DefinitionError, match=r"^Inputs!A2: speed: Low \(38.5\) must be a whole number"):
+        with_changes(model, drawn_as={"speed": replace(model.assumptions[0], **changed)})
+
+
+@pytest.mark.parametrize("low", ["=B2*1.1", "=Answers!D2"], ids=["own cell", "another cell"])
+def test_a_number_that_excel_saved_does_not_vouch_for_the_one_that_is_computed(tmp_path, low):
+    """Excel saved 38, a good one; the formula gives 44."""
+    path = saved_book(tmp_path / "a.xlsx", [["speed", 40, None, low, 42, None]], CUT)
+    book = read_workbook(path)
+    held = dict(book.sheets["Inputs"].cells)
+    held[2, 4] = replace(held[2, 4], value=38.0)
+    sheets = {**{name: book.sheets[name] for name in book.sheets}, "Inputs": replace(book.sheets["Inputs"], cells=held)}
+    answers = {**sheets["Answers"].cells, (2, 4): CellContent(44.0)}
+    book = replace(book, sheets=sheets | {"Answers": replace(sheets["Answers"], cells=answers)})
+    definitions = read_definitions(book, ENGINES)
+    assert not definitions.problems
+    with pytest.raises(DefinitionError) as caught:
+        Model(book, definitions, path)
+    assert (caught.value.message, caught.value.where) == ("speed: Low (44) is above High (42)", "Inputs!A2")

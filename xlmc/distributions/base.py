@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 
 from xlmc.distributions.parameters import Constraint, DataSpec, Fault, ParameterSpec, Role, show
 
-__all__ = ["LARGEST", "SMALLEST_U", "TRIED_U", "Array", "Family", "Values", "ends", "share"]
+__all__ = ["LARGEST", "SMALLEST_U", "TRIED_U", "Array", "Family", "Member", "Values", "ends", "share"]
 
 Array = NDArray[np.float64]
 Values = float | Array
@@ -96,7 +97,7 @@ class Family(ABC):
         values = self.bind(params, named)
         if broken := self.broken_rule(*values):
             return broken
-        if self.always_finite or not values or np.isfinite(self.ppf(np.array(TRIED_U), *values)).all():
+        if self.always_finite or not values or np.isfinite(Member(self, values).ppf(np.array(TRIED_U))).all():
             return None
         return self.overflow_fault(values, "Correct the number, or cut the distribution off at both ends")
 
@@ -135,6 +136,14 @@ class Family(ABC):
             kept = kept & rule.holds(*values)
         return kept  # type: ignore[no-any-return]  # numbers give a bool, arrays an array
 
+    def checked(self, *params: Values, **named: Values) -> Member:
+        """The member of the family that has these parameters: they are checked here, and by none of its functions."""
+        values = self.bind(params, named)
+        valid = self.valid(*values)
+        if valid is True or np.all(valid):
+            return Member(self, values)
+        return Member(self, tuple(np.where(valid, value, np.nan) for value in values), ~np.asarray(valid))
+
     def ppf(self, u: Values, *params: Values, out: Array | None = None, **named: Values) -> Array:
         """Quantiles of probabilities in [0, 1); NaN in trials with invalid parameters.
 
@@ -146,50 +155,31 @@ class Family(ABC):
             **named: the parameters by key.
             out: `(n,)`, filled with the result; may be `u` itself, and then no memory is needed for it.
         """
-        values, invalid = self._sound(self.bind(params, named))
-        own = _own_copy(u, values) if out is None else out
-        if out is not None and out is not u:
-            out[...] = u
-        if self.open_below:
-            np.copyto(own, SMALLEST_U, where=own == 0.0)
-        with np.errstate(all="ignore"):
-            x = _masked(self._ppf(own, *values), invalid)
-        if any(map(np.ndim, values)):
-            x = np.where(np.isfinite(x), x, np.nan)
-        if out is None:
-            return x
-        if x is not out:
-            out[...] = x
-        return out
+        return self.checked(*params, **named).ppf(u, out)
 
     def isf(self, q: Values, *params: Values, **named: Values) -> Array:
         """The values exceeded with probability q: `ppf(1 - q)` without the loss of digits for small q."""
-        values, invalid = self._sound(self.bind(params, named))
-        with np.errstate(all="ignore"):
-            return _masked(self._isf(_own_copy(q, values), *values), invalid)
+        return self.checked(*params, **named).isf(q)
 
     def cdf(self, x: Values, *params: Values, **named: Values) -> Array:
         """P(X <= x), shapes as in `ppf`."""
-        return self._evaluate(self._cdf, params, named, x)
+        return self.checked(*params, **named).cdf(x)
 
     def sf(self, x: Values, *params: Values, **named: Values) -> Array:
         """P(X >= x), exact in the upper tail; differs from `1 - cdf` only where one value has a probability."""
-        return self._evaluate(self._sf, params, named, x)
+        return self.checked(*params, **named).sf(x)
 
     def mean(self, *params: Values, **named: Values) -> Array:
         """The mean, `()` or `(n,)`."""
-        return self._evaluate(self._mean, params, named)
+        return self.checked(*params, **named).mean()
 
     def variance(self, *params: Values, **named: Values) -> Array:
         """The variance, `()` or `(n,)`."""
-        return self._evaluate(self._variance, params, named)
+        return self.checked(*params, **named).variance()
 
     def support(self, *params: Values, **named: Values) -> tuple[Array, Array]:
         """The lowest and the highest possible value, each `()` or `(n,)`; may be infinite."""
-        values, invalid = self._sound(self.bind(params, named))
-        with np.errstate(all="ignore"):
-            low, high = self._support(*values)
-        return _masked(low, invalid), _masked(high, invalid)
+        return self.checked(*params, **named).support()
 
     def cutoffs(self, lower: Values, upper: Values) -> tuple[tuple[Values, Values], tuple[Values, Values]]:
         """What cutoffs, which are kept themselves, mean to the family.
@@ -240,31 +230,73 @@ class Family(ABC):
             raise TypeError(f"{self.name} takes {', '.join(self.keys)}")
         return tuple(map((defaults | given).__getitem__, self.keys))
 
-    def _sound(self, values: tuple[Any, ...]) -> tuple[tuple[Any, ...], Any]:
-        """The parameters with NaN in trials that break a rule, and where these are (None: nowhere)."""
-        valid = self.valid(*values)
-        if valid is True or np.all(valid):
-            return values, None
-        return tuple(np.where(valid, value, np.nan) for value in values), ~np.asarray(valid)
 
-    def _evaluate(
-        self, hook: Callable[..., Any], params: Sequence[Any], named: Mapping[str, Any], *points: Values
-    ) -> Array:
-        values, invalid = self._sound(self.bind(params, named))
+@dataclass(frozen=True, slots=True, eq=False)
+class Member:
+    """A family with its parameters. Nothing is checked here: `Family.fault` or `Family.checked` did that.
+
+    Its functions are those of `Family`, and give NaN in the trials whose parameters break a rule.
+
+    Attributes:
+        family: that it belongs to.
+        values: the parameters in order, each a number or `(n,)`; NaN in trials that break a rule.
+        invalid: which trials these are; None for none.
+    """
+
+    family: Family
+    values: tuple[Any, ...]
+    invalid: Any = None
+
+    def ppf(self, u: Values, out: Array | None = None) -> Array:
+        """See `Family.ppf`."""
+        own = _own_copy(u, self.values) if out is None else out
+        if out is not None and out is not u:
+            out[...] = u
+        if self.family.open_below:
+            np.copyto(own, SMALLEST_U, where=own == 0.0)
+        x = self._evaluate(self.family._ppf, own)
+        if any(map(np.ndim, self.values)):
+            x = np.where(np.isfinite(x), x, np.nan)
+        if out is None:
+            return x
+        if x is not out:
+            out[...] = x
+        return out
+
+    def isf(self, q: Values) -> Array:
+        return self._evaluate(self.family._isf, _own_copy(q, self.values))
+
+    def cdf(self, x: Values) -> Array:
+        return self._evaluate(self.family._cdf, x)
+
+    def sf(self, x: Values) -> Array:
+        return self._evaluate(self.family._sf, x)
+
+    def mean(self) -> Array:
+        return self._evaluate(self.family._mean)
+
+    def variance(self) -> Array:
+        return self._evaluate(self.family._variance)
+
+    def support(self) -> tuple[Array, Array]:
         with np.errstate(all="ignore"):
-            return _masked(hook(*points, *values), invalid)
+            low, high = self.family._support(*self.values)
+        return self._masked(low), self._masked(high)
+
+    def _evaluate(self, hook: Callable[..., Any], *points: Values) -> Array:
+        with np.errstate(all="ignore"):
+            return self._masked(hook(*points, *self.values))
+
+    def _masked(self, result: Values) -> Array:
+        if self.invalid is not None:
+            result = np.where(self.invalid, np.nan, result)
+        return np.asarray(result, dtype=float)
 
 
 def _own_copy(u: Values, values: tuple[Any, ...]) -> Array:
     """`u` in memory of its own, in the shape that the result will have."""
     shape = np.broadcast_shapes(np.shape(u), *(np.shape(value) for value in values))
     return np.array(np.broadcast_to(u, shape), dtype=float)
-
-
-def _masked(result: Values, invalid: Any) -> Array:
-    if invalid is not None:
-        result = np.where(invalid, np.nan, result)
-    return np.asarray(result, dtype=float)
 
 
 def share(part: Values, whole: Values) -> Array:

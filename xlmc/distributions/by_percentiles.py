@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.distributions.base import Array, Family, Values
+from xlmc.distributions.base import Array, Family, Member, Values
 from xlmc.distributions.parameters import Fault, ParameterSpec, Role, show
 
 __all__ = ["ByPercentiles", "by_percentiles", "match_percentiles"]
@@ -132,30 +132,31 @@ class ByPercentiles(Family):
             raise TypeError(f"{self.name} by percentiles takes numbers, not one for each trial")
         return tuple(float(value) for value in values)
 
-    def _own(self, values: tuple[Any, ...]) -> tuple[float, ...]:
-        """The family's own parameters; NaN, where no member has these percentiles."""
-        return self._member(*self._numbers(values)) or (np.nan,) * len(self.family.parameters)
+    def _own(self, values: tuple[Any, ...]) -> Member:
+        """The family with its own parameters; NaN, where no member has these percentiles."""
+        found = self._member(*self._numbers(values)) or (np.nan,) * len(self.family.parameters)
+        return Member(self.family, found)
 
     def _ppf(self, u: Array, *values: Any) -> Array:
-        return self.family.ppf(u, *self._own(values), out=u)
+        return self._own(values).ppf(u, out=u)
 
     def _isf(self, q: Array, *values: Any) -> Array:
-        return self.family.isf(q, *self._own(values))
+        return self._own(values).isf(q)
 
     def _cdf(self, x: Values, *values: Any) -> Values:
-        return self.family.cdf(x, *self._own(values))
+        return self._own(values).cdf(x)
 
     def _sf(self, x: Values, *values: Any) -> Values:
-        return self.family.sf(x, *self._own(values))
+        return self._own(values).sf(x)
 
     def _mean(self, *values: Any) -> Values:
-        return self.family.mean(*self._own(values))
+        return self._own(values).mean()
 
     def _variance(self, *values: Any) -> Values:
-        return self.family.variance(*self._own(values))
+        return self._own(values).variance()
 
     def _support(self, *values: Any) -> tuple[Values, Values]:
-        return self.family.support(*self._own(values))
+        return self._own(values).support()
 
 
 def match_percentiles(family: Family, given: Mapping[str, float], points: Points) -> Solution:
@@ -177,7 +178,7 @@ def match_percentiles(family: Family, given: Mapping[str, float], points: Points
     with np.errstate(all="ignore"):
         for found in candidates:
             if family.broken_rule(*found) is None:
-                away = np.abs(family.ppf(p, *found) - x)
+                away = np.abs(Member(family, found).ppf(p) - x)
                 if np.all(away <= _MET * _spread(given, points)):
                     return found
     return None

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from xlmc.distributions.base import SMALLEST_U, TRIED_U, Array, Family, Values
+from xlmc.distributions.base import SMALLEST_U, TRIED_U, Array, Family, Member, Values
 from xlmc.distributions.parameters import Fault, show
 
-__all__ = ["Truncated"]
+__all__ = ["Slice", "Truncated"]
 
 _LARGEST_U = 1 - 2.0**-53
 _LEAST_MASS = 1e-300  # below this, probabilities lose digits to underflow
@@ -44,11 +43,12 @@ class Truncated:
         if not lower < upper:
             message = f"Lower cutoff ({show(lower)}) is not below Upper cutoff ({show(upper)})"
             return Fault("lower_cutoff", message, "Exchange the two, or correct the wrong one")
-        if not _Slice(self.family, lower, upper, values).mass >= _LEAST_MASS:
+        part = Slice(Member(self.family, values), lower, upper)
+        if not part.mass >= _LEAST_MASS:
             return self._empty(lower, upper, *values)
         if self.family.always_finite or not values:
             return None
-        if np.isfinite(self.ppf(np.array(TRIED_U), lower, upper, *values)).all():
+        if np.isfinite(part.ppf(np.array(TRIED_U))).all():
             return None
         return self.family.overflow_fault(values, "Correct the number, or give cutoffs at both ends")
 
@@ -57,25 +57,19 @@ class Truncated:
         fault = self.fault(lower, upper, *params, **named)
         return None if fault is None else fault.message
 
+    def checked(self, lower: Values, upper: Values, *params: Values, **named: Values) -> Slice:
+        """What lies between the cutoffs, of parameters that are checked here, and by none of its functions."""
+        return Slice(self.family.checked(*params, **named), lower, upper)
+
     def ppf(
         self, u: Values, lower: Values, upper: Values, *params: Values, out: Array | None = None, **named: Values
     ) -> Array:
         """Quantiles of probabilities in [0, 1), shapes as in `Family.ppf`; NaN where the draw would not be finite."""
-        values = self.family.bind(params, named)
-        part = _Slice(self.family, lower, upper, values)
-        x = np.clip(part.quantile(np.where(np.equal(u, 0.0), SMALLEST_U, u)), part.lowest, part.highest)
-        x = np.where(_sound(part, lower, upper) & np.isfinite(x), x, np.nan)
-        if out is None:
-            return np.asarray(x, dtype=float)
-        out[...] = x
-        return out
+        return self.checked(lower, upper, *params, **named).ppf(u, out)
 
     def cdf(self, x: Values, lower: Values, upper: Values, *params: Values, **named: Values) -> Array:
         """P(X <= x), shapes as in `ppf`."""
-        values = self.family.bind(params, named)
-        part = _Slice(self.family, lower, upper, values)
-        sound = _sound(part, lower, upper)
-        return np.where(sound, part.probability(x), np.nan)
+        return self.checked(lower, upper, *params, **named).cdf(x)
 
     def support(self, lower: Values, upper: Values, *params: Values, **named: Values) -> tuple[Array, Array]:
         """The lowest and the highest possible value."""
@@ -83,7 +77,7 @@ class Truncated:
         return np.maximum(low, lower), np.minimum(high, upper)
 
     def _empty(self, lower: float, upper: float, *values: float) -> Fault:
-        low, high = self.family.support(*values)
+        low, high = Member(self.family, values).support()
         key, label, cutoff = "lower_cutoff", "Lower", lower
         if np.isinf(lower) or upper < low:
             key, label, cutoff = "upper_cutoff", "Upper", upper
@@ -92,47 +86,59 @@ class Truncated:
         return Fault(key, message, f"Choose cutoffs that leave part of the distribution, which lies {reach}")
 
 
-class _Slice:
-    """The piece of a family between two cutoffs, measured from the nearer end."""
+class Slice:
+    """The piece of a distribution between two cutoffs, measured from the nearer end.
 
-    def __init__(self, family: Family, lower: Values, upper: Values, params: tuple[Any, ...]) -> None:
-        self.family = family
-        self.params = params
-        (self.lowest, self.before), (self.highest, after) = family.cutoffs(lower, upper)
-        self.below = family.cdf(self.before, *params), family.cdf(self.highest, *params)
-        self.above = family.sf(self.lowest, *params), family.sf(after, *params)
-        self.in_upper_half = self.below[0] > 0.5
-        from_below = self.below[1] - self.below[0]
-        from_above = self.above[0] - self.above[1]
-        self.mass = np.where(self.in_upper_half, from_above, from_below)
+    Args:
+        whole: the distribution.
+        lower, upper: cutoffs, each a number or `(n,)`.
+    """
 
-    def quantile(self, u: Array) -> Array:
-        if np.all(self.in_upper_half):
+    def __init__(self, whole: Member, lower: Values, upper: Values) -> None:
+        self._whole = whole
+        (self._lowest, self._before), (self._highest, after) = whole.family.cutoffs(lower, upper)
+        self._below = whole.cdf(self._before), whole.cdf(self._highest)
+        self._above = whole.sf(self._lowest), whole.sf(after)
+        self._in_upper_half = self._below[0] > 0.5
+        from_below = self._below[1] - self._below[0]
+        from_above = self._above[0] - self._above[1]
+        self.mass = np.where(self._in_upper_half, from_above, from_below)
+        self._sound = (self.mass >= _LEAST_MASS) & np.less(lower, upper)  # False where anything is NaN
+
+    def ppf(self, u: Values, out: Array | None = None) -> Array:
+        """See `Truncated.ppf`."""
+        x = np.clip(self._quantile(np.where(np.equal(u, 0.0), SMALLEST_U, u)), self._lowest, self._highest)
+        x = np.where(self._sound & np.isfinite(x), x, np.nan)
+        if out is None:
+            return np.asarray(x, dtype=float)
+        out[...] = x
+        return out
+
+    def cdf(self, x: Values) -> Array:
+        """P(X <= x), shapes as in `ppf`."""
+        return np.where(self._sound, self._probability(x), np.nan)
+
+    def _quantile(self, u: Array) -> Array:
+        if np.all(self._in_upper_half):
             return self._from_above(u)
-        if not np.any(self.in_upper_half):
+        if not np.any(self._in_upper_half):
             return self._from_below(u)
-        return np.where(self.in_upper_half, self._from_above(u), self._from_below(u))
+        return np.where(self._in_upper_half, self._from_above(u), self._from_below(u))
 
-    def probability(self, x: Values) -> Array:
-        """P(X <= x)."""
-        x = np.clip(x, self.before, self.highest)
-        _, (_, beyond) = self.family.cutoffs(x, x)
+    def _probability(self, x: Values) -> Array:
+        x = np.clip(x, self._before, self._highest)
+        _, (_, beyond) = self._whole.family.cutoffs(x, x)
         mass = np.where(self.mass > 0, self.mass, 1.0)
-        from_below = (self.family.cdf(x, *self.params) - self.below[0]) / mass
-        from_above = (self.above[0] - self.family.sf(beyond, *self.params)) / mass
-        return np.where(self.in_upper_half, from_above, from_below)
+        from_below = (self._whole.cdf(x) - self._below[0]) / mass
+        from_above = (self._above[0] - self._whole.sf(beyond)) / mass
+        return np.where(self._in_upper_half, from_above, from_below)
 
     def _from_below(self, u: Array) -> Array:
-        low, high = self.below
+        low, high = self._below
         # Rounding may reach 1, whose quantile can be infinite.
-        return self.family.ppf(np.minimum(low + u * (high - low), _LARGEST_U), *self.params)
+        return self._whole.ppf(np.minimum(low + u * (high - low), _LARGEST_U))
 
     def _from_above(self, u: Array) -> Array:
-        low, high = self.above
+        low, high = self._above
         # A weighted sum, not a difference: it stays above 0 as long as u < 1.
-        return self.family.isf(low * (1 - u) + high * u, *self.params)
-
-
-def _sound(part: _Slice, lower: Values, upper: Values) -> Any:
-    """Where the cutoffs leave something; False where anything is NaN."""
-    return (part.mass >= _LEAST_MASS) & np.less(lower, upper)
+        return self._whole.isf(low * (1 - u) + high * u)

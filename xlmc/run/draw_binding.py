@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell, InFormula
-from xlmc.definitions.definitions import CUTOFFS, Assumption, DataRange, Definitions, Parameter, name_key
+from xlmc.definitions.definitions import CUTOFFS, Assumption, DataRange, Definitions, Numbers, Parameter, name_key
 from xlmc.definitions.tables.data import data_family
 from xlmc.distributions import ByPercentiles, Family
 from xlmc.distributions.parameters import show
@@ -38,22 +38,22 @@ def parameter_target(cell: Cell) -> Target:
 def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     """How an assumption is drawn; a parameter that no assumption reaches becomes a number here.
 
+    Numbers are checked, unless they were as the row was read.
+
     Raises:
         DefinitionError: the numbers are no distribution.
     """
     data = assumption.data
     family = assumption.family if data is None else _from_data(assumption.family, data, assumption.name, lowering)
-    parameters = tuple(fold_parameter(each, lowering) for each in family.bind((), assumption.parameters))
-    cutoffs = None
-    if assumption.lower_cutoff is not None or assumption.upper_cutoff is not None:
-        lower = -np.inf if assumption.lower_cutoff is None else assumption.lower_cutoff
-        upper = np.inf if assumption.upper_cutoff is None else assumption.upper_cutoff
-        cutoffs = fold_parameter(lower, lowering), fold_parameter(upper, lowering)
-    draw = Draw(name_key(assumption.name), family, parameters, cutoffs)
+    parameters = {key: fold_parameter(each, lowering) for key, each in assumption.parameters.items()}
+    cutoffs = {key: fold_parameter(each, lowering) for key, each in assumption.cutoffs.items()}
+    ends = cutoffs.get("lower_cutoff", -np.inf), cutoffs.get("upper_cutoff", np.inf)
+    draw = Draw(name_key(assumption.name), family, family.bind((), parameters), ends if cutoffs else None)
     if isinstance(family, ByPercentiles) and draw.varying:  # the member with these percentiles is looked for once
         message = f"{assumption.name}: a distribution given by percentiles cannot depend on another assumption"
         raise DefinitionError(message, where=draw.varying[0], hint="give it by its parameters, or by numbers")
-    if (fault := draw.fault()) is not None:
+    numbers = Numbers(family, parameters, cutoffs)  # type: ignore[arg-type]  # so they are, where the draw is fixed
+    if draw.fixed and numbers != assumption.checked and (fault := numbers.fault()) is not None:
         raise DefinitionError(f"{assumption.name}: {fault.message}", where=assumption.row, hint=fault.hint)
     return draw
 

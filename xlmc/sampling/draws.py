@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.distributions import Family, Truncated
-from xlmc.distributions.parameters import Fault
+from xlmc.distributions.base import Member
+from xlmc.distributions.truncated import Slice
 from xlmc.distributions.uniform import Uniform
 from xlmc.errors import SimulationError
 from xlmc.functions.denormals import TINIEST, flush
@@ -34,13 +36,16 @@ Filler = Callable[[Sequence[Stream], Sequence[tuple[float, float]], Floats], Cal
 first trial of a block, and fills each row with offset + factor·uniform."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Draw:
     """How one assumption is drawn.
 
     Attributes:
         parameters: numbers, or keys into what `DynamicParameters` gives, in the family's order.
         cutoffs: lower and upper, likewise; None without truncation.
+
+    Those that vary are checked in every trial. Where all are numbers, they are known to be a distribution: whoever
+    makes a `Draw` has checked them.
     """
 
     name: str
@@ -53,38 +58,34 @@ class Draw:
 
         A draw that is too small a number for a cell is 0.
         """
-        given = (*(self.cutoffs or ()), *self.parameters)
-        values = [p if isinstance(p, float) else dynamic[p] for p in given]
-        if self.cutoffs is None:
-            self.family.ppf(u, *values, out=u)
-        else:
-            Truncated(self.family).ppf(u, *values, out=u)
+        (self.distribution if self.fixed else self._of_trials(dynamic)).ppf(u, out=u)
         if not u.min(initial=np.inf) >= TINIEST:
             flush(u)
 
+    @cached_property
+    def distribution(self) -> Member | Slice:
+        """What the numbers make of the family, where `fixed`."""
+        whole = Member(self.family, self.parameters)
+        return whole if self.cutoffs is None else Slice(whole, *self.cutoffs)  # type: ignore[arg-type]  # numbers
+
+    def _of_trials(self, dynamic: Mapping[Hashable, Floats]) -> Member | Slice:
+        """What the parameters of each trial make of it."""
+        values = [p if isinstance(p, float) else dynamic[p] for p in (*(self.cutoffs or ()), *self.parameters)]
+        return self.family.checked(*values) if self.cutoffs is None else Truncated(self.family).checked(*values)
+
     def reached(self, x: Floats) -> Floats:
         """The uniforms, `(n,)`, of draws that are at most x, `(n,)`: the other way round than `fill`, where `fixed`."""
-        if self.cutoffs is None:
-            return self.family.cdf(x, *self.parameters)  # type: ignore[arg-type]  # numbers, where they are fixed
-        return Truncated(self.family).cdf(x, *self.cutoffs, *self.parameters)  # type: ignore[arg-type]  # likewise
+        return self.distribution.cdf(x)
 
     @property
     def varying(self) -> list[Hashable]:
         """The parameters and cutoffs that vary by trial."""
         return [p for p in (*self.parameters, *(self.cutoffs or ())) if not isinstance(p, float)]
 
-    @property
+    @cached_property
     def fixed(self) -> bool:
         """Whether no parameter and no cutoff varies by trial."""
         return not self.varying
-
-    def fault(self) -> Fault | None:
-        """What keeps its numbers from being a distribution; None where some vary, for each trial has its own then."""
-        if not self.fixed:
-            return None
-        if self.cutoffs is None:
-            return self.family.fault(*self.parameters)  # type: ignore[arg-type]  # numbers, as they are fixed
-        return Truncated(self.family).fault(*self.cutoffs, *self.parameters)  # type: ignore[arg-type]  # likewise
 
     def refuse_no_numbers(self, draws: Floats) -> None:
         """Check what was filled in, `(n,)`; where parameters vary, NaN is an error trial, and counted as one.

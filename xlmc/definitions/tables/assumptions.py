@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.definitions import CUTOFFS, Assumption, Parameter
+from xlmc.definitions.definitions import CUTOFFS, Assumption, Numbers, Parameter
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.data import OPTIONS, cached_data_family, given_data, refuse_options
 from xlmc.definitions.tables.fields import logical, number_in, optional_text, parameter, static_value
 from xlmc.definitions.tables.identity import Claims, identify
 from xlmc.definitions.tables.table_rows import DefinitionTable, Row, is_blank, rows_of
-from xlmc.distributions import FAMILIES, Family, ParameterSpec, Truncated, family_named
+from xlmc.distributions import FAMILIES, Family, ParameterSpec, family_named
+from xlmc.distributions.base import Member
 from xlmc.distributions.by_percentiles import by_percentiles
 from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import plain
@@ -81,9 +81,9 @@ def _assumption(
     if len(findings.problems) > before or not (identity and kind and given):
         return None
     name, cell = identity
-    ends = None if family is None else _range_of(family, given, row.workbook)
-    if family is not None and ends is not None and not frozen:
-        _remark_on_range(family, ends, given.cells, base, cell, findings)
+    checked = None if family is None else _checked(family, given, row.workbook)
+    if checked is not None and not frozen:
+        _remark_on_range(checked, given.cells, base, cell, findings)
     return Assumption(
         name=name,
         cell=cell,
@@ -99,6 +99,7 @@ def _assumption(
         notes=row.notes(known),
         own_family=None if family is FAMILIES[kind.name] else family,
         data=data,
+        checked=checked,
     )
 
 
@@ -162,13 +163,13 @@ def _given(row: Row, family: Family, findings: Findings) -> _Given:
     return given
 
 
-def _range_of(family: Family, given: _Given, workbook: Workbook) -> tuple[float, float] | None:
+def _checked(family: Family, given: _Given, workbook: Workbook) -> Numbers | None:
     """Check the rules of the family on the numbers as they are now, typed in or as Excel cached them.
 
     A run checks dynamic ones in every trial.
 
     Returns:
-        The least and the largest draw; None where a number is not known.
+        The numbers; None where one is not known.
 
     Raises:
         DefinitionError: a rule is broken; it names the cell of the parameter to look at first.
@@ -179,33 +180,28 @@ def _range_of(family: Family, given: _Given, workbook: Workbook) -> tuple[float,
         if number is None:
             return None
         numbers[key] = number
-    lower, upper = numbers.pop("lower_cutoff", -math.inf), numbers.pop("upper_cutoff", math.inf)
-    fault = Truncated(family).fault(lower, upper, **numbers) if given.cutoffs else family.fault(**numbers)
-    if fault is not None:
+    cutoffs = {key: numbers.pop(key) for key in given.cutoffs}
+    found = Numbers(family, numbers, cutoffs)
+    if (fault := found.fault()) is not None:
         raise DefinitionError(fault.message, where=given.cells[fault.key], hint=fault.hint)
-    low, high = family.support(**numbers)
-    return max(float(low), lower), min(float(high), upper)
+    return found
 
 
 def _remark_on_range(
-    family: Family,
-    ends: tuple[float, float],
-    cells: Mapping[str, Cell],
-    base: float | None,
-    cell: Cell,
-    findings: Findings,
+    numbers: Numbers, cells: Mapping[str, Cell], base: float | None, cell: Cell, findings: Findings
 ) -> None:
     """Point out what is allowed but may be a slip: a constant, a base case that could never be drawn.
 
     Args:
-        family: of the assumption.
-        ends: the least and the largest draw.
+        numbers: that it is drawn from.
         cells: where its parameters stand, by key.
         base: the base case, if there is any.
         cell: of the assumption.
         findings: takes the remarks.
     """
-    low, high = ends
+    family, (lower, upper) = numbers.family, numbers.between
+    least, most = Member(family, family.bind((), numbers.parameters)).support()
+    low, high = max(float(least), lower), min(float(most), upper)
     if low == high:
         both = "Low and High are both" if {"low", "high"} <= {*family.keys} else "Every draw is"
         where = cells[family.keys[0]] if family.keys else cell

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.definitions.definitions import name_key
+from xlmc.distributions.base import Member
 from xlmc.errors import SimulationError
 from xlmc.evaluation.passes.derivatives import Derivative, Derivatives
 from xlmc.run.model import Model
@@ -119,11 +120,10 @@ def draw_assumptions(model: Model, seed: int) -> Iterator[Floats]:
 
 def _of_draw(draw: Draw) -> tuple[float, float]:
     """Mean and variance; NaN where parameters vary."""
-    parameters = [each for each in draw.parameters if isinstance(each, float)]
-    if len(parameters) < len(draw.parameters) or not all(isinstance(c, float) for c in draw.cutoffs or ()):
+    if not draw.fixed:
         return np.nan, np.nan
-    if draw.cutoffs is None:
-        return float(draw.family.mean(*parameters)), float(draw.family.variance(*parameters))
+    if isinstance(draw.distribution, Member):
+        return float(draw.distribution.mean()), float(draw.distribution.variance())
     middles = (np.arange(_STEPS) + 0.5) / _STEPS
     draw.fill(middles, {})
     return float(np.mean(middles)), float(np.var(middles))

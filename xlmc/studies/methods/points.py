@@ -63,7 +63,7 @@ def box_of(model: Model, seed: int) -> Box:
         found = draw.support()
         if found is not None:
             ends[index] = found
-        elif _is_fixed(draw):
+        elif draw.fixed:
             ends[index] = _cut(draw)
             cut.append(assumption.name)
         else:
@@ -74,10 +74,6 @@ def box_of(model: Model, seed: int) -> Box:
             column = drawn[model.draws[model.live[index].name].name]
             ends[index] = np.nanmin(column), np.nanmax(column)
     return Box(ends[:, 0], ends[:, 1], tuple(_remarks(model, cut, varying)))
-
-
-def _is_fixed(draw: Draw) -> bool:
-    return all(isinstance(each, float) for each in (*draw.parameters, *(draw.cutoffs or ())))
 
 
 def _cut(draw: Draw) -> tuple[float, float]:

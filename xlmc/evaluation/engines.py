@@ -8,15 +8,13 @@ describe it in docs/engines.md. docs/adding.md has an example. Nothing is import
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from xlmc.evaluation.llvm import jit_filler, jit_program
 
 if TYPE_CHECKING:
-    from xlmc.evaluation.engine import Program, Target
-    from xlmc.evaluation.graph.lower import Lowering
-    from xlmc.evaluation.passes.bounds import Bounds
+    from xlmc.evaluation.engine import Program
 
 __all__ = ["ENGINES", "Engine"]
 
@@ -28,8 +26,9 @@ class Engine(NamedTuple):
         key: its name in options, settings, records and saved runs.
         what: what it is for, in a clause; empty for the usual one.
         load: gives what makes its program of a lowering, filters, forecasts and inputs whose draws may be errors.
-            Filters are evaluated on all trials, forecasts on the survivors.
-        bounded: it is given the bounds of the inputs, too, as `between`.
+            Filters are evaluated on all trials, forecasts on the survivors. It raises `SimulationError` where a library
+            is missing, and `FormulaError` where the engine has no such formulas.
+        bounded: it is given the `NodeBounds`, too, as `bounds`.
         filler: draws its uniforms, where it brings something of its own; see `sampling.draws.Filler`.
         library: the package that it needs besides those of every engine; empty for none.
         portable: its workers can be pickled: to unpickle one takes a fraction of the imports that a `RunSpec` needs.
@@ -47,23 +46,6 @@ class Engine(NamedTuple):
     portable: bool = False
     process_blocks: float = math.inf
     searches: bool = True
-
-    def program(
-        self,
-        lowering: Lowering,
-        filters: Sequence[Target],
-        forecasts: Sequence[Target],
-        may_err: frozenset[str],
-        between: Mapping[str, Bounds],
-    ) -> Program:
-        """The filters and forecasts, compiled.
-
-        Raises:
-            SimulationError: a library that the engine needs is missing.
-            FormulaError: it has no such formulas.
-        """
-        more = {"between": between} if self.bounded else {}
-        return self.load()(lowering, filters, forecasts, may_err, **more)
 
 
 def _numpy() -> Callable[..., Program]:

@@ -20,6 +20,7 @@ from xlmc.evaluation.engine import Evaluator, Program, Target
 from xlmc.evaluation.engines import ENGINES
 from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
+from xlmc.evaluation.passes.bounds import NodeBounds
 from xlmc.formula import Graph
 from xlmc.run.correlating import correlated_groups, repair_notices, tie_notices
 from xlmc.run.draw_binding import draw_of, dynamic_parameters, with_base_parameters
@@ -218,14 +219,16 @@ class Model:
         """The filters and forecasts, compiled for an engine once.
 
         Raises:
-            SimulationError: there is no such engine.
+            SimulationError: there is no such engine, or a library that it needs is missing.
+            FormulaError: it has no such formulas.
         """
         if engine not in ENGINES:
             raise SimulationError(f"there is no engine {engine!r}", hint=f"choose one of {', '.join(ENGINES)}")
         if engine not in self._programs:
-            parts = self.lowering, self.filter_targets, self._forecast_targets, self.fallible
+            row, parts = ENGINES[engine], (self.lowering, self.filter_targets, self._forecast_targets, self.fallible)
+            more = {"bounds": NodeBounds(self.lowering.dag, self._ends)} if row.bounded else {}
             with paused_collection():
-                self._programs[engine] = ENGINES[engine].program(*parts, self._ends)
+                self._programs[engine] = row.load()(*parts, **more)
         return self._programs[engine]
 
     def evaluator(self, targets: Sequence[Target], block: int) -> Evaluator:

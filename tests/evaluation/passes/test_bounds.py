@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Select
-from xlmc.evaluation.passes.bounds import bounds
+from xlmc.evaluation.passes.bounds import NodeBounds
 from xlmc.functions.families import REGISTRY
 from xlmc.functions.values import constant
 
@@ -41,10 +41,11 @@ def models(draw):
 def test_values_lie_between_the_bounds(model):
     """Rounding may lead past them by some 1e-16 of the largest numbers on the way, here at most six operations."""
     dag, ends, values = model
-    found = bounds(dag, dag.upstream(list(values)), ends)
-    reach = 1.0
-    for node, (low, high) in found.items():
-        if node in values:
+    known, reach = NodeBounds(dag, ends), 1.0
+    for node in dag.upstream(list(values)):
+        found = known.of(node)
+        if node in values and found is not None:
+            low, high = found
             reach = max(reach, abs(low), abs(high), 1e6)
             computed = values[node][np.isfinite(values[node])]  # no root of less than 0
             assert (low - 1e-13 * reach <= computed).all()
@@ -76,9 +77,22 @@ def test_what_is_known(dag):
         dag.add(Select(of("<", a, b), a, two)): (-1.0, 3.0),
     }
     unknown = [free, of("/", two, a), of("+", a, free), of("*", dag.constant(constant(0.0)), free), of("SQRT", free)]
-    found = bounds(dag, dag.upstream([*wanted, *unknown]), {"a": (-1.0, 3.0), "b": (1.0, 4.0)})
-    assert {node: found.get(node) for node in wanted} == wanted
-    assert not set(unknown) & set(found)
+    known = NodeBounds(dag, {"a": (-1.0, 3.0), "b": (1.0, 4.0)})
+    assert {node: known.of(node) for node in reversed(wanted)} == dict(reversed(wanted.items()))
+    assert [known.of(node) for node in unknown] == [None] * len(unknown)
+
+
+def test_a_graph_may_grow(dag):
+    a, two = dag.input("a"), dag.constant(constant(2.0))
+    known = NodeBounds(dag, {"a": (-1.0, 3.0)})
+    assert (known.of(a), known.of(two)) == ((-1.0, 3.0), (2.0, 2.0))
+    assert known.of(dag.add(Apply(REGISTRY["*"], (a, two)))) == (-2.0, 6.0)
+
+
+def test_without_bounds_of_inputs_only_constants_are_known(dag):
+    a, two = dag.input("a"), dag.constant(constant(2.0))
+    known = NodeBounds(dag, {})
+    assert [known.of(node) for node in (a, two, dag.add(Apply(REGISTRY["SIN"], (a,))))] == [None, (2.0, 2.0), None]
 
 
 @pytest.mark.parametrize(

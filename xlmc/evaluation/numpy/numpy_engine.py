@@ -21,7 +21,7 @@ from xlmc.evaluation.graph.trial_sets import ALL_TRIALS, TrialSet
 from xlmc.evaluation.numpy.branches import SURVIVORS, Placement, branch_step
 from xlmc.evaluation.numpy.sequence import Buffers, Steps
 from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, plain_constant
-from xlmc.evaluation.passes.bounds import Bounds, bounds
+from xlmc.evaluation.passes.bounds import NodeBounds
 from xlmc.evaluation.tracking import TrackingEvaluator, array_bytes, fitting_block
 from xlmc.functions import Kind
 from xlmc.functions.denormals import Underflow
@@ -45,7 +45,7 @@ class NumpyProgram:
     Args:
         filters, forecasts: nodes.
         may_err: the inputs whose draws may be errors (NaNs), which raise no flag.
-        between: name of an input -> the bounds that it will be given within; none are known of the others.
+        bounds: of the nodes, as far as they are known.
         array_bytes: what arrays and texts take in a trial.
 
     Attributes:
@@ -60,12 +60,11 @@ class NumpyProgram:
         filters: Sequence[int],
         forecasts: Sequence[int],
         may_err: frozenset[str],
-        between: Mapping[str, Bounds] | None = None,
-        array_bytes: int = 0,
+        bounds: NodeBounds,
+        array_bytes: int,
     ) -> None:
-        self._made_of = dag, filters, forecasts, may_err, between, array_bytes
-        self._dag, self._filters, self._forecasts = dag, filters, forecasts
-        self._between = bounds(dag, dag.upstream([*filters, *forecasts]), between) if between else {}
+        self._made_of = dag, filters, forecasts, may_err, bounds, array_bytes
+        self._dag, self._filters, self._forecasts, self._bounds = dag, filters, forecasts, bounds
         self._placement = Placement(dag, filters, forecasts)
         self._template: list[Any] = [None] * len(dag.nodes)
         for node, value in constants(dag):
@@ -91,11 +90,12 @@ class NumpyProgram:
         filters: Sequence[Target],
         forecasts: Sequence[Target],
         may_err: frozenset[str],
-        between: Mapping[str, Bounds] | None = None,
+        bounds: NodeBounds | None = None,
     ) -> NumpyProgram:
         """The program of targets."""
         first, late = ([lowering.target(target) for target in targets] for targets in (filters, forecasts))
-        return cls(lowering.dag, first, late, may_err, between, array_bytes(lowering, first, late))
+        known = bounds or NodeBounds(lowering.dag, {})
+        return cls(lowering.dag, first, late, may_err, known, array_bytes(lowering, first, late))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return NumpyProgram, self._made_of
@@ -147,7 +147,7 @@ class NumpyProgram:
         computed = [node for node in self._placement.members(trials) if type(nodes[node]) is not Input]
         read = self._placement.reads | {node: self._reads(node) for node in computed if node in branched}
         last = {needed: node for node in computed for needed in read[node]} | dict.fromkeys(keep, -1)
-        steps = Steps(self._dag, self._buffers, computed, self._between)
+        steps = Steps(self._dag, self._buffers, computed, self._bounds)
         for node in computed:
             done = [needed for needed in read[node] if last[needed] == node]
             if node in branched:

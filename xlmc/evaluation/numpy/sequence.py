@@ -6,7 +6,7 @@ A line of the table costs little to make and to run; what does not fit into a li
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Select, uses
 from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, is_elementwise_ufunc, make_step
-from xlmc.evaluation.passes.bounds import Bounds, of_constant
+from xlmc.evaluation.passes.bounds import NodeBounds
 from xlmc.functions import Kind
 from xlmc.functions.fifteen_digits import SNAP_TO_ZERO, SnapToZero, copy_sum, never_cancels
 from xlmc.functions.math.trigonometry import Within, sine_and_cosine
@@ -113,19 +113,17 @@ class Steps:
         dag: of the nodes.
         buffers: to take from.
         nodes: the nodes to come.
-        between: node -> its bounds, where they are known: a guard that they answer is not asked.
+        bounds: of the nodes: a guard that they answer is not asked.
     """
 
-    def __init__(
-        self, dag: Dag, buffers: Buffers, nodes: Iterable[int], between: Mapping[int, Bounds] | None = None
-    ) -> None:
+    def __init__(self, dag: Dag, buffers: Buffers, nodes: Iterable[int], bounds: NodeBounds) -> None:
         self._made: list[Step] = []
         self._dag, self._buffers = dag, buffers
         self._lines: list[_Line] = []
         self._loose: list[int] = []
         self._pairs = _sines_with_cosines(dag, nodes)
         self._paired: set[int] = set()
-        self._between = between or {}
+        self._bounds = bounds
 
     def add(self, node_id: int, read: Sequence[int], done: list[int]) -> None:
         """Add the step of a node.
@@ -228,23 +226,20 @@ class Steps:
         guard = node.function.guard
         if guard is None or not isinstance(guard, Within):
             return guard
-        known = self._between.get(node.arguments[0])
+        known = self._bounds.of(node.arguments[0])
         return None if known is not None and guard.surely(*known) else guard
 
     def _last_sum(self, node: Apply) -> Callable[..., object]:
         """The function for the last sum of a formula; one that keeps every sum where bounds show that none is dust."""
         total, first = node.arguments
         added = self._dag.nodes[total]
-        second = self._bounds(added.arguments[1]) if type(added) is Apply and added.function.name == "+" else None
-        of_total, of_first = self._bounds(total), self._bounds(first)
+        second = self._bounds.of(added.arguments[1]) if type(added) is Apply and added.function.name == "+" else None
+        of_total, of_first = self._bounds.of(total), self._bounds.of(first)
         if of_first is None:
             return SnapToZero()
         if of_total is not None and never_cancels(of_total, of_first, second):
             return copy_sum
         return SnapToZero(max(abs(of_first[0]), abs(of_first[1])))
-
-    def _bounds(self, node: int) -> Bounds | None:
-        return self._between.get(node) or of_constant(self._dag, node)
 
     def _close_table(self) -> None:
         if self._lines:

@@ -11,7 +11,7 @@ from xlmc.evaluation.graph.nodes import Apply, Constant, Input, Select
 from xlmc.functions.fifteen_digits import SNAP_TO_ZERO
 from xlmc.functions.values import NUMBER
 
-__all__ = ["Bounds", "bounds", "of_constant"]
+__all__ = ["Bounds", "NodeBounds"]
 
 Bounds = tuple[float, float]
 """The least and the largest number, but for the rounding of the operations that led to them."""
@@ -19,38 +19,44 @@ Bounds = tuple[float, float]
 _ANY: Final[Bounds] = (-math.inf, math.inf)
 
 
-def bounds(dag: Dag, nodes: Iterable[int], inputs: Mapping[str, Bounds]) -> dict[int, Bounds]:
-    """The finite bounds among the nodes at `nodes`, which come in order.
+class NodeBounds:
+    """The finite bounds of the nodes of a graph. They are worked out when somebody asks, in the order of the nodes.
 
     Args:
-        dag: of the nodes.
-        nodes: those that vary.
-        inputs: name of an input -> its bounds, where it has any.
+        dag: of the nodes; it may grow.
+        inputs: name of an input -> its bounds, where it has any. Without them only constants are known.
     """
-    found: dict[int, Bounds] = {}
 
-    def of(node: int) -> Bounds:
-        return found[node] if node in found else of_constant(dag, node) or _ANY
+    def __init__(self, dag: Dag, inputs: Mapping[str, Bounds]) -> None:
+        self._dag, self._inputs = dag, inputs
+        self._found: list[Bounds] = []
 
-    for node_id in nodes:
-        match dag.nodes[node_id]:
+    def of(self, node: int) -> Bounds | None:
+        """Those of a node; None where they are not known."""
+        if not self._inputs:
+            return _of_constant(self._dag, node)
+        while len(self._found) <= node:
+            low, high = self._next()
+            self._found.append((low, high) if math.isfinite(low) and math.isfinite(high) else _ANY)
+        return None if self._found[node] == _ANY else self._found[node]
+
+    def _next(self) -> Bounds:
+        """Those of the first node that was not looked at, from those of the nodes before it."""
+        node_id, found = len(self._found), self._found
+        match self._dag.nodes[node_id]:
             case Input(name):
-                between = inputs.get(name, _ANY)
+                return self._inputs.get(name, _ANY)
             case Select(_, yes, no):
-                between = _around((*of(yes), *of(no)))
+                return _around((*found[yes], *found[no]))
             case Apply(function, (first, second)) if function.name in ("+", "-", "*", "/"):
-                between = _combine(function.name, of(first), of(second))
+                return _combine(function.name, found[first], found[second])
             case Apply(function, (result, _)) if function.name == SNAP_TO_ZERO.name:
-                between = of(result)
+                return found[result]
             case Apply(function) if function.facts.result_range is not None:
-                between = function.facts.result_range
+                return function.facts.result_range
             case Apply(function, (only,)) if function.name in _OF_ONE:
-                between = _OF_ONE[function.name](*of(only))
-            case _:
-                continue
-        if math.isfinite(between[0]) and math.isfinite(between[1]):
-            found[node_id] = between
-    return found
+                return _OF_ONE[function.name](*found[only])
+        return _of_constant(self._dag, node_id) or _ANY
 
 
 _OF_ONE: Final[Mapping[str, Callable[[float, float], Bounds]]] = {
@@ -61,7 +67,7 @@ _OF_ONE: Final[Mapping[str, Callable[[float, float], Bounds]]] = {
 """Function of one number -> its bounds, from those of the number."""
 
 
-def of_constant(dag: Dag, node_id: int) -> Bounds | None:
+def _of_constant(dag: Dag, node_id: int) -> Bounds | None:
     """A constant number as its own lower and upper bound; None of any other node."""
     node = dag.nodes[node_id]
     if isinstance(node, Constant) and dag.sizes[node_id] is None and int(node.value.kinds[0]) == NUMBER:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Final, NamedTuple
+from typing import Final
 
 from xlmc.address import Area, Cell
 from xlmc.definitions.stopping import NO_GOAL, Stopping
-from xlmc.distributions import FAMILIES, Family, Fault, Truncated
+from xlmc.distributions import FAMILIES, Family
 from xlmc.errors import DefinitionError, FormulaError, Notice
 from xlmc.formula.ir import Expression
+from xlmc.sampling.draws import Draw
 
 __all__ = [
     "CUTOFFS",
@@ -22,7 +22,6 @@ __all__ = [
     "Definitions",
     "Filter",
     "Forecast",
-    "Numbers",
     "Parameter",
     "Settings",
     "name_key",
@@ -67,25 +66,6 @@ class DataRange:
                 yield value
 
 
-class Numbers(NamedTuple):
-    """What an assumption is drawn from where all parameters and cutoffs are numbers; these by key."""
-
-    family: Family
-    parameters: Mapping[str, float]
-    cutoffs: Mapping[str, float]
-
-    @property
-    def between(self) -> tuple[float, float]:
-        """The cutoffs, infinite where there is none."""
-        return self.cutoffs.get("lower_cutoff", -math.inf), self.cutoffs.get("upper_cutoff", math.inf)
-
-    def fault(self) -> Fault | None:
-        """What keeps the numbers from being a distribution, if anything."""
-        if self.cutoffs:
-            return Truncated(self.family).fault(*self.between, **self.parameters)
-        return self.family.fault(**self.parameters)
-
-
 @dataclass(frozen=True, slots=True)
 class Assumption:
     """An uncertain input: its cell, its distribution, and why.
@@ -100,8 +80,8 @@ class Assumption:
         notes: the table's other columns, echoed in the record.
         own_family: built for this row; None where `FAMILIES` has it, or where a cell of the data awaits calculation.
         data: what the distribution is built from; None for one that has parameters alone.
-        checked: the numbers that were found to be a distribution as the row was read; None where one was not known
-            then. A run checks all that are not these, whoever gives them.
+        checked: how it is drawn by the numbers that the row held as it was read, which are a distribution; None where
+            one was not known then. A run checks all numbers that are not these, whoever gives them.
     """
 
     name: str
@@ -118,7 +98,7 @@ class Assumption:
     notes: Mapping[str, str] = field(default_factory=dict)
     own_family: Family | None = None
     data: DataRange | None = None
-    checked: Numbers | None = field(default=None, compare=False, repr=False)
+    checked: Draw | None = field(default=None, compare=False, repr=False)
 
     @property
     def family(self) -> Family:

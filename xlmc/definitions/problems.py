@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import ParamSpec, TypeVar
 
@@ -18,7 +19,8 @@ T = TypeVar("T")
 class Findings:
     """What was found while reading; it only ever grows.
 
-    Reading one thing raises a `DefinitionError`; reading many goes through `attempt`, which records it and carries on.
+    Reading one thing raises a `DefinitionError`; where many are read, `recording` or `attempt` records it and carries
+    on.
     """
 
     problems: list[DefinitionError] = field(default_factory=list)
@@ -30,10 +32,16 @@ class Findings:
     def notice(self, message: str, where: object) -> None:
         self.notices.append(Notice(message, where))
 
-    def attempt(self, read: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T | None:
-        """What `read` returns; None, and a problem, where it raises a `DefinitionError`."""
+    @contextmanager
+    def recording(self) -> Iterator[None]:
+        """Record a `DefinitionError` from within, and go on after it."""
         try:
-            return read(*args, **kwargs)
+            yield
         except DefinitionError as error:
             self.problems.append(error)
-            return None
+
+    def attempt(self, read: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T | None:
+        """What `read` returns; None, and a problem, where it raises a `DefinitionError`."""
+        with self.recording():
+            return read(*args, **kwargs)
+        return None

@@ -73,8 +73,7 @@ class Truncated:
 
     def support(self, lower: Values, upper: Values, *params: Values, **named: Values) -> tuple[Array, Array]:
         """The lowest and the highest possible value."""
-        low, high = self.family.support(*params, **named)
-        return np.maximum(low, lower), np.minimum(high, upper)
+        return self.checked(lower, upper, *params, **named).support()
 
     def _empty(self, lower: float, upper: float, *values: float) -> Fault:
         low, high = Member(self.family, values).support()
@@ -95,7 +94,7 @@ class Slice:
     """
 
     def __init__(self, whole: Member, lower: Values, upper: Values) -> None:
-        self._whole = whole
+        self._whole, self._lower, self._upper = whole, lower, upper
         (self._lowest, self._before), (self._highest, after) = whole.family.cutoffs(lower, upper)
         self._below = whole.cdf(self._before), whole.cdf(self._highest)
         self._above = whole.sf(self._lowest), whole.sf(after)
@@ -117,6 +116,11 @@ class Slice:
     def cdf(self, x: Values) -> Array:
         """P(X <= x), shapes as in `ppf`."""
         return np.where(self._sound, self._probability(x), np.nan)
+
+    def support(self) -> tuple[Array, Array]:
+        """See `Truncated.support`."""
+        low, high = self._whole.support()
+        return np.maximum(low, self._lower), np.minimum(high, self._upper)
 
     def _quantile(self, u: Array) -> Array:
         if np.all(self._in_upper_half):

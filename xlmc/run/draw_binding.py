@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.address import Cell, InFormula
-from xlmc.definitions.definitions import CUTOFFS, Assumption, DataRange, Definitions, Numbers, Parameter, name_key
+from xlmc.definitions.definitions import CUTOFFS, Assumption, DataRange, Definitions, Parameter, name_key
 from xlmc.definitions.tables.data import data_family
 from xlmc.distributions import ByPercentiles, Family
 from xlmc.distributions.parameters import show
@@ -45,15 +45,13 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     """
     data = assumption.data
     family = assumption.family if data is None else _from_data(assumption.family, data, assumption.name, lowering)
-    parameters = {key: fold_parameter(each, lowering) for key, each in assumption.parameters.items()}
-    cutoffs = {key: fold_parameter(each, lowering) for key, each in assumption.cutoffs.items()}
-    ends = cutoffs.get("lower_cutoff", -np.inf), cutoffs.get("upper_cutoff", np.inf)
-    draw = Draw(name_key(assumption.name), family, family.bind((), parameters), ends if cutoffs else None)
+    computed = {key: fold_cell(cell, lowering) for key, cell in assumption.formulas.items()}
+    given = {**assumption.parameters, **assumption.cutoffs, **computed}
+    draw = Draw.of(name_key(assumption.name), family, given)
     if isinstance(family, ByPercentiles) and draw.varying:  # the member with these percentiles is looked for once
         message = f"{assumption.name}: a distribution given by percentiles cannot depend on another assumption"
         raise DefinitionError(message, where=draw.varying[0], hint="give it by its parameters, or by numbers")
-    numbers = Numbers(family, parameters, cutoffs)  # type: ignore[arg-type]  # so they are, where the draw is fixed
-    if draw.fixed and numbers != assumption.checked and (fault := numbers.fault()) is not None:
+    if draw != assumption.checked and (fault := draw.fault()) is not None:
         raise DefinitionError(f"{assumption.name}: {fault.message}", where=assumption.row, hint=fault.hint)
     return draw
 
@@ -65,7 +63,7 @@ def _from_data(family: Family, data: DataRange, name: str, lowering: Lowering) -
         raise _varying_data(name, drawn)
 
     def number(cell: Cell) -> float:
-        value = fold_parameter(cell, lowering)
+        value = fold_cell(cell, lowering)
         if isinstance(value, Cell):
             raise _varying_data(name, cell)
         return value
@@ -81,19 +79,17 @@ def _varying_data(name: str, cell: Cell) -> DefinitionError:
     )
 
 
-def fold_parameter(parameter: Parameter, lowering: Lowering) -> Parameter:
-    """The parameter's number; its cell where an assumption reaches it.
+def fold_cell(cell: Cell, lowering: Lowering) -> Parameter:
+    """The number of a parameter's cell; the cell where an assumption reaches it.
 
     Raises:
         DefinitionError: the cell is an error or a text.
     """
-    if not isinstance(parameter, Cell):
-        return float(parameter)
-    value = lowering.known(parameter_target(parameter))
+    value = lowering.known(parameter_target(cell))
     if value is None:
-        return parameter
+        return cell
     if int(value.kinds[0]) >= ERROR or int(value.kinds[0]) == TEXT:
-        raise DefinitionError("the parameter is an error", where=parameter, hint="correct the cell's formula")
+        raise DefinitionError("the parameter is an error", where=cell, hint="correct the cell's formula")
     return float(value.numbers[0])
 
 
@@ -181,7 +177,7 @@ class _Own:
             graph = build_graph(self._resolver, [cell], frozenset(drawn), frozenset(held), more=more)
             return Lowering(graph, drawn, held)
 
-        return fold_parameter(cell, lower_until_complete(lower))
+        return fold_cell(cell, lower_until_complete(lower))
 
 
 def _with_numbers(assumption: Assumption, numbers: Mapping[str, float]) -> Assumption:

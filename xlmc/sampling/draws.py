@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from xlmc.distributions import Family, Truncated
 from xlmc.distributions.base import Member
+from xlmc.distributions.parameters import Fault
 from xlmc.distributions.truncated import Slice
 from xlmc.distributions.uniform import Uniform
 from xlmc.errors import SimulationError
@@ -44,14 +45,28 @@ class Draw:
         parameters: numbers, or keys into what `DynamicParameters` gives, in the family's order.
         cutoffs: lower and upper, likewise; None without truncation.
 
-    Those that vary are checked in every trial. Where all are numbers, they are known to be a distribution: whoever
-    makes a `Draw` has checked them.
+    Those that vary are checked in every trial. Where all are numbers, `fault` checks them, and nothing else does.
     """
 
     name: str
     family: Family
     parameters: tuple[Hashable, ...]
     cutoffs: tuple[Hashable, Hashable] | None = None
+
+    @classmethod
+    def of(cls, name: str, family: Family, given: Mapping[str, Hashable]) -> Draw:
+        """Of parameters by key, `lower_cutoff` and `upper_cutoff` among them where the draw is cut off."""
+        parameters = dict(given)
+        cutoffs = parameters.pop("lower_cutoff", -np.inf), parameters.pop("upper_cutoff", np.inf)
+        return cls(name, family, family.bind((), parameters), cutoffs if len(parameters) < len(given) else None)
+
+    def fault(self) -> Fault | None:
+        """What keeps its numbers from being a distribution; None where some vary, for each trial has its own then."""
+        if not self.fixed:
+            return None
+        if self.cutoffs is None:
+            return self.family.fault(*self.parameters)  # type: ignore[arg-type]  # numbers, as they are fixed
+        return Truncated(self.family).fault(*self.cutoffs, *self.parameters)  # type: ignore[arg-type]  # likewise
 
     def fill(self, u: Floats, dynamic: Mapping[Hashable, Floats]) -> None:
         """Turn uniforms `(n,)` into draws, in their memory; NaN where the parameters of a trial are no distribution.
@@ -70,7 +85,7 @@ class Draw:
 
     def _of_trials(self, dynamic: Mapping[Hashable, Floats]) -> Member | Slice:
         """What the parameters of each trial make of it."""
-        values = [p if isinstance(p, float) else dynamic[p] for p in (*(self.cutoffs or ()), *self.parameters)]
+        values = [p if isinstance(p, float | int) else dynamic[p] for p in (*(self.cutoffs or ()), *self.parameters)]
         return self.family.checked(*values) if self.cutoffs is None else Truncated(self.family).checked(*values)
 
     def reached(self, x: Floats) -> Floats:
@@ -80,7 +95,7 @@ class Draw:
     @property
     def varying(self) -> list[Hashable]:
         """The parameters and cutoffs that vary by trial."""
-        return [p for p in (*self.parameters, *(self.cutoffs or ())) if not isinstance(p, float)]
+        return [p for p in (*self.parameters, *(self.cutoffs or ())) if not isinstance(p, float | int)]
 
     @cached_property
     def fixed(self) -> bool:

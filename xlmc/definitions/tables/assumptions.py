@@ -8,18 +8,18 @@ from dataclasses import dataclass
 
 from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.definitions import CUTOFFS, Assumption, Numbers, Parameter
+from xlmc.definitions.definitions import CUTOFFS, Assumption, Parameter, name_key
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.data import OPTIONS, cached_data_family, given_data, refuse_options
 from xlmc.definitions.tables.fields import logical, number_in, optional_text, parameter, static_value
 from xlmc.definitions.tables.identity import Claims, identify
 from xlmc.definitions.tables.table_rows import DefinitionTable, Row, is_blank, rows_of
 from xlmc.distributions import FAMILIES, Family, ParameterSpec, family_named
-from xlmc.distributions.base import Member
 from xlmc.distributions.by_percentiles import by_percentiles
 from xlmc.distributions.parameters import show
 from xlmc.distributions.spelling import plain
 from xlmc.errors import DefinitionError
+from xlmc.sampling.draws import Draw
 from xlmc.workbook.workbook import Workbook
 
 __all__ = ["is_percentile", "read_assumptions"]
@@ -53,7 +53,10 @@ def read_assumptions(
     percentiles = (written for table in tables for written, _ in table.columns.values() if is_percentile(written))
     known = (*_KNOWN, *percentiles)
     rows = rows_of(workbook, tables, ("Name",), known, findings)
-    found = [findings.attempt(_assumption, row, known, computed, claims, findings) for row in rows]
+    found = []
+    for row in rows:
+        with findings.recording():
+            found.append(_assumption(row, known, computed, claims, findings))
     return tuple(filter(None, found))
 
 
@@ -70,29 +73,29 @@ def _assumption(
     frozen = findings.attempt(logical, row, "Frozen") or False
     base = None if identity is None else findings.attempt(_base, row.workbook, computed, identity[1], frozen, findings)
     kind = findings.attempt(_family, row)
-    given = family = data = None
+    filled = family = data = None
     if kind is not None:
         refuse_options(row, kind, findings)
-        given = _given(row, kind, findings)
+        filled = _filled(row, kind, findings)
         data = None if kind.data is None else findings.attempt(given_data, row, kind, computed, findings)
         family = kind if data is None else findings.attempt(cached_data_family, data, kind, row.workbook)
     units = findings.attempt(optional_text, row, "Units") or ""
     source = findings.attempt(optional_text, row, "Source") or ""
-    if len(findings.problems) > before or not (identity and kind and given):
+    if len(findings.problems) > before or not (identity and kind and filled):
         return None
     name, cell = identity
-    checked = None if family is None else _checked(family, given, row.workbook)
+    checked = None if family is None else _checked(name, family, filled, row.workbook)
     if checked is not None and not frozen:
-        _remark_on_range(checked, given.cells, base, cell, findings)
+        _remark_on_range(checked, filled.cells, base, cell, findings)
     return Assumption(
         name=name,
         cell=cell,
         distribution=kind.name,
-        parameters=given.parameters,
+        parameters=filled.parameters,
         row=row.where,
         base=base,
-        lower_cutoff=given.cutoffs.get("lower_cutoff"),
-        upper_cutoff=given.cutoffs.get("upper_cutoff"),
+        lower_cutoff=filled.cutoffs.get("lower_cutoff"),
+        upper_cutoff=filled.cutoffs.get("upper_cutoff"),
         units=units,
         source=source,
         frozen=frozen,
@@ -131,7 +134,7 @@ def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, find
 
 
 @dataclass(frozen=True, slots=True)
-class _Given:
+class _Filled:
     """The parameters and cutoffs of a row by key, as a run needs them.
 
     Attributes:
@@ -143,65 +146,62 @@ class _Given:
     cells: dict[str, Cell]
 
 
-def _given(row: Row, family: Family, findings: Findings) -> _Given:
+def _filled(row: Row, family: Family, findings: Findings) -> _Filled:
     """The family's parameters and the cutoffs in this row; every mistake is recorded on its own."""
     parameters: dict[str, Parameter] = {
         spec.key: spec.default
         for spec in family.parameters
         if spec.default is not None and not any(map(row.filled, spec.headings))
     }
-    given = _Given(parameters, {}, dict.fromkeys(parameters, row.where))
+    found = _Filled(parameters, {}, dict.fromkeys(parameters, row.where))
     required = (spec for spec in family.parameters if spec.key not in parameters)
     headings = {spec.key: findings.attempt(_heading_of, row, family, spec) for spec in required}
     headings |= {key: heading for key, heading in CUTOFFS.items() if row.filled(heading)}
     for key, heading in headings.items():
-        value = None if heading is None else findings.attempt(parameter, row, heading)
-        if heading is not None and value is not None:
-            given.cells[key] = row.cell(heading)
-            (given.cutoffs if key in CUTOFFS else given.parameters)[key] = value
+        if heading is None:
+            continue
+        with findings.recording():
+            if (value := parameter(row, heading)) is not None:
+                found.cells[key] = row.cell(heading)
+                (found.cutoffs if key in CUTOFFS else found.parameters)[key] = value
     _refuse_unused(row, family, findings)
-    return given
+    return found
 
 
-def _checked(family: Family, given: _Given, workbook: Workbook) -> Numbers | None:
+def _checked(name: str, family: Family, row: _Filled, workbook: Workbook) -> Draw | None:
     """Check the rules of the family on the numbers as they are now, typed in or as Excel cached them.
 
     A run checks dynamic ones in every trial.
 
     Returns:
-        The numbers; None where one is not known.
+        How these are drawn; None where one is not known.
 
     Raises:
         DefinitionError: a rule is broken; it names the cell of the parameter to look at first.
     """
     numbers: dict[str, float] = {}
-    for key, value in (given.parameters | given.cutoffs).items():
+    for key, value in (row.parameters | row.cutoffs).items():
         number = static_value(value, workbook)
         if number is None:
             return None
         numbers[key] = number
-    cutoffs = {key: numbers.pop(key) for key in given.cutoffs}
-    found = Numbers(family, numbers, cutoffs)
-    if (fault := found.fault()) is not None:
-        raise DefinitionError(fault.message, where=given.cells[fault.key], hint=fault.hint)
-    return found
+    draw = Draw.of(name_key(name), family, numbers)
+    if (fault := draw.fault()) is not None:
+        raise DefinitionError(fault.message, where=row.cells[fault.key], hint=fault.hint)
+    return draw
 
 
-def _remark_on_range(
-    numbers: Numbers, cells: Mapping[str, Cell], base: float | None, cell: Cell, findings: Findings
-) -> None:
+def _remark_on_range(draw: Draw, cells: Mapping[str, Cell], base: float | None, cell: Cell, findings: Findings) -> None:
     """Point out what is allowed but may be a slip: a constant, a base case that could never be drawn.
 
     Args:
-        numbers: that it is drawn from.
+        draw: the assumption, by numbers.
         cells: where its parameters stand, by key.
         base: the base case, if there is any.
         cell: of the assumption.
         findings: takes the remarks.
     """
-    family, (lower, upper) = numbers.family, numbers.between
-    least, most = Member(family, family.bind((), numbers.parameters)).support()
-    low, high = max(float(least), lower), min(float(most), upper)
+    family, (low, high) = draw.family, map(float, draw.distribution.support())
     if low == high:
         both = "Low and High are both" if {"low", "high"} <= {*family.keys} else "Every draw is"
         where = cells[family.keys[0]] if family.keys else cell

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Final
 
 from xlmc.errors import WorkbookError
-from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.page import Page
 from xlmc.report.sheets.styles import CREATED, Styles
@@ -173,11 +172,11 @@ def _cells(row: Sequence[str], right: Sequence[int]) -> list[Shown]:
 
 def _cell(text: str, index: int, is_number: bool) -> Shown:
     if not is_number:
-        return cells.text(text, "name" if index == 0 else "text")
+        return Shown(text, look="name" if index == 0 else "text")
     try:
         return Shown(float(text))
     except ValueError:
-        return cells.text(text, "number")
+        return Shown(text, look="number")
 
 
 _STYLE: Final = """

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from xlmc.report.page.element import Html
 from xlmc.report.page.flow import Flow, estimate_html, shown_html, shown_text
 from xlmc.report.sheets import assumptions_sheet, cells, results_sheet, statistics_sheet
-from xlmc.report.sheets.cells import Shown, count, text
+from xlmc.report.sheets.cells import Shown, count
 from xlmc.statistics import Estimate, format_estimate
 
 
@@ -18,7 +18,7 @@ def test_headings_paragraphs_and_tables_follow_each_other():
     flow.title("Title", "below")
     flow.heading("One & two")
     flow.wide("Said.", "remark", 9)
-    flow.table(["Name", "Trials"], [[text("a", "name"), count(1234)]])
+    flow.table(["Name", "Trials"], [[Shown("a", look="name"), count(1234)]])
     assert flow.html.source == (
         "<h2>Title</h2>"
         '<p class="subtitle">below</p>'
@@ -32,8 +32,8 @@ def test_headings_paragraphs_and_tables_follow_each_other():
 
 def test_rows_that_are_spread_become_one_table():
     flow = Flow()
-    flow.spread([text("Filter", "header left"), text("Cell", "header left")], (0, 3), 8)
-    flow.spread([text("f", "name"), text("S!A1")], (0, 3), 8)
+    flow.line([Shown("Filter", look="header left"), Shown("Cell", look="header left")], (0, 3), 8)
+    flow.line([Shown("f", look="name"), Shown("S!A1")], (0, 3), 8)
     flow.wide("After.", "remark", 8)
     source = flow.html.source
     assert source.count("<table>") == 1
@@ -44,8 +44,8 @@ def test_rows_that_are_spread_become_one_table():
 
 def test_rows_of_another_length_begin_another_table():
     flow = Flow()
-    flow.spread([text("a"), text("b")], (0, 1), 1)
-    flow.spread([text("c")], (0,), 1)
+    flow.line([Shown("a"), Shown("b")], (0, 1), 1)
+    flow.line([Shown("c")], (0,), 1)
     assert flow.html.source.count("<table>") == 2
 
 
@@ -67,7 +67,7 @@ CASES = [
     (cells.count(200_000), "200,000"),
     (cells.count(7), "7"),
     (Shown(None), ""),
-    (cells.text("=1+1"), "=1+1"),
+    (Shown("=1+1"), "=1+1"),
     (Shown(1234.5678, "#,##0.00"), "1,234.57"),
     (Shown(-1234.5678, "#,##0"), "-1,235"),
     (Shown(0.01771, "0.000%"), "1.771 %"),

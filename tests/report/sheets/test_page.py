@@ -75,7 +75,7 @@ def test_rows_are_as_high_as_their_longest_text(written):
 
 
 def test_spread_merges_up_to_the_next_start(written):
-    sheet = written(lambda page: page.spread([Shown("a", look="text"), Shown(1.0)], [0, 2], 2))
+    sheet = written(lambda page: page.line([Shown("a", look="text"), Shown(1.0)], [0, 2], 2))
     assert [str(area) for area in sheet.merged_cells.ranges] == ["A1:B1"]
     assert sheet["C1"].value == 1.0
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from xlmc.report.methods.matplotlib_figure import OTHER, STYLES, Style
 from xlmc.report.methods.speed_chart import HOW_TO_READ, Line, Picture, column_of, guides_of, picture_of, spread
 from xlmc.report.sheets import cells
+from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.page import Page
 from xlmc.report.sheets.styles import FONT, GRID, INK, straight
 from xlmc.studies.methods import STATISTICS, Curve, Study
@@ -65,7 +66,7 @@ class _Data:
         """Write points; gives their first and last row."""
         first = self._page.row
         for point in points:
-            self._page.line([cells.text(name, "name"), *(cells.exact(each, "General") for each in point)])
+            self._page.line([Shown(name, look="name"), *(cells.exact(each, "General") for each in point)])
         return first, self._page.row - 1
 
 

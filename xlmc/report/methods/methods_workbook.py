@@ -72,19 +72,19 @@ def _write_words(page: Page, study: Study) -> None:
             _texts(page, table)
     page.heading("What each method says of itself, and cannot do")
     for method, said in methods_tables.cannot_lines(study):
-        page.spread([cells.text(method, "name"), cells.text(said)], [0, 1], _LAST)
+        page.line([Shown(method, look="name"), Shown(said)], [0, 1], _LAST)
     ends = methods_tables.ends_lines(study)
     if ends:
         page.heading(ENDS)
     for bound, point in ends:
-        page.spread([cells.text(bound, "name"), cells.text(point)], [0, 1], _LAST)
+        page.line([Shown(bound, look="name"), Shown(point)], [0, 1], _LAST)
     page.set_up_printing(name)
 
 
 def _texts(page: Page, table: methods_tables.Table) -> None:
     rows = [
         [
-            cells.text(cell, "name" if index == 0 else "text" if index < table.right else "number")
+            Shown(cell, look="name" if index == 0 else "text" if index < table.right else "number")
             for index, cell in enumerate(row)
         ]
         for row in table.rows
@@ -107,7 +107,7 @@ def _write_runs(page: Page, study: Study) -> list[tuple[Curve, int, int]]:
         for rung in curve.rungs:
             page.line(_rung_cells(study, curve, rung))
         curve_rows.append((curve, first, page.row - 1))
-    page.line([cells.text("The reference's own error", "label"), *[cells.BLANK] * 4, *_floor(study)])
+    page.line([Shown("The reference's own error", look="label"), *[cells.BLANK] * 4, *_floor(study)])
     page.set_up_printing(study.model.workbook.name)
     return curve_rows
 
@@ -117,7 +117,7 @@ def _rung_cells(study: Study, curve: Curve, rung: Rung) -> list[Shown]:
     known = study.reference.acceptance.value
     accepted = None if rung.acceptance is None else 100.0 * rung.acceptance.value / known
     return [
-        cells.text(curve.method.name, "name"),
+        Shown(curve.method.name, look="name"),
         cells.count(rung.budget) if drawn else cells.BLANK,
         cells.count(max(each.n for each in rung.errors.values())),
         _number(rung.seconds),
@@ -127,7 +127,7 @@ def _rung_cells(study: Study, curve: Curve, rung: Rung) -> list[Shown]:
         _number(rung.usual),
         cells.exact(rung.effective, "#,##0"),
         cells.count(rung.failed),
-        cells.text("yes" if rung.measured else "by rate"),
+        Shown("yes" if rung.measured else "by rate"),
     ]
 
 

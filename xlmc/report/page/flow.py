@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from xlmc.report.page.element import Html, element, join
@@ -48,7 +48,9 @@ class Flow(Page):
         """Write a single cell, which becomes a paragraph."""
         self.wide(str(shown.value or ""), shown.look, column, column)
 
-    def spread(self, cells: Sequence[Shown], starts: Sequence[int], last: int) -> None:
+    def line(
+        self, cells: Sequence[Shown], starts: Iterable[int] | None = None, last: int | None = None, *, fit: bool = True
+    ) -> None:
         """Write a row of the table that is being written, or the first of another."""
         if self._open and (len(self._open[-1]) != len(cells) or _heads(cells)):
             self._close()

@@ -53,11 +53,11 @@ def write_accounting(page: Page, simulation: Simulation, last: int) -> None:
 
 def _write_filters(page: Page, simulation: Simulation, last: int) -> None:
     headers = ("Filter", "Cell", "Must be", "Because")
-    page.spread([cells.text(header, "header left") for header in headers], _FILTER_STARTS, last)
+    page.line([Shown(header, look="header left") for header in headers], _FILTER_STARTS, last)
     for number, filter_ in enumerate(simulation.model.filters, 1):
         texts = (str(filter_.cell), limits_text(filter_), filter_.because or cells.NONE)
-        name = cells.text(f"{number}. {filter_.name}", "name")
-        page.spread([name, *(cells.text(text) for text in texts)], _FILTER_STARTS, last)
+        name = Shown(f"{number}. {filter_.name}", look="name")
+        page.line([name, *(Shown(text) for text in texts)], _FILTER_STARTS, last)
 
 
 def _write_rejections(page: Page, simulation: Simulation) -> None:
@@ -68,7 +68,7 @@ def _write_rejections(page: Page, simulation: Simulation) -> None:
         [*headers, *(f"Also by {other}" for other in range(1, pairs + 1))],
         [
             [
-                cells.text(f"{index + 1}. {filter_.name}", "name"),
+                Shown(f"{index + 1}. {filter_.name}", look="name"),
                 cells.count(sum(tally.errors[index].values())),
                 *_count_and_share(int(tally.rejected[index]), simulation.trials),
                 *_count_and_share(int(tally.only[index]), simulation.trials),
@@ -80,7 +80,7 @@ def _write_rejections(page: Page, simulation: Simulation) -> None:
 
 
 def _pair(simulation: Simulation, index: int, other: int) -> Shown:
-    return cells.text("") if index == other else cells.count(int(simulation.tally.together[index, other]))
+    return Shown("") if index == other else cells.count(int(simulation.tally.together[index, other]))
 
 
 def _count_and_share(trials: int, of: int) -> list[Shown]:
@@ -96,10 +96,10 @@ def _write_errors(page: Page, simulation: Simulation) -> None:
         ["Name", "In a", "Cell", "Error", "Trials", "Share", "±"],
         [
             [
-                cells.text(met.name, "name"),
-                cells.text(met.kind),
-                cells.text(str(met.cell)),
-                cells.text(met.error),
+                Shown(met.name, look="name"),
+                Shown(met.kind),
+                Shown(str(met.cell)),
+                Shown(met.error),
                 *_count_and_share(met.trials, _among(simulation, met)),
             ]
             for met in found
@@ -124,9 +124,9 @@ def write_checks(page: Page, simulation: Simulation, last: int) -> None:
     if not checks:
         return
     page.heading("Checks: each cell must be TRUE")
-    page.spread([cells.text(header, "header left") for header in _CHECK_HEADERS], _CHECK_STARTS, last)
+    page.line([Shown(header, look="header left") for header in _CHECK_HEADERS], _CHECK_STARTS, last)
     for check in checks:
-        page.spread(_check_line(check), _CHECK_STARTS, last)
+        page.line(_check_line(check), _CHECK_STARTS, last)
     page.row += 1
     page.wide(f"{checks_sentence(checks)}. A check rejects no trial.", "remark", last)
 
@@ -134,10 +134,10 @@ def write_checks(page: Page, simulation: Simulation, last: int) -> None:
 def _check_line(check: CheckResult) -> list[Shown]:
     found = check.base.found
     return [
-        cells.text(check.name, "name"),
-        cells.text(str(check.cell)),
-        cells.text(cells.NONE if found is None else found, "warning" if check.holds is False else "text"),
+        Shown(check.name, look="name"),
+        Shown(str(check.cell)),
+        Shown(cells.NONE if found is None else found, look="warning" if check.holds is False else "text"),
         cells.count(check.failed),
         *cells.share(check.share),
-        cells.text(check.because or cells.NONE),
+        Shown(check.because or cells.NONE),
     ]

@@ -84,28 +84,28 @@ def _lines(simulation: Simulation) -> Iterator[list[Shown]]:
     for assumption in simulation.model.assumptions:
         before, accepted = _statistics(simulation, assumption.name, assumption.frozen)
         words = distribution_text(assumption)
-        yield [cells.text(assumption.name, "name"), cells.text(str(assumption.cell)), cells.text(words), *before]
+        yield [Shown(assumption.name, look="name"), Shown(str(assumption.cell)), Shown(words), *before]
         base = Shown(cells.NONE if assumption.base is None else assumption.base, look="second number")
-        source = cells.text(assumption.source or cells.NONE, "second")
-        yield [cells.text(assumption.units, "second"), base, source, *accepted]
+        source = Shown(assumption.source or cells.NONE, look="second")
+        yield [Shown(assumption.units, look="second"), base, source, *accepted]
 
 
 def _statistics(simulation: Simulation, name: str, frozen: bool) -> tuple[list[Shown], list[Shown]]:
     """The cells of the draws before filtering, and of the accepted ones; or why the assumption is not drawn."""
     found = filter_effect_of(simulation, name)
     if found is None:
-        why = cells.text(status(simulation.model, name, frozen))
+        why = Shown(status(simulation.model, name, frozen))
         return [why, *_blank(_STATISTICS + 1)], _blank(_STATISTICS + 2, "second")
     return _before(found), _accepted(found)
 
 
 def _before(found: FilterEffect) -> list[Shown]:
-    return [cells.text("before"), cells.count(found.prior.trials), *_marginal(found.prior), *_blank(4)]
+    return [Shown("before"), cells.count(found.prior.trials), *_marginal(found.prior), *_blank(4)]
 
 
 def _accepted(found: FilterEffect) -> list[Shown]:
     return [
-        cells.text("accepted", "second"),
+        Shown("accepted", look="second"),
         Shown(found.accepted.trials, cells.count(0).format, "second number"),
         *_marginal(found.accepted, "second number", "second error"),
         *_change(found.shift, abs(found.shift.value) >= MOVED),
@@ -134,13 +134,13 @@ def write_correlations(page: Page, simulation: Simulation) -> None:
     page.heading("Rank correlations")
     starts, last = (0, 1, 3, 4, 5, 6), 6
     headers = ("First", "Second", "Asked for", "Drawn with", "Accepted", "±")
-    page.spread([cells.text(header, "header left") for header in headers], starts, last)
+    page.line([Shown(header, look="header left") for header in headers], starts, last)
     for pair in met:
         found = pair.accepted or Estimate(math.nan)
-        line = [cells.text(pair.first), cells.text(pair.second), cells.exact(pair.asked)]
+        line = [Shown(pair.first), Shown(pair.second), cells.exact(pair.asked)]
         line += [
-            cells.text(cells.NONE) if pair.used is None else cells.exact(round(pair.used, 6)),
+            Shown(cells.NONE) if pair.used is None else cells.exact(round(pair.used, 6)),
             *cells.estimate(found),
         ]
-        page.spread(line, starts, last)
+        page.line(line, starts, last)
     page.wide(_CORRELATIONS, "paragraph", _READABLE)

@@ -78,7 +78,8 @@ def _write_table(page: Page, figure: Figure) -> BinsAt:
     page.table(["Label", "From", "to below", f"Inside {share} range", "Outside", "Trials"], _rows(figure.bins), left)
     last = page.row - 1
     for label, count in _rest(figure.bins):
-        page.line([cells.text(label, "label"), *[cells.BLANK] * (TABLE - 2), cells.count(count)], left)
+        line = [Shown(label, look="label"), *[cells.BLANK] * (TABLE - 2), cells.count(count)]
+        page.line(line, range(left, left + TABLE))
     return BinsAt(page.sheet.get_name(), HEADER, last, left)
 
 
@@ -86,7 +87,7 @@ def _rows(bins: Histogram) -> Iterator[list[Shown]]:
     columns = zip(bins.labels, bins.edges, bins.upper_edges, bins.inside, bins.outside, strict=True)
     for label, low, high, inside, outside in columns:
         edges = [Shown(float(edge), bins.edge_format) for edge in (low, high)]
-        yield [cells.text(label), *edges, *(cells.count(int(count)) for count in (inside, outside, inside + outside))]
+        yield [Shown(label), *edges, *(cells.count(int(count)) for count in (inside, outside, inside + outside))]
 
 
 def _rest(bins: Histogram) -> Iterator[tuple[str, int]]:

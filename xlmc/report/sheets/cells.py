@@ -26,7 +26,6 @@ __all__ = [
     "share",
     "share_format",
     "spread_format",
-    "text",
 ]
 
 NONE = "–"
@@ -49,19 +48,22 @@ _LARGEST, _SMALLEST = 1e7, 1e-4
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """The content of one cell; None is an empty one."""
+    """The content of one cell: a text as it is, also where it begins with `=`; a number; None is an empty cell.
+
+    Attributes:
+        look: by default `text` for a text, and `number` for anything else.
+    """
 
     value: str | float | None
     format: str = "General"
-    look: str = "number"
+    look: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.look:
+            object.__setattr__(self, "look", "text" if isinstance(self.value, str) else "number")
 
 
 BLANK = Shown(None)
-
-
-def text(value: str, look: str = "text") -> Shown:
-    """A text as it is, also where it begins with `=`."""
-    return Shown(value, look=look)
 
 
 def exact(value: float | None, number: str = "General") -> Shown:

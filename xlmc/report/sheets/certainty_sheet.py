@@ -71,8 +71,8 @@ def write_ranges(page: Page, simulation: Simulation) -> None:
 def _line(name: str, found: Certainty) -> list[Shown]:
     share = found.share
     return [
-        cells.text(name, "name"),
-        cells.text(found.words),
+        Shown(name, look="name"),
+        Shown(found.words),
         cells.count(round(share.value * share.n)),
         *cells.share(share),
         *cells.interval(share, percent=True),
@@ -120,7 +120,7 @@ def _write_line(page: Page, result: ForecastResult, values: NDArray[np.float64],
     assert spoken is not None  # there are numbers
     known = values[~np.isnan(values)]
     share = proportion(int(np.count_nonzero((known >= spoken.low) & (known <= spoken.high))), known.size)
-    page.line([cells.text(definition.name, "name"), cells.text(definition.units)])
+    page.line([Shown(definition.name, look="name"), Shown(definition.units)])
     for column_of_end, end in ((2, spoken.low), (3, spoken.high)):
         page.put(row, column_of_end, Shown(end, "General", "typed"))
     low, high = xl_rowcol_to_cell(row, 2), xl_rowcol_to_cell(row, 3)

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from xlmc.report.histogram import Figure, varying
-from xlmc.report.sheets import cells
 from xlmc.report.sheets.bins_sheet import BinsAt, histogram_chart
+from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.curve_charts import MOST, cumulative_charts, group_by_units, overlay_chart, trend_chart
 from xlmc.report.sheets.curves_sheet import Curves
 from xlmc.report.summary import percent
@@ -61,7 +61,7 @@ def write_charts(
     page.title("Forecast charts of the accepted trials", f"{name}: {simulation.accepted:,} accepted trials")
     page.row = _FIRST
     if not figures:
-        page.put(page.row, 0, cells.text("No forecast has a number in an accepted trial: nothing to draw.", "alarm"))
+        page.put(page.row, 0, Shown("No forecast has a number in an accepted trial: nothing to draw.", look="alarm"))
     drawings = [
         Drawing(histogram_chart(book, at, figure.bins), figure.caption)
         for figure, at in zip(figures, bins, strict=True)
@@ -93,9 +93,9 @@ def _place_row(page: Page, drawings: Sequence[Drawing]) -> None:
         options = {"object_position": 1, "y_offset": _OFFSET, "description": drawing.caption}
         page.sheet.insert_chart(page.row, left, drawing.chart, options)
         starts += [left, left + _COLUMNS - 1]
-        captions += [cells.text(drawing.caption, "caption"), cells.text("", "caption")]
+        captions += [Shown(drawing.caption, look="caption"), Shown("", look="caption")]
     page.row += _CHART_ROWS
-    page.spread(captions, starts, starts[-1])
+    page.line(captions, starts, starts[-1])
     page.row += 1
 
 

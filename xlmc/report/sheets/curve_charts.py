@@ -71,7 +71,7 @@ def _rows(curve: _Cumulative) -> Iterator[list[Shown]]:
     columns = (curve.at.tolist(), curve.at_most.tolist(), curve.above.tolist(), curve.central.tolist())
     for label, at, at_most, above, central in zip(curve.labels, *columns, strict=True):
         shares = (at_most, 0.0, above, 0.0) if central else (0.0, at_most, 0.0, above)
-        yield [cells.text(label), Shown(at), *(Shown(share, SHARE) for share in shares)]
+        yield [Shown(label), Shown(at), *(Shown(share, SHARE) for share in shares)]
 
 
 def _chart(book: Workbook, table: TableAt, curve: _Cumulative, number: int) -> ChartArea:
@@ -207,4 +207,4 @@ def _ranges(simulation: Simulation, group: Sequence[Figure]) -> Iterator[list[Sh
         low, high = (each.value for each in percentiles(simulation.results[figure.answer.name].sample, _TAILS).values())
         digits = cells.paired_format(figure.answer.mean)
         ends = (figure.answer.low.value, high, low, figure.answer.high.value)
-        yield [cells.text(figure.name), *(Shown(end, digits) for end in ends)]
+        yield [Shown(figure.name), *(Shown(end, digits) for end in ends)]

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.styles import Reference
 
@@ -101,5 +100,5 @@ class Curves:
     def finish(self) -> None:
         """Say so where there is nothing, and set it up for printing."""
         if not self._left:
-            self._page.put(HEADER - 1, 0, cells.text("No forecast has a number in an accepted trial.", "alarm"))
+            self._page.put(HEADER - 1, 0, Shown("No forecast has a number in an accepted trial.", look="alarm"))
         self._page.set_up_printing(self._name, repeat=HEADER, repeat_from=_TITLES, scale=_SCALE, columns=self._breaks)

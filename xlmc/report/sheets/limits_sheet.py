@@ -81,16 +81,16 @@ def write_acceptance(page: Page, limit: FilterLimit) -> TableAt:
     bottom, page.row = page.row, header
     starts, last = (_RIGHT, 12, 13), 13
     headers = ("Slope: change of the mean of …, per unit of the limit", "Slope", "±")
-    page.spread([cells.text(header, "header left") for header in headers], starts, last)
+    page.line([Shown(header, look="header left") for header in headers], starts, last)
     for slope in limit.slopes:
-        page.spread([cells.text(slope.forecast, "name"), *cells.estimate(slope.mean)], starts, last)
+        page.line([Shown(slope.forecast, look="name"), *cells.estimate(slope.mean)], starts, last)
     page.row = max(bottom, page.row)
     return TableAt(page.sheet.get_name(), header, header + 1, header + len(limit.points))
 
 
 def _acceptance(point: LimitPoint, limit: FilterLimit) -> list[Shown]:
     return [
-        cells.text(_tighter_or_looser(point.limit, limit), "name"),
+        Shown(_tighter_or_looser(point.limit, limit), look="name"),
         cells.exact(point.limit),
         cells.count(point.trials),
         *cells.share(point.acceptance),
@@ -141,7 +141,7 @@ def _answer(name: str, limit: float, answer: LimitAnswer, now: LimitAnswer) -> l
         Shown(None if each is None or width <= 0.0 else each / width, "0.0%", look)
         for each, look in zip((answer.change.value, answer.change.error), looks, strict=True)
     ]
-    return [cells.text(name, "name"), Shown(limit, look=looks[0]), *shown, *part]
+    return [Shown(name, look="name"), Shown(limit, look=looks[0]), *shown, *part]
 
 
 def _write_charts(
@@ -160,9 +160,9 @@ def _write_charts(
     for chart, column, caption in zip((moved, share), (0, _RIGHT), captions, strict=True):
         page.sheet.insert_chart(page.row, column, chart, {"object_position": 1, "description": caption})
     page.row += CHART_ROWS
-    gap = cells.text("", "caption")
-    texts = [cells.text(caption, "caption") for caption in captions]
-    page.spread([texts[0], gap, texts[1], gap], [0, _RIGHT - 1, _RIGHT, _LAST], _LAST)
+    gap = Shown("", look="caption")
+    texts = [Shown(caption, look="caption") for caption in captions]
+    page.line([texts[0], gap, texts[1], gap], [0, _RIGHT - 1, _RIGHT, _LAST], _LAST)
 
 
 def _share_axis(limit: FilterLimit) -> dict[str, float]:

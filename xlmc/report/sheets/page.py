@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from itertools import count, islice
 from typing import TYPE_CHECKING
 
 from xlmc.report.sheets.cells import NONE, Shown
@@ -66,14 +67,19 @@ class Page:
         """Write one cell whose value, shown until somebody changes what it depends on, is known."""
         self.sheet.write_formula(row, column, formula, self._styles(shown.look, shown.format), shown.value)
 
-    def line(self, cells: Iterable[Shown], column: int = 0) -> None:
-        """Write cells side by side, in a row as high as their texts need, and go to the next row."""
-        cells = list(cells)
-        self.spread(cells, range(column, column + len(cells)), column + len(cells) - 1)
+    def line(
+        self, cells: Sequence[Shown], starts: Iterable[int] | None = None, last: int | None = None, *, fit: bool = True
+    ) -> None:
+        """Write cells, and go to the next row.
 
-    def spread(self, cells: Sequence[Shown], starts: Sequence[int], last: int) -> None:
-        """As `line`, but each cell reaches from its start to the next one's, the last one to `last`."""
-        ends = [*(start - 1 for start in starts[1:]), last]
+        Args:
+            cells: from left to right.
+            starts: the column of each, which reaches to the next one's; by default they stand side by side.
+            last: the column that the last cell reaches to; by default its own.
+            fit: whether the row becomes as high as its texts need.
+        """
+        starts = list(islice(count() if starts is None else starts, len(cells)))
+        ends = [*(start - 1 for start in starts[1:]), *(starts[-1:] if last is None else [last])]
         lines = 1
         for shown, first, end in zip(cells, starts, ends, strict=True):
             if end > first:
@@ -81,20 +87,20 @@ class Page:
             self.put(self.row, first, shown)
             if isinstance(shown.value, str):
                 lines = max(lines, self._lines(shown, first, end))
-        # Set for every row, or LibreOffice chooses heights of its own.
-        self.sheet.set_row(self.row, ROW if lines == 1 else min(_LINE * lines + 3.0, _HIGHEST))
+        if fit:  # every row, or LibreOffice chooses heights of its own
+            self.sheet.set_row(self.row, ROW if lines == 1 else min(_LINE * lines + 3.0, _HIGHEST))
         self.row += 1
 
     def wide(self, value: str, look: str, last: int, first: int = 0) -> None:
         """Write a text across columns, and go to the next row."""
-        self.spread([Shown(value, look=look)], [first], last)
+        self.line([Shown(value, look=look)], [first], last)
 
     def table(self, headers: Sequence[str], rows: Iterable[Sequence[Shown]], column: int = 0) -> None:
         """Write a table with its header."""
         looks = ["header left", *["header"] * (len(headers) - 1)]
-        self.line([Shown(header, look=look) for header, look in zip(headers, looks, strict=True)], column)
+        self.line([Shown(header, look=look) for header, look in zip(headers, looks, strict=True)], count(column))
         for cells in rows:
-            self.line(cells, column)
+            self.line(cells, count(column))
 
     def title(self, value: str, below: str, column: int = 0) -> None:
         """Write the sheet's title and the line below it."""

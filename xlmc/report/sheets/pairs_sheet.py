@@ -74,15 +74,15 @@ def write_pair_table(page: Page, pairs: Sequence[Pair]) -> None:
     heads = ["First (A) and its limit a", "Second (B) and its limit b", "A > a and B > b", "±", "95 % from", "to"]
     heads += ["A > a or B > b", "±", "A > B", "±", "Rank correlation", "±", "95 % from", "to"]
     looks = ["header left", "header left", *["header"] * 12]
-    page.spread([Shown(head, look=look) for head, look in zip(heads, looks, strict=True)], _STARTS, _LAST)
+    page.line([Shown(head, look=look) for head, look in zip(heads, looks, strict=True)], _STARTS, _LAST)
     for pair in pairs:
-        page.spread(_line(pair), _STARTS, _LAST)
+        page.line(_line(pair), _STARTS, _LAST)
 
 
 def _line(pair: Pair) -> list[Shown]:
-    greater = [cells.text(cells.NONE), BLANK] if pair.first_greater is None else cells.share(pair.first_greater)
+    greater = [Shown(cells.NONE), BLANK] if pair.first_greater is None else cells.share(pair.first_greater)
     return [
-        *(cells.text(_name_and_limit(pair, index), "name") for index in (0, 1)),
+        *(Shown(_name_and_limit(pair, index), look="name") for index in (0, 1)),
         *cells.share(pair.both_above),
         *cells.interval(pair.both_above, percent=True),
         *cells.share(pair.either_above),
@@ -125,7 +125,7 @@ def _drawings(
         return []
     found = {each.name: _points(curves, simulation, trials, each, known) for each in forecasts}
     titles = [f"{pair.first.name} and {pair.second.name}" for pair in pairs]
-    titled = curves.write(["Titles of the scatter charts"], "", ["Title"], [[cells.text(each)] for each in titles], 60)
+    titled = curves.write(["Titles of the scatter charts"], "", ["Title"], [[Shown(each)] for each in titles], 60)
     points = f"the first {known.size:,} accepted trials in which all of these forecasts are numbers"
     return [
         Drawing(

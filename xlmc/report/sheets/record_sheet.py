@@ -7,6 +7,7 @@ Column A, folded away, holds the keys of `Record`: `file.sha256` beside an entry
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import count
 from typing import TYPE_CHECKING
 
 from xlmc.report.sheets.cells import NONE, Shown
@@ -57,10 +58,10 @@ def _write_section(page: Page, section: Section) -> None:
 def _write_entry(page: Page, section: str, entry: Entry) -> None:
     _write_key(page, page.row, f"{section}.{entry.key}")
     if entry.key.startswith("packed_"):
-        _write_listed(page, (entry.label, entry.value))
+        page.line([_cell(each, "listed") for each in (entry.label, entry.value)], count(_FIRST), fit=False)
         return
     look = "code" if entry.key in _CODE else "text"
-    page.spread([Shown(entry.label, look="label"), _cell(entry.value, look)], (_FIRST, _FIRST + 1), _LAST)
+    page.line([Shown(entry.label, look="label"), _cell(entry.value, look)], (_FIRST, _FIRST + 1), _LAST)
 
 
 def _write_table(page: Page, section: str, table: RecordTable) -> None:
@@ -68,21 +69,13 @@ def _write_table(page: Page, section: str, table: RecordTable) -> None:
     starts, last = _column_starts([key for key, _ in table.columns])
     if listed:
         starts, last = list(range(_FIRST, _FIRST + len(table.columns))), _LAST
-    page.spread([Shown(key, look="key") for key, _ in table.columns], starts, last)
+    page.line([Shown(key, look="key") for key, _ in table.columns], starts, last)
     page.sheet.set_row(page.row - 1, None, None, {"hidden": True})
-    page.spread([Shown(label, look="header left") for _, label in table.columns], starts, last)
+    page.line([Shown(label, look="header left") for _, label in table.columns], starts, last)
     for number, row in enumerate(table.rows):
         _write_key(page, page.row, f"{section}[{number}]")
-        if listed:
-            _write_listed(page, row)
-            continue
-        page.spread([_cell(value, "text") for value in row], starts, last)
-
-
-def _write_listed(page: Page, values: Sequence[Value]) -> None:
-    for column, value in enumerate(values, _FIRST):
-        page.put(page.row, column, _cell(value, "listed"))
-    page.row += 1
+        cells = [_cell(value, "listed" if listed else "text") for value in row]
+        page.line(cells, starts, None if listed else last, fit=not listed)
 
 
 def _column_starts(keys: Sequence[str]) -> tuple[list[int], int]:

@@ -81,8 +81,8 @@ def _headers(rows: Sequence[SummaryRow]) -> list[str]:
 
 def _answer(row: SummaryRow, rows: Sequence[SummaryRow]) -> list[Shown]:
     shown = [
-        cells.text(row.name, "name"),
-        cells.text(row.units),
+        Shown(row.name, look="name"),
+        Shown(row.units),
         cells.count(row.trials),
         *cells.estimate(row.mean, "answer"),
         *cells.estimate(row.standard_deviation, "answer"),
@@ -92,7 +92,7 @@ def _answer(row: SummaryRow, rows: Sequence[SummaryRow]) -> list[Shown]:
     ]
     if any(other.threshold is not None for other in rows):
         shown += _above(row)
-    return shown if len({other.share for other in rows}) < 2 else [*shown, cells.text(percent(row.share))]
+    return shown if len({other.share for other in rows}) < 2 else [*shown, Shown(percent(row.share))]
 
 
 def _above(row: SummaryRow) -> list[Shown]:
@@ -129,22 +129,22 @@ def write_counts(page: Page, simulation: Simulation) -> None:
     lost = proportion(min(simulation.error_trials, total), total)
     headers = ("", "Trials", "Share", "±", "95 % from", "to")
     starts = (0, 2, 3, 4, 5, 6)
-    page.spread([cells.text(header, "header") for header in headers], starts, 6)
+    page.line([Shown(header, look="header") for header in headers], starts, 6)
     for line in (
         *_search_lines(simulation),
         [
-            cells.text("Run" if rare is None else "Drawn before the search", "name"),
+            Shown("Run" if rare is None else "Drawn before the search", look="name"),
             cells.count(total),
             *[cells.BLANK] * 4,
         ],
         [
-            cells.text("Accepted" if rare is None or not rare.at_least else "Accepted, at least", "name"),
+            Shown("Accepted" if rare is None or not rare.at_least else "Accepted, at least", look="name"),
             cells.count(simulation.accepted),
             *_share(simulation.acceptance),
         ],
-        [cells.text("Lost to errors in cells", "name"), cells.count(simulation.error_trials), *_share(lost)],
+        [Shown("Lost to errors in cells", look="name"), cells.count(simulation.error_trials), *_share(lost)],
     ):
-        page.spread(line, starts, 6)
+        page.line(line, starts, 6)
     if simulation.stopped != ALL_TRIALS:
         page.row += 1
         page.wide(f"The run ended when {simulation.stopped.sentence}.", "remark", LAST)
@@ -154,7 +154,7 @@ def _search_lines(simulation: Simulation) -> list[list[Shown]]:
     """What was evaluated where accepted trials are rare."""
     if simulation.rare is None:
         return []
-    return [[cells.text("Evaluated in all", "name"), cells.count(simulation.rare.evaluations), *[cells.BLANK] * 4]]
+    return [[Shown("Evaluated in all", look="name"), cells.count(simulation.rare.evaluations), *[cells.BLANK] * 4]]
 
 
 def _share(found: Estimate) -> list[Shown]:

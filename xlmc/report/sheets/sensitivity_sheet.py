@@ -144,9 +144,9 @@ def _write_pair(page: Page, charts: Sequence[Any], captions: Sequence[str]) -> N
     for chart, column, caption in zip(charts, (0, _RIGHT), captions, strict=True):
         page.sheet.insert_chart(page.row, column, chart, {"object_position": 1, "description": caption})
     page.row += CHART_ROWS
-    texts = [cells.text(caption, "caption") for caption in captions]
-    gap = cells.text("", "caption")
-    page.spread([texts[0], gap, texts[1], gap], [0, _RIGHT - 1, _RIGHT, _LAST], _LAST)
+    texts = [Shown(caption, look="caption") for caption in captions]
+    gap = Shown("", look="caption")
+    page.line([texts[0], gap, texts[1], gap], [0, _RIGHT - 1, _RIGHT, _LAST], _LAST)
 
 
 def write_influences(page: Page, found: ForecastSensitivity, sobol: bool) -> TableAt:
@@ -165,8 +165,8 @@ def write_influences(page: Page, found: ForecastSensitivity, sobol: bool) -> Tab
 
 def _row(found: Influence, weak: Noise, sobol: bool) -> list[Shown]:
     row = [
-        cells.text(found.assumption, "name"),
-        cells.text(found.units),
+        Shown(found.assumption, look="name"),
+        Shown(found.units),
         *_with_floor(found.explained, found.explained_floor, weak.explained),
         *_with_floor(found.dependence, found.dependence_floor, weak.dependence),
         *_as_noise(cells.estimate(found.rank_correlation), weak.correlation),
@@ -262,8 +262,8 @@ def _move_row(bar: Bar, base: float, widest: float) -> list[Shown]:
     changes = [None if answer is None else answer - base for answer in bar.answers]
     rises = "–" if bar.monotonic is None else "yes" if bar.monotonic else "no"
     return [
-        cells.text(bar.assumption, "name"),
-        cells.text(bar.units),
+        Shown(bar.assumption, look="name"),
+        Shown(bar.units),
         *(Shown(value, digits) for value in (bar.base, bar.inputs[0], bar.inputs[-1])),
         *(Shown(change, cells.spread_format(widest)) for change in changes),
         Shown(rises, look="moved" if bar.monotonic is False else "number"),

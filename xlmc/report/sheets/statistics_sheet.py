@@ -53,7 +53,7 @@ def write_forecast(page: Page, result: ForecastResult) -> None:
 
 def _statistics(result: ForecastResult) -> list[list[Shown]]:
     found, units = result.statistics, result.definition.units
-    rows = [[cells.text("Trials"), cells.text(""), cells.count(found.trials), *[cells.BLANK] * 3]]
+    rows = [[Shown("Trials"), Shown(""), cells.count(found.trials), *[cells.BLANK] * 3]]
     for label, unit, estimate in (
         ("Mean", units, found.mean),
         ("Median", units, found.median),
@@ -68,20 +68,20 @@ def _statistics(result: ForecastResult) -> list[list[Shown]]:
         ("Range width", units, found.range_width),
         ("Mean standard error", units, found.mean_standard_error),
     ):
-        rows.append([cells.text(label), cells.text(unit), *_with_interval(estimate, found.mean)])
+        rows.append([Shown(label), Shown(unit), *_with_interval(estimate, found.mean)])
     return rows
 
 
 def _percentiles(result: ForecastResult) -> list[list[Shown]]:
     found, definition = result.statistics, result.definition
-    labels = [cells.text(f"{percentile:g} %") for percentile in found.percentiles]
-    labels += [cells.text(f"{percent(definition.central)} range {end}", "name") for end in ("from", "to")]
+    labels = [Shown(f"{percentile:g} %") for percentile in found.percentiles]
+    labels += [Shown(f"{percent(definition.central)} range {end}", look="name") for end in ("from", "to")]
     estimates = (*found.percentiles.values(), *found.central)
     rows = [[label, *_with_interval(each, found.mean)] for label, each in zip(labels, estimates, strict=True)]
     if found.probability_above is not None:
         above = found.probability_above
         shown = [*cells.share(above), *cells.interval(above, percent=True)]
-        rows.append([cells.text(f"Above {definition.threshold:g}", "name"), *shown])
+        rows.append([Shown(f"Above {definition.threshold:g}", look="name"), *shown])
     return rows
 
 

@@ -2,8 +2,7 @@ import pytest
 
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, WorkbookError
-from xlmc.workbook.cell_values import CellContext
-from xlmc.workbook.sheet import parse_sheet
+from xlmc.workbook.sheet import CellContext, parse_sheet
 from xlmc.workbook.structure import SheetEntry
 from xlmc.workbook.workbook import CellContent, DataTable, Formula
 

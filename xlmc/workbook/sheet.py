@@ -1,18 +1,20 @@
-"""One worksheet's XML to its cells, merged areas and data tables, in one pass."""
+"""One worksheet's XML to its cells, merged areas and data tables, in one pass; and what a cell's text stands for."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_number
-from xlmc.errors import WorkbookError
-from xlmc.workbook.cell_values import CellContext, convert, decode, run_text
-from xlmc.workbook.safe_xml import REPAIR, expat_parser, feed, is_true
+from xlmc.errors import ErrorCode, WorkbookError
+from xlmc.workbook.safe_xml import REPAIR, expat_parser, feed, is_true, whole_number
 from xlmc.workbook.structure import SheetEntry, area_of
+from xlmc.workbook.texts import decode, run_text
 from xlmc.workbook.workbook import CellContent, CellValue, DataTable, Formula, Sheet
 
-__all__ = ["parse_sheet"]
+__all__ = ["CellContext", "convert", "parse_sheet"]
 
 _NAMESPACES = (
     "http://schemas.openxmlformats.org/spreadsheetml/2006/main",
@@ -24,7 +26,24 @@ _SPACE = "http://www.w3.org/XML/1998/namespace space"
 _ROW = re.compile("[1-9][0-9]{0,6}")
 _A1 = re.compile("([A-Z]{1,3})([1-9][0-9]{0,6})")
 
+_LOGICAL = {"1": True, "0": False, "true": True, "false": False}
+
 _Attributes = Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class CellContext:
+    """What the cells of a sheet need from the rest of the workbook.
+
+    Attributes:
+        strings: the shared string table.
+        dynamic_marks: the values of `cm` that mark a dynamic-array formula.
+        date1904: dates count from 1904 instead of 1900.
+    """
+
+    strings: Sequence[str] = ()
+    dynamic_marks: frozenset[str] = frozenset()
+    date1904: bool = False
 
 
 def parse_sheet(xml: bytes, entry: SheetEntry, context: CellContext) -> Sheet:
@@ -223,3 +242,76 @@ _ENDS = _in_each_namespace(
         "autoFilter": _Pass.end_filter,
     }
 )
+
+
+def convert(kind: str, raw: str, context: CellContext) -> CellValue:
+    """The value that `raw` stands for in a cell of type `kind` (the attribute `t`).
+
+    Raises:
+        ValueError: `raw` is no value of that type, or there is no such type.
+    """
+    converter = _CONVERTERS.get(kind)
+    if converter is None:
+        raise ValueError(f"is of the unknown type {kind!r}")
+    return converter(raw, context)
+
+
+def _number(raw: str, _: CellContext) -> CellValue:
+    if not raw:
+        return None
+    try:
+        value = float(raw)
+    except ValueError:
+        value = float("nan")
+    if not isfinite(value):
+        raise ValueError(f"holds {raw!r} where a number should be")
+    return value
+
+
+def _logical(raw: str, _: CellContext) -> CellValue:
+    if raw not in _LOGICAL:
+        raise ValueError(f"holds {raw!r} where TRUE (1) or FALSE (0) should be")
+    return _LOGICAL[raw]
+
+
+def _error(raw: str, _: CellContext) -> CellValue:
+    # Excel has error values without a number of their own (#FIELD!, #BUSY!, #PYTHON!): for a model all are #VALUE!.
+    try:
+        return ErrorCode.from_text(raw)
+    except ValueError:
+        return ErrorCode.VALUE
+
+
+def _shared(raw: str, context: CellContext) -> CellValue:
+    number = whole_number(raw)
+    if number is None or number >= len(context.strings):
+        raise ValueError(f"holds a text that the workbook does not (number {raw!r} of {len(context.strings)})")
+    return context.strings[number]
+
+
+def _date(raw: str, context: CellContext) -> CellValue:
+    from openpyxl.utils.datetime import MAC_EPOCH, WINDOWS_EPOCH, from_ISO8601, to_excel  # slow to import
+
+    try:
+        return float(to_excel(from_ISO8601(raw), MAC_EPOCH if context.date1904 else WINDOWS_EPOCH))
+    except (ValueError, TypeError, OverflowError):
+        raise ValueError(f"holds {raw!r} where a date should be") from None
+
+
+def _text(raw: str, _: CellContext) -> CellValue:
+    return decode(raw)
+
+
+def _inline(raw: str, _: CellContext) -> CellValue:
+    return raw  # its runs were decoded one by one
+
+
+_CONVERTERS: dict[str, Callable[[str, CellContext], CellValue]] = {
+    "n": _number,
+    "b": _logical,
+    "e": _error,
+    "s": _shared,
+    "str": _text,
+    "inlineStr": _inline,
+    "d": _date,
+}

@@ -179,13 +179,11 @@ def _checked(name: str, family: Family, row: _Filled, workbook: Workbook) -> Dra
     Raises:
         DefinitionError: a rule is broken; it names the cell of the parameter to look at first.
     """
-    numbers: dict[str, float] = {}
-    for key, value in (row.parameters | row.cutoffs).items():
-        number = static_value(value, workbook)
-        if number is None:
-            return None
-        numbers[key] = number
-    draw = Draw.of(name_key(name), family, numbers)
+    given = {**row.parameters, **row.cutoffs}
+    saved = {key: static_value(cell, workbook) for key, cell in given.items() if isinstance(cell, Cell)}
+    if None in saved.values():
+        return None
+    draw = Draw.of(name_key(name), family, {**given, **saved})
     if (fault := draw.fault()) is not None:
         raise DefinitionError(fault.message, where=row.cells[fault.key], hint=fault.hint)
     return draw

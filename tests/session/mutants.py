@@ -67,7 +67,7 @@ MUTANTS = {
     ),
     # distributions
     "cutoffs far out": Mutant(
-        "self.in_upper_half = self.below[0] > 0.5", "self.in_upper_half = self.below[0] > 2.0", ("distributions",)
+        "self._in_upper_half = self._below[0] > 0.5", "self._in_upper_half = self._below[0] > 2.0", ("distributions",)
     ),
     "order of cutoffs": Mutant(
         'if not lower < upper:\n            message = f"Lower cutoff',

@@ -5,9 +5,9 @@ import io
 import openpyxl
 import pytest
 import whole_command
+from packed_sheets import packed_sheets
 
 import xlmc
-from xlmc.report.sheets.book import build_sheets
 
 TRIALS = 3_000
 
@@ -17,7 +17,7 @@ def test_the_baseline_writes_the_same_sheets(tmp_path):
     assert whole_command.record(recording, TRIALS) > 1_000
     assert whole_command.baseline(recording, target) > 0
     run = xlmc.load(whole_command.CASE_STUDY).simulate(TRIALS)
-    ours = openpyxl.load_workbook(io.BytesIO(build_sheets(run, command="")))
+    ours = openpyxl.load_workbook(io.BytesIO(packed_sheets(run, command="")))
     theirs = openpyxl.load_workbook(target)
     assert theirs.sheetnames == ours.sheetnames
     for name in ours.sheetnames:

@@ -6,11 +6,11 @@ from types import SimpleNamespace
 
 import openpyxl
 import pytest
+from packed_sheets import packed_sheets
 
 from xlmc.address import parse_address
 from xlmc.api import Model
 from xlmc.definitions.definitions import Assumption, Definitions, Filter, Forecast, Settings
-from xlmc.report.sheets.book import build_sheets
 from xlmc.workbook.workbook import CellContent, Formula, Sheet, Workbook
 
 
@@ -59,7 +59,7 @@ def opened():
     """Result sheets as openpyxl reads them."""
 
     def read(simulation, **options):
-        return openpyxl.load_workbook(io.BytesIO(build_sheets(simulation, **options)))
+        return openpyxl.load_workbook(io.BytesIO(packed_sheets(simulation, **options)))
 
     return read
 

@@ -22,6 +22,7 @@ from xlmc.report.sheets.trials_sheet import HEADER, TRIAL_ROWS
 from xlmc.workbook.inject import marked_names
 from xlmc.workbook.reader import read_workbook
 from xlmc.workbook.workbook import CellContent, CellValue
+from xlmc.workbook.writer import package_bytes
 
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
@@ -108,7 +109,7 @@ def compare_sheets(workbook: Workbook, run: Simulation, command: str | None, clo
 
 
 def _build(run: Simulation, command: str | None, rows: int) -> Workbook:
-    return read_workbook(build_sheets(run, command=command, rows=rows), "the result sheets")
+    return read_workbook(package_bytes(build_sheets(run, command=command, rows=rows)), "the result sheets")
 
 
 def _trial_rows(trials: Sheet) -> int:

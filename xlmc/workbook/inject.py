@@ -31,7 +31,7 @@ from xlmc.workbook.injection.part_numbers import free_names, free_part_names, fr
 from xlmc.workbook.injection.result_sheet import BuiltBook, BuiltSheet, Carrier, Renames, read_built, relative_target
 from xlmc.workbook.injection.splice import MAIN, OFFICE_RELATIONSHIPS, Element, SplicedXml, as_utf8, parse_spans
 from xlmc.workbook.injection.styles_merge import StyleMap, merge_styles, same_styles
-from xlmc.workbook.package import Relationship, hash_parts, read_parts, relationships, rels_part
+from xlmc.workbook.package import Relationship, hash_parts, relationships, rels_part
 from xlmc.workbook.safe_xml import tree
 
 __all__ = ["inject", "marked_names", "original_hash", "remove_result_sheets", "result_sheets"]
@@ -44,7 +44,7 @@ _TYPES_OF_OUR_OWN = {
 }
 
 
-def inject(host: Mapping[str, bytes], sheets: bytes, *, replace: bool = True) -> dict[str, bytes]:
+def inject(host: Mapping[str, bytes], sheets: Mapping[str, bytes], *, replace: bool = True) -> dict[str, bytes]:
     """The parts of the user's workbook with result sheets behind its own.
 
     The same host and sheets always give the same parts, in the same order. Where the user has a sheet called
@@ -52,8 +52,9 @@ def inject(host: Mapping[str, bytes], sheets: bytes, *, replace: bool = True) ->
 
     Args:
         host: all parts of the user's workbook, as `read_parts` gives them.
-        sheets: a workbook built by XlsxWriter that holds the result sheets and nothing else. All are worksheets, its
-            defined names belong to one each, and it has no dynamic array formulas and no pictures in cells.
+        sheets: the parts of a workbook built by XlsxWriter that holds the result sheets and nothing else. All are
+            worksheets, its defined names belong to one each, and it has no dynamic array formulas and no pictures in
+            cells.
         replace: take out the result sheets of earlier runs first.
 
     Raises:
@@ -61,7 +62,7 @@ def inject(host: Mapping[str, bytes], sheets: bytes, *, replace: bool = True) ->
         ValueError: `sheets` holds what it must not.
     """
     user = _User.of(remove_result_sheets(host) if replace else host)
-    built = read_built(read_parts(sheets))
+    built = read_built(sheets)
     names = free_names([sheet.name for sheet in built.sheets], user.sheets)
     styles = _Styles.merged(user, built)
     carrier = _carrier(user, built, names, styles.numbers)

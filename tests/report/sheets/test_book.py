@@ -8,9 +8,10 @@ import sys
 import zipfile
 
 import pytest
+from packed_sheets import packed_sheets
 
 from xlmc.columns import column_store, on_disk
-from xlmc.report.sheets.book import SHEETS, build_sheets
+from xlmc.report.sheets.book import SHEETS
 
 NAMES = [sheet.name for sheet in SHEETS]
 RUNS = ["run", "none_accepted", "one_accepted"]
@@ -26,19 +27,19 @@ def test_the_answer_comes_first_and_every_sheet_is_there(request, opened, name):
 @pytest.mark.parametrize("name", RUNS)
 def test_the_same_run_gives_the_same_bytes(request, name):
     run = request.getfixturevalue(name)
-    assert build_sheets(run, command="c") == build_sheets(run, command="c")
+    assert packed_sheets(run, command="c") == packed_sheets(run, command="c")
 
 
 def test_threads_do_not_change_a_byte(run):
     again = run.model.simulate(jobs=2)
-    assert build_sheets(again) == build_sheets(run)
+    assert packed_sheets(again) == packed_sheets(run)
 
 
 def test_results_on_disk_do_not_change_a_byte(run, monkeypatch):
     monkeypatch.setattr(column_store, "IN_MEMORY", 0)
     again = run.model.simulate()
     assert on_disk(again.trial_index)
-    assert build_sheets(again) == build_sheets(run)
+    assert packed_sheets(again) == packed_sheets(run)
 
 
 def test_draws_that_were_not_kept_are_told(run, opened, rows_of):
@@ -63,7 +64,7 @@ def test_only_certainty_has_formulas_and_every_number_is_finite(request, opened,
 
 @pytest.mark.parametrize("name", RUNS)
 def test_parts_hold_no_clock_and_nothing_that_cannot_be_injected(request, name):
-    with zipfile.ZipFile(io.BytesIO(build_sheets(request.getfixturevalue(name)))) as package:
+    with zipfile.ZipFile(io.BytesIO(packed_sheets(request.getfixturevalue(name)))) as package:
         workbook = package.read("xl/workbook.xml").decode()
         core = package.read("docProps/core.xml").decode()
     assert "2000-01-01T00:00:00Z" in core

@@ -5,16 +5,16 @@ import io
 import numpy as np
 import openpyxl
 import pytest
+from packed_sheets import packed_sheets
 
 from xlmc import statistics
-from xlmc.report.sheets.book import build_sheets
 from xlmc.results.statements import certainties, statements
 
 
 @pytest.fixture(scope="module")
 def sheets(run):
     """The sheet Certainty twice: its formulas, and the values they are saved with; 400 trials are written out."""
-    packed = build_sheets(run, rows=400)
+    packed = packed_sheets(run, rows=400)
     return [openpyxl.load_workbook(io.BytesIO(packed), data_only=values)["Certainty"] for values in (False, True)]
 
 
@@ -75,7 +75,7 @@ def test_nothing_is_offered_without_trials_to_count(run, none_accepted, opened):
 
 def test_replicates_get_no_error_of_independent_trials(run):
     again = run.model.simulate(trials=4000, sampling="lhs")
-    sheet = openpyxl.load_workbook(io.BytesIO(build_sheets(again)))["Certainty"]
+    sheet = openpyxl.load_workbook(io.BytesIO(packed_sheets(again)))["Certainty"]
     texts = [str(cell.value) for cell in sheet["A"]]
     assert any("no error is given" in text for text in texts)
     heading = next(row for row in sheet.iter_rows(values_only=True) if row[:4] == ("Forecast", "Units", "From", "to"))

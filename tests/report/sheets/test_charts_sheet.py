@@ -11,16 +11,16 @@ from openpyxl.chart.chartspace import ChartSpace
 from openpyxl.chart.reader import read_chart
 from openpyxl.utils import column_index_from_string, get_column_letter, range_boundaries
 from openpyxl.xml.functions import fromstring
+from packed_sheets import packed_sheets
 
 from xlmc.report.histogram import figures_of
 from xlmc.report.sheets.bins_sheet import HEADER, TABLE
-from xlmc.report.sheets.book import build_sheets
 
 
 @pytest.fixture(scope="session")
 def charts(run):
     """The charts of forecasts as openpyxl reads them, in order."""
-    with zipfile.ZipFile(io.BytesIO(build_sheets(run))) as package:
+    with zipfile.ZipFile(io.BytesIO(packed_sheets(run))) as package:
         names = [name for name in package.namelist() if re.fullmatch(r"xl/charts/chart\d+\.xml", name)]
         names.sort(key=lambda name: int(re.sub(r"\D", "", name)))
         drawn = [xml for xml in map(package.read, names) if not re.search(rb"<c:f>(Sensitivity|'Filter limits')!", xml)]
@@ -113,7 +113,7 @@ def test_a_forecast_that_does_not_vary_has_a_histogram_and_no_curve(make):
         [make.uniform("a", "A1", 0.0, 1.0, base=1.0)],
         [make.forecast("moves", "B1", units="m"), make.forecast("rests", "B2", units="m")],
     )
-    with zipfile.ZipFile(io.BytesIO(build_sheets(run))) as package:
+    with zipfile.ZipFile(io.BytesIO(packed_sheets(run))) as package:
         drawn = [package.read(name) for name in package.namelist() if "/charts/chart" in name]
     kinds = [kind for kind in drawn if b"<c:f>Sensitivity!" not in kind]
     assert sum(b"<c:barChart>" in kind for kind in kinds) == 2
@@ -163,7 +163,7 @@ def test_a_formula_like_name_is_a_title_and_a_long_one_is_shortened(make):
         [make.uniform("a", "A1", 0.0, 1.0, base=1.0)],
         [make.forecast(name, cell) for name, cell in zip(names, ("B1", "B2"), strict=True)],
     )
-    packed = build_sheets(run)
+    packed = packed_sheets(run)
     book = openpyxl.load_workbook(io.BytesIO(packed))
     titles = [book["Bins"].cell(HEADER - 1, 1 + index * (TABLE + 1)) for index in range(2)]
     assert [title.data_type for title in titles] == ["s", "s"]

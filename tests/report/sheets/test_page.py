@@ -7,8 +7,8 @@ import openpyxl
 import pytest
 from xlsxwriter import Workbook
 
-from xlmc.report.sheets.book import exact_sheet
 from xlmc.report.sheets.cells import Shown
+from xlmc.report.sheets.exact_book import ExactSheet
 from xlmc.report.sheets.page import LONGEST_TEXT, ROW, Page, cut
 from xlmc.report.sheets.styles import Styles
 
@@ -20,7 +20,7 @@ def written():
     def write(act):
         packed = io.BytesIO()
         with Workbook(packed, {"in_memory": True}) as book:
-            act(Page(book.add_worksheet("P", exact_sheet()), Styles(book), (10, 20, 30)))
+            act(Page(book.add_worksheet("P", ExactSheet), Styles(book), (10, 20, 30)))
         return openpyxl.load_workbook(packed)["P"]
 
     return write

@@ -7,8 +7,8 @@ import zipfile
 import numpy as np
 import openpyxl
 import pytest
+from packed_sheets import packed_sheets
 
-from xlmc.report.sheets.book import build_sheets
 from xlmc.report.sheets.styles import bounds
 from xlmc.results.statements import pairs_of
 
@@ -39,7 +39,7 @@ def scatter_columns(packed):
 
 
 def test_scatter_charts_draw_the_first_trials_of_the_sheet(run):
-    packed = build_sheets(run)
+    packed = packed_sheets(run)
     assert scatter_columns(packed) == [["Trials!$D$5:$D$1004", "Trials!$E$5:$E$1004"]]
     book = openpyxl.load_workbook(io.BytesIO(packed))
     for letter, name in (("D", "area"), ("E", "difference")):
@@ -54,7 +54,7 @@ def test_trials_without_a_number_are_left_out_of_scatter_charts(make):
         [make.forecast("root", "B1"), make.forecast("all", "B2")],
         trials=300,
     )
-    packed = build_sheets(run)
+    packed = packed_sheets(run)
     ((across, _),) = scatter_columns(packed)
     book = openpyxl.load_workbook(io.BytesIO(packed))
     sheet, _, cells = across.partition("!")

@@ -9,9 +9,9 @@ import zipfile
 import openpyxl
 import pytest
 from openpyxl.utils import range_boundaries
+from packed_sheets import packed_sheets
 
 from xlmc.report.page.flow import Flow
-from xlmc.report.sheets.book import build_sheets
 from xlmc.report.sheets.cells import NOISE
 from xlmc.report.sheets.limits_sheet import moved_caption
 from xlmc.report.sheets.sensitivity_sheet import write_influences
@@ -20,7 +20,7 @@ from xlmc.studies.sensitivity import sensitivities
 
 @pytest.fixture(scope="module")
 def packed(run):
-    return build_sheets(run)
+    return packed_sheets(run)
 
 
 @pytest.fixture(scope="module")
@@ -134,7 +134,7 @@ def test_no_more_than_noise_is_pale(make, opened):
         [make.uniform("a", "A1", 0.0, 1.0, base=0.5), make.uniform("b", "A2", 0.0, 1.0, base=0.5)],
         [make.forecast("x", "B1")],
     )
-    with zipfile.ZipFile(io.BytesIO(build_sheets(run))) as package:
+    with zipfile.ZipFile(io.BytesIO(packed_sheets(run))) as package:
         xml = next(
             text
             for text in (package.read(n).decode() for n in package.namelist() if n.startswith("xl/charts/chart"))
@@ -192,7 +192,7 @@ def test_answers_in_different_units_are_drawn_as_shares_of_their_ranges(make):
         [make.forecast("x", "B1", units="ft"), make.forecast("y", "B2", units="mph")],
         [make.filter("f", "A1", below=0.6)],
     )
-    packed = build_sheets(run)
+    packed = packed_sheets(run)
     with zipfile.ZipFile(io.BytesIO(packed)) as package:
         texts = [package.read(n).decode() for n in package.namelist() if n.startswith("xl/charts/chart")]
     xml = next(text for text in texts if "Change of each mean" in text)
@@ -241,7 +241,7 @@ def test_units_that_read_like_a_reference_stay_words(make):
         [make.forecast("f", "B1", units="Model!D50")],
         [make.filter("kept", "B1", at_least=0.5)],
     )
-    with zipfile.ZipFile(io.BytesIO(build_sheets(run))) as package:
+    with zipfile.ZipFile(io.BytesIO(packed_sheets(run))) as package:
         charts = [package.read(name).decode() for name in package.namelist() if name.startswith("xl/charts/chart")]
     assert [xml for xml in charts if "(Model!\N{WORD JOINER}D50)</a:t>" in xml]
     assert {f for xml in charts for f in re.findall(r"<c:f>(.*?)</c:f>", xml) if "D50" in f} == set()

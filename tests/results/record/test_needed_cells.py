@@ -8,12 +8,12 @@ import openpyxl
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from packed_sheets import packed_sheets
 
 import xlmc
 from xlmc.address import Area, Cell
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.formula.shape import shape_of, text_at
-from xlmc.report.sheets.book import build_sheets
 from xlmc.results.record.needed_cells import (
     MOST_ROWS,
     cell_section,
@@ -153,7 +153,7 @@ def test_a_content_too_long_for_a_cell_is_packed():
 def test_packed_cells_come_through_a_worksheet(run, monkeypatch):
     monkeypatch.setattr("xlmc.results.record.needed_cells._PIECE", 100)
     monkeypatch.setattr("xlmc.results.record.make.cell_section", lambda needed: cell_section(needed, rows=0))
-    record = read_record(read_workbook(build_sheets(run)))
+    record = read_record(read_workbook(packed_sheets(run)))
     assert record["cells.packed_2"]
     assert recorded_cells(record) == needed_contents(run.model)
 
@@ -213,7 +213,7 @@ def test_settings_are_read_back_exactly(model):
         {"sampling": "sobol"},
     ):
         run = model.simulate(**{"trials": 100} | asked)
-        record = read_record(read_workbook(build_sheets(run)))
+        record = read_record(read_workbook(packed_sheets(run)))
         assert recorded_settings(record) == run.settings
         assert recorded_settings(Record((settings_section(run),))) == run.settings
 
@@ -228,7 +228,7 @@ def test_settings_of_a_run_in_float32_are_refused(run, made, said):
 
 
 def test_a_record_alone_in_a_workbook_is_found(run):
-    book = openpyxl.load_workbook(io.BytesIO(build_sheets(run)))
+    book = openpyxl.load_workbook(io.BytesIO(packed_sheets(run)))
     for name in {*book.sheetnames} - {"Record"}:
         del book[name]
     kept = io.BytesIO()

@@ -10,10 +10,10 @@ from zipfile import ZipFile
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from packed_sheets import packed_sheets
 
 from xlmc.cli.simulate import show_run
 from xlmc.cli.simulate import simulate as command
-from xlmc.report.sheets.book import build_sheets
 from xlmc.results.record import make_record
 from xlmc.results.record.in_words import sampling_sentence
 from xlmc.results.record.make import fingerprint
@@ -158,7 +158,7 @@ def test_the_command_line_says_so(tmp_path):
 
 
 def test_the_sheets_say_so(run):
-    with ZipFile(BytesIO(build_sheets(run))) as package:
+    with ZipFile(BytesIO(packed_sheets(run))) as package:
         written = "".join(package.read(name).decode() for name in package.namelist() if name.endswith(".xml"))
     for said in (
         "Evaluated in all",

@@ -30,7 +30,7 @@ def _built(fill):
     book = xlsxwriter.Workbook(packed, {"in_memory": True})
     fill(book)
     book.close()
-    return packed.getvalue()
+    return read_parts(packed.getvalue())
 
 
 def _fill_results(book, mean=31.5):
@@ -155,7 +155,7 @@ def _inserted(text, mark, fragment):
 
 def _rich_parts():
     """The scene as Excel might have saved it: XlsxWriter's package with what XlsxWriter cannot write."""
-    text = read_parts(_built(_fill_scene))
+    text = _built(_fill_scene)
 
     def insert(name, mark, fragment):
         text[name] = _inserted(text[name].decode(), mark, fragment).encode()

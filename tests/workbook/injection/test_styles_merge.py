@@ -6,7 +6,6 @@ import pytest
 
 from xlmc.workbook.injection.splice import parse_spans
 from xlmc.workbook.injection.styles_merge import merge_styles
-from xlmc.workbook.package import read_parts
 
 MAIN = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
 ORDER = [
@@ -37,7 +36,7 @@ ARIAL = (
 
 @pytest.fixture(scope="module")
 def built(results):
-    return read_parts(results)["xl/styles.xml"]
+    return results["xl/styles.xml"]
 
 
 def entries(styles, name):
@@ -145,4 +144,4 @@ def test_an_extension_in_a_style_is_refused(build):
         book.add_worksheet().insert_checkbox("A1", True)
 
     with pytest.raises(ValueError, match="carry over"):
-        merge_styles(ARIAL.encode(), "styles", read_parts(build(fill))["xl/styles.xml"])
+        merge_styles(ARIAL.encode(), "styles", build(fill)["xl/styles.xml"])

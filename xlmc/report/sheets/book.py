@@ -6,7 +6,6 @@ describe it in docs/guide.md. docs/adding.md has an example.
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -35,19 +34,17 @@ from xlmc.results.record import make_record
 from xlmc.studies.sensitivity import Sensitivities, sensitivities
 
 if TYPE_CHECKING:
-    from xlsxwriter import Workbook
-    from xlsxwriter.worksheet import Worksheet
-
+    from xlmc.report.sheets.exact_book import ExactBook
     from xlmc.run.simulation import Simulation
 
-__all__ = ["SHEETS", "ResultSheet", "Writing", "build_sheets", "exact_sheet"]
+__all__ = ["SHEETS", "ResultSheet", "Writing", "build_sheets"]
 
 
 class Writing:
     """A result workbook that is being written, and what its sheets share.
 
     Attributes:
-        book: of XlsxWriter.
+        book: as XlsxWriter builds it.
         simulation: the finished run.
         command: what the person typed, for the record.
         rows: the most accepted trials to write out.
@@ -59,12 +56,12 @@ class Writing:
     trials: TrialsAt
     bins: Sequence[BinsAt]
 
-    def __init__(self, book: Workbook, simulation: Simulation, command: str | None, rows: int) -> None:
+    def __init__(self, book: ExactBook, simulation: Simulation, command: str | None, rows: int) -> None:
         self.book, self.simulation, self.command, self.rows = book, simulation, command, rows
         self.name = simulation.model.workbook.name
-        styles, kind = Styles(book), exact_sheet()
+        styles = Styles(book)
         self.pages = {
-            sheet.name: Page(book.add_worksheet(sheet.name, kind), styles, sheet.widths)
+            sheet.name: Page(book.add_worksheet(sheet.name), styles, sheet.widths)
             for sheet in SHEETS
             if sheet.wanted(self)
         }
@@ -166,18 +163,19 @@ SHEETS: Final[tuple[ResultSheet, ...]] = (
 """The sheets in the order of their tabs."""
 
 
-def build_sheets(simulation: Simulation, *, command: str | None = None, rows: int = trials_sheet.TRIAL_ROWS) -> bytes:
-    """The result sheets of a run.
+def build_sheets(
+    simulation: Simulation, *, command: str | None = None, rows: int = trials_sheet.TRIAL_ROWS
+) -> dict[str, bytes]:
+    """The result sheets of a run, as the parts of a workbook that holds them alone.
 
     Args:
         simulation: the finished run.
         command: what the person typed, for the record.
         rows: the most accepted trials to write out.
     """
-    from xlsxwriter import Workbook
+    from xlmc.report.sheets.exact_book import ExactBook
 
-    packed = io.BytesIO()
-    with Workbook(packed, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as book:
+    with ExactBook() as book:
         book.set_properties({"created": CREATED})
         run = Writing(book, simulation, command, rows)
         waiting = [sheet for sheet in SHEETS if sheet.name in run.pages]
@@ -186,19 +184,4 @@ def build_sheets(simulation: Simulation, *, command: str | None = None, rows: in
             sheet = next(each for each in waiting if names.isdisjoint(each.after))
             sheet.write(run.pages[sheet.name], run)
             waiting.remove(sheet)
-    return packed.getvalue()
-
-
-def exact_sheet() -> type[Worksheet]:
-    """A worksheet whose numbers read back as the same numbers, so that a trial can be repeated to the last bit.
-
-    XlsxWriter writes 16 digits; a double needs up to 17.
-    """
-    from xlsxwriter.worksheet import Worksheet
-
-    class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
-        def _xml_number_element(self, number: float, attributes: Sequence[tuple[str, str]] = ()) -> None:
-            written = "".join([f' {key}="{value}"' for key, value in attributes])  # reference, style: nothing to escape
-            self.fh.write(f"<c{written}><v>{repr(float(number)).removesuffix('.0')}</v></c>")
-
-    return ExactSheet
+    return book.parts

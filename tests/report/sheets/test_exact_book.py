@@ -1,0 +1,64 @@
+"""What is overridden of XlsxWriter's inside writes what XlsxWriter writes by itself, but for digits."""
+
+from __future__ import annotations
+
+import io
+import random
+
+import pytest
+from xlsxwriter import Workbook
+
+from xlmc.report.sheets.exact_book import ExactBook
+from xlmc.workbook.package import read_parts
+
+
+def fill(book, numbers):
+    """Cells of all kinds, with and without styles of their own, of their row and of their column."""
+    bold, red = book.add_format({"bold": True}), book.add_format({"font_color": "red", "num_format": "0.00"})
+    sheet = book.add_worksheet("Model")
+    sheet.set_default_row(17.25)
+    sheet.set_column(2, 3, 11, red)
+    sheet.set_row(4, 30, bold)
+    sheet.freeze_panes(1, 1)
+    for row in range(40):
+        for column in numbers.sample(range(60), 7):
+            kind = numbers.randrange(6)
+            style = numbers.choice([None, bold, red])
+            if kind == 0:
+                sheet.write_string(row, column, numbers.choice(["a", "<&>", "ΔV", "  b"]), style)
+            elif kind == 1:
+                sheet.write_blank(row, column, None, style or bold)
+            elif kind == 2:
+                sheet.write_formula(row, column, "=1+1", style, 2)
+            elif kind == 3:
+                sheet.write_boolean(row, column, True, style)
+            elif row != 20:  # a row without cells
+                sheet.write_number(row, column, numbers.choice([0, 1, -2.5, 0.125, 0.1, 12345678]), style)
+    sheet.merge_range(50, 0, 50, 5, "wide", bold)
+    empty = book.add_worksheet("Empty")
+    empty.write_url(0, 0, "internal:Model!A1")
+    chart = book.add_chart({"type": "line"})
+    chart.add_series({"values": ["Model", 0, 1, 9, 1]})
+    sheet.insert_chart("H2", chart)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_parts_are_those_of_a_file_of_xlsxwriters(seed):
+    packed = io.BytesIO()
+    with Workbook(packed, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as plain:
+        fill(plain, random.Random(seed))
+    with ExactBook() as exact:
+        fill(exact, random.Random(seed))
+    theirs = read_parts(packed.getvalue())
+    clock = "docProps/core.xml"
+    assert list(exact.parts) == list(theirs)
+    assert {**exact.parts, clock: b""} == {**theirs, clock: b""}
+
+
+@pytest.mark.parametrize("number", [0.1 + 0.2, 1 / 3, 2.0**-1074, 1.7976931348623157e308, -0.1, 7, 123456789012345678])
+@pytest.mark.parametrize("styled", [True, False])
+def test_a_number_is_read_back_as_the_same_number(number, styled):
+    with ExactBook() as book:
+        book.add_worksheet().write_number(0, 0, number, book.add_format({"bold": True}) if styled else None)
+    written = book.parts["xl/worksheets/sheet1.xml"].partition(b"<v>")[2].partition(b"</v>")[0]
+    assert float(written) == float(number)

@@ -5,7 +5,6 @@ The terminal, a page and a sheet show the same content.
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -16,7 +15,6 @@ from xlmc.errors import WorkbookError
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.page import Page
 from xlmc.report.sheets.styles import CREATED, Styles
-from xlmc.workbook.package import read_parts
 from xlmc.workbook.seal import sealed_parts, sealed_text
 from xlmc.workbook.target import Target, is_same_file, refuse_same_file
 from xlmc.workbook.writer import package_bytes, write_workbook
@@ -112,8 +110,7 @@ class Files:
             if ending == ".html":
                 content = sealed_text(_page(report).encode(), ending, name)
             else:
-                parts = read_parts(_book(report, sheet))
-                content = package_bytes(sealed_parts(parts, "xl/worksheets/sheet1.xml", name))
+                content = package_bytes(sealed_parts(_book(report, sheet), "xl/worksheets/sheet1.xml", name))
             write_workbook(path, content, self._target(path).check)
         return [path for path, _ in self._endings]
 
@@ -144,12 +141,11 @@ def _table(table: Table) -> str:
     )
 
 
-def _book(report: StudyReport, sheet: str) -> bytes:
-    """The report as a workbook of one sheet."""
-    from xlsxwriter import Workbook
+def _book(report: StudyReport, sheet: str) -> dict[str, bytes]:
+    """The report as the parts of a workbook of one sheet."""
+    from xlmc.report.sheets.exact_book import ExactBook
 
-    packed = io.BytesIO()
-    with Workbook(packed, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as made:
+    with ExactBook() as made:
         made.set_properties({"created": CREATED})
         written = Page(made.add_worksheet(sheet), Styles(made), _WIDTHS)
         written.title(report.title, report.below)
@@ -162,7 +158,8 @@ def _book(report: StudyReport, sheet: str) -> bytes:
             else:
                 written.wide(each, "paragraph", _LAST)
         written.set_up_printing(report.title)
-    return packed.getvalue()
+    parts: dict[str, bytes] = made.parts
+    return parts
 
 
 def _cells(row: Sequence[str], right: Sequence[int]) -> list[Shown]:

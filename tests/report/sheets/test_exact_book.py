@@ -55,6 +55,24 @@ def test_parts_are_those_of_a_file_of_xlsxwriters(seed):
     assert {**exact.parts, clock: b""} == {**theirs, clock: b""}
 
 
+def test_a_column_of_numbers_is_one_number_after_another():
+    def parts(write):
+        with ExactBook() as book:
+            write(book.add_worksheet(), book.add_format({"bold": True}))
+        return {**book.parts, "docProps/core.xml": b""}
+
+    values = [1.5, -2, 1 / 3, 0.0]
+    at_once = parts(lambda sheet, style: sheet.write_numbers(3, 2, values, style))
+    assert at_once == parts(
+        lambda sheet, style: [sheet.write_number(3 + i, 2, value, style) for i, value in enumerate(values)]
+    )
+
+
+def test_a_column_that_a_sheet_has_no_room_for_is_refused():
+    with ExactBook() as book, pytest.raises(ValueError, match="a sheet has no row 1048577"):
+        book.add_worksheet().write_numbers(1_048_575, 0, [1.0, 2.0], book.add_format({}))
+
+
 @pytest.mark.parametrize("number", [0.1 + 0.2, 1 / 3, 2.0**-1074, 1.7976931348623157e308, -0.1, 7, 123456789012345678])
 @pytest.mark.parametrize("styled", [True, False])
 def test_a_number_is_read_back_as_the_same_number(number, styled):

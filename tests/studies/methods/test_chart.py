@@ -16,6 +16,7 @@ from xlmc.report.methods.matplotlib_figure import STYLES, draw
 from xlmc.report.methods.methods_workbook import book
 from xlmc.report.methods.speed_chart import HOW_TO_READ, column_of, picture_of, spread
 from xlmc.studies.methods.need import choice
+from xlmc.workbook.writer import package_bytes
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +83,7 @@ def test_the_figure_has_one_panel_that_answers_and_five_small_ones(small):
 
 
 def test_the_workbook_has_the_same_chart(small, picture):
-    with ZipFile(io.BytesIO(book(small))) as package:
+    with ZipFile(io.BytesIO(package_bytes(book(small)))) as package:
         charts = [package.read(name).decode() for name in sorted(package.namelist()) if name.startswith("xl/charts/ch")]
     assert len(charts) == 6
     assert not any("<c:legend>" in chart for chart in charts)

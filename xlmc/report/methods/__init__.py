@@ -10,7 +10,6 @@ from typing import Final
 
 from xlmc.errors import WorkbookError
 from xlmc.studies.methods import Study
-from xlmc.workbook.package import read_parts
 from xlmc.workbook.seal import sealed_parts, sealed_text
 from xlmc.workbook.target import Target, is_same_file, refuse_same_file
 from xlmc.workbook.writer import package_bytes, write_workbook
@@ -58,23 +57,15 @@ def save_methods(study: Study, path: Path, *, overwrite: bool = False) -> Path:
 
 def _content_with_seal(study: Study, ending: str) -> bytes:
     """The content with its seal; a picture has none."""
-    content, name = _content(study, ending), study.model.path.name
-    if ending == ".html":
-        return sealed_text(content, ending, name)
-    if ending == ".xlsx":
-        return package_bytes(sealed_parts(read_parts(content), "xl/worksheets/sheet1.xml", name))
-    return content
-
-
-def _content(study: Study, ending: str) -> bytes:
+    name = study.model.path.name
     if ending == ".xlsx":
         from xlmc.report.methods.methods_workbook import book
 
-        return book(study)
+        return package_bytes(sealed_parts(book(study), "xl/worksheets/sheet1.xml", name))
     if ending == ".html":
         from xlmc.report.methods.methods_page import page
 
-        return page(study).encode()
+        return sealed_text(page(study).encode(), ending, name)
     from xlmc.report.methods.matplotlib_figure import draw
 
     drawn = io.BytesIO()

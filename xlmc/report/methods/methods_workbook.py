@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from typing import Final
 
 import numpy as np
@@ -36,12 +35,11 @@ _HEADINGS: Final = (
 )
 
 
-def book(study: Study) -> bytes:
-    """The workbook: Methods, Charts, Runs, Forecasts, Chart data."""
-    from xlsxwriter import Workbook
+def book(study: Study) -> dict[str, bytes]:
+    """The parts of the workbook: Methods, Charts, Runs, Forecasts, Chart data."""
+    from xlmc.report.sheets.exact_book import ExactBook
 
-    packed = io.BytesIO()
-    with Workbook(packed, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as made:
+    with ExactBook() as made:
         made.set_properties({"created": CREATED})
         styles = Styles(made)
         words = Page(made.add_worksheet("Methods"), styles, _WORDS)
@@ -53,7 +51,8 @@ def book(study: Study) -> bytes:
         curve_rows = _write_runs(runs, study)
         write_charts(charts, data, made, study, curve_rows)
         _write_forecasts(forecasts, study)
-    return packed.getvalue()
+    parts: dict[str, bytes] = made.parts
+    return parts
 
 
 def _write_words(page: Page, study: Study) -> None:

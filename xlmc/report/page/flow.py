@@ -34,7 +34,8 @@ class Flow(Page):
     """A result sheet as HTML, from the top down."""
 
     def __init__(self) -> None:
-        self.row, self.sheet = 0, _Nothing()
+        self.row = 0
+        self.sheet = _Nothing()  # type: ignore[assignment]  # takes every call, and does nothing
         self._found: list[Html] = []
         self._open: list[Sequence[Shown]] = []
 

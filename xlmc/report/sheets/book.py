@@ -184,4 +184,5 @@ def build_sheets(
             sheet = next(each for each in waiting if names.isdisjoint(each.after))
             sheet.write(run.pages[sheet.name], run)
             waiting.remove(sheet)
-    return book.parts
+    parts: dict[str, bytes] = book.parts
+    return parts

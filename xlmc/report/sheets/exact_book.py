@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from xlsxwriter import Workbook
+from xlsxwriter.format import Format
 from xlsxwriter.packager import Packager
 from xlsxwriter.utility import xl_col_to_name
 from xlsxwriter.worksheet import CellNumberTuple, CellStringTuple, Worksheet
@@ -26,6 +27,15 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
     def __init__(self) -> None:
         super().__init__()
         self._letters: dict[int, str] = {}
+
+    def write_numbers(self, row: int, column: int, values: Sequence[float], style: Format) -> None:
+        """Write finite numbers one below the other: what `write_number` does for each, in less time."""
+        for end in (row, row + len(values) - 1):
+            if self._check_dimensions(end, column):
+                raise ValueError(f"a sheet has no row {end + 1} or no column {column + 1}")
+        table = self.table
+        for at, value in enumerate(values, row):
+            table[at][column] = CellNumberTuple(value, style)
 
     def _write_cell(self, row: int, col: int, cell: Any) -> None:
         kind = type(cell)

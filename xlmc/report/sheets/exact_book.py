@@ -47,13 +47,13 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
             letters = self._letters[col] = xl_col_to_name(col)
         start = f'<c r="{letters}{row + 1}" s="{cell.format._get_xf_index()}"'
         if kind is CellNumberTuple:
-            self.fh.write(f"{start}><v>{_exact(cell.number)}</v></c>")
+            self.fh.write(f"{start}><v>{repr(float(cell.number)).removesuffix('.0')}</v></c>")
         else:
             self.fh.write(f'{start} t="s"><v>{cell.string}</v></c>')
 
     def _xml_number_element(self, number: float, attributes: Sequence[tuple[str, str]] = ()) -> None:
         written = "".join([f' {key}="{value}"' for key, value in attributes])  # reference, style: nothing to escape
-        self.fh.write(f"<c{written}><v>{_exact(number)}</v></c>")
+        self.fh.write(f"<c{written}><v>{repr(float(number)).removesuffix('.0')}</v></c>")
 
     def _calculate_spans(self) -> None:
         """The first and last column of every 16 rows; result sheets have no comments, which would count, too."""
@@ -63,10 +63,6 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
                 low, high = found.get(row // 16, (1 << 20, -1))
                 found[row // 16] = min(low, min(cells)), max(high, max(cells))
         self.row_spans = {group: f"{low + 1}:{high + 1}" for group, (low, high) in found.items()}
-
-
-def _exact(number: float) -> str:
-    return repr(float(number)).removesuffix(".0")
 
 
 class ExactBook(Workbook):  # type: ignore[misc]  # the library has no types

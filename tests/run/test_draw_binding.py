@@ -359,6 +359,15 @@ def test_numbers_that_take_the_place_of_those_that_were_read_are_checked(read_bo
     assert (caught.value.message, caught.value.where) == (message, "Inputs!A2")
 
 
+@pytest.mark.parametrize("number", [int, np.int64, np.float32, np.float64])
+def test_numbers_of_other_types_are_taken_as_floats(read_book, number):
+    speed, *others = read_book.assumptions
+    same = replace(speed, parameters={"low": number(38), "high": number(42)})
+    definitions = replace(read_book.definitions, assumptions=(same, *others))
+    found = Model(read_book.workbook, definitions, read_book.path).simulate(100, seed=1)
+    assert found.inputs["speed"].tolist() == read_book.simulate(100, seed=1).inputs["speed"].tolist()
+
+
 @pytest.mark.parametrize(
     "changed", [{"distribution": "Discrete Uniform"}, {"own_family": FAMILIES["Discrete Uniform"]}]
 )

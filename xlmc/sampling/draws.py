@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Real
 from typing import Any, Final
 
 import numpy as np
@@ -56,7 +57,7 @@ class Draw:
     @classmethod
     def of(cls, name: str, family: Family, given: Mapping[str, Hashable]) -> Draw:
         """Of parameters by key, `lower_cutoff` and `upper_cutoff` among them where the draw is cut off."""
-        parameters = dict(given)
+        parameters = {key: float(each) if isinstance(each, Real) else each for key, each in given.items()}
         cutoffs = parameters.pop("lower_cutoff", -np.inf), parameters.pop("upper_cutoff", np.inf)
         return cls(name, family, family.bind((), parameters), cutoffs if len(parameters) < len(given) else None)
 

@@ -86,7 +86,7 @@ class Draw:
 
     def _of_trials(self, dynamic: Mapping[Hashable, Floats]) -> Member | Slice:
         """What the parameters of each trial make of it."""
-        values = [p if isinstance(p, float | int) else dynamic[p] for p in (*(self.cutoffs or ()), *self.parameters)]
+        values = [p if isinstance(p, float) else dynamic[p] for p in (*(self.cutoffs or ()), *self.parameters)]
         return self.family.checked(*values) if self.cutoffs is None else Truncated(self.family).checked(*values)
 
     def reached(self, x: Floats) -> Floats:
@@ -96,7 +96,7 @@ class Draw:
     @property
     def varying(self) -> list[Hashable]:
         """The parameters and cutoffs that vary by trial."""
-        return [p for p in (*self.parameters, *(self.cutoffs or ())) if not isinstance(p, float | int)]
+        return [p for p in (*self.parameters, *(self.cutoffs or ())) if not isinstance(p, float)]
 
     @cached_property
     def fixed(self) -> bool:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.workbook.texts import decode, run_text, shared_strings
+from xlmc.workbook.safe_xml import decode, run_text, shared_strings
 
 MAIN = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
 

@@ -57,7 +57,10 @@ class Draw:
     @classmethod
     def of(cls, name: str, family: Family, given: Mapping[str, Hashable]) -> Draw:
         """Of parameters by key, `lower_cutoff` and `upper_cutoff` among them where the draw is cut off."""
-        parameters = {key: float(each) if isinstance(each, Real) else each for key, each in given.items()}
+        parameters = dict(given)
+        for key, each in given.items():
+            if isinstance(each, Real):
+                parameters[key] = float(each)
         cutoffs = parameters.pop("lower_cutoff", -np.inf), parameters.pop("upper_cutoff", np.inf)
         return cls(name, family, family.bind((), parameters), cutoffs if len(parameters) < len(given) else None)
 

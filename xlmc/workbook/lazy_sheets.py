@@ -8,10 +8,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
 from xlmc.errors import WorkbookError
-from xlmc.workbook.safe_xml import is_true, tree
+from xlmc.workbook.safe_xml import is_true, shared_strings, tree
 from xlmc.workbook.sheet import CellContext, parse_sheet
 from xlmc.workbook.structure import Structure
-from xlmc.workbook.texts import shared_strings
 from xlmc.workbook.workbook import DataTable, Sheet
 
 if TYPE_CHECKING:

@@ -14,10 +14,9 @@ from xlmc.errors import Notice, WorkbookError
 from xlmc.workbook.lazy_sheets import LazySheets, naming_file
 from xlmc.workbook.package import LIMITS, SMALLER, read_parts, relationships
 from xlmc.workbook.printable import label
-from xlmc.workbook.safe_xml import REPAIR, is_true, tree, whole_number
+from xlmc.workbook.safe_xml import REPAIR, decode, is_true, tree, whole_number
 from xlmc.workbook.sheet import CellContext, convert
 from xlmc.workbook.structure import Structure, read_structure, tables_of
-from xlmc.workbook.texts import decode
 from xlmc.workbook.workbook import CellContent, CellValue, DefinedName, LinkedBook, Sheet, Workbook
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Read XML from an untrusted file: no document types, no entities, no traceback.
+"""Read XML from an untrusted file, and the texts in it: no document types, no entities, no traceback.
 
 The parts of a workbook need neither, so any declaration of them is refused before it can do harm. Parts are fed to
 the parser piece by piece: a refusal in one piece means that the next is never looked at.
@@ -15,13 +15,26 @@ from xml.parsers import expat
 
 from xlmc.errors import WorkbookError
 
-__all__ = ["REPAIR", "attribute", "expat_parser", "feed", "is_true", "tree", "whole_number"]
+__all__ = [
+    "REPAIR",
+    "attribute",
+    "decode",
+    "expat_parser",
+    "feed",
+    "is_true",
+    "run_text",
+    "shared_strings",
+    "tree",
+    "whole_number",
+]
 
 REPAIR = "Open it in Excel, let Excel repair it, and save it again"
 """The hint for a package that is damaged inside."""
 
 _PIECE = 1 << 16
 _DIGITS = re.compile("[0-9]{1,9}")
+_ESCAPE = re.compile(r"_x([0-9A-Fa-f]{4})_")
+_SPACE = "{http://www.w3.org/XML/1998/namespace}space"
 _NOT_XML = (expat.ExpatError, ElementTree.ParseError, ValueError, LookupError)
 
 
@@ -95,3 +108,38 @@ def _naming_part(part: str) -> Iterator[None]:
         raise WorkbookError(f"{part}: {error.message}", hint=error.hint or REPAIR) from None
     except _NOT_XML as error:
         raise WorkbookError(f"{part} is not well-formed XML ({error})", hint=REPAIR) from error
+
+
+def decode(text: str) -> str:
+    r"""Undo `_xHHHH_`, which stands for characters that XML cannot hold.
+
+    >>> decode("Initial_x000a_speed")
+    'Initial\nspeed'
+    """
+    if "_x" not in text:
+        return text
+    decoded = _ESCAPE.sub(lambda found: chr(int(found[1], 16)), text)
+    # A pair of escapes may make one character; half a pair makes none that could be printed.
+    return decoded.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
+
+
+def run_text(text: str, keep_space: bool) -> str:
+    """The text of one run. Excel drops white space at its ends unless `xml:space` says to keep it."""
+    return decode(text if keep_space else text.strip(" \t\r\n"))
+
+
+def shared_strings(xml: bytes, part: str) -> list[str]:
+    """The shared string table, rich texts as plain ones, without phonetic guides.
+
+    Raises:
+        WorkbookError: the part is not XML.
+    """
+    return ["".join(_runs(item)) for item in tree(xml, part) if item.tag.endswith("}si")]
+
+
+def _runs(item: ElementTree.Element) -> Iterator[str]:
+    for child in item:
+        if child.tag.endswith("}t"):
+            yield run_text(child.text or "", child.get(_SPACE) == "preserve")
+        elif child.tag.endswith("}r"):
+            yield from _runs(child)

@@ -9,9 +9,8 @@ from math import isfinite
 
 from xlmc.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_number
 from xlmc.errors import ErrorCode, WorkbookError
-from xlmc.workbook.safe_xml import REPAIR, expat_parser, feed, is_true, whole_number
+from xlmc.workbook.safe_xml import REPAIR, decode, expat_parser, feed, is_true, run_text, whole_number
 from xlmc.workbook.structure import SheetEntry, area_of
-from xlmc.workbook.texts import decode, run_text
 from xlmc.workbook.workbook import CellContent, CellValue, DataTable, Formula, Sheet
 
 __all__ = ["CellContext", "convert", "parse_sheet"]

@@ -11,8 +11,7 @@ from xlmc.address import Area, Cell, parse_address
 from xlmc.errors import Notice, WorkbookError
 from xlmc.workbook.package import SAVE_AS, Relationship, relationships
 from xlmc.workbook.printable import printable
-from xlmc.workbook.safe_xml import REPAIR, attribute, is_true, tree, whole_number
-from xlmc.workbook.texts import decode
+from xlmc.workbook.safe_xml import REPAIR, attribute, decode, is_true, tree, whole_number
 from xlmc.workbook.workbook import DefinedName, Table
 
 if TYPE_CHECKING:

@@ -30,27 +30,19 @@ from __future__ import annotations
 import atexit
 import os
 import pickle
-from collections.abc import Iterable, Iterator
-from threading import Lock, Timer
-from typing import TYPE_CHECKING, Final
-
-from xlmc.run.scheduling.batches import Answers, Sharing, discard
-
-if TYPE_CHECKING:
-    from xlmc.run.blocks import Block, Portable, Runner, Task
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
-from threading import Thread
-from typing import IO, TYPE_CHECKING, Any
+from threading import Lock, Thread, Timer
+from typing import IO, TYPE_CHECKING, Any, Final
 
 from xlmc.errors import SimulationError
-from xlmc.run.scheduling.batches import Worker
+from xlmc.run.scheduling.batches import Answers, Sharing, Worker, discard
 from xlmc.run.scheduling.serving import send
 
 if TYPE_CHECKING:
-    from xlmc.run.blocks import Task
+    from xlmc.run.blocks import Block, Portable, Runner, Task
 
 __all__ = ["IdlePool", "WorkerProcess", "by_processes", "idle_pool"]
 

@@ -10,16 +10,14 @@ from xlmc.studies.methods.answer import STATISTICS, Answer, Method, MethodResult
 from xlmc.studies.methods.converged_reference import Reference
 from xlmc.studies.methods.corners import Corners
 from xlmc.studies.methods.curve import Curve, Rms, Rung
-from xlmc.studies.methods.first_order import FirstOrder
+from xlmc.studies.methods.differential import FirstOrder, SecondOrder, WorstCase
 from xlmc.studies.methods.importance_grid import ImportanceGrid
 from xlmc.studies.methods.need import Need, need
 from xlmc.studies.methods.optimised import Optimised
 from xlmc.studies.methods.recommendation import recommendation
 from xlmc.studies.methods.sampled import Sampled
-from xlmc.studies.methods.second_order import SecondOrder
 from xlmc.studies.methods.study import ACCURACY, REPLICATES, Study, quick_settings, study
 from xlmc.studies.methods.surrogate import Surrogate
-from xlmc.studies.methods.worst_case import WorstCase
 
 __all__ = [
     "ACCURACY",

@@ -23,13 +23,11 @@ from xlmc.studies.methods.converged_reference import (
 )
 from xlmc.studies.methods.corners import Corners
 from xlmc.studies.methods.curve import Curve, Rung, in_order, rung_of
-from xlmc.studies.methods.first_order import FirstOrder
+from xlmc.studies.methods.differential import FirstOrder, SecondOrder, WorstCase
 from xlmc.studies.methods.importance_grid import ImportanceGrid
 from xlmc.studies.methods.optimised import Optimised, widen_bounds
 from xlmc.studies.methods.sampled import ENGINE_VARIANTS, MONTE_CARLO, SAMPLERS, Sampled
-from xlmc.studies.methods.second_order import SecondOrder
 from xlmc.studies.methods.surrogate import Surrogate
-from xlmc.studies.methods.worst_case import WorstCase
 
 __all__ = ["ACCURACY", "LENGTHS", "REPLICATES", "STEP", "Study", "ladder_of", "quick_settings", "study"]
 

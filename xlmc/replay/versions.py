@@ -129,6 +129,8 @@ RULES: Final = (
     ),
     Rule("0.4.0", "IFERROR and IFNA see the errors of arrays whose size is drawn", _calls("IFERROR", "IFNA")),
     Rule("0.4.0", "A1# shows 0 for the empty cells of a range whose size is drawn", _calls("ANCHORARRAY")),
+    Rule("0.5.1", "INDEX of several rows and columns with one number gives #REF!", _calls("INDEX")),
+    Rule("0.5.1", "BETA.INV takes the probability 1, and gives the upper end", _calls("BETA.INV", "BETAINV")),
 )
 """In the order of versions."""
 
@@ -137,6 +139,7 @@ _COMMITS: Final = {
     "0.2.0": "bb61f93b6f64bf49b751e73e09eb58a162bfd9ba",
     "0.3.0": "00742dc47a736f0895b4959ff85cd29eb56e2e66",
     "0.4.0": "bc3aba5294be41225bc1b4b5739ec48cd9e98e2c",
+    "0.5.0": "7496bc5c0bfbe39791f9066d2e05fbbc01b41aaf",
 }
 """The last commit of each version before this one."""
 

@@ -1,8 +1,7 @@
 """Do 95 % intervals hold the truth for skewed, heavy-tailed, discrete and filtered forecasts, by every sampling method?
 
-`python benchmarks/tail_coverage.py --work FOLDER` makes 4,000 seeded runs of each problem, method and number of trials
-(400 of those of 200,000), and writes `results/tail-coverage.json` and the tables of docs/sampling.md. Samplers are
-xlmc's own; statistics and notices are its formulas for many runs at once, and one run in 40 is compared with its own
+`python benchmarks/tail_coverage.py --work FOLDER` makes 4,000 seeded runs of each problem, method and number of trials,
+and writes `results/tail-coverage.json` and the tables of docs/sampling.md. Samplers are xlmc's own; statistics and notices are its formulas for many runs at once, and one run in 40 is compared with its own
 functions. A run that is stopped goes on where it was: the folder holds what has been done. `--minutes` ends it in time,
 and `--runs` and `--trials` ask for less. No figure depends on the machine.
 
@@ -219,13 +218,16 @@ def _shown(cell: Cell, number: int) -> str:
 
 
 def _batches(given: argparse.Namespace) -> Iterator[tuple[str, int, int]]:
-    """Method, trials and first seed of what is to be done, all methods and sizes in turn, a tenth of the long ones."""
+    """Method, trials and first seed of what is to be done, all methods and sizes in turn."""
     for first in range(0, given.runs, BATCH):
         for trials in given.trials:
-            if trials < LONG:
-                yield from ((method, trials, first) for method in SAMPLING)
-            else:
-                yield from ((method, trials, first // 10) for method in SAMPLING)
+            for start in range(first, first + BATCH, _in_a_file(trials)):
+                yield from ((method, trials, start) for method in SAMPLING)
+
+
+def _in_a_file(trials: int) -> int:
+    """Runs that are done, and kept, at once."""
+    return BATCH if trials < LONG else BATCH // 10
 
 
 def _path(work: Path, method: str, trials: int, first: int) -> Path:
@@ -264,7 +266,7 @@ def main() -> None:
         if time.monotonic() > end:
             break
         if not path.exists():
-            found = measure(method, trials, range(first, first + (BATCH if trials < LONG else BATCH // 10)))
+            found = measure(method, trials, range(first, first + _in_a_file(trials)))
             with path.with_suffix(".part").open("wb") as file:
                 np.save(file, found)
             path.with_suffix(".part").rename(path)

@@ -140,7 +140,17 @@ def began(folder, process):
 def running(tmp_path, *options):
     temporary = tmp_path / "temporary"
     temporary.mkdir()
-    command = [sys.executable, "-c", SCRIPT, "simulate", "examples/intersection.xlsx", "-n", "1000000000", *options]
+    command = [
+        sys.executable,
+        "-P",
+        "-c",
+        SCRIPT,
+        "simulate",
+        "examples/intersection.xlsx",
+        "-n",
+        "1000000000",
+        *options,
+    ]
     environment = os.environ | {"TMPDIR": str(temporary)}
     output = ("-o", str(tmp_path / "out.xlsx"), "--quiet")
     process = subprocess.Popen([*command, *output], stderr=subprocess.PIPE, text=True, env=environment)
@@ -167,7 +177,7 @@ def test_the_next_run_removes_the_columns_of_a_killed_one(tmp_path, monkeypatch)
     process.kill()
     process.communicate()
     assert list(temporary.iterdir()) != []
-    command = [sys.executable, "-m", "xlmc", "simulate", "examples/intersection.xlsx", "-n", "1000", "-o"]
+    command = [sys.executable, "-P", "-m", "xlmc", "simulate", "examples/intersection.xlsx", "-n", "1000", "-o"]
     environment = os.environ | {"TMPDIR": str(temporary)}
     subprocess.run([*command, str(tmp_path / "o.xlsx")], env=environment, capture_output=True, check=False)
     assert list(temporary.iterdir()) == []

@@ -175,6 +175,7 @@ def killer(mutant: Mutant) -> str | None:
     (path,) = modules_with(mutant.before)
     with tempfile.TemporaryDirectory() as folder:
         shutil.copytree(ROOT / "xlmc", Path(folder, "xlmc"), ignore=shutil.ignore_patterns("__pycache__"))
+        Path(folder, "templates").symlink_to(ROOT / "templates")  # which the package looks for beside itself
         changed = Path(folder, path.relative_to(ROOT))
         changed.write_text(changed.read_text("utf-8").replace(mutant.before, mutant.after), "utf-8")
         return next((found for tests in mutant.tests if (found := _first_failure(tests, folder))), None)

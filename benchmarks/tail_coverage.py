@@ -1,9 +1,10 @@
 """Do 95 % intervals hold the truth for skewed, heavy-tailed, discrete and filtered forecasts, by every sampling method?
 
 `python benchmarks/tail_coverage.py --work FOLDER` makes 4,000 seeded runs of each problem, method and number of trials,
-and writes `results/tail-coverage.json` and the tables of docs/sampling.md. Samplers are xlmc's own; statistics and notices are its formulas for many runs at once, and one run in 40 is compared with its own
-functions. A run that is stopped goes on where it was: the folder holds what has been done. `--minutes` ends it in time,
-and `--runs` and `--trials` ask for less. No figure depends on the machine.
+and writes `results/tail-coverage.json` and the tables of docs/sampling.md. Samplers are xlmc's own; statistics and
+notices are its formulas for many runs at once, and one run in 40 is compared with its own functions. A run that is
+stopped goes on where it was: the folder holds what has been done. `--minutes` ends it in time, and `--runs` and
+`--trials` ask for less. No figure depends on the machine.
 
 The bar: no number is held in fewer than 93 % of the runs unless a notice says so in 95 % of them or more; of normal,
 uniform, bimodal and kinked forecasts, from 10,000 trials on, there is a notice in 5 % at most, and the median interval

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import re
+from abc import abstractmethod
 from collections.abc import Callable
 from typing import Any, ClassVar
 
@@ -56,8 +57,9 @@ class Leaf(Operand):  # type: ignore[misc]  # formulas has no types
         super().ast(tokens, stack, builder)
 
     @property
+    @abstractmethod
     def node(self) -> ir.Expression:
-        raise NotImplementedError
+        """What it is in a tree."""
 
 
 class _Number(Leaf):
@@ -134,7 +136,7 @@ class _TableReference(Leaf):
             raise ForeignFormulaError from None
 
 
-class _Operator(OperatorToken):  # type: ignore[misc]
+class _Operator(OperatorToken):  # type: ignore[misc]  # likewise
     """One operator at a time; a prefix waits on the stack for its operand, so that `--x` is two of them."""
 
     _re = re.compile(r"\s*(?P<name><=|>=|<>|[-+*/^&=<>:@%]|\#(?![A-Za-z]))(?:(?<![%#])\s+)?")  # `A1# B:B` intersects
@@ -166,7 +168,7 @@ class _Operator(OperatorToken):  # type: ignore[misc]
         stack.append(self)
 
 
-class _Intersect(Intersect):  # type: ignore[misc]
+class _Intersect(Intersect):  # type: ignore[misc]  # likewise
     _re = re.compile(r"\s+")
 
     def process(self, match: re.Match[str], context: object = None, parser: object = None) -> dict[str, str]:
@@ -177,13 +179,13 @@ class _Intersect(Intersect):  # type: ignore[misc]
         super().ast(tokens, stack, builder)
 
 
-class _Separator(Separator):  # type: ignore[misc]
+class _Separator(Separator):  # type: ignore[misc]  # likewise
     def ast(self, tokens: list[Any], stack: list[Any], builder: Any) -> None:
         _refuse_open_operator(tokens)
         super().ast(tokens, stack, builder)
 
 
-class _Function(FunctionToken):  # type: ignore[misc]
+class _Function(FunctionToken):  # type: ignore[misc]  # likewise
     _re = re.compile(rf"\s*(?:{PREFIX})?(?P<name>[^\W\d][\w.]*)\(\s*(?P<call>\))?")
 
     def ast(self, tokens: list[Any], stack: list[Any], builder: Any, *rest: Any) -> None:
@@ -191,7 +193,7 @@ class _Function(FunctionToken):  # type: ignore[misc]
         super().ast(tokens, stack, builder, *rest)
 
 
-class Invocation(FunctionToken):  # type: ignore[misc]
+class Invocation(FunctionToken):  # type: ignore[misc]  # likewise
     """The second `(` of `LAMBDA(x, x+1)(2)`: a call of what stands before it."""
 
     _re = re.compile(r"(?P<name>\()\s*(?P<call>\))?")
@@ -204,7 +206,7 @@ class Invocation(FunctionToken):  # type: ignore[misc]
         super().ast(tokens, stack, builder, *rest)
 
 
-class _Array(ArrayToken):  # type: ignore[misc]
+class _Array(ArrayToken):  # type: ignore[misc]  # likewise
     """`{`, `;` and `}`; the last two only within an array, for `;` parts arguments in other languages of Excel."""
 
     def ast(self, tokens: list[Any], stack: list[Any], builder: Any, *rest: Any) -> None:
@@ -217,7 +219,7 @@ class _Array(ArrayToken):  # type: ignore[misc]
         super().ast(tokens, stack, builder, *rest)
 
 
-class _Parenthesis(Parenthesis):  # type: ignore[misc]
+class _Parenthesis(Parenthesis):  # type: ignore[misc]  # likewise
     """`)` also closes a call's list; blanks after it may be an intersection and stay."""
 
     _re = re.compile(r"\s*(?P<name>(?P<start>\()\s*|(?P<end>\)))")

@@ -113,7 +113,7 @@ def _operation(operator: str, operands: tuple[ir.Expression, ...]) -> ir.Express
     return ir.Binary(operator, *operands)
 
 
-class _Parser(Parser):  # type: ignore[misc]
+class _Parser(Parser):  # type: ignore[misc]  # formulas has no types
     """`formulas.Parser` with our tokens and our builder. `rest` is what was left when the last token was looked for."""
 
     ast_builder = _TreeBuilder

@@ -85,7 +85,7 @@ class Placement:
             if at is None or type(node) is Constant:
                 continue
             if type(node) is Input:
-                at = _leave_branches(at)  # draws are there for all trials
+                at = next(outer for outer in at.outwards() if outer.select < 0)  # draws are there for all trials
             found[node_id] = at
             self.reads[node_id] = read = reads(self._dag, node_id)
             if type(node) is Select and at.depth < DEEPEST_BRANCHES and _divides(types[node_id], types[node.condition]):
@@ -104,25 +104,13 @@ def _divides(result: Kind, condition: Kind) -> bool:
     return {result, condition} <= {Kind.NUMBER, Kind.LOGICAL}
 
 
-def _leave_branches(trials: TrialSet) -> TrialSet:
-    while trials.select >= 0 and trials.parent is not None:
-        trials = trials.parent
-    return trials
-
-
 def _find_safe_branches(dag: Dag, sets: dict[int, TrialSet]) -> dict[TrialSet, TrialSet]:
     """The branches in which nothing can err -> the nearest set around each that is kept."""
     kept = {ALL_TRIALS, SURVIVORS}
     for node, trials in sets.items():
         if trials not in kept and not _is_safe(dag, node):
             kept.update(trials.outwards())
-    return {trials: _nearest_kept(trials, kept) for trials in set(sets.values()) - kept}
-
-
-def _nearest_kept(trials: TrialSet, kept: set[TrialSet]) -> TrialSet:
-    while trials not in kept and trials.parent is not None:
-        trials = trials.parent
-    return trials
+    return {trials: next(outer for outer in trials.outwards() if outer in kept) for trials in set(sets.values()) - kept}
 
 
 def _is_safe(dag: Dag, node_id: int) -> bool:

@@ -7,6 +7,7 @@ import counts: those inside of functions, and those for type checkers only.
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
@@ -14,27 +15,10 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "xlmc"
 
-ROOMS = {
-    "errors": "what people are told when something is wrong",
-    "address": "`Sheet!Cell`",
-    "columns": "columns of trials, in memory or on the disk",
-    "workbook": "read an xlsx, write sheets into it",
-    "formula": "a formula's text becomes a tree, the cells become what the forecasts need",
-    "functions": "what Excel's functions compute",
-    "distributions": "families of distributions, one a file",
-    "statistics": "the numbers of a sample, with their errors",
-    "sampling": "a seed becomes uniforms, and these become draws",
-    "definitions": "what the workbook asks for: assumptions, forecasts, filters, settings",
-    "evaluation": "trees become a graph, and the graph is computed over trials",
-    "run": "trials in, accepted trials out",
-    "results": "a run in words, on record, in a file",
-    "studies": "further questions to a workbook or a run",
-    "report": "what people look at: sheets, page, data, pictures",
-    "replay": "a recorded run repeated, and all that its workbook shows compared",
-    "api": "what people hold in Python",
-    "cli": "what people type",
-}
-"""In the order in which a workbook flows: a room imports from those above it in this table, never from those below."""
+TABLE = (PACKAGE.parent / "ARCHITECTURE.md").read_text(encoding="utf-8").split("| room | what it does |")[1]
+ROOMS = dict(re.findall(r"^\| `(\w+)` \| (.+) \|$", TABLE.partition("\n\n")[0], re.MULTILINE))
+"""What each room does, as ARCHITECTURE.md has it, in the order in which a workbook flows: a room imports from those
+above it in this table, never from those below."""
 
 DOORS = ("__init__", "__main__")
 MODULES = sorted(PACKAGE.rglob("*.py"))

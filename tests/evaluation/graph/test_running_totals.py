@@ -32,7 +32,7 @@ def test_the_sums_are_those_of_whole_ranges(run, contents, monkeypatch):
         del cells[cell]
     forecasts = ["C15", "C16", "C17", "C25", "C29", "C40"]
     running = run(cells, draws, forecasts)
-    monkeypatch.setattr(RunningTotals, "_column", lambda *_: None)
+    monkeypatch.setattr(RunningTotals, "_long_set", lambda *_: None)
     assert run(cells, draws, forecasts).forecasts == running.forecasts
 
 

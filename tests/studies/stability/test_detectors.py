@@ -156,7 +156,7 @@ def test_a_jump_and_a_bend(look):
 
 
 def test_a_lookup_with_steps(look):
-    assert "VLOOKUP finds 3 different cells" in only(look({"B1": "=VLOOKUP(A1,{0,1;1.3,4;1.6,9},2)"}), "jump").what
+    assert "a lookup finds 3 different cells" in only(look({"B1": "=VLOOKUP(A1,{0,1;1.3,4;1.6,9},2)"}), "jump").what
 
 
 def test_a_forecast_without_a_mean(look):

@@ -12,6 +12,7 @@ from xlmc.errors import ErrorCode
 from xlmc.evaluation.graph.arrays import cell_by_cell, either, element, share_out, sizes_differ, spread
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, Select
+from xlmc.evaluation.graph.number_lookups import NumberLookups
 from xlmc.evaluation.graph.running_totals import RunningTotals
 from xlmc.functions import Function, Kind
 from xlmc.functions.families import REGISTRY
@@ -28,7 +29,7 @@ class NodeBuilder:
     """
 
     def __init__(self, dag: Dag, totals: RunningTotals) -> None:
-        self.dag, self._totals = dag, totals
+        self.dag, self._totals, self._lookups = dag, totals, NumberLookups(dag)
         self._numbers: dict[float, int] = {}
 
     def number(self, value: float) -> int:
@@ -91,6 +92,9 @@ class NodeBuilder:
             return chosen
         if function.takes_sets:
             return self._totals.apply(function, arguments)
+        found = self._lookups.apply(function, arguments)
+        if found is not None:
+            return found
         if all(self.dag.sizes[node] is None for node in arguments):
             return self.dag.add(Apply(function, arguments))
         loose = tuple(p for i, p in enumerate(arguments) if not function.parameter(i).ranged)

@@ -36,6 +36,9 @@ FOLDS: Final = frozenset({"SUM", "COUNT", "COUNTA", "AVERAGE", *SO_FAR})
 _SHORTEST: Final = 16
 """The fewest cells of a range that is worth looking up."""
 
+_CELL_BY_CELL: Final = frozenset({"SUM", "MIN", "MAX", "PRODUCT"})
+"""Functions that fold cells from the first to the last."""
+
 _NUMBERS: Final = "how many are numbers where none is an error"
 
 _MANY_UPWARDS: Final = 64
@@ -143,25 +146,44 @@ class RunningTotals:
         return isinstance(node, Constant) and NUMBER < int(node.value.kinds.flat[0]) < ERROR
 
     def apply(self, function: Function, arguments: tuple[int, ...]) -> int:
-        """The node of a function whose arguments are one set."""
-        node = Apply(function, arguments)
-        cells = self._column(function, arguments)
+        """The node of a function whose arguments are one set; of a long one, cell by cell."""
+        cells = self._long_set(arguments) if function.name in _CELL_BY_CELL else None
         if cells is None:
-            return self._dag.add(node)
-        before = self._known.get((function, cells[:-1]))
+            return self._dag.add(Apply(function, arguments))
+        key = function, tuple(cells)
+        before = self._known.get((function, key[1][:-1]))
         if before is not None:
-            node = Apply(function, (before, self._dag.add(Range(((cells[-1],),)))))
-        self._known[function, cells] = node_id = self._dag.add(node)
-        return node_id
+            node = self._dag.add(Apply(function, (before, self._row(cells[-1:]))))
+        elif function.name == "SUM" or all(self._dag.types[cell] is Kind.NUMBER for cell in cells):
+            node = self._cell_by_cell(function, cells)
+        else:
+            node = self._dag.add(Apply(function, arguments))
+        self._known[key] = node
+        return node
 
-    def _column(self, function: Function, arguments: tuple[int, ...]) -> tuple[int, ...] | None:
-        """The cells of the only argument where it is one long column."""
-        if function.name != "SUM" or len(arguments) != 1:
-            return None
-        node = self._dag.nodes[arguments[0]]
-        if not isinstance(node, Range) or len(node.rows) < _SHORTEST or len(node.rows[0]) > 1:
-            return None
-        return tuple([cell for (cell,) in node.rows])
+    def _long_set(self, arguments: Sequence[int]) -> list[int] | None:
+        """The cells of a set that holds many cells that vary."""
+        cells: list[int] = []
+        for argument in arguments:
+            node = self._dag.nodes[argument]
+            if not isinstance(node, Range):
+                return None
+            cells += [cell for row in node.rows for cell in row]
+        varying = sum(type(self._dag.nodes[cell]) is not Constant for cell in cells)
+        return cells if varying >= _SHORTEST else None
+
+    def _cell_by_cell(self, function: Function, cells: Sequence[int]) -> int:
+        """A fold that goes on as soon as the next cell is there, so that not all cells wait for the last one."""
+        pieces: list[list[int]] = [[]]
+        for cell in cells:
+            pieces[-1].append(cell)
+            if type(self._dag.nodes[cell]) is not Constant:
+                pieces.append([])
+        state = self._apply_to_row(function, pieces[0])
+        for piece in pieces[1:]:
+            if piece:
+                state = self._dag.add(Apply(function, (state, self._row(piece))))
+        return state
 
 
 @dataclass(frozen=True, slots=True)

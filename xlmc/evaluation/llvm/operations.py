@@ -15,6 +15,7 @@ from llvmlite import ir
 
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Node, Select
+from xlmc.evaluation.llvm.lookups import lookup_rule
 from xlmc.evaluation.llvm.loop_arithmetic import arccosine, arcsine, arctangent, arctangent_of_two
 from xlmc.evaluation.llvm.loop_rules import PLAIN, Emit, Emitter, LoopRule, Operand, literal
 from xlmc.evaluation.llvm.sets import over_cells
@@ -50,7 +51,7 @@ def loop_rule_of(dag: Dag, node: int) -> LoopRule | None:
 def _rule(dag: Dag, node: Node, kind: Kind) -> LoopRule | None:
     match node:
         case Apply():
-            return _operation(dag, node) or over_cells(dag, node)
+            return _operation(dag, node) or lookup_rule(dag, node) or over_cells(dag, node)
         case Select(condition, yes, no):
             operands = Operand(condition, Kind.LOGICAL), Operand(yes, kind), Operand(no, kind)
             return LoopRule(operands, lambda body, parts: body.builder.select(*parts), makes=False)

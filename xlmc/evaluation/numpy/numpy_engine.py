@@ -17,6 +17,7 @@ from xlmc.errors import FormulaError
 from xlmc.evaluation.engine import Column, Evaluator, Target, column_of
 from xlmc.evaluation.graph.dag import Dag, constants
 from xlmc.evaluation.graph.nodes import Input
+from xlmc.evaluation.graph.readiness import order_by_need
 from xlmc.evaluation.graph.trial_sets import ALL_TRIALS, TrialSet
 from xlmc.evaluation.numpy.branches import SURVIVORS, Placement, branch_step
 from xlmc.evaluation.numpy.sequence import Buffers, Steps
@@ -144,8 +145,9 @@ class NumpyProgram:
     def _steps(self, trials: TrialSet, keep: set[int], free_at_end: Sequence[int]) -> list[Step]:
         """The steps of one set of trials; the values of `keep` are read after them."""
         nodes, branched = self._dag.nodes, self._placement.branched
-        computed = [node for node in self._placement.members(trials) if type(nodes[node]) is not Input]
-        read = self._placement.reads | {node: self._reads(node) for node in computed if node in branched}
+        members = [node for node in self._placement.members(trials) if type(nodes[node]) is not Input]
+        read = self._placement.reads | {node: self._reads(node) for node in members if node in branched}
+        computed = order_by_need(members, read, keep, _MOST_BYTES // (8 * _LARGEST_BLOCK))
         last = {needed: node for node in computed for needed in read[node]} | dict.fromkeys(keep, -1)
         steps = Steps(self._dag, self._buffers, computed, self._bounds)
         for node in computed:

@@ -13,6 +13,7 @@ from xlmc.evaluation.passes.random_rounding import formula_of, numbers_of
 from xlmc.formula import ir
 from xlmc.functions.facts import Domain
 from xlmc.functions.families import function_named
+from xlmc.functions.lookup.search_and_pick import POSITION
 from xlmc.statistics.heavy_tails import heavy_tail
 from xlmc.studies.stability.case import Case, Floats
 from xlmc.studies.stability.digit_findings import Finding, Level, Where
@@ -269,7 +270,7 @@ def jumps(case: Case) -> Iterator[Finding]:
                 if finding is not None:
                     yield finding
     for kink in case.derivatives.kinks:
-        row = function_named(kink.function)
+        row = POSITION if kink.function == POSITION.name else function_named(kink.function)
         if row is not None and row.facts.jumps and kink.cell in case.node:
             text = f"{kink.function} finds {kink.ways} different cells among the trials"
             yield _jump_finding(case, kink.cell, text, "the result steps from one cell to the next", kink.share)

@@ -17,6 +17,7 @@ from xlmc.evaluation.passes.derivatives.jet import Jet, align, concatenate, flat
 from xlmc.evaluation.passes.derivatives.rules import RULES, DerivativeRule, Operand, Outcome, level_jets, rule
 from xlmc.functions import Function
 from xlmc.functions.lookup.picked_cells import join_values, map_parts, transpose_cells
+from xlmc.functions.lookup.search_and_pick import CELL_AT, POSITION
 from xlmc.functions.values import ERROR, LOGICAL, NUMBER, Bools, Value
 
 __all__ = ["Drawer"]
@@ -75,7 +76,7 @@ def _tag(value: Value, numbers: NDArray[np.float64]) -> Value:
     return Value(np.broadcast_to(numbers, shape), np.broadcast_to(kinds.astype(np.uint8), shape), value.texts)
 
 
-@rule("MATCH", "XMATCH", why=_AT_A_STEP, jumps=True)
+@rule("MATCH", "XMATCH", POSITION.name, why=_AT_A_STEP, jumps=True)
 def match(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
     """A position, whose derivative is 0 except where it steps."""
     step = _steps(function, result, [operand.value for operand in operands])
@@ -189,3 +190,9 @@ register_moving(lambda _: (0,), "TRANSPOSE", "TAKE", "DROP", "CHOOSEROWS", "CHOO
 register_moving(lambda _: (0, 2), "FILTER", "WRAPROWS", "WRAPCOLS")
 register_moving(lambda _: (0, 3), "EXPAND")
 register_moving(range, "VSTACK", "HSTACK")
+
+
+@rule(CELL_AT.name)
+def cell_at(function: Function, result: Value, operands: Sequence[Operand]) -> Outcome:
+    """A constant number: its derivative is that of the position, 0 where it does not step."""
+    return Outcome(hold_still(result, level_jets([operands[1]]), np.zeros(1, bool)))

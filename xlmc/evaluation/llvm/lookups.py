@@ -1,0 +1,108 @@
+"""Lookups in constant numbers as instructions: a search and a pick (see `functions.lookup.search_and_pick`).
+
+The numbers stand in the module. A trial whose key has no position is computed again; until then it reads a number at an
+end, never beyond one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from hashlib import sha256
+from typing import Any, Final
+
+from llvmlite import ir
+
+from xlmc.evaluation.graph.dag import Dag
+from xlmc.evaluation.graph.nodes import Apply
+from xlmc.evaluation.graph.number_lookups import lookup_of
+from xlmc.evaluation.llvm.loop_rules import Emitter, LoopRule, Operand
+from xlmc.functions import Kind
+from xlmc.functions.lookup.search_and_pick import POSITION, Search
+from xlmc.functions.values import Floats
+
+__all__ = ["lookup_rule"]
+
+_MOST: Final = 4096
+"""The most numbers that a module holds; longer columns are searched outside of the loop."""
+
+_LONG: Final = ir.IntType(64)
+
+
+def lookup_rule(dag: Dag, node: Apply) -> LoopRule | None:
+    """The rule of a lookup in constant numbers; None of any other node."""
+    lookup = lookup_of(dag, node)
+    if lookup is None:
+        return None
+    numbers = lookup.rising if isinstance(lookup, Search) else lookup.numbers
+    if numbers.size > _MOST:
+        return None
+    varying = node.arguments[0 if node.function.name == POSITION.name else 1]
+
+    def emit(body: Emitter, parts: Sequence[Any]) -> Any:
+        if isinstance(lookup, Search):
+            return _search(body, lookup, parts[0])
+        return _Column(body, numbers).at(body.builder.fptosi(parts[0], _LONG))
+
+    return LoopRule((Operand(varying, Kind.NUMBER),), emit, absorbs=(0,), makes=False)
+
+
+class _Column:
+    """Constant doubles, kept once in a module."""
+
+    def __init__(self, body: Emitter, numbers: Floats) -> None:
+        self._builder, self._body = body.builder, body
+        type_ = ir.ArrayType(body.real, numbers.size)
+        name = f"column.{sha256(numbers.tobytes()).hexdigest()[:32]}"
+        known = body.builder.module.globals
+        if name not in known:
+            held = ir.GlobalVariable(body.builder.module, type_, name)
+            held.linkage, held.global_constant = "internal", True
+            held.initializer = ir.Constant(type_, [ir.Constant(body.real, float(number)) for number in numbers])
+        self._held = known[name]
+
+    def at(self, index: Any) -> Any:
+        """The double at an index."""
+        return self._builder.load(self._builder.gep(self._held, [_LONG(0), index]))
+
+
+def _search(body: Emitter, search: Search, key: Any) -> Any:
+    """The position of a key, counted from 1; the trial is computed again where it has none."""
+    builder = body.builder
+    key = key if search.sign > 0 else builder.fneg(key)
+    if search.step:
+        found = _by_division(body, search, key)
+    else:
+        found = _by_halves(body, search, key, "<" if search.places is not None else "<=")
+    if search.places is None:
+        body.flag(builder.fcmp_unordered("<", key, body.number(float(search.rising[0]))))
+        return builder.sitofp(found, body.real)
+    body.flag(builder.fcmp_unordered("!=", key, _Column(body, search.rising).at(found)))
+    return _Column(body, search.places.astype(float)).at(found)
+
+
+def _by_division(body: Emitter, search: Search, key: Any) -> Any:
+    """How many numbers are not above the key: guessed by its distance from the first, and corrected by one."""
+    builder, rising = body.builder, _Column(body, search.rising)
+    first, last = float(search.rising[0]), float(search.rising[-2])
+    inside = body.intrinsic("llvm.minnum", body.intrinsic("llvm.maxnum", key, body.number(first)), body.number(last))
+    steps = builder.fmul(builder.fsub(inside, body.number(first)), body.number(1.0 / search.step))
+    guess = builder.fptosi(steps, _LONG)
+    below = builder.zext(builder.fcmp_ordered("<", inside, rising.at(guess)), _LONG)
+    found = builder.add(builder.sub(guess, below), _LONG(1))
+    beyond = builder.zext(builder.fcmp_ordered(">=", inside, rising.at(found)), _LONG)
+    return builder.add(found, beyond)
+
+
+def _by_halves(body: Emitter, search: Search, key: Any, relation: str) -> Any:
+    """How many numbers stand in that relation to the key, which those at the front do."""
+    builder, size = body.builder, search.rising.size - 1
+    rising = _Column(body, search.rising)
+    found, half = _LONG(0), 1 << (size.bit_length() - 1)
+    while half:
+        reach = builder.add(found, _LONG(half))
+        inside = builder.icmp_signed("<=", reach, _LONG(size))
+        index = builder.select(inside, builder.sub(reach, _LONG(1)), _LONG(size))
+        holds = builder.fcmp_ordered(relation, rising.at(index), key)
+        found = builder.select(holds, reach, found)
+        half //= 2
+    return found

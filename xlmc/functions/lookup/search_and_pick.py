@@ -1,0 +1,131 @@
+"""Lookups in constant numbers, as engines compute them: a search and a pick, of plain numbers alone.
+
+`POSITION` is MATCH in constant numbers that are in order, `CELL_AT` gives the number at the position that it found.
+Engines run `Search` and `Pick`, which are called like ufuncs, instead of the bodies of these two functions, which take
+values of any kind.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.functions.facts import Facts
+from xlmc.functions.lookup.index_and_address import index
+from xlmc.functions.lookup.lookup import match
+from xlmc.functions.registry import Anything, Arrays, Cells, Function, Kind, Number
+from xlmc.functions.values import NUMBER, Floats, Value
+
+__all__ = ["CELL_AT", "POSITION", "Pick", "Search", "numbers_of"]
+
+POSITION: Final = Function(
+    "a lookup", (Anything, Cells, Number), match, Kind.NUMBER, facts=Facts(jumps=True, exact_steps=True)
+)
+"""A key that is one number, constant numbers, and a constant order: 1, 0 or -1."""
+
+CELL_AT: Final = Function(
+    "the cell found", (Arrays, Number), index, Kind.NUMBER, facts=Facts(exact_steps=True, unrounded=True)
+)
+"""Constant numbers and a position that is surely one of theirs."""
+
+
+def numbers_of(value: Value) -> Floats | None:
+    """The numbers of a constant row or column, `(k,)`; None of another value, or where not all are numbers."""
+    if value.numbers.ndim != 3 or value.shape[0] != 1 or 1 not in value.shape[1:]:
+        return None
+    if not (value.kinds == NUMBER).all():
+        return None
+    return np.ascontiguousarray(np.broadcast_to(value.numbers, value.shape).reshape(-1))
+
+
+_EVEN: Final = 0.25
+"""Numbers that lie no farther than this share of a step from evenly spaced ones are found by a division."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Search:
+    """Finds the positions of keys in numbers, counted from 1.
+
+    Attributes:
+        rising: `(k,)` the numbers in rising order, each times `sign`; infinity follows.
+        sign: -1 where they are in falling order.
+        places: `(k,)` where each of them stands, counted from 1, if a key must equal one of them, the first of equal
+            ones; None where a key has the position of the last number that is not beyond it.
+        step: from one of them to the next, where they are evenly spaced; else 0.
+    """
+
+    rising: Floats
+    sign: float
+    places: NDArray[np.intp] | None
+    step: float
+    nin: ClassVar[int] = 1
+
+    @classmethod
+    def of(cls, numbers: Floats, order: float) -> Search | None:
+        """The search that MATCH makes with this order: 1, 0 or -1; None in numbers that are not in it."""
+        if order == 0:
+            by_size = np.argsort(numbers, kind="stable")
+            return cls(np.append(numbers[by_size], np.inf), 1.0, np.append(by_size + 1, 0), 0.0)
+        signed = np.copysign(1.0, order) * numbers
+        if not (signed[:-1] <= signed[1:]).all():
+            return None
+        step = float(signed[-1] - signed[0]) / max(1, signed.size - 1)
+        even = signed[0] + step * np.arange(signed.size)
+        is_even = step > 0 and bool((np.abs(signed - even) <= _EVEN * step).all())
+        return cls(np.append(signed, np.inf), float(np.copysign(1.0, order)), None, step if is_even else 0.0)
+
+    def finds(self, keys: Floats) -> bool:
+        """Whether every key, none of them infinite, has a position."""
+        if self.places is not None:
+            return bool((self.rising.take(np.searchsorted(self.rising, keys)) == keys).all())
+        least = np.min(keys) if self.sign > 0 else -np.max(keys)
+        return bool(least >= self.rising[0])
+
+    def __call__(self, keys: Floats, out: Floats | None = None) -> Floats:
+        """The positions, `(n,)`, of keys that all have one."""
+        out = np.empty(np.shape(keys)) if out is None else out
+        np.copyto(out, self._positions(keys))
+        return out
+
+    def _positions(self, keys: Floats) -> NDArray[np.intp]:
+        if self.places is not None:
+            places: NDArray[np.intp] = self.places.take(np.searchsorted(self.rising, keys))
+            return places
+        keys = keys if self.sign > 0 else -keys
+        return self._by_division(keys) if self.step else np.searchsorted(self.rising, keys, "right")
+
+    def _by_division(self, keys: Floats) -> NDArray[np.intp]:
+        """Guess by the distance from the first number, which misses by one at most, and correct."""
+        guess = np.minimum(keys, self.rising[-2])
+        guess -= self.rising[0]
+        guess *= 1.0 / self.step
+        found: NDArray[np.intp] = guess.astype(np.intp)
+        found -= keys < self.rising.take(found)
+        found += 1
+        found += keys >= self.rising.take(found)
+        return found
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pick:
+    """Picks the numbers at positions, counted from 1.
+
+    Attributes:
+        numbers: `(k + 1,)`, the first of which is never picked.
+    """
+
+    numbers: Floats
+    nin: ClassVar[int] = 1
+
+    @classmethod
+    def of(cls, numbers: Floats) -> Pick:
+        """The pick from a row or a column."""
+        return cls(np.insert(numbers, 0, np.nan))
+
+    def __call__(self, positions: Floats, out: Floats | None = None) -> Floats:
+        """The numbers at positions, `(n,)`."""
+        found: Floats = self.numbers.take(positions.astype(np.intp), out=out, mode="clip")
+        return found

@@ -21,6 +21,7 @@ from xlmc.evaluation.llvm.loop import Load, compile_loop
 from xlmc.evaluation.llvm.loop_rules import LoopRule, Operand, reads
 from xlmc.evaluation.llvm.machine import Machine, NativeLoop
 from xlmc.functions import Kind
+from xlmc.functions.denormals import tiny_to_zero
 from xlmc.functions.values import Floats, Value
 
 __all__ = ["Loop", "Memory", "Phase", "Trials"]
@@ -80,6 +81,17 @@ class Trials:
             return Value.of_logicals(array) if array.dtype == np.bool_ else Value.of_numbers(array)
         assert self.wider is not None
         return self.wider.value(node).take(self.survivors)
+
+    def numbers(self, node_id: int) -> Floats | float | None:
+        """A node's plain numbers, `(n,)`, or the number that it always is; None where a `Value` must be asked."""
+        node = self._dag.nodes[node_id]
+        if self._dag.types[node_id] is not Kind.NUMBER or self._dag.sizes[node_id] is not None:
+            return None
+        if isinstance(node, Constant):
+            return float(node.value.numbers[0])
+        if node_id not in self.arrays and self.wider is not None and node_id in self.wider.arrays:
+            self.arrays[node_id] = self.wider.arrays[node_id][self.survivors]
+        return self.arrays.get(node_id)
 
     def column(self, node: int, fallible: bool) -> Column:
         """A node as a result: numbers alone for draws without errors, or from a loop, whose errors `wrong` marks."""
@@ -213,9 +225,32 @@ class Phase:
         for node_id in nodes:
             node = self._dag.nodes[node_id]
             assert isinstance(node, Apply | Select | IfErrorNode | Range)
-            needed = {used: trials.value(used) for used in reads(self._dag, node_id, None)}
             with np.errstate(all="ignore"):
+                numbers = _apply_ufunc(node, trials) if isinstance(node, Apply) else None
+                if numbers is not None:
+                    trials.arrays[node_id] = numbers
+                    continue
+                needed = {used: trials.value(used) for used in reads(self._dag, node_id, None)}
                 trials.values[node_id] = evaluate_node(node, needed)
+
+
+def _apply_ufunc(node: Apply, trials: Trials) -> Floats | None:
+    """What the ufunc of a function of numbers gives, `(n,)`; trials where it is no number must be computed again.
+
+    None of a function that has none, and where an argument is no plain number or the function's guard does not hold.
+    """
+    function = node.function
+    if not function.on_numbers or function.returns is not Kind.NUMBER or function.ufunc is None:
+        return None
+    given = [trials.numbers(argument) for argument in node.arguments]
+    arguments = [each for each in given if each is not None]
+    if len(arguments) < len(given) or len(arguments) != function.ufunc.nin:
+        return None
+    if function.guard is not None and not function.guard(*arguments):
+        return None
+    found: Floats = tiny_to_zero(function.ufunc(*arguments))
+    trials.wrong |= ~np.isfinite(found)
+    return found
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -13,6 +13,7 @@ from xlmc.evaluation.engine import BlockRunner, Column, Evaluator, Target
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.lower import Lowering
 from xlmc.evaluation.graph.nodes import Input
+from xlmc.evaluation.graph.readiness import order_by_need
 from xlmc.evaluation.llvm.block_runner import NativeBlockRunner, block_parts
 from xlmc.evaluation.llvm.loop_rules import LoopRule, reads
 from xlmc.evaluation.llvm.machine import machine
@@ -27,6 +28,10 @@ if TYPE_CHECKING:
 __all__ = ["JitProgram"]
 
 _MOST_MEMORY: Final = 2**28
+_MOST_IN_CACHES: Final = 2**25
+"""The most bytes of all arrays: of a model that consists of loops alone, which take a few trials at a time, and of one
+whose stages each pass over the whole block."""
+_FEW_BETWEEN_LOOPS: Final = 64
 _LARGEST_BLOCK: Final = 1 << 20
 _SMALLEST_BLOCK: Final = 1 << 10
 
@@ -38,7 +43,8 @@ class JitProgram:
         may_err: the inputs whose draws may be errors (NaNs).
 
     Attributes:
-        largest_block: the largest block, a power of two, whose arrays take no more than 256 MB.
+        largest_block: the largest block, a power of two, whose arrays take no more than 256 MB; 32 MB where functions
+            outside of loops pass over them.
     """
 
     def __init__(
@@ -61,13 +67,15 @@ class JitProgram:
         late = [node for node in self.dag.upstream(self.forecast_nodes, needed) if node not in early]
         carried = {used for node in late for used in needed(node)} | set(self.forecast_nodes)
         keep = {*self.filter_nodes, *(carried & early)}
-        self.first = Phase(self.dag, machine(), rules, first, keep, None, may_err)
-        self.late = Phase(self.dag, machine(), rules, late, set(self.forecast_nodes), early, may_err)
+        self.first = Phase(self.dag, machine(), rules, _in_order(first, needed, keep), keep, None, may_err)
+        wanted = set(self.forecast_nodes)
+        self.late = Phase(self.dag, machine(), rules, _in_order(late, needed, wanted), wanted, early, may_err)
         self.inputs = _inputs(self.dag, [*first, *late])
         self.careful_inputs = _inputs(self.dag, self.dag.upstream([*self.filter_nodes, *self.forecast_nodes]))
         self.stores = (*self.first.stores, *self.late.stores)
         self.largest_block = _LARGEST_BLOCK
-        while self.largest_block > _SMALLEST_BLOCK and self.largest_block * 8 * len(self.stores) > _MOST_MEMORY:
+        memory = _MOST_MEMORY if self.first.loops is not None and self.late.loops is not None else _MOST_IN_CACHES
+        while self.largest_block > _SMALLEST_BLOCK and self.largest_block * 8 * len(self.stores) > memory:
             self.largest_block //= 2
         in_arrays = array_bytes(lowering, self.filter_nodes, self.forecast_nodes)
         self.largest_block = fitting_block(self.largest_block, in_arrays, 8 * len(self.stores))
@@ -75,6 +83,11 @@ class JitProgram:
     def evaluator(self, block: int) -> Evaluator:
         """See `Program`."""
         return _JitEvaluator(self, block)
+
+
+def _in_order(nodes: list[int], needed: Callable[[int], Sequence[int]], keep: Collection[int]) -> Sequence[int]:
+    """The nodes so that loops, which take them in order, leave few values to each other."""
+    return order_by_need(nodes, {node: needed(node) for node in nodes}, keep, _FEW_BETWEEN_LOOPS)
 
 
 def _inputs(dag: Dag, nodes: Sequence[int]) -> dict[int, str]:

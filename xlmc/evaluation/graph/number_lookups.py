@@ -6,6 +6,7 @@ Lookups of one key in one column then share the search, and give what is known t
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -22,6 +23,9 @@ __all__ = ["NumberLookups", "lookup_of"]
 _RISING: Final = 1.0
 _EQUAL: Final = 0.0
 
+_KEPT: Final = 64
+"""Tables that are kept ready to be searched."""
+
 
 class NumberLookups:
     """Makes the nodes of such lookups.
@@ -33,7 +37,6 @@ class NumberLookups:
     def __init__(self, dag: Dag) -> None:
         self._dag = dag
         self._columns: dict[tuple[int, int, bool], int | None] = {}
-        self._searched: dict[tuple[int, float], bool] = {}
 
     def apply(self, function: Function, arguments: Sequence[int]) -> int | None:
         """The node of a lookup of a number that varies in constant numbers; None of any other call."""
@@ -95,7 +98,8 @@ class NumberLookups:
         """The position of a key in a column; None where the key is no number, or the column not in order."""
         dag = self._dag
         varies = dag.types[key] is Kind.NUMBER and dag.sizes[key] is None and not isinstance(dag.nodes[key], Constant)
-        if not varies or not self._is_in_order(column, order):
+        cells = _constant_cells(dag, column)
+        if not varies or cells is None or _search(cells, order) is None:
             return None
         return dag.add(Apply(POSITION, (key, column, dag.constant(constant(order)))))
 
@@ -110,13 +114,6 @@ class NumberLookups:
         if self._size(node.arguments[1]) > self._size(column):
             return None
         return self._dag.add(Apply(CELL_AT, (column, position)))
-
-    def _is_in_order(self, column: int, order: float) -> bool:
-        if (column, order) not in self._searched:
-            cells = _constant_cells(self._dag, column)
-            numbers = None if cells is None else numbers_of(cells)
-            self._searched[column, order] = numbers is not None and Search.of(numbers, order) is not None
-        return self._searched[column, order]
 
     def _vector(self, table: int) -> int | None:
         """A row or a column of numbers, as a column."""
@@ -157,15 +154,25 @@ _FORMS: Final[Mapping[str, Callable[[NumberLookups, Sequence[int]], int | None]]
 
 def lookup_of(dag: Dag, node: Apply) -> Search | Pick | None:
     """What computes a search or a pick of plain numbers; None of any other node."""
-    if node.function.name not in (POSITION.name, CELL_AT.name):
-        return None
-    is_search = node.function.name == POSITION.name
-    cells = _constant_cells(dag, node.arguments[1 if is_search else 0])
-    numbers = None if cells is None else numbers_of(cells)
-    if numbers is None:
-        return None
-    order = _constant_number(dag, node.arguments[2]) if is_search else None
-    return Pick.of(numbers) if order is None else Search.of(numbers, order)
+    if node.function.name == CELL_AT.name:
+        cells = _constant_cells(dag, node.arguments[0])
+        return None if cells is None else _pick(cells)
+    if node.function.name == POSITION.name:
+        cells, order = _constant_cells(dag, node.arguments[1]), _constant_number(dag, node.arguments[2])
+        return None if cells is None or order is None else _search(cells, order)
+    return None
+
+
+@lru_cache(_KEPT)
+def _pick(cells: Value) -> Pick | None:
+    numbers = numbers_of(cells)
+    return None if numbers is None else Pick.of(numbers)
+
+
+@lru_cache(_KEPT)
+def _search(cells: Value, order: float) -> Search | None:
+    numbers = numbers_of(cells)
+    return None if numbers is None else Search.of(numbers, order)
 
 
 def _constant_cells(dag: Dag, node_id: int) -> Value | None:

@@ -7,6 +7,7 @@ end, never beyond one.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from hashlib import sha256
 from typing import Any, Final
 
@@ -15,15 +16,17 @@ from llvmlite import ir
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply
 from xlmc.evaluation.graph.number_lookups import lookup_of
-from xlmc.evaluation.llvm.loop_rules import Emitter, LoopRule, Operand
+from xlmc.evaluation.llvm.loop_rules import Emit, Emitter, LoopRule, Operand
 from xlmc.functions import Kind
-from xlmc.functions.lookup.search_and_pick import POSITION, Search
+from xlmc.functions.lookup.search_and_pick import POSITION, Pick, Search
 from xlmc.functions.values import Floats
 
 __all__ = ["lookup_rule"]
 
 _MOST: Final = 4096
 """The most numbers that a module holds; longer columns are searched outside of the loop."""
+
+_KEPT: Final = 64
 
 _LONG: Final = ir.IntType(64)
 
@@ -37,13 +40,17 @@ def lookup_rule(dag: Dag, node: Apply) -> LoopRule | None:
     if numbers.size > _MOST:
         return None
     varying = node.arguments[0 if node.function.name == POSITION.name else 1]
+    return LoopRule((Operand(varying, Kind.NUMBER),), _emit(lookup), absorbs=(0,), makes=False)
 
+
+@lru_cache(_KEPT)
+def _emit(lookup: Search | Pick) -> Emit:
     def emit(body: Emitter, parts: Sequence[Any]) -> Any:
         if isinstance(lookup, Search):
             return _search(body, lookup, parts[0])
-        return _Column(body, numbers).at(body.builder.fptosi(parts[0], _LONG))
+        return _Column(body, lookup.numbers).at(body.builder.fptosi(parts[0], _LONG))
 
-    return LoopRule((Operand(varying, Kind.NUMBER),), emit, absorbs=(0,), makes=False)
+    return emit
 
 
 class _Column:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache, lru_cache
 from typing import Any, Final
 
 from llvmlite import ir
@@ -54,12 +55,20 @@ def _rule(dag: Dag, node: Node, kind: Kind) -> LoopRule | None:
             return _operation(dag, node) or lookup_rule(dag, node) or over_cells(dag, node)
         case Select(condition, yes, no):
             operands = Operand(condition, Kind.LOGICAL), Operand(yes, kind), Operand(no, kind)
-            return LoopRule(operands, lambda body, parts: body.builder.select(*parts), makes=False)
+            return LoopRule(operands, _choose, makes=False)
         case IfErrorNode(value) if dag.types[value] is kind:
             # Where the value may be an error the trial is computed again: the other value is never needed here.
-            return LoopRule((Operand(value, kind),), lambda body, parts: parts[0], makes=False)
+            return LoopRule((Operand(value, kind),), _same, makes=False)
         case _:
             return None
+
+
+def _choose(body: Emitter, parts: Sequence[Any]) -> Any:
+    return body.builder.select(*parts)
+
+
+def _same(_: Emitter, parts: Sequence[Any]) -> Any:
+    return parts[0]
 
 
 def _readable(dag: Dag, operand: Operand) -> bool:
@@ -187,6 +196,12 @@ def _compare(dag: Dag, node: Apply, symbol: str) -> Emit:
         return _with_constant(symbol, 0, float(right.value))
     if left is not None:
         return _with_constant(EXCHANGED[symbol], 1, float(left.value))
+    return _of_two(symbol)
+
+
+@cache
+def _of_two(symbol: str) -> Emit:
+    """How the loop compares two numbers that vary."""
 
     def emit(body: Emitter, parts: Sequence[Any]) -> Any:
         body.flag(_may_be_equal(body, *parts))
@@ -204,6 +219,7 @@ def _may_be_equal(body: Emitter, x: Any, y: Any) -> Any:
     return builder.and_(near, builder.fcmp_ordered("!=", x, y))
 
 
+@lru_cache(maxsize=4096)
 def _with_constant(symbol: str, varying: int, number: float) -> Emit:
     """How the loop compares one of its operands with a constant."""
     least, most = equal_range(number)
@@ -237,7 +253,7 @@ def _last_sum(body: Emitter, parts: Sequence[Any]) -> Any:
 
 _POWERS: Final = {
     0.5: _Row(_root),
-    1.0: _Row(lambda _, parts: parts[0], makes=False),
+    1.0: _Row(_same, makes=False),
     -1.0: _Row(_reciprocal, (0,)),
     3.0: _Row(_cube),
 }

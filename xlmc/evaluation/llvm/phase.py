@@ -235,9 +235,10 @@ class Phase:
 
 
 def _apply_ufunc(node: Apply, trials: Trials) -> Floats | None:
-    """What the ufunc of a function of numbers gives, `(n,)`; trials where it is no number must be computed again.
+    """What the ufunc of a function of numbers gives, `(n,)`.
 
-    None of a function that has none, and where an argument is no plain number or the function's guard does not hold.
+    None of a function that has none, where an argument is no plain number, where the function's guard does not hold, and
+    where a result is an error.
     """
     function = node.function
     if not function.on_numbers or function.returns is not Kind.NUMBER or function.ufunc is None:
@@ -248,9 +249,8 @@ def _apply_ufunc(node: Apply, trials: Trials) -> Floats | None:
         return None
     if function.guard is not None and not function.guard(*arguments):
         return None
-    found: Floats = tiny_to_zero(function.ufunc(*arguments))
-    trials.wrong |= ~np.isfinite(found)
-    return found
+    found: Floats = function.ufunc(*arguments)
+    return tiny_to_zero(found) if np.isfinite(found).all() else None
 
 
 @dataclass(frozen=True, slots=True)

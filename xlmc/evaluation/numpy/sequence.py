@@ -19,7 +19,7 @@ from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, is_elementwi
 from xlmc.evaluation.passes.bounds import NodeBounds
 from xlmc.functions import Kind
 from xlmc.functions.fifteen_digits import SNAP_TO_ZERO, SnapToZero, copy_sum, never_cancels
-from xlmc.functions.lookup.search_and_pick import CELL_AT, POSITION, Pick, Search
+from xlmc.functions.lookup.search_and_pick import Search
 from xlmc.functions.math.trigonometry import Within, sine_and_cosine
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.values import Value
@@ -126,7 +126,6 @@ class Steps:
         self._pairs = _sines_with_cosines(dag, nodes)
         self._paired: set[int] = set()
         self._bounds = bounds
-        self._lookups: dict[tuple[object, ...], Search | Pick | None] = {}
 
     def add(self, node_id: int, read: Sequence[int], done: list[int]) -> None:
         """Add the step of a node.
@@ -156,7 +155,7 @@ class Steps:
                 ufunc = self._last_sum(node) if function.name == SNAP_TO_ZERO.name else function.ufunc
                 self._lines.append((ufunc, node_id, used[0], second, buffer, self._guard(node_id)))
                 return
-        elif type(node) is Apply and (lookup := self._lookup(node)) is not None:
+        elif type(node) is Apply and (lookup := lookup_of(self._dag, node)) is not None:
             buffer = self._buffers.exchange(done, node_id, self._loose)
             if buffer is not None:
                 (varying,) = (part for part in node.arguments if type(self._dag.nodes[part]) is not Constant)
@@ -172,15 +171,6 @@ class Steps:
             if buffer is not None and self._add_lines(node_id, read, buffer):
                 return
         self._append(make_step(self._dag, node_id, buffer))
-
-    def _lookup(self, node: Apply) -> Search | Pick | None:
-        """What computes a search in constant numbers, or a pick from them; None of any other node."""
-        if node.function.name not in (POSITION.name, CELL_AT.name):
-            return None
-        constants_ = tuple(part for part in node.arguments if type(self._dag.nodes[part]) is Constant)
-        if (node.function, constants_) not in self._lookups:
-            self._lookups[node.function, constants_] = lookup_of(self._dag, node)
-        return self._lookups[node.function, constants_]
 
     def add_free(self, step: Step, done: Iterable[int]) -> None:
         """Add a step that has memory of its own; nothing reads `done` after it."""

@@ -10,7 +10,7 @@ is #N/A. Where an array's size differs between trials, as that of `FILTER` may, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, assert_never
 
@@ -37,6 +37,7 @@ __all__ = [
     "by_trial",
     "corner",
     "evaluate_node",
+    "in_own_memory",
     "single",
     "uses",
 ]
@@ -122,6 +123,13 @@ def evaluate_node(node: Apply | Select | IfErrorNode | Range, values: Mapping[in
         except ShapeVaries:
             pass  # trial by trial, then
     return by_trial(lambda trial: _evaluate(node, trial), needed)
+
+
+def in_own_memory(result: Value, arguments: Iterable[Value]) -> Value:
+    """The result in memory apart from the arguments, whose buffers are soon written to again."""
+    if any(np.may_share_memory(result.numbers, argument.numbers) for argument in arguments):
+        return Value(result.numbers.copy(), result.kinds, result.texts)
+    return result
 
 
 def _evaluate(node: Apply | Select | IfErrorNode | Range, values: Mapping[int, Value]) -> Value:

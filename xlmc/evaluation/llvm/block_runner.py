@@ -22,7 +22,8 @@ from xlmc.evaluation.graph.nodes import Input
 from xlmc.evaluation.llvm.block_kernel import WORD, Layout, compile_kernel
 from xlmc.evaluation.llvm.loop_rules import Literal, Operand, literal
 from xlmc.evaluation.llvm.machine import machine
-from xlmc.evaluation.llvm.phase import Loop, Memory, Phase
+from xlmc.evaluation.llvm.memory import Memory, Slot
+from xlmc.evaluation.llvm.phase import Loop, Phase
 from xlmc.evaluation.llvm.uniforms import filler
 from xlmc.functions import Kind
 from xlmc.functions.values import Floats
@@ -47,6 +48,7 @@ class BlockParts:
     """A model of loops alone: the loops on all trials and on the survivors, and the nodes that are its results.
 
     Attributes:
+        slots: the memory of the nodes that the loops write.
         filters: the node of each filter; None for one that keeps every trial.
         forecasts: the node of each forecast, or the number that it always is.
     """
@@ -54,6 +56,7 @@ class BlockParts:
     dag: Dag
     first: tuple[Loop, ...]
     late: tuple[Loop, ...]
+    slots: Mapping[int, Slot]
     filters: tuple[int | None, ...]
     forecasts: tuple[int | Literal, ...]
 
@@ -84,7 +87,7 @@ def block_parts(
     given = [_find_literal(dag, node, Kind.NUMBER) or node for node in forecasts]
     if not {*asked} <= {None, *logical} or not {each for each in given if isinstance(each, int)} <= numbers:
         return None
-    return BlockParts(dag, early_loops, late_loops, tuple(asked), tuple(given))
+    return BlockParts(dag, early_loops, late_loops, first.slots | late.slots, tuple(asked), tuple(given))
 
 
 def _find_literal(dag: Dag, node: int, kind: Kind) -> Literal | None:
@@ -112,7 +115,7 @@ class NativeBlockRunner:
         rows = np.empty((len(self._names), self._chunk + 8))[:, : self._chunk]  # apart, for the cache's sake
         self._fill = None if linear is None else filler(linear.streams, linear.maps, rows)
         self._rows = dict(zip(self._names, rows, strict=True))
-        self._memory = Memory(parts.dag, {s for loop in (*parts.first, *parts.late) for s in loop.stores}, self._chunk)
+        self._memory = Memory(parts.slots, self._chunk)
         self._forecasts = {node: np.empty(block) for node in parts.forecasts if isinstance(node, int)}
         self._kept = np.empty((len(self._names), block))
         self._trials, self._survivors = np.empty(block, np.int64), np.empty(self._chunk, np.int64)
@@ -181,7 +184,7 @@ class NativeBlockRunner:
             strict=True,
         ):
             nodes = [*(load.operand.node for load in loop.loads), *loop.stores]
-            lists.append((at + 1, self._add_list(table, nodes, wrong)))
+            lists.append((at + 1, self._add_list(table, nodes, wrong, loop.numbers)))
         gathered = [node for node in self._forecasts if node not in parts.computed_late]
         self._gathers = gathers = table.add(len(gathered))
         for node in gathered:
@@ -207,12 +210,12 @@ class NativeBlockRunner:
             ),
         )
 
-    def _add_list(self, table: _TableWriter, nodes: Iterable[int], wrong: NDArray[np.uint8]) -> int:
+    def _add_list(self, table: _TableWriter, nodes: Iterable[int], wrong: NDArray[np.uint8], numbers: Floats) -> int:
         """Add the addresses that a loop takes; give the position where they begin."""
         begin = len(table.words)
         for node in nodes:
             self._add_address(table, node)
-        table.add(_address_of(self._survivors), _address_of(wrong))
+        table.add(_address_of(self._survivors), _address_of(wrong), _address_of(numbers))
         return begin
 
     def _add_address(self, table: _TableWriter, node_id: int) -> None:

@@ -45,6 +45,7 @@ class Body:
         loaded: the nodes from outside the loop, each as its own kind or, if the loop has no such kind, as one it has.
         contexts: of the nodes of the loop.
         machine: the processor.
+        numbers: (node, position of an operand) -> its value, for constants that are not part of the code.
 
     Attributes:
         builder: where instructions go.
@@ -58,12 +59,14 @@ class Body:
         loaded: Mapping[Operand, Loaded],
         contexts: Mapping[int, TrialSet],
         machine: Machine,
+        numbers: Mapping[tuple[int, int], Any],
     ) -> None:
         self.builder: Any = builder
         self.real: Any = ir.DoubleType()
         self._dag, self._contexts, self._fused = dag, contexts, machine.fused
         self._flushes = machine.flushes
         self._known = dict(loaded)
+        self._numbers = numbers
         self._checked: set[tuple[Operand, TrialSet]] = set()
         self._sums: dict[TrialSet, Any] = {}
         self._flags: dict[TrialSet, Any] = {}
@@ -107,7 +110,8 @@ class Body:
                     self._check(part)
                 else:
                     fallible = fallible or self._source(part)[1].fallible
-            values.append(self._value(part))
+            number = self._numbers.get((node, position))
+            values.append(self._value(part) if number is None else number)
         value = self.flush(rule.emit(self, values))
         own = Operand(node, self._dag.types[node])
         self._known[own] = Loaded(value, fallible and own.kind is Kind.NUMBER)

@@ -44,14 +44,16 @@ def compile_loop(
     rules: Mapping[int, LoopRule],
     loads: Sequence[Load],
     stores: Sequence[int],
+    numbers: Mapping[tuple[int, int], int],
 ) -> NativeLoop:
     """The loop that computes the nodes of `rules`, as native code.
 
-    It takes the addresses of: the loads, the stores, the survivors (int64; not read where no load is picked), and one
-    byte a trial, which it sets to 1 where the trial must be computed again.
+    It takes the addresses of: the loads, the stores, the survivors (int64; not read where no load is picked), one byte
+    a trial, which it sets to 1 where the trial must be computed again, and the constants that are not part of the code:
+    `numbers` gives their indices by node and position of the operand.
     """
     module = ir.Module()
-    inner = _inner(dag, module, machine, rules, loads, stores)
+    inner = _inner(dag, module, machine, rules, loads, stores, numbers)
     _entry(module, inner, machine)
     return machine.native(module, _NAME)
 
@@ -67,17 +69,19 @@ def _inner(
     rules: Mapping[int, LoopRule],
     loads: Sequence[Load],
     stores: Sequence[int],
+    numbers: Mapping[tuple[int, int], int],
 ) -> ir.Function:
     """The loop itself; its arrays do not overlap, so that it can run several trials at once."""
     arrays = [*(load.stored for load in loads), *(dag.types[node] for node in stores)]
-    types = [*map(_pointer_type, arrays), _LONG.as_pointer(), _BYTE.as_pointer(), _LONG]
+    types = [*map(_pointer_type, arrays), _LONG.as_pointer(), _BYTE.as_pointer(), _DOUBLE.as_pointer(), _LONG]
     function = ir.Function(module, ir.FunctionType(_LONG, types), "loop")
     function.linkage = "internal"
     function.attributes.add("noinline")  # in its caller, each access would list all the arrays that it does not overlap
     for argument in function.args[:-1]:
         argument.add_attribute("noalias")
-    *pointers, survivors, wrongs, n = function.args
+    *pointers, survivors, wrongs, constants, n = function.args
     builder = ir.IRBuilder(function.append_basic_block("entry"))
+    held = {of: builder.load(builder.gep(constants, [_LONG(at)])) for of, at in numbers.items()}
     before, body_block, after = builder.block, *(function.append_basic_block(name) for name in ("body", "after"))
     builder.cbranch(builder.icmp_signed("<", _LONG(0), n), body_block, after)
 
@@ -88,7 +92,7 @@ def _inner(
         load.operand: Loaded(_load(builder, pointer, picked if load.picked else i), load.fallible)
         for load, pointer in zip(loads, pointers, strict=False)
     }
-    body = Body(dag, builder, loaded, contexts(dag, rules, stores), machine)
+    body = Body(dag, builder, loaded, contexts(dag, rules, stores), machine, held)
     for node, rule in rules.items():
         body.compute(node, rule)
     for node, pointer in zip(stores, pointers[len(loads) :], strict=True):

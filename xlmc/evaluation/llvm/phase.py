@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ctypes
 from collections import defaultdict
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -16,18 +16,24 @@ from numpy.typing import NDArray
 
 from xlmc.evaluation.engine import Column, column_of
 from xlmc.evaluation.graph.dag import Dag
-from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select, evaluate_node
+from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select, evaluate_node, in_own_memory
+from xlmc.evaluation.graph.readiness import order_by_need
 from xlmc.evaluation.llvm.loop import Load, compile_loop
 from xlmc.evaluation.llvm.loop_rules import LoopRule, Operand, reads
 from xlmc.evaluation.llvm.machine import Machine, NativeLoop
+from xlmc.evaluation.llvm.memory import Memory, assign_slots
+from xlmc.evaluation.llvm.shapes import cut, shape_of
 from xlmc.functions import Kind
 from xlmc.functions.denormals import tiny_to_zero
 from xlmc.functions.values import Floats, Value
 
-__all__ = ["Loop", "Memory", "Phase", "Trials"]
+__all__ = ["Loop", "Phase", "Trials"]
 
 _LONGEST: Final = 250
 """The most nodes of one loop; the time to compile grows faster than the loop."""
+
+_FEWEST: Final = 4
+"""Stages of which some may be of one shape; the constants of fewer are part of the code."""
 
 
 class Trials:
@@ -93,6 +99,14 @@ class Trials:
             self.arrays[node_id] = self.wider.arrays[node_id][self.survivors]
         return self.arrays.get(node_id)
 
+    def forget(self, nodes: Iterable[int]) -> None:
+        """Give back the memory of values that nothing reads any more."""
+        for node in nodes:
+            self.arrays.pop(node, None)
+            self.values.pop(node, None)
+            for kind in (Kind.NUMBER, Kind.LOGICAL):
+                self._converted.pop(Operand(node, kind), None)
+
     def column(self, node: int, fallible: bool) -> Column:
         """A node as a result: numbers alone for draws without errors, or from a loop, whose errors `wrong` marks."""
         if not fallible and node in self.arrays:
@@ -102,31 +116,14 @@ class Trials:
         return column_of(self.value(node), self.n)
 
 
-class Memory:
-    """Arrays that loops write to, by node, `(block,)`; for one thread.
-
-    Attributes:
-        addresses: of the arrays that loops read and write.
-    """
-
-    def __init__(self, dag: Dag, nodes: Iterable[int], block: int) -> None:
-        dtypes = {node: np.bool_ if dag.types[node] is Kind.LOGICAL else np.float64 for node in nodes}
-        self._arrays: dict[int, NDArray[Any]] = {node: np.empty(block, dtype) for node, dtype in dtypes.items()}
-        self.addresses = _Addresses()
-
-    def of(self, node: int, n: int) -> NDArray[Any]:
-        """The first `n` elements of a node's array."""
-        array = self._arrays[node]
-        return array if n == array.size else array[:n]
-
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Loop:
-    """A stage as native code, with the arrays it reads and the nodes it writes."""
+    """A stage as native code, with the arrays it reads, the nodes it writes, and constants that are no part of it."""
 
     call: NativeLoop
     loads: tuple[Load, ...]
     stores: tuple[int, ...]
+    numbers: Floats
 
 
 class Phase:
@@ -139,6 +136,8 @@ class Phase:
 
     Attributes:
         stores: the nodes that need memory.
+        slots: the memory of each.
+        outside: how many values that are computed outside of loops wait at a time.
     """
 
     def __init__(
@@ -153,13 +152,22 @@ class Phase:
     ) -> None:
         self._dag, self._machine, self._rules, self._may_err = dag, machine, rules, may_err
         self._early = early
-        parts = _stages(dag, [node for node in nodes if not isinstance(dag.nodes[node], Input)], rules)
+        computed = [node for node in nodes if not isinstance(dag.nodes[node], Input)]
+        parts = _in_order(_stages(dag, computed, rules), self._read_from_outside)
         read = [self._read_from_outside(stage) for stage in parts]
+        self._alone = sum(stage.loop for stage in parts) < _FEWEST
+        self._compiled: dict[tuple[object, ...], NativeLoop] = {}
         self._steps: list[Loop | tuple[int, ...]] = []
-        for position, stage in enumerate(parts):
-            wanted = set(keep).union(*(found for other, found in enumerate(read) if other != position))
-            self._steps.append(self._loop(stage, read[position], wanted) if stage.loop else stage.nodes)
+        wanted = set(keep).union(*read)
+        for stage, found in zip(parts, read, strict=True):
+            self._steps.append(self._loop(stage, found, wanted) if stage.loop else stage.nodes)
         self.stores = tuple(node for step in self._steps if isinstance(step, Loop) for node in step.stores)
+        kept, late = frozenset(keep), early is not None
+        written = [step.stores if isinstance(step, Loop) else () for step in self._steps]
+        self.slots = assign_slots(dag, list(zip(read, written, strict=True)), kept, late=late)
+        self._last_read = _last_reads(parts, read, kept)
+        outside = [() if isinstance(step, Loop) else step for step in self._steps]
+        self.outside = len(set(assign_slots(dag, list(zip(read, outside, strict=True)), kept, late=late).values()))
 
     def _read_from_outside(self, stage: _LoopStage) -> set[int]:
         read = {used for node in stage.nodes for used in reads(self._dag, node, self._rules.get(node))}
@@ -176,7 +184,13 @@ class Phase:
                         loads[load.operand] = load
         stores = tuple(node for node in stage.nodes if node in wanted)
         found = tuple(loads.values())
-        return Loop(compile_loop(self._dag, self._machine, rules, found, stores), found, stores)
+        if self._alone:
+            return Loop(compile_loop(self._dag, self._machine, rules, found, stores, {}), found, stores, np.empty(0))
+        attributes = [(load.operand, (load.operand.kind, load.stored, load.picked, load.fallible)) for load in found]
+        shape = shape_of(self._dag, rules, attributes, stores)
+        if shape.key not in self._compiled:
+            self._compiled[shape.key] = compile_loop(self._dag, self._machine, rules, found, stores, shape.slots)
+        return Loop(self._compiled[shape.key], found, stores, np.array(shape.numbers))
 
     def _load(self, part: Operand) -> Load | None:
         """How a node from outside is read; None for a constant."""
@@ -201,11 +215,12 @@ class Phase:
     def run(self, trials: Trials, memory: Memory) -> bool:
         """Compute all nodes; whether any trial must be computed again."""
         wrong = 0
-        for step in self._steps:
+        for at, step in enumerate(self._steps):
             if isinstance(step, Loop):
                 wrong += self._run_loop(step, trials, memory)
             else:
                 self._run_outside(step, trials)
+            trials.forget(self._last_read.get(at, ()))
         return wrong > 0
 
     def _run_loop(self, step: Loop, trials: Trials, memory: Memory) -> int:
@@ -216,7 +231,7 @@ class Phase:
             nodes.append(address(load.operand.node, source.array(load.operand)))
         written = [memory.of(node, trials.n) for node in step.stores]
         nodes += [address(node, array) for node, array in zip(step.stores, written, strict=True)]
-        nodes += [address("survivors", trials.survivors), address("wrong", trials.wrong)]
+        nodes += [address("survivors", trials.survivors), address("wrong", trials.wrong), address(step, step.numbers)]
         wrong = step.call((ctypes.c_void_p * len(nodes))(*nodes), trials.n)
         trials.arrays.update(zip(step.stores, written, strict=True))
         return wrong
@@ -231,14 +246,14 @@ class Phase:
                     trials.arrays[node_id] = numbers
                     continue
                 needed = {used: trials.value(used) for used in reads(self._dag, node_id, None)}
-                trials.values[node_id] = evaluate_node(node, needed)
+                trials.values[node_id] = in_own_memory(evaluate_node(node, needed), needed.values())
 
 
 def _apply_ufunc(node: Apply, trials: Trials) -> Floats | None:
     """What the ufunc of a function of numbers gives, `(n,)`.
 
-    None of a function that has none, where an argument is no plain number, where the function's guard does not hold, and
-    where a result is an error.
+    None of a function that has none, where an argument is no plain number, where the guard does not hold, and where a
+    result is an error.
     """
     function = node.function
     if not function.on_numbers or function.returns is not Kind.NUMBER or function.ufunc is None:
@@ -274,29 +289,28 @@ def _stages(dag: Dag, nodes: Sequence[int], rules: Mapping[int, LoopRule]) -> li
     grouped: defaultdict[int, list[int]] = defaultdict(list)
     for node in nodes:
         grouped[levels[node]].append(node)
-    return [stage for level in sorted(grouped) for stage in _parts(grouped[level], loop=level % 2 == 0)]
+    stages = []
+    for level in sorted(grouped):
+        loop = level % 2 == 0
+        parts = cut(dag, grouped[level], rules, _LONGEST) if loop else [[node] for node in grouped[level]]
+        stages += [_LoopStage(tuple(part), loop) for part in parts]
+    return stages
 
 
-def _parts(nodes: Sequence[int], loop: bool) -> Iterable[_LoopStage]:
-    size = _LONGEST if loop else len(nodes)
-    for start in range(0, len(nodes), size):
-        yield _LoopStage(tuple(nodes[start : start + size]), loop)
+def _last_reads(
+    stages: Sequence[_LoopStage], read: Sequence[Iterable[int]], keep: Collection[int]
+) -> dict[int, list[int]]:
+    """The stage after which nothing reads them -> nodes that are computed outside of loops."""
+    outside = {node for stage in stages if not stage.loop for node in stage.nodes} - set(keep)
+    last = {node: at for at, nodes in enumerate(read) for node in outside.intersection(nodes)}
+    found: dict[int, list[int]] = {}
+    for node, at in last.items():
+        found.setdefault(at, []).append(node)
+    return found
 
 
-class _Addresses:
-    """The addresses of arrays, looked up once for arrays that come with every block: the look-up takes NumPy a while.
-
-    It holds, and keeps alive, the array last seen under each key. For one thread.
-    """
-
-    def __init__(self) -> None:
-        self._seen: dict[Hashable, tuple[NDArray[Any], int]] = {}
-
-    def of(self, key: Hashable, array: NDArray[Any]) -> int:
-        """The address of the first element."""
-        seen = self._seen.get(key)
-        if seen is not None and seen[0] is array:
-            return seen[1]
-        address: int = array.__array_interface__["data"][0]
-        self._seen[key] = array, address
-        return address
+def _in_order(stages: Sequence[_LoopStage], read: Callable[[_LoopStage], Iterable[int]]) -> list[_LoopStage]:
+    """The stages so that few wait at a time to be read."""
+    made = {node: at for at, stage in enumerate(stages) for node in stage.nodes}
+    needs = {at: sorted({made[node] for node in read(stage) if node in made}) for at, stage in enumerate(stages)}
+    return [stages[at] for at in order_by_need(range(len(stages)), needs, (), _FEWEST)]

@@ -17,8 +17,9 @@ from xlmc.evaluation.graph.readiness import order_by_need
 from xlmc.evaluation.llvm.block_runner import NativeBlockRunner, block_parts
 from xlmc.evaluation.llvm.loop_rules import LoopRule, reads
 from xlmc.evaluation.llvm.machine import machine
+from xlmc.evaluation.llvm.memory import Memory
 from xlmc.evaluation.llvm.operations import loop_rule_of
-from xlmc.evaluation.llvm.phase import Memory, Phase, Trials
+from xlmc.evaluation.llvm.phase import Phase, Trials
 from xlmc.evaluation.tracking import TrackingEvaluator, array_bytes, fitting_block
 from xlmc.functions.values import Floats
 
@@ -72,13 +73,14 @@ class JitProgram:
         self.late = Phase(self.dag, machine(), rules, _in_order(late, needed, wanted), wanted, early, may_err)
         self.inputs = _inputs(self.dag, [*first, *late])
         self.careful_inputs = _inputs(self.dag, self.dag.upstream([*self.filter_nodes, *self.forecast_nodes]))
-        self.stores = (*self.first.stores, *self.late.stores)
+        self.slots = self.first.slots | self.late.slots
+        arrays = len(set(self.slots.values())) + self.first.outside + self.late.outside
         self.largest_block = _LARGEST_BLOCK
         memory = _MOST_MEMORY if self.first.loops is not None and self.late.loops is not None else _MOST_IN_CACHES
-        while self.largest_block > _SMALLEST_BLOCK and self.largest_block * 8 * len(self.stores) > memory:
+        while self.largest_block > _SMALLEST_BLOCK and self.largest_block * 8 * arrays > memory:
             self.largest_block //= 2
         in_arrays = array_bytes(lowering, self.filter_nodes, self.forecast_nodes)
-        self.largest_block = fitting_block(self.largest_block, in_arrays, 8 * len(self.stores))
+        self.largest_block = fitting_block(self.largest_block, in_arrays, 8 * arrays)
 
     def evaluator(self, block: int) -> Evaluator:
         """See `Program`."""
@@ -103,7 +105,7 @@ def _rules(dag: Dag) -> dict[int, LoopRule]:
 class _JitEvaluator:
     def __init__(self, program: JitProgram, block: int) -> None:
         self._program, self._block = program, block
-        self._memory = Memory(program.dag, program.stores, block)
+        self._memory = Memory(program.slots, block)
         self._tracking = TrackingEvaluator(program.dag, program.filter_nodes, program.forecast_nodes)
         self._all = np.empty(0, np.intp)
         self._trials = self._of_block({}, 0)

@@ -6,7 +6,7 @@ constant), a LOGICAL node a bool array (or a bool), any other node a `Value`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,6 +23,7 @@ from xlmc.evaluation.graph.nodes import (
     Select,
     by_trial,
     evaluate_node,
+    in_own_memory,
     uses,
 )
 from xlmc.functions import Function, Kind
@@ -32,7 +33,16 @@ from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value
 
-__all__ = ["Frame", "LeaveFastPath", "Step", "is_elementwise_ufunc", "make_step", "plain_constant", "reads"]
+__all__ = [
+    "Frame",
+    "LeaveFastPath",
+    "Step",
+    "in_own_memory",
+    "is_elementwise_ufunc",
+    "make_step",
+    "plain_constant",
+    "reads",
+]
 
 
 class LeaveFastPath(Exception):  # noqa: N818 - it is no error: another path takes over
@@ -332,7 +342,7 @@ def _careful_step(dag: Dag, node_id: int) -> Step:
         with np.errstate(all="ignore"):
             result = evaluate_node(node, arguments)
         if isinstance(node, Apply):
-            result = _in_own_memory(result, arguments.values())
+            result = in_own_memory(result, arguments.values())
         if kind in (Kind.NUMBER, Kind.LOGICAL):
             frame.values[node_id] = np.broadcast_to(_plain_array(result, kind), (frame.n,))
         else:
@@ -341,13 +351,6 @@ def _careful_step(dag: Dag, node_id: int) -> Step:
             ask_for_live(frame.live)
 
     return step
-
-
-def _in_own_memory(result: Value, arguments: Iterable[Value]) -> Value:
-    """The result in memory apart from the arguments, whose buffers are soon written to again."""
-    if any(np.may_share_memory(result.numbers, argument.numbers) for argument in arguments):
-        return Value(result.numbers.copy(), result.kinds, result.texts)
-    return result
 
 
 def _plain_array(value: Value, kind: Kind) -> NDArray[Any]:

@@ -13,11 +13,10 @@ from collections import deque
 from collections.abc import Collection, Mapping, Sequence, Set
 from typing import Final
 
-__all__ = ["order_by_need"]
+__all__ = ["FEW", "order_by_need"]
 
-_FEW: Final = 8
-"""A node is computed early if it is one of at most so many that are then still to be computed. On sheets that step
-through time any number from 4 to 32 does."""
+FEW: Final = 8
+"""The few of a formula's nodes: on sheets that step through time any number from 4 to 32 does."""
 
 _MANY: Final = 16
 """A value that more nodes read calls none of them: like a draw, it is there for all rows."""
@@ -25,7 +24,9 @@ _MANY: Final = 16
 Reads = Mapping[int, Sequence[int]]
 
 
-def order_by_need(nodes: Sequence[int], reads: Reads, keep: Collection[int], enough: int) -> Sequence[int]:
+def order_by_need(
+    nodes: Sequence[int], reads: Reads, keep: Collection[int], enough: int, few: int = FEW
+) -> Sequence[int]:
     """The nodes in the better order.
 
     Args:
@@ -33,15 +34,16 @@ def order_by_need(nodes: Sequence[int], reads: Reads, keep: Collection[int], eno
         reads: what each reads, other nodes included.
         keep: the nodes that are read afterwards.
         enough: an order in which no more values wait is good enough.
+        few: a node is computed early if it is one of at most so many that are then still to be computed.
     """
     waiting = _most_waiting(nodes, reads, keep)
     if waiting <= enough:
         return nodes
-    early = _as_early_as_possible(nodes, reads)
+    early = _as_early_as_possible(nodes, reads, few)
     return early if _most_waiting(early, reads, keep) < waiting else nodes
 
 
-def _as_early_as_possible(nodes: Sequence[int], reads: Reads) -> list[int]:
+def _as_early_as_possible(nodes: Sequence[int], reads: Reads, few: int) -> list[int]:
     own = set(nodes)
     readers: dict[int, list[int]] = {node: [] for node in nodes}
     for node in nodes:
@@ -51,14 +53,14 @@ def _as_early_as_possible(nodes: Sequence[int], reads: Reads) -> list[int]:
     for first in nodes:
         waiting = deque([first])
         while waiting:
-            for node in _missing(waiting.popleft(), own, found.keys(), reads):
+            for node in _missing(waiting.popleft(), own, found.keys(), reads, few):
                 found[node] = None
                 if len(readers[node]) <= _MANY:
                     waiting.extend(readers[node])
     return list(found)
 
 
-def _missing(node: int, own: Set[int], done: Set[int], reads: Reads) -> list[int]:
+def _missing(node: int, own: Set[int], done: Set[int], reads: Reads, few: int) -> list[int]:
     """The nodes to compute for a node, itself the last; none where it is done, or where they are more than a few."""
     if node in done:
         return []
@@ -69,7 +71,7 @@ def _missing(node: int, own: Set[int], done: Set[int], reads: Reads) -> list[int
         used = next((used for used in rest if used in own and used not in done and used not in found), None)
         if used is not None:
             open_.append((used, iter(reads[used])))
-            if len(open_) + len(found) > _FEW:
+            if len(open_) + len(found) > few:
                 return []
         else:
             open_.pop()

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 from typing import Any, Final
 
 from llvmlite import ir
@@ -18,7 +18,7 @@ from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Node, Select
 from xlmc.evaluation.llvm.lookups import lookup_rule
 from xlmc.evaluation.llvm.loop_arithmetic import arccosine, arcsine, arctangent, arctangent_of_two
-from xlmc.evaluation.llvm.loop_rules import PLAIN, Emit, Emitter, LoopRule, Operand, literal
+from xlmc.evaluation.llvm.loop_rules import PLAIN, Emit, Emitter, Literal, LoopRule, Operand, literal
 from xlmc.evaluation.llvm.sets import over_cells
 from xlmc.functions import Kind
 from xlmc.functions.denormals import TINIEST
@@ -89,7 +89,9 @@ class _Row:
 
 def _operation(dag: Dag, node: Apply) -> LoopRule | None:
     """The rule of a function of single values; None where there is none."""
-    row = _row(dag, node)
+    if isinstance(node.function.ufunc, Comparison):
+        return _compare(dag, node, node.function.ufunc.symbol)
+    row = _power(dag, node) if node.function.name == "^" else _ROWS.get(node.function.name)
     if row is None or len(node.arguments) != len(node.function.parameters):
         return None
     operands = []
@@ -103,25 +105,11 @@ def _operation(dag: Dag, node: Apply) -> LoopRule | None:
     return LoopRule(tuple(operands), row.emit, row.absorbs, row.makes)
 
 
-def _row(dag: Dag, node: Apply) -> _Row | None:
-    function = node.function
-    if isinstance(function.ufunc, Comparison):
-        return _Row(_compare(dag, node, function.ufunc.symbol), _ALL)
-    return _power(dag, node) if function.name == "^" else _ROWS.get(function.name)
-
-
 def _instruction(name: str, *absorbs: int) -> _Row:
     def emit(body: Emitter, parts: Sequence[Any]) -> Any:
         return getattr(body.builder, name)(*parts)
 
     return _Row(emit, absorbs)
-
-
-def _comparison(relation: str) -> _Row:
-    def emit(body: Emitter, parts: Sequence[Any]) -> Any:
-        return body.builder.fcmp_ordered(relation, *parts)
-
-    return _Row(emit, _ALL)
 
 
 def _fixed_answer(answer: bool) -> _Row:
@@ -189,14 +177,19 @@ def _cube(body: Emitter, parts: Sequence[Any]) -> Any:
     return body.builder.fmul(body.flush(body.builder.fmul(parts[0], parts[0])), parts[0])
 
 
-def _compare(dag: Dag, node: Apply, symbol: str) -> Emit:
+def _compare(dag: Dag, node: Apply, symbol: str) -> LoopRule | None:
     """How the loop compares two numbers."""
-    left, right = (literal(dag, Operand(node_id, Kind.NUMBER)) for node_id in node.arguments)
-    if right is not None:
-        return _with_constant(symbol, 0, float(right.value))
-    if left is not None:
-        return _with_constant(EXCHANGED[symbol], 1, float(left.value))
-    return _of_two(symbol)
+    if any(dag.types[node_id] is not Kind.NUMBER for node_id in node.arguments):
+        return None
+    parts = [Operand(node_id, Kind.NUMBER) for node_id in node.arguments]
+    left, right = (literal(dag, part) for part in parts)
+    if left is None and right is None:
+        return LoopRule(tuple(parts), _of_two(symbol), _ALL)
+    varying, known, relation = (parts[0], right, symbol) if right is not None else (parts[1], left, EXCHANGED[symbol])
+    assert known is not None
+    least, most = equal_range(float(known.value))
+    limits = {"<": [least], ">=": [least], "<=": [most], ">": [most]}.get(relation, [least, most])
+    return LoopRule((varying, *map(Literal, limits)), _with_constant(relation), _ALL)
 
 
 @cache
@@ -219,24 +212,18 @@ def _may_be_equal(body: Emitter, x: Any, y: Any) -> Any:
     return builder.and_(near, builder.fcmp_ordered("!=", x, y))
 
 
-@lru_cache(maxsize=4096)
-def _with_constant(symbol: str, varying: int, number: float) -> Emit:
-    """How the loop compares one of its operands with a constant."""
-    least, most = equal_range(number)
+@cache
+def _with_constant(symbol: str) -> Emit:
+    """How the loop compares a number with the ends of the range that is equal to a constant, or with one of them."""
 
     def emit(body: Emitter, parts: Sequence[Any]) -> Any:
-        def is_(relation: str, limit: float) -> Any:
-            return body.builder.fcmp_ordered(relation, parts[varying], body.number(limit))
-
-        match symbol:
-            case "<" | ">=":
-                return is_(symbol, least)
-            case "<=" | ">":
-                return is_(symbol, most)
-            case "=":
-                return body.builder.and_(is_(">=", least), is_("<=", most))
-            case _:
-                return body.builder.or_(is_("<", least), is_(">", most))
+        number, *limits = parts
+        compare = body.builder.fcmp_ordered
+        if symbol == "=":
+            return body.builder.and_(compare(">=", number, limits[0]), compare("<=", number, limits[1]))
+        if symbol == "<>":
+            return body.builder.or_(compare("<", number, limits[0]), compare(">", number, limits[1]))
+        return compare(symbol, number, limits[0])
 
     return emit
 
@@ -272,12 +259,6 @@ _ROWS: Final[Mapping[str, _Row]] = {
     "/": _instruction("fdiv", 1),
     "u-": _Row(lambda body, parts: body.builder.fneg(parts[0]), makes=False),
     "%": _Row(lambda body, parts: body.builder.fdiv(parts[0], body.number(100.0))),
-    "=": _comparison("=="),
-    "<>": _comparison("!="),
-    "<": _comparison("<"),
-    "<=": _comparison("<="),
-    ">": _comparison(">"),
-    ">=": _comparison(">="),
     SNAP_TO_ZERO.name: _Row(_last_sum, makes=False),
     "NOT": _Row(lambda body, parts: body.builder.not_(parts[0])),
     "ABS": _Row(lambda body, parts: body.intrinsic("llvm.fabs", parts[0]), makes=False),

@@ -310,7 +310,7 @@ def _last_reads(
 
 
 def _in_order(stages: Sequence[_LoopStage], read: Callable[[_LoopStage], Iterable[int]]) -> list[_LoopStage]:
-    """The stages so that few wait at a time to be read."""
+    """The stages so that few wait at a time to be read; one may need as many others as it has nodes."""
     made = {node: at for at, stage in enumerate(stages) for node in stage.nodes}
     needs = {at: sorted({made[node] for node in read(stage) if node in made}) for at, stage in enumerate(stages)}
-    return [stages[at] for at in order_by_need(range(len(stages)), needs, (), _FEWEST)]
+    return [stages[at] for at in order_by_need(range(len(stages)), needs, (), _FEWEST, few=2 * _LONGEST)]

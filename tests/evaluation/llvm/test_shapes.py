@@ -1,0 +1,86 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from xlmc.evaluation.llvm import phase as phases
+from xlmc.evaluation.llvm.program import JitProgram
+from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
+
+ROAD = {f"H{row}": 5.0 * row for row in range(1, 30)} | {f"I{row}": (row % 7) / 10 for row in range(1, 30)}
+
+
+def march(rows, odd=()):
+    """A vehicle that slows down on a road, row by row; rows in `odd` have another formula."""
+    cells = {"A1": 0.7, "A2": 60.0, "B1": "=A2", "C1": 5.0, "D1": 0.0, **ROAD}
+    for row in range(2, rows + 1):
+        before = row - 1
+        cells |= {
+            f"B{row}": f"=MAX(0.1,B{before}-32.2*A1*E{row}*0.01)",
+            f"C{row}": f"=C{before}+(B{row}+B{before})/2*0.01",
+            f"D{row}": f"=D{before}+IF(B{row}>{row},B{row}*EXP(-A1*{row}/100),C{row}-{row * 0.5})",
+            f"E{row}": f"=1+VLOOKUP(C{before},$H$1:$I$29,2)" if row not in odd else f"=SQRT(A1)+{row}/100",
+            f"F{row}": f"=AND(B{row}>30,C{row}<{row * 1.5})",
+        }
+    cells["G1"] = f"=D{rows}+SUM(B2:B{rows})+IF(F{rows},1,0)"
+    return cells
+
+
+def programs(lower, rows, odd=(), targets=("G1", "D9")):
+    lowering, found = lower(march(rows, odd), ["A1", "A2"], targets)
+    return (made(lowering, [], found, frozenset()) for made in (NumpyProgram.of, JitProgram))
+
+
+@pytest.mark.parametrize("odd", [(), (60,), (20, 21, 90)])
+@pytest.mark.parametrize("n", [1, 777])
+def test_loops_of_one_shape_give_what_numpy_gives(lower, odd, n):
+    draws = {"A1": np.random.default_rng(1).uniform(0.5, 0.9, n), "A2": np.random.default_rng(2).uniform(50, 70, n)}
+    found = []
+    for program in programs(lower, 120, odd):
+        evaluator = program.evaluator(n)
+        evaluator.filters(draws, n)
+        found.append([column.as_floats() for column in evaluator.forecasts(np.arange(n))])
+    for careful, native in zip(*found, strict=True):
+        np.testing.assert_allclose(native, careful, rtol=1e-13)
+
+
+def test_a_trial_that_errs_in_one_row_errs_alone(lower):
+    cells = march(120) | {"G1": "=D120/(B60-B60*A3)", "A3": 0.5}
+    lowering, found = lower(cells, ["A1", "A2", "A3"], ["G1"])
+    draws = {"A1": np.full(5, 0.7), "A2": np.full(5, 60.0), "A3": np.array([0.5, 1.0, 0.5, 1.0, 0.25])}
+    evaluator = JitProgram(lowering, [], found, frozenset()).evaluator(5)
+    evaluator.filters(draws, 5)
+    (column,) = evaluator.forecasts(np.arange(5))
+    assert column.codes is not None
+    assert (column.codes > 0).tolist() == [False, True, False, True, False]
+
+
+@pytest.fixture
+def compiled(monkeypatch):
+    """The loops that were compiled."""
+    made, compile_loop = [], phases.compile_loop
+
+    def note(*given):
+        made.append(given)
+        return compile_loop(*given)
+
+    monkeypatch.setattr(phases, "compile_loop", note)
+    return made
+
+
+def test_more_rows_are_compiled_no_longer(lower, compiled):
+    def loops(rows):
+        compiled.clear()
+        _, program = programs(lower, rows)
+        return len(compiled), len(set(program.slots.values()))
+
+    few, many = loops(200), loops(400)
+    assert few[0] == many[0] < 12
+    assert many[1] < 1.1 * few[1]
+
+
+def test_a_small_model_has_its_constants_in_its_code(lower, compiled):
+    programs(lower, 9)
+    *_, program = programs(lower, 9)
+    assert all(not slots for *_, slots in compiled)
+    assert program.largest_block >= 1 << 15

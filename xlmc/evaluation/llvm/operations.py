@@ -112,6 +112,13 @@ def _instruction(name: str, *absorbs: int) -> _Row:
     return _Row(emit, absorbs)
 
 
+def _comparison(relation: str) -> _Row:
+    def emit(body: Emitter, parts: Sequence[Any]) -> Any:
+        return body.builder.fcmp_ordered(relation, *parts)
+
+    return _Row(emit, _ALL)
+
+
 def _fixed_answer(answer: bool) -> _Row:
     """A question about a value's kind, which has one answer: a trial with an error is computed again."""
     return _Row(lambda body, parts: body.truth(answer), _ALL, kinds=PLAIN)
@@ -259,6 +266,12 @@ _ROWS: Final[Mapping[str, _Row]] = {
     "/": _instruction("fdiv", 1),
     "u-": _Row(lambda body, parts: body.builder.fneg(parts[0]), makes=False),
     "%": _Row(lambda body, parts: body.builder.fdiv(parts[0], body.number(100.0))),
+    "=": _comparison("=="),
+    "<>": _comparison("!="),
+    "<": _comparison("<"),
+    "<=": _comparison("<="),
+    ">": _comparison(">"),
+    ">=": _comparison(">="),
     SNAP_TO_ZERO.name: _Row(_last_sum, makes=False),
     "NOT": _Row(lambda body, parts: body.builder.not_(parts[0])),
     "ABS": _Row(lambda body, parts: body.intrinsic("llvm.fabs", parts[0]), makes=False),

@@ -140,6 +140,7 @@ _COMMITS: Final = {
     "0.3.0": "00742dc47a736f0895b4959ff85cd29eb56e2e66",
     "0.4.0": "bc3aba5294be41225bc1b4b5739ec48cd9e98e2c",
     "0.5.0": "7496bc5c0bfbe39791f9066d2e05fbbc01b41aaf",
+    "0.5.1": "e9825adc0d54324dd6ffee4b7e227855ceaf6810",
 }
 """The last commit of each version before this one."""
 

@@ -32,7 +32,7 @@ def test_the_sums_are_those_of_whole_ranges(run, contents, monkeypatch):
         del cells[cell]
     forecasts = ["C15", "C16", "C17", "C25", "C29", "C40"]
     running = run(cells, draws, forecasts)
-    monkeypatch.setattr(RunningTotals, "_long_set", lambda *_: None)
+    monkeypatch.setattr(RunningTotals, "_long_set", lambda *_: ())
     assert run(cells, draws, forecasts).forecasts == running.forecasts
 
 
@@ -219,3 +219,36 @@ def test_ranges_filled_right_over_one_row(run):
     cells |= {f"{c}2": f"=AVERAGE($C1:{c}1)" for c in columns} | {f"{c}3": f"=MIN({c}1:$BG1)" for c in columns}
     got = run(cells, {"A1": [2.0]}, ["Z2", "Z3", "BG2"]).forecasts
     assert got == [[25.0], [48.0], [58.0]]
+
+
+@pytest.mark.parametrize("name", ["SUM", "MIN", "MAX", "PRODUCT"])
+@pytest.mark.parametrize(
+    "contents", [{}, {"B3": "x", "B90": True}, {"B70": "=1/(A1-2)"}, {"B2": "=A1&1", "B5": "=-A1"}]
+)
+def test_a_long_set_gives_what_its_cells_give(run, name, contents):
+    """Two long ranges, one of them a cell longer, in formulas of their own; and the same cells in four parts."""
+    cells = {f"B{row}": f"=(A1-{row})/77" for row in range(1, 100)} | contents
+    parts = "B1:B30,B31:B60,B61:B80,B81:B"
+    cells |= {
+        "D1": f"={name}(B1:B98)",
+        "E9": f"={name}(B1:B99)",
+        "F3": f"={name}({parts}99)",
+        "G4": f"=1*{name}({parts}98)",
+    }
+    shorter, longer, parted, before = run(cells, {"A1": [0.3, 1.7, 2.0]}, ["D1", "E9", "F3", "G4"]).forecasts
+    assert parted == longer
+    assert before == shorter
+
+
+def test_the_largest_of_texts_is_not_part_of_a_longer_range(run):
+    cells = {f"B{row}": "=A1&1" for row in range(1, 81)} | {"B81": "=A1-9", "C1": "=MAX(B1:B80)", "D5": "=MAX(B1:B81)"}
+    assert run(cells, {"A1": [1.0]}, ["C1", "D5"]).forecasts == [[0.0], [-8.0]]
+
+
+def test_a_moving_sum_is_not_taken_apart(lower):
+    def nodes(rows):
+        cells = {f"B{row}": f"=A1*{row}" for row in range(1, rows + 80)}
+        cells |= {f"C{row}": f"=SUM(B{row}:B{row + 79})" for row in range(1, rows + 1)}
+        return len(lower(cells, ["A1"], [f"C{row}" for row in range(1, rows + 1)])[0].dag.nodes)
+
+    assert nodes(60) - nodes(50) < 10 * 10

@@ -14,7 +14,7 @@ the first cell that is surely a number, such a fold gives a blank while there ar
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -35,6 +35,12 @@ FOLDS: Final = frozenset({"SUM", "COUNT", "COUNTA", "AVERAGE", *SO_FAR})
 
 _SHORTEST: Final = 16
 """The fewest cells of a range that is worth looking up."""
+
+_LONG: Final = 64
+"""So many cells that vary are folded one by one: they need not wait for each other."""
+
+_MOST_FOLDS: Final = 4
+"""Ranges, of one function, that a cell is folded in one by one."""
 
 _CELL_BY_CELL: Final = frozenset({"SUM", "MIN", "MAX", "PRODUCT"})
 """Functions that fold cells from the first to the last."""
@@ -58,6 +64,7 @@ class RunningTotals:
         self._dag, self._cell = dag, cell
         self._known: dict[tuple[Function, tuple[int, ...]], int] = {}
         self._states: dict[tuple[str, bool, Area], int] = {}
+        self._folds: Counter[tuple[Function, int]] = Counter()
         self._made: dict[tuple[str, Area], int] = {}
         self._ranges = _RunningRanges(trees, FOLDS)
 
@@ -147,33 +154,36 @@ class RunningTotals:
 
     def apply(self, function: Function, arguments: tuple[int, ...]) -> int:
         """The node of a function whose arguments are one set; of a long one, cell by cell."""
-        cells = self._long_set(arguments) if function.name in _CELL_BY_CELL else None
-        if cells is None:
+        cells = self._long_set(function, arguments)
+        if not cells:
             return self._dag.add(Apply(function, arguments))
-        key = function, tuple(cells)
-        before = self._known.get((function, key[1][:-1]))
+        before = self._known.get((function, cells[:-1]))
         if before is not None:
             node = self._dag.add(Apply(function, (before, self._row(cells[-1:]))))
-        elif function.name == "SUM" or all(self._dag.types[cell] is Kind.NUMBER for cell in cells):
+        elif self._is_worth_folding(function, cells):
             node = self._cell_by_cell(function, cells)
         else:
             node = self._dag.add(Apply(function, arguments))
-        self._known[key] = node
+        self._known[function, cells] = node
         return node
 
-    def _long_set(self, arguments: Sequence[int]) -> list[int] | None:
-        """The cells of a set that holds many cells that vary."""
-        cells: list[int] = []
-        for argument in arguments:
-            node = self._dag.nodes[argument]
-            if not isinstance(node, Range):
-                return None
-            cells += [cell for row in node.rows for cell in row]
+    def _long_set(self, function: Function, arguments: Sequence[int]) -> tuple[int, ...]:
+        """The cells of a long set, of which any part is folded as the whole is; none of another one."""
+        parts = [self._dag.nodes[argument] for argument in arguments]
+        cells = tuple([cell for part in parts if isinstance(part, Range) for row in part.rows for cell in row])
+        if function.name not in _CELL_BY_CELL or len(cells) < _SHORTEST or not all(isinstance(p, Range) for p in parts):
+            return ()
+        only_numbers = all(self._dag.types[cell] is Kind.NUMBER for cell in cells)
+        return cells if function.name == "SUM" or only_numbers else ()
+
+    def _is_worth_folding(self, function: Function, cells: Sequence[int]) -> bool:
+        """Whether many of the cells vary, and few other ranges have them: not those of a moving average."""
         varying = sum(type(self._dag.nodes[cell]) is not Constant for cell in cells)
-        return cells if varying >= _SHORTEST else None
+        return varying >= _LONG and max(self._folds[function, cell] for cell in (cells[0], cells[-1])) < _MOST_FOLDS
 
     def _cell_by_cell(self, function: Function, cells: Sequence[int]) -> int:
         """A fold that goes on as soon as the next cell is there, so that not all cells wait for the last one."""
+        self._folds.update((function, cell) for cell in cells)
         pieces: list[list[int]] = [[]]
         for cell in cells:
             pieces[-1].append(cell)

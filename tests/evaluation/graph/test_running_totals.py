@@ -32,7 +32,7 @@ def test_the_sums_are_those_of_whole_ranges(run, contents, monkeypatch):
         del cells[cell]
     forecasts = ["C15", "C16", "C17", "C25", "C29", "C40"]
     running = run(cells, draws, forecasts)
-    monkeypatch.setattr(RunningTotals, "_long_set", lambda *_: ())
+    monkeypatch.setattr(RunningTotals, "_column", lambda *_: None)
     assert run(cells, draws, forecasts).forecasts == running.forecasts
 
 
@@ -252,3 +252,14 @@ def test_a_moving_sum_is_not_taken_apart(lower):
         return len(lower(cells, ["A1"], [f"C{row}" for row in range(1, rows + 1)])[0].dag.nodes)
 
     assert nodes(60) - nodes(50) < 10 * 10
+
+
+def test_an_error_counts_before_an_overflow_of_the_cells_before_it(run):
+    cells = {f"B{row}": "=1.7E308-A1" for row in range(1, 6)} | {f"B{row}": "=1+A1" for row in range(6, 100)}
+    cells |= {"B98": "=1/(A1-A1)", "C2": "=SUM(B1:B99)", "D3": "=PRODUCT(B1:B99)", "E4": "=SUM(B2:B97)"}
+    assert run(cells, {"A1": [0.5]}, ["C2", "D3", "E4"]).forecasts == [["#DIV/0!"], ["#DIV/0!"], ["#NUM!"]]
+
+
+def test_a_long_sum_in_a_branch(run):
+    cells = {f"B{row}": f"=A1+{row}" for row in range(1, 101)} | {"C1": "=IF(A1>0,SUM(B1:B100)/A1,1/A1)"}
+    assert run(cells, {"A1": [1.0, -1.0]}, ["C1"]).forecasts == [[5150.0, -1.0]]

@@ -49,6 +49,8 @@ class Dag:
         sizes: the size of each.
         origins: constants that were computed here -> the node that each was computed from.
         recording: where it is a list, every node that is asked for is noted in it, whether it is new or not.
+        folded: a function of a long set -> the node that folds its cells one by one, to the same bits where nothing is
+            an error.
         hosts, ends: the formula cells in the order in which they were lowered, and how many nodes there were then.
     """
 
@@ -58,6 +60,7 @@ class Dag:
         self.sizes: list[Size] = []
         self.origins: dict[int, Apply | Select | IfErrorNode | Range] = {}
         self.recording: list[int] | None = None
+        self.folded: dict[int, int] = {}
         self._known: dict[object, int] = {}
         self._kept = 0
         self.hosts: list[Cell] = []
@@ -65,7 +68,7 @@ class Dag:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Another process gets only the nodes and their cells: it evaluates them and adds none."""
-        return _of_nodes, (self.nodes, self.types, self.sizes, self.hosts, self.ends)
+        return _of_nodes, (self.nodes, self.types, self.sizes, self.folded, self.hosts, self.ends)
 
     def host_ends(self, cell: Cell) -> None:
         """Note that all nodes made since the last such note were made for the formula of this cell."""
@@ -231,9 +234,11 @@ class Dag:
         return sorted(needed)
 
 
-def _of_nodes(nodes: list[Node], types: list[Kind], sizes: list[Size], hosts: list[Cell], ends: list[int]) -> Dag:
+def _of_nodes(
+    nodes: list[Node], types: list[Kind], sizes: list[Size], folded: dict[int, int], hosts: list[Cell], ends: list[int]
+) -> Dag:
     dag = Dag()
-    dag.nodes, dag.types, dag.sizes, dag.hosts, dag.ends = nodes, types, sizes, hosts, ends
+    dag.nodes, dag.types, dag.sizes, dag.folded, dag.hosts, dag.ends = nodes, types, sizes, folded, hosts, ends
     return dag
 
 

@@ -153,36 +153,41 @@ class RunningTotals:
         return isinstance(node, Constant) and NUMBER < int(node.value.kinds.flat[0]) < ERROR
 
     def apply(self, function: Function, arguments: tuple[int, ...]) -> int:
-        """The node of a function whose arguments are one set; of a long one, cell by cell."""
-        cells = self._long_set(function, arguments)
-        if not cells:
-            return self._dag.add(Apply(function, arguments))
-        before = self._known.get((function, cells[:-1]))
-        if before is not None:
-            node = self._dag.add(Apply(function, (before, self._row(cells[-1:]))))
-        elif self._is_worth_folding(function, cells):
-            node = self._cell_by_cell(function, cells)
-        else:
-            node = self._dag.add(Apply(function, arguments))
-        self._known[function, cells] = node
-        return node
+        """The node of a function whose arguments are one set."""
+        node = Apply(function, arguments)
+        cells = self._column(function, arguments)
+        before = None if cells is None else self._known.get((function, cells[:-1]))
+        if cells is not None and before is not None:
+            node = Apply(function, (before, self._row(cells[-1:])))
+        folded = self._fold(function, arguments) if before is None else None
+        node_id = self._dag.add(node)
+        if cells is not None:
+            self._known[function, cells] = node_id
+        if folded is not None and folded < node_id:  # else the node was there before
+            self._dag.folded[node_id] = folded
+        return node_id
 
-    def _long_set(self, function: Function, arguments: Sequence[int]) -> tuple[int, ...]:
-        """The cells of a long set, of which any part is folded as the whole is; none of another one."""
+    def _column(self, function: Function, arguments: tuple[int, ...]) -> tuple[int, ...] | None:
+        """The cells of the only argument where it is one long column."""
+        if function.name != "SUM" or len(arguments) != 1:
+            return None
+        node = self._dag.nodes[arguments[0]]
+        if not isinstance(node, Range) or len(node.rows) < _SHORTEST or len(node.rows[0]) > 1:
+            return None
+        return tuple([cell for (cell,) in node.rows])
+
+    def _fold(self, function: Function, arguments: Sequence[int]) -> int | None:
+        """A fold of a long set that goes on as soon as the next cell is there: cells need not wait for the last one.
+
+        The careful path does not take it: an overflow on the way would hide the error of a later cell.
+        """
         parts = [self._dag.nodes[argument] for argument in arguments]
-        cells = tuple([cell for part in parts if isinstance(part, Range) for row in part.rows for cell in row])
-        if function.name not in _CELL_BY_CELL or len(cells) < _SHORTEST or not all(isinstance(p, Range) for p in parts):
-            return ()
-        only_numbers = all(self._dag.types[cell] is Kind.NUMBER for cell in cells)
-        return cells if function.name == "SUM" or only_numbers else ()
-
-    def _is_worth_folding(self, function: Function, cells: Sequence[int]) -> bool:
-        """Whether many of the cells vary, and few other ranges have them: not those of a moving average."""
-        varying = sum(type(self._dag.nodes[cell]) is not Constant for cell in cells)
-        return varying >= _LONG and max(self._folds[function, cell] for cell in (cells[0], cells[-1])) < _MOST_FOLDS
-
-    def _cell_by_cell(self, function: Function, cells: Sequence[int]) -> int:
-        """A fold that goes on as soon as the next cell is there, so that not all cells wait for the last one."""
+        if function.name not in _CELL_BY_CELL or not all(isinstance(part, Range) for part in parts):
+            return None
+        cells = [cell for part in parts if isinstance(part, Range) for row in part.rows for cell in row]
+        cells = [cell for cell in cells if not self._never_counts(cell)]
+        if not self._is_worth_folding(function, cells):
+            return None
         self._folds.update((function, cell) for cell in cells)
         pieces: list[list[int]] = [[]]
         for cell in cells:
@@ -194,6 +199,13 @@ class RunningTotals:
             if piece:
                 state = self._dag.add(Apply(function, (state, self._row(piece))))
         return state
+
+    def _is_worth_folding(self, function: Function, cells: Sequence[int]) -> bool:
+        """Whether all are numbers, many of them vary, and few other ranges have them: not those of a moving average."""
+        varying = sum(type(self._dag.nodes[cell]) is not Constant for cell in cells)
+        if varying < _LONG or not all(self._dag.types[cell] is Kind.NUMBER for cell in cells):
+            return False
+        return max(self._folds[function, cell] for cell in (cells[0], cells[-1])) < _MOST_FOLDS
 
 
 @dataclass(frozen=True, slots=True)

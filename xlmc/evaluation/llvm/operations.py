@@ -43,6 +43,9 @@ def loop_rule_of(dag: Dag, node: int) -> LoopRule | None:
     kind = dag.types[node]
     if dag.sizes[node] is not None or kind not in PLAIN:
         return None
+    folded = dag.folded.get(node)
+    if folded is not None:
+        return LoopRule((Operand(folded, Kind.NUMBER),), _same, makes=False)
     rule = _rule(dag, dag.nodes[node], kind)
     if rule is None or not all(_readable(dag, part) for part in rule.operands if isinstance(part, Operand)):
         return None

@@ -93,6 +93,8 @@ def reads(dag: Dag, node_id: int) -> tuple[int, ...]:
     node = dag.nodes[node_id]
     if isinstance(node, Apply) and not node.function.takes_sets:
         return node.arguments
+    if node_id in dag.folded:
+        return (dag.folded[node_id],)
     if isinstance(node, IfErrorNode) and dag.sizes[node.instead] is None:
         return (node.value,)
     if isinstance(node, Apply) and _find_folded(dag, node) is not None:
@@ -126,6 +128,8 @@ def is_elementwise_ufunc(dag: Dag, node_id: int) -> bool:
 
 
 def _apply(dag: Dag, node_id: int, function: Function, arguments: tuple[int, ...], buffer: int | None) -> Step:
+    if node_id in dag.folded:
+        return _ufunc(np.positive, None, node_id, _readers(dag, reads(dag, node_id), Kind.NUMBER), buffer)
     node = Apply(function, arguments)
     if function.takes_sets:
         folded = _find_folded(dag, node)

@@ -24,6 +24,7 @@ from xlmc.formula.callables import _CHOOSING
 from xlmc.formula.precedents import LOOKED_AT
 from xlmc.functions.facts import EmptyCells, Facts, Repeats
 from xlmc.functions.families import REGISTRY
+from xlmc.functions.lookup.search_and_pick import CELL_AT, POSITION
 from xlmc.functions.math.aggregate import SO_FAR
 from xlmc.functions.operators import ALL_BITS
 from xlmc.functions.values import constant
@@ -33,7 +34,7 @@ from xlmc.run.rare.ways import _OF_AREAS
 PACKAGE = Path(__file__).resolve().parents[2] / "xlmc"
 
 ROWS = {row.name: row for row in REGISTRY.values()}
-MADE = {"shown", "snap to zero", *(row.name for row in SO_FAR.values())}
+MADE = {"shown", "snap to zero", *(row.name for row in (*SO_FAR.values(), POSITION, CELL_AT))}
 """Rows that no formula calls by name."""
 
 OURS = {*REGISTRY, *CHOICES, *REFERENCE_FUNCTIONS, *LAMBDAS, *WRITTEN_OUT, "LET", "LAMBDA"}
@@ -56,6 +57,7 @@ LISTS = {
     ): "any other function gets values",
     ("evaluation/graph/reference_functions.py", "_count"): "what REFERENCE_FUNCTIONS has",
     ("evaluation/graph/computed_references.py", "REFERENCES"): "any other function gives values, not references",
+    ("evaluation/graph/number_lookups.py", "_FORMS"): "any other function is computed on values of any kind",
     ("evaluation/graph/running_totals.py", "FOLDS"): "any other function is computed of each range by itself",
     ("evaluation/graph/running_totals.py", "RunningTotals"): "what FOLDS has",
     ("evaluation/graph/whole_columns.py", "_look_up"): "any other lookup searches as MATCH does, or is refused",

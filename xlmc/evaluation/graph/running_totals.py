@@ -42,9 +42,6 @@ _LONG: Final = 64
 _MOST_FOLDS: Final = 4
 """Ranges, of one function, that a cell is folded in one by one."""
 
-_CELL_BY_CELL: Final = frozenset({"SUM", "MIN", "MAX", "PRODUCT"})
-"""Functions that fold cells from the first to the last."""
-
 _NUMBERS: Final = "how many are numbers where none is an error"
 
 _MANY_UPWARDS: Final = 64
@@ -182,7 +179,8 @@ class RunningTotals:
         The careful path does not take it: an overflow on the way would hide the error of a later cell.
         """
         parts = [self._dag.nodes[argument] for argument in arguments]
-        if function.name not in _CELL_BY_CELL or not all(isinstance(part, Range) for part in parts):
+        folds = function.takes_sets and function.ufunc is not None and function.returns is Kind.NUMBER
+        if not folds or not all(isinstance(part, Range) for part in parts):
             return None
         cells = [cell for part in parts if isinstance(part, Range) for row in part.rows for cell in row]
         cells = [cell for cell in cells if not self._never_counts(cell)]

@@ -136,7 +136,7 @@ class _TableReference(Leaf):
             raise ForeignFormulaError from None
 
 
-class _Operator(OperatorToken):  # type: ignore[misc]  # likewise
+class _Operator(OperatorToken):  # type: ignore[misc]  # formulas has no types
     """One operator at a time; a prefix waits on the stack for its operand, so that `--x` is two of them."""
 
     _re = re.compile(r"\s*(?P<name><=|>=|<>|[-+*/^&=<>:@%]|\#(?![A-Za-z]))(?:(?<![%#])\s+)?")  # `A1# B:B` intersects
@@ -168,7 +168,7 @@ class _Operator(OperatorToken):  # type: ignore[misc]  # likewise
         stack.append(self)
 
 
-class _Intersect(Intersect):  # type: ignore[misc]  # likewise
+class _Intersect(Intersect):  # type: ignore[misc]  # formulas has no types
     _re = re.compile(r"\s+")
 
     def process(self, match: re.Match[str], context: object = None, parser: object = None) -> dict[str, str]:
@@ -179,13 +179,13 @@ class _Intersect(Intersect):  # type: ignore[misc]  # likewise
         super().ast(tokens, stack, builder)
 
 
-class _Separator(Separator):  # type: ignore[misc]  # likewise
+class _Separator(Separator):  # type: ignore[misc]  # formulas has no types
     def ast(self, tokens: list[Any], stack: list[Any], builder: Any) -> None:
         _refuse_open_operator(tokens)
         super().ast(tokens, stack, builder)
 
 
-class _Function(FunctionToken):  # type: ignore[misc]  # likewise
+class _Function(FunctionToken):  # type: ignore[misc]  # formulas has no types
     _re = re.compile(rf"\s*(?:{PREFIX})?(?P<name>[^\W\d][\w.]*)\(\s*(?P<call>\))?")
 
     def ast(self, tokens: list[Any], stack: list[Any], builder: Any, *rest: Any) -> None:
@@ -193,7 +193,7 @@ class _Function(FunctionToken):  # type: ignore[misc]  # likewise
         super().ast(tokens, stack, builder, *rest)
 
 
-class Invocation(FunctionToken):  # type: ignore[misc]  # likewise
+class Invocation(FunctionToken):  # type: ignore[misc]  # formulas has no types
     """The second `(` of `LAMBDA(x, x+1)(2)`: a call of what stands before it."""
 
     _re = re.compile(r"(?P<name>\()\s*(?P<call>\))?")
@@ -206,7 +206,7 @@ class Invocation(FunctionToken):  # type: ignore[misc]  # likewise
         super().ast(tokens, stack, builder, *rest)
 
 
-class _Array(ArrayToken):  # type: ignore[misc]  # likewise
+class _Array(ArrayToken):  # type: ignore[misc]  # formulas has no types
     """`{`, `;` and `}`; the last two only within an array, for `;` parts arguments in other languages of Excel."""
 
     def ast(self, tokens: list[Any], stack: list[Any], builder: Any, *rest: Any) -> None:
@@ -219,7 +219,7 @@ class _Array(ArrayToken):  # type: ignore[misc]  # likewise
         super().ast(tokens, stack, builder, *rest)
 
 
-class _Parenthesis(Parenthesis):  # type: ignore[misc]  # likewise
+class _Parenthesis(Parenthesis):  # type: ignore[misc]  # formulas has no types
     """`)` also closes a call's list; blanks after it may be an intersection and stay."""
 
     _re = re.compile(r"\s*(?P<name>(?P<start>\()\s*|(?P<end>\)))")

@@ -58,6 +58,11 @@ def test_evenly_spaced_numbers_are_found_by_a_division():
     assert Search.of(np.array([0.0, 1.0, 4.0]), 1.0).step == 0.0
 
 
+def test_steps_without_an_inverse_are_not_divided_by():
+    assert Search.of(np.array([3e-308, np.nextafter(3e-308, 1.0)]), 1.0).step == 0.0
+    assert Search.of(np.array([-1.7e308, 0.0, 1.7e308]), 1.0).step == 0.0
+
+
 @given(st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=9), st.data())
 def test_a_pick_gives_what_index_gives(numbers, data):
     positions = np.array(data.draw(st.lists(st.integers(1, len(numbers)), min_size=1)), float)

@@ -18,7 +18,7 @@ from xlmc.functions.lookup.picked_cells import map_parts, transpose_cells
 from xlmc.functions.lookup.search_and_pick import CELL_AT, POSITION, Pick, Search, numbers_of
 from xlmc.functions.values import LOGICAL, NUMBER, Value, constant
 
-__all__ = ["NumberLookups", "lookup_of"]
+__all__ = ["NumberLookups", "key_of", "lookup_of"]
 
 _RISING: Final = 1.0
 _EQUAL: Final = 0.0
@@ -161,6 +161,11 @@ def lookup_of(dag: Dag, node: Apply) -> Search | Pick | None:
         cells, order = _constant_cells(dag, node.arguments[1]), _constant_number(dag, node.arguments[2])
         return None if cells is None or order is None else _search(cells, order)
     return None
+
+
+def key_of(node: Apply) -> int:
+    """The key of a search, or the position of a pick: the argument that varies."""
+    return node.arguments[0 if node.function.name == POSITION.name else 1]
 
 
 @lru_cache(_KEPT)

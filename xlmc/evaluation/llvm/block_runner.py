@@ -80,8 +80,8 @@ def block_parts(
         return None
     if len(filters) > _MOST_FILTERS or block % WORD or sys.byteorder != "little":
         return None
-    logical = {node for node in first.stores if dag.types[node] is Kind.LOGICAL}
-    numbers = {node for node in (*first.stores, *late.stores) if dag.types[node] is Kind.NUMBER}
+    logical = {node for node in first.slots if dag.types[node] is Kind.LOGICAL}
+    numbers = {node for node in (*first.slots, *late.slots) if dag.types[node] is Kind.NUMBER}
     numbers |= {node for node in forecasts if isinstance(dag.nodes[node], Input)}
     asked = [None if _find_literal(dag, node, Kind.LOGICAL) == Literal(True) else node for node in filters]
     given = [_find_literal(dag, node, Kind.NUMBER) or node for node in forecasts]

@@ -15,10 +15,10 @@ from llvmlite import ir
 
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply
-from xlmc.evaluation.graph.number_lookups import lookup_of
+from xlmc.evaluation.graph.number_lookups import key_of, lookup_of
 from xlmc.evaluation.llvm.loop_rules import Emit, Emitter, LoopRule, Operand
 from xlmc.functions import Kind
-from xlmc.functions.lookup.search_and_pick import POSITION, Pick, Search
+from xlmc.functions.lookup.search_and_pick import Pick, Search
 from xlmc.functions.values import Floats
 
 __all__ = ["lookup_rule"]
@@ -39,8 +39,7 @@ def lookup_rule(dag: Dag, node: Apply) -> LoopRule | None:
     numbers = lookup.rising if isinstance(lookup, Search) else lookup.numbers
     if numbers.size > _MOST:
         return None
-    varying = node.arguments[0 if node.function.name == POSITION.name else 1]
-    return LoopRule((Operand(varying, Kind.NUMBER),), _emit(lookup), absorbs=(0,), makes=False)
+    return LoopRule((Operand(key_of(node), Kind.NUMBER),), _emit(lookup), absorbs=(0,), makes=False)
 
 
 @lru_cache(_KEPT)
@@ -57,7 +56,7 @@ class _Column:
     """Constant doubles, kept once in a module."""
 
     def __init__(self, body: Emitter, numbers: Floats) -> None:
-        self._builder, self._body = body.builder, body
+        self._builder = body.builder
         type_ = ir.ArrayType(body.real, numbers.size)
         name = f"column.{sha256(numbers.tobytes()).hexdigest()[:32]}"
         known = body.builder.module.globals

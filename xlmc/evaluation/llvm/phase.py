@@ -135,8 +135,7 @@ class Phase:
         may_err: the inputs whose draws may be errors.
 
     Attributes:
-        stores: the nodes that need memory.
-        slots: the memory of each.
+        slots: the memory of each node that a loop leaves behind.
         outside: how many values that are computed outside of loops wait at a time.
     """
 
@@ -161,7 +160,6 @@ class Phase:
         wanted = set(keep).union(*read)
         for stage, found in zip(parts, read, strict=True):
             self._steps.append(self._loop(stage, found, wanted) if stage.loop else stage.nodes)
-        self.stores = tuple(node for step in self._steps if isinstance(step, Loop) for node in step.stores)
         kept, late = frozenset(keep), early is not None
         written = [step.stores if isinstance(step, Loop) else () for step in self._steps]
         self.slots = assign_slots(dag, list(zip(read, written, strict=True)), kept, late=late)

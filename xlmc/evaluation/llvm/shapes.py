@@ -117,14 +117,14 @@ def _repetition(dag: Dag, nodes: Sequence[int], rules: Mapping[int, LoopRule], l
         near = tuple(distance if distance < longest else 0 for distance in distances)
         return known.setdefault((rules[node].emit, dag.types[node], len(rules[node].operands), near), len(known))
 
-    alike = [likeness(node) for node in nodes]
+    alike = np.array([likeness(node) for node in nodes])
     last: dict[int, int] = {}
     gaps: Counter[int] = Counter()
-    for position, kind in enumerate(alike):
+    for position, kind in enumerate(alike.tolist()):
         gaps[position - last.get(kind, position)] += 1
         last[kind] = position
     del gaps[0]
-    runs = [(*_longest_run(np.array(alike), gap), gap) for gap, _ in gaps.most_common(_TRIED)]
+    runs = [(*_longest_run(alike, gap), gap) for gap, _ in gaps.most_common(_TRIED)]
     length, start, period = max(runs, default=(0, 0, 0))
     whole = length // period + 1 if period else 0
     return (start, period, start + whole * period) if whole >= _FEWEST else (0, 0, 0)

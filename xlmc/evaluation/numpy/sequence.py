@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Select, uses
-from xlmc.evaluation.graph.number_lookups import lookup_of
+from xlmc.evaluation.graph.number_lookups import key_of, lookup_of
 from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, is_elementwise_ufunc, make_step
 from xlmc.evaluation.passes.bounds import NodeBounds
 from xlmc.functions import Kind
@@ -158,9 +158,8 @@ class Steps:
         elif type(node) is Apply and (lookup := lookup_of(self._dag, node)) is not None:
             buffer = self._buffers.exchange(done, node_id, self._loose)
             if buffer is not None:
-                (varying,) = (part for part in node.arguments if type(self._dag.nodes[part]) is not Constant)
                 guard = lookup.finds if isinstance(lookup, Search) else None
-                self._lines.append((lookup, node_id, varying, -1, buffer, guard))
+                self._lines.append((lookup, node_id, key_of(node), -1, buffer, guard))
                 return
         elif is_elementwise_ufunc(self._dag, node_id):
             self._free(done)

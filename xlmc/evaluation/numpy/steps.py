@@ -33,16 +33,7 @@ from xlmc.functions.logical import zero_if_blank
 from xlmc.functions.registry import Elementwise
 from xlmc.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value
 
-__all__ = [
-    "Frame",
-    "LeaveFastPath",
-    "Step",
-    "in_own_memory",
-    "is_elementwise_ufunc",
-    "make_step",
-    "plain_constant",
-    "reads",
-]
+__all__ = ["Frame", "LeaveFastPath", "Step", "is_elementwise_ufunc", "make_step", "plain_constant", "reads"]
 
 
 class LeaveFastPath(Exception):  # noqa: N818 - it is no error: another path takes over

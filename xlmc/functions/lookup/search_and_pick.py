@@ -44,6 +44,9 @@ def numbers_of(value: Value) -> Floats | None:
 _EVEN: Final = 0.25
 """Numbers that lie no farther than this share of a step from evenly spaced ones are found by a division."""
 
+_LEAST_STEP: Final = 1e-300
+"""The inverse of a smaller step may be no number."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Search:
@@ -72,9 +75,10 @@ class Search:
         signed = np.copysign(1.0, order) * numbers
         if not (signed[:-1] <= signed[1:]).all():
             return None
-        step = float(signed[-1] - signed[0]) / max(1, signed.size - 1)
-        even = signed[0] + step * np.arange(signed.size)
-        is_even = step > 0 and bool((np.abs(signed - even) <= _EVEN * step).all())
+        with np.errstate(all="ignore"):  # of numbers that are too far apart, or too near, the step is none
+            step = float(signed[-1] - signed[0]) / max(1, signed.size - 1)
+            even = signed[0] + step * np.arange(signed.size)
+            is_even = step > _LEAST_STEP and bool((np.abs(signed - even) <= _EVEN * step).all())
         return cls(np.append(signed, np.inf), float(np.copysign(1.0, order)), None, step if is_even else 0.0)
 
     def finds(self, keys: Floats) -> bool:

@@ -50,6 +50,39 @@ def test_every_column_of_a_keeper_may_be_asked_for_twice():
     assert keeper.columns({"a": "x"})["a"].tolist() == keeper.columns({"b": "x"})["b"].tolist() == [1, 1, 1, 0]
 
 
+@pytest.mark.parametrize("expected", [{}, {"x": 4}, {"x": 1000}])
+def test_what_was_written_to_the_room_is_there(expected):
+    keeper = ColumnStore(TYPES, expected)
+    keeper.add("x", np.arange(3.0))
+    room = keeper.room("x", 4)
+    room[:] = [3, 4, 5, 99]
+    keeper.add("x", room[:3])
+    keeper.add("x", keeper.room("x", 2)[:0])
+    keeper.add("x", np.array([6.0]))
+    assert keeper.columns({"a": "x"})["a"].tolist() == [0, 1, 2, 3, 4, 5, 6]
+
+
+def test_one_part_of_the_room_may_be_two_columns():
+    keeper = ColumnStore(TYPES)
+    room = keeper.room("x", 2)
+    room[:] = [1, 2]
+    keeper.add("x", room)
+    keeper.add("never", room)
+    assert keeper.columns(NAMES)["none"].tolist() == keeper.columns(NAMES)["speed"].tolist() == [1, 2]
+
+
+@pytest.mark.parametrize("in_memory", [0, 100, 1 << 27])
+def test_a_column_that_was_given_away_stays_as_it_is(monkeypatch, in_memory):
+    monkeypatch.setattr(column_store, "IN_MEMORY", in_memory)
+    keeper, given = ColumnStore(TYPES, {"x": 40}), []
+    for number in range(12):
+        keeper.add("x", np.full(3, float(number)))
+        keeper.settle()
+        given.append(keeper.columns({"a": "x"})["a"])
+    for number, column in enumerate(given):
+        assert column.tolist() == [float(each) for each in range(number + 1) for _ in range(3)]
+
+
 REAL = np.dtype(np.float64)
 
 

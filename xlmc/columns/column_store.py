@@ -244,7 +244,7 @@ def _naming_folder(path: Path | None) -> Iterator[None]:
         raise SimulationError(message, where=where, hint=hint) from error
 
 
-IN_MEMORY: Final = 1 << 27
+IN_MEMORY: Final = 1 << 29
 """Bytes of all columns of a store together that stay in memory."""
 
 WRITTEN: Final = 1 << 24
@@ -270,26 +270,64 @@ class Columns(Mapping[str, Array]):
         return len(self._files)
 
 
+def _address(array: Array) -> int:
+    found: int = array.__array_interface__["data"][0]
+    return found
+
+
 class ColumnStore:
-    """Collects columns; the arrays it is given are its own from then on. Folders that killed runs left are removed.
+    """Collects columns of numbers. Folders that killed runs left are removed.
+
+    Each column is one array, made for as many numbers as are expected: memory that is taken once costs less than
+    memory for every part, and what is not written to is only reserved.
 
     Args:
         types: column -> the type of its numbers.
+        expected: column -> about how many numbers it will have; more is allowed.
     """
 
-    def __init__(self, types: Mapping[Hashable, np.dtype[Any]]) -> None:
+    def __init__(self, types: Mapping[Hashable, np.dtype[Any]], expected: Mapping[Hashable, int] | None = None) -> None:
         self._types = dict(types)
         self._files = {key: f"{number}.column" for number, key in enumerate(types)}
-        self._waiting: dict[Hashable, list[Array]] = {key: [] for key in types}
+        self._expected = expected or {}
+        self._arrays = {key: np.empty(0, dtype) for key, dtype in types.items()}
+        self._sizes = dict.fromkeys(types, 0)
         self._bytes = 0
         self._folder: Folder | None = None
         remove_stray_folders()
 
     def add(self, key: Hashable, values: Array) -> None:
-        """Put `(m,)` values at the end of a column."""
-        if values.size:
-            self._waiting[key].append(values)
-            self._bytes += values.nbytes
+        """Put `(m,)` values at the end of a column; those that were written to `room` are there already."""
+        end = self.room(key, values.size)
+        if values.base is not end.base or _address(values) != _address(end):
+            end[:] = values
+        self._sizes[key] += values.size
+        self._bytes += values.nbytes
+
+    def room(self, key: Hashable, n: int) -> Array:
+        """The memory of a column's next `n` numbers."""
+        begin = self._sizes[key]
+        if begin + n > self._arrays[key].size:
+            self._make_room(key, begin + n)
+        return self._arrays[key][begin : begin + n]
+
+    def _make_room(self, key: Hashable, least: int) -> None:
+        """Move a column into an array for at least so many numbers, and for twice as many as it was made for."""
+        held = self._arrays[key]
+        array = np.empty(max(least, 2 * held.size, self._likely_room(key)), held.dtype)
+        array[: self._sizes[key]] = self._added(key)
+        self._arrays[key] = array
+
+    def _likely_room(self, key: Hashable) -> int:
+        """How many numbers a column will have, or have when all columns are written, if they grow together."""
+        expected = self._expected.get(key, 0)
+        together = sum(self._types[each].itemsize * rows for each, rows in self._expected.items())
+        most = IN_MEMORY if self._folder is None else WRITTEN
+        return expected if together <= most else int(expected * most / together)
+
+    def _added(self, key: Hashable) -> Array:
+        """The numbers of a column that are in memory, `(m,)`."""
+        return self._arrays[key][: self._sizes[key]]
 
     def settle(self) -> None:
         """Write what waits, if it is much; to be called when all columns of a block are added.
@@ -301,24 +339,27 @@ class ColumnStore:
             self._write()
 
     def _write(self) -> None:
-        self._folder = self._folder or Folder()
-        for key, waiting in self._waiting.items():
-            self._folder.append(self._files[key], waiting)
-            waiting.clear()
+        before, self._folder = self._folder, self._folder or Folder()
+        for key, file in self._files.items():
+            self._folder.append(file, [self._added(key)])
+            self._sizes[key] = 0
+            if before is None:  # these may be somebody's columns
+                self._arrays[key] = np.empty(0, self._types[key])
         self._bytes = 0
 
     def columns(self, keys: Mapping[str, Hashable]) -> Mapping[str, Array]:
-        """Finished columns, each under a name of its own; in memory if nothing was written yet.
+        """The columns so far, each under a name of its own; in memory if nothing was written yet.
 
         Raises:
             SimulationError: there is no room on the disk.
         """
         if self._folder is None:
-            return {name: self._join(key) for name, key in keys.items()}
+            return {name: self._compact(key) for name, key in keys.items()}
         self._write()
         return Columns(self._folder, {name: (self._files[key], self._types[key]) for name, key in keys.items()})
 
-    def _join(self, key: Hashable) -> Array:
-        if len(self._waiting[key]) != 1:
-            self._waiting[key] = [np.concatenate([np.empty(0, self._types[key]), *self._waiting[key]])]
-        return self._waiting[key][0]
+    def _compact(self, key: Hashable) -> Array:
+        """A column in no more than twice the memory that it needs."""
+        if 2 * self._sizes[key] < self._arrays[key].size:
+            self._arrays[key] = self._added(key).copy()
+        return self._added(key)

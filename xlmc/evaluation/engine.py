@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Protocol, runtime_checkable
 
@@ -25,6 +25,7 @@ __all__ = [
     "Evaluator",
     "KeptBlock",
     "Program",
+    "Room",
     "RunsWholeBlocks",
     "Target",
     "column_of",
@@ -53,9 +54,9 @@ class Column:
     values: Floats | Bools
     codes: Codes | None = None
 
-    def as_floats(self) -> Floats:
-        """The numbers, `(n,)`, in memory of their own; NaN where the trial does not count."""
-        floats = self.values.astype(np.float64)
+    def as_floats(self, *, copy: bool = True) -> Floats:
+        """The numbers, `(n,)`, with `copy` in memory of their own; NaN where the trial does not count."""
+        floats = self.values.astype(np.float64, copy=copy)
         return floats if self.codes is None else np.where(self.codes > 0, np.nan, floats)
 
 
@@ -71,25 +72,49 @@ class Evaluator(Protocol):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KeptBlock:
-    """A whole block without errors, evaluated and filtered.
+    """A whole block without errors, evaluated and filtered. The next block overwrites its columns.
 
     Attributes:
-        survivors: `(m,)` the accepted trials, counted from the block's first; overwritten by the next block.
+        accepted: `(m,)` the trials that no filter rejects, as the run counts them.
         draws: assumption -> `(m,)`; empty when not asked for.
         forecasts: one a forecast, `(m,)`.
         together: `(f, f)` trials that both of two filters reject.
         only: `(f,)` trials that one filter alone rejects.
     """
 
-    survivors: NDArray[np.int64]
+    accepted: NDArray[np.int64]
     draws: dict[str, Floats]
     forecasts: list[Floats]
     together: NDArray[np.int64]
     only: NDArray[np.int64]
 
 
-BlockRunner = Callable[[int, bool], KeptBlock | None]
-"""Takes a block's first trial and whether to keep draws; gives None where a trial needs the careful path."""
+@dataclass(frozen=True, slots=True, eq=False)
+class Room:
+    """Where a block's columns may be written, `(block,)` each.
+
+    Attributes:
+        accepted: for the accepted trials, int64.
+        draws: assumption -> doubles; empty where no draws are kept.
+        forecasts: doubles, one a forecast.
+    """
+
+    accepted: NDArray[np.int64]
+    draws: Mapping[str, Floats]
+    forecasts: Sequence[Floats]
+
+
+class BlockRunner(Protocol):
+    """Runs whole blocks."""
+
+    def __call__(self, start: int, inputs: bool, room: Callable[[], Room] | None) -> KeptBlock | None:
+        """A block; None where a trial needs the careful path.
+
+        Args:
+            start: the block's first trial.
+            inputs: whether to keep draws.
+            room: gives memory for the block's columns, which it writes to if it keeps all trials.
+        """
 
 
 @runtime_checkable

@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import ErrorCode
-from xlmc.evaluation.engine import BLANK_RESULT, TEXT_RESULT, BlockRunner, Column, Evaluator, KeptBlock, RunsWholeBlocks
+from xlmc.evaluation.engine import (
+    BLANK_RESULT,
+    TEXT_RESULT,
+    BlockRunner,
+    Column,
+    Evaluator,
+    KeptBlock,
+    Room,
+    RunsWholeBlocks,
+)
 from xlmc.sampling.draws import Sampler
 
 __all__ = ["Block", "FilterTally", "ModelRunner", "Portable", "Runner", "Task", "fault_text"]
@@ -79,6 +88,20 @@ class Block:
     lost: int
     prior: dict[str, Floats] | None
 
+    def owned(self) -> Block:
+        """The same with its columns in memory of their own."""
+        return replace(
+            self,
+            accepted=self.accepted.copy(),
+            draws=_copied(self.draws),
+            forecasts=[column.copy() for column in self.forecasts],
+            prior=None if self.prior is None else _copied(self.prior),
+        )
+
+
+def _copied(columns: Mapping[str, Floats]) -> dict[str, Floats]:
+    return {name: column.copy() for name, column in columns.items()}
+
 
 class Task(NamedTuple):
     """A block to run: its first trial, how many of its trials count, and whether to keep all and accepted draws."""
@@ -130,8 +153,15 @@ class ModelRunner:
 
     def run(self, task: Task) -> Block:
         """See `Runner`."""
+        return self.borrow(task).owned()
+
+    def borrow(self, task: Task, room: Callable[[], Room] | None = None) -> Block:
+        """The same as `run` gives, in memory that the next block overwrites: copy what you keep.
+
+        Where all trials are kept, the columns may be written to what `room` gives.
+        """
         if self._run_whole is not None and task.trials == self._block and not task.prior:
-            whole = self._run_whole(task.start, task.inputs)
+            whole = self._run_whole(task.start, task.inputs, room)
             if whole is not None:
                 return _block_of(whole, task)
         start, trials = task.start, task.trials
@@ -152,13 +182,15 @@ class ModelRunner:
         return Block(
             trials,
             survivors + start,
-            {name: values[survivors] for name, values in draws.items()} if task.inputs else {},
-            [column.as_floats()[:m] for column in forecasts],
+            {name: values[:m] if m == trials else values[survivors] for name, values in draws.items()}
+            if task.inputs
+            else {},
+            [column.as_floats(copy=False)[:m] for column in forecasts],
             [_faults(column, m) for column in forecasts],
             tally,
             Counter({name: int(np.count_nonzero(bad[:trials])) for name, bad in invalid.items() if bad[:trials].any()}),
             int(np.count_nonzero(lost)),
-            {name: values[:trials].copy() for name, values in draws.items()} if task.prior else None,
+            {name: values[:trials] for name, values in draws.items()} if task.prior else None,
         )
 
     def _forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
@@ -173,8 +205,7 @@ def _block_of(kept: KeptBlock, task: Task) -> Block:
     faults: list[Counter[str]] = [Counter() for _ in kept.forecasts]
     errors: list[Counter[str]] = [Counter() for _ in kept.only]
     tally = FilterTally(np.diagonal(kept.together).copy(), kept.only, kept.together, errors, 0)
-    accepted = kept.survivors + task.start
-    return Block(task.trials, accepted, kept.draws, kept.forecasts, faults, tally, Counter(), 0, None)
+    return Block(task.trials, kept.accepted, kept.draws, kept.forecasts, faults, tally, Counter(), 0, None)
 
 
 def _any(masks: Sequence[Bools], n: int) -> Bools:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from contextlib import closing
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
@@ -16,6 +16,7 @@ from xlmc.columns import ColumnStore
 from xlmc.definitions.definitions import name_key
 from xlmc.definitions.stopping import LIMIT, MOST_TRIALS, NO_GOAL, Stopping
 from xlmc.errors import SimulationError
+from xlmc.evaluation.engine import Room
 from xlmc.run.blocks import Block, FilterTally, Task
 from xlmc.run.checking import LEAST_CHECKED
 from xlmc.run.rare.rare_switch import rare_switch
@@ -84,7 +85,7 @@ def simulate(
     most_inputs = plan.trials if keep_inputs is None else keep_inputs
     if model.checks:
         most_inputs = max(most_inputs, LEAST_CHECKED)
-    gathered = _Gathered(model, block, most_inputs)
+    gathered = _Gathered(model, block, most_inputs, plan.trials)
 
     def task(start: int, trials: int) -> Task:
         return Task(start, trials, start < PRIOR_TRIALS, gathered.wants_inputs)
@@ -92,7 +93,7 @@ def simulate(
     tasks = (task(start, min(block, plan.trials - start)) for start in range(0, plan.trials, block))
     stopped: Stopped | None = None
     with Interruption(wanted=keep_interrupted and may_end_early(settings.sampling)) as interruption:
-        with closing(pool.blocks(model, program, settings, plan, block, tasks)) as blocks:
+        with closing(pool.blocks(model, program, settings, plan, block, tasks, gathered.room)) as blocks:
             while stopped is None and not looks.should_search(gathered.trials, gathered.accepted):
                 finished = next(blocks)
                 counting = finished.trials if looks.certain else watch.counting(finished)
@@ -156,7 +157,7 @@ def _with_search(plain: Simulation, found: Search, most_inputs: int) -> Simulati
 
     assert found.account is not None
     model, block = plain.model, plain.model.program("numpy").largest_block
-    gathered = _Gathered(model, block, most_inputs)
+    gathered = _Gathered(model, block, most_inputs, len(found.uniforms))
     for each in accepted_blocks(model, found.uniforms, block, lambda: gathered.wants_inputs):
         gathered.add(each)
     drawn = gathered.simulation(plain.settings, plain.plan, plain.stopped)
@@ -200,7 +201,7 @@ def _settings(
 class _Gathered:
     """The blocks so far: the counts of all trials, and the columns of the accepted ones."""
 
-    def __init__(self, model: Model, block: int, keep_inputs: int) -> None:
+    def __init__(self, model: Model, block: int, keep_inputs: int, trials: int) -> None:
         self._model, self._block, self._keep_inputs = model, block, keep_inputs
         keys = [name_key(a.name) for a in model.live]
         real, whole = np.dtype(np.float64), np.dtype(np.int64)
@@ -208,7 +209,10 @@ class _Gathered:
         self._prior = {a.name: ("prior", key) for a, key in zip(model.live, keys, strict=True)}
         self._forecasts = {f.name: ("forecast", number) for number, f in enumerate(model.forecasts)}
         columns = (*self._inputs.values(), *self._prior.values(), *self._forecasts.values())
-        self._keeper = ColumnStore({("trial", 0): whole, **dict.fromkeys(columns, real)})
+        expected: dict[Hashable, int] = {("trial", 0): trials, **dict.fromkeys(self._forecasts.values(), trials)}
+        expected |= dict.fromkeys(self._inputs.values(), min(keep_inputs + block, trials))
+        expected |= dict.fromkeys(self._prior.values(), min(PRIOR_TRIALS, trials))
+        self._keeper = ColumnStore({("trial", 0): whole, **dict.fromkeys(columns, real)}, expected)
         self._tally = FilterTally.empty(len(model.filters))
         self._invalid: Counter[str] = Counter()
         self._faults: list[Counter[str]] = [Counter() for _ in model.forecasts]
@@ -239,6 +243,15 @@ class _Gathered:
         for number, values in enumerate(block.forecasts):
             self._keeper.add(("forecast", number), values)
         self._keeper.settle()
+
+    def room(self) -> Room:
+        """The memory that the next block's columns go to."""
+        room, inputs = self._keeper.room, self._inputs.values() if self.wants_inputs else ()
+        return Room(
+            room(("trial", 0), self._block),
+            {key: room((kind, key), self._block) for kind, key in inputs},
+            [room(key, self._block) for key in self._forecasts.values()],
+        )
 
     @property
     def accepted_trials(self) -> NDArray[np.int64]:

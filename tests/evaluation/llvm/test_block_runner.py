@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from committed_books import BOOKS
 
 pytest.importorskip("llvmlite")
 
 import xlmc
+from xlmc.evaluation.engine import Room
 from xlmc.run.blocks import Task
 from xlmc.run.scheduling.run_spec import model_runner
 
@@ -81,6 +83,31 @@ def test_examples_and_templates_in_whole_blocks(path):
     """Some of their filters wait until they are needed: until then they are always true."""
     model = xlmc.load(path)
     assert list(map(bits, ran(model, True))) == list(map(bits, ran(model, False)))
+
+
+@pytest.mark.parametrize(
+    ("forecasts", "filters", "in_room"),
+    [
+        ({"x": "B3", "y": "B1", "z": "A1"}, {}, {"x", "y", "z"}),
+        ({"x": "B3", "again": "B3", "c": "C9"}, {}, {"x"}),
+        ({"x": "B3", "y": "B1"}, {"t": "C7"}, {"x", "y"}),
+        ({"x": "B3"}, {"f": "C6"}, set()),
+    ],
+)
+def test_where_all_trials_are_kept_they_are_written_to_the_room(book, forecasts, filters, in_room):
+    model = book(CELLS, GIVEN, forecasts, filters)
+    runner = model_runner(model, model.program("jit"), "jit", 7, BLOCK)
+    for block in (5, 6):
+        rows = np.empty((len(forecasts) + len(GIVEN), BLOCK))
+        draws = dict(zip(GIVEN, rows[len(forecasts) :], strict=True))
+        room = Room(np.empty(BLOCK, np.int64), {name.casefold(): row for name, row in draws.items()}, list(rows))
+        task = Task(block * BLOCK, BLOCK, False)
+        found = runner.borrow(task, lambda room=room: room)
+        assert bits(found) == bits(runner.run(task))
+        found = runner.borrow(task, lambda room=room: room)
+        there = zip(forecasts, found.forecasts, room.forecasts, strict=False)
+        assert {name for name, column, memory in there if np.shares_memory(column, memory)} == in_room
+        assert np.shares_memory(found.accepted, room.accepted) is bool(in_room)
 
 
 def test_correlated_draws(book):

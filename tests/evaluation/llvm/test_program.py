@@ -52,7 +52,7 @@ def program(lower):
 
 def stages(program):
     """How many loops, and how many nodes outside of loops."""
-    steps = program.late._steps
+    steps = [*program.first._steps, *program.late._steps]
     loops = [step for step in steps if not isinstance(step, tuple)]
     return len(loops), sum(len(step) for step in steps if isinstance(step, tuple))
 

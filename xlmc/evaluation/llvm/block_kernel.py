@@ -40,8 +40,8 @@ class Layout:
         filters: addresses of truth values, `(chunk,)`.
         by_chunk: addresses of doubles that move on with every chunk.
         by_kept: addresses of doubles that move on by the trials kept.
-        survivors: the address of `(chunk,)` int64 for the trials kept of a chunk.
-        trials: the address of int64 for all trials kept, counted from the block's first.
+        survivors: the address of `(chunk,)` int64 for the trials kept of a chunk; without filters it holds all of them.
+        trials: the address of int64 for all trials kept, counted from the block's first; not written without filters.
         counts: the address of the counters: pairs of filters, the lower triangle by rows, then each filter alone.
         gathers: how many columns are gathered; the words after it are addresses of doubles, from and to.
     """
@@ -67,7 +67,7 @@ def compile_kernel(machine: Machine, layout: Layout) -> NativeLoop:
     It gives the number of trials kept, or -1 as soon as a trial must be computed again.
     """
     module = ir.Module()
-    sieve, gather = _sieve(module, len(layout.filters), layout.chunk), _gather(module, layout.chunk)
+    gather = _gather(module, layout.chunk)
     function = ir.Function(module, _LOOP, _NAME)
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     chunks = function.args[1]
@@ -85,13 +85,16 @@ def compile_kernel(machine: Machine, layout: Layout) -> NativeLoop:
     for loop in layout.first:
         _fail_if(builder, table.call(loop, _LONG(layout.chunk)), failed)
     survivors = table.address(layout.survivors, _LONG)
-    filters = [table.address(position, _BYTE) for position in layout.filters]
-    kept = builder.call(sieve, [*filters, survivors, table.address(layout.counts, _LONG)])
+    kept = _LONG(layout.chunk)
+    if layout.filters:
+        filters = [table.address(position, _BYTE) for position in layout.filters]
+        counts = table.address(layout.counts, _LONG)
+        kept = builder.call(_sieve(module, len(filters), layout.chunk), [*filters, survivors, counts])
+        trials = builder.gep(table.address(layout.trials, _LONG), [total])
+        first_trial = builder.mul(chunk, _LONG(layout.chunk))
+        _for_each(builder, kept, lambda i: _store_shifted(builder, survivors, trials, first_trial, i))
     for loop in layout.late:
         _fail_if(builder, table.call(loop, kept), failed)
-    trials = builder.gep(table.address(layout.trials, _LONG), [total])
-    first_trial = builder.mul(chunk, _LONG(layout.chunk))
-    _for_each(builder, kept, lambda i: _store_shifted(builder, survivors, trials, first_trial, i))
     _for_each(
         builder, table.word(layout.gathers), lambda i: table.gather_column(gather, layout.gathers, i, survivors, kept)
     )

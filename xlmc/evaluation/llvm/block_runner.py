@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.evaluation.engine import KeptBlock
+from xlmc.evaluation.engine import KeptBlock, Room
 from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Input
 from xlmc.evaluation.llvm.block_kernel import WORD, Layout, compile_kernel
@@ -116,17 +116,23 @@ class NativeBlockRunner:
         self._fill = None if linear is None else filler(linear.streams, linear.maps, rows)
         self._rows = dict(zip(self._names, rows, strict=True))
         self._memory = Memory(parts.slots, self._chunk)
-        self._forecasts = {node: np.empty(block) for node in parts.forecasts if isinstance(node, int)}
-        self._kept = np.empty((len(self._names), block))
-        self._trials, self._survivors = np.empty(block, np.int64), np.empty(self._chunk, np.int64)
+        self._trials, self._survivors = np.arange(block), np.arange(self._chunk)
+        self._room = Room(
+            np.empty(block, np.int64),
+            dict(zip(self._names, np.empty((len(self._names), block)), strict=True)),
+            [np.empty(block) for _ in parts.forecasts],
+        )
         self._wrong = np.zeros((2, self._chunk), np.uint8)
         f = len(parts.rejecting)
         self._counts = np.zeros(f * (f + 1) // 2 + f, np.int64)
         rows_of, columns_of = np.maximum(*np.indices((f, f))), np.minimum(*np.indices((f, f)))
         self._pairs = rows_of * (rows_of + 1) // 2 + columns_of
+        self._column = {node: at for at, node in reversed([*enumerate(parts.forecasts)]) if isinstance(node, int)}
+        self._forecast_targets: list[tuple[int, int]] = []
+        self._draw_targets: dict[str, int] = {}
         self._write_table()
 
-    def __call__(self, start: int, inputs: bool) -> KeptBlock | None:
+    def __call__(self, start: int, inputs: bool, room: Callable[[], Room] | None) -> KeptBlock | None:
         """See `BlockRunner`."""
         if _PATIENCE * self._careful > max(self._runs, _PATIENCE):
             return None
@@ -140,24 +146,35 @@ class NativeBlockRunner:
             self._words[self._slots] = np.array([_address_of(row) for row in rows], np.uint64)[self._slot_rows]
         if inputs:
             self._words[self._gathers] += len(self._names)
+        into = self._room
+        if room is not None and not self._parts.rejecting:
+            into = room()
+            for target, array in self._targets(into):
+                self._words[target] = _address_of(array)
         self._counts.fill(0)
         m = self._run(self._address, self._chunks)
         if m < 0:
             self._careful += 1
             self._wrong.fill(0)
             return None
-        return self._result(m, inputs)
+        return self._result(start, m, inputs, into)
 
-    def _result(self, m: int, inputs: bool) -> KeptBlock:
+    def _targets(self, room: Room) -> Iterable[tuple[int, Floats]]:
+        """Positions in the argument table of addresses that columns are written to, and these columns in `room`."""
+        yield from ((at, room.forecasts[number]) for at, number in self._forecast_targets)
+        yield from ((self._draw_targets[name], array) for name, array in room.draws.items())
+
+    def _result(self, start: int, m: int, inputs: bool, room: Room) -> KeptBlock:
         parts, alone = self._parts, self._counts[self._counts.size - len(self._parts.rejecting) :]
         f, rejecting = len(parts.filters), list(parts.rejecting)
         together, only = np.zeros((f, f), np.int64), np.zeros(f, np.int64)
-        together[np.ix_(rejecting, rejecting)], only[rejecting] = self._counts[self._pairs], alone
+        if rejecting:
+            together[np.ix_(rejecting, rejecting)], only[rejecting] = self._counts[self._pairs], alone
         return KeptBlock(
-            self._trials[:m],
-            dict(zip(self._names, self._kept[:, :m].copy(), strict=True)) if inputs else {},
+            np.add(self._trials[:m], start, out=room.accepted[:m]),
+            {name: room.draws[name][:m] for name in self._names} if inputs else {},
             [
-                np.full(m, float(each.value)) if isinstance(each, Literal) else self._forecasts[each][:m].copy()
+                np.full(m, float(each.value)) if isinstance(each, Literal) else room.forecasts[self._column[each]][:m]
                 for each in parts.forecasts
             ],
             together,
@@ -185,14 +202,14 @@ class NativeBlockRunner:
         ):
             nodes = [*(load.operand.node for load in loop.loads), *loop.stores]
             lists.append((at + 1, self._add_list(table, nodes, wrong, loop.numbers)))
-        gathered = [node for node in self._forecasts if node not in parts.computed_late]
+        gathered = [node for node in self._column if node not in parts.computed_late]
         self._gathers = gathers = table.add(len(gathered))
         for node in gathered:
             self._add_address(table, node)
-            table.add(_address_of(self._forecasts[node]))
-        for name, kept in zip(self._names, self._kept, strict=True):
+            self._add_forecast_address(table, node)
+        for name in self._names:
             self._add_draw_address(table, name)
-            table.add(_address_of(kept))
+            self._draw_targets[name] = table.add(_address_of(self._room.draws[name]))
         self._table = np.array(table.words, np.uint64)
         self._words = self._table.copy()
         self._address = _address_of(self._words)
@@ -223,10 +240,17 @@ class NativeBlockRunner:
         node = self._parts.dag.nodes[node_id]
         if isinstance(node, Input):
             self._add_draw_address(table, node.name)
-        elif node_id in self._forecasts and node_id in self._parts.computed_late:
-            table.by_kept.append(table.add(_address_of(self._forecasts[node_id])))
+        elif node_id in self._column and node_id in self._parts.computed_late:
+            table.by_kept.append(self._add_forecast_address(table, node_id))
         else:
             table.add(_address_of(self._memory.of(node_id, self._chunk)))
+
+    def _add_forecast_address(self, table: _TableWriter, node: int) -> int:
+        """Add the address that a forecast is written to; give its position."""
+        number = self._column[node]
+        at = table.add(_address_of(self._room.forecasts[number]))
+        self._forecast_targets.append((at, number))
+        return at
 
     def _add_draw_address(self, table: _TableWriter, name: str) -> None:
         table.draws[table.add(_address_of(self._rows[name]))] = name

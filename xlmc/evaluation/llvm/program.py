@@ -63,7 +63,8 @@ class JitProgram:
         def needed(node: int) -> tuple[int, ...]:
             return reads(self.dag, node, rules.get(node))
 
-        first = self.dag.upstream(self.filter_nodes, needed)
+        # Where no filter can reject a trial, nothing needs to be picked from the survivors.
+        first = self.dag.upstream(self.filter_nodes or self.forecast_nodes, needed)
         early = frozenset(first)
         late = [node for node in self.dag.upstream(self.forecast_nodes, needed) if node not in early]
         carried = {used for node in late for used in needed(node)} | set(self.forecast_nodes)

@@ -66,7 +66,8 @@ class NumpyProgram:
     ) -> None:
         self._made_of = dag, filters, forecasts, may_err, bounds, array_bytes
         self._dag, self._filters, self._forecasts, self._bounds = dag, filters, forecasts, bounds
-        self._placement = Placement(dag, filters, forecasts)
+        # Where no filter can reject a trial, nothing needs to be picked from the survivors.
+        self._placement = Placement(dag, filters, forecasts) if filters else Placement(dag, forecasts, ())
         self._template: list[Any] = [None] * len(dag.nodes)
         for node, value in constants(dag):
             self._template[node] = plain_constant(value)
@@ -129,8 +130,9 @@ class NumpyProgram:
         Raises:
             LeaveFastPath, FloatingPointError: the block is not for the fast path.
         """
+        all_survive = survivors.size == space.n
         frame = space.survivors(survivors.size)
-        for node, buffer in self._gathers:
+        for node, buffer in () if all_survive and not self._late else self._gathers:
             frame.values[node] = _gather(frame, node, buffer, survivors)
         for node, name in self._late_inputs:
             frame.values[node] = inputs[name][survivors]
@@ -223,6 +225,11 @@ class _Space:
         """A fresh frame for `n` trials."""
         self._frame = Frame(template.copy(), [buffer[:n] for buffer in self._buffers], n, self.underflow)
         return self._frame
+
+    @property
+    def n(self) -> int:
+        """The trials of the current frame."""
+        return self._frame.n
 
     def survivors(self, m: int) -> Frame:
         """The same values, for `m` of the trials."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,7 @@ from xlmc.run.scheduling.run_spec import RunSpec, model_runner
 
 if TYPE_CHECKING:
     from xlmc.definitions.definitions import Settings
-    from xlmc.evaluation.engine import Program
+    from xlmc.evaluation.engine import Program, Room
     from xlmc.run.model import Model
     from xlmc.sampling.sampling_plan import SamplingPlan
 
@@ -53,9 +53,18 @@ class WorkerPool:
             raise SimulationError(f"there is no scheduler {self.scheduler!r}", hint=hint)
 
     def blocks(
-        self, model: Model, program: Program, settings: Settings, plan: SamplingPlan, block: int, tasks: Iterator[Task]
+        self,
+        model: Model,
+        program: Program,
+        settings: Settings,
+        plan: SamplingPlan,
+        block: int,
+        tasks: Iterator[Task],
+        room: Callable[[], Room],
     ) -> Generator[Block, None, None]:
-        """The blocks of a run, of `block` trials each, in the order of their tasks.
+        """The blocks of a run, of `block` trials each, in the order of their tasks; copy what you keep of each.
+
+        Where they are run one after another, the columns of the next block may be written to what `room` gives.
 
         Raises:
             SimulationError: the workers cannot be had, or did not finish.
@@ -67,6 +76,11 @@ class WorkerPool:
         def runner() -> ModelRunner:
             return model_runner(model, program, settings.engine, settings.seed, block, plan)
 
+        if scheduler == "threads" and jobs == 1:
+            own = runner()
+            for task in tasks:
+                yield own.borrow(task, room)
+            return
         if scheduler == "threads":
             yield from by_threads([runner() for _ in range(jobs)], blocks, tasks)
             return

@@ -131,6 +131,11 @@ RULES: Final = (
     Rule("0.4.0", "A1# shows 0 for the empty cells of a range whose size is drawn", _calls("ANCHORARRAY")),
     Rule("0.5.1", "INDEX of several rows and columns with one number gives #REF!", _calls("INDEX")),
     Rule("0.5.1", "BETA.INV takes the probability 1, and gives the upper end", _calls("BETA.INV", "BETAINV")),
+    Rule(
+        "0.6.0",
+        "the engine jit computes EXP, LN, LOG10 and powers itself, to one unit in the last bit",
+        re.compile(r"\^|(?<![\w.])(?:EXP|LN|LOG10|POWER)\(", re.IGNORECASE),
+    ),
 )
 """In the order of versions."""
 
@@ -141,6 +146,7 @@ _COMMITS: Final = {
     "0.4.0": "bc3aba5294be41225bc1b4b5739ec48cd9e98e2c",
     "0.5.0": "7496bc5c0bfbe39791f9066d2e05fbbc01b41aaf",
     "0.5.1": "e9825adc0d54324dd6ffee4b7e227855ceaf6810",
+    "0.5.2": "a0233280c2c29797693a39af2d7ca65686378708",
 }
 """The last commit of each version before this one."""
 

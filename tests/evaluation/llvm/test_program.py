@@ -63,9 +63,10 @@ def stages(program):
         ("A1+A2*SIN(A1)/COS(A1)-SQRT(A2^3)", 1, 0),
         ("IF(AND(A1>1,A2>1),SUM(A1:A2),IF(A1>0,MAX(A1:A2),-A1))", 1, 0),
         ("IFERROR(1/A1,A2)", 1, 0),
-        ("EXP(A1)", 0, 1),
-        ("EXP(A1+A2)+1", 2, 1),
-        ("LN(A1)*LN(A2)+LN(A1*A2)", 2, 3),
+        ("SINH(A1)", 0, 1),
+        ("SINH(A1+A2)+1", 2, 1),
+        ("SINH(A1)*SINH(A2)+SINH(A1*A2)", 2, 3),
+        ("EXP(A1)+LN(A2)*LOG10(A1)^A2", 1, 0),
         ("MEDIAN(A1:A2)*2", 1, 2),
         ("A1", 0, 0),
         ("2", 0, 0),
@@ -141,7 +142,7 @@ def test_nothing_of_the_workbooks_text_reaches_the_compiler(lower, monkeypatch):
         "Evil!A7": 3.0,
         "B1": '=A1*2+Evil!A7+IF(A1>0,Injected,LEN("payload"&A1))',
         "B2": '=IFERROR(SQRT(B1),"payload")&"payload"',
-        "B3": "=SIN(LN(A1))+B1+(B2=A1)",
+        "B3": "=SIN(SINH(LN(A1)^A1))+B1+(B2=A1)",
     }
     names = {"Injected": "S!$C$1"}
     lowering, targets = lower(cells | {"C1": 1.5}, ["A1"], ["B1", "B2", "B3"], names=names)
@@ -171,5 +172,5 @@ OWN_WORDS = {
     *("olt", "ogt", "oeq", "one", "ole", "oge", "uge", "une", "x", "source_filename"),
     *("llvm.fma", "llvm.fma.f64", "llvm.fabs.f64", "llvm.sqrt.f64"),
     *("llvm.x86.sse.stmxcsr", "llvm.x86.sse.ldmxcsr", "llvm.aarch64.get.fpcr", "llvm.aarch64.set.fpcr"),
-    *("alloca", "i32", "void"),
+    *("alloca", "i32", "void", "sub", "lshr", "llvm.loop", "llvm.loop.interleave.count"),
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from llvmlite import ir
 
@@ -16,7 +16,11 @@ from xlmc.functions import Kind
 
 __all__ = ["Load", "compile_loop"]
 
-_NAME = "over_trials"
+_NAME: Final = "over_trials"
+_SIDE_BY_SIDE: Final = 2
+"""Vectors of trials that are computed at once. Cells follow from each other, and so the processor waits for one result
+after another; a second vector gives it something to do meanwhile."""
+
 _BYTE, _BIT, _LONG = ir.IntType(8), ir.IntType(1), ir.IntType(64)
 _DOUBLE = ir.DoubleType()
 
@@ -110,7 +114,8 @@ def _inner(
     i.add_incoming(following, body_block)
     count.add_incoming(_LONG(0), before)
     count.add_incoming(counted, body_block)
-    builder.cbranch(builder.icmp_signed("<", following, n), body_block, after)
+    again = builder.cbranch(builder.icmp_signed("<", following, n), body_block, after)
+    again.set_metadata("llvm.loop", _interleaved(module))
 
     builder.position_at_end(after)
     total = builder.phi(_LONG)
@@ -118,6 +123,14 @@ def _inner(
     total.add_incoming(counted, body_block)
     builder.ret(total)
     return function
+
+
+def _interleaved(module: ir.Module) -> Any:
+    """What asks LLVM to compute two vectors of trials side by side."""
+    count = [ir.MetaDataString(module, "llvm.loop.interleave.count"), ir.Constant(ir.IntType(32), _SIDE_BY_SIDE)]
+    found = module.add_metadata([module.add_metadata(count)])
+    found.operands = (found, *found.operands)  # LLVM wants the first to be itself, so that no two loops share one
+    return found
 
 
 def _load(builder: ir.IRBuilder, pointer: Any, i: Any) -> Any:

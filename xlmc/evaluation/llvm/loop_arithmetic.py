@@ -15,6 +15,7 @@ y + y·R(y²), with R the ratio of polynomials of fdlibm's `e_asin.c`. One ulp i
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Sequence
 from typing import Any, Final
 
@@ -22,6 +23,7 @@ from llvmlite import ir
 
 __all__ = [
     "HALF_PI",
+    "TO_WHOLE",
     "Arithmetic",
     "arccosine",
     "arcsine",
@@ -100,8 +102,55 @@ class Arithmetic:
         product = self.mul(k, self.number(constant))
         return self.sub(self.sub(angle, product), self.lost(k, constant, product))
 
+    def rest_of_product(self, x: Any, y: Any, product: Any) -> Any:
+        """x·y less the product as rounded, exactly (Veltkamp's and Dekker's splitting where nothing is fused)."""
+        if self._fused:
+            return self._intrinsic("llvm.fma", x, y, self.negative(product))
+        (high, low), (more, less) = self._halves(x), self._halves(y)
+        rest = self.add(self.sub(self.mul(high, more), product), self.mul(high, less))
+        return self.add(self.add(rest, self.mul(low, more)), self.mul(low, less))
+
+    def less_product(self, z: Any, x: Any, y: Any) -> Any:
+        """The difference z - x·y, exactly: the two nearly cancel."""
+        if self._fused:
+            return self.minus(z, x, y)
+        product = self.mul(x, y)
+        return self.sub(self.sub(z, product), self.rest_of_product(x, y, product))
+
+    def _halves(self, x: Any) -> tuple[Any, Any]:
+        """A number as the sum of two with half of the bits each."""
+        scaled = self.mul(self.number(_SPLIT), x)
+        high = self.sub(scaled, self.sub(scaled, x))
+        return high, self.sub(x, high)
+
     def bits(self, x: Any) -> Any:
         return self._builder.bitcast(x, self._integer)
+
+    def from_bits(self, bits: Any) -> Any:
+        """The number that has these bits."""
+        return self._builder.bitcast(bits, self._real)
+
+    def whole(self, value: int) -> Any:
+        """A constant of the size of a number's bits."""
+        return ir.Constant(self._integer, value)
+
+    def add_bits(self, x: Any, y: Any) -> Any:
+        return self._builder.add(x, y)
+
+    def sub_bits(self, x: Any, y: Any) -> Any:
+        return self._builder.sub(x, y)
+
+    def shift_left(self, bits: Any, places: int) -> Any:
+        return self._builder.shl(bits, self.whole(places))
+
+    def shift_right(self, bits: Any, places: int) -> Any:
+        """Zeros come in on the left."""
+        return self._builder.lshr(bits, self.whole(places))
+
+    def of_whole(self, bits: Any) -> Any:
+        """A whole number, below 2^51 in size, as a double."""
+        offset = self.add_bits(bits, self.whole(int.from_bytes(struct.pack(">d", TO_WHOLE))))
+        return self.sub(self.from_bits(offset), self.number(TO_WHOLE))
 
     def odd(self, whole: Any) -> Any:
         return self._builder.trunc(whole, ir.IntType(1))
@@ -131,7 +180,7 @@ _COSINE: Final = (
     *(4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05),
     *(-2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11),
 )
-_TO_WHOLE: Final = 1.5 * 2.0**52
+TO_WHOLE: Final = 1.5 * 2.0**52
 """A number plus this, less this, is the nearest whole number; its last bits are those of the sum's mantissa."""
 
 
@@ -152,8 +201,8 @@ def sine_and_cosine(builder: Any, angle: Any, fused: bool) -> tuple[Any, Any]:
 def _reduce_angle(do: Arithmetic, angle: Any) -> tuple[Any, Any, Any]:
     """The angle less the nearest multiple k of π/2, as a sum of two doubles, and k modulo 4 in its last two bits."""
     first, second, third = HALF_PI
-    shifted = do.plus(do.number(_TO_WHOLE), angle, do.number(1 / first))
-    k = do.sub(shifted, do.number(_TO_WHOLE))
+    shifted = do.plus(do.number(TO_WHOLE), angle, do.number(1 / first))
+    k = do.sub(shifted, do.number(TO_WHOLE))
     near = do.less_multiple(angle, k, first)
     product = do.mul(k, do.number(second))
     x = do.sub(near, product)

@@ -18,6 +18,7 @@ from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Node, Select
 from xlmc.evaluation.llvm.lookups import lookup_rule
 from xlmc.evaluation.llvm.loop_arithmetic import arccosine, arcsine, arctangent, arctangent_of_two
+from xlmc.evaluation.llvm.loop_powers import common_logarithm, exponential, logarithm, power
 from xlmc.evaluation.llvm.loop_rules import PLAIN, Emit, Emitter, Literal, LoopRule, Operand, literal
 from xlmc.evaluation.llvm.sets import over_cells
 from xlmc.functions import Kind
@@ -257,9 +258,47 @@ _POWERS: Final = {
 """Exponents that need no logarithm; the results are within 1 ulp, and 0 and infinity come out as of `pow`."""
 
 
-def _power(dag: Dag, node: Apply) -> _Row | None:
+def _power(dag: Dag, node: Apply) -> _Row:
     exponent = literal(dag, Operand(node.arguments[1], Kind.NUMBER))
-    return None if exponent is None else _POWERS.get(float(exponent.value))
+    if exponent is None:
+        return _Row(_power_of_any, (0, 1))
+    value = float(exponent.value)
+    return _POWERS.get(value) or _Row(_power_of_constant(value > 0, value.is_integer(), value % 2 == 1), (0, 1))
+
+
+def _power_of_any(body: Emitter, parts: Sequence[Any]) -> Any:
+    """Left to the careful path where the base is 0 or less."""
+    body.flag(body.builder.fcmp_ordered("<=", parts[0], body.number(0.0)))
+    return body.of_doubles(power, *parts)
+
+
+@cache
+def _power_of_constant(positive: bool, whole: bool, odd: bool) -> Emit:
+    """How the loop computes powers whose exponent is a constant of that kind."""
+
+    def emit(body: Emitter, parts: Sequence[Any]) -> Any:
+        base, exponent = parts
+        zero, compare = body.number(0.0), body.builder.fcmp_ordered
+        if not whole:
+            body.flag(compare("<", base, zero))
+        if not positive:
+            body.flag(compare("==", base, zero))
+        found = body.of_doubles(power, body.intrinsic("llvm.fabs", base), exponent)
+        if positive:
+            found = body.builder.select(compare("==", base, zero), zero, found)
+        return body.intrinsic("llvm.copysign", found, base) if odd else found
+
+    return emit
+
+
+def _above_zero(function: Callable[..., Any]) -> _Row:
+    """A function of numbers above 0; Excel refuses others: the trial is computed again."""
+
+    def emit(body: Emitter, parts: Sequence[Any]) -> Any:
+        body.flag(body.builder.fcmp_ordered("<=", parts[0], body.number(0.0)))
+        return body.of_doubles(function, *parts)
+
+    return _Row(emit, (0,), makes=False)
 
 
 _ROWS: Final[Mapping[str, _Row]] = {
@@ -290,6 +329,9 @@ _ROWS: Final[Mapping[str, _Row]] = {
     "ATAN2": _of_doubles(arctangent_of_two, 0, 1, makes=True),
     "ASIN": _of_doubles(arcsine, makes=True),
     "ACOS": _of_doubles(arccosine, makes=True),
+    "EXP": _of_doubles(exponential, 0, makes=True),
+    "LN": _above_zero(logarithm),
+    "LOG10": _above_zero(common_logarithm),
     "ISERROR": _fixed_answer(False),
     "ISERR": _fixed_answer(False),
     "ISNA": _fixed_answer(False),

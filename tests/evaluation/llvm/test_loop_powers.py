@@ -1,0 +1,119 @@
+"""Exponentials, logarithms and powers of the compiled loop against mpmath, in units in the last place."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+
+pytest.importorskip("llvmlite")
+
+GENERATOR = np.random.default_rng(11)
+N = 1500
+LEAST, MOST = -708.3964185322640, 709.782712893384
+"""Between these an exponential is a number of Excel's."""
+
+EXPONENTS = np.concatenate(
+    [
+        GENERATOR.uniform(LEAST, MOST, N),
+        GENERATOR.uniform(-2, 2, N),
+        GENERATOR.normal(size=N) * 1e-4,
+        (np.arange(-1021, 1023) + 0.5) * np.log(2),  # where the power of two changes
+        [0.0, -0.0, 1e-300, LEAST, MOST, np.nextafter(MOST, 0)],
+    ]
+)
+POSITIVE = np.concatenate(
+    [
+        np.exp(GENERATOR.uniform(-708, 709, N)),
+        GENERATOR.uniform(0.5, 2, N),
+        1 + GENERATOR.normal(size=N) * 1e-5,
+        np.sqrt(0.5) * np.exp2(np.arange(-20, 20)),  # likewise
+        [1.0, np.nextafter(1, 0), np.nextafter(1, 2), 2.2250738585072014e-308, np.finfo(float).max],
+        10.0 ** np.arange(-22, 23),
+    ]
+)
+
+
+def test_exponentials(compiled, distance):
+    with mpmath.workprec(200):
+        exact = [mpmath.exp(mpmath.mpf(float(x))) for x in EXPONENTS]
+        assert distance(compiled({"B1": "=EXP(A1)"})(EXPONENTS)[0], exact) < 0.75
+
+
+def test_logarithms(compiled, distance):
+    natural, common = compiled({"B1": "=LN(A1)", "B2": "=LOG10(A1)"})(POSITIVE)
+    with mpmath.workprec(200):
+        exact = [mpmath.mpf(float(x)) for x in POSITIVE]
+        assert distance(natural, map(mpmath.log, exact)) < 0.9
+        assert distance(common, map(mpmath.log10, exact)) < 0.51
+
+
+def test_powers_of_ten_have_whole_logarithms(compiled):
+    exponents = np.arange(-22.0, 23)
+    assert compiled({"B1": "=LOG10(A1)"})(10.0**exponents)[0].tolist() == exponents.tolist()
+
+
+def bases_and_exponents():
+    """Of which the power is a number of Excel's: small and large bases, near 1 with large exponents."""
+    bases = (np.exp(GENERATOR.uniform(-30, 30, N)), GENERATOR.uniform(0.7, 1.42, N), np.exp2(GENERATOR.normal(size=N)))
+    exponents = (GENERATOR.uniform(-20, 20, N), GENERATOR.uniform(-1900, 1900, N), GENERATOR.integers(-40, 40, N))
+    near = 1 + GENERATOR.normal(size=N) * 1e-6
+    x, y = np.concatenate([*bases, near]), np.concatenate([*exponents, GENERATOR.uniform(-1, 1, N) * 6e8])
+    size = y * np.log(x)
+    inside = (size > LEAST + 1) & (size < MOST - 1)
+    return x[inside], y[inside]
+
+
+def test_powers(compiled, distance):
+    x, y = bases_and_exponents()
+    with mpmath.workprec(300):
+        exact = [mpmath.power(mpmath.mpf(float(a)), mpmath.mpf(float(b))) for a, b in zip(x, y, strict=True)]
+        assert distance(compiled({"B1": "=A1^A2"}, ("A1", "A2"))(x, y)[0], exact) < 0.9
+
+
+@pytest.mark.parametrize("exponent", [4.0, 5.0, 7.0, -2.0, -3.0, 1.5, -0.5, 0.1, 40.0])
+def test_powers_with_a_constant_exponent(compiled, distance, exponent):
+    x = np.concatenate([np.exp(GENERATOR.uniform(-7, 7, N)), GENERATOR.uniform(0.9, 1.1, N), np.arange(1.0, 100)])
+    if exponent.is_integer():
+        x = np.concatenate([x, -x])
+    with mpmath.workprec(300):
+        exact = [mpmath.power(mpmath.mpf(float(a)), mpmath.mpf(exponent)) for a in x]
+        assert distance(compiled({"B1": f"=A1^{exponent!r}"})(x)[0], exact) < 0.9
+
+
+def test_powers_that_a_double_holds_are_exact(compiled):
+    x, y = (each.ravel() for each in np.meshgrid(np.arange(1.0, 40), np.arange(0.0, 10)))
+    exact = np.array([float(int(a) ** int(b)) for a, b in zip(x, y, strict=True)])
+    held = exact < 2.0**53
+    assert compiled({"B1": "=A1^A2"}, ("A1", "A2"))(x, y)[0][held].tolist() == exact[held].tolist()
+
+
+EDGES = np.array(
+    [
+        *(0.0, -0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 4.0, 5.0, -5.0, 0.5, -0.5, 1 / 3, -1.5, 1e-300, -1e-300, 1e300),
+        *(-1e300, 709.0, 710.0, -708.0, -709.0, -746.0, 1e5, -1e5, 2.0**53, 2.0**53 + 2, 1.7e308, 2.3e-308),
+    ]
+)
+POWERS = ("0", "4", "5", "1.5", "(-2)", "(-3)", "(-0.5)", "1E300", "(1/3)", "9007199254740993")
+FORMULAS = (
+    *("EXP(A1)", "LN(A1)", "LOG10(A1)", "A1^A2", "POWER(A2,A1)", "IF(A1>0,LN(A1),A2)", "EXP(A1)*EXP(A2)"),
+    *(f"A1^{exponent}" for exponent in POWERS),
+)
+
+
+@pytest.mark.parametrize("formula", FORMULAS)
+def test_at_the_edges_errors_and_zeros_are_those_of_the_numpy_engine(lower, formula):
+    from xlmc.evaluation.llvm.program import JitProgram
+    from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
+
+    a, b = (each.ravel() for each in np.meshgrid(EDGES, EDGES))
+    found = []
+    for engine in (NumpyProgram.of, JitProgram):
+        lowering, targets = lower({"B1": f"={formula}"}, ["A1", "A2"], ["B1"])
+        evaluator = engine(lowering, targets, [], frozenset()).evaluator(a.size)
+        found.append(evaluator.filters({"A1": a, "A2": b}, a.size)[0])
+    one, two = (np.zeros(a.size) if column.codes is None else column.codes for column in found)
+    assert one.tolist() == two.tolist()
+    fine = one == 0
+    np.testing.assert_allclose(found[1].values[fine], found[0].values[fine], rtol=4e-16, atol=0)
+    assert (found[1].values[fine] == 0).tolist() == (found[0].values[fine] == 0).tolist()

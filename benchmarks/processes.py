@@ -27,7 +27,7 @@ def answer_of(python: Path, script: str, given: dict[str, Any], limit: float) ->
     """What a script beside this one prints last, or in words why there is nothing; both are JSON."""
     paths = os.pathsep.join(filter(None, (str(HERE.parent), os.environ.get("PYTHONPATH"))))
     command = [str(python), "-W", "ignore", str(HERE / script)]
-    environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": paths}
+    environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": paths, "XLMC_KEEP_CODE": "0"}
     try:
         done = subprocess.run(
             command, input=json.dumps(given), capture_output=True, text=True, timeout=limit, env=environment

@@ -229,3 +229,19 @@ def test_a_page_that_cannot_be_written_is_refused_before_the_run(xlmc, book, tmp
     assert outcome.code == 2
     assert why in outcome.err
     assert not (tmp_path / "case-results.xlsx").exists()
+
+
+def test_native_code_is_kept_unless_it_is_not_wanted(xlmc, case_study, tmp_path, monkeypatch):
+    pytest.importorskip("llvmlite")
+    from xlmc.evaluation.llvm import kept_code
+    from xlmc.evaluation.llvm.machine import machine
+
+    monkeypatch.setattr(kept_code, "_caches", lambda: tmp_path)
+    for option, there in ((["--no-kept-code"], False), ([], True)):
+        monkeypatch.setenv("XLMC_KEEP_CODE", "1")
+        machine.cache_clear()
+        assert (
+            xlmc(*option, "simulate", case_study, "-n", 2000, "--engine", "jit", "-o", "r.xlsx", "--overwrite").code
+            == 0
+        )
+        assert (tmp_path / "xlmc").exists() is there

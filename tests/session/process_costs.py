@@ -14,7 +14,8 @@ _NOT_KEPT = "PYTHONDONTWRITEBYTECODE"
 
 
 def pytest_configure() -> None:
-    """Modules are compiled once, and not by every process that a test starts."""
+    """Modules are compiled once, and not by every process that a test starts; native code is kept for no later run."""
+    os.environ["XLMC_KEEP_CODE"] = "0"
     os.environ.pop(_NOT_KEPT, None)
     sys.dont_write_bytecode = False
 

@@ -82,9 +82,12 @@ class _Commands(click.Group):
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
 @click.version_option(__version__, prog_name="xlmc")
+@click.option("--no-kept-code", is_flag=True, help="With the engine jit, compile anew and keep no code for later.")
 @click.pass_context
-def xlmc(context: click.Context) -> None:
+def xlmc(context: click.Context, no_kept_code: bool) -> None:
     """Monte Carlo simulation of Excel workbooks, without Excel."""
+    if no_kept_code:
+        os.environ["XLMC_KEEP_CODE"] = "0"
     if context.invoked_subcommand is None:
         say(context.get_help())
 

@@ -15,9 +15,15 @@ from typing import Any, Final
 
 from llvmlite import binding, ir
 
+from xlmc.evaluation.llvm.kept_code import code_key, load_code, save_code
+
 __all__ = ["Machine", "NativeLoop", "machine", "this_machine", "while_flushing"]
 
 _KEPT: Final = 64
+
+_SPEED_LEVEL: Final = 3
+_PIPELINE: Final = f"speed level {_SPEED_LEVEL}, loops vectorised"
+"""What a module goes through: code that went through something else is no longer used."""
 
 _X86: Final = ("x86_64", "amd64")
 _ARM: Final = ("aarch64", "arm64")
@@ -69,26 +75,38 @@ class Machine:
     def _target(self) -> Any:
         """A new target machine each time, for the compiled code takes it over."""
         found = binding.Target.from_default_triple()
-        return found.create_target_machine(cpu=self._cpu, features=self._features, opt=3)
+        return found.create_target_machine(cpu=self._cpu, features=self._features, opt=_SPEED_LEVEL)
 
     def native(self, module: ir.Module, name: str) -> NativeLoop:
         """The function `name` of a module, as native code that runs without holding Python's lock.
 
-        The last modules are kept: a model that is run again is not compiled again.
+        The last modules are kept: a model that is run again is not compiled again. See `kept_code` for other programs.
         Its own type is `i64 (i8**, i64)`.
         """
         return self._compiled(str(module), name)
 
     def _compile(self, module: str, name: str) -> NativeLoop:
         target = self._target()
+        llvm = ".".join(map(str, binding.llvm_version_info))
+        key = code_key(_PIPELINE, llvm, self.triple, self._cpu, self._features, module)
+        code = load_code(key)
+        if code is None:
+            return self._compile_anew(module, name, target, key)
+        engine = binding.create_mcjit_compiler(binding.parse_assembly(""), target)
+        engine.add_object_file(binding.ObjectFileRef.from_data(code))
+        engine.finalize_object()
+        return NativeLoop(engine.get_function_address(name), engine)
+
+    def _compile_anew(self, module: str, name: str, target: Any, key: str) -> NativeLoop:
         parsed = binding.parse_assembly(module)
         parsed.triple, parsed.data_layout = target.triple, str(target.target_data)
         parsed.verify()
-        tuning = binding.create_pipeline_tuning_options(speed_level=3)
+        tuning = binding.create_pipeline_tuning_options(speed_level=_SPEED_LEVEL)
         tuning.loop_vectorization = True
         passes = binding.create_pass_builder(target, tuning)
         passes.getModulePassManager().run(parsed, passes)
         engine = binding.create_mcjit_compiler(parsed, target)
+        engine.set_object_cache(lambda _, code: save_code(key, code))
         engine.finalize_object()
         return NativeLoop(engine.get_function_address(name), engine)
 

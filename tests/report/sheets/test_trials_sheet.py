@@ -60,3 +60,10 @@ def test_an_assumption_and_a_forecast_may_share_a_name(make, opened):
         {"A1": 0.5, "B1": "=A1"}, [make.uniform("v", "A1", 0.0, 1.0, base=0.5)], [make.forecast("v", "B1")], trials=5
     )
     assert [cell.value for cell in opened(run)["Trials"][HEADER + 1]] == ["Trial", "v", "v"]
+
+
+@pytest.mark.parametrize("name", ["Trials", "Bins", "Curves"])
+def test_of_a_sheet_of_data_the_heading_alone_is_printed(book, name):
+    sheet = book[name]
+    assert sheet.print_area == f"'{name}'!$A$1:$L$2"
+    assert str(sheet["A2"].value).endswith("Only this heading is printed, unless you clear the print area.")

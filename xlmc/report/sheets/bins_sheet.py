@@ -29,9 +29,6 @@ TABLE = 6
 
 _COUNTS = (3, 4)
 
-_ON_A_PAGE, _SCALE = 2, 64
-"""Tables side by side, and the percentage at which so many fit."""
-
 
 @dataclass(frozen=True, slots=True)
 class BinsAt:
@@ -59,11 +56,9 @@ class BinsAt:
 
 def write_bins(page: Page, figures: Sequence[Figure], name: str) -> list[BinsAt]:
     """Write the sheet with the tables of bins side by side; what is returned says where each stands."""
-    page.title("Bins of the histograms", f"{name}: the numbers that the charts draw")
+    page.title_of_data("Bins of the histograms", f"{name}: the numbers that the charts draw.", name, HEADER)
     tables = [_write_table(page, figure) for figure in figures]
     page.sheet.freeze_panes(HEADER + 1, 0)
-    breaks = [table.left for table in tables[_ON_A_PAGE::_ON_A_PAGE]]
-    page.set_up_printing(name, repeat=HEADER, repeat_from=HEADER - 2, scale=_SCALE, columns=breaks)
     return tables
 
 

@@ -20,9 +20,6 @@ HEADER = 5
 _TITLES = HEADER - 3
 SHARE = "0.00%"
 _WIDTH = 11
-_ON_A_PAGE, _SCALE = 14, 66
-"""Columns, and the percentage at which so many fit."""
-
 _HEAD_HEIGHT = 48
 """The height of the headings in points: three lines, in whichever table."""
 
@@ -59,10 +56,9 @@ class Curves:
     """The sheet, its tables side by side."""
 
     def __init__(self, page: Page, name: str) -> None:
-        self._page, self._name, self._left = page, name, 0
-        self._breaks: list[int] = []
-        self._page_from = 0
-        page.title("Curves", f"{name}: the numbers that the cumulative, overlay, trend and scatter charts draw")
+        self._page, self._left = page, 0
+        below = f"{name}: the numbers that the cumulative, overlay, trend and scatter charts draw."
+        page.title_of_data("Curves", below, name, HEADER)
         page.sheet.freeze_panes(HEADER + 1, 0)
 
     def write(
@@ -91,14 +87,10 @@ class Curves:
         page.row = HEADER
         page.table(heads, rows, left)
         page.sheet.set_row(HEADER, _HEAD_HEIGHT)
-        if left + len(heads) - self._page_from > _ON_A_PAGE:
-            self._page_from = left
-            self._breaks.append(left)
         self._left += len(heads) + 1
         return TableAt(page.sheet.get_name(), left, page.row - HEADER - 1)
 
     def finish(self) -> None:
-        """Say so where there is nothing, and set it up for printing."""
+        """Say so where there is nothing."""
         if not self._left:
             self._page.put(HEADER - 1, 0, Shown("No forecast has a number in an accepted trial.", look="alarm"))
-        self._page.set_up_printing(self._name, repeat=HEADER, repeat_from=_TITLES, scale=_SCALE, columns=self._breaks)

@@ -21,6 +21,7 @@ LONGEST_TEXT = 32_767
 ROW = 17.25
 """The height of a row, in points: 23 pixels."""
 
+_HEADING_COLUMNS = 11
 _LINE = 15.0
 _HIGHEST = 409.0
 _WIDTH = 8.43
@@ -107,6 +108,19 @@ class Page:
         self.put(self.row, column, Shown(value, look="title"))
         self.put(self.row + 1, column, Shown(below, look="subtitle"))
         self.row += 2
+
+    def title_of_data(self, value: str, below: str, name: str, header: int) -> None:
+        """Write the title of a sheet that would fill many pages; of it, the title and the line below are printed.
+
+        Args:
+            value: the title.
+            below: the line below; what is printed is added to it.
+            name: of the workbook, for the foot of the page.
+            header: the row of headings, which stands on top of every page once the numbers are printed, too.
+        """
+        self.title(value, f"{below} Only this heading is printed, unless you clear the print area.")
+        self.set_up_printing(name, repeat=header)
+        self.sheet.print_area(0, 0, 1, _HEADING_COLUMNS)
 
     def heading(self, value: str, column: int = 0) -> None:
         """Write the heading of a section, with space above it."""

@@ -60,7 +60,8 @@ def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> 
     """Write the sheet with the first `rows` accepted trials, and say so where there are more."""
     shown = max(0, min(rows, simulation.kept_inputs, MOST_ROWS))
     name = simulation.model.workbook.name
-    page.title("Accepted trials", f"{name}, seed {simulation.settings.seed}. Trials are numbered from 0.")
+    below = f"{name}, seed {simulation.settings.seed}. Trials are numbered from 0."
+    page.title_of_data("Accepted trials", below, name, HEADER)
     page.put(page.row, 0, _count_line(shown, simulation.accepted))
     page.row = HEADER
     columns = _columns(simulation, shown)
@@ -72,7 +73,6 @@ def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> 
     _write_values(page, simulation.trial_index[:shown], [values for _, values in columns])
     page.sheet.freeze_panes(HEADER + 1, 1)
     page.sheet.autofilter(HEADER, 0, HEADER + shown, len(columns))
-    page.set_up_printing(name, repeat=HEADER)
     return TrialsAt(page.sheet.get_name(), shown, 1 + len(simulation.model.live))
 
 

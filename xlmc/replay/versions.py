@@ -133,8 +133,8 @@ RULES: Final = (
     Rule("0.5.1", "BETA.INV takes the probability 1, and gives the upper end", _calls("BETA.INV", "BETAINV")),
     Rule(
         "0.6.0",
-        "the engine jit computes EXP, LN, LOG10 and powers itself, to one unit in the last bit",
-        re.compile(r"\^|(?<![\w.])(?:EXP|LN|LOG10|POWER)\(", re.IGNORECASE),
+        "the engine jit computes EXP, LN, LOG10, LOG and powers itself, to one unit in the last bit",
+        re.compile(r"\^|(?<![\w.])(?:EXP|LN|LOG|LOG10|POWER)\(", re.IGNORECASE),
     ),
 )
 """In the order of versions."""

@@ -41,11 +41,12 @@ def test_exponentials(compiled, distance):
 
 
 def test_logarithms(compiled, distance):
-    natural, common = compiled({"B1": "=LN(A1)", "B2": "=LOG10(A1)"})(POSITIVE)
+    natural, common, again = compiled({"B1": "=LN(A1)", "B2": "=LOG10(A1)", "B3": "=LOG(A1)"})(POSITIVE)
     with mpmath.workprec(200):
         exact = [mpmath.mpf(float(x)) for x in POSITIVE]
         assert distance(natural, map(mpmath.log, exact)) < 0.9
         assert distance(common, map(mpmath.log10, exact)) < 0.51
+    assert again.tolist() == common.tolist()
 
 
 def test_powers_of_ten_have_whole_logarithms(compiled):
@@ -96,7 +97,18 @@ EDGES = np.array(
 )
 POWERS = ("0", "4", "5", "1.5", "(-2)", "(-3)", "(-0.5)", "1E300", "(1/3)", "9007199254740993")
 FORMULAS = (
-    *("EXP(A1)", "LN(A1)", "LOG10(A1)", "A1^A2", "POWER(A2,A1)", "IF(A1>0,LN(A1),A2)", "EXP(A1)*EXP(A2)"),
+    *(
+        "EXP(A1)",
+        "LN(A1)",
+        "LOG10(A1)",
+        "A1^A2",
+        "POWER(A2,A1)",
+        "IF(A1>0,LN(A1),A2)",
+        "LOG(A1)",
+        "LOG(A1,10)",
+        "LOG(A1,2)",
+        "EXP(A1)*EXP(A2)",
+    ),
     *(f"A1^{exponent}" for exponent in POWERS),
 )
 

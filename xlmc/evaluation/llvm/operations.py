@@ -95,6 +95,8 @@ def _operation(dag: Dag, node: Apply) -> LoopRule | None:
     """The rule of a function of single values; None where there is none."""
     if isinstance(node.function.ufunc, Comparison):
         return _compare(dag, node, node.function.ufunc.symbol)
+    if node.function.name == "LOG":
+        return _logarithm(dag, node)
     row = _power(dag, node) if node.function.name == "^" else _ROWS.get(node.function.name)
     if row is None or len(node.arguments) != len(node.function.parameters):
         return None
@@ -289,6 +291,15 @@ def _power_of_constant(positive: bool, whole: bool, odd: bool) -> Emit:
         return body.intrinsic("llvm.copysign", found, base) if odd else found
 
     return emit
+
+
+def _logarithm(dag: Dag, node: Apply) -> LoopRule | None:
+    """The rule of a logarithm to base 10; other bases are left to NumPy."""
+    number, *base = (Operand(argument, Kind.NUMBER) for argument in node.arguments)
+    if base and literal(dag, base[0]) != Literal(10.0):
+        return None
+    row = _ROWS["LOG10"]
+    return LoopRule((number,), row.emit, row.absorbs, row.makes)
 
 
 def _above_zero(function: Callable[..., Any]) -> _Row:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import datetime
 import io
 import random
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from xlsxwriter import Workbook
 
 from xlmc.report.sheets.exact_book import ExactBook
@@ -42,10 +45,71 @@ def fill(book, numbers):
     sheet.insert_chart("H2", chart)
 
 
+OPTIONS = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
+CLOCK = "docProps/core.xml"
+SHORT = st.integers(-(10**10), 10**10).map(lambda number: number / 64)
+"""Numbers of at most 15 digits, of which XlsxWriter writes all."""
+TEXT = st.text(st.sampled_from("a<&>\"' =#\n\t\x01\u00e9\u0394\U0001f600_x0041_"), max_size=12)
+WRITES = st.one_of(
+    st.tuples(st.just("write_number"), SHORT),
+    st.tuples(st.just("write_string"), TEXT.filter(bool)),
+    st.tuples(st.just("write_blank"), st.none()),
+    st.tuples(st.just("write_boolean"), st.booleans()),
+    st.tuples(st.just("write_datetime"), st.dates(datetime.date(1901, 1, 1), datetime.date(9999, 1, 1))),
+    st.tuples(st.just("write_formula"), st.just('=1/0&" s=""2"""'), st.sampled_from(["#DIV/0!", "#N/A"])),
+)
+PLACE = st.tuples(st.integers(0, 40), st.integers(0, 6))
+CELLS = st.lists(st.tuples(PLACE, WRITES, st.booleans()), max_size=12)
+RUNS = st.lists(st.tuples(PLACE, st.lists(SHORT, min_size=1, max_size=25), st.booleans()), max_size=6)
+HEIGHTS = st.dictionaries(st.integers(0, 70), st.sampled_from([15, 17.25, 30]), max_size=5)
+
+
+def one_after_another(sheet, row, column, values, style):
+    for at, value in enumerate(values, row):
+        sheet.write_number(at, column, value, style)
+
+
+def written(book, write_run, cells, runs, later, heights):
+    """Cells before and after runs of numbers, rows of some heights, and a chart that shows them."""
+    styles = [book.add_format({"bold": True}), book.add_format({"num_format": "0.00"})]
+    sheet = book.add_worksheet("Model")
+    for row, height in heights.items():
+        sheet.set_row(row, height)
+    for place, (method, *rest), second in cells:
+        getattr(sheet, method)(*place, *rest[:1], styles[second], *rest[1:])
+    for place, values, second in runs:
+        write_run(sheet, *place, values, styles[second])
+    for place, (method, *rest), second in later:
+        getattr(sheet, method)(*place, *rest[:1], styles[second], *rest[1:])
+    chart = book.add_chart({"type": "line"})
+    for column in range(4):
+        chart.add_series({"values": ["Model", 2, column, 30, column]})
+    sheet.insert_chart("K2", chart)
+
+
+@given(CELLS, RUNS, CELLS, HEIGHTS)
+def test_runs_of_numbers_among_cells_are_what_xlsxwriter_writes_cell_by_cell(cells, runs, later, heights):
+    packed = io.BytesIO()
+    with Workbook(packed, OPTIONS) as plain:
+        written(plain, one_after_another, cells, runs, later, heights)
+    with ExactBook() as exact:
+        written(exact, lambda sheet, *run: sheet.write_numbers(*run), cells, runs, later, heights)
+    theirs = read_parts(packed.getvalue())
+    assert {**exact.parts, CLOCK: b""} == {**theirs, CLOCK: b""}
+
+
+@given(st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=30))
+def test_every_number_of_a_run_is_read_back_as_the_same_number(numbers):
+    with ExactBook() as book:
+        book.add_worksheet().write_numbers(0, 0, numbers, book.add_format({}))
+    found = book.parts["xl/worksheets/sheet1.xml"].split(b"<v>")[1:]
+    assert [float(each.partition(b"</v>")[0]).hex() for each in found] == [number.hex() for number in numbers]
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_parts_are_those_of_a_file_of_xlsxwriters(seed):
     packed = io.BytesIO()
-    with Workbook(packed, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as plain:
+    with Workbook(packed, OPTIONS) as plain:
         fill(plain, random.Random(seed))
     with ExactBook() as exact:
         fill(exact, random.Random(seed))

@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 
 from xlmc.workbook.injection.part_numbers import free_part_names
 from xlmc.workbook.injection.result_sheet import (
@@ -37,6 +39,37 @@ def sheet(cells, head="", tail=""):
 )
 def test_cells_and_rows(built, home):
     assert at_home(sheet(built), STRINGS, STYLES) == sheet(home)
+
+
+CELL = st.tuples(
+    st.sampled_from(["", ' s="1"', ' s="2"']),
+    st.sampled_from(
+        [
+            "/>",
+            "><v>-1.5E-07</v></c>",
+            ' t="s"><v>0</v></c>',
+            ' t="s"><v>1</v></c>',
+            ' t="b"><v>1</v></c>',
+            ' t="e"><v>#N/A</v></c>',
+        ]
+    ),
+)
+CAREFULLY = {
+    "a formula": '<c r="Z9" t="str"><f>A1&" s="1" "</f><v>x</v></c>',
+    "an inline text": '<c r="Z9" t="inlineStr"><is><t> s="1"</t></is></c>',
+}
+
+
+@given(st.lists(CELL), st.sampled_from(sorted(CAREFULLY)))
+@example([(' s="1"', ' t="s"><v>1</v></c>'), ("", "/>")], "a formula")
+@example([], "an inline text")
+def test_rows_of_plain_cells_become_what_they_become_beside_cells_that_need_care(cells, kind):
+    """Without a formula, an inline text or a row's style, all styles are renumbered in one cut."""
+    styles, careful = StyleMap(cells=(0, 7, 12), differential=()), CAREFULLY[kind]
+    row = "".join(f'<c r="A{number}"{style}{rest}' for number, (style, rest) in enumerate(cells, 1))
+    beside = at_home(sheet(row + careful), STRINGS, styles)
+    assert beside.count(careful.encode()) == 1
+    assert at_home(sheet(row), STRINGS, styles) == beside.replace(careful.encode(), b"")
 
 
 def test_text_that_looks_like_markup_stays_text():

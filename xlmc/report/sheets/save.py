@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from xlmc.errors import WorkbookError
 from xlmc.report.sheets.book import build_sheets
 from xlmc.report.sheets.trials_sheet import TRIAL_ROWS
+from xlmc.run.model import paused_collection
 from xlmc.run.result_cells import filled_sheets
 from xlmc.workbook.inject import inject, result_sheets
 from xlmc.workbook.seal import sealed_parts
@@ -52,11 +53,10 @@ def save(
     check = partial(_check, simulation, path, overwrite=overwrite)
     check_ending(path, simulation.model.path)
     check()
-    sheets = build_sheets(simulation, command=command, rows=rows)
-    parts = inject(
-        {**simulation.model.workbook.parts, **filled_sheets(simulation.model.workbook, simulation.shown_results)},
-        sheets,
-    )
+    with paused_collection():
+        sheets = build_sheets(simulation, command=command, rows=rows)
+        own = {**simulation.model.workbook.parts, **filled_sheets(simulation.model.workbook, simulation.shown_results)}
+        parts = inject(own, sheets)
     if not _is_source(simulation, path):  # the person's own file, which is never ours to replace
         parts = sealed_parts(parts, result_sheets(parts)[-1], simulation.model.workbook.name)
     write_workbook(path, package_bytes(parts), check)

@@ -29,6 +29,8 @@ TITLES = {
     "skid": "Skid sheet: 3 assumptions, 4 cells",
     "cells-1000": "1,000 cells, 12 assumptions",
     "cells-20000": "20,000 cells, 12 assumptions",
+    "powers": "Powers, exponentials, logarithms: 24 assumptions, 50 cells, 8 forecasts",
+    "wide": "Wide book: 1,000 assumptions, 200 forecasts",
 }
 PANELS = {
     "mean": "Mean",

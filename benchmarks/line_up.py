@@ -10,11 +10,13 @@ from pathlib import Path
 from typing import Any
 
 import peers
-from books import BOOKS
+from books import BOOKS, march_cells
+from hand_written_march import SEARCHES
 
 __all__ = ["Entry", "line_up"]
 
 CASE, SKID = "case-study", "skid"
+MARCHES = tuple(book for book in BOOKS if march_cells(book))
 CHUNKS = {"numpy": (2_048, 4_096, 8_192, 16_384, 32_768), "numba": (2_048, 4_096, 8_192), "c": (1_024, 2_048, 4_096)}
 """Chunks that the hand-written ones are tried with: where compiled loops were never faster is left out."""
 
@@ -77,9 +79,15 @@ def _xlmc(engine: str) -> Entry:
 
 
 def _hand(name: str, language: str, kernels: Sequence[str], **more: str) -> Entry:
-    """A hand-written contestant; the kernels differ on the case study alone."""
-    chunks = CHUNKS[language]
-    case = [{"language": language, "kernel": kernel, "chunk": chunk, **more} for kernel in kernels for chunk in chunks]
-    skid = [variant for variant in case if variant["kernel"] == kernels[-1]]
-    books = (CASE,) if kernels == ("libm",) else (CASE, SKID)  # the skid sheet has no sine to be different in
-    return Entry(name, "hand", "hand", books=books, variants={CASE: case, SKID: skid})
+    """A hand-written contestant; `kernels` are those of the case study."""
+    plain = [{"language": language, "chunk": chunk, **more} for chunk in CHUNKS[language]]
+    case = [variant | {"kernel": kernel} for kernel in kernels for variant in plain]
+    if kernels == ("libm",):  # the skid sheet has no sine to be different in
+        return Entry(name, "hand", "hand", books=(CASE,), variants={CASE: case})
+    variants = {CASE: case, SKID: [variant | {"kernel": kernels[-1]} for variant in plain]}
+    if language in ("numpy", "c"):
+        march = [variant | {"kernel": search} for search in SEARCHES for variant in plain]
+        variants |= dict.fromkeys(MARCHES, march)
+    if language == "numpy":
+        variants |= dict.fromkeys(("powers", "wide"), [variant | {"kernel": ""} for variant in plain])
+    return Entry(name, "hand", "hand", books=tuple(variants), variants=variants)

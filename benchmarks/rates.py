@@ -46,6 +46,7 @@ def measure(
 ) -> dict[str, Any]:
     """Book -> contestant -> what was found. The contestants run one after another, round by round."""
     tasks = {book: task_of(book, path, seconds) for book, path in paths.items()}
+    cells = {book: _cells(path) for book, path in paths.items()}
     found: dict[str, Any] = {book: {} for book in paths}
     best = {(b, e.name): _best_variant(e, tasks[b], limit, say) for b in paths for e in entries if b in e.books}
     for round_ in range(rounds):
@@ -59,6 +60,7 @@ def measure(
     for book, records in found.items():
         _compare(tasks[book], records)
         _ratios(records)
+        _costs(records, cells[book])
     return found
 
 
@@ -130,11 +132,26 @@ def _ratios(records: dict[str, Any]) -> None:
             continue
         record["rate"] = statistics.median(record["rates"])
         record["ready_median"] = statistics.median(record["ready"])
-        for other in ("hand/NumPy", "xlmc/numpy"):
+        for other in ("hand/NumPy", "hand/C", "xlmc/numpy", "xlmc/jit"):
             theirs = records.get(other, {}).get("rates", [])
             both = list(zip(record["rates"], theirs, strict=False))
             if both:
                 record[f"to {other}"] = statistics.median(mine / their for mine, their in both)
+
+
+def _costs(records: dict[str, Any], cells: int) -> None:
+    """Add to every record nanoseconds for each trial and formula cell that the forecasts need."""
+    for record in records.values():
+        if not record["absent"]:
+            record["ns a cell"] = 1e9 / record["rate"] / cells
+
+
+def _cells(path: Path) -> int:
+    """Formula cells that the forecasts and filters of a book need and that depend on an assumption."""
+    import xlmc
+
+    graph = xlmc.load(path).needed.graph
+    return sum(cell in graph.varying for cell in graph.formulas)
 
 
 def _key(name: str) -> str:

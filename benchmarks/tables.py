@@ -68,16 +68,24 @@ def _rates(found: dict[str, Any]) -> str:
     return "\n\n".join(f"**{TITLES[book]}** (`{book}`)\n\n{_of_book(records)}" for book, records in found.items())
 
 
+_OTHERS = ("xlmc/numpy", "xlmc/jit", "hand/NumPy", "hand/C")
+"""Those to whose rates the others' are compared; tables of results from before 0.6 have the first and third alone."""
+
+
 def _of_book(records: dict[str, Any]) -> str:
     hand = any("to hand/NumPy" in record for record in records.values())
-    headings = ["contestant", "trials/s", "× xlmc/numpy", *(["× hand/NumPy"] if hand else []), "ready, s"]
-    headings += ["rounds", "same forecasts"]
+    cost = any("ns a cell" in record for record in records.values())
+    others = [other for other in _OTHERS if other in ("xlmc/numpy", *(["hand/NumPy"] if hand else [])) or cost]
+    others = [other for other in others if any(f"to {other}" in record for record in records.values())]
+    headings = ["contestant", "trials/s", *(["ns a cell"] if cost else []), *(f"× {other}" for other in others)]
+    headings += ["ready, s", "rounds", "same forecasts"]
     rows = []
     for name, record in sorted(records.items(), key=lambda item: -item[1].get("rate", 0)):
         if record["absent"]:
             rows.append([name, record["absent"], *[""] * (len(headings) - 2)])
             continue
-        ratios = [_ratio(record.get("to xlmc/numpy"))] + ([_ratio(record.get("to hand/NumPy"))] if hand else [])
+        ratios = [_number(record["ns a cell"])] if cost else []
+        ratios += [_ratio(record.get(f"to {other}")) for other in others]
         ready, rounds = f"{record['ready_median']:.2f}", str(len(record["rates"]))
         rows.append([name, _number(record["rate"]), *ratios, ready, rounds, _same(record)])
     return f"{_table(headings, rows, 'lr' + 'r' * (len(headings) - 3) + 'l')}\n\n{_notes(records)}"

@@ -1,4 +1,4 @@
-"""The case study and the skid sheet written by hand in NumPy, numba or C: drawing, model, filters, keeping what passes.
+"""The books written by hand in NumPy, numba or C: drawing, model, filters, keeping what passes.
 
 `options` name the language, the kernel where there are several, the trials in a chunk and, for C, the built library.
 """
@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from books import march_cells
 from contest import Task
 from numpy.typing import NDArray
 
@@ -18,6 +19,9 @@ Array = NDArray[np.float64]
 
 class Hand:
     """See `Contestant`. A chunk is what is drawn and evaluated at once.
+
+    Args:
+        fewest: chunks below which a measurement makes no sense.
 
     Attributes:
         sample: (trials, seed) -> forecasts of the accepted trials, (f, m).
@@ -30,9 +34,10 @@ class Hand:
         chunk: int,
         versions: dict[str, str],
         note: str,
+        fewest: int = 8,
     ) -> None:
         self._evaluate, self.sample = evaluate, simulate
-        self.fewest, self.note = 8 * chunk, f"{note}, chunks of {chunk:,}"
+        self.fewest, self.note = fewest * chunk, f"{note}, chunks of {chunk:,}"
         self.versions = {"numpy": np.__version__} | versions
 
     def answers(self, rows: list[list[float]]) -> list[list[Any]]:
@@ -65,11 +70,37 @@ def _ranges(book: str) -> tuple[Array, Array]:
     return module.LOW, module.HIGH
 
 
+def _chunks(cells: int) -> int:
+    """Chunks that take long enough to be measured."""
+    return max(1, 8_000 // cells)
+
+
 def _numpy(book: str, options: dict[str, Any]) -> Hand:
     import hand_written
+    import hand_written_march
+    import hand_written_plain
     import hand_written_skid
 
     chunk = options["chunk"]
+    if cells := march_cells(book):
+        search = options["kernel"]
+        return Hand(
+            lambda inputs: hand_written_march.buffered(inputs.shape[1], cells, search)(inputs),
+            lambda trials, seed: hand_written_march.simulate(trials, seed, chunk, cells, search),
+            chunk,
+            {},
+            f"NumPy, {search}",
+            _chunks(cells),
+        )
+    if book in hand_written_plain.BOOKS:
+        plain = hand_written_plain.BOOKS[book]
+        return Hand(
+            lambda inputs: plain.kernel(inputs.shape[1])(inputs),
+            lambda trials, seed: plain.simulate(trials, seed, chunk),
+            chunk,
+            {},
+            "NumPy",
+        )
     if book == "skid":
         return Hand(
             hand_written_skid.evaluate,
@@ -112,9 +143,21 @@ def _numba(book: str, options: dict[str, Any]) -> Hand:
 def _c(book: str, options: dict[str, Any]) -> Hand:
     import hand_c
 
+    chunk = options["chunk"]
+    if cells := march_cells(book):
+        march = hand_c.March(Path(options["library"]), cells, options["kernel"])
+        flags = {"flags": " ".join((*hand_c.FLAGS, *hand_c.FINITE))}
+        note = f"C, {options['kernel']}"
+        return Hand(
+            march.evaluate,
+            lambda trials, seed: march.simulate(trials, seed, chunk),
+            chunk,
+            flags,
+            note,
+            _chunks(cells),
+        )
     low, high = _ranges(book)
     case = book == "case-study"
     hand = hand_c.Hand(Path(options["library"]), "case" if case else "skid", low, high, 4 if case else 1)
-    chunk = options["chunk"]
     flags = {"flags": " ".join(hand_c.FLAGS)}
     return Hand(hand.evaluate, lambda trials, seed: hand.simulate(trials, seed, chunk), chunk, flags, "C")

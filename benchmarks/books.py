@@ -15,6 +15,7 @@ from __future__ import annotations
 import random
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -196,7 +197,7 @@ def wide_inputs(assumptions: int = WIDE_ASSUMPTIONS) -> tuple[Row, ...]:
 def term_rows(assumptions: int, forecasts: int) -> list[tuple[int, int, int]]:
     """For every forecast of a wide book the first term of its sum, the one after the last, and the term of its root."""
     starts = [k * assumptions // forecasts for k in range(forecasts + 1)]
-    rows = zip(starts, starts[1:], strict=False)
+    rows = pairwise(starts)
     return [(first, max(first + 1, end), 7 * k % assumptions) for k, (first, end) in enumerate(rows)]
 
 

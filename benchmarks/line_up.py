@@ -89,5 +89,5 @@ def _hand(name: str, language: str, kernels: Sequence[str], **more: str) -> Entr
         march = [variant | {"kernel": search} for search in SEARCHES for variant in plain]
         variants |= dict.fromkeys(MARCHES, march)
     if language == "numpy":
-        variants |= dict.fromkeys(("powers", "wide"), [variant | {"kernel": ""} for variant in plain])
+        variants |= {book: [variant | {"kernel": ""} for variant in plain] for book in ("powers", "wide")}
     return Entry(name, "hand", "hand", books=tuple(variants), variants=variants)

@@ -5,7 +5,7 @@ What a model and a run *are* is in `xlmc.run`; the methods here call the rooms t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -135,6 +135,7 @@ class Model(model.Model):
         keep_inputs: int | None = 1 << 20,
         keep_interrupted: bool = False,
         progress: OnProgress | None = None,
+        tell: Callable[[str], None] | None = None,
         **goals: Any,
     ) -> Simulation:
         """Run the simulation; what is not given comes from the workbook's settings.
@@ -165,6 +166,7 @@ class Model(model.Model):
             keep_inputs: of how many accepted trials, from the first on, the draws are kept; None for all.
             keep_interrupted: end the run with what it has when Ctrl-C is pressed, rather than raise KeyboardInterrupt.
             progress: called with a `Progress` (trials, accepted, share done, means) after every block.
+            tell: called before the run with a sentence on the disk that it needs, if it needs any.
             **goals: options of goals that have no argument here: see `xlmc.definitions.stopping`.
 
         Raises:
@@ -196,6 +198,7 @@ class Model(model.Model):
             keep_inputs=keep_inputs,
             keep_interrupted=keep_interrupted,
             progress=progress,
+            tell=tell,
         )
         return Simulation.of(run)
 

@@ -85,6 +85,27 @@ def test_a_full_disk_is_a_message_and_nothing_is_lost(xlmc, book, tmp_path, monk
     assert results.read_bytes() == before
 
 
+def test_a_run_on_disk_says_so_before_it_starts(xlmc, book, monkeypatch):
+    monkeypatch.setattr("xlmc.columns.column_store.IN_MEMORY", 0)
+    said = xlmc("simulate", book, "-n", 10_000).err
+    assert said.startswith("This run keeps about ")
+    assert "GB on disk in" in said
+    assert xlmc("simulate", book, "-n", 10_000, "--quiet").err == ""
+
+
+def test_a_run_that_the_disk_cannot_hold_is_refused(xlmc, book, tmp_path, monkeypatch):
+    results = tmp_path / "case-results.xlsx"
+    xlmc("simulate", book, "-n", 5_000)
+    before = results.read_bytes()
+    monkeypatch.setattr("xlmc.columns.column_store.IN_MEMORY", 0)
+    monkeypatch.setattr("xlmc.run.disk_needed.room_on_disk", lambda: (tmp_path, 1_000))
+    outcome = xlmc("simulate", book, "-n", 10_000)
+    assert outcome.code == 2
+    assert "the run needs about" in outcome.err
+    assert "TMPDIR" in outcome.err
+    assert results.read_bytes() == before
+
+
 def test_in_place_replaces_its_own_sheets_and_nothing_else(xlmc, whole_book, book):
     before = parts(book)
     assert xlmc("simulate", book, "-n", 20_000, "--in-place").code == 0

@@ -106,6 +106,7 @@ def simulate(
             keep_inputs=None if extract else KEPT_INPUTS,
             keep_interrupted=True,
             progress=progress,
+            tell=None if quiet else lambda sentence: say(sentence, err=True),
         )
     written, lines = outputs.write(run)  # before the answer is printed, so that no terminal can cost a run
     show_run(run)

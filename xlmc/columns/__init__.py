@@ -4,7 +4,7 @@ Flat files rather than Parquet: they need no further library, any rank of a colu
 column is an ordinary array to whoever reads it. Parquet is a format to hand results on in, not to work in.
 """
 
-from xlmc.columns.column_store import Columns, ColumnStore, Folder, on_disk, release
+from xlmc.columns.column_store import Columns, ColumnStore, Folder, on_disk, release, room_on_disk
 from xlmc.columns.passes import PART, ascending, numbers, pairwise_sum, parts, picked
 
 __all__ = [
@@ -19,4 +19,5 @@ __all__ = [
     "parts",
     "picked",
     "release",
+    "room_on_disk",
 ]

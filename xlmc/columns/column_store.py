@@ -40,6 +40,7 @@ __all__ = [
     "release",
     "remove_stray_files",
     "remove_stray_folders",
+    "room_on_disk",
 ]
 
 _FILE: Final = re.compile(r"\.xlmc-(?P<machine>[0-9a-f]{8})-(?P<process>\d+)-[0-9a-f]{16}\.tmp")
@@ -229,6 +230,17 @@ def _remove(path: Path, owner: int, kept: ExitStack) -> None:
         kept.close()
 
 
+def room_on_disk() -> tuple[Path, int]:
+    """The temporary folder and the bytes that are free there.
+
+    Raises:
+        SimulationError: there is no folder to write to.
+    """
+    with _naming_folder(None):
+        folder = Path(tempfile.gettempdir())
+        return folder, shutil.disk_usage(folder).free
+
+
 @contextmanager
 def _naming_folder(path: Path | None) -> Iterator[None]:
     """Turn errors of the disk into messages that name the folder."""
@@ -290,6 +302,7 @@ class ColumnStore:
         self._types = dict(types)
         self._files = {key: f"{number}.column" for number, key in enumerate(types)}
         self._expected = expected or {}
+        self._together = sum(types[key].itemsize * rows for key, rows in self._expected.items())
         self._arrays = {key: np.empty(0, dtype) for key, dtype in types.items()}
         self._sizes = dict.fromkeys(types, 0)
         self._bytes = 0
@@ -321,9 +334,8 @@ class ColumnStore:
     def _likely_room(self, key: Hashable) -> int:
         """How many numbers a column will have, or have when all columns are written, if they grow together."""
         expected = self._expected.get(key, 0)
-        together = sum(self._types[each].itemsize * rows for each, rows in self._expected.items())
         most = IN_MEMORY if self._folder is None else WRITTEN
-        return expected if together <= most else int(expected * most / together)
+        return expected if self._together <= most else int(expected * most / self._together)
 
     def _added(self, key: Hashable) -> Array:
         """The numbers of a column that are in memory, `(m,)`."""

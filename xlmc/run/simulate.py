@@ -17,8 +17,9 @@ from xlmc.definitions.definitions import name_key
 from xlmc.definitions.stopping import LIMIT, MOST_TRIALS, NO_GOAL, Stopping
 from xlmc.errors import SimulationError
 from xlmc.evaluation.engine import Room
-from xlmc.run.blocks import Block, FilterTally, Task
+from xlmc.run.blocks import Block, FilterTally, ModelRunner, Task
 from xlmc.run.checking import LEAST_CHECKED
+from xlmc.run.disk_needed import disk_needed
 from xlmc.run.rare.rare_switch import rare_switch
 from xlmc.run.scheduling.run_spec import model_runner
 from xlmc.run.scheduling.worker_pool import WorkerPool
@@ -68,6 +69,7 @@ def simulate(
     keep_inputs: int | None = KEPT_INPUTS,
     keep_interrupted: bool = False,
     progress: OnProgress | None = None,
+    tell: Callable[[str], None] | None = None,
 ) -> Simulation:
     """Run a model; see `Model.simulate`."""
     settings = _settings(model, trials, seed, engine, sampling, stopping)
@@ -87,6 +89,15 @@ def simulate(
         most_inputs = max(most_inputs, LEAST_CHECKED)
     gathered = _Gathered(model, block, most_inputs, plan.trials)
 
+    def runner() -> ModelRunner:
+        return model_runner(model, program, settings.engine, settings.seed, block, plan)
+
+    needed = disk_needed(model, settings.stopping, plan.trials, block, most_inputs, runner)
+    if needed is not None:
+        needed.check()
+        if tell is not None:
+            tell(needed.sentence())
+
     def task(start: int, trials: int) -> Task:
         return Task(start, trials, start < PRIOR_TRIALS, gathered.wants_inputs)
 
@@ -98,9 +109,7 @@ def simulate(
                 finished = next(blocks)
                 counting = finished.trials if looks.certain else watch.counting(finished)
                 if counting < finished.trials:
-                    finished = model_runner(model, program, settings.engine, settings.seed, block, plan).run(
-                        task(gathered.trials, counting)
-                    )
+                    finished = runner().run(task(gathered.trials, counting))
                 gathered.add(finished)
                 interruption.keeping = True
                 stopped = watch.after(finished, gathered.forecast, interrupted=interruption.asked)

@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from xlmc.report.sheets import trials_sheet
 from xlmc.report.sheets.trials_sheet import HEADER
 
 FIRST = HEADER + 2  # as Excel counts
@@ -35,6 +36,12 @@ def test_rows_are_capped_and_the_sheet_says_so(run, opened, rows, shown):
     else:
         assert sheet["A3"].value == f"Only the first {shown:,} of {run.accepted:,} accepted trials stand here."
         assert sheet["A3"].font.color.rgb == "FF9C0006"
+
+
+def test_a_book_of_many_columns_shows_fewer_trials_unless_asked(run, opened, monkeypatch):
+    monkeypatch.setattr(trials_sheet, "NUMBERS", 4 * 50 + 3)
+    assert opened(run)["Trials"].max_row == FIRST - 1 + 50
+    assert opened(run, rows=60)["Trials"].max_row == FIRST - 1 + 60
 
 
 def test_the_header_is_frozen_repeated_and_filters(run, book):

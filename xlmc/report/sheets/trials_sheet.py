@@ -22,6 +22,9 @@ __all__ = ["HEADER", "MOST_ROWS", "TRIAL_ROWS", "WIDTHS", "TrialsAt", "write_tri
 TRIAL_ROWS = 10_000
 """Accepted trials on the sheet, unless asked otherwise: more make the file slow to open."""
 
+NUMBERS = 1_000_000
+"""Numbers on the sheet, unless asked otherwise: with more than 100 assumptions and forecasts there are fewer trials."""
+
 WIDTHS = (9,)
 HEADER = 3
 """The row of the headings, counted from 0."""
@@ -58,6 +61,9 @@ class TrialsAt:
 
 def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> TrialsAt:
     """Write the sheet with the first `rows` accepted trials, and say so where there are more."""
+    live, forecasts = simulation.model.live, simulation.model.forecasts
+    if rows == TRIAL_ROWS:
+        rows = min(rows, NUMBERS // max(1, len(live) + len(forecasts)))
     shown = max(0, min(rows, simulation.kept_inputs, MOST_ROWS))
     name = simulation.model.workbook.name
     below = f"{name}, seed {simulation.settings.seed}. Trials are numbered from 0."
@@ -73,7 +79,7 @@ def write_trials(page: Page, simulation: Simulation, rows: int = TRIAL_ROWS) -> 
     _write_values(page, simulation.trial_index[:shown], [values for _, values in columns])
     page.sheet.freeze_panes(HEADER + 1, 1)
     page.sheet.autofilter(HEADER, 0, HEADER + shown, len(columns))
-    return TrialsAt(page.sheet.get_name(), shown, 1 + len(simulation.model.live))
+    return TrialsAt(page.sheet.get_name(), shown, 1 + len(live))
 
 
 def _count_line(shown: int, accepted: int) -> Shown:

@@ -201,14 +201,14 @@ def term_rows(assumptions: int, forecasts: int) -> list[tuple[int, int, int]]:
     return [(first, max(first + 1, end), 7 * k % assumptions) for k, (first, end) in enumerate(rows)]
 
 
-def write_march(path: Path, cells: int) -> None:
+def write_march(path: Path, cells: int, seed: int = ROAD_SEED) -> None:
     """`cells` formula cells, CELLS_A_STEP to a time step; time steps divide SECONDS."""
     from xlsxwriter import Workbook
 
     steps = cells // CELLS_A_STEP
     with Workbook(path) as book:
         _inputs(book, MARCH)
-        _road(book)
+        _road(book, seed)
         model = book.add_worksheet("Model")
         model.write_row(0, 0, COLUMNS)
         for column, start in enumerate(START):
@@ -255,9 +255,9 @@ def _step(r: int, dt: float) -> Iterator[str]:
     yield f"=T{p}+S{r}+R{r}*weight*(J{r}-J{p})"
 
 
-def road() -> list[tuple[float, float, float]]:
+def road(seed: int = ROAD_SEED) -> list[tuple[float, float, float]]:
     """Where a row begins in ft, grade in percent and a factor of the friction, every ROAD_STEP ft, seeded."""
-    rng = random.Random(ROAD_SEED)
+    rng = random.Random(seed)
     rows = []
     grade = 0.0
     for row in range(ROAD_ROWS):
@@ -266,10 +266,10 @@ def road() -> list[tuple[float, float, float]]:
     return rows
 
 
-def _road(book: Any) -> None:
+def _road(book: Any, seed: int) -> None:
     sheet = book.add_worksheet("Road")
     sheet.write_row(0, 0, ("from, ft", "grade, %", "factor"))
-    for row, numbers in enumerate(road(), start=1):
+    for row, numbers in enumerate(road(seed), start=1):
         sheet.write_row(row, 0, numbers)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from fewer_sheets import CHARTS, SENSITIVITY, leave_out
+from fewer_sheets import CHARTS, SENSITIVITY, keep_few_trials, leave_out
 
 from xlmc.cli import main
 
@@ -49,6 +49,7 @@ def whole_book() -> None:
 
 @pytest.fixture
 def short_books(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Results without charts and the sheets on sensitivity, which take longest, unless the test takes `whole_book`."""
+    """Results without what takes longest, unless the test takes `whole_book`: charts, sensitivity, many trials."""
     if "whole_book" not in request.fixturenames:
         leave_out(monkeypatch, *CHARTS, *SENSITIVITY)
+        keep_few_trials(monkeypatch)

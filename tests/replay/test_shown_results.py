@@ -12,6 +12,7 @@ import numpy as np
 import openpyxl
 import pytest
 import xlsxwriter
+from fewer_sheets import FEW
 from needed_programs import missing
 
 import xlmc
@@ -153,7 +154,7 @@ def test_what_a_program_counts_in_a_range_of_ones_own_is_recounted(results, tmp_
     low, high, certainty, error, _ = typed_range(book)
     where = certainty.coordinate, error.coordinate
     values = replay(results).repeated.forecasts["area"]
-    values = values[~np.isnan(values)]
+    values = values[~np.isnan(values)][:FEW]  # the rows of the sheet Trials
     share = np.mean((values >= 12) & (values <= high.value))
     shown = {low.coordinate: 12, where[0]: share, where[1]: math.sqrt(share * (1 - share) / values.size)}
     found = replay(with_numbers(results, tmp_path, shown))

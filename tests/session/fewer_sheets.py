@@ -1,17 +1,27 @@
-"""Result workbooks without the sheets that take longest, for tests that do not look at them."""
+"""Result workbooks without the sheets, and the rows of trials, that take longest: for tests that do not look at them."""
 
 from __future__ import annotations
 
 import pytest
 
-from xlmc.report.sheets import book
+from xlmc.replay import sheets as repeated_sheets
+from xlmc.report.sheets import book, save
 
-__all__ = ["CHARTS", "SENSITIVITY", "leave_out"]
+__all__ = ["CHARTS", "FEW", "SENSITIVITY", "keep_few_trials", "leave_out"]
 
 CHARTS = ("Charts", "Pairs")
+FEW = 40
+"""Rows of a short sheet Trials."""
 SENSITIVITY = ("Sensitivity", "Filter limits")
 
 
 def leave_out(patch: pytest.MonkeyPatch, *names: str) -> None:
     """Have result workbooks written without the sheets of these names, as long as the patch lasts."""
     patch.setattr(book, "SHEETS", tuple(sheet for sheet in book.SHEETS if sheet.name not in names))
+
+
+def keep_few_trials(patch: pytest.MonkeyPatch, rows: int = FEW) -> None:
+    """Have the sheet Trials hold so many rows where a caller does not say how many, as long as the patch lasts."""
+    patch.setitem(save.save.__kwdefaults__, "rows", rows)
+    patch.setitem(book.build_sheets.__kwdefaults__, "rows", rows)
+    patch.setattr(repeated_sheets, "TRIAL_ROWS", rows)

@@ -153,7 +153,8 @@ def test_agrees_with_exact_fractions(name, reference, power, x):
     assert found == pytest.approx(reference(x), rel=1e-12, abs=1e-13 * scale)
 
 
-@given(numbers, st.integers(1, 12))
+# Excel has no numbers below 2.2e-308: it makes them 0.
+@given(st.lists(st.floats(-1e6, 1e6, allow_subnormal=False), min_size=2, max_size=12), st.integers(1, 12))
 @settings(max_examples=100, deadline=None)
 def test_ranks_are_those_of_the_sorted_numbers(evaluate, x, rank):
     rank = min(rank, len(x))

@@ -1,4 +1,4 @@
-"""Result workbooks without the sheets, and the rows of trials, that take longest: for tests that do not look at them."""
+"""Result workbooks without the sheets and trials that take longest, for tests that do not look at them."""
 
 from __future__ import annotations
 

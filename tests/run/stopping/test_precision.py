@@ -148,7 +148,7 @@ COVERAGE = [
     ("standard_normal", "p75.5", 0.06, NORMAL_755),
     ("lognormal", "p75.5", 0.12, math.exp(NORMAL_755)),
 ]
-REPLICATES = 2000
+REPLICATES = 800
 STATISTICS = {
     "mean": statistics.mean,
     "sd": statistics.standard_deviation,
@@ -158,7 +158,7 @@ STATISTICS = {
 
 @pytest.mark.parametrize(("draw", "numbers", "tolerance", "true"), COVERAGE)
 def test_intervals_of_runs_that_ended_by_themselves_hold_the_truth(block, run_rule, draw, numbers, tolerance, true):
-    """Of 2,000 runs that end after some 2,000 to 6,000 numbers, at least 94 % but for chance.
+    """Of 800 runs that end after some 2,000 to 6,000 numbers, at least 94 % but for chance.
 
     Were the coverage 94 %, one of the seven cases would fail by chance in 1 % of all seeds.
     """

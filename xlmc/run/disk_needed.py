@@ -97,10 +97,10 @@ def disk_needed(
 
     if NUMBER * kept(rows) <= column_store.IN_MEMORY:
         return None
-    if model.filters and stopping.accepted is None:
+    if model.filters:
         sampled, run = min(SAMPLED, trials), runner().run
         tasks = (Task(start, min(block, sampled - start), False, False) for start in range(0, sampled, block))
-        rows = round(sum(run(task).accepted.size for task in tasks) / sampled * trials)
+        rows = min(rows, round(sum(run(task).accepted.size for task in tasks) / sampled * trials))
     if NUMBER * kept(rows) <= column_store.IN_MEMORY:
         return None
     return DiskNeeded(kept(rows), rows * (forecasts + 1), *room_on_disk())

@@ -1,10 +1,10 @@
 """Everything that docs/speed.md says, measured: `python benchmarks/compare.py --install`.
 
-Five parts, each optional: `rates` (trials per second of all contestants on four books), `scaling` (one thread against
-two), `accuracy` (error against seconds), `whole-command`, `memory`. Every contestant runs in a fresh process, one after
-another, round by round; figures are medians, ratios are of the same round. A whole run writes `results/*.json`, draws
-`results/*.png` and makes the tables of docs/speed.md anew. `--quick`, or a choice of books or contestants, writes into
-a folder of its own instead and leaves the committed results alone.
+Six parts, each optional: `rates` (trials per second of all contestants on the books), `scaling` (one thread against
+two), `accuracy` (error against seconds), `whole-command`, `memory`, `growth` (cost over the size of book and run).
+Every contestant runs in a fresh process, one after another, round by round; figures are medians, ratios are of the same
+round. A whole run writes `results/*.json`, draws `results/*.png` and makes the tables of docs/speed.md anew. `--quick`,
+or a choice of books or contestants, writes into a folder of its own instead and leaves the committed results alone.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 import accuracy
 import figures
+import growth
 import hand_c
 import machine
 import memory
@@ -93,6 +94,7 @@ def draw(results: Path) -> None:
     for part, drawn, name in (
         ("accuracy", figures.draw_accuracy, "speed-against-accuracy.png"),
         ("rates", figures.draw_rates, "rates.png"),
+        ("growth", figures.draw_growth, "growth.png"),
     ):
         if (results / f"{part}.json").exists():
             drawn(results / f"{part}.json", results / name)
@@ -113,19 +115,22 @@ def _measure(chosen: argparse.Namespace, books: Sequence[str], plan: Plan, outpu
         paths = make_books(folder, [book for book in BOOKS if book in books])
         described = machine.describe(hand_c.compiler())
         for part in chosen.parts:
-            found = _PARTS[part](_Measured(entries, paths, plan, output))
+            found = _PARTS[part](_Measured(entries, paths, plan, output, folder, chosen.series, chosen.most))
             _write(output / f"{part}.json", described, found)
             _say(f"--- {part}, {perf_counter() - start:.0f} s so far\n{tables.TABLES[part](found)}")
 
 
 @dataclass(frozen=True)
 class _Measured:
-    """What every part is given; `output` holds the results of the parts before it."""
+    """What every part is given; `output` holds the results of the parts before it, `folder` is for books."""
 
     entries: list[Entry]
     paths: dict[str, Path]
     plan: Plan
     output: Path
+    folder: Path
+    series: Sequence[str]
+    most: int | None
 
 
 def _rates(given: _Measured) -> dict[str, Any]:
@@ -147,12 +152,20 @@ def _accuracy(given: _Measured) -> dict[str, Any]:
     return accuracy.measure(given.entries, CASE_STUDY, known, plan.ladder, plan.seeds, plan.limit, _say)
 
 
+def _growth(given: _Measured) -> dict[str, Any]:
+    path = given.output / "growth.json"
+    known = json.loads(path.read_text(encoding="utf-8"))["found"] if path.exists() else {}
+    plan = given.plan
+    return growth.measure(given.series, known, given.folder, plan.seconds / 2, plan.limit, _say, given.most)
+
+
 _PARTS: dict[str, Callable[[_Measured], dict[str, Any]]] = {
     "rates": _rates,
     "scaling": _scaling,
     "accuracy": _accuracy,
     "whole-command": lambda given: whole_command.measure(given.plan.whole_rounds),
     "memory": lambda given: memory.measure(given.plan.trials),
+    "growth": _growth,
 }
 
 
@@ -188,6 +201,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--parts", nargs="+", choices=list(_PARTS), default=list(_PARTS))
     parser.add_argument("--books", nargs="+", choices=list(BOOKS))
     parser.add_argument("--contestants", nargs="+", metavar="NAME", help="names as in the tables, such as xlmc/numpy")
+    parser.add_argument("--series", nargs="+", choices=growth.SERIES, default=list(growth.SERIES), help="of the growth")
+    parser.add_argument("--most", type=int, metavar="N", help="leave out larger sizes of the growth")
     parser.add_argument("--rounds", type=int, default=Plan.rounds)
     parser.add_argument("--seconds", type=float, default=Plan.seconds, help="for one measurement, about")
     parser.add_argument("--limit", type=float, default=Plan.limit, help="seconds that one process may take")

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from accuracy import STATISTICS
+from growth import TRIALS, seconds_of, slope
 
-__all__ = ["draw_accuracy", "draw_rates"]
+__all__ = ["draw_accuracy", "draw_growth", "draw_rates"]
 
 # Okabe and Ito's palette, told apart by people who see red and green alike; the markers tell them apart without colour.
 STYLES: dict[str, tuple[str, str]] = {
@@ -105,6 +106,46 @@ def draw_rates(results: Path, target: Path) -> None:
         handles, [label for _, label in FAMILIES.values()], loc="outside lower center", ncols=3, frameon=False
     )
     figure.suptitle("Trials per second, side by side", fontsize=13)
+    figure.savefig(target, dpi=150)
+    plot.close(figure)
+
+
+GROWTH = {
+    "cells": "Formula cells (time steps, 12 assumptions)",
+    "trials": "Trials (case study)",
+    "forecasts": "Forecasts (100 assumptions)",
+    "assumptions": "Assumptions (1 forecast)",
+}
+_LINES = (
+    ("loading", ("numpy",), "loading", "#6B7785", "-"),
+    ("first", ("numpy", "jit"), "first block, {}", None, "--"),
+    ("a trial", ("numpy", "jit"), f"{TRIALS:,} trials, {{}}", None, "-"),
+    ("run", ("numpy", "jit"), "run, {}", None, "-"),
+)
+"""What is measured, of which engines, its label, its colour or that of the engine, its line."""
+
+
+def draw_growth(results: Path, target: Path) -> None:
+    """Seconds over size, log–log, one panel a series, the slope of the last decade beside each line."""
+    found = json.loads(results.read_text(encoding="utf-8"))["found"]
+    plot = _pyplot()
+    figure, axes = plot.subplots(2, 2, figsize=(11.5, 9.4), layout="constrained")
+    for axis, (name, title) in zip(axes.flat, GROWTH.items(), strict=True):
+        for column, engines, label, own, line in _LINES:
+            for engine in engines:
+                sizes, seconds = seconds_of(found.get(name, {}).get(engine, []), column)
+                if not sizes:
+                    continue
+                colour, marker = STYLES[f"xlmc/{engine}"]
+                grown = slope(sizes, seconds)
+                text = label.format(engine) + ("" if grown is None else f": slope {grown:.2f}")
+                axis.plot(sizes, seconds, line, color=own or colour, marker=marker, ms=5, lw=1.5, label=text)
+        axis.set(xscale="log", yscale="log", xlabel=name, ylabel="seconds")
+        axis.set_title(title, fontsize=11)
+        axis.grid(which="major", color="#D5DBE3", lw=0.7)
+        if axis.get_legend_handles_labels()[0]:
+            axis.legend(fontsize=8, frameon=False)
+    figure.suptitle("How the cost grows; slopes are of the last decade, 1 is proportional", fontsize=13)
     figure.savefig(target, dpi=150)
     plot.close(figure)
 

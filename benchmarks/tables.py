@@ -11,6 +11,7 @@ from typing import Any
 
 from accuracy import STATISTICS
 from figures import TITLES
+from growth import COLUMNS, TRIALS, seconds_of, slope
 from machine import sentence
 from scaling import ANEW, APART
 
@@ -143,6 +144,42 @@ def _memory(found: dict[str, Any]) -> str:
     return f"{_table(headings, rows, 'rrrrr')}\n\n{close}"
 
 
+def _growth(found: dict[str, Any]) -> str:
+    return "\n\n".join(_growth_of(name, engines) for name, engines in found.items())
+
+
+def _growth_of(series: str, engines: dict[str, Any]) -> str:
+    """Seconds by size, and below them the slopes at the upper end."""
+    columns = ("run",) if series == "trials" else COLUMNS
+    shown = [(engine, column) for column in columns for engine in (engines if column != "loading" else ["numpy"])]
+    sizes = sorted({point["size"] for points in engines.values() for point in points})
+    found = {(engine, column): seconds_of(engines[engine], column) for engine, column in shown}
+    rows = [[f"{size:,}", *(_seconds_at(*found[each], size) for each in shown)] for size in sizes]
+    slopes = [slope(*found[each]) if found[each][0] else None for each in shown]
+    rows.append(["*slope*", *("–" if value is None else f"*{value:.2f}*" for value in slopes)])
+    headings = [series, *(_GROWTH_WORDS[column].format(engine) for engine, column in shown)]
+    absent = [
+        f"{engine}, {point['size']:,}: {point['absent']}."
+        for engine, points in engines.items()
+        for point in points
+        if "absent" in point
+    ]
+    return "\n\n".join([_table(headings, rows, "r" * len(headings)), *absent])
+
+
+def _seconds_at(sizes: Sequence[int], seconds: Sequence[float], size: int) -> str:
+    return f"{seconds[sizes.index(size)]:.3g}" if size in sizes else "–"
+
+
+_GROWTH_WORDS = {
+    "loading": "loading, s",
+    "program": "program, {}, s",
+    "first": "first block, {}, s",
+    "a trial": f"{TRIALS:,} trials, {{}}, s",
+    "run": "{}, s",
+}
+
+
 def _whole_command(found: dict[str, Any]) -> str:
     labels = {
         "xlmc": f"`xlmc simulate`, {found['trials']:,} trials, workbook written",
@@ -177,5 +214,6 @@ TABLES: dict[str, Callable[[dict[str, Any]], str]] = {
     "accuracy": _accuracy,
     "memory": _memory,
     "whole-command": _whole_command,
+    "growth": _growth,
 }
 """Name of a part, of its results and of its place in the page -> what makes its table."""

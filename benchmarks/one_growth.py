@@ -1,0 +1,61 @@
+"""One engine on one book, in this process: the task as JSON on stdin, seconds as JSON on stdout.
+
+Measured apart: reading the workbook, making the program, the first block (with `jit`, compiling), and after these the
+cost of a trial; or, for given numbers of trials, whole runs.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from time import perf_counter
+from typing import Any
+
+from contest import measured
+
+import xlmc
+from xlmc.api import load
+from xlmc.evaluation.engines import ENGINES
+from xlmc.run.simulate import BLOCK
+
+
+def main() -> None:
+    """Load, make the program, run."""
+    given = json.loads(sys.stdin.readline())
+    engine = given["engine"]
+    assert engine in ENGINES
+    start = perf_counter()
+    model = load(given["path"])
+    found: dict[str, Any] = {"version": xlmc.__version__, "loading": perf_counter() - start}
+    start = perf_counter()
+    program = model.program(engine)
+    found["program"] = perf_counter() - start
+    block = min(BLOCK, program.largest_block)
+
+    def run(trials: int) -> None:
+        model.simulate(trials, 1, engine=engine)
+
+    start = perf_counter()
+    run(block)
+    found["first"] = perf_counter() - start
+    if given["trials"]:
+        found["runs"] = [_shortest(run, trials) for trials in given["trials"]]
+    else:
+        rate, found["trials"] = measured(run, block, given["seconds"])
+        found["a trial"] = 1 / rate
+        found["block"] = block
+    print(json.dumps(found), flush=True)
+
+
+def _shortest(run: Any, trials: int) -> float:
+    """Seconds of a run: the shortest of up to five in a second."""
+    spent: list[float] = []
+    while len(spent) < 5 and sum(spent) < 1:
+        start = perf_counter()
+        run(trials)
+        spent.append(perf_counter() - start)
+    return min(spent)
+
+
+if __name__ == "__main__":
+    main()

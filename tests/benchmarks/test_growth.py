@@ -1,0 +1,47 @@
+"""The cost over the size of a book: points, slopes, table and picture."""
+
+from __future__ import annotations
+
+import json
+
+import compare
+import figures
+import growth
+import pytest
+import tables
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("growth")
+    given = ["--quick", "--parts", "growth", "--books", "skid", "--output", str(folder)]
+    compare.main([*given, "--series", "forecasts", "--most", "3"])
+    compare.main([*given, "--series", "trials", "--most", "1000"])
+    return folder
+
+
+def test_a_series_that_is_not_measured_keeps_its_points(results):
+    found = json.loads((results / "growth.json").read_text(encoding="utf-8"))["found"]
+    assert list(found) == ["trials", "forecasts"]
+    for points in found["forecasts"].values():
+        assert [point["size"] for point in points] == [1, 3]
+        assert all(point[column] > 0 for point in points for column in growth.COLUMNS)
+    assert [point["size"] for points in found["trials"].values() for point in points] == [1000, 1000]
+    assert (results / "growth.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_slope_is_that_of_the_last_decade():
+    assert growth.slope((1, 10, 100), (7.0, 1.0, 100.0)) == pytest.approx(2)
+    assert growth.slope((1, 100), (1.0, 2.0)) is None
+
+
+def test_a_point_without_an_answer_is_named():
+    points = [{"size": 1_000, "run": 0.5}, {"size": 2_000, "absent": "no answer within 9 s"}]
+    table = tables.TABLES["growth"]({"trials": {"numpy": points}})
+    assert "| 1,000 | 0.5 |" in table
+    assert "| 2,000 | – |" in table
+    assert table.endswith("numpy, 2,000: no answer within 9 s.")
+
+
+def test_every_series_has_a_panel():
+    assert tuple(figures.GROWTH) == growth.SERIES

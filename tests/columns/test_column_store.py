@@ -178,6 +178,21 @@ def test_a_folder_that_cannot_be_made_is_told(monkeypatch):
         Folder()
 
 
+def test_a_signal_as_soon_as_there_is_a_folder_leaves_none(monkeypatch, tmp_path):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    make = Path.mkdir
+
+    def end_afterwards(path, mode):
+        make(path, mode)
+        raise SystemExit(143)
+
+    monkeypatch.setattr(Path, "mkdir", end_afterwards)
+    with pytest.raises(SystemExit):
+        Folder()
+    gc.collect()
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_column_that_is_gone_is_told():
     with pytest.raises(SimulationError, match="No such file"):
         Folder().array("never written", REAL)

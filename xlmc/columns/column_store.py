@@ -193,8 +193,9 @@ class Folder:
             self.path = Path(tempfile.gettempdir(), new_folder_name())
             kept = ExitStack()
             kept.enter_context(owned(self.path.name))
+            # Before there is a folder: a signal that ends the process may come at any time.
+            self._end = weakref.finalize(self, _remove, self.path, os.getpid(), kept)
             self.path.mkdir(mode=0o700)
-        self._end = weakref.finalize(self, _remove, self.path, os.getpid(), kept)
 
     def append(self, name: str, arrays: Iterable[NDArray[Any]]) -> None:
         """Write `(n,)` arrays at the end of a file.

@@ -84,7 +84,7 @@ class TrackingEvaluator:
         )
 
     def peak(self, inputs: Inputs) -> int:
-        """The most bytes that values take at a time, in the trials of these inputs.
+        """The most bytes that arrays, texts and what may be either take at a time, in the trials of these inputs.
 
         Raises:
             TooLargeError: they are too many.
@@ -135,7 +135,7 @@ class _Part:
 
     Attributes:
         inputs: the names of the inputs among the nodes.
-        peak: the most bytes that values took at a time in the last run.
+        peak: the most bytes that values other than single numbers took at a time in the last run.
     """
 
     def __init__(self, dag: Dag, nodes: Sequence[int], kept: set[int]) -> None:
@@ -157,7 +157,7 @@ class _Part:
             FormulaError: a value is of a kind that xlmc does not compute with; the error names the cell.
         """
         nodes, sizes = self._dag.nodes, dict[int, int]()
-        live = self.peak = 0
+        live = in_arrays = self.peak = 0
         for node_id in self._nodes:
             node = nodes[node_id]
             assert not isinstance(node, Constant)
@@ -166,16 +166,22 @@ class _Part:
                 values[node_id] = found
                 sizes[node_id] = found.nbytes
                 live += sizes[node_id]
+                in_arrays += self._in_arrays(node_id, sizes[node_id])
                 ask_for_live(live)
             except TooLargeError as error:
                 error.node = node_id
                 raise
             except FormulaError as error:
                 raise self._dag.naming_cell_of(error, node_id) from None
-            self.peak = max(self.peak, live)
+            self.peak = max(self.peak, in_arrays)
             for gone in self._done.get(node_id, ()):
                 del values[gone]
+                in_arrays -= self._in_arrays(gone, sizes[gone])
                 live -= sizes.pop(gone)
+
+    def _in_arrays(self, node: int, size: int) -> int:
+        """Of the bytes of a value, those that are no single number."""
+        return 0 if self._dag.sizes[node] is None and self._dag.types[node] in (Kind.NUMBER, Kind.LOGICAL) else size
 
 
 def _columns(values: Mapping[int, Value], nodes: Iterable[int], n: int) -> list[Column]:
@@ -194,14 +200,20 @@ def _side_by_side(columns: Sequence[Column]) -> Column:
     return Column(np.concatenate([column.values for column in columns]), codes)
 
 
-def array_bytes(lowering: Lowering, filters: Sequence[int], forecasts: Sequence[int]) -> int:
-    """The most bytes that values take at a time in one trial, measured with the inputs at their base values.
+def array_bytes(
+    lowering: Lowering, filters: Sequence[int], forecasts: Sequence[int], reads: Callable[[int], Sequence[int]]
+) -> int:
+    """The most bytes that arrays and texts take at a time in one trial, measured with the inputs at their base values.
 
     It is 0, unmeasured, for a model without texts or wide arrays that vary.
+
+    Args:
+        lowering: of the model.
+        filters, forecasts: nodes.
+        reads: what the engine reads to compute a node: a range of which it takes the cells is no array.
     """
     dag = lowering.dag
-    nodes = dag.upstream([*filters, *forecasts])
-    if not any(_may_be_wide(dag, node) for node in nodes):
+    if not any(_may_be_wide(dag, node) for node in dag.upstream([*filters, *forecasts], reads)):
         return 0
     base = {name: lowering.graph.workbook.content(cell).value for cell, name in lowering.inputs.items()}
     inputs = {name: np.full(1, float(x) if isinstance(x, int | float) else 1.0) for name, x in base.items()}

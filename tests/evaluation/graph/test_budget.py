@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from xlmc.errors import XlmcError
+from xlmc.evaluation.llvm.program import JitProgram
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.evaluation.tracking import TrackingEvaluator
 
@@ -161,4 +162,19 @@ def test_portions_of_a_block_give_the_numbers_of_the_whole(lower, monkeypatch):
 @pytest.mark.parametrize(("rows", "block"), [(10, 32768), (100_000, 64), (1_000_000, 8)])
 def test_a_block_holds_the_fewer_trials_the_larger_its_arrays_are(lower, rows, block):
     lowering, targets = lower({"Z1": f"=SUM(SEQUENCE({rows},1,A1))"}, ["A1"], ["Z1"])
+    assert NumpyProgram.of(lowering, targets, [], frozenset()).largest_block == block
+
+
+@pytest.mark.parametrize("program", [NumpyProgram.of, JitProgram])
+def test_a_range_that_is_folded_cell_by_cell_takes_no_array(lower, program):
+    cells = {f"A{row}": f"=A{row - 1}*1.001+A1" for row in range(2, 1_500)}
+    lowering, targets = lower({**cells, "Z1": "=SUM(A2:A1499)"}, ["A1"], ["Z1"])
+    assert program(lowering, targets, [], frozenset()).largest_block >= 1 << 15
+
+
+@pytest.mark.parametrize(("cells", "block"), [(1, 64), (3_000, 64)])
+def test_single_numbers_take_no_room_of_arrays(lower, cells, block):
+    numbers = {f"B{row}": f"=A1+{row}" for row in range(1, cells + 1)}
+    total = f"=SUM(SEQUENCE(100000,1,A1))+SUM(B1:B{cells})"
+    lowering, targets = lower({**numbers, "Z1": total}, ["A1"], ["Z1"])
     assert NumpyProgram.of(lowering, targets, [], frozenset()).largest_block == block

@@ -80,7 +80,7 @@ class JitProgram:
         memory = _MOST_MEMORY if self.first.loops is not None and self.late.loops is not None else _MOST_IN_CACHES
         while self.largest_block > _SMALLEST_BLOCK and self.largest_block * 8 * arrays > memory:
             self.largest_block //= 2
-        in_arrays = array_bytes(lowering, self.filter_nodes, self.forecast_nodes)
+        in_arrays = array_bytes(lowering, self.filter_nodes, self.forecast_nodes, needed)
         self.largest_block = fitting_block(self.largest_block, in_arrays, 8 * arrays)
 
     def evaluator(self, block: int) -> Evaluator:

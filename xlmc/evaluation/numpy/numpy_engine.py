@@ -8,6 +8,7 @@ nothing where there are none. Nor do numbers too small for Excel: the step that 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -21,7 +22,7 @@ from xlmc.evaluation.graph.readiness import order_by_need
 from xlmc.evaluation.graph.trial_sets import ALL_TRIALS, TrialSet
 from xlmc.evaluation.numpy.branches import SURVIVORS, Placement, branch_step
 from xlmc.evaluation.numpy.sequence import Buffers, Steps
-from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, plain_constant
+from xlmc.evaluation.numpy.steps import Frame, LeaveFastPath, Step, plain_constant, reads
 from xlmc.evaluation.passes.bounds import NodeBounds
 from xlmc.evaluation.tracking import TrackingEvaluator, array_bytes, fitting_block
 from xlmc.functions import Kind
@@ -97,7 +98,9 @@ class NumpyProgram:
         """The program of targets."""
         first, late = ([lowering.target(target) for target in targets] for targets in (filters, forecasts))
         known = bounds or NodeBounds(lowering.dag, {})
-        return cls(lowering.dag, first, late, may_err, known, array_bytes(lowering, first, late))
+        return cls(
+            lowering.dag, first, late, may_err, known, array_bytes(lowering, first, late, partial(reads, lowering.dag))
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         return NumpyProgram, self._made_of

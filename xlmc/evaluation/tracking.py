@@ -209,7 +209,8 @@ def array_bytes(
 
     Args:
         lowering: of the model.
-        filters, forecasts: nodes.
+        filters: nodes.
+        forecasts: nodes.
         reads: what the engine reads to compute a node: a range of which it takes the cells is no array.
     """
     dag = lowering.dag

@@ -72,7 +72,7 @@ class Evaluator(Protocol):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KeptBlock:
-    """A whole block without errors, evaluated and filtered. The next block overwrites its columns.
+    """A block without errors, evaluated and filtered. The next block overwrites its columns.
 
     Attributes:
         accepted: `(m,)` the trials that no filter rejects, as the run counts them.
@@ -105,13 +105,14 @@ class Room:
 
 
 class BlockRunner(Protocol):
-    """Runs whole blocks."""
+    """Runs a block at once."""
 
-    def __call__(self, start: int, inputs: bool, room: Callable[[], Room] | None) -> KeptBlock | None:
-        """A block; None where a trial needs the careful path.
+    def __call__(self, start: int, trials: int, inputs: bool, room: Callable[[], Room] | None) -> KeptBlock | None:
+        """The first trials of a block; None where one needs the careful path, or one of those behind them.
 
         Args:
             start: the block's first trial.
+            trials: how many count.
             inputs: whether to keep draws.
             room: gives memory for the block's columns, which it writes to if it keeps all trials.
         """
@@ -119,10 +120,10 @@ class BlockRunner(Protocol):
 
 @runtime_checkable
 class RunsWholeBlocks(Protocol):
-    """An evaluator that can also run a whole block at once, with less memory, fewer calls and fewer locks."""
+    """An evaluator that can also run a block at once, with less memory, fewer calls and fewer locks."""
 
     def block_runner(self, draw: Callable[[int], Mapping[str, Floats]], linear: Linear | None) -> BlockRunner | None:
-        """A runner of whole blocks, which gives the same numbers; None where the model does not allow one.
+        """What runs a block at once and gives the same numbers; None where the model does not allow it.
 
         Args:
             draw: makes the draws of a block from its first trial on, `(block,)` each.

@@ -7,6 +7,7 @@ not depend on each other, so that the numbers are the same.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -36,18 +37,14 @@ Trials = NDArray[np.intp]
 
 
 class TrackingEvaluator:
-    """Evaluates every node as a `Value`. `filters` and `forecasts` are nodes."""
+    """Evaluates every node as a `Value`. `filters` and `forecasts` are nodes.
+
+    What it evaluates is found when it is first used, for most runs never need it.
+    """
 
     def __init__(self, dag: Dag, filters: Sequence[int], forecasts: Sequence[int]) -> None:
         self._dag = dag
         self._filters, self._forecasts = filters, forecasts
-        first = dag.upstream(filters)
-        early = set(first)
-        late = [node for node in dag.upstream([*filters, *forecasts]) if node not in early]
-        self._carried = early & {*forecasts, *(used for node in late for used in uses(dag.nodes[node]))}
-        self._first = _Part(dag, first, {*filters, *self._carried})
-        self._late = _Part(dag, late, set(forecasts))
-        self._constants = dict(constants(dag))
         self._inputs: Inputs = {}
         self._values: dict[int, Value] | None = {}
         self._portion = 1 << 62
@@ -92,16 +89,31 @@ class TrackingEvaluator:
         early = self._run_early(inputs)
         (n,) = {column.size for column in inputs.values()} or {1}
         self._run_late(early, np.arange(n), inputs)
-        return max(self._first.peak, self._late.peak)
+        return max(part.peak for part in self._parts[:2])
+
+    @cached_property
+    def _parts(self) -> tuple[_Part, _Part, set[int]]:
+        """What the filters need; what the forecasts need beyond that; the nodes that these take from the filters'."""
+        dag = self._dag
+        first = dag.upstream(self._filters)
+        early = set(first)
+        late = [node for node in dag.upstream([*self._filters, *self._forecasts]) if node not in early]
+        carried = early & {*self._forecasts, *(used for node in late for used in uses(dag.nodes[node]))}
+        return _Part(dag, first, {*self._filters, *carried}), _Part(dag, late, set(self._forecasts)), carried
+
+    @cached_property
+    def _constants(self) -> dict[int, Value]:
+        return dict(constants(self._dag))
 
     def _run_early(self, inputs: Inputs) -> dict[int, Value]:
         values = dict(self._constants)
-        self._first.run(values, inputs)
+        self._parts[0].run(values, inputs)
         return values
 
     def _run_late(self, early: Mapping[int, Value], survivors: Trials, inputs: Inputs) -> list[Column]:
-        values = self._constants | {node: early[node].take(survivors) for node in self._carried}
-        self._late.run(values, {name: inputs[name][survivors] for name in self._late.inputs})
+        _, late, carried = self._parts
+        values = self._constants | {node: early[node].take(survivors) for node in carried}
+        late.run(values, {name: inputs[name][survivors] for name in late.inputs})
         return _columns(values, self._forecasts, survivors.size)
 
     def _repeat_forecasts(self, inputs: Inputs, n: int) -> list[Column]:

@@ -1,4 +1,8 @@
-"""One block of trials: drawn, evaluated, filtered, counted. Whole blocks are evaluated, then cut at the trial count."""
+"""One block of trials: drawn, evaluated, filtered, counted. Whole blocks are evaluated, then cut at the trial count.
+
+Native code for whole blocks takes only as many chunks as hold the trials that count: what it gives of a trial does not
+depend on the other trials.
+"""
 
 from __future__ import annotations
 
@@ -160,11 +164,10 @@ class ModelRunner:
 
         Where all trials are kept, the columns may be written to what `room` gives.
         """
-        if self._run_whole is not None and task.trials == self._block and not task.prior:
-            whole = self._run_whole(task.start, task.inputs, room)
-            if whole is not None:
-                return _block_of(whole, task)
         start, trials = task.start, task.trials
+        whole = None if self._run_whole is None else self._run_whole(start, trials, task.inputs, room)
+        if whole is not None:
+            return _block_of(whole, task, self._sampler.draw(start) if task.prior else None)
         draws = self._sampler.draw(start)
         columns = self._evaluator.filters(draws, self._block)
         invalid = {name: np.isnan(draws[name]) for name in sorted(self._fallible)}
@@ -200,12 +203,13 @@ class ModelRunner:
         return [Column(np.empty(0)) for _ in range(self._width)]
 
 
-def _block_of(kept: KeptBlock, task: Task) -> Block:
-    """A whole block without errors."""
+def _block_of(kept: KeptBlock, task: Task, drawn: Mapping[str, Floats] | None) -> Block:
+    """A block without errors; `drawn` are the draws of all its trials."""
     faults: list[Counter[str]] = [Counter() for _ in kept.forecasts]
     errors: list[Counter[str]] = [Counter() for _ in kept.only]
     tally = FilterTally(np.diagonal(kept.together).copy(), kept.only, kept.together, errors, 0)
-    return Block(task.trials, kept.accepted, kept.draws, kept.forecasts, faults, tally, Counter(), 0, None)
+    prior = None if drawn is None else {name: values[: task.trials] for name, values in drawn.items()}
+    return Block(task.trials, kept.accepted, kept.draws, kept.forecasts, faults, tally, Counter(), 0, prior)
 
 
 def _any(masks: Sequence[Bools], n: int) -> Bools:

@@ -1,7 +1,7 @@
-"""Runs whole blocks by one native call each: what the call takes from Python, and what it gives back.
+"""Runs a block by one native call: what the call takes from Python, and what it gives back.
 
 It does so only for models that consist of loops alone; a block in which a trial must be computed again is run in the
-usual way.
+usual way. Where the trials that count end within a chunk, that chunk has a call of its own.
 """
 
 from __future__ import annotations
@@ -41,6 +41,9 @@ _MOST_FILTERS: Final = 16
 
 _PATIENCE: Final = 4
 """Where more than one block in so many must be run in the usual way, whole blocks are not tried any more."""
+
+
+Counts = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +135,7 @@ class NativeBlockRunner:
         self._draw_targets: dict[str, int] = {}
         self._write_table()
 
-    def __call__(self, start: int, inputs: bool, room: Callable[[], Room] | None) -> KeptBlock | None:
+    def __call__(self, start: int, trials: int, inputs: bool, room: Callable[[], Room] | None) -> KeptBlock | None:
         """See `BlockRunner`."""
         if _PATIENCE * self._careful > max(self._runs, _PATIENCE):
             return None
@@ -151,25 +154,56 @@ class NativeBlockRunner:
             into = room()
             for target, array in self._targets(into):
                 self._words[target] = _address_of(array)
-        self._counts.fill(0)
-        m = self._run(self._address, self._chunks)
-        if m < 0:
+        found = self._run_chunks(trials)
+        if found is None:
             self._careful += 1
             self._wrong.fill(0)
             return None
-        return self._result(start, m, inputs, into)
+        return self._result(start, inputs, into, *found)
+
+    def _run_chunks(self, trials: int) -> tuple[int, Counts, Counts] | None:
+        """How many of the first trials are kept; of the filters that may reject, what pairs do, and each alone.
+
+        None where a trial must be computed again.
+        """
+        chunks, rest = divmod(trials, self._chunk)
+        self._counts.fill(0)
+        m = self._run(self._address, chunks) if chunks else 0
+        if m < 0:
+            return None
+        pairs, alone = self._counts[self._pairs], self._counts[self._counts.size - len(self._parts.rejecting) :].copy()
+        if rest:
+            self._words[self._listed] += np.uint64(m * self._trials.itemsize)
+            more = self._run(self._address, 1)
+            if more < 0:
+                return None
+            if self._parts.rejecting:
+                self._trials[m : m + more] += chunks * self._chunk
+                more = int(np.searchsorted(self._trials[m : m + more], trials))
+                rejected = self._rejected(rest)
+                pairs += rejected @ rejected.T
+                alone += rejected[:, rejected.sum(axis=0) == 1].sum(axis=1)
+            else:
+                more = rest
+            m += more
+        return m, pairs, alone
+
+    def _rejected(self, n: int) -> Counts:
+        """1 where a filter rejects, of the first `n` trials of the last chunk: `(f, n)`."""
+        nodes = self._parts.rejecting.values()
+        return np.array([self._memory.of(node, self._chunk)[:n] == 0 for node in nodes]).astype(np.int64)
 
     def _targets(self, room: Room) -> Iterable[tuple[int, Floats]]:
         """Positions in the argument table of addresses that columns are written to, and these columns in `room`."""
         yield from ((at, room.forecasts[number]) for at, number in self._forecast_targets)
         yield from ((self._draw_targets[name], array) for name, array in room.draws.items())
 
-    def _result(self, start: int, m: int, inputs: bool, room: Room) -> KeptBlock:
-        parts, alone = self._parts, self._counts[self._counts.size - len(self._parts.rejecting) :]
+    def _result(self, start: int, inputs: bool, room: Room, m: int, pairs: Counts, alone: Counts) -> KeptBlock:
+        parts = self._parts
         f, rejecting = len(parts.filters), list(parts.rejecting)
         together, only = np.zeros((f, f), np.int64), np.zeros(f, np.int64)
         if rejecting:
-            together[np.ix_(rejecting, rejecting)], only[rejecting] = self._counts[self._pairs], alone
+            together[np.ix_(rejecting, rejecting)], only[rejecting] = pairs, alone
         return KeptBlock(
             np.add(self._trials[:m], start, out=room.accepted[:m]),
             {name: room.draws[name][:m] for name in self._names} if inputs else {},
@@ -203,6 +237,7 @@ class NativeBlockRunner:
             nodes = [*(load.operand.node for load in loop.loads), *loop.stores]
             lists.append((at + 1, self._add_list(table, nodes, wrong, loop.numbers)))
         gathered = [node for node in self._column if node not in parts.computed_late]
+        self._listed = trials
         self._gathers = gathers = table.add(len(gathered))
         for node in gathered:
             self._add_address(table, node)

@@ -58,6 +58,11 @@ def test_evenly_spaced_numbers_are_found_by_a_division():
     assert Search.of(np.array([0.0, 1.0, 4.0]), 1.0).step == 0.0
 
 
+def test_the_division_alone_finds_where_no_number_next_to_a_step_misleads_it():
+    assert Search.of(np.arange(0.0, 400.0, 10.0), 1.0).divides
+    assert not Search.of(np.arange(41) * 0.1, 1.0).divides  # 3 * 0.1 is above 0.3
+
+
 def test_steps_without_an_inverse_are_not_divided_by():
     assert Search.of(np.array([3e-308, np.nextafter(3e-308, 1.0)]), 1.0).step == 0.0
     assert Search.of(np.array([-1.7e308, 0.0, 1.7e308]), 1.0).step == 0.0

@@ -87,10 +87,13 @@ def _search(body: Emitter, search: Search, key: Any) -> Any:
 
 
 def _by_division(body: Emitter, search: Search, key: Any) -> Any:
-    """How many numbers are not above the key: guessed by its distance from the first, and corrected by one."""
+    """How many numbers are not above the key: by its distance from the first, corrected by one where that may miss."""
     builder, rising = body.builder, _Column(body, search.rising)
     first, last = float(search.rising[0]), float(search.rising[-2])
     inside = body.intrinsic("llvm.minnum", body.intrinsic("llvm.maxnum", key, body.number(first)), body.number(last))
+    if search.divides:
+        whole = builder.fptosi(builder.fdiv(builder.fsub(inside, body.number(first)), body.number(search.step)), _LONG)
+        return builder.add(whole, _LONG(1))
     steps = builder.fmul(builder.fsub(inside, body.number(first)), body.number(1.0 / search.step))
     guess = builder.fptosi(steps, _LONG)
     below = builder.zext(builder.fcmp_ordered("<", inside, rising.at(guess)), _LONG)

@@ -289,15 +289,29 @@ def _drop_values(nodes: list[int]) -> Step:
     return step
 
 
+_RARE: Final = 16
+"""Where a choice falls the same way in all but one of so many trials, the processor guesses it."""
+
+
+def _choose(condition: Any, yes: Any, no: Any, out: NDArray[Any]) -> NDArray[Any]:
+    """Fill `out` with `yes` where the condition holds, else with `no`."""
+    n = out.size
+    chosen = np.count_nonzero(condition) if np.ndim(condition) else n // 2
+    if n < _RARE * chosen and n < _RARE * (n - chosen):
+        np.copyto(out, np.where(condition, yes, no))
+        return out
+    np.copyto(out, no)
+    if chosen:
+        np.copyto(out, yes, where=condition)
+    return out
+
+
 def _run(lines: list[_Line]) -> Step:
     def step(frame: Frame) -> None:
         values, buffers, underflow = frame.values, frame.buffers, frame.underflow
         for ufunc, node, first, second, buffer, guard in lines:
             if ufunc is None:
-                out = buffers[buffer]
-                np.copyto(out, values[second])
-                np.copyto(out, values[first], where=values[guard])
-                values[node] = out
+                values[node] = _choose(values[guard], values[first], values[second], buffers[buffer])
             elif second < 0:
                 if guard is not None and not guard(values[first]):
                     raise LeaveFastPath

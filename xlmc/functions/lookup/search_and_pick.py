@@ -13,6 +13,7 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.functions.budget import work_arrays
 from xlmc.functions.facts import Facts
 from xlmc.functions.lookup.index_and_address import index
 from xlmc.functions.lookup.lookup import match
@@ -58,12 +59,14 @@ class Search:
         places: `(k,)` where each of them stands, counted from 1, if a key must equal one of them, the first of equal
             ones; None where a key has the position of the last number that is not beyond it.
         step: from one of them to the next, where they are evenly spaced; else 0.
+        divides: whether the whole steps from the first number to a key say where it is, whatever the key.
     """
 
     rising: Floats
     sign: float
     places: NDArray[np.intp] | None
     step: float
+    divides: bool = False
     nin: ClassVar[int] = 1
 
     @classmethod
@@ -79,7 +82,9 @@ class Search:
             step = float(signed[-1] - signed[0]) / max(1, signed.size - 1)
             even = signed[0] + step * np.arange(signed.size)
             is_even = step > _LEAST_STEP and bool((np.abs(signed - even) <= _EVEN * step).all())
-        return cls(np.append(signed, np.inf), float(np.copysign(1.0, order)), None, step if is_even else 0.0)
+            divides = is_even and _divides(signed, step)
+        sign = float(np.copysign(1.0, order))
+        return cls(np.append(signed, np.inf), sign, None, step if is_even else 0.0, divides)
 
     def finds(self, keys: Floats) -> bool:
         """Whether every key, none of them infinite, has a position."""
@@ -91,7 +96,14 @@ class Search:
     def __call__(self, keys: Floats, out: Floats | None = None) -> Floats:
         """The positions, `(n,)`, of keys that all have one."""
         out = np.empty(np.shape(keys)) if out is None else out
-        np.copyto(out, self._positions(keys))
+        if self.divides:
+            np.minimum(keys if self.sign > 0 else -keys, self.rising[-2], out=out)
+            out -= self.rising[0]
+            out /= self.step
+            np.floor(out, out=out)
+            out += 1.0
+        else:
+            np.copyto(out, self._positions(keys))
         return out
 
     def _positions(self, keys: Floats) -> NDArray[np.intp]:
@@ -113,6 +125,17 @@ class Search:
         return found
 
 
+def _divides(rising: Floats, step: float) -> bool:
+    """Whether (key - first) / step, rounded down, is the index of the last number that is not above the key.
+
+    It never falls as the key rises, so it needs a look only where the index changes: at each number, and just below it.
+    """
+    index = np.arange(rising.size)
+    below = np.nextafter(rising[1:], -np.inf)
+    at, under = (np.floor((keys - rising[0]) / step) for keys in (rising, below))
+    return bool((at == index).all() and (under == index[:-1]).all())
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Pick:
     """Picks the numbers at positions, counted from 1.
@@ -131,5 +154,8 @@ class Pick:
 
     def __call__(self, positions: Floats, out: Floats | None = None) -> Floats:
         """The numbers at positions, `(n,)`."""
-        found: Floats = self.numbers.take(positions.astype(np.intp), out=out, mode="clip")
+        (work,) = work_arrays(positions.size, 1)
+        indices = work.view(np.int64).reshape(positions.shape)
+        np.copyto(indices, positions, casting="unsafe")
+        found: Floats = self.numbers.take(indices, out=out, mode="clip")
         return found

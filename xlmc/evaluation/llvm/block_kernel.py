@@ -34,8 +34,8 @@ class Layout:
 
     Attributes:
         chunk: trials at a time, a multiple of `WORD`.
-        fills, first, late: loops, each an address of code and, in the next word, of the addresses that it takes; those
-            that draw, those on all trials, those on the survivors.
+        fills, first, late: how many loops; two words for each follow, the address of its code and that of the addresses
+            that it takes. These draw, those run on all trials, the last on the survivors.
         jump: the address of where `fills` begin; -1 without fills.
         filters: addresses of truth values, `(chunk,)`.
         by_chunk: addresses of doubles that move on with every chunk.
@@ -47,9 +47,9 @@ class Layout:
     """
 
     chunk: int
-    fills: tuple[int, ...]
-    first: tuple[int, ...]
-    late: tuple[int, ...]
+    fills: int
+    first: int
+    late: int
     jump: int
     filters: tuple[int, ...]
     by_chunk: tuple[int, ...]
@@ -78,12 +78,10 @@ def compile_kernel(machine: Machine, layout: Layout) -> NativeLoop:
 
     builder.position_at_end(body)
     chunk, total = builder.phi(_LONG), builder.phi(_LONG)
-    for loop in layout.fills:
-        table.call(loop, _LONG(layout.chunk))
+    table.call_all(layout.fills, _LONG(layout.chunk))
     if layout.jump >= 0:
         _advance_jump(builder, table.address(layout.jump, _LONG), layout.chunk)
-    for loop in layout.first:
-        _fail_if(builder, table.call(loop, _LONG(layout.chunk)), failed)
+    _fail_if(builder, table.call_all(layout.first, _LONG(layout.chunk)), failed)
     survivors = table.address(layout.survivors, _LONG)
     kept = _LONG(layout.chunk)
     if layout.filters:
@@ -93,8 +91,7 @@ def compile_kernel(machine: Machine, layout: Layout) -> NativeLoop:
         trials = builder.gep(table.address(layout.trials, _LONG), [total])
         first_trial = builder.mul(chunk, _LONG(layout.chunk))
         _for_each(builder, kept, lambda i: _store_shifted(builder, survivors, trials, first_trial, i))
-    for loop in layout.late:
-        _fail_if(builder, table.call(loop, kept), failed)
+    _fail_if(builder, table.call_all(layout.late, kept), failed)
     _for_each(
         builder, table.word(layout.gathers), lambda i: table.gather_column(gather, layout.gathers, i, survivors, kept)
     )
@@ -131,9 +128,22 @@ class _ArgumentTable:
         at = self._at(_LONG(position))
         self._builder.store(self._builder.add(self._builder.load(at), size), at)
 
-    def call(self, position: int, n: Any) -> Any:
-        code = self._builder.inttoptr(self.word(position), _LOOP.as_pointer())
-        return self._builder.call(code, [self.address(position + 1, _BYTE.as_pointer()), n])
+    def call_all(self, position: int, n: Any) -> Any:
+        """Call loops one after another; give how many trials must be computed again."""
+        builder = self._builder
+        with builder.goto_entry_block():
+            wrong = builder.alloca(_LONG)
+        builder.store(_LONG(0), wrong)
+
+        def call(i: Any) -> None:
+            at = builder.add(builder.mul(i, _LONG(2)), _LONG(position + 1))
+            words = [builder.load(self._at(word)) for word in (at, builder.add(at, _LONG(1)))]
+            types = (_LOOP.as_pointer(), _BYTE.as_pointer().as_pointer())
+            code, arguments = (builder.inttoptr(word, of) for word, of in zip(words, types, strict=True))
+            builder.store(builder.add(builder.load(wrong), builder.call(code, [arguments, n])), wrong)
+
+        _for_each(builder, self.word(position), call)
+        return builder.load(wrong)
 
     def gather_column(self, gather: ir.Function, gathers: int, i: Any, survivors: Any, kept: Any) -> None:
         """Gather a column, and move its target on for the next chunk."""

@@ -10,6 +10,7 @@ import ctypes
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from math import gcd
 from typing import TYPE_CHECKING, Any, Final
 
@@ -219,23 +220,19 @@ class NativeBlockRunner:
         """Write the argument table that every block starts from, and compile the code that reads it."""
         parts, fill = self._parts, self._fill
         table = _TableWriter()
-        fills = [
-            table.add(call.address, _address_of(arguments)) for call, arguments in ([] if fill is None else fill.calls)
-        ]
+        draws = [] if fill is None else [(call.address, _address_of(arguments)) for call, arguments in fill.calls]
+        fills = table.add_pairs(draws)
         jump = -1 if fill is None else table.add(_address_of(fill.jump))
-        first = [table.add(loop.call.address, 0) for loop in parts.first]
-        late = [table.add(loop.call.address, 0) for loop in parts.late]
+        first, late = (
+            table.add_pairs([(loop.call.address, 0) for loop in loops]) for loops in (parts.first, parts.late)
+        )
         filters = [table.add(_address_of(self._memory.of(node, self._chunk))) for node in parts.rejecting.values()]
         survivors, trials, counts = (table.add(_address_of(a)) for a in (self._survivors, self._trials, self._counts))
         lists = []
-        for at, loop, wrong in zip(
-            (*first, *late),
-            (*parts.first, *parts.late),
-            (*[self._wrong[0]] * len(first), *[self._wrong[1]] * len(late)),
-            strict=True,
-        ):
-            nodes = [*(load.operand.node for load in loop.loads), *loop.stores]
-            lists.append((at + 1, self._add_list(table, nodes, wrong, loop.numbers)))
+        for begin, loops, wrong in zip((first, late), (parts.first, parts.late), self._wrong, strict=True):
+            for number, loop in enumerate(loops):
+                nodes = [*(load.operand.node for load in loop.loads), *loop.stores]
+                lists.append((begin + 2 * number + 2, self._add_list(table, nodes, wrong, loop.numbers)))
         gathered = [node for node in self._column if node not in parts.computed_late]
         self._listed = trials
         self._gathers = gathers = table.add(len(gathered))
@@ -257,7 +254,7 @@ class NativeBlockRunner:
         self._run = compile_kernel(
             machine(),
             Layout(
-                *(self._chunk, tuple(fills), tuple(first), tuple(late), jump, tuple(filters)),
+                *(self._chunk, fills, first, late, jump, tuple(filters)),
                 *(by_chunk, tuple(table.by_kept), survivors, trials, counts, gathers),
             ),
         )
@@ -308,6 +305,10 @@ class _TableWriter:
         """Add words; give the position where they begin."""
         self.words += words
         return len(self.words) - len(words)
+
+    def add_pairs(self, pairs: Sequence[tuple[int, int]]) -> int:
+        """Add how many pairs there are, and their words; give the position where this begins."""
+        return self.add(len(pairs), *chain.from_iterable(pairs))
 
 
 def _address_of(array: Any) -> int:

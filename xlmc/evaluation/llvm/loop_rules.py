@@ -90,6 +90,8 @@ def literal(dag: Dag, operand: Operand) -> Literal | None:
     node = dag.nodes[operand.node]
     if not isinstance(node, Constant) or dag.sizes[operand.node] is not None:
         return None
+    if operand.kind is Kind.NUMBER and dag.types[operand.node] is Kind.NUMBER:
+        return Literal(float(node.value.numbers[0]))
     values, errors = node.value.to_numbers() if operand.kind is Kind.NUMBER else node.value.to_logicals()
     if values.size != 1 or errors.any():
         return None

@@ -9,6 +9,7 @@ import ctypes
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any, Final
 
 import numpy as np
@@ -19,7 +20,7 @@ from xlmc.evaluation.graph.dag import Dag
 from xlmc.evaluation.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select, evaluate_node, in_own_memory
 from xlmc.evaluation.graph.readiness import order_by_need
 from xlmc.evaluation.llvm.loop import Load, compile_loop
-from xlmc.evaluation.llvm.loop_rules import LoopRule, Operand, reads
+from xlmc.evaluation.llvm.loop_rules import LoopRule, Operand
 from xlmc.evaluation.llvm.machine import Machine, NativeLoop
 from xlmc.evaluation.llvm.memory import Memory, assign_slots
 from xlmc.evaluation.llvm.shapes import cut, shape_of
@@ -130,6 +131,7 @@ class Phase:
     """Computes the nodes of `nodes`.
 
     Args:
+        needed: the nodes that one's computation needs.
         keep: the nodes whose values are wanted afterwards.
         early: the nodes that were computed before, on a wider set of trials; None where this is the first phase.
         may_err: the inputs whose draws may be errors.
@@ -144,15 +146,16 @@ class Phase:
         dag: Dag,
         machine: Machine,
         rules: Mapping[int, LoopRule],
+        needed: Callable[[int], Sequence[int]],
         nodes: Sequence[int],
         keep: Iterable[int],
         early: frozenset[int] | None,
         may_err: frozenset[str],
     ) -> None:
-        self._dag, self._machine, self._rules, self._may_err = dag, machine, rules, may_err
+        self._dag, self._machine, self._rules, self._needed, self._may_err = dag, machine, rules, needed, may_err
         self._early = early
         computed = [node for node in nodes if not isinstance(dag.nodes[node], Input)]
-        parts = _in_order(_stages(dag, computed, rules), self._read_from_outside)
+        parts = _in_order(_stages(dag, computed, rules, needed), self._read_from_outside)
         read = [self._read_from_outside(stage) for stage in parts]
         self._alone = sum(stage.loop for stage in parts) < _FEWEST
         self._compiled: dict[tuple[object, ...], NativeLoop] = {}
@@ -168,8 +171,7 @@ class Phase:
         self.outside = len(set(assign_slots(dag, list(zip(read, outside, strict=True)), kept, late=late).values()))
 
     def _read_from_outside(self, stage: _LoopStage) -> set[int]:
-        read = {used for node in stage.nodes for used in reads(self._dag, node, self._rules.get(node))}
-        return read - set(stage.nodes)
+        return set(chain.from_iterable(map(self._needed, stage.nodes))).difference(stage.nodes)
 
     def _loop(self, stage: _LoopStage, read: set[int], wanted: set[int]) -> Loop:
         rules = {node: self._rules[node] for node in stage.nodes}
@@ -243,8 +245,8 @@ class Phase:
                 if numbers is not None:
                     trials.arrays[node_id] = numbers
                     continue
-                needed = {used: trials.value(used) for used in reads(self._dag, node_id, None)}
-                trials.values[node_id] = in_own_memory(evaluate_node(node, needed), needed.values())
+                known = {used: trials.value(used) for used in self._needed(node_id)}
+                trials.values[node_id] = in_own_memory(evaluate_node(node, known), known.values())
 
 
 def _apply_ufunc(node: Apply, trials: Trials) -> Floats | None:
@@ -274,13 +276,15 @@ class _LoopStage:
     loop: bool
 
 
-def _stages(dag: Dag, nodes: Sequence[int], rules: Mapping[int, LoopRule]) -> list[_LoopStage]:
+def _stages(
+    dag: Dag, nodes: Sequence[int], rules: Mapping[int, LoopRule], needed: Callable[[int], Sequence[int]]
+) -> list[_LoopStage]:
     """The nodes of `nodes`, in order, as stages in order; those without a rule stand outside of loops."""
     levels: dict[int, int] = {}
     for node in nodes:
         in_loop = node in rules
         levels[node] = 0 if in_loop else 1  # loops stand on even levels
-        for used in reads(dag, node, rules.get(node)):
+        for used in needed(node):
             if used in levels:
                 after = levels[used] + ((used in rules) != in_loop)
                 levels[node] = max(levels[node], after)

@@ -60,8 +60,12 @@ class JitProgram:
         self.forecast_nodes = [lowering.target(target) for target in forecasts]
         rules = _rules(self.dag)
 
+        needs: dict[int, tuple[int, ...]] = {}
+
         def needed(node: int) -> tuple[int, ...]:
-            return reads(self.dag, node, rules.get(node))
+            if node not in needs:
+                needs[node] = reads(self.dag, node, rules.get(node))
+            return needs[node]
 
         # Where no filter can reject a trial, nothing needs to be picked from the survivors.
         first = self.dag.upstream(self.filter_nodes or self.forecast_nodes, needed)
@@ -69,9 +73,9 @@ class JitProgram:
         late = [node for node in self.dag.upstream(self.forecast_nodes, needed) if node not in early]
         carried = {used for node in late for used in needed(node)} | set(self.forecast_nodes)
         keep = {*self.filter_nodes, *(carried & early)}
-        self.first = Phase(self.dag, machine(), rules, _in_order(first, needed, keep), keep, None, may_err)
+        self.first = Phase(self.dag, machine(), rules, needed, _in_order(first, needed, keep), keep, None, may_err)
         wanted = set(self.forecast_nodes)
-        self.late = Phase(self.dag, machine(), rules, _in_order(late, needed, wanted), wanted, early, may_err)
+        self.late = Phase(self.dag, machine(), rules, needed, _in_order(late, needed, wanted), wanted, early, may_err)
         self.inputs = _inputs(self.dag, [*first, *late])
         self.careful_inputs = _inputs(self.dag, self.dag.upstream([*self.filter_nodes, *self.forecast_nodes]))
         self.slots = self.first.slots | self.late.slots

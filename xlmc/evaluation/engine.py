@@ -114,7 +114,7 @@ class BlockRunner(Protocol):
             start: the block's first trial.
             trials: how many count.
             inputs: whether to keep draws.
-            room: gives memory for the block's columns, which it writes to if it keeps all trials.
+            room: gives memory for the block's columns, which it writes to if it keeps all trials of a whole block.
         """
 
 

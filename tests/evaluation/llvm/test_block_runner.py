@@ -78,6 +78,36 @@ def test_a_whole_block_is_the_block(book, name, draws_given, inputs):
     assert all(bool(block.draws) is inputs for block in whole)
 
 
+@pytest.mark.parametrize("draws_given", [True, False])
+@pytest.mark.parametrize("name", MODELS)
+def test_the_first_trials_of_a_block_are_those_of_the_block(book, name, draws_given):
+    """Chunks have 2048 trials: these end at the first one, within one, at an end of one, and just behind it."""
+    model = book(CELLS, *MODELS[name])
+    runners = {whole: model_runner(model, model.program("jit"), "jit", 7, BLOCK) for whole in (True, False)}
+    runners[False]._run_whole = None
+    if draws_given:
+        runners[True]._run_whole = runners[True]._evaluator.block_runner(runners[True]._sampler.draw, None)
+    for trials in (1, 63, 2047, 2048, 2049, 4095, BLOCK):
+        for block, inputs in ((0, True), (3, False)):
+            task = Task(block * BLOCK, trials, block == 0, inputs)
+            found, expected = (runners[whole].run(task) for whole in (True, False))
+            assert bits(found) == bits(expected), (trials, block)
+            assert (found.prior is None) == (expected.prior is None) == (block > 0)
+            for key, values in (expected.prior or {}).items():
+                assert values.tobytes() == found.prior[key].tobytes(), (trials, key)
+    assert runners[True]._run_whole._careful == 0
+
+
+def test_trials_behind_those_that_count_are_not_counted(book):
+    """The last chunk has trials that the run does not: what the filters reject of them is not told."""
+    model = book(CELLS, GIVEN, {"x": "B3"}, {"f": "C1", "g": BELOW})
+    few, more = (model.simulate(trials, seed=3, engine="jit") for trials in (1_000, 100_000))
+    again = model.simulate(1_000, seed=3, engine="numpy")
+    assert few.accepted == again.accepted < more.accepted
+    assert few.tally.rejected.tolist() == again.tally.rejected.tolist()
+    assert few.trial_index.tolist() == more.trial_index[: few.accepted].tolist()
+
+
 @pytest.mark.parametrize("path", BOOKS.values(), ids=BOOKS)
 def test_examples_and_templates_in_whole_blocks(path):
     """Some of their filters wait until they are needed: until then they are always true."""
@@ -108,6 +138,14 @@ def test_where_all_trials_are_kept_they_are_written_to_the_room(book, forecasts,
         there = zip(forecasts, found.forecasts, room.forecasts, strict=False)
         assert {name for name, column, memory in there if np.shares_memory(column, memory)} == in_room
         assert np.shares_memory(found.accepted, room.accepted) is bool(in_room)
+
+
+def test_a_block_that_ends_early_asks_for_no_room(book):
+    """There may be none for the trials behind those that count."""
+    model = book(CELLS, GIVEN, {"x": "B3"}, {})
+    runner = model_runner(model, model.program("jit"), "jit", 7, BLOCK)
+    for trials in (1, 2048, BLOCK - 1):
+        assert runner.borrow(Task(0, trials, False), pytest.fail).trials == trials
 
 
 def test_correlated_draws(book):

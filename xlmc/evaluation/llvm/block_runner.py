@@ -151,7 +151,7 @@ class NativeBlockRunner:
         if inputs:
             self._words[self._gathers] += len(self._names)
         into = self._room
-        if room is not None and not self._parts.rejecting:
+        if room is not None and not self._parts.rejecting and trials == self._trials.size:
             into = room()
             for target, array in self._targets(into):
                 self._words[target] = _address_of(array)

@@ -136,6 +136,7 @@ RULES: Final = (
         "the engine jit computes EXP, LN, LOG10, LOG and powers itself, to one unit in the last bit",
         re.compile(r"\^|(?<![\w.])(?:EXP|LN|LOG|LOG10|POWER)\(", re.IGNORECASE),
     ),
+    Rule("0.6.0", "the error of the standard error of a mean may differ in its last bit", _ANY),
 )
 """In the order of versions."""
 

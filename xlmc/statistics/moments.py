@@ -144,14 +144,15 @@ def _variation(influences: Iterator[Floats], units: float) -> tuple[Floats, floa
     covariance, fourth, count = np.zeros((4, 4)), 0.0, 0
     for pulls in influences:
         covariance += np.einsum("iu,ju->ij", pulls, pulls)  # not a matrix product: threads must not change the last bit
-        fourth += float(np.sum(pulls[0] ** 4))
+        square = pulls[0] * pulls[0]
+        fourth += float(np.sum(square * square))
         count += pulls.shape[1]
     if units <= 1.0:
         return np.zeros((4, 4)), np.nan
-    square = float(covariance[0, 0])
-    if square == 0.0:
+    variance = float(covariance[0, 0])
+    if variance == 0.0:
         return covariance, 0.0
     # The mean's squared error is a sum of one square per unit: the spread of the squares, and, for few units, that of
     # the mean they are taken about.
-    spread = (fourth / (square * square) - 1.0 / count) * units / (units - 1.0) + 2.0 / (units * (units - 1.0))
+    spread = (fourth / (variance * variance) - 1.0 / count) * units / (units - 1.0) + 2.0 / (units * (units - 1.0))
     return covariance * (units / (units - 1.0)), 0.5 * max(spread, 0.0) ** 0.5

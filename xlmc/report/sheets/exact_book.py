@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import io
 from array import array
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any
 
 from xlsxwriter import Workbook
@@ -64,6 +65,7 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
         super().__init__()
         self._letters: dict[int, str] = {}
         self._runs: list[_Run] = []
+        self._in_column: defaultdict[int, list[_Run]] = defaultdict(list)
         self._openings: dict[tuple[Any, ...], str] = {}
 
     def write_numbers(self, row: int, column: int, values: Sequence[float], style: Format) -> None:
@@ -79,6 +81,7 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
         for at in [at for at in self.table if row <= at < run.end]:  # cells win over runs: these were there before
             self.table[at].pop(column, None)
         self._runs.append(run)
+        self._in_column[column].append(run)
 
     def _bands(self) -> list[_Band]:
         """The rows of runs, cut where one begins or ends; where runs overlap, the later one counts."""
@@ -154,11 +157,10 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
     def _with_runs(self, top: int, left: int, bottom: int, right: int) -> dict[int, dict[int, Any]]:
         """The cells of these rows by row and column, those of runs only in these columns."""
         found: dict[int, dict[int, Any]] = {}
-        for run in self._runs:
-            if left <= run.column <= right:
-                start, end = max(top, run.row), min(bottom + 1, run.end)
-                for row, number in enumerate(run.cells(start, end) if start < end else (), start):
-                    found.setdefault(row, {})[run.column] = CellNumberTuple(number, run.style)
+        for run in chain.from_iterable(self._in_column.get(column, ()) for column in range(left, right + 1)):
+            start, end = max(top, run.row), min(bottom + 1, run.end)
+            for row, number in enumerate(run.cells(start, end) if start < end else (), start):
+                found.setdefault(row, {})[run.column] = CellNumberTuple(number, run.style)
         for row in range(top, bottom + 1):
             if row in self.table:
                 found[row] = found.get(row, {}) | self.table[row]

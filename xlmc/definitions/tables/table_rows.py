@@ -22,6 +22,7 @@ KINDS = (
     "xlmc_checks",
     "xlmc_correlations",
     "xlmc_settings",
+    "xlmc_case",
 )
 """What the names of the tables start with; a copied sheet's `xlmc_assumptions3` counts too."""
 

@@ -9,7 +9,7 @@ from xlmc.definitions.definitions import Definitions, Settings, name_key
 from xlmc.definitions.in_cells.calls import InCells, in_cell_correlations, in_cell_forecasts, read_in_cells
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.assumptions import read_assumptions
-from xlmc.definitions.tables.case import read_case
+from xlmc.definitions.tables.case_details import read_case
 from xlmc.definitions.tables.correlations import read_correlations
 from xlmc.definitions.tables.filters import read_checks, read_filters
 from xlmc.definitions.tables.forecasts import read_forecasts

@@ -17,8 +17,8 @@ import xlmc
 from xlmc.definitions.definitions import CaseDetails
 from xlmc.errors import DefinitionError, SimulationError, WorkbookError
 from xlmc.report.document import SECTIONS
-from xlmc.report.document.describe import describe
 from xlmc.report.document.parts import Bullets, Heading, Paragraph, Picture, Table
+from xlmc.report.document.report_sections import describe
 from xlmc.report.json_document import document as json_of
 
 for library in ("docx", "pikepdf", "pypdf", "typst"):

@@ -1,6 +1,6 @@
 """The report to hand over: a few pages that another expert can repeat, as PDF and for a word processor.
 
-`describe` says once what the document holds; `typeset` and `word` write it, so that the two cannot disagree.
+`report_sections` says once what the document holds; `typeset` and `word` write it, so that the two cannot disagree.
 """
 
 from xlmc.report.document.hand_over import (

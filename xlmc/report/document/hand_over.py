@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.definitions.definitions import CaseDetails, name_key
 from xlmc.errors import SimulationError, WorkbookError
-from xlmc.report.document.describe import SECTIONS, describe
 from xlmc.report.document.parts import Document
+from xlmc.report.document.report_sections import SECTIONS, describe
 from xlmc.report.document.typeset import pdf_bytes
 from xlmc.report.document.word import docx_bytes
 from xlmc.workbook.target import Target

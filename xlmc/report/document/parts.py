@@ -54,6 +54,9 @@ class Picture:
     width: float = 1.0
 
 
+_PADDING = 3.0
+"""What stands beside a column's text, in characters."""
+
 _WORD = 16
 """Characters of a word for which a column is made wider."""
 
@@ -86,7 +89,8 @@ class Table:
         longest = max(len(line) for text in words for line in text.split("\n"))
         most = max((len(word) for text in words for word in text.split()), default=1)
         # Numbers stay whole; texts wrap, the longer the more.
-        return float(max(longest if at in self.numbers else min(longest, 10.0 + longest**0.75), min(most, _WORD), 5))
+        wide = longest if at in self.numbers else min(longest, 10.0 + longest**0.75)
+        return _PADDING + max(wide, min(most, _WORD))
 
 
 Block = Heading | Paragraph | Bullets | Table | Picture

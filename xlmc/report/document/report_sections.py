@@ -38,7 +38,11 @@ if TYPE_CHECKING:
 
 __all__ = ["SECTIONS", "describe"]
 
-_BARS: Final = 8
+_FEW: Final = 4
+"""Forecasts that have large figures: three of the smaller ones fit on a page."""
+
+_NARROW: Final = 0.72
+_BARS, _BARS_OF_MANY = 8, 4
 _LONGEST_EQUATION: Final = 400
 
 _WORDS: Final = (
@@ -169,9 +173,10 @@ def _figures(run: _Run) -> Iterator[Block]:
     figures = [figure for figure in figures_of(run.simulation) if run.reports(figure.answer.name)]
     if figures:
         yield Heading("Forecasts")
+    width = 1.0 if len(figures) <= _FEW else _NARROW
     for figure in figures:
         words = f"Histogram of {figure.answer.name} with the cumulative share of the accepted trials."
-        yield Picture(forecast_picture(figure), words, figure.caption)
+        yield Picture(forecast_picture(figure), words, figure.caption, width)
 
 
 def _filters(run: _Run) -> Iterator[Block]:
@@ -207,7 +212,7 @@ def _assumptions(run: _Run) -> Iterator[Block]:
         )
         rows.append((f"{assumption.name}{units}", about, _marginal(found.prior), _marginal(found.accepted), picture))
     heads = ("Assumption", "Distribution and source", "Before filtering", "Accepted", "Before and accepted")
-    yield Table(heads, tuple(rows), frozenset((2, 3)), (20, 34, 16, 16, 18))
+    yield Table(heads, tuple(rows), frozenset((2, 3)), (20, 33, 18, 18, 17))
 
 
 def _marginal(found: Marginal) -> str:
@@ -220,16 +225,20 @@ def _sensitivity(run: _Run) -> Iterator[Block]:
     if not drawn:
         return
     yield Heading("What the answers depend on")
+    few = len(drawn) <= _FEW
+    most = _BARS if few else _BARS_OF_MANY
     for each in drawn:
         weak = noise(each)
         shares = [
             _share(influence.assumption, influence.explained.value, influence.explained.error, is_weak.explained)
-            for influence, is_weak in zip(each.influences[:_BARS], weak[:_BARS], strict=True)
+            for influence, is_weak in zip(each.influences[:most], weak[:most], strict=True)
         ]
         title = f"{each.forecast}: variance explained"
         picture = bar_picture(shares, "", "Share of the variance, %")
         first = "; ".join(f"{bar.name} {bar.pieces[0][1]:.0f} %" for bar in shares[:3])
-        yield Picture(picture, f"{title}: {first}.", f"{title} by the assumptions that explain most of it.", 0.72)
+        yield Picture(
+            picture, f"{title}: {first}.", f"{title} by the assumptions that explain most of it.", 0.72 if few else 0.6
+        )
     yield Paragraph(influence_captions(drawn[0], found.sobol_trials)[0], look="small")
     for sentence in sensitivity_sentences(found):
         yield Paragraph(sentence, look="small")

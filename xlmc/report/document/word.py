@@ -20,6 +20,7 @@ _PAPERS: Final = {"letter": (612.0, 792.0), "a4": (595.3, 841.9)}
 """Width and height in points."""
 
 _MARGIN: Final = 56.7
+_FONT: Final = "Times New Roman"
 _TEXT, _SMALL, _IN_TABLES = 10.5, 9.0, 8.5
 _BLUE, _GREY, _RED = "173F5F", "555555", "9C1C1C"
 _EARLIEST: Final = (1980, 1, 1, 0, 0, 0)
@@ -71,10 +72,10 @@ class _Writer:
         section.page_width, section.page_height = (Pt(points) for points in _PAPERS[document.paper])
         for side in ("left_margin", "right_margin", "top_margin", "bottom_margin"):
             setattr(section, side, Pt(_MARGIN))
-        file.styles["Normal"].font.name, file.styles["Normal"].font.size = "Cambria", Pt(_TEXT)
+        file.styles["Normal"].font.name, file.styles["Normal"].font.size = _FONT, Pt(_TEXT)
         for name, size in (("Title", 22), ("Heading 1", 15), ("Heading 2", 11.5)):
             style = file.styles[name]
-            style.font.name, style.font.size = "Cambria", Pt(size)
+            style.font.name, style.font.size = _FONT, Pt(size)
             style.font.color.rgb = RGBColor.from_string(_BLUE)
         self._run(section.header.paragraphs[0], document.running, size=8.5, colour=_GREY)
         foot = section.footer.paragraphs[0]
@@ -128,9 +129,11 @@ class _Writer:
 
         lines: list[tuple[str | Picture, ...]] = [*([table.heads] if heads else []), *table.rows]
         found = self._file.add_table(rows=len(lines), cols=len(table.heads))
-        found.style = "Light List Accent 1" if heads else "Normal Table"
+        found.style = "Table Grid" if heads else "Normal Table"
         found.autofit = False
         widths = [self._width * share for share in table.widths]
+        for at, width in enumerate(widths):
+            found.columns[at].width = Pt(width)
         for number, (row, line) in enumerate(zip(found.rows, lines, strict=True)):
             _keep_whole(row, header=heads and number == 0)
             for column, (cell, value) in enumerate(zip(row.cells, line, strict=True)):
@@ -138,7 +141,7 @@ class _Writer:
                 at = cell.paragraphs[0]
                 at.paragraph_format.space_after = Pt(0)
                 if isinstance(value, Picture):
-                    self._picture(at, value, widths[column] - 12)
+                    self._picture(at, value, widths[column] - 16)
                     continue
                 run = self._run(at, value, size=_IN_TABLES)
                 run.bold = heads and number == 0

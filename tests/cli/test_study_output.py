@@ -48,6 +48,23 @@ def test_sheet_and_page_say_what_the_terminal_says(xlmc, command, tmp_path):
     assert again.code == 0, again.err
 
 
+def test_documents_say_what_the_terminal_says(xlmc, command, tmp_path):
+    pypdf, docx = pytest.importorskip("pypdf"), pytest.importorskip("docx")
+    pytest.importorskip("typst")
+    outcome = xlmc(*command, "--pdf", tmp_path / "found.pdf", "--docx", tmp_path / "found.docx")
+    assert outcome.code == 0, outcome.err
+    assert outcome.out.count("Written: ") == 2
+    said = "".join(SAYS[command[0]].split())
+    pdf = "".join(page.extract_text() for page in pypdf.PdfReader(tmp_path / "found.pdf").pages)
+    assert said in "".join(pdf.split())
+    written = docx.Document(str(tmp_path / "found.docx"))
+    cells = [cell.text for table in written.tables for row in table.rows for cell in row.cells]
+    assert said in "".join("".join([*cells, *(each.text for each in written.paragraphs)]).split())
+    again = xlmc(*command, "--pdf", tmp_path / "found.pdf")  # a document bears no mark of who wrote it
+    assert again.code == 2
+    assert "the file exists already" in again.err
+
+
 def test_what_cannot_be_written_is_refused_before_anything_is_run(xlmc, command, book, tmp_path):
     before = book.read_bytes()
     for given, said in (
@@ -55,6 +72,8 @@ def test_what_cannot_be_written_is_refused_before_anything_is_run(xlmc, command,
         (["-o", tmp_path / "found.html"], "must end in .xlsx"),
         (["--html", tmp_path / "found.xlsx"], "must end in .html"),
         (["--html", tmp_path / "nowhere" / "found.html"], "nowhere"),
+        (["--pdf", tmp_path / "found.docx"], "must end in .pdf"),
+        (["--docx", tmp_path / "found.doc"], "must end in .docx"),
         (["-o", tmp_path / "both.html", "--html", tmp_path / "both.html"], "two outputs would be written to this file"),
     ):
         outcome = xlmc(*command, *given)

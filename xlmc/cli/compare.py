@@ -60,6 +60,8 @@ def compare(
     no_causes: bool,
     output: Path | None,
     html: Path | None,
+    pdf: Path | None,
+    docx: Path | None,
     overwrite: bool,
     as_json: bool,
     quiet: bool,
@@ -73,7 +75,7 @@ def compare(
     from xlmc.studies.comparison.verdicts import book_names
 
     books = load(first), load(second)
-    files = Files(output, html, [first, second], overwrite=overwrite)
+    files = Files(output, html, pdf, docx, [first, second], overwrite=overwrite)
     files.check()
     with step_line(quiet) as told:
         found = comparison.compare(

@@ -68,6 +68,8 @@ def screen(
     jobs: int,
     output: Path | None,
     html: Path | None,
+    pdf: Path | None,
+    docx: Path | None,
     overwrite: bool,
     as_json: bool,
     quiet: bool,
@@ -82,7 +84,7 @@ def screen(
     from xlmc.studies import screening
 
     model = load(book)
-    files = Files(output, html, [book], overwrite=overwrite)
+    files = Files(output, html, pdf, docx, [book], overwrite=overwrite)
     files.check()
     with step_line(quiet) as told:
         found = screening.screen(

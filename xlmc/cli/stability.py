@@ -38,6 +38,8 @@ def stability(
     jobs: int,
     output: Path | None,
     html: Path | None,
+    pdf: Path | None,
+    docx: Path | None,
     overwrite: bool,
     as_json: bool,
     quiet: bool,
@@ -50,7 +52,7 @@ def stability(
     from xlmc.studies import stability as room
 
     model = load(book)
-    files = Files(output, html, [book], overwrite=overwrite)
+    files = Files(output, html, pdf, docx, [book], overwrite=overwrite)
     files.check()
     with step_line(quiet) as told:
         found = room.stability(model, trials=trials, seed=seed, jobs=jobs, told=told)

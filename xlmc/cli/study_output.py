@@ -23,9 +23,11 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 def study_options(command: Command) -> Command:
-    """Add the three options."""
+    """Add the options."""
     path = click.Path(path_type=Path)
     command = click.option("--overwrite", is_flag=True, help="Replace existing files, whoever wrote them.")(command)
+    command = click.option("--docx", type=path, help="Also write it for a word processor, .docx.")(command)
+    command = click.option("--pdf", type=path, help="Also write the result as a document, .pdf.")(command)
     command = click.option("--html", type=path, help="Also write the result as a page, .html.")(command)
     return click.option("-o", "--output", type=path, help="Also write the result as a sheet, .xlsx.")(command)
 

@@ -1,6 +1,6 @@
 """What `xlmc compare`, `screen` or `stability` found, as paragraphs and tables of texts.
 
-The terminal, a page and a sheet show the same content.
+The terminal, a page, a sheet and a document show the same content.
 """
 
 from __future__ import annotations
@@ -22,6 +22,8 @@ from xlmc.workbook.writer import package_bytes, write_workbook
 __all__ = ["Block", "Files", "StudyReport", "Table"]
 
 _WIDTHS: Final = (44.0, *[17.0] * 7)
+
+_DOCUMENTS: Final = (".pdf", ".docx")
 
 _LAST: Final = 5
 """The column to which paragraphs reach."""
@@ -63,17 +65,29 @@ class StudyReport:
 
 
 class Files:
-    """The workbook and the page that a report is written to; either may be None.
+    """The files that a report is written to; any may be None.
 
     Args:
         output: the workbook, which must end in .xlsx.
         html: the page, which must end in .html.
+        pdf: the document, which must end in .pdf.
+        docx: the same for a word processor, which must end in .docx.
         sources: the workbooks that were studied, which are never written to.
         overwrite: replace files that are not ours, too.
     """
 
-    def __init__(self, output: Path | None, html: Path | None, sources: Sequence[Path], *, overwrite: bool) -> None:
-        self._endings = [(path, ending) for path, ending in ((output, ".xlsx"), (html, ".html")) if path is not None]
+    def __init__(
+        self,
+        output: Path | None,
+        html: Path | None,
+        pdf: Path | None,
+        docx: Path | None,
+        sources: Sequence[Path],
+        *,
+        overwrite: bool,
+    ) -> None:
+        asked = ((output, ".xlsx"), (html, ".html"), (pdf, ".pdf"), (docx, ".docx"))
+        self._endings = [(path, ending) for path, ending in asked if path is not None]
         self._sources, self._overwrite = sources, overwrite
 
     def check(self) -> None:
@@ -83,16 +97,21 @@ class Files:
             TakenError: a file is not ours to replace, or a program has it open.
             WorkbookError: a file has the wrong ending, its folder is not there, it is a workbook that is studied, or it
                 is named twice.
+            SimulationError: a library is missing.
         """
         refuse_same_file([path for path, _ in self._endings])
         for path, ending in self._endings:
             if path.suffix.casefold() != ending:
-                kind = "the sheet" if ending == ".xlsx" else "the page"
+                kind = {".xlsx": "the sheet", ".html": "the page"}.get(ending, "the document")
                 raise WorkbookError(
                     f"{kind} must end in {ending}", where=path, hint=f"Name a file that ends in {ending}"
                 )
             if any(is_same_file(path, source) for source in self._sources):
                 raise WorkbookError("this is the workbook itself", where=path, hint="Name another file")
+            if ending in _DOCUMENTS:
+                from xlmc.report.document import check_document_path
+
+                check_document_path(path)
             self._target(path).check()
 
     def _target(self, path: Path) -> Target:
@@ -107,12 +126,29 @@ class Files:
         """
         name = self._sources[0].name
         for path, ending in self._endings:
-            if ending == ".html":
+            if ending in _DOCUMENTS:
+                content = _document(report, ending)
+            elif ending == ".html":
                 content = sealed_text(_page(report).encode(), ending, name)
             else:
                 content = package_bytes(sealed_parts(_book(report, sheet), "xl/worksheets/sheet1.xml", name))
             write_workbook(path, content, self._target(path).check)
         return [path for path, _ in self._endings]
+
+
+def _document(report: StudyReport, ending: str) -> bytes:
+    """The report as a document."""
+    from xlmc.report.document import document_bytes, parts, today
+
+    blocks: list[parts.Block] = [parts.Paragraph(report.below)]
+    for each in report.blocks:
+        if isinstance(each, Table):
+            blocks.append(parts.Heading(each.title))
+            blocks.append(parts.Table(each.headings, each.rows, frozenset(each.right)))
+        else:
+            blocks.append(parts.Paragraph(each))
+    document = parts.Document(report.title, (), report.title, "", today(), "letter", tuple(blocks))
+    return document_bytes(document, ending)
 
 
 def _page(report: StudyReport) -> str:

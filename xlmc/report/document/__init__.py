@@ -9,7 +9,18 @@ from xlmc.report.document.hand_over import (
     Choice,
     case_details,
     check_document_path,
+    document_bytes,
     save_document,
+    today,
 )
 
-__all__ = ["PAPERS", "SECTIONS", "Choice", "case_details", "check_document_path", "save_document"]
+__all__ = [
+    "PAPERS",
+    "SECTIONS",
+    "Choice",
+    "case_details",
+    "check_document_path",
+    "document_bytes",
+    "save_document",
+    "today",
+]

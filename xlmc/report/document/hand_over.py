@@ -21,7 +21,16 @@ from xlmc.workbook.writer import check_folder, write_workbook
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
 
-__all__ = ["PAPERS", "SECTIONS", "Choice", "case_details", "check_document_path", "save_document"]
+__all__ = [
+    "PAPERS",
+    "SECTIONS",
+    "Choice",
+    "case_details",
+    "check_document_path",
+    "document_bytes",
+    "save_document",
+    "today",
+]
 
 PAPERS: Final = ("letter", "a4")
 
@@ -116,15 +125,24 @@ def save_document(
     document = describe(
         simulation,
         case,
-        date=_day(case.date) if case.date else _today(),
+        date=_day(case.date) if case.date else today(),
         paper=choice.paper,
         sections=choice.sections or tuple(SECTIONS),
         forecasts=choice.names(simulation),
         command=command,
     )
-    write, _ = _WRITERS[path.suffix.casefold()]
-    write_workbook(path, write(document), target.check)
+    write_workbook(path, document_bytes(document, path.suffix), target.check)
     return path
+
+
+def document_bytes(document: Document, ending: str) -> bytes:
+    """A document as a file with that ending.
+
+    Raises:
+        SimulationError: a library is missing.
+    """
+    write, _ = _WRITERS[ending.casefold()]
+    return write(document)
 
 
 def check_document_path(path: Path) -> None:
@@ -170,6 +188,7 @@ def _day(text: str) -> tuple[int, int, int]:
     return found.year, found.month, found.day
 
 
-def _today() -> tuple[int, int, int]:
-    today = date.today()
-    return today.year, today.month, today.day
+def today() -> tuple[int, int, int]:
+    """The day on which a document is written: year, month, day."""
+    now = date.today()
+    return now.year, now.month, now.day

@@ -247,6 +247,21 @@ def test_names_in_a_workbook_are_no_markup(changed, tmp_path):
         assert text.count(shown) >= 6, ending
 
 
+def test_a_character_that_no_font_has_is_named(run, tmp_path):
+    """One of Unihan's latest: Typst would have to leave a hole, which PDF/A does not allow."""
+    with pytest.raises(SimulationError, match=r"no font of this system has .\U0003134a") as caught:
+        run.save_report(tmp_path / "report.pdf", case={"title": "Case \U0003134a"}, sections=["repeat"])
+    assert "Install a font" in caught.value.hint
+    assert run.save_report(tmp_path / "report.docx", case={"title": "Case \U0003134a"}, sections=["repeat"]).exists()
+
+
+def test_what_no_file_can_hold_is_left_out(run, tmp_path):
+    case = {"title": "A\ud83dB\x00C" + "x" * 400, "analyst": "\ud83d"}
+    for ending, text_of in (("pdf", lambda path: "".join(pdf_pages(path))), ("docx", docx_text)):
+        text = squeezed(text_of(run.save_report(tmp_path / f"r.{ending}", case=case, sections=["repeat"])))
+        assert "ABCxxx" in text, ending
+
+
 @pytest.mark.parametrize("limit", [None, -1.0], ids=["no filters", "nothing accepted"])
 def test_runs_of_which_there_is_little_to_say(changed, tmp_path, limit):
     def change(book):

@@ -5,6 +5,7 @@ Every text goes to Typst as a string, so nothing in a workbook is markup.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import Any, Final
 
@@ -17,6 +18,11 @@ _PAPERS: Final = {"letter": "us-letter", "a4": "a4"}
 _STANDARDS: Final = ("a-2a", "ua-1")
 _DOTS: Final = 220.0
 """Of a picture, in an inch."""
+
+_FIRST_OF_OTHERS: Final = "\u2e80"
+"""Typst's own fonts have the characters of Europe and of the Near East; from here on the system's are used, too."""
+
+_LACKING: Final = re.compile("the text `(.*?)` could not be displayed")
 
 _BEGIN: Final = """
 #set text(font: "Libertinus Serif", size: 10.5pt, lang: "en", hyphenate: false)
@@ -64,10 +70,16 @@ def _compile(source: str, **options: Any) -> Any:
         import typst
     except ImportError:
         raise SimulationError("reports need Typst", hint="Install it: pip install 'xlmc[report]'") from None
+    own_fonts = max(source, default="") < _FIRST_OF_OTHERS
     try:
-        return typst.compile(source.encode(), ignore_system_fonts=True, **options)
+        return typst.compile(source.encode(), ignore_system_fonts=own_fonts, **options)
     except typst.TypstError as error:
-        raise SimulationError(f"Typst cannot write the report: {error}", hint="Please report this") from error
+        lacking = _LACKING.search(str(error))
+        if lacking is None:
+            raise SimulationError(f"Typst cannot write the report: {error}", hint="Please report this") from error
+        message = f"no font of this system has {lacking[1]}, which is in the report"
+        hint = "Install a font that has it (of Noto, such as fonts-noto-cjk), or write a .docx"
+        raise SimulationError(message, hint=hint) from error
 
 
 def _source(document: Document) -> Iterable[str]:

@@ -23,6 +23,9 @@ _MARGIN: Final = 56.7
 _FONT: Final = "Times New Roman"
 _TEXT, _SMALL, _IN_TABLES = 10.5, 9.0, 8.5
 _BLUE, _GREY, _RED = "173F5F", "555555", "9C1C1C"
+_LONGEST: Final = 255
+"""Characters of a title or an author, the format's limit."""
+
 _EARLIEST: Final = (1980, 1, 1, 0, 0, 0)
 
 
@@ -55,7 +58,7 @@ class _Writer:
         from docx.shared import Pt
 
         self._set_up()
-        self._file.add_heading(self._document.title, 0)
+        self._file.add_heading(_plain(self._document.title), 0)
         cover = Table(("", ""), self._document.cover, weights=(26, 74))
         self._table(cover, heads=False)
         for block in self._document.blocks:
@@ -85,7 +88,8 @@ class _Writer:
             if part.isupper():
                 _add_field(run, part)
         about = file.core_properties
-        about.title, about.author, about.comments, about.last_modified_by = document.title, document.author, "", ""
+        about.title, about.author = _plain(document.title)[:_LONGEST], _plain(document.author)[:_LONGEST]
+        about.comments = about.last_modified_by = ""
         about.created = about.modified = datetime(*document.date, tzinfo=UTC).replace(tzinfo=None)
         about.language = "en"
 

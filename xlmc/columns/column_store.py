@@ -263,6 +263,9 @@ IN_MEMORY: Final = 1 << 29
 WRITTEN: Final = 1 << 24
 """Bytes that are gathered before they are written: large writes cost least."""
 
+_OF_A_COLUMN: Final = 1 << 18
+"""The same of a column, where there are so many that each would be opened for little."""
+
 Array = NDArray[Any]
 
 
@@ -335,7 +338,7 @@ class ColumnStore:
     def _likely_room(self, key: Hashable) -> int:
         """How many numbers a column will have, or have when all columns are written, if they grow together."""
         expected = self._expected.get(key, 0)
-        most = IN_MEMORY if self._folder is None else WRITTEN
+        most = self._most
         return expected if self._together <= most else int(expected * most / self._together)
 
     def _added(self, key: Hashable) -> Array:
@@ -348,8 +351,15 @@ class ColumnStore:
         Raises:
             SimulationError: there is no room on the disk.
         """
-        if self._bytes > (IN_MEMORY if self._folder is None else WRITTEN):
+        if self._bytes > self._most:
             self._write()
+
+    @property
+    def _most(self) -> int:
+        """Bytes that are gathered before they are written."""
+        if self._folder is None:
+            return IN_MEMORY
+        return max(WRITTEN, min(IN_MEMORY // 2, _OF_A_COLUMN * len(self._types)))
 
     def _write(self) -> None:
         before, self._folder = self._folder, self._folder or Folder()

@@ -36,6 +36,9 @@ _FEW_BETWEEN_LOOPS: Final = 64
 _LARGEST_BLOCK: Final = 1 << 20
 _SMALLEST_BLOCK: Final = 1 << 10
 
+_MOST_IN_COLUMNS: Final = 1 << 26
+"""The most bytes of a block's draws and forecasts."""
+
 
 class JitProgram:
     """The graph of nodes, compiled for this machine.
@@ -45,7 +48,7 @@ class JitProgram:
 
     Attributes:
         largest_block: the largest block, a power of two, whose arrays take no more than 256 MB; 32 MB where functions
-            outside of loops pass over them.
+            outside of loops pass over them. It is smaller where there are hundreds of assumptions and forecasts.
     """
 
     def __init__(
@@ -83,6 +86,9 @@ class JitProgram:
         self.largest_block = _LARGEST_BLOCK
         memory = _MOST_MEMORY if self.first.loops is not None and self.late.loops is not None else _MOST_IN_CACHES
         while self.largest_block > _SMALLEST_BLOCK and self.largest_block * 8 * arrays > memory:
+            self.largest_block //= 2
+        columns = len(self.inputs) + len(self.forecast_nodes)
+        while self.largest_block > _SMALLEST_BLOCK and self.largest_block * 8 * columns > _MOST_IN_COLUMNS:
             self.largest_block //= 2
         in_arrays = array_bytes(lowering, self.filter_nodes, self.forecast_nodes, needed)
         self.largest_block = fitting_block(self.largest_block, in_arrays, 8 * arrays)

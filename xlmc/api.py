@@ -5,7 +5,7 @@ What a model and a run *are* is in `xlmc.run`; the methods here call the rooms t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -90,37 +90,6 @@ class Simulation(simulation.Simulation):
         from xlmc.report.json_document import save_json
 
         return save_json(self, Path(path), overwrite=overwrite)
-
-    def save_report(
-        self,
-        path: str | Path,
-        *,
-        sections: Sequence[str] = (),
-        forecasts: Sequence[str] = (),
-        paper: str = "letter",
-        case: Mapping[str, str] | None = None,
-        overwrite: bool = False,
-    ) -> Path:
-        """Write the report to hand over, as PDF or for a word processor; docs/report.md says what it holds.
-
-        Args:
-            path: where to; it ends in `.pdf` or `.docx`.
-            sections: which ones, such as `answer`; all by default.
-            forecasts: the names of those that it is about; all by default.
-            paper: `letter` or `a4`.
-            case: what the cover says: `title`, `number`, `analyst`, `organisation`, `date` (`YYYY-MM-DD`); what is left
-                out is taken from the workbook's table `xlmc_case`.
-            overwrite: replace a file that is there.
-
-        Raises:
-            WorkbookError: the file has another ending, is there already, or cannot be written.
-            SimulationError: Typst or python-docx is not installed, or there is no such section, forecast, paper or
-                field.
-        """
-        from xlmc.report.document import Choice, case_details, save_document
-
-        choice = Choice(tuple(sections), tuple(forecasts), paper, case_details(case or {}))
-        return save_document(self, Path(path), choice, overwrite=overwrite)
 
     def plot(self) -> Figure:
         """A matplotlib figure: every forecast's histogram and cumulative share, with the central range shaded.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
 
@@ -15,7 +14,6 @@ from xlmc.errors import WorkbookError, XlmcError
 
 if TYPE_CHECKING:
     from xlmc.api import Simulation
-    from xlmc.report.document import Choice
 
 __all__ = ["NOT_WRITTEN", "Outputs", "output_options", "results_beside"]
 
@@ -26,8 +24,6 @@ F = TypeVar("F", bound=Callable[..., Any])
 _PATH = click.Path(readable=False, path_type=Path)  # a file that may not be read is refused later, with a hint
 _OPTIONS = (
     click.option("--html", type=_PATH, metavar="PAGE.html", help="Write the results as one web page."),
-    click.option("--pdf", type=_PATH, metavar="REPORT.pdf", help="Write the report to hand over."),
-    click.option("--docx", type=_PATH, metavar="REPORT.docx", help="Write it for a word processor."),
     click.option("--json", "json_path", type=_PATH, metavar="FILE.json", help="Write all results as JSON."),
     click.option(
         "--extract",
@@ -46,7 +42,7 @@ _OPTIONS = (
 
 
 def output_options(command: F) -> F:
-    """Add the options; the command is given `html`, `pdf`, `docx`, `json_path`, `extract` and `overwrite`."""
+    """Add the options; the command is given `html`, `json_path`, `extract` and `overwrite`."""
     for option in reversed(_OPTIONS):
         command = option(command)
     return command
@@ -61,13 +57,11 @@ class Outputs(NamedTuple):
         book: the result workbook.
         run: a saved run.
         html: a page for a browser.
-        pdf, docx: the report to hand over.
         json: all results.
         extract: the accepted trials.
         overwrite: replace files that are not ours too.
         in_place: the result workbook is the workbook itself.
         named: the person gave the result workbook its name; another one is numbered on where it is taken.
-        choice: what the report holds; None for all of it.
     """
 
     source: Path
@@ -75,14 +69,11 @@ class Outputs(NamedTuple):
     book: Path | None = None
     run: Path | None = None
     html: Path | None = None
-    pdf: Path | None = None
-    docx: Path | None = None
     json: Path | None = None
     extract: tuple[Path, ...] = ()
     overwrite: bool = False
     in_place: bool = False
     named: bool = True
-    choice: Choice | None = None
 
     def check(self, like: Path) -> Outputs:
         """The files as they will be written; a file that could not be written after the run is refused before it.
@@ -110,13 +101,7 @@ class Outputs(NamedTuple):
     @property
     def _others(self) -> list[Path]:
         """All but the result workbook."""
-        return [
-            path for path in (self.run, self.html, self.pdf, self.docx, self.json, *self.extract) if path is not None
-        ]
-
-    @property
-    def _reports(self) -> list[Path]:
-        return [path for path in (self.pdf, self.docx) if path is not None]
+        return [path for path in (self.run, self.html, self.json, *self.extract) if path is not None]
 
     def _check_endings(self, like: Path) -> None:
         for path in (self.book, *self._others):
@@ -134,10 +119,6 @@ class Outputs(NamedTuple):
             from xlmc.report.page import check_page_path
 
             check_page_path(self.html)
-        for path in self._reports:
-            from xlmc.report.document import check_document_path
-
-            check_document_path(path)
         if self.json is not None:
             from xlmc.report.json_document import check_json_path
 
@@ -217,10 +198,6 @@ class Outputs(NamedTuple):
             yield self.run, "The run is saved in", run.keep
         if self.html is not None:
             yield self.html, "The page is", run.save_page
-        for path in self._reports:
-            from xlmc.report.document import save_document
-
-            yield path, "The report is", partial(save_document, run, choice=self.choice)
         if self.json is not None:
             yield self.json, "Results as JSON are in", run.save_json
         for path in self.extract:

@@ -69,8 +69,6 @@ def simulate(
     in_place: bool,
     save_run: Path | None,
     html: Path | None,
-    pdf: Path | None,
-    docx: Path | None,
     json_path: Path | None,
     extract: tuple[Path, ...],
     overwrite: bool,
@@ -89,9 +87,7 @@ def simulate(
         load(book)  # says so
     target = book if in_place else output or results_beside(book)
     asked = Outputs(
-        *(book, book.name, target, save_run, html, pdf, docx, json_path, extract, overwrite),
-        in_place=in_place,
-        named=output is not None,
+        book, book.name, target, save_run, html, json_path, extract, overwrite, in_place, output is not None
     )
     outputs = asked.check(book) if os.path.exists(book) else asked  # `load` says that there is no book
     model = load(book)

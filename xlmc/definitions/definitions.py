@@ -16,7 +16,6 @@ from xlmc.sampling.draws import Draw
 __all__ = [
     "CUTOFFS",
     "Assumption",
-    "CaseDetails",
     "Check",
     "Correlation",
     "DataRange",
@@ -195,25 +194,6 @@ class Settings:
 
 
 @dataclass(frozen=True, slots=True)
-class CaseDetails:
-    """What a report says of the case; no number depends on it.
-
-    Attributes:
-        title: of the report.
-        number: of the case.
-        analyst: who made it.
-        organisation: where.
-        date: of the report, `YYYY-MM-DD`.
-    """
-
-    title: str = ""
-    number: str = ""
-    analyst: str = ""
-    organisation: str = ""
-    date: str = ""
-
-
-@dataclass(frozen=True, slots=True)
 class Definitions:
     """Everything that a workbook asks of a run.
 
@@ -234,4 +214,3 @@ class Definitions:
     results: tuple[Cell, ...] = ()
     unavailable: Mapping[Cell, str] = field(default_factory=dict)
     checks: tuple[Check, ...] = ()
-    case: CaseDetails = CaseDetails()

@@ -9,7 +9,6 @@ from xlmc.definitions.definitions import Definitions, Settings, name_key
 from xlmc.definitions.in_cells.calls import InCells, in_cell_correlations, in_cell_forecasts, read_in_cells
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.assumptions import read_assumptions
-from xlmc.definitions.tables.case_details import read_case
 from xlmc.definitions.tables.correlations import read_correlations
 from xlmc.definitions.tables.filters import read_checks, read_filters
 from xlmc.definitions.tables.forecasts import read_forecasts
@@ -47,7 +46,6 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
     assumptions = read_assumptions(workbook, tables["xlmc_assumptions"], computed, uncertain, findings)
     forecasts = read_forecasts(workbook, tables["xlmc_forecasts"], computed, central, answers, findings)
     filters = read_filters(workbook, tables["xlmc_filters"], computed, tests, findings)
-    case = read_case(workbook, tables["xlmc_case"], findings)
     checks = read_checks(workbook, tables["xlmc_checks"], computed, Claims("check"), findings)
     calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings)
     _remark_on_stored_assumptions(workbook, findings)
@@ -86,7 +84,6 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
         results=tuple(calls.results),
         unavailable=unavailable,
         checks=checks,
-        case=case,
     )
 
 

@@ -22,7 +22,6 @@ KINDS = (
     "xlmc_checks",
     "xlmc_correlations",
     "xlmc_settings",
-    "xlmc_case",
 )
 """What the names of the tables start with; a copied sheet's `xlmc_assumptions3` counts too."""
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from xlmc.cli.output_options import NOT_WRITTEN, Outputs, output_options, results_beside
+from xlmc.cli.output_options import NOT_WRITTEN, Outputs, Reports, Wishes, output_options, results_beside
 from xlmc.cli.terminal import say
 
 __all__ = ["report"]
@@ -31,6 +31,8 @@ def report(
     json_path: Path | None,
     extract: tuple[Path, ...],
     overwrite: bool,
+    reports: Reports,
+    wishes: Wishes,
     quiet: bool,
 ) -> None:
     """Write the results of a saved run, without simulating again: the same as when it was run."""
@@ -42,11 +44,12 @@ def report(
     if not quiet:
         notices(found.model.notices)
     target = output
-    if output is None and not (html or json_path or extract):
+    if output is None and not (html or json_path or extract or reports.paths):
         target = results_beside(run, found.model.path.suffix)
     name, named = found.model.workbook.name, output is not None
     asked = Outputs(run, name, target, None, html, json_path, extract, overwrite, named=named)
-    outputs = asked.check(found.model.path)
+    outputs = asked._replace(reports=reports, wishes=wishes).check(found.model.path)
+    outputs.check_against(found.model)
     written, lines = outputs.write(found)  # before the answer is printed, so that no terminal can cost a run
     show_run(found)
     for line in lines:

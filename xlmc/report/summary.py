@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 __all__ = [
     "ERROR_SENTENCE",
     "BaseCase",
+    "Said",
     "SummaryRow",
     "base_case",
     "estimate_text",
-    "Said",
     "percent",
     "question",
     "range_heading",

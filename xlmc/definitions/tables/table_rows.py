@@ -13,7 +13,17 @@ from xlmc.errors import ErrorCode
 from xlmc.workbook.printable import label
 from xlmc.workbook.workbook import CellContent, CellValue, Table, Workbook
 
-__all__ = ["CASE", "KINDS", "DefinitionTable", "Row", "as_text", "definition_tables", "holds_rows", "is_blank", "rows_of"]
+__all__ = [
+    "CASE",
+    "KINDS",
+    "DefinitionTable",
+    "Row",
+    "as_text",
+    "definition_tables",
+    "holds_rows",
+    "is_blank",
+    "rows_of",
+]
 
 KINDS = (
     "xlmc_assumptions",

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Sequence
 from datetime import UTC, datetime, time
 from typing import Any, Final
 
@@ -122,7 +121,6 @@ class _Writer:
             paragraph = self._file.add_paragraph()
             paragraph.add_run(f"{printable(label)}: ").bold = True
             paragraph.add_run(printable(said))
-        self._file.add_page_break()
 
     def _paragraph(self, text: str, size: float, *, bold: bool = False) -> None:
         run = self._file.add_paragraph().add_run(printable(text))
@@ -142,7 +140,7 @@ class _Writer:
         from docx.shared import Mm
 
         made = self._file.add_table(rows=1 + len(table.rows), cols=len(table.heads))
-        made.style = "Light List Accent 1" if False else "Table Grid"
+        made.style = "Table Grid"
         made.autofit = False
         whole = sum(table.widths)
         widths = [Mm(self._room * width / whole) for width in table.widths]

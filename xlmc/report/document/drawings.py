@@ -52,7 +52,9 @@ def forecast_drawing(figure: Figure, result: ForecastResult) -> Drawing:
     found.append(_rect(low, share(100.0), high - low, bottom - share(100.0), LIGHT, opacity=0.5))
     levels = np.linspace(0.0, 1.0, _POINTS)
     values = result.sample.quantile(levels)
-    points = [(across(_near(float(v), first, last)), share(100.0 * float(q))) for v, q in zip(values, levels, strict=True)]
+    points = [
+        (across(_near(float(v), first, last)), share(100.0 * float(q))) for v, q in zip(values, levels, strict=True)
+    ]
     found.append(_path(points, DARK, 1.6))
     found.append(_text(16, (share(100.0) + bottom) / 2, "Not above", turned=True))
     if answer.threshold is not None and first <= answer.threshold <= last:
@@ -100,7 +102,10 @@ def before_and_after(name: str, prior: Floats, accepted: Floats) -> Drawing | No
         x, upper = across(float(edges[index])), across(float(edges[index + 1]))
         found.append(_rect(x, up(float(pale[index])), upper - x, bottom - up(float(pale[index])), LIGHT))
         outline += [(x, up(float(dark[index]))), (upper, up(float(dark[index])))]
-    found += [_path([(1.0, bottom), *outline, (width - 1.0, bottom)], DARK, 1.3), _line(1, bottom, width - 1, bottom, INK)]
+    found += [
+        _path([(1.0, bottom), *outline, (width - 1.0, bottom)], DARK, 1.3),
+        _line(1, bottom, width - 1, bottom, INK),
+    ]
     found.append(_text(1.0, height - 2, f"{low:.4g}", anchor="start", size=9))
     found.append(_text(width - 1.0, height - 2, f"{high:.4g}", anchor="end", size=9))
     said = f"{name}: before filtering pale, accepted as a line, from {low:.4g} to {high:.4g}"
@@ -118,7 +123,10 @@ def influence_drawing(found: ForecastSensitivity, most: int) -> Drawing:
     across = Scale(min(0.0, min([*ends, 0.0])), across.high, left, right, across.step)
     drawn = []
     for tick in across.ticks:
-        drawn += [_line(across(tick), 6, across(tick), bottom, GRID), _text(across(tick), bottom + 13, across.text(tick))]
+        drawn += [
+            _line(across(tick), 6, across(tick), bottom, GRID),
+            _text(across(tick), bottom + 13, across.text(tick)),
+        ]
     for index, (name, value, error) in enumerate(shares):
         top = 6 + row * index
         drawn.append(_text(left - 6, top + 12, _short(name), anchor="end"))
@@ -131,7 +139,7 @@ def influence_drawing(found: ForecastSensitivity, most: int) -> Drawing:
     drawn += [_line(across(0.0), 6, across(0.0), bottom, INK)]
     drawn.append(_text((left + right) / 2, bottom + 28, "Share of the variance explained, %"))
     said = f"{found.forecast}: the variance that each assumption explains, the largest first"
-    return _drawing(drawn, 570.0, bottom + 34, said, 140.0)
+    return _drawing(drawn, 570.0, bottom + 34, said, 125.0)
 
 
 def _near(value: float, low: float, high: float) -> float:
@@ -160,9 +168,7 @@ def _rect(x: float, y: float, width: float, height: float, fill: str, *, opacity
     return f'<rect {box} fill="{fill}" fill-opacity="{opacity:g}"/>'
 
 
-def _line(
-    x1: float, y1: float, x2: float, y2: float, stroke: str, width: float = 0.7, *, dashed: bool = False
-) -> str:
+def _line(x1: float, y1: float, x2: float, y2: float, stroke: str, width: float = 0.7, *, dashed: bool = False) -> str:
     ends = f'x1="{x1:.2f}" y1="{y1:.2f}" x2="{x2:.2f}" y2="{y2:.2f}"'
     dashes = ' stroke-dasharray="4 3"' if dashed else ""
     return f'<line {ends} stroke="{stroke}" stroke-width="{width:g}"{dashes}/>'

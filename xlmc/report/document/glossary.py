@@ -7,8 +7,14 @@ from typing import Final
 __all__ = ["GLOSSARY"]
 
 GLOSSARY: Final = (
-    ("Trial", "one possible crash. One value is drawn for each uncertain input, and the workbook is calculated with them."),
-    ("Assumption", "an uncertain input: a cell with a range and a distribution, from which each trial draws its value."),
+    (
+        "Trial",
+        "one possible crash. One value is drawn for each uncertain input, and the workbook is calculated with them.",
+    ),
+    (
+        "Assumption",
+        "an uncertain input: a cell with a range and a distribution, from which each trial draws its value.",
+    ),
     ("Forecast", "a cell whose values are wanted: the answer."),
     (
         "Filter",
@@ -18,7 +24,10 @@ GLOSSARY: Final = (
     ("Accepted", "a trial is accepted if it meets all filters. All answers are those of the accepted trials."),
     ("Check", "a cell that must be TRUE. It changes nothing in a run; it says where the workbook contradicts itself."),
     ("Base case", "the workbook as it is, each assumption at the value in its own cell."),
-    ("Distribution", "how likely the values of an assumption are. Uniform: all values in the range are equally likely."),
+    (
+        "Distribution",
+        "how likely the values of an assumption are. Uniform: all values in the range are equally likely.",
+    ),
     (
         "Standard error",
         "written ±: how far a printed number may lie from the number that infinitely many trials would give. The two "
@@ -33,7 +42,10 @@ GLOSSARY: Final = (
         "Percentile",
         "or quantile: the 75th percentile (75 % quantile) is the value that 75 % of the accepted trials do not exceed.",
     ),
-    ("Seed", "the number that the random draws start from. The same workbook with the same seed gives the same numbers."),
+    (
+        "Seed",
+        "the number that the random draws start from. The same workbook with the same seed gives the same numbers.",
+    ),
     ("SHA-256", "a fingerprint of a file or of some of its parts. If one byte changes, so does the fingerprint."),
 )
 """Word -> what it means."""

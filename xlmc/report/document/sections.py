@@ -166,7 +166,9 @@ def _filters(material: Material) -> Iterator[Block]:
         for number, each in enumerate(filters, 1)
     ]
     heads = ("Filter", "Must be", "Because", "Rejected trials", "Share", "Only by it")
-    yield material.table("The filters and how many trials each rejected.", heads, lines, (2, 1.6, 3.4, 1.1, 1.4, 1), (3, 4, 5))
+    yield material.table(
+        "The filters and how many trials each rejected.", heads, lines, (2, 1.6, 3.4, 1.1, 1.4, 1), (3, 4, 5)
+    )
     if simulation.plan.size:
         yield Paragraph(REJECTED_SENTENCE, "small")
 
@@ -179,7 +181,13 @@ def _assumptions(material: Material) -> Iterator[Block]:
         "before filtering are pale, and the line is the accepted ones."
     )
     rows: list[Sequence[Content]] = [_assumption_row(simulation, each) for each in simulation.model.assumptions]
-    heads = ("Assumption", "Distribution and source", "Mean ± error, before and accepted", "SD, before and accepted", "Picture")
+    heads = (
+        "Assumption",
+        "Distribution and source",
+        "Mean ± error, before and accepted",
+        "SD, before and accepted",
+        "Picture",
+    )
     yield material.table("The assumptions before and after filtering.", heads, rows, (1.9, 2.9, 1.9, 1.7, 1.95))
     early = max((values.size for values in simulation.prior.values()), default=0)
     said = f"Before filtering: the first {early:,} trials. ± is the standard error."

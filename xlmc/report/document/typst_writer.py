@@ -47,6 +47,7 @@ _STYLE: Final = """
 #show figure.caption: set text(size: 9pt)
 #show figure.caption: set align(left)
 #show figure.where(kind: table): set figure.caption(position: top)
+#show figure.where(kind: table): it => { show figure.caption: set block(sticky: true); it }
 #show figure.where(kind: table): set block(breakable: true)
 #show figure.where(kind: image): set block(breakable: false)
 #set figure(numbering: none, supplement: none, gap: .6em)
@@ -113,17 +114,17 @@ def _source(document: Document) -> str:
         f"  footer: [#set text(size: 8.5pt); #{_text(document.foot)} #h(1fr) "
         '#context [#{"Page "}#counter(page).display("1 of 1", both: true)]])',
         _STYLE,
-        "#v(2cm)\n#title()\n#v(.5cm)",
+        "#v(.6cm)\n#title()\n#v(.4cm)",
         *_cover(document),
-        "#pagebreak()",
+        "#v(.4cm)",
         *(line for block in document.blocks for line in _block(block)),
     ]
     return "\n".join(lines) + "\n"
 
 
 def _cover(document: Document) -> Iterator[str]:
-    cells = "".join(f"  strong({_text(label)}), [#{_text(_breakable(said))}],\n" for label, said in document.cover)
-    yield f"#set table.hline(stroke: none)\n#grid(columns: (5cm, 1fr), row-gutter: .9em,\n{cells})"
+    cells = "".join(f"  strong({_text(label)}), [#{_text(said)}],\n" for label, said in document.cover)
+    yield f"#grid(columns: (5cm, 1fr), row-gutter: .9em,\n{cells})"
 
 
 def _block(block: Block) -> Iterator[str]:
@@ -139,7 +140,7 @@ def _block(block: Block) -> Iterator[str]:
             items = ", ".join(f"[#{_text(text)}]" for text in texts)
             yield f"#list(spacing: .7em, {items})"
         case Code(text):
-            yield f"#raw({_text(_breakable(text))}, block: true)"
+            yield f"#raw({_text(text)}, block: true)"
         case Figure(drawing, caption):
             yield f"#figure({_image(drawing)}, caption: [#{_text(caption)}])"
         case Table():
@@ -158,17 +159,12 @@ def _table(table: Table) -> str:
 def _cell(content: Content) -> str:
     if isinstance(content, Drawing):
         return f"[#{_image(content)}]"
-    return f"table.cell(breakable: false, [#{_text(_breakable(content))}])"
+    return f"table.cell(breakable: false, [#{_text(content)}])"
 
 
 def _image(drawing: Drawing) -> str:
     size = f'width: {drawing.width:g}mm, format: "svg"'
     return f"image(bytes({_text(drawing.svg)}), {size}, alt: {_text(drawing.said)})"
-
-
-def _breakable(text: str) -> str:
-    """The text, with places to break very long words such as fingerprints."""
-    return text
 
 
 def _text(text: str) -> str:

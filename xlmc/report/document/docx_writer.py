@@ -60,12 +60,14 @@ class _Writer:
         """Write all of it."""
         self._set_up()
         self._cover()
-        for block in self._drawn.blocks:
+        for block, after in self._drawn.with_next:
             match block:
                 case Heading(text, level):
                     self._file.add_heading(printable(text), level)
                 case Paragraph(text, look):
-                    self._paragraph(text, _SMALL if look == "small" else _BODY, bold=look == "warning")
+                    self._paragraph(
+                        text, _SMALL if look == "small" else _BODY, bold=look == "warning"
+                    ).paragraph_format.keep_with_next = isinstance(after, Table | Figure)
                 case Bullets(texts):
                     for text in texts:
                         self._file.add_paragraph(printable(text), style="List Bullet")
@@ -122,9 +124,11 @@ class _Writer:
             paragraph.add_run(f"{printable(label)}: ").bold = True
             paragraph.add_run(printable(said))
 
-    def _paragraph(self, text: str, size: float, *, bold: bool = False) -> None:
-        run = self._file.add_paragraph().add_run(printable(text))
+    def _paragraph(self, text: str, size: float, *, bold: bool = False) -> Any:
+        made = self._file.add_paragraph()
+        run = made.add_run(printable(text))
         run.font.size, run.bold = _points(size), bold or None
+        return made
 
     def _caption(self, text: str, *, before: bool = False) -> None:
         paragraph = self._file.add_paragraph(printable(text), style="Caption")

@@ -18,7 +18,7 @@ _COLUMNS = 40
 
 
 class Equation(NamedTuple):
-    """One row: what is computed, its symbol, the equation and where that is from; a text is empty where there is none."""
+    """One row: what is computed, its symbol, the equation where that is from; texts may be empty."""
 
     quantity: str
     symbol: str
@@ -29,11 +29,11 @@ class Equation(NamedTuple):
 def equations_of(model: Model) -> list[Equation]:
     """The equations of the cells that the answers need, where a sheet has the columns Quantity and Equation.
 
-    A row counts if one of its cells is read by a forecast, a filter or a check.
+    A row counts if one of its cells is read by a forecast, a filter or a check, or is a forecast or a filter.
     """
     found: list[Equation] = []
     needed: dict[str, set[int]] = {}
-    asked = {each.cell for each in (*model.forecasts, *model.filters, *model.checks)}
+    asked = {each.cell for each in model.forecasts} | {each.cell for each in model.filters}
     for cell in model.read | asked:
         needed.setdefault(cell.sheet, set()).add(cell.row)
     for name, sheet in model.workbook.sheets.items():

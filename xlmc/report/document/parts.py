@@ -129,6 +129,11 @@ class Document:
     paper: Paper = "letter"
 
     @property
+    def with_next(self) -> list[tuple[Block, Block | None]]:
+        """Every block with the one after it."""
+        return list(zip(self.blocks, (*self.blocks[1:], None), strict=True))
+
+    @property
     def drawings(self) -> list[Drawing]:
         """Every picture, in the order of the document."""
         found: list[Drawing] = []

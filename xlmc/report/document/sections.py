@@ -132,8 +132,8 @@ def _forecasts(material: Material) -> Iterator[Block]:
             continue
         units = f" {row.units}" if row.units else ""
         caption = (
-            f"{figure.name}. Above, the accepted trials per {bins.width:g}{units}; below, the share of them that is not "
-            f"above each value. Dark: the central {percent(row.share)} of {row.trials:,} accepted trials, from "
+            f"{figure.name}. Above, the accepted trials per {bins.width:g}{units}; below, the share of them that "
+            f"is not above each value. Dark: the central {percent(row.share)} of {row.trials:,} accepted trials, from "
             f"{estimate_text(row.low)} to {estimate_text(row.high)}{units}. Upright line: the mean, "
             f"{estimate_text(row.mean)}{units}."
         )
@@ -176,15 +176,15 @@ def _filters(material: Material) -> Iterator[Block]:
 def _assumptions(material: Material) -> Iterator[Block]:
     simulation = material.simulation
     yield Paragraph(
-        "Filters keep only the combinations that agree with the evidence. So an assumption that the evidence bears on is "
-        "distributed differently among the accepted trials, although its range is the same. In the pictures, the draws "
-        "before filtering are pale, and the line is the accepted ones."
+        "Filters keep only the combinations that agree with the evidence. So an assumption that the evidence bears on "
+        "is distributed differently among the accepted trials, although its range is the same. In the pictures, the "
+        "draws before filtering are pale, and the line is the accepted ones."
     )
     rows: list[Sequence[Content]] = [_assumption_row(simulation, each) for each in simulation.model.assumptions]
     heads = (
         "Assumption",
         "Distribution and source",
-        "Mean ± error, before and accepted",
+        "Mean, before and accepted",
         "SD, before and accepted",
         "Picture",
     )
@@ -239,7 +239,7 @@ def _sensitivity(material: Material) -> Iterator[Block]:
         "trials alone would show. The rank correlation says whether the forecast rises (above 0) or falls with the "
         "assumption. No sensitivity says whether the model fits the crash."
     )
-    lines = []
+    lines: list[tuple[str, ...]] = []
     for each in shown:
         if each.influences:
             caption = f"What {each.forecast} depends on most."

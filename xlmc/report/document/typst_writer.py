@@ -51,7 +51,8 @@ _STYLE: Final = """
 #show figure.where(kind: table): set block(breakable: true)
 #show figure.where(kind: image): set block(breakable: false)
 #set figure(numbering: none, supplement: none, gap: .6em)
-#set table(stroke: (x, y) => (bottom: if y == 0 { .8pt + rgb("#2F6DA8") } else { .4pt + rgb("#D5DBE3") }), inset: (x: 4pt, y: 3.2pt))
+#let below(row) = if row == 0 { .8pt + rgb("#2F6DA8") } else { .4pt + rgb("#D5DBE3") }
+#set table(stroke: (x, y) => (bottom: below(y)), inset: (x: 4pt, y: 3.2pt))
 #show table: set text(size: 8.5pt)
 #show table: set par(leading: .45em)
 #show table.cell.where(y: 0): strong
@@ -117,7 +118,7 @@ def _source(document: Document) -> str:
         "#v(.6cm)\n#title()\n#v(.4cm)",
         *_cover(document),
         "#v(.4cm)",
-        *(line for block in document.blocks for line in _block(block)),
+        *(line for block, after in document.with_next for line in _block(block, isinstance(after, Table | Figure))),
     ]
     return "\n".join(lines) + "\n"
 
@@ -127,7 +128,8 @@ def _cover(document: Document) -> Iterator[str]:
     yield f"#grid(columns: (5cm, 1fr), row-gutter: .9em,\n{cells})"
 
 
-def _block(block: Block) -> Iterator[str]:
+def _block(block: Block, leads: bool) -> Iterator[str]:
+    """What is typeset; a paragraph that leads to a table or a figure stands on the page that this begins on."""
     match block:
         case Heading(text, level):
             yield f"#heading(level: {level}, {_text(text)})"
@@ -135,7 +137,7 @@ def _block(block: Block) -> Iterator[str]:
             yield f'#block(inset: 6pt, stroke: (left: 3pt + rgb("#9C0006")), strong({_text(text)}))'
         case Paragraph(text, look):
             size = "9pt" if look == "small" else "10.5pt"
-            yield f"#par(text(size: {size}, {_text(text)}))"
+            yield f"#block(sticky: {str(leads).lower()}, par(text(size: {size}, {_text(text)})))"
         case Bullets(texts):
             items = ", ".join(f"[#{_text(text)}]" for text in texts)
             yield f"#list(spacing: .7em, {items})"

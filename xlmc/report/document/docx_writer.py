@@ -184,11 +184,9 @@ def _field(paragraph: Any, instruction: str) -> None:
     field = OxmlElement("w:fldSimple")
     field.set(qn("w:instr"), instruction)
     paragraph._p.append(field)
-    run = OxmlElement("w:r")
-    text = OxmlElement("w:t")
-    text.text = "1"
-    run.append(text)
-    field.append(run)
+    run = paragraph.add_run("1")  # until it is filled in
+    run.font.size = _points(_CELL)
+    field.append(run._r)
 
 
 def _keep_whole(row: Any, *, repeated: bool) -> None:

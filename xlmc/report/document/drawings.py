@@ -26,12 +26,20 @@ _THRESHOLD = "#9C0006"
 _POINTS = 401
 _BINS = 24
 _LONGEST = 40
+_LONG = 1.3
+"""Where all draws reach over more than this much of the middle 99.6 % of them, their tails are not drawn."""
 
 Floats = NDArray[np.float64]
 
 
-def forecast_drawing(figure: Figure, result: ForecastResult) -> Drawing:
-    """The frequency of a forecast's accepted trials, and below it their cumulative share, over one axis."""
+def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Drawing:
+    """The frequency of a forecast's accepted trials, and below it their cumulative share, over one axis.
+
+    Args:
+        figure: the forecast.
+        result: its trials.
+        width: in millimetres.
+    """
     left, right, top, middle, bottom = 62.0, 556.0, 14.0, 176.0, 306.0
     bins, answer = figure.bins, figure.answer
     first, last = float(bins.edges[0]), float(bins.upper_edges[-1])
@@ -41,10 +49,10 @@ def forecast_drawing(figure: Figure, result: ForecastResult) -> Drawing:
     up = Scale(0.0, up.high, middle, top, up.step)
     found = [*_grid(up, left, right, "{:,.0f}")]
     for edge, upper, inside, outside in zip(bins.edges, bins.upper_edges, bins.inside, bins.outside, strict=True):
-        x, width = across(float(edge)), across(float(upper)) - across(float(edge))
+        x, wide = across(float(edge)), across(float(upper)) - across(float(edge))
         total, central = float(inside + outside), float(inside)
-        found += [_rect(x, up(total), width, middle - up(total), LIGHT)] if total else []
-        found += [_rect(x, up(central), width, middle - up(central), DARK)] if central else []
+        found += [_rect(x, up(total), wide, middle - up(total), LIGHT)] if total else []
+        found += [_rect(x, up(central), wide, middle - up(central), DARK)] if central else []
     found += [_line(left, middle, right, middle, INK), _text(16, (top + middle) / 2, "Trials", turned=True)]
     share = Scale(0.0, 100.0, bottom, middle + 16, 25.0)
     found += _grid(share, left, right, "{:.0f} %")
@@ -73,7 +81,7 @@ def forecast_drawing(figure: Figure, result: ForecastResult) -> Drawing:
         f"{answer.name}: above, how many accepted trials lie in each interval; below, the share of them that is not "
         f"above each value. Dark: the central {percent(answer.share)}. The upright line is the mean."
     )
-    return _drawing(found, 570.0, bottom + 40, said, 160.0)
+    return _drawing(found, 570.0, bottom + 40, said, width)
 
 
 def before_and_after(name: str, prior: Floats, accepted: Floats) -> Drawing | None:
@@ -87,13 +95,13 @@ def before_and_after(name: str, prior: Floats, accepted: Floats) -> Drawing | No
     before, after = numbers(prior), numbers(accepted)
     if not before.size or not after.size:
         return None
-    low, high = (float(end) for end in np.quantile(before, (0.002, 0.998)))
+    low, high = _shown(before)
     if not (math.isfinite(low) and math.isfinite(high) and high > low):
         return None
     edges = np.linspace(low, high, _BINS + 1)
     pale, dark = (np.histogram(x, edges)[0] / x.size for x in (before, after))
     most = float(max(pale.max(), dark.max()))
-    width, height, bottom = 150.0, 44.0, 33.0
+    width, height, bottom = 150.0, 48.0, 34.0
     across = Scale(low, high, 1.0, width - 1.0, 1.0)
     up = Scale(0.0, most or 1.0, bottom, 2.0, 1.0)
     found = []
@@ -106,10 +114,10 @@ def before_and_after(name: str, prior: Floats, accepted: Floats) -> Drawing | No
         _path([(1.0, bottom), *outline, (width - 1.0, bottom)], DARK, 1.3),
         _line(1, bottom, width - 1, bottom, INK),
     ]
-    found.append(_text(1.0, height - 2, f"{low:.4g}", anchor="start", size=9))
-    found.append(_text(width - 1.0, height - 2, f"{high:.4g}", anchor="end", size=9))
+    found.append(_text(1.0, height - 2, f"{low:.4g}", anchor="start", size=13))
+    found.append(_text(width - 1.0, height - 2, f"{high:.4g}", anchor="end", size=13))
     said = f"{name}: before filtering pale, accepted as a line, from {low:.4g} to {high:.4g}"
-    return _drawing(found, width, height, said, 32.0)
+    return _drawing(found, width, height, said, 28.0)
 
 
 def influence_drawing(found: ForecastSensitivity, most: int) -> Drawing:
@@ -140,6 +148,13 @@ def influence_drawing(found: ForecastSensitivity, most: int) -> Drawing:
     drawn.append(_text((left + right) / 2, bottom + 28, "Share of the variance explained, %"))
     said = f"{found.forecast}: the variance that each assumption explains, the largest first"
     return _drawing(drawn, 570.0, bottom + 34, said, 125.0)
+
+
+def _shown(draws: Floats) -> tuple[float, float]:
+    """The ends of a picture of draws: all of them, but without long tails, which would leave the rest in one bar."""
+    low, high = (float(end) for end in np.quantile(draws, (0.002, 0.998)))
+    least, most = float(draws.min()), float(draws.max())
+    return (least, most) if most - least <= _LONG * (high - low) else (low, high)
 
 
 def _near(value: float, low: float, high: float) -> float:

@@ -48,6 +48,10 @@ if TYPE_CHECKING:
 __all__ = ["SECTIONS", "Material"]
 
 _MOST_BARS: Final = 6
+_FEW: Final = 4
+"""Forecasts whose figures are large, two a page; those of more stand three a page, and their influences in a table."""
+_LARGE, _SMALL = 160.0, 112.0
+"""Widths of the figures of forecasts, in millimetres."""
 _NONE: Final = "–"
 
 
@@ -126,6 +130,7 @@ def _answers(material: Material, rows: Sequence[SummaryRow]) -> Table:
 
 def _forecasts(material: Material) -> Iterator[Block]:
     simulation = material.simulation
+    width = _LARGE if len(material.forecasts) <= _FEW else _SMALL
     for figure in figures_of(simulation):
         row, bins = figure.answer, figure.bins
         if row.name not in material.forecasts:
@@ -139,7 +144,7 @@ def _forecasts(material: Material) -> Iterator[Block]:
         )
         if bins.below or bins.above:
             caption += f" Not drawn: {bins.below:,} trials below and {bins.above:,} above."
-        yield material.figure(forecast_drawing(figure, simulation.results[row.name]), caption)
+        yield material.figure(forecast_drawing(figure, simulation.results[row.name], width), caption)
 
 
 def _filters(material: Material) -> Iterator[Block]:
@@ -167,7 +172,7 @@ def _filters(material: Material) -> Iterator[Block]:
     ]
     heads = ("Filter", "Must be", "Because", "Rejected trials", "Share", "Only by it")
     yield material.table(
-        "The filters and how many trials each rejected.", heads, lines, (2, 1.6, 3.4, 1.1, 1.4, 1), (3, 4, 5)
+        "The filters and how many trials each rejected.", heads, lines, (2, 1.5, 3.2, 1.1, 1.7, 1.1), (3, 4, 5)
     )
     if simulation.plan.size:
         yield Paragraph(REJECTED_SENTENCE, "small")
@@ -241,7 +246,7 @@ def _sensitivity(material: Material) -> Iterator[Block]:
     )
     lines: list[tuple[str, ...]] = []
     for each in shown:
-        if each.influences:
+        if each.influences and len(shown) <= _FEW:
             caption = f"What {each.forecast} depends on most."
             yield material.figure(influence_drawing(each, _MOST_BARS), caption)
         lines += _influence_rows(each)

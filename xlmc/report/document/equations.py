@@ -29,12 +29,12 @@ class Equation(NamedTuple):
 def equations_of(model: Model) -> list[Equation]:
     """The equations of the cells that the answers need, where a sheet has the columns Quantity and Equation.
 
-    A row counts if one of its cells is read by a forecast, a filter or a check, or is a forecast or a filter.
+    A row counts if one of its cells is a forecast or a filter, or is read by one.
     """
     found: list[Equation] = []
     needed: dict[str, set[int]] = {}
     asked = {each.cell for each in model.forecasts} | {each.cell for each in model.filters}
-    for cell in model.read | asked:
+    for cell in model.lowering.read | asked:
         needed.setdefault(cell.sheet, set()).add(cell.row)
     for name, sheet in model.workbook.sheets.items():
         if name in needed:

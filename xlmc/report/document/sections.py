@@ -47,10 +47,10 @@ if TYPE_CHECKING:
 
 __all__ = ["SECTIONS", "Material"]
 
-_MOST_BARS: Final = 6
+_MOST_BARS, _MOST_OF_MANY = 6, 4
 _FEW: Final = 4
 """Forecasts whose figures are large, two a page; those of more stand three a page, and their influences in a table."""
-_LARGE, _SMALL = 160.0, 112.0
+_LARGE, _SMALL = 160.0, 100.0
 """Widths of the figures of forecasts, in millimetres."""
 _NONE: Final = "–"
 
@@ -245,21 +245,22 @@ def _sensitivity(material: Material) -> Iterator[Block]:
         "assumption. No sensitivity says whether the model fits the crash."
     )
     lines: list[tuple[str, ...]] = []
+    most = _MOST_BARS if len(shown) <= _FEW else _MOST_OF_MANY
     for each in shown:
         if each.influences and len(shown) <= _FEW:
             caption = f"What {each.forecast} depends on most."
-            yield material.figure(influence_drawing(each, _MOST_BARS), caption)
-        lines += _influence_rows(each)
+            yield material.figure(influence_drawing(each, most), caption)
+        lines += _influence_rows(each, most)
     if lines:
         heads = ("Forecast", "Assumption", "Variance explained", "Rank correlation")
-        caption = f"The assumptions that each forecast depends on most, {_MOST_BARS} at most."
+        caption = f"The assumptions that each forecast depends on most, {most} at most."
         yield material.table(caption, heads, lines, (2, 3, 1.5, 1.5), (2, 3))
 
 
-def _influence_rows(found: ForecastSensitivity) -> Iterator[tuple[str, ...]]:
+def _influence_rows(found: ForecastSensitivity, most: int) -> Iterator[tuple[str, ...]]:
     if not found.influences:
         yield found.forecast, "No assumption moves it, or there are too few trials to tell.", _NONE, _NONE
-    for index, (each, weak) in enumerate(zip(found.influences[:_MOST_BARS], noise(found), strict=False)):
+    for index, (each, weak) in enumerate(zip(found.influences[:most], noise(found), strict=False)):
         rank = "noise" if weak.correlation else estimate_text(each.rank_correlation)
         yield (
             "" if index else found.forecast,

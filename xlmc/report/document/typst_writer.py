@@ -45,7 +45,7 @@ _STYLE: Final = """
 #show heading.where(level: 2): set text(size: 12pt)
 #show figure: set block(breakable: true)
 #show figure.caption: set text(size: 9pt)
-#show figure.caption: set align(left)
+#show figure.caption: it => block(width: 100%, align(left, it))
 #show figure.where(kind: table): set figure.caption(position: top)
 #show figure.where(kind: table): it => { show figure.caption: set block(sticky: true); it }
 #show figure.where(kind: table): set block(breakable: true)

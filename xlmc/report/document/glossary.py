@@ -43,6 +43,19 @@ GLOSSARY: Final = (
         "or quantile: the 75th percentile (75 % quantile) is the value that 75 % of the accepted trials do not exceed.",
     ),
     (
+        "95 % interval",
+        "two ends, calculated so that the true number lies between them in 95 of 100 runs.",
+    ),
+    (
+        "Correlation",
+        "here always Spearman's rank correlation of two quantities: 1 where one always rises with the other, −1 where "
+        "it always falls, 0 where it does neither.",
+    ),
+    (
+        "Threshold",
+        "a limit that matters, such as a speed limit; the results say how probable it is that a forecast exceeds it.",
+    ),
+    (
         "Seed",
         "the number that the random draws start from. The same workbook with the same seed gives the same numbers.",
     ),

@@ -180,9 +180,10 @@ def test_the_pdf_is_pdf_a_with_an_intent_embedded_fonts_and_tags(files):
             assert metadata.get("dc:title") == "Results of intersection.xlsx"
         assert pdf.Root.MarkInfo.Marked
         assert str(pdf.Root.Lang) == "en"
-        tags = {str(each.S) for each in pdf.objects if isinstance(each, pikepdf.Dictionary) and "/S" in each}
+        objects = [each for each in pdf.objects if isinstance(each, pikepdf.Dictionary)]
+        tags = {str(each.S) for each in objects if "/S" in each}
         assert tags >= {"/H1", "/P", "/Table", "/TR", "/TH", "/TD", "/Figure", "/Caption", "/L", "/LI"}
-        fonts = [each for each in pdf.objects if isinstance(each, pikepdf.Dictionary) and "/FontName" in each]
+        fonts = [each for each in objects if "/FontName" in each]
         assert fonts
         assert all(any(key in each for key in ("/FontFile", "/FontFile2", "/FontFile3")) for each in fonts)
         assert "D:20261123" in str(pdf.docinfo["/CreationDate"])

@@ -3,6 +3,7 @@ from __future__ import annotations
 import json
 import shutil
 
+import openpyxl
 import pandas
 import pytest
 
@@ -145,9 +146,10 @@ def test_a_file_that_cannot_be_written_takes_no_other_with_it(xlmc, book, tmp_pa
 
 
 def test_what_is_no_saved_run(xlmc, book):
-    outcome = xlmc("report", book)
+    other = shutil.copy(book, book.with_suffix(".xlmcrun"))
+    outcome = xlmc("report", other)
     assert outcome.code == 2
-    assert outcome.err.startswith(f"xlmc: {book}: the file is no saved run. Save one with xlmc simulate --save-run")
+    assert outcome.err.startswith(f"xlmc: {other}: the file is no saved run. Save one with xlmc simulate --save-run")
 
 
 def test_results_of_another_kind_of_workbook_are_refused(xlmc, book, tmp_path):
@@ -179,3 +181,33 @@ def test_a_forecast_that_is_not_there_is_refused_before_the_run(xlmc, book, tmp_
     assert outcome.code == 2
     assert "there is no forecast 'nothing'" in outcome.err
     assert [path.name for path in tmp_path.iterdir()] == ["book.xlsx"]
+
+
+def test_the_report_of_a_result_workbook_is_that_of_its_run(xlmc, case_book, tmp_path):
+    asked = ("--sections", "answer,filters,repeat")
+    assert xlmc("simulate", case_book, "-n", 20_000, "--pdf", "a.pdf", *asked).code == 0
+    report = xlmc("report", "case-results.xlsx", "--pdf", "b.pdf", *asked)
+    assert report.code == 0, report.err
+    assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
+    results = openpyxl.load_workbook(tmp_path / "case-results.xlsx")
+    cell = results["Inputs"]["D6"]
+    cell.value = 6760
+    results.save(tmp_path / "edited.xlsx")
+    refused = xlmc("report", "edited.xlsx", "--pdf", "c.pdf")
+    assert refused.code == 2
+    assert "cannot be repeated as it was. xlmc replay edited.xlsx says what differs" in refused.err
+    assert not (tmp_path / "c.pdf").exists()
+
+
+@pytest.mark.parametrize("options", [(), ("--pdf", "a.pdf", "--json", "a.json"), ("-o", "b.xlsx")])
+def test_of_a_result_workbook_reports_alone_are_written(xlmc, book, tmp_path, options):
+    outcome = xlmc("report", book, *options)
+    assert outcome.code == 2
+    assert "--pdf and --docx alone" in outcome.err
+    assert [path.name for path in tmp_path.iterdir()] == ["book.xlsx"]
+
+
+def test_a_workbook_without_results_has_no_report(xlmc, book):
+    outcome = xlmc("report", book, "--pdf", "a.pdf")
+    assert outcome.code == 2
+    assert "the workbook holds no record of a run" in outcome.err

@@ -67,7 +67,7 @@ def texts_of(document):
         match block:
             case Heading(text, _) | Paragraph(text, _):
                 yield text
-            case Bullets(texts):
+            case Bullets(texts, _):
                 yield from texts
             case Figure(_, caption):
                 yield caption

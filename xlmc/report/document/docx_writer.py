@@ -68,9 +68,10 @@ class _Writer:
                     self._paragraph(
                         text, _SMALL if look == "small" else _BODY, bold=look == "warning"
                     ).paragraph_format.keep_with_next = isinstance(after, Table | Figure)
-                case Bullets(texts):
+                case Bullets(texts, look):
                     for text in texts:
-                        self._file.add_paragraph(printable(text), style="List Bullet")
+                        run = self._file.add_paragraph(style="List Bullet").add_run(printable(text))
+                        run.font.size = _points(_SMALL if look == "small" else _BODY)
                 case Code(text):
                     run = self._file.add_paragraph().add_run(printable(text))
                     run.font.name = "Courier New"

@@ -44,9 +44,10 @@ class Paragraph:
 
 @dataclass(frozen=True, slots=True)
 class Bullets:
-    """A list of sentences."""
+    """A list of sentences; `look` is `text` or `small`."""
 
     texts: tuple[str, ...]
+    look: str = "text"
 
 
 @dataclass(frozen=True, slots=True)

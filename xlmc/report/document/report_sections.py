@@ -331,7 +331,7 @@ def _repeat(material: Material) -> Iterator[Block]:
 
 
 def _glossary(material: Material) -> Iterator[Block]:
-    yield Bullets(tuple(f"{word}: {meaning}" for word, meaning in GLOSSARY))
+    yield Bullets(tuple(f"{word}: {meaning}" for word, meaning in GLOSSARY), "small")
 
 
 SECTIONS: Final[dict[str, tuple[str, Callable[[Material], Iterator[Block]]]]] = {

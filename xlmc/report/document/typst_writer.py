@@ -136,17 +136,20 @@ def _block(block: Block, leads: bool) -> Iterator[str]:
         case Paragraph(text, "warning"):
             yield f'#block(inset: 6pt, stroke: (left: 3pt + rgb("#9C0006")), strong({_text(text)}))'
         case Paragraph(text, look):
-            size = "9pt" if look == "small" else "10.5pt"
-            yield f"#block(sticky: {str(leads).lower()}, par(text(size: {size}, {_text(text)})))"
-        case Bullets(texts):
+            yield f"#block(sticky: {str(leads).lower()}, par(text(size: {_size(look)}, {_text(text)})))"
+        case Bullets(texts, look):
             items = ", ".join(f"[#{_text(text)}]" for text in texts)
-            yield f"#list(spacing: .7em, {items})"
+            yield f"#text(size: {_size(look)}, list(spacing: .7em, {items}))"
         case Code(text):
             yield f"#raw({_text(text)}, block: true)"
         case Figure(drawing, caption):
             yield f"#figure({_image(drawing)}, caption: [#{_text(caption)}])"
         case Table():
             yield _table(block)
+
+
+def _size(look: str) -> str:
+    return "9pt" if look == "small" else "10.5pt"
 
 
 def _table(table: Table) -> str:

@@ -88,20 +88,20 @@ def _compiled(source: str, **options: Any) -> Any:
     """What Typst makes of a source: with the fonts that it brings along; where they lack a letter, with the system's.
 
     Raises:
-        SimulationError: no font has a character.
+        SimulationError: no font has a character, or Typst refuses the source for another reason.
     """
     import typst
 
+    data = source.encode()
     try:
-        return typst.compile(source.encode(), ignore_system_fonts=True, **options)
-    except typst.TypstError as error:
-        if "could not be displayed" not in str(error):
-            raise
+        return typst.compile(data, ignore_system_fonts=True, **options)
+    except typst.TypstError:  # a letter that they lack, or a fault that is met again
+        pass
     try:
-        return typst.compile(source.encode(), ignore_system_fonts=False, **options)
+        return typst.compile(data, ignore_system_fonts=False, **options)
     except typst.TypstError as error:
-        hint = "Install a font that has it, or write the report as --docx"
-        raise SimulationError(f"a PDF cannot be made: {str(error).splitlines()[0]}", hint=hint) from None
+        hint = "Install a font that has the letter, or write the report as --docx"
+        raise SimulationError(f"a PDF cannot be made: {str(error).splitlines()[0]}", hint=hint) from error
 
 
 def _source(document: Document) -> str:

@@ -204,7 +204,7 @@ def test_word_has_headings_captions_heading_rows_and_numbered_pages(files, word)
     assert word.core_properties.author == "J. Doe"
     assert word.core_properties.created.date() == date(2026, 11, 23)
     captions = [each.text for each in word.paragraphs if each.style.name == "Caption"]
-    assert len(captions) == len(word.tables) + 8
+    assert len(captions) == len(word.tables) + 9
     with zipfile.ZipFile(files[1]) as package:
         assert package.read("word/document.xml").count(b"<w:tblHeader/>") == len(word.tables)
         foot = b"".join(package.read(name) for name in package.namelist() if "footer" in name)

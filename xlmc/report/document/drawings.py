@@ -19,13 +19,22 @@ from xlmc.run.forecast_result import ForecastResult
 from xlmc.studies.sensitivity import ForecastSensitivity
 from xlmc.workbook.printable import printable
 
-__all__ = ["before_and_after", "forecast_drawing", "influence_drawing"]
+__all__ = [
+    "before_and_after",
+    "drawing",
+    "forecast_drawing",
+    "influence_drawing",
+    "line_to",
+    "path_of",
+    "text_at",
+]
 
 FONT = "Libertinus Serif"
 _THRESHOLD = "#9C0006"
 _POINTS = 401
 _BINS = 24
 _LONGEST = 40
+_DASHES = ' stroke-dasharray="4 3"'
 _LONG = 1.3
 """Where all draws reach over more than this much of the middle 99.6 % of them, their tails are not drawn."""
 
@@ -53,7 +62,7 @@ def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Dr
         total, central = float(inside + outside), float(inside)
         found += [_rect(x, up(total), wide, middle - up(total), LIGHT)] if total else []
         found += [_rect(x, up(central), wide, middle - up(central), DARK)] if central else []
-    found += [_line(left, middle, right, middle, INK), _text(16, (top + middle) / 2, "Trials", turned=True)]
+    found += [line_to(left, middle, right, middle, INK), text_at(16, (top + middle) / 2, "Trials", turned=True)]
     share = Scale(0.0, 100.0, bottom, middle + 16, 25.0)
     found += _grid(share, left, right, "{:.0f} %")
     low, high = (across(_near(end.value, first, last)) for end in (answer.low, answer.high))
@@ -63,25 +72,25 @@ def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Dr
     points = [
         (across(_near(float(v), first, last)), share(100.0 * float(q))) for v, q in zip(values, levels, strict=True)
     ]
-    found.append(_path(points, DARK, 1.6))
-    found.append(_text(16, (share(100.0) + bottom) / 2, "Not above", turned=True))
+    found.append(path_of(points, DARK, 1.6))
+    found.append(text_at(16, (share(100.0) + bottom) / 2, "Not above", turned=True))
     if answer.threshold is not None and first <= answer.threshold <= last:
         x = across(answer.threshold)
-        found += [_line(x, top, x, bottom, _THRESHOLD, 1.0, dashed=True)]
-        found.append(_text(x + 3, top + 8, f"threshold {answer.threshold:g}", anchor="start", fill=_THRESHOLD))
+        found += [line_to(x, top, x, bottom, _THRESHOLD, 1.0, dashed=True)]
+        found.append(text_at(x + 3, top + 8, f"threshold {answer.threshold:g}", anchor="start", fill=_THRESHOLD))
     mean = across(_near(answer.mean.value, first, last))
-    found += [_line(mean, top, mean, bottom, INK, 1.0)]
-    found += [_line(left, bottom, right, bottom, INK)]
+    found += [line_to(mean, top, mean, bottom, INK, 1.0)]
+    found += [line_to(left, bottom, right, bottom, INK)]
     for edge, label in zip([*bins.edges, bins.upper_edges[-1]], [*bins.labels, bins.last_label], strict=True):
         if label:
             x = across(float(edge))
-            found += [_line(x, bottom, x, bottom + 4, INK), _text(x, bottom + 15, label)]
-    found.append(_text((left + right) / 2, bottom + 32, answer.units or "value"))
+            found += [line_to(x, bottom, x, bottom + 4, INK), text_at(x, bottom + 15, label)]
+    found.append(text_at((left + right) / 2, bottom + 32, answer.units or "value"))
     said = (
         f"{answer.name}: above, how many accepted trials lie in each interval; below, the share of them that is not "
         f"above each value. Dark: the central {percent(answer.share)}. The upright line is the mean."
     )
-    return _drawing(found, 570.0, bottom + 40, said, width)
+    return drawing(found, 570.0, bottom + 40, said, width)
 
 
 def before_and_after(name: str, prior: Floats, accepted: Floats) -> Drawing | None:
@@ -111,13 +120,13 @@ def before_and_after(name: str, prior: Floats, accepted: Floats) -> Drawing | No
         found.append(_rect(x, up(float(pale[index])), upper - x, bottom - up(float(pale[index])), LIGHT))
         outline += [(x, up(float(dark[index]))), (upper, up(float(dark[index])))]
     found += [
-        _path([(1.0, bottom), *outline, (width - 1.0, bottom)], DARK, 1.3),
-        _line(1, bottom, width - 1, bottom, INK),
+        path_of([(1.0, bottom), *outline, (width - 1.0, bottom)], DARK, 1.3),
+        line_to(1, bottom, width - 1, bottom, INK),
     ]
-    found.append(_text(1.0, height - 2, f"{low:.4g}", anchor="start", size=13))
-    found.append(_text(width - 1.0, height - 2, f"{high:.4g}", anchor="end", size=13))
+    found.append(text_at(1.0, height - 2, f"{low:.4g}", anchor="start", size=13))
+    found.append(text_at(width - 1.0, height - 2, f"{high:.4g}", anchor="end", size=13))
     said = f"{name}: before filtering pale, accepted as a line, from {low:.4g} to {high:.4g}"
-    return _drawing(found, width, height, said, 28.0)
+    return drawing(found, width, height, said, 28.0)
 
 
 def influence_drawing(found: ForecastSensitivity, most: int) -> Drawing:
@@ -132,22 +141,22 @@ def influence_drawing(found: ForecastSensitivity, most: int) -> Drawing:
     drawn = []
     for tick in across.ticks:
         drawn += [
-            _line(across(tick), 6, across(tick), bottom, GRID),
-            _text(across(tick), bottom + 13, across.text(tick)),
+            line_to(across(tick), 6, across(tick), bottom, GRID),
+            text_at(across(tick), bottom + 13, across.text(tick)),
         ]
     for index, (name, value, error) in enumerate(shares):
         top = 6 + row * index
-        drawn.append(_text(left - 6, top + 12, _short(name), anchor="end"))
+        drawn.append(text_at(left - 6, top + 12, _short(name), anchor="end"))
         if not math.isfinite(value):
             continue
         drawn.append(_rect(across(0.0), top + 3, max(across(value) - across(0.0), 0.0), row - 6, DARK))
         if error:
             ends_x = (across(max(value - 100.0 * error, across.low)), across(value + 100.0 * error))
-            drawn.append(_line(ends_x[0], top + row / 2, ends_x[1], top + row / 2, INK))
-    drawn += [_line(across(0.0), 6, across(0.0), bottom, INK)]
-    drawn.append(_text((left + right) / 2, bottom + 28, "Share of the variance explained, %"))
+            drawn.append(line_to(ends_x[0], top + row / 2, ends_x[1], top + row / 2, INK))
+    drawn += [line_to(across(0.0), 6, across(0.0), bottom, INK)]
+    drawn.append(text_at((left + right) / 2, bottom + 28, "Share of the variance explained, %"))
     said = f"{found.forecast}: the variance that each assumption explains, the largest first"
-    return _drawing(drawn, 570.0, bottom + 34, said, 125.0)
+    return drawing(drawn, 570.0, bottom + 34, said, 125.0)
 
 
 def _shown(draws: Floats) -> tuple[float, float]:
@@ -168,12 +177,13 @@ def _short(name: str) -> str:
 def _grid(scale: Scale, left: float, right: float, form: str) -> list[str]:
     found = []
     for tick in scale.ticks:
-        found.append(_line(left, scale(tick), right, scale(tick), GRID))
-        found.append(_text(left - 6, scale(tick) + 4, form.format(tick), anchor="end"))
+        found.append(line_to(left, scale(tick), right, scale(tick), GRID))
+        found.append(text_at(left - 6, scale(tick) + 4, form.format(tick), anchor="end"))
     return found
 
 
-def _drawing(found: Iterable[str], width: float, height: float, said: str, printed: float) -> Drawing:
+def drawing(found: Iterable[str], width: float, height: float, said: str, printed: float) -> Drawing:
+    """The drawing; `printed` is its width in millimetres, `said` what it shows."""
     size = f'width="{width:g}" height="{height:g}" viewBox="0 0 {width:g} {height:g}"'
     return Drawing(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(found)}</svg>', said, printed)
 
@@ -183,18 +193,21 @@ def _rect(x: float, y: float, width: float, height: float, fill: str, *, opacity
     return f'<rect {box} fill="{fill}" fill-opacity="{opacity:g}"/>'
 
 
-def _line(x1: float, y1: float, x2: float, y2: float, stroke: str, width: float = 0.7, *, dashed: bool = False) -> str:
+def line_to(
+    x1: float, y1: float, x2: float, y2: float, stroke: str, width: float = 0.7, *, dashed: bool = False
+) -> str:
+    """A straight line."""
     ends = f'x1="{x1:.2f}" y1="{y1:.2f}" x2="{x2:.2f}" y2="{y2:.2f}"'
-    dashes = ' stroke-dasharray="4 3"' if dashed else ""
-    return f'<line {ends} stroke="{stroke}" stroke-width="{width:g}"{dashes}/>'
+    return f'<line {ends} stroke="{stroke}" stroke-width="{width:g}"{_DASHES * dashed}/>'
 
 
-def _path(points: Sequence[tuple[float, float]], stroke: str, width: float) -> str:
+def path_of(points: Sequence[tuple[float, float]], stroke: str, width: float, *, dashed: bool = False) -> str:
+    """A line through points."""
     steps = " ".join(f"{'L' if index else 'M'}{x:.2f} {y:.2f}" for index, (x, y) in enumerate(points))
-    return f'<path d="{steps}" fill="none" stroke="{stroke}" stroke-width="{width:g}"/>'
+    return f'<path d="{steps}" fill="none" stroke="{stroke}" stroke-width="{width:g}"{_DASHES * dashed}/>'
 
 
-def _text(
+def text_at(
     x: float,
     y: float,
     value: str,
@@ -204,6 +217,7 @@ def _text(
     fill: str = INK,
     turned: bool = False,
 ) -> str:
+    """A text, whatever is in it."""
     look = f'font-family={quoteattr(FONT)} font-size="{size:g}" fill="{fill}" text-anchor="{anchor}"'
     turn = f' transform="rotate(-90 {x:.2f} {y:.2f})"' if turned else ""
     return f'<text x="{x:.2f}" y="{y:.2f}" {look}{turn}>{escape(printable(value))}</text>'

@@ -11,6 +11,7 @@ from xlmc.report.document.drawings import before_and_after, forecast_drawing, in
 from xlmc.report.document.equations import equations_of
 from xlmc.report.document.glossary import GLOSSARY
 from xlmc.report.document.parts import Block, Bullets, Code, Content, Drawing, Figure, Paragraph, Table
+from xlmc.report.document.scene_drawing import scene_drawing
 from xlmc.report.filter_effect import filter_effect_of
 from xlmc.report.histogram import figures_of
 from xlmc.report.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
@@ -126,6 +127,16 @@ def _answers(material: Material, rows: Sequence[SummaryRow]) -> Table:
         lines.append(line)
     caption = "The answers, from the accepted trials; each number with its standard error."
     return material.table(caption, heads, lines, widths, range(2, len(heads)))
+
+
+def _scene(material: Material) -> Iterator[Block]:
+    drawn = scene_drawing(material.simulation.model.workbook)
+    if drawn is not None:
+        yield material.figure(
+            drawn,
+            "The base case as the chart on the workbook's sheet Scene draws it, with the numbers that were stored in "
+            "the chart when the workbook was last saved.",
+        )
 
 
 def _forecasts(material: Material) -> Iterator[Block]:
@@ -336,6 +347,7 @@ def _glossary(material: Material) -> Iterator[Block]:
 
 SECTIONS: Final[dict[str, tuple[str, Callable[[Material], Iterator[Block]]]]] = {
     "answer": ("The question and the answer", _answer),
+    "scene": ("The scene", _scene),
     "forecasts": ("The forecasts", _forecasts),
     "filters": ("Filters: what a possible crash must meet", _filters),
     "assumptions": ("Assumptions", _assumptions),

@@ -140,6 +140,8 @@ class _Writer:
 
         shape = paragraph.add_run().add_picture(io.BytesIO(next(self._pictures)), width=Mm(drawing.width))
         shape._inline.docPr.set("descr", printable(drawing.said))
+        for side in ("distT", "distB", "distL", "distR"):  # or LibreOffice leaves 3 mm beside it
+            shape._inline.set(side, "0")
 
     def _table(self, table: Table) -> None:
         from docx.shared import Mm

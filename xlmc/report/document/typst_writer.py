@@ -79,7 +79,7 @@ def pictures(drawings: Sequence[Drawing]) -> list[bytes]:
     if not drawings:
         return []
     pages = "\n".join(f"#page[#{_image(each)}]" for each in drawings)
-    source = f"#set page(width: auto, height: auto, margin: 0pt)\n{pages}\n"
+    source = f"#set page(width: auto, height: auto, margin: 0pt, fill: none)\n{pages}\n"
     found = _compiled(source, format="png", ppi=_RESOLUTION)
     return [bytes(found)] if isinstance(found, bytes) else [bytes(each) for each in found]
 

@@ -135,7 +135,7 @@ def test_every_number_in_both_files_is_one_of_the_run(case_study, built, files, 
     known = sorted(set(numbers_in(results(case_study))))
     sections = {block.text for block in built.blocks if isinstance(block, Heading)}
     assert sections >= {"The question and the answer", "Assumptions", "What the answers depend on"}
-    shown = 0
+    count = 0
     for table in word.tables[:6]:
         if table.rows[0].cells[0].text == "Quantity":  # equations, which are texts of the workbook
             continue
@@ -143,8 +143,8 @@ def test_every_number_in_both_files_is_one_of_the_run(case_study, built, files, 
             for cell in row.cells[1:]:
                 for found in NUMBER.findall(cell.text):
                     assert agrees(found, known), (found, cell.text)
-                    shown += 1
-    assert shown > 200
+                    count += 1
+    assert count > 200
 
 
 def test_the_answers_are_those_of_the_json_digit_by_digit(case_study, word, pages):
@@ -161,6 +161,46 @@ def test_the_answers_are_those_of_the_json_digit_by_digit(case_study, word, page
             assert error == f"{estimate['error']:.{decimals}f}"
             assert len(error.replace(".", "").lstrip("0")) == 2
         assert squeezed("".join(cells)) in text
+
+
+def shown(estimate, text, scale=1.0):
+    """Whether a printed number and its error are those of an estimate, to the digits printed."""
+    value, _, error = text.removesuffix(" %").partition(" ± ")
+    decimals = len(value.partition(".")[2])
+    same = value == f"{scale * estimate['value']:.{decimals}f}", error == f"{scale * estimate['error']:.{decimals}f}"
+    return all(same)
+
+
+def table_with(word, head):
+    (found,) = [table for table in word.tables if head in [cell.text for cell in table.rows[0].cells]]
+    return [[cell.text for cell in row.cells] for row in found.rows[1:]]
+
+
+def test_every_assumption_has_its_numbers_of_the_json(case_study, word):
+    asked = results(case_study)["assumptions"]
+    for row, each in zip(table_with(word, "Distribution and source"), asked, strict=True):
+        assert row[0] == f"{each['name']}, {each['units']}"
+        assert each["source"] in row[1]
+        for text, name in zip(row[2:4], ("mean", "standard_deviation"), strict=True):
+            before, accepted = text.split("\n")
+            assert shown(each["prior"][name], before)
+            assert shown(each["accepted"][name], accepted)
+
+
+def test_every_influence_has_its_numbers_of_the_json(case_study, word):
+    known = {
+        (forecast["forecast"], each["assumption"]): each
+        for forecast in results(case_study)["sensitivity"]["forecasts"]
+        for each in forecast["influences"]
+    }
+    forecast, compared = "", 0
+    for first, assumption, explained, rank in table_with(word, "Variance explained"):
+        forecast = first or forecast
+        each = known[forecast, assumption]
+        assert explained == "noise" or shown(each["explained"], explained, 100.0)
+        assert rank == "noise" or shown(each["rank_correlation"], rank)
+        compared += (explained != "noise") + (rank != "noise")
+    assert compared > 30
 
 
 def test_what_each_filter_rejected_is_that_of_the_json(case_study, word):
@@ -223,9 +263,9 @@ def test_libreoffice_shows_the_same_text_and_tables(built, files, tmp_path):
     subprocess.run(command, check=True, capture_output=True, timeout=120)
     if not (tmp_path / "report.pdf").exists():
         pytest.skip("LibreOffice Writer is not installed (apt-get install libreoffice-writer-nogui)")
-    shown = [page.extract_text() for page in pypdf.PdfReader(tmp_path / "report.pdf").pages]
-    assert 5 <= len(shown) <= 12
-    text = re.sub(r"intersection\.xlsx,seed999Page\d+of\d+|Case2026-17", "", squeezed("".join(shown)))
+    printed = [page.extract_text() for page in pypdf.PdfReader(tmp_path / "report.pdf").pages]
+    assert 5 <= len(printed) <= 12
+    text = re.sub(r"intersection\.xlsx,seed999Page\d+of\d+|Case2026-17", "", squeezed("".join(printed)))
     lost = [each for each in texts_of(built) if squeezed(each) not in text and squeezed(each) != "2026-17"]
     assert lost == []
 

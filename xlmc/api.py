@@ -5,7 +5,7 @@ What a model and a run *are* is in `xlmc.run`; the methods here call the rooms t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -90,6 +90,39 @@ class Simulation(simulation.Simulation):
         from xlmc.report.json_document import save_json
 
         return save_json(self, Path(path), overwrite=overwrite)
+
+    def save_report(
+        self,
+        path: str | Path,
+        *,
+        case: Mapping[str, str] | None = None,
+        sections: Sequence[str] = (),
+        forecasts: Sequence[str] = (),
+        paper: str = "letter",
+        overwrite: bool = False,
+    ) -> Path:
+        """Write the report to hand over: five to ten pages, as PDF or as a Word file; docs/report.md describes it.
+
+        A report bears no mark of its own, so no file that is there is replaced unless `overwrite` says so.
+
+        Args:
+            path: where to; it ends in `.pdf` or `.docx`.
+            case: what stands on the first page, such as `{"Case number": "2026-17"}`; wins over the table `xlmc_case`.
+            sections: names of sections; by default all.
+            forecasts: names of forecasts; by default all.
+            paper: of the pages: `letter` or `a4`.
+            overwrite: replace a file that is there.
+
+        Raises:
+            DefinitionError: the table `xlmc_case` is not what it must be.
+            SimulationError: a library is missing, there is no such section, forecast or paper, or no font has a
+                character.
+            WorkbookError: the file has another ending, is there already, or cannot be written.
+        """
+        from xlmc.report.document import Wanted, save_report
+
+        wanted = Wanted(case or {}, sections, forecasts, paper)
+        return save_report(self, Path(path), wanted, overwrite=overwrite)
 
     def plot(self) -> Figure:
         """A matplotlib figure: every forecast's histogram and cumulative share, with the central range shaded.

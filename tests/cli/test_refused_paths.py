@@ -33,7 +33,14 @@ def refuse_looking(monkeypatch, folder):
 
 @pytest.mark.parametrize(
     "option",
-    [("-o", ".xlsx"), ("--html", ".html"), ("--json", ".json"), ("--extract", ".csv"), ("--save-run", ".xlmcrun")],
+    [
+        ("-o", ".xlsx"),
+        ("--html", ".html"),
+        ("--json", ".json"),
+        ("--extract", ".csv"),
+        ("--save-run", ".xlmcrun"),
+        ("--pdf", ".pdf"),
+    ],
     ids=lambda option: option[0],
 )
 def test_names_that_are_too_long(xlmc, book, tmp_path, option):

@@ -3,6 +3,7 @@ from __future__ import annotations
 import json
 import shutil
 
+import openpyxl
 import pandas
 import pytest
 
@@ -105,6 +106,13 @@ def test_draws_that_were_not_saved_are_blank_and_said_to_be(xlmc, small_book, tm
         (("--save-run", "book.xlsx"), "a saved run must end in .xlmcrun"),
         (("-o", "a.xlsm"), "must end in .xlsx. Name it 'a.xlsx'"),
         (("-o", "no/a.xlsx"), "there is no folder"),
+        (("--pdf", "a.docx"), "the report must end in .pdf. Name it 'a.pdf'"),
+        (("--docx", "a.pdf"), "the report must end in .docx. Name it 'a.docx'"),
+        (("--pdf", "no/a.pdf"), "there is no folder"),
+        (("--pdf", "a.pdf", "--sections", "answer,nothing"), "a report has no section 'nothing'"),
+        (("--pdf", "a.pdf", "--case", "nothing"), "a field of the case is not 'nothing'"),
+        (("--pdf", "a.pdf", "--paper", "a5"), "'a5' is none of letter, a4"),
+        (("--sections", "answer"), "give --pdf or --docx"),
     ],
 )
 def test_names_are_refused_before_the_run(xlmc, book, tmp_path, monkeypatch, options, message):
@@ -138,9 +146,10 @@ def test_a_file_that_cannot_be_written_takes_no_other_with_it(xlmc, book, tmp_pa
 
 
 def test_what_is_no_saved_run(xlmc, book):
-    outcome = xlmc("report", book)
+    other = shutil.copy(book, book.with_suffix(".xlmcrun"))
+    outcome = xlmc("report", other)
     assert outcome.code == 2
-    assert outcome.err.startswith(f"xlmc: {book}: the file is no saved run. Save one with xlmc simulate --save-run")
+    assert outcome.err.startswith(f"xlmc: {other}: the file is no saved run. Save one with xlmc simulate --save-run")
 
 
 def test_results_of_another_kind_of_workbook_are_refused(xlmc, book, tmp_path):
@@ -148,3 +157,57 @@ def test_results_of_another_kind_of_workbook_are_refused(xlmc, book, tmp_path):
     outcome = xlmc("report", "run.xlmcrun", "-o", "b.xlsm")
     assert outcome.code == 2
     assert "must end in .xlsx" in outcome.err
+
+
+def test_reports_are_written_of_a_run_and_of_a_saved_run_alike(xlmc, case_book, tmp_path):
+    asked = ("--sections", "answer, repeat", "--forecasts", "nissan delta-v", "--case", "Case number=17")
+    run = xlmc("simulate", case_book, "-n", 20_000, "--save-run", "case.xlmcrun", "--pdf", "a.pdf", *asked)
+    assert run.code == 0, run.err
+    assert "The report is a.pdf" in run.out
+    report = xlmc("report", "case.xlmcrun", "--pdf", "b.pdf", "--docx", "b.docx", *asked)
+    assert report.code == 0, report.err
+    assert "The report is b.docx" in report.out
+    assert not (tmp_path / "case-results-2.xlsx").exists()
+    assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
+    again = xlmc("report", "case.xlmcrun", "--pdf", "b.pdf")
+    assert again.code == 2
+    assert "replace it with --overwrite" in again.err
+    assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
+
+
+def test_a_forecast_that_is_not_there_is_refused_before_the_run(xlmc, book, tmp_path, monkeypatch):
+    monkeypatch.setattr("xlmc.api.Model.simulate", lambda *_, **__: 1 / 0)
+    outcome = xlmc("simulate", book, "--pdf", "a.pdf", "--forecasts", "nothing")
+    assert outcome.code == 2
+    assert "there is no forecast 'nothing'" in outcome.err
+    assert [path.name for path in tmp_path.iterdir()] == ["book.xlsx"]
+
+
+def test_the_report_of_a_result_workbook_is_that_of_its_run(xlmc, case_book, tmp_path):
+    asked = ("--sections", "answer,filters,repeat")
+    assert xlmc("simulate", case_book, "-n", 20_000, "--pdf", "a.pdf", *asked).code == 0
+    report = xlmc("report", "case-results.xlsx", "--pdf", "b.pdf", *asked)
+    assert report.code == 0, report.err
+    assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
+    results = openpyxl.load_workbook(tmp_path / "case-results.xlsx")
+    cell = results["Inputs"]["D6"]
+    cell.value = 6760
+    results.save(tmp_path / "edited.xlsx")
+    refused = xlmc("report", "edited.xlsx", "--pdf", "c.pdf")
+    assert refused.code == 2
+    assert "cannot be repeated as it was. xlmc replay edited.xlsx says what differs" in refused.err
+    assert not (tmp_path / "c.pdf").exists()
+
+
+@pytest.mark.parametrize("options", [(), ("--pdf", "a.pdf", "--json", "a.json"), ("-o", "b.xlsx")])
+def test_of_a_result_workbook_reports_alone_are_written(xlmc, book, tmp_path, options):
+    outcome = xlmc("report", book, *options)
+    assert outcome.code == 2
+    assert "--pdf and --docx alone" in outcome.err
+    assert [path.name for path in tmp_path.iterdir()] == ["book.xlsx"]
+
+
+def test_a_workbook_without_results_has_no_report(xlmc, book):
+    outcome = xlmc("report", book, "--pdf", "a.pdf")
+    assert outcome.code == 2
+    assert "the workbook holds no record of a run" in outcome.err

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from functools import partial, wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar, cast
 
 import click
 
+from xlmc.cli.options import OneOf
 from xlmc.cli.terminal import say
 from xlmc.errors import WorkbookError, XlmcError
 
 if TYPE_CHECKING:
     from xlmc.api import Simulation
+    from xlmc.report.document import Wanted
+    from xlmc.run.model import Model
 
-__all__ = ["NOT_WRITTEN", "Outputs", "output_options", "results_beside"]
+__all__ = ["NOT_WRITTEN", "Outputs", "Reports", "Wishes", "output_options", "results_beside"]
 
 NOT_WRITTEN = 2
 
@@ -32,6 +36,25 @@ _OPTIONS = (
         metavar="FILE.csv|FILE.parquet",
         help="Write the accepted trials; may be given several times.",
     ),
+    click.option("--pdf", type=_PATH, metavar="REPORT.pdf", help="Write the report to hand over, as PDF."),
+    click.option("--docx", type=_PATH, metavar="REPORT.docx", help="Write the same report as a Word file."),
+    click.option(
+        "--case",
+        "case",
+        multiple=True,
+        metavar="FIELD=TEXT",
+        help="On the report's first page, such as 'Case number=2026-17'; may be given several times. Wins over the"
+        " table xlmc_case.",
+    ),
+    click.option("--sections", metavar="NAME,NAME", help="Sections of the report.  [default: all]"),
+    click.option(
+        "--forecasts",
+        "report_forecasts",
+        multiple=True,
+        metavar="FORECAST",
+        help="A forecast that the report is about; may be given several times.  [default: all]",
+    ),
+    click.option("--paper", type=OneOf("letter", "a4"), default="letter", show_default=True, help="Of the report."),
     click.option(
         "--overwrite",
         is_flag=True,
@@ -42,10 +65,76 @@ _OPTIONS = (
 
 
 def output_options(command: F) -> F:
-    """Add the options; the command is given `html`, `json_path`, `extract` and `overwrite`."""
+    """Add the options; the command is given `html`, `json_path`, `extract`, `overwrite`, `reports` and `wishes`."""
+
+    @wraps(command)
+    def packed(
+        *args: Any,
+        pdf: Path | None,
+        docx: Path | None,
+        case: tuple[str, ...],
+        sections: str | None,
+        report_forecasts: tuple[str, ...],
+        paper: str,
+        **others: Any,
+    ) -> Any:
+        wishes = Wishes(case, sections, report_forecasts, paper)
+        return command(*args, reports=Reports(pdf, docx), wishes=wishes, **others)
+
+    found: Any = packed
     for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
+        found = option(found)
+    return cast(F, found)
+
+
+class Reports(NamedTuple):
+    """The reports asked for."""
+
+    pdf: Path | None = None
+    docx: Path | None = None
+
+    @property
+    def paths(self) -> list[Path]:
+        return [path for path in self if path is not None]
+
+    def check(self) -> None:
+        """Refuse a report that could not be written.
+
+        Raises:
+            WorkbookError: it has another ending than it must, or its folder is missing.
+            SimulationError: a library is missing.
+        """
+        from xlmc.report.document import check_report_path
+
+        for path, ending in ((self.pdf, ".pdf"), (self.docx, ".docx")):
+            if path is None:
+                continue
+            if path.suffix.casefold() != ending:
+                hint = f"Name it '{path.stem or 'report'}{ending}'"
+                raise WorkbookError(f"the report must end in {ending}", where=path, hint=hint)
+            check_report_path(path)
+
+
+class Wishes(NamedTuple):
+    """What the reports are to hold, as it was typed; see `xlmc.report.document.Wanted`."""
+
+    case: tuple[str, ...] = ()
+    sections: str | None = None
+    forecasts: tuple[str, ...] = ()
+    paper: str = "letter"
+
+    def wanted(self) -> Wanted:
+        """What they mean.
+
+        Raises:
+            SimulationError: a field of the case has no name, or there is no such section.
+        """
+        from xlmc.report.document import Wanted, check_wanted, fields_from
+
+        sections = () if self.sections is None else tuple(name.strip() for name in self.sections.split(","))
+        wanted = Wanted(fields_from(self.case), sections, self.forecasts, self.paper)
+        check_wanted(wanted)
+        return wanted
 
 
 class Outputs(NamedTuple):
@@ -62,6 +151,8 @@ class Outputs(NamedTuple):
         overwrite: replace files that are not ours too.
         in_place: the result workbook is the workbook itself.
         named: the person gave the result workbook its name; another one is numbered on where it is taken.
+        reports: the reports to hand over.
+        wishes: what they are to hold.
     """
 
     source: Path
@@ -74,6 +165,20 @@ class Outputs(NamedTuple):
     overwrite: bool = False
     in_place: bool = False
     named: bool = True
+    reports: Reports = Reports()
+    wishes: Wishes = Wishes()
+
+    def check_against(self, model: Model) -> None:
+        """Refuse reports that the workbook cannot give.
+
+        Raises:
+            DefinitionError: its table `xlmc_case` is not what it must be.
+            SimulationError: it has no such forecast.
+        """
+        if self.reports.paths:
+            from xlmc.report.document import check_wanted_of
+
+            check_wanted_of(self.wishes.wanted(), model)
 
     def check(self, like: Path) -> Outputs:
         """The files as they will be written; a file that could not be written after the run is refused before it.
@@ -101,7 +206,7 @@ class Outputs(NamedTuple):
     @property
     def _others(self) -> list[Path]:
         """All but the result workbook."""
-        return [path for path in (self.run, self.html, self.json, *self.extract) if path is not None]
+        return [path for path in (self.run, self.html, self.json, *self.reports, *self.extract) if path is not None]
 
     def _check_endings(self, like: Path) -> None:
         for path in (self.book, *self._others):
@@ -123,6 +228,11 @@ class Outputs(NamedTuple):
             from xlmc.report.json_document import check_json_path
 
             check_json_path(self.json)
+        if self.reports.paths:
+            self.reports.check()
+            self.wishes.wanted()
+        elif self.wishes != Wishes():
+            raise click.UsageError("--case, --sections, --forecasts and --paper are of a report: give --pdf or --docx.")
         for path in self.extract:
             from xlmc.report.extract import check_extract_path
 
@@ -200,8 +310,21 @@ class Outputs(NamedTuple):
             yield self.html, "The page is", run.save_page
         if self.json is not None:
             yield self.json, "Results as JSON are in", run.save_json
+        for path in self.reports.paths:
+            yield path, "The report is", partial(self._write_report, run)
         for path in self.extract:
             yield path, "Accepted trials are in", run.extract
+
+    def _write_report(self, run: Simulation, path: Path, *, overwrite: bool = False) -> Path:
+        found = self.wishes.wanted()
+        return run.save_report(
+            path,
+            case=found.case,
+            sections=found.sections,
+            forecasts=found.forecasts,
+            paper=found.paper,
+            overwrite=overwrite,
+        )
 
 
 class _Write(Protocol):

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.output_options import NOT_WRITTEN, Outputs, output_options, results_beside
+from xlmc.cli.output_options import NOT_WRITTEN, Outputs, Reports, Wishes, output_options, results_beside
 from xlmc.cli.terminal import say
+
+if TYPE_CHECKING:
+    from xlmc.api import Simulation
 
 __all__ = ["report"]
 
@@ -15,7 +19,7 @@ NOT_TO_BE_USED = 1
 
 
 @click.command()
-@click.argument("run", metavar="RUN.xlmcrun", type=click.Path(readable=False, path_type=Path))
+@click.argument("run", metavar="RUN|RESULTS", type=click.Path(readable=False, path_type=Path))
 @click.option(
     "-o",
     "--output",
@@ -31,22 +35,36 @@ def report(
     json_path: Path | None,
     extract: tuple[Path, ...],
     overwrite: bool,
+    reports: Reports,
+    wishes: Wishes,
     quiet: bool,
 ) -> None:
-    """Write the results of a saved run, without simulating again: the same as when it was run."""
+    """Write the results of a saved run, without simulating again: the same as when it was run.
+
+    RESULTS is a result workbook; its run is repeated for --pdf and --docx, and must be identical.
+    """
     from xlmc.api import open_run
     from xlmc.cli.printing import notices, warnings
     from xlmc.cli.simulate import show_run
 
-    found = open_run(run)
+    if run.suffix.casefold() in (".xlsx", ".xlsm"):
+        if output or html or json_path or extract or not reports.paths:
+            raise click.UsageError(
+                "Of a result workbook, --pdf and --docx alone are written; the rest needs a saved run."
+            )
+        Outputs(run, run.name, overwrite=overwrite, reports=reports, wishes=wishes).check(run)  # before the run
+        found = _repeated(run, quiet)
+    else:
+        found = open_run(run)
     if not quiet:
         notices(found.model.notices)
     target = output
-    if output is None and not (html or json_path or extract):
+    if output is None and not (html or json_path or extract or reports.paths):
         target = results_beside(run, found.model.path.suffix)
     name, named = found.model.workbook.name, output is not None
     asked = Outputs(run, name, target, None, html, json_path, extract, overwrite, named=named)
-    outputs = asked.check(found.model.path)
+    outputs = asked._replace(reports=reports, wishes=wishes).check(found.model.path)
+    outputs.check_against(found.model)
     written, lines = outputs.write(found)  # before the answer is printed, so that no terminal can cost a run
     show_run(found)
     for line in lines:
@@ -56,3 +74,17 @@ def report(
         raise click.exceptions.Exit(NOT_WRITTEN)
     if found.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
+
+
+def _repeated(results: Path, quiet: bool) -> Simulation:
+    """The run that a result workbook records.
+
+    Raises:
+        WorkbookError: it holds no record, or its run cannot be repeated as it was.
+    """
+    from xlmc.api import Simulation
+    from xlmc.cli.progress_bar import progress_bar
+    from xlmc.replay import recorded_run
+
+    with progress_bar(quiet) as progress:
+        return Simulation.of(recorded_run(results, progress=progress))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from xlmc.cli.options import WholeNumber, engine_option, jobs_option, sampling_option, stopping_options
-from xlmc.cli.output_options import NOT_WRITTEN, Outputs, output_options, results_beside
+from xlmc.cli.output_options import NOT_WRITTEN, Outputs, Reports, Wishes, output_options, results_beside
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
@@ -72,6 +72,8 @@ def simulate(
     json_path: Path | None,
     extract: tuple[Path, ...],
     overwrite: bool,
+    reports: Reports,
+    wishes: Wishes,
     quiet: bool,
     **length: Any,
 ) -> None:
@@ -87,10 +89,22 @@ def simulate(
         load(book)  # says so
     target = book if in_place else output or results_beside(book)
     asked = Outputs(
-        book, book.name, target, save_run, html, json_path, extract, overwrite, in_place, output is not None
+        book,
+        book.name,
+        target,
+        save_run,
+        html,
+        json_path,
+        extract,
+        overwrite,
+        in_place,
+        output is not None,
+        reports,
+        wishes,
     )
     outputs = asked.check(book) if os.path.exists(book) else asked  # `load` says that there is no book
     model = load(book)
+    outputs.check_against(model)
     if not quiet:
         notices([*model.notices, *_hints(model, trials, engine)])
     with progress_bar(quiet) as progress:

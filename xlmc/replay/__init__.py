@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from xlmc.replay.changes import Change, NumberChange
-from xlmc.replay.repeat import Replayed, replay
+from xlmc.replay.repeat import Replayed, recorded_run, replay
 from xlmc.replay.sheets import CellDifference, SheetComparison
 
-__all__ = ["CellDifference", "Change", "NumberChange", "Replayed", "SheetComparison", "replay"]
+__all__ = ["CellDifference", "Change", "NumberChange", "Replayed", "SheetComparison", "recorded_run", "replay"]

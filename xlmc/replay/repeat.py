@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
     from xlmc.workbook.workbook import Workbook
 
-__all__ = ["Replayed", "replay"]
+__all__ = ["Replayed", "recorded_run", "replay"]
 
 _NEEDED: Final = (
     "run.fingerprint",
@@ -125,6 +125,26 @@ def replay(path: str | Path, *, jobs: int = 1, progress: OnProgress | None = Non
     with naming_file(str(path)):
         workbook = read_workbook(path)
         return _replay(workbook, read_record(workbook), None, jobs, progress, path)
+
+
+def recorded_run(path: str | Path, *, progress: OnProgress | None = None) -> Simulation:
+    """The run that a result workbook records, repeated: under the name and with the SHA-256 of its workbook.
+
+    Args:
+        path: a result workbook.
+        progress: as for `Model.simulate`.
+
+    Raises:
+        WorkbookError: the file cannot be read, holds no record, or the repeated run differs from the recorded one.
+        XlmcError: as for `replay`.
+    """
+    found = replay(path, progress=progress)
+    if found.repeated is None or not found.identical:
+        hint = f"xlmc replay {Path(path).name} says what differs"
+        raise WorkbookError("the run that is recorded here cannot be repeated as it was", where=path, hint=hint)
+    run = as_recorded(found.repeated, found.record, recorded_settings(found.record))
+    run.model.workbook = replace(run.model.workbook, sha256=str(found.record["file.sha256"]))
+    return run
 
 
 def _replay(

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from xlmc.definitions.definitions import name_key
+from xlmc.results.record.in_words import limits_text
+from xlmc.run.rare.account import probability_text
 from xlmc.statistics import Estimate, format_estimate
 
 if TYPE_CHECKING:
@@ -19,10 +21,12 @@ if TYPE_CHECKING:
 __all__ = [
     "ERROR_SENTENCE",
     "BaseCase",
+    "Said",
     "SummaryRow",
     "base_case",
     "estimate_text",
     "percent",
+    "question",
     "range_heading",
     "share_text",
     "summarise",
@@ -175,3 +179,40 @@ def _fails(column: Column) -> bool:
 def _number(column: Column) -> float | None:
     value = float(column.as_floats()[0])
     return value if np.isfinite(value) else None
+
+
+class Said(NamedTuple):
+    """A part of a sentence; a name of the workbook's may be in a script that runs from right to left."""
+
+    text: str
+    is_name: bool = False
+
+
+def question(simulation: Simulation) -> Iterator[Said]:
+    """What was asked of the workbook, in sentences: how many answers, from what, and which trials count."""
+    model = simulation.model
+    yield Said(
+        f"The workbook computes {_count_text(len(model.forecasts), 'answer (forecast)', 'answers (forecasts)')} from "
+        f"{_count_text(len(model.live), 'quantity', 'quantities')} known only within ranges (assumptions). "
+        f"{simulation.evaluated:,} combinations of values from these ranges were tried. "
+    )
+    if not model.filters:
+        yield Said("The workbook has no filters: every trial is accepted.")
+        return
+    if simulation.rare is None:
+        yield Said(
+            f"{simulation.accepted:,} of them ({share_text(simulation.acceptance)}) agree with the evidence, which "
+        )
+    else:
+        yield Said(f"{simulation.accepted:,} that agree with the evidence were kept; one as they come agrees with ")
+        yield Said(f"probability {probability_text(simulation.rare)}. The evidence ")
+    yield Said("asks: ")
+    for index, filter_ in enumerate(model.filters):
+        yield Said("; " if index else "")
+        yield Said(filter_.name, is_name=True)
+        yield Said(f" {limits_text(filter_)}")
+    yield Said(". The answers are those of these accepted trials.")
+
+
+def _count_text(count: int, one: str, several: str) -> str:
+    return f"{count} {one if count == 1 else several}"

@@ -13,7 +13,17 @@ from xlmc.errors import ErrorCode
 from xlmc.workbook.printable import label
 from xlmc.workbook.workbook import CellContent, CellValue, Table, Workbook
 
-__all__ = ["KINDS", "DefinitionTable", "Row", "as_text", "definition_tables", "holds_rows", "is_blank", "rows_of"]
+__all__ = [
+    "CASE",
+    "KINDS",
+    "DefinitionTable",
+    "Row",
+    "as_text",
+    "definition_tables",
+    "holds_rows",
+    "is_blank",
+    "rows_of",
+]
 
 KINDS = (
     "xlmc_assumptions",
@@ -24,6 +34,9 @@ KINDS = (
     "xlmc_settings",
 )
 """What the names of the tables start with; a copied sheet's `xlmc_assumptions3` counts too."""
+
+CASE = "xlmc_case"
+"""What the name of the table starts with that says whose case it is: for reports; a run does not read it."""
 
 _PREFIX = "xlmc"
 
@@ -128,7 +141,7 @@ def definition_tables(workbook: Workbook, findings: Findings) -> dict[str, list[
         kind = next((kind for kind in KINDS if table.name.casefold().startswith(kind)), None)
         if kind is not None:
             found[kind].append(_with_headings(kind, table, findings))
-        else:
+        elif not table.name.casefold().startswith(CASE):
             _point_out_unknown(table, findings)
     return found
 

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 from xlmc.report.page.element import EMPTY, Html, element
 from xlmc.report.page.flow import estimate_html, number, share_html
 from xlmc.report.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
-from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, range_heading, share_text, summarise
-from xlmc.results.record.in_words import limits_text, sampling_sentence
+from xlmc.report.summary import ERROR_SENTENCE, SummaryRow, percent, question, range_heading, summarise
+from xlmc.results.record.in_words import sampling_sentence
 from xlmc.results.statements import MEANING, statements
-from xlmc.run.rare.account import probability_text
 from xlmc.run.stopping.stopped import ALL_TRIALS
 
 if TYPE_CHECKING:
@@ -43,30 +42,8 @@ def _warning(sentence: str) -> Html:
 
 
 def _question(simulation: Simulation) -> Iterator[Html | str]:
-    model = simulation.model
-    yield (
-        f"The workbook computes {_count_text(len(model.forecasts), 'answer (forecast)', 'answers (forecasts)')} from "
-        f"{_count_text(len(model.live), 'quantity', 'quantities')} known only within ranges (assumptions). "
-        f"{simulation.evaluated:,} combinations of values from these ranges were tried. "
-    )
-    if not model.filters:
-        yield "The workbook has no filters: every trial is accepted."
-        return
-    if simulation.rare is None:
-        yield f"{simulation.accepted:,} of them ({share_text(simulation.acceptance)}) agree with the evidence, which "
-    else:
-        yield f"{simulation.accepted:,} that agree with the evidence were kept; one as they come agrees with "
-        yield f"probability {probability_text(simulation.rare)}. The evidence "
-    yield "asks: "
-    for index, filter_ in enumerate(model.filters):
-        yield "; " if index else ""
-        yield element("bdi", filter_.name)
-        yield f" {limits_text(filter_)}"
-    yield ". The answers are those of these accepted trials."
-
-
-def _count_text(count: int, one: str, several: str) -> str:
-    return f"{count} {one if count == 1 else several}"
+    for said in question(simulation):
+        yield element("bdi", said.text) if said.is_name else said.text
 
 
 def _statement(statement: Statement) -> Iterator[Html | str]:

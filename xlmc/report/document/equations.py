@@ -1,0 +1,62 @@
+"""The equations that a workbook prints beside its cells, with their sources."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from xlmc.definitions.tables.table_rows import as_text
+from xlmc.run.model import Model
+from xlmc.workbook.workbook import CellContent, Sheet
+
+__all__ = ["Equation", "equations_of"]
+
+_HEADS = ("quantity", "symbol", "equation", "source")
+_NEEDED = frozenset({"quantity", "equation"})
+_COLUMNS = 40
+"""How far to the right a heading is looked for."""
+
+
+class Equation(NamedTuple):
+    """One row: what is computed, its symbol, the equation where that is from; texts may be empty."""
+
+    quantity: str
+    symbol: str
+    equation: str
+    source: str
+
+
+def equations_of(model: Model) -> list[Equation]:
+    """The equations of the cells that the answers need, where a sheet has the columns Quantity and Equation.
+
+    A row counts if one of its cells is a forecast or a filter, or is read by one.
+    """
+    found: list[Equation] = []
+    needed: dict[str, set[int]] = {}
+    asked = {each.cell for each in model.forecasts} | {each.cell for each in model.filters}
+    for cell in model.lowering.read | asked:
+        needed.setdefault(cell.sheet, set()).add(cell.row)
+    for name, sheet in model.workbook.sheets.items():
+        if name in needed:
+            found += _of_sheet(sheet, needed[name])
+    return found
+
+
+def _of_sheet(sheet: Sheet, needed: set[int]) -> Iterator[Equation]:
+    cells: Mapping[tuple[int, int], CellContent] = sheet.cells
+    heads: dict[int, dict[str, int]] = {}
+    for (row, column), content in cells.items():
+        said = as_text(content.value).casefold() if isinstance(content.value, str) else ""
+        if said in _HEADS and column <= _COLUMNS:
+            heads.setdefault(row, {}).setdefault(said, column)
+    starts = sorted(row for row, found in heads.items() if found.keys() >= _NEEDED)
+    if not starts:
+        return
+    for row in sorted(needed):
+        above = [start for start in starts if start < row]
+        if not above:
+            continue
+        columns = heads[above[-1]]
+        texts = {head: as_text(cells[row, at].value) if (row, at) in cells else "" for head, at in columns.items()}
+        if texts["equation"]:
+            yield Equation(texts["quantity"], texts.get("symbol", ""), texts["equation"], texts.get("source", ""))

@@ -25,6 +25,9 @@ _WIDTHS: Final = (44.0, *[17.0] * 7)
 
 _DOCUMENTS: Final = (".pdf", ".docx")
 
+_WIDEST: Final = 40
+"""Characters of a column of a document that may stay in one line."""
+
 _LAST: Final = 5
 """The column to which paragraphs reach."""
 
@@ -109,9 +112,9 @@ class Files:
             if any(is_same_file(path, source) for source in self._sources):
                 raise WorkbookError("this is the workbook itself", where=path, hint="Name another file")
             if ending in _DOCUMENTS:
-                from xlmc.report.document import check_document_path
+                from xlmc.report.document import check_report_path
 
-                check_document_path(path)
+                check_report_path(path)
             self._target(path).check()
 
     def _target(self, path: Path) -> Target:
@@ -137,18 +140,24 @@ class Files:
 
 
 def _document(report: StudyReport, ending: str) -> bytes:
-    """The report as a document."""
-    from xlmc.report.document import document_bytes, parts, today
+    """The report as a document, without a date: what a study finds depends on no clock."""
+    from xlmc.report.document import document_bytes, parts
 
     blocks: list[parts.Block] = [parts.Paragraph(report.below)]
     for each in report.blocks:
         if isinstance(each, Table):
             blocks.append(parts.Heading(each.title))
-            blocks.append(parts.Table(each.headings, each.rows, frozenset(each.right)))
+            widths = tuple(_width(column) for column in zip(each.headings, *each.rows, strict=True))
+            blocks.append(parts.Table("", each.headings, each.rows, widths, frozenset(each.right)))
         else:
             blocks.append(parts.Paragraph(each))
-    document = parts.Document(report.title, (), report.title, "", today(), "letter", tuple(blocks))
+    document = parts.Document(report.title, "", None, report.title, "", (), tuple(blocks))
     return document_bytes(document, ending)
+
+
+def _width(column: Sequence[str]) -> float:
+    """How wide a column is beside others: numbers and names stay whole, sentences need not."""
+    return 3.0 + min(max(map(len, column)), _WIDEST)
 
 
 def _page(report: StudyReport) -> str:

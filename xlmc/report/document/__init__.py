@@ -2,7 +2,7 @@
 
 from xlmc.report.document.build import PAPERS, Wanted, check_wanted, check_wanted_of
 from xlmc.report.document.case_fields import fields_from
-from xlmc.report.document.report_file import check_report_path, save_report
+from xlmc.report.document.report_file import check_report_path, document_bytes, save_report
 from xlmc.report.document.report_sections import SECTIONS
 
 __all__ = [
@@ -12,6 +12,7 @@ __all__ = [
     "check_report_path",
     "check_wanted",
     "check_wanted_of",
+    "document_bytes",
     "fields_from",
     "save_report",
 ]

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import SimulationError, WorkbookError
 from xlmc.report.document.build import Wanted, build
+from xlmc.report.document.parts import Document
 from xlmc.workbook.target import Target
 from xlmc.workbook.writer import check_folder, write_workbook
 
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
 
-__all__ = ["check_report_path", "save_report"]
+__all__ = ["check_report_path", "document_bytes", "save_report"]
 
 _LIBRARIES: Final = {".pdf": {"typst": "typst"}, ".docx": {"docx": "python-docx", "typst": "typst"}}
 """Ending of a report -> what is imported to write it, and how that is called where it is installed from."""
@@ -47,16 +48,23 @@ def save_report(
     target = Target(path, simulation.model.workbook.name, overwrite)
     target.check()
     document = build(simulation, wanted, command=command)
-    if path.suffix.casefold() == ".pdf":
+    write_workbook(path, document_bytes(document, path.suffix), target.check)
+    return path
+
+
+def document_bytes(document: Document, ending: str) -> bytes:
+    """A document as a file with that ending, `.pdf` or `.docx`.
+
+    Raises:
+        SimulationError: a library is missing, or no font has a character.
+    """
+    if ending.casefold() == ".pdf":
         from xlmc.report.document.typst_writer import pdf_bytes
 
-        data = pdf_bytes(document)
-    else:
-        from xlmc.report.document.docx_writer import docx_bytes
+        return pdf_bytes(document)
+    from xlmc.report.document.docx_writer import docx_bytes
 
-        data = docx_bytes(document)
-    write_workbook(path, data, target.check)
-    return path
+    return docx_bytes(document)
 
 
 def check_report_path(path: Path) -> None:

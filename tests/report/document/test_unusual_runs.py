@@ -67,6 +67,12 @@ def test_a_forecast_that_is_huge_tiny_or_the_same_everywhere(make, tmp_path):
         assert "still:5inall2,000trials" in text
 
 
+def test_a_case_of_very_long_texts(run, tmp_path):
+    case = {"Title": "T" * 600, "Analyst": "A" * 600, "Case number": "N" * 600}
+    for text in written(run, tmp_path, case=case, sections=["repeat"]):
+        assert all(each in text for each in case.values())
+
+
 def test_a_letter_that_no_font_has_is_said_and_no_file_is_written(make, tmp_path):
     simulation = make.simulate(
         {"A1": 1.0, "B1": "=A1*2"}, [make.uniform("a", "A1", 0, 1)], [make.forecast("b \U00011bff", "B1")]

@@ -32,6 +32,9 @@ _SIZES: Final = {"letter": (215.9, 279.4), "a4": (210.0, 297.0)}
 
 _MARGIN: Final = 22.0
 _INK: Final = (0x1F, 0x30, 0x44)
+_LONGEST: Final = 255
+"""Characters of a property of the file, the format's limit."""
+
 _BODY, _SMALL, _CELL = 10.5, 9.0, 8.5
 
 
@@ -92,9 +95,10 @@ class _Writer:
 
         drawn, file = self._drawn, self._file
         properties = file.core_properties
-        properties.title, properties.author = printable(drawn.title), printable(drawn.author)
+        author = printable(drawn.author)[:_LONGEST]
+        properties.title, properties.author = printable(drawn.title)[:_LONGEST], author
         properties.comments, properties.language = "", "en"
-        properties.last_modified_by = printable(drawn.author)
+        properties.last_modified_by = author
         properties.created = properties.modified = datetime.combine(drawn.dated or UNDATED, time(), UTC).replace(
             tzinfo=None
         )

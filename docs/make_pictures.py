@@ -29,7 +29,7 @@ RESULTS, CONTRADICTION = "intersection-results.xlsx", "contradiction.xlsx"
 WRONG_ANGLE = ("Inputs", "D8", 278)
 """What makes a case contradict itself: the Chevrolet's approach angle, near that of the Nissan and out of its range."""
 
-_DPI = 125
+_DPI = 160
 _POINTS = 72
 _MARGIN = 3
 """In points, above and beside what is cut out."""
@@ -80,14 +80,16 @@ CUTS: Mapping[str, Cut] = {
     "results": Cut(RESULTS, "Results of the simulation", "Lost to errors"),
     "rejected": Cut(RESULTS, "Filters: a trial is accepted", "82"),
     "charts": Cut(RESULTS, "Forecast charts of the accepted trials", "from 22.021"),
-    "curves": Cut(RESULTS, "Overlay of forecasts in mph", "Figure 7", below=10),
+    "curves": Cut(RESULTS, "Overlay of forecasts in mph", "Figure 5", below=10),
     "statistics": Cut(RESULTS, "Chevrolet delta-V", "51 % range to", page="Statistics of the accepted trials"),
     "certainty": Cut(RESULTS, "Certainty", "above 6.1 mph"),
     "own-range": Cut(RESULTS, "Certainty of a range of your own", "ends belong to the range", below=76),
     "scatter": Cut(RESULTS, "Chevrolet delta-V and Nissan delta-V", "Scatter chart 2", below=14),
     "assumptions": Cut(RESULTS, "Assumptions", "Table 1. Breadth", page="What this shows"),
-    "sensitivity": Cut(RESULTS, "Sensitivity: what the answers depend on", "correlation.", below=3),
-    "filter-limits": Cut(RESULTS, "Restitution, tangential: at most", "The share of all trials"),
+    "sensitivity": Cut(RESULTS, "Sensitivity: what the answers depend on", "correlation.", below=10),
+    "filter-limits": Cut(
+        RESULTS, "Filter limits: how the answers move", "change. Other filters and limits stay.", below=10
+    ),
     "record": Cut(RESULTS, "Record of the run", "Lost to errors"),
 }
 """Picture -> where it is cut from."""

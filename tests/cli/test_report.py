@@ -6,6 +6,7 @@ import shutil
 import openpyxl
 import pandas
 import pytest
+from openpyxl.worksheet.table import Table
 
 import xlmc as package
 from xlmc.errors import WorkbookError
@@ -211,3 +212,17 @@ def test_a_workbook_without_results_has_no_report(xlmc, book):
     outcome = xlmc("report", book, "--pdf", "a.pdf")
     assert outcome.code == 2
     assert "the workbook holds no record of a run" in outcome.err
+
+
+@pytest.mark.parametrize("options", [(), ("--pdf", "report.pdf")])
+def test_a_table_of_the_case_that_is_not_one_is_refused_before_the_run(xlmc, book, tmp_path, monkeypatch, options):
+    opened = openpyxl.load_workbook(book)
+    opened.create_sheet("Case").append(["Field", "Text", "More"])
+    opened["Case"].append(["Title", "Main St", "?"])
+    opened["Case"].add_table(Table(displayName="xlmc_case", ref="A1:C2"))
+    opened.save(book)
+    monkeypatch.setattr(package.Model, "simulate", None)
+    run = xlmc("simulate", book, *options)
+    assert run.code == 2
+    assert "Case!A2: the table xlmc_case must have two columns" in run.err
+    assert list(tmp_path.iterdir()) == [book]

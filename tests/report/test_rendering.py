@@ -16,6 +16,7 @@ from needed_programs import missing
 
 import xlmc
 from xlmc.report import save
+from xlmc.report.sheets.exact_book import ExactSheet
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/intersection.xlsx"
 OWN = {
@@ -62,14 +63,29 @@ def book(case, tmp_path_factory):
     return save(case, tmp_path_factory.mktemp("rendering") / "results.xlsx", rows=60)
 
 
-@pytest.fixture(scope="module")
-def pages(book):
+def _pages(book):
     pdf = converted(book, "pdf", book.parent)
     shown = subprocess.run(["pdftotext", "-bbox", str(pdf), "-"], check=True, capture_output=True, text=True).stdout
     subprocess.run(["pdftoppm", "-r", str(DPI), str(pdf), str(book.parent / "page")], check=True)
     pictures = sorted(book.parent.glob("page-*.ppm"))
     pieces = re.split(r"<page [^>]*>", shown)[1:]
     return [_printed(piece, _pixels(picture)) for piece, picture in zip(pieces, pictures, strict=True)]
+
+
+@pytest.fixture(scope="module")
+def pages(book):
+    """Of the workbook as it prints."""
+    return _pages(book)
+
+
+@pytest.fixture(scope="module")
+def all_pages(case, tmp_path_factory):
+    """Of the workbook with all that its sheets of charts leave out of print, and without the sheets of the person."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ExactSheet, "print_area", lambda *_: None)
+        leave_out(patch, *OWN - {"Charts", "Pairs", "Sensitivity", "Filter limits", "Trials", "Bins", "Curves"})
+        path = save(case, tmp_path_factory.mktemp("unprinted") / "results.xlsx", rows=60)
+    return _pages(path)
 
 
 def _printed(piece, pixels):
@@ -110,20 +126,20 @@ def coloured(page, left, top):
 
 
 def test_every_sheet_has_a_page_with_something_on_it(pages):
-    assert {page.sheet for page in pages} >= OWN
+    assert {page.sheet for page in pages} >= OWN - {"Bins", "Curves"}
     assert all(len(page.words) > 8 for page in pages)
 
 
 @pytest.mark.parametrize(("word", "count"), [("Figure", 14), ("Scatter", 6)])
-def test_every_chart_draws_something_above_its_caption(pages, word, count):
-    found = captions(pages, word)
+def test_every_chart_draws_something_above_its_caption(all_pages, word, count):
+    found = captions(all_pages, word)
     assert sorted(found) == list(range(1, count + 1))
     for number, at in found.items():
         assert coloured(*at) > 0.004, f"{word} {number}"
 
 
-def test_charts_show_their_titles_and_axes(pages, case):
-    drawn = " ".join(page.text for page in pages if page.sheet == "Charts")
+def test_charts_show_their_titles_and_axes(all_pages, case):
+    drawn = " ".join(page.text for page in all_pages if page.sheet == "Charts")
     for name in case.forecasts:
         assert f"{name}: cumulative" in drawn
         assert f"{name}: reverse cumulative" in drawn
@@ -142,9 +158,12 @@ def test_the_sentences_are_printed_whole(pages, case):
 
 @pytest.mark.parametrize(
     ("sheet", "count"),
-    [("Results", 2), ("Statistics", 4), ("Assumptions", 1), ("Sensitivity", 8), ("Filter limits", 5)],
+    [
+        *(("Results", 2), ("Charts", 1), ("Statistics", 2), ("Certainty", 1), ("Pairs", 1), ("Assumptions", 1)),
+        *(("Sensitivity", 2), ("Filter limits", 1), ("Trials", 1), ("Bins", 0), ("Curves", 0), ("Record", 3)),
+    ],
 )
-def test_no_table_is_broken_across_pages(pages, sheet, count):
+def test_no_table_is_broken_across_pages_and_details_are_not_printed(pages, sheet, count):
     assert [page.sheet for page in pages].count(sheet) == count
 
 

@@ -169,7 +169,7 @@ class Outputs(NamedTuple):
     wishes: Wishes = Wishes()
 
     def check_against(self, model: Model) -> None:
-        """Refuse reports that the workbook cannot give.
+        """Refuse what cannot be written about this workbook.
 
         Raises:
             DefinitionError: its table `xlmc_case` is not what it must be.
@@ -179,6 +179,10 @@ class Outputs(NamedTuple):
             from xlmc.report.document import check_wanted_of
 
             check_wanted_of(self.wishes.wanted(), model)
+        elif self.book is not None:
+            from xlmc.report.case_fields import case_of
+
+            case_of(model.workbook, {})
 
     def check(self, like: Path) -> Outputs:
         """The files as they will be written; a file that could not be written after the run is refused before it.

@@ -148,6 +148,7 @@ _COMMITS: Final = {
     "0.5.0": "7496bc5c0bfbe39791f9066d2e05fbbc01b41aaf",
     "0.5.1": "e9825adc0d54324dd6ffee4b7e227855ceaf6810",
     "0.5.2": "a0233280c2c29797693a39af2d7ca65686378708",
+    "0.6.0": "3477a27842cfa0f06441ec8cd6cc49c4c3cc7516",
 }
 """The last commit of each version before this one."""
 

@@ -22,9 +22,13 @@ from xlmc.statistics import Estimate
 if TYPE_CHECKING:
     from xlmc.run.simulation import Simulation
 
-__all__ = ["PERCENTS", "FilterEffect", "Marginal", "filter_effect", "filter_effect_of", "marginal"]
+__all__ = ["PERCENTS", "FilterEffect", "Marginal", "Shapes", "filter_effect", "filter_effect_of", "marginal", "shapes"]
 
 PERCENTS = (5.0, 50.0, 95.0)
+
+_BINS = 24
+_LONG = 1.3
+"""Where all draws reach over more than this much of the middle 99.6 % of them, their tails are not drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +56,40 @@ class FilterEffect:
     accepted: Marginal
     shift: Estimate
     narrowing: Estimate
+
+
+@dataclass(frozen=True, slots=True)
+class Shapes:
+    """How often an assumption has each value.
+
+    Attributes:
+        edges: `(n + 1,)` of the bins.
+        before: `(n,)` shares of the draws before filtering.
+        accepted: `(n,)` shares of the accepted draws.
+    """
+
+    edges: NDArray[np.float64]
+    before: NDArray[np.float64]
+    accepted: NDArray[np.float64]
+
+
+def shapes(prior: NDArray[np.float64], accepted: NDArray[np.float64]) -> Shapes | None:
+    """The shapes of `(n,)` draws before filtering and of `(m,)` accepted ones; None where they are one value."""
+    before, after = numbers(prior), numbers(accepted)
+    if not before.size or not after.size:
+        return None
+    low, high = _shown(before)
+    if not (math.isfinite(low) and math.isfinite(high) and high > low):
+        return None
+    edges = np.linspace(low, high, _BINS + 1)
+    return Shapes(edges, *(np.histogram(draws, edges)[0] / draws.size for draws in (before, after)))
+
+
+def _shown(draws: NDArray[np.float64]) -> tuple[float, float]:
+    """The ends of a picture of draws: all of them, but without long tails, which would leave the rest in one bar."""
+    low, high = (float(end) for end in np.quantile(draws, (0.002, 0.998)))
+    least, most = float(draws.min()), float(draws.max())
+    return (least, most) if most - least <= _LONG * (high - low) else (low, high)
 
 
 def marginal(draws: NDArray[np.float64], replicate: NDArray[np.int64] | None = None) -> Marginal:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from xlmc.report.page.element import Html
 from xlmc.report.page.flow import Flow, estimate_html, shown_html, shown_text
-from xlmc.report.sheets import assumptions_sheet, cells, results_sheet, statistics_sheet
+from xlmc.report.sheets import cells, results_sheet, statistics_sheet
 from xlmc.report.sheets.cells import Shown, count
 from xlmc.statistics import Estimate, format_estimate
 
@@ -50,7 +50,7 @@ def test_rows_of_another_length_begin_another_table():
 
 
 def test_a_sheets_writer_can_write_on_it(run):
-    for write in (results_sheet.write_results, statistics_sheet.write_statistics, assumptions_sheet.write_assumptions):
+    for write in (results_sheet.write_results, statistics_sheet.write_statistics):
         flow = Flow()
         write(flow, run)
         assert flow.html.source.count("<table>") >= 1

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from xlmc.definitions.definitions import Correlation
-from xlmc.report.filter_effect import filter_effect
+from xlmc.report.filter_effect import filter_effect, shapes
 from xlmc.report.sheets.assumptions_sheet import HEADER
 from xlmc.statistics import rank_correlation
 
@@ -93,3 +93,16 @@ def test_the_sheets_of_a_run_in_replicates(make, opened, rows_of):
         if len(row) > 6 and row[3] == "accepted" and row[5] == found.accepted.mean.value
     )
     assert line[6] == found.accepted.mean.error
+
+
+def test_small_charts_show_the_shapes_of_the_draws(run, book):
+    """Each assumption that is drawn has one: its draws before filtering and the accepted ones, over the same bins."""
+    charts = book["Assumptions"]._charts
+    assert len(charts) == len(run.inputs)
+    row = next(cell.row for cell in book["Assumptions"]["A"] if cell.value == "width")
+    (chart,) = [chart for chart in charts if chart.anchor._from.row == row - 1]
+    expected = shapes(run.prior["width"], run.inputs["width"])
+    for part, shares in zip(chart._charts, (expected.before, expected.accepted), strict=True):
+        (series,) = part.series
+        sheet, _, area = series.val.numRef.f.partition("!")
+        assert [cell.value for (cell,) in book[sheet][area]] == list(shares)

@@ -7,9 +7,12 @@ import subprocess
 import sys
 import zipfile
 
+import openpyxl
 import pytest
+from openpyxl.worksheet.table import Table
 from packed_sheets import packed_sheets
 
+import xlmc
 from xlmc.columns import column_store, on_disk
 from xlmc.report.sheets.book import SHEETS
 
@@ -71,9 +74,12 @@ def test_parts_hold_no_clock_and_nothing_that_cannot_be_injected(request, name):
     assert re.findall("<definedName (?!.*localSheetId)", workbook) == []
 
 
+UPRIGHT = dict.fromkeys(("Statistics", "Certainty"), "portrait")
+
+
 def test_every_sheet_is_set_up_for_printing(book):
     for sheet in book:
-        assert sheet.page_setup.orientation == "landscape"
+        assert sheet.page_setup.orientation == UPRIGHT.get(sheet.title, "landscape")
         assert sheet.oddFooter.left.text == "book.xlsx"
         assert "Page" in sheet.oddFooter.right.text
         assert not sheet.sheet_view.showGridLines
@@ -100,3 +106,15 @@ def test_odd_names_do_no_harm(make, opened):
 def test_the_library_that_writes_is_imported_only_when_something_is_written():
     code = "import sys, xlmc.report.summary; sys.exit('xlsxwriter' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_the_case_stands_on_top_of_every_printed_page(small_book, tmp_path):
+    book = openpyxl.load_workbook(small_book)
+    sheet = book.create_sheet("Case")
+    for row in (("Field", "Text"), ("Case number", "2026-17 & 18"), ("Analyst", "J. Doe"), ("Client", "A. B.")):
+        sheet.append(row)
+    sheet.add_table(Table(displayName="xlmc_case", ref="A1:B4"))
+    book.save(tmp_path / "book.xlsx")
+    run = xlmc.load(tmp_path / "book.xlsx").simulate(trials=300)
+    for printed in openpyxl.load_workbook(io.BytesIO(packed_sheets(run))):
+        assert printed.oddHeader.right.text == "2026-17 && 18, J. Doe"

@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from xlmc.report.sheets.cells import number_format
 from xlmc.results.record import make_record
 
 
@@ -60,3 +61,21 @@ def test_empty_tables_say_none(book, row_of):
     sheet = book["Record"]
     row = next(cell.row for cell in sheet["A"] if cell.value == "correlations")
     assert sheet.cell(row + 1, 2).value == "None"
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        *((20_000, "#,##0"), (4960.0, "#,##0"), (0.0172, "General"), (1 / 3, "#,##0.000000")),
+        *((0.00091935194566, "#,##0.0000000"), (12.39573907, "#,##0.0000")),
+    ],
+)
+def test_numbers_show_six_digits_at_most(value, shown):
+    assert number_format(value) == shown
+
+
+def test_counts_have_separators_and_seeds_none(book):
+    sheet = book["Record"]
+    formats = {sheet.cell(row, 1).value: sheet.cell(row, 3).number_format for row in range(1, sheet.max_row + 1)}
+    assert formats["sampling.trials"] == "#,##0"
+    assert formats["sampling.seed"] == "General"

@@ -111,6 +111,7 @@ def test_axes_have_titles_and_charts_a_description(packed, charts):
 def test_lines_are_straight_and_shares_end_at_one(packed, charts):
     with zipfile.ZipFile(io.BytesIO(packed)) as package:
         xmls = [package.read(name).decode() for name in package.namelist() if name.startswith("xl/charts/chart")]
+    xmls = [re.sub("<c:barChart>.*?</c:barChart>", "", xml) for xml in xmls]  # bars, also those below a line
     lined = [xml for xml in xmls if "<c:lineChart>" in xml or "<c:scatterChart>" in xml]
     assert lined
     for xml in lined:
@@ -245,3 +246,14 @@ def test_units_that_read_like_a_reference_stay_words(make):
         charts = [package.read(name).decode() for name in package.namelist() if name.startswith("xl/charts/chart")]
     assert [xml for xml in charts if "(Model!\N{WORD JOINER}D50)</a:t>" in xml]
     assert {f for xml in charts for f in re.findall(r"<c:f>(.*?)</c:f>", xml) if "D50" in f} == set()
+
+
+@pytest.mark.parametrize("name", ["Sensitivity", "Filter limits"])
+def test_charts_come_first_and_the_tables_below_them_are_not_printed(book, name):
+    sheet = book[name]
+    last = int(sheet.print_area.rpartition("$")[2])
+    rows = [chart.anchor._from.row + 1 for chart in sheet._charts]
+    assert min(rows) < last < max(rows)
+    heads = [row[0].row for row in sheet.iter_rows() if row[1].value in ("Units", "Value", "Limit")]
+    assert heads
+    assert min(heads) > last

@@ -69,8 +69,13 @@ def test_an_assumption_and_a_forecast_may_share_a_name(make, opened):
     assert [cell.value for cell in opened(run)["Trials"][HEADER + 1]] == ["Trial", "v", "v"]
 
 
-@pytest.mark.parametrize("name", ["Trials", "Bins", "Curves"])
-def test_of_a_sheet_of_data_the_heading_alone_is_printed(book, name):
-    sheet = book[name]
-    assert sheet.print_area == f"'{name}'!$A$1:$L$2"
+@pytest.mark.parametrize("name", ["Bins", "Curves"])
+def test_sheets_of_numbers_that_charts_draw_open_hidden(book, name):
+    assert book[name].sheet_state == "hidden"
+    assert str(book[name]["A2"].value).endswith("This sheet opens hidden; hidden sheets are not printed.")
+
+
+def test_of_the_trials_the_heading_alone_is_printed(book):
+    sheet = book["Trials"]
+    assert sheet.print_area == "'Trials'!$A$1:$L$2"
     assert str(sheet["A2"].value).endswith("Only this heading is printed, unless you clear the print area.")

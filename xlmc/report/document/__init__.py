@@ -1,7 +1,7 @@
 """The report to hand over: five to ten pages, as PDF or as a Word file, both from one description of the document."""
 
+from xlmc.report.case_fields import fields_from
 from xlmc.report.document.build import PAPERS, Wanted, check_wanted, check_wanted_of
-from xlmc.report.document.case_fields import fields_from
 from xlmc.report.document.report_file import check_report_path, document_bytes, save_report
 from xlmc.report.document.report_sections import SECTIONS
 

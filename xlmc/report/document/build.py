@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.definitions.definitions import name_key
 from xlmc.errors import SimulationError
-from xlmc.report.document.case_fields import case_of
+from xlmc.report.case_fields import case_of
 from xlmc.report.document.parts import Block, Document, Heading
 from xlmc.report.document.report_sections import SECTIONS, Material
 from xlmc.results.record import make_record

@@ -9,8 +9,8 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.columns import numbers
 from xlmc.report.document.parts import Drawing
+from xlmc.report.filter_effect import shapes
 from xlmc.report.histogram import Figure
 from xlmc.report.page.svg import Scale, scale_of
 from xlmc.report.sheets.styles import DARK, GRID, INK, LIGHT
@@ -32,11 +32,8 @@ __all__ = [
 FONT = "Libertinus Serif"
 _THRESHOLD = "#9C0006"
 _POINTS = 401
-_BINS = 24
 _LONGEST = 40
 _DASHES = ' stroke-dasharray="4 3"'
-_LONG = 1.3
-"""Where all draws reach over more than this much of the middle 99.6 % of them, their tails are not drawn."""
 
 Floats = NDArray[np.float64]
 
@@ -101,21 +98,18 @@ def before_and_after(name: str, prior: Floats, accepted: Floats) -> Drawing | No
         prior: `(n,)` draws before filtering.
         accepted: `(m,)` accepted draws.
     """
-    before, after = numbers(prior), numbers(accepted)
-    if not before.size or not after.size:
+    shown = shapes(prior, accepted)
+    if shown is None:
         return None
-    low, high = _shown(before)
-    if not (math.isfinite(low) and math.isfinite(high) and high > low):
-        return None
-    edges = np.linspace(low, high, _BINS + 1)
-    pale, dark = (np.histogram(x, edges)[0] / x.size for x in (before, after))
+    edges, pale, dark = shown.edges, shown.before, shown.accepted
+    low, high = float(edges[0]), float(edges[-1])
     most = float(max(pale.max(), dark.max()))
     width, height, bottom = 150.0, 48.0, 34.0
     across = Scale(low, high, 1.0, width - 1.0, 1.0)
     up = Scale(0.0, most or 1.0, bottom, 2.0, 1.0)
     found = []
     outline: list[tuple[float, float]] = []
-    for index in range(_BINS):
+    for index in range(pale.size):
         x, upper = across(float(edges[index])), across(float(edges[index + 1]))
         found.append(_rect(x, up(float(pale[index])), upper - x, bottom - up(float(pale[index])), LIGHT))
         outline += [(x, up(float(dark[index]))), (upper, up(float(dark[index])))]
@@ -157,13 +151,6 @@ def influence_drawing(found: ForecastSensitivity, most: int) -> Drawing:
     drawn.append(text_at((left + right) / 2, bottom + 28, "Share of the variance explained, %"))
     said = f"{found.forecast}: the variance that each assumption explains, the largest first"
     return drawing(drawn, 570.0, bottom + 34, said, 125.0)
-
-
-def _shown(draws: Floats) -> tuple[float, float]:
-    """The ends of a picture of draws: all of them, but without long tails, which would leave the rest in one bar."""
-    low, high = (float(end) for end in np.quantile(draws, (0.002, 0.998)))
-    least, most = float(draws.min()), float(draws.max())
-    return (least, most) if most - least <= _LONG * (high - low) else (low, high)
 
 
 def _near(value: float, low: float, high: float) -> float:

@@ -1,7 +1,8 @@
 """The sheet Assumptions: what each one is and why, and beside it how the filters changed it.
 
 Each has two lines: name, cell, distribution and the draws before filtering; below them units, base case, source and the
-accepted draws.
+accepted draws. At their end a small
+chart shows the shapes of both.
 """
 
 from __future__ import annotations
@@ -10,14 +11,22 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from xlmc.report.filter_effect import FilterEffect, Marginal, filter_effect_of
+import numpy as np
+
+from xlmc.report.filter_effect import FilterEffect, Marginal, filter_effect_of, shapes
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
+from xlmc.report.sheets.curves_sheet import SHARE
+from xlmc.report.sheets.styles import DARK, LIGHT, straight
 from xlmc.results.record.definition_tables import correlations_met
 from xlmc.results.record.in_words import distribution_text, status
 from xlmc.statistics import Estimate
 
 if TYPE_CHECKING:
+    from xlsxwriter.chart import Chart
+    from xlsxwriter.workbook import Workbook
+
+    from xlmc.report.sheets.curves_sheet import Curves, TableAt
     from xlmc.report.sheets.page import Page
     from xlmc.run.simulation import Simulation
 
@@ -27,7 +36,12 @@ HEADER = 3
 """The row of the headings, counted from 0."""
 
 _STATISTICS = 14
-WIDTHS = (36, 12, 44, 10, 8, *[9] * _STATISTICS)
+_SHAPE = 5 + _STATISTICS
+WIDTHS = (36, 12, 44, 10, 8, *[9] * _STATISTICS, 24)
+_SIZE = (166, 42)
+"""The size of a small chart in pixels: within the cells of two lines."""
+_DRAWN = 100
+"""The most assumptions whose shapes are drawn: more would make the file slow to open."""
 _READABLE = 10
 """The column that paragraphs reach to, so that they can be read without scrolling."""
 
@@ -52,14 +66,15 @@ _CORRELATIONS = (
 )
 
 
-def write_assumptions(page: Page, simulation: Simulation) -> None:
-    """Write the sheet."""
+def write_assumptions(page: Page, book: Workbook, simulation: Simulation, curves: Curves) -> None:
+    """Write the sheet; `curves` takes the numbers that its small charts draw."""
     name = simulation.model.workbook.name
     of = f" of {simulation.trials:,}" if simulation.rare is None else ""
     page.title("Assumptions", f"{name}: {simulation.accepted:,}{of} trials accepted")
     page.row = HEADER
     page.table(_headers(), _lines(simulation))
     page.sheet.freeze_panes(HEADER + 1, 1)
+    _draw_shapes(page, book, simulation, curves)
     write_correlations(page, simulation)
     page.heading("What this shows")
     page.wide(MEANING, "paragraph", _READABLE)
@@ -76,7 +91,55 @@ def write_assumptions(page: Page, simulation: Simulation) -> None:
 def _headers() -> list[str]:
     heads = ["Assumption and its units", "Cell and base case", "Distribution and source", "Draws", "Trials"]
     heads += ["Mean", "±", "Standard deviation", "±", "5 %", "±", "50 %", "±", "95 %", "±"]
-    return [*heads, "Shift of mean in SDs", "±", "SD accepted / before", "±"]
+    return [*heads, "Shift of mean in SDs", "±", "SD accepted / before", "±", "Before (pale) and accepted (line)"]
+
+
+def _draw_shapes(page: Page, book: Workbook, simulation: Simulation, curves: Curves) -> None:
+    """Draw how often each assumption has each value, beside its lines."""
+    drawn = []
+    for index, assumption in enumerate(simulation.model.assumptions[:_DRAWN]):
+        prior, accepted = simulation.prior.get(assumption.name), simulation.inputs.get(assumption.name)
+        found = None if prior is None or accepted is None else shapes(prior, accepted)
+        if found is not None:
+            drawn.append((HEADER + 1 + 2 * index, assumption.name, found))
+    if not drawn:
+        return
+    heads = [f"{name}, {which}" for _, name, _ in drawn for which in ("before", "accepted")]
+    bins = np.column_stack([shares for _, _, found in drawn for shares in (found.before, found.accepted)])
+    rows = [[Shown(share, SHARE) for share in row] for row in bins.tolist()]
+    bottom = page.row
+    table = curves.write(["Shapes of the assumptions' draws"], "Share of the draws in each bin", heads, rows)
+    page.row = bottom
+    for column, (row, name, _) in enumerate(drawn):
+        words = f"{name}: before filtering pale, accepted as a line"
+        options = {"object_position": 1, "x_offset": 3, "y_offset": 2, "description": words}
+        page.sheet.insert_chart(row, _SHAPE, _shape_chart(book, table, 2 * column), options)
+
+
+def _shape_chart(book: Workbook, table: TableAt, column: int) -> Chart:
+    """A chart without axes, over both lines of an assumption: columns before filtering, a line of the accepted."""
+    chart = book.add_chart({"type": "column"})
+    chart.add_series(
+        {
+            "name": table.heading(column),
+            "values": table.column(column),
+            "fill": {"color": LIGHT},
+            "border": {"none": True},
+            "gap": 0,
+        }
+    )
+    line = straight(book.add_chart({"type": "line"}))
+    accepted = {"name": table.heading(column + 1), "values": table.column(column + 1)}
+    line.add_series({**accepted, "line": {"color": DARK, "width": 1.5}})
+    chart.combine(line)
+    chart.set_x_axis({"visible": False})
+    chart.set_y_axis({"visible": False, "min": 0, "major_gridlines": {"visible": False}})
+    chart.set_legend({"none": True})
+    chart.set_title({"none": True})
+    chart.set_chartarea({"border": {"none": True}, "fill": {"none": True}})
+    chart.set_plotarea({"layout": {"x": 0.0, "y": 0.0, "width": 1.0, "height": 1.0}})
+    chart.set_size({"width": _SIZE[0], "height": _SIZE[1]})
+    return chart
 
 
 def _lines(simulation: Simulation) -> Iterator[list[Shown]]:

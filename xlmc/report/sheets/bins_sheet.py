@@ -56,7 +56,9 @@ class BinsAt:
 
 def write_bins(page: Page, figures: Sequence[Figure], name: str) -> list[BinsAt]:
     """Write the sheet with the tables of bins side by side; what is returned says where each stands."""
-    page.title_of_data("Bins of the histograms", f"{name}: the numbers that the charts draw.", name, HEADER)
+    page.title_of_data(
+        "Bins of the histograms", f"{name}: the numbers that the charts draw.", name, HEADER, hidden=True
+    )
     tables = [_write_table(page, figure) for figure in figures]
     page.sheet.freeze_panes(HEADER + 1, 0)
     return tables

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
+from xlmc.report.case_fields import case_of
 from xlmc.report.histogram import Figure, figures_of
 from xlmc.report.sheets import (
     assumptions_sheet,
@@ -59,9 +60,9 @@ class Writing:
     def __init__(self, book: ExactBook, simulation: Simulation, command: str | None, rows: int) -> None:
         self.book, self.simulation, self.command, self.rows = book, simulation, command, rows
         self.name = simulation.model.workbook.name
-        styles = Styles(book)
+        styles, header = Styles(book), case_of(simulation.model.workbook, {}).in_a_line
         self.pages = {
-            sheet.name: Page(book.add_worksheet(sheet.name), styles, sheet.widths)
+            sheet.name: Page(book.add_worksheet(sheet.name), styles, sheet.widths, header)
             for sheet in SHEETS
             if sheet.wanted(self)
         }
@@ -150,14 +151,15 @@ SHEETS: Final[tuple[ResultSheet, ...]] = (
     ResultSheet("Pairs", _pairs, pairs_sheet.WIDTHS, after=("Charts", "Trials")),
     ResultSheet(
         "Assumptions",
-        lambda page, run: assumptions_sheet.write_assumptions(page, run.simulation),
+        lambda page, run: assumptions_sheet.write_assumptions(page, run.book, run.simulation, run.curves),
         assumptions_sheet.WIDTHS,
+        after=("Pairs",),
     ),
     ResultSheet("Sensitivity", _sensitivity, sensitivity_sheet.WIDTHS),
     ResultSheet("Filter limits", _limits, limits_sheet.WIDTHS, wanted=_has_limits),
     ResultSheet("Trials", _trials, trials_sheet.WIDTHS),
     ResultSheet("Bins", _bins),
-    ResultSheet("Curves", lambda _, run: run.curves.finish(), after=("Charts", "Pairs")),
+    ResultSheet("Curves", lambda _, run: run.curves.finish(), after=("Charts", "Pairs", "Assumptions")),
     ResultSheet("Record", _record, record_sheet.WIDTHS),
 )
 """The sheets in the order of their tabs."""
@@ -172,6 +174,9 @@ def build_sheets(
         simulation: the finished run.
         command: what the person typed, for the record.
         rows: the most accepted trials to write out.
+
+    Raises:
+        DefinitionError: the table `xlmc_case` is not what it must be.
     """
     from xlmc.report.sheets.exact_book import ExactBook
 

@@ -22,6 +22,7 @@ __all__ = [
     "estimate",
     "exact",
     "interval",
+    "number_format",
     "paired_format",
     "share",
     "share_format",
@@ -117,6 +118,13 @@ def share_format(estimate: Estimate) -> str:
 def spread_format(spread: float) -> str:
     """The format of single trials: four digits of their spread."""
     return _format(spread, 3 - two_digit_exponent(spread)) if _usable(spread) else "General"
+
+
+def number_format(value: float) -> str:
+    """The format of a number that stands alone: six digits, or all that it has where these are fewer."""
+    if float(value).is_integer():
+        return _COUNT if abs(value) < _LARGEST * 100 else "General"
+    return "General" if len(repr(value)) <= _DIGITS + 1 else _format(value, None)
 
 
 def _paired_decimals(estimate: Estimate) -> int | None:

@@ -34,7 +34,7 @@ WIDTHS = (34, 26, 12, 12, 11, 11, 11)
 
 LAST = len(WIDTHS) - 1
 
-_ON_A_PAGE, _SCALE = 33, 80
+_ON_A_PAGE, _SCALE = 58, 60
 """Rows, and the percentage at which so many fit."""
 
 _PERCENT = "0.0%"
@@ -56,7 +56,7 @@ def write_certainty(page: Page, simulation: Simulation, trials: TrialsAt) -> Non
     start = page.row
     _write_own_ranges(page, simulation, trials)
     apart = start // _ON_A_PAGE != page.row // _ON_A_PAGE
-    page.set_up_printing(name, scale=_SCALE, breaks=[start] if apart else [])
+    page.set_up_printing(name, scale=_SCALE, breaks=[start] if apart else [], upright=True)
 
 
 def write_ranges(page: Page, simulation: Simulation) -> None:

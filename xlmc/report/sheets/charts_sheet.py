@@ -1,6 +1,7 @@
 """The sheet Charts: histograms, cumulative charts, overlay and trend charts.
 
-Histograms come first, like the paper's Figures 12 to 15; then what compares forecasts; then the cumulative charts.
+Histograms come first, like the paper's Figures 12 to 15, then what compares forecasts: these are printed. Then come the
+cumulative charts.
 """
 
 from __future__ import annotations
@@ -29,14 +30,16 @@ ACROSS = 2
 _COLUMNS = 9
 """Drawings side by side, and the columns of the sheet that each takes."""
 
-_ON_A_PAGE, _SCALE = 2, 60
+_ON_A_PAGE, _SCALE = 3, 47
 """Rows of drawings, and the percentage at which so many fit."""
+
+_PRINTED = "The cumulative charts stand behind the others and are not printed, unless you clear the print area."
 
 _CHART_ROWS = 16
 _OFFSET = 3
 """Pixels above a chart, so that its frame is not drawn on the page before."""
 
-_FIRST = 3
+_FIRST = 4
 WIDTHS = (8.43,) * (ACROSS * _COLUMNS)
 
 
@@ -59,6 +62,7 @@ def write_charts(
     """Write the sheet with the charts; `bins` says where their bins stand, `curves` takes the other numbers."""
     name = simulation.model.workbook.name
     page.title("Forecast charts of the accepted trials", f"{name}: {simulation.accepted:,} accepted trials")
+    page.wide(_PRINTED, "remark", len(WIDTHS) - 1)
     page.row = _FIRST
     if not figures:
         page.put(page.row, 0, Shown("No forecast has a number in an accepted trial: nothing to draw.", look="alarm"))
@@ -66,14 +70,11 @@ def write_charts(
         Drawing(histogram_chart(book, at, figure.bins), figure.caption)
         for figure, at in zip(figures, bins, strict=True)
     ]
-    breaks = place_drawings(page, drawings)
-    others = [
-        *_comparison_drawings(book, curves, simulation, figures),
-        *_cumulative_drawings(book, curves, simulation, figures),
-    ]
-    if others:
-        breaks += [page.row, *place_drawings(page, others)]
+    breaks = place_drawings(page, [*drawings, *_comparison_drawings(book, curves, simulation, figures)])
+    printed = page.row
+    breaks += [printed, *place_drawings(page, list(_cumulative_drawings(book, curves, simulation, figures)))]
     page.set_up_printing(name, scale=_SCALE, breaks=breaks)
+    page.sheet.print_area(0, 0, printed - 1, len(WIDTHS) - 1)
 
 
 def place_drawings(page: Page, drawings: Sequence[Drawing]) -> list[int]:

@@ -58,7 +58,7 @@ class Curves:
     def __init__(self, page: Page, name: str) -> None:
         self._page, self._left = page, 0
         below = f"{name}: the numbers that the cumulative, overlay, trend and scatter charts draw."
-        page.title_of_data("Curves", below, name, HEADER)
+        page.title_of_data("Curves", below, name, HEADER, hidden=True)
         page.sheet.freeze_panes(HEADER + 1, 0)
 
     def write(

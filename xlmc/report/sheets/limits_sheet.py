@@ -1,4 +1,7 @@
-"""The sheet Filter limits: how the answers move as each limit of each filter moves, one page for each limit."""
+"""The sheet Filter limits: how the answers move as each limit of each filter moves.
+
+The charts of all limits come first and are printed; below them each limit has its tables.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,16 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import Shown
-from xlmc.report.sheets.sensitivity_charts import CHART_ROWS, TableAt, limit_chart
+from xlmc.report.sheets.sensitivity_charts import (
+    CHART_ROWS,
+    RIGHT,
+    WIDTHS,
+    Captioned,
+    TableAt,
+    limit_chart,
+    place_rows,
+    set_up_printing,
+)
 from xlmc.report.sheets.styles import bounds
 from xlmc.results.record.in_words import number_text
 
@@ -19,25 +31,33 @@ if TYPE_CHECKING:
 
 __all__ = ["WIDTHS", "limit_sentences", "moved_caption", "write_acceptance", "write_answers", "write_limits"]
 
-WIDTHS = (38, 10, 10, 9, 9, 11, 9, 9, 11, 9, 13, *[9] * 5)
 _LAST: Final = len(WIDTHS) - 1
-_RIGHT: Final = 6
-_SCALE: Final = 49
+_PRINTED: Final = (
+    "Printed is how the means change. The shares of trials accepted, the slopes and the numbers of all charts stand "
+    "below, and are not printed unless you clear the print area."
+)
 _LIMIT, _CHANGE, _OF_RANGE = 1, 4, 10
 """Columns of the long table."""
 
 
 def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) -> None:
-    """Write the sheet."""
+    """Write the sheet; its first charts draw the tables that stand below them, so room is left for them."""
     page.title("Filter limits: how the answers move as each limit moves", name)
-    for sentence in limit_sentences(found):
+    for sentence in (*limit_sentences(found), _PRINTED):
         page.wide(sentence, "remark", _LAST)
-    breaks = []
-    for number, limit in enumerate(found.filter_limits):
-        if number:
-            breaks.append(page.row)
-        _write_limit(page, book, limit, {f.forecast: f.units for f in found.forecasts})
-    page.set_up_printing(name, breaks=breaks, scale=_SCALE)
+    units = {f.forecast: f.units for f in found.forecasts}
+    page.row += 1
+    top, drawn = page.row, sum(bool(limit.points) for limit in found.filter_limits)
+    tops = range(top, top + (drawn + 1) // 2 * (CHART_ROWS + 1), CHART_ROWS + 1)
+    page.row = printed = tops.stop
+    charts: list[Captioned] = []
+    details = []
+    for limit in found.filter_limits:
+        details.append(page.row)
+        charts += _write_limit(page, book, limit, units)
+    page.row = top
+    place_rows(page, charts)
+    set_up_printing(page, name, tops, printed, details)
 
 
 def limit_sentences(found: Sensitivities) -> list[str]:
@@ -58,20 +78,21 @@ def limit_sentences(found: Sensitivities) -> list[str]:
     return said
 
 
-def _write_limit(page: Page, book: Workbook, limit: FilterLimit, units: dict[str, str]) -> None:
-    stated = f"{limit.relation} {number_text(limit.limit)}"
-    page.heading(f"{limit.filter}: {stated} ({limit.cell})")
+def _write_limit(page: Page, book: Workbook, limit: FilterLimit, units: dict[str, str]) -> list[Captioned]:
+    """Write a limit's tables, and the chart of the shares above them; that of the changes is returned, for the top."""
+    page.heading(f"{limit.filter}: {limit.relation} {number_text(limit.limit)} ({limit.cell})")
     if not limit.points:
         page.wide("The accepted trials do not say by how much it could be moved.", "paragraph", _LAST)
-        return
+        return []
     top = page.row
     page.row += CHART_ROWS + 1
     acceptance = write_acceptance(page, limit)
     page.row += 1
     tables = write_answers(page, limit)
     bottom, page.row = page.row, top
-    _write_charts(page, book, limit, (acceptance, tables), units)
+    place_rows(page, [_acceptance_chart(book, limit, acceptance)])
     page.row = bottom
+    return [_moved_chart(book, limit, tables, units)]
 
 
 def write_acceptance(page: Page, limit: FilterLimit) -> TableAt:
@@ -79,7 +100,7 @@ def write_acceptance(page: Page, limit: FilterLimit) -> TableAt:
     header = page.row
     page.table(["Limit", "Value", "Trials", "Share", "±"], [_acceptance(point, limit) for point in limit.points])
     bottom, page.row = page.row, header
-    starts, last = (_RIGHT, 12, 13), 13
+    starts, last = (RIGHT, 12, 13), 13
     headers = ("Slope: change of the mean of …, per unit of the limit", "Slope", "±")
     page.line([Shown(header, look="header left") for header in headers], starts, last)
     for slope in limit.slopes:
@@ -144,25 +165,24 @@ def _answer(name: str, limit: float, answer: LimitAnswer, now: LimitAnswer) -> l
     return [Shown(name, look="name"), Shown(limit, look=looks[0]), *shown, *part]
 
 
-def _write_charts(
-    page: Page, book: Workbook, limit: FilterLimit, at: tuple[TableAt, list[TableAt]], units: dict[str, str]
-) -> None:
-    acceptance, tables = at
-    across = f"Limit: {limit.filter} {limit.relation} …"
+def _moved_chart(book: Workbook, limit: FilterLimit, tables: list[TableAt], units: dict[str, str]) -> Captioned:
     found = {units[slope.forecast] for slope in limit.slopes}
     unit = found.pop() if len(found) == 1 else None
     axis = "Change of the mean" + (", of the central range" if unit is None else f" ({unit})" if unit else "")
     value, error, number = (_CHANGE, _CHANGE + 1, "General") if unit is not None else (_OF_RANGE, _OF_RANGE + 1, "0%")
-    moved = limit_chart(book, tables, "Change of each mean", across, axis, (0, _LIMIT, value, error), number)
+    chart = limit_chart(book, tables, "Change of each mean", _across(limit), axis, (0, _LIMIT, value, error), number)
+    return chart, moved_caption(limit)
+
+
+def _acceptance_chart(book: Workbook, limit: FilterLimit, acceptance: TableAt) -> Captioned:
     title = "Share of trials accepted"
-    share = limit_chart(book, [acceptance], title, across, "Share", (0, 1, 3, 4), "0.0%", ends=_share_axis(limit))
-    captions = (moved_caption(limit), _share_caption(limit))
-    for chart, column, caption in zip((moved, share), (0, _RIGHT), captions, strict=True):
-        page.sheet.insert_chart(page.row, column, chart, {"object_position": 1, "description": caption})
-    page.row += CHART_ROWS
-    gap = Shown("", look="caption")
-    texts = [Shown(caption, look="caption") for caption in captions]
-    page.line([texts[0], gap, texts[1], gap], [0, _RIGHT - 1, _RIGHT, _LAST], _LAST)
+    ends = _share_axis(limit)
+    chart = limit_chart(book, [acceptance], title, _across(limit), "Share", (0, 1, 3, 4), "0.0%", ends=ends)
+    return chart, _share_caption(limit)
+
+
+def _across(limit: FilterLimit) -> str:
+    return f"Limit: {limit.filter} {limit.relation} …"
 
 
 def _share_axis(limit: FilterLimit) -> dict[str, float]:

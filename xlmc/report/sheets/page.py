@@ -32,10 +32,17 @@ class Page:
 
     Attributes:
         row: counted from 0.
+
+    Args:
+        sheet: the worksheet.
+        styles: of its cells.
+        widths: of its columns, from the first on.
+        header: stands on top of every printed page, on the right.
     """
 
-    def __init__(self, sheet: ExactSheet, styles: Styles, widths: Sequence[float]) -> None:
+    def __init__(self, sheet: ExactSheet, styles: Styles, widths: Sequence[float], header: str = "") -> None:
         self.sheet, self._styles, self._widths = sheet, styles, list(widths)
+        self._header = header
         self.row = 0
         for column, width in enumerate(widths):
             sheet.set_column(column, column, width)
@@ -109,7 +116,7 @@ class Page:
         self.put(self.row + 1, column, Shown(below, look="subtitle"))
         self.row += 2
 
-    def title_of_data(self, value: str, below: str, name: str, header: int) -> None:
+    def title_of_data(self, value: str, below: str, name: str, header: int, *, hidden: bool = False) -> None:
         """Write the title of a sheet that would fill many pages; of it, the title and the line below are printed.
 
         Args:
@@ -117,10 +124,15 @@ class Page:
             below: the line below; what is printed is added to it.
             name: of the workbook, for the foot of the page.
             header: the row of headings, which stands on top of every page once the numbers are printed, too.
+            hidden: whether the sheet opens hidden, so that nothing of it is printed.
         """
-        self.title(value, f"{below} Only this heading is printed, unless you clear the print area.")
+        if hidden:
+            self.title(value, f"{below} This sheet opens hidden; hidden sheets are not printed.")
+            self.sheet.hide()
+        else:
+            self.title(value, f"{below} Only this heading is printed, unless you clear the print area.")
+            self.sheet.print_area(0, 0, 1, _HEADING_COLUMNS)
         self.set_up_printing(name, repeat=header)
-        self.sheet.print_area(0, 0, 1, _HEADING_COLUMNS)
 
     def heading(self, value: str, column: int = 0) -> None:
         """Write the heading of a section, with space above it."""
@@ -137,6 +149,7 @@ class Page:
         scale: int = 100,
         breaks: Sequence[int] = (),
         columns: Sequence[int] = (),
+        upright: bool = False,
     ) -> None:
         """Set up how the sheet prints: one page wide, unless columns are given to break at.
 
@@ -147,8 +160,10 @@ class Page:
             scale: in percent; 100 without breaks fits the sheet to the page's width, where Excel heeds no break.
             breaks: the rows that begin a new page, counted from 0.
             columns: the columns that do.
+            upright: whether its pages are higher than wide.
         """
-        self.sheet.set_landscape()
+        if not upright:
+            self.sheet.set_landscape()
         if breaks or columns or scale != 100:
             self.sheet.set_print_scale(scale)
             self.sheet.set_h_pagebreaks(list(breaks))
@@ -157,7 +172,9 @@ class Page:
         else:
             self.sheet.fit_to_pages(1, 0)
         self.sheet.set_margins(left=0.5, right=0.5, top=0.6, bottom=0.7)
-        self.sheet.set_footer(f"&L{name.replace('&', '&&')[:120]}&C&A&RPage &P of &N")
+        self.sheet.set_footer(f"&L{_plain(name)}&C&A&RPage &P of &N")
+        if self._header:
+            self.sheet.set_header(f"&R{_plain(self._header)}")
         if repeat is not None:
             self.sheet.repeat_rows(repeat if repeat_from is None else repeat_from, repeat)
 
@@ -172,6 +189,11 @@ class Page:
 def cut(value: str) -> str:
     """The text, or as much of it as a cell holds, with a mark."""
     return value if len(value) <= LONGEST_TEXT else value[: LONGEST_TEXT - 6] + " [cut]"
+
+
+def _plain(value: str) -> str:
+    """A text as the head and the foot of a page take it: `&` begins a code there, and Excel takes 255 characters."""
+    return value[:120].replace("&", "&&")
 
 
 def _in_words(value: float) -> str:

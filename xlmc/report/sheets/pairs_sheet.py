@@ -10,7 +10,7 @@ import numpy as np
 
 from xlmc.report.sheets import cells
 from xlmc.report.sheets.cells import BLANK, Shown
-from xlmc.report.sheets.charts_sheet import Drawing, place_drawings
+from xlmc.report.sheets.charts_sheet import ACROSS, Drawing, place_drawings
 from xlmc.report.sheets.curves_sheet import Curves, TableAt
 from xlmc.report.sheets.styles import DARK, Reference, across, axis_format, bounds, finish, straight, upwards
 from xlmc.results.statements import PAIRS, Pair, pairs_of
@@ -34,6 +34,10 @@ WIDTHS = (*[8.43] * 14, 11.5, *[8.43] * 3)
 _LAST = 17
 _STARTS = (0, 3, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17)
 _SCALE = 60
+_PRINTED = ACROSS
+"""Charts that fit on a page below the table of the pairs of four forecasts: those that are printed."""
+_ABOVE_CHARTS = 6
+"""Pairs whose table leaves room for them."""
 _FORECASTS = 6
 """More have more pairs than are looked at."""
 
@@ -61,12 +65,20 @@ def write_pairs(page: Page, book: Workbook, simulation: Simulation, curves: Curv
         return
     page.heading("Joint probability and rank correlation")
     write_pair_table(page, pairs)
-    for sentence in pair_sentences(simulation, pairs):
+    sentences = pair_sentences(simulation, pairs)
+    on_paper = min(len(pairs), _PRINTED) if len(pairs) <= _ABOVE_CHARTS else 0
+    if on_paper < len(pairs):
+        which = f"Only the first {on_paper} scatter charts are" if on_paper else "The scatter charts are not"
+        sentences.append(f"{which} printed, unless you clear the print area.")
+    for sentence in sentences:
         page.wide(sentence, "remark", _LAST)
     page.row += 1
-    breaks = [page.row] if len(pairs) > 2 else []
-    breaks += place_drawings(page, _drawings(book, curves, simulation, pairs, trials))
+    drawings = _drawings(book, curves, simulation, pairs, trials)
+    place_drawings(page, drawings[:on_paper])
+    printed = page.row
+    breaks = [printed, *place_drawings(page, drawings[on_paper:])]
     page.set_up_printing(name, scale=_SCALE, breaks=breaks)
+    page.sheet.print_area(0, 0, printed - 1, _LAST)
 
 
 def write_pair_table(page: Page, pairs: Sequence[Pair]) -> None:

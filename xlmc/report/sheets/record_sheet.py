@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from itertools import count
 from typing import TYPE_CHECKING
 
-from xlmc.report.sheets.cells import NONE, Shown
+from xlmc.report.sheets.cells import NONE, Shown, number_format
 from xlmc.results.record import Entry, Record, RecordTable, Section, Value
 
 if TYPE_CHECKING:
@@ -26,6 +26,9 @@ _SPANS = {"limits": 2, "because": 5, "parameters": 2, "source": 3, "notes": 2, "
 """How many columns of the sheet a column of a table takes; all others take one."""
 
 _CODE = frozenset({"repeat", "command", "fingerprint", "sha256", "original_sha256"})
+
+_PLAIN = frozenset({"seed"})
+"""Whole numbers that are names, not counts: without separators of thousands."""
 
 _LISTED = frozenset({"structure", "cells"})
 """Sections as long as the model, at the end: each row takes one line, however long its text, and is not printed."""
@@ -61,7 +64,7 @@ def _write_entry(page: Page, section: str, entry: Entry) -> None:
         page.line([_cell(each, "listed") for each in (entry.label, entry.value)], count(_FIRST), fit=False)
         return
     look = "code" if entry.key in _CODE else "text"
-    page.line([Shown(entry.label, look="label"), _cell(entry.value, look)], (_FIRST, _FIRST + 1), _LAST)
+    page.line([Shown(entry.label, look="label"), _cell(entry.value, look, entry.key)], (_FIRST, _FIRST + 1), _LAST)
 
 
 def _write_table(page: Page, section: str, table: RecordTable) -> None:
@@ -91,7 +94,10 @@ def _write_key(page: Page, row: int, key: str) -> None:
     page.put(row, 0, Shown(key, look="key"))
 
 
-def _cell(value: Value, look: str) -> Shown:
+def _cell(value: Value, look: str, key: str = "") -> Shown:
+    """A value as it is shown; the cell keeps all digits of a number."""
     if value is None or value == "":
         return Shown(NONE, look=look)
-    return Shown(value, look=look)
+    if isinstance(value, str | bool) or key in _PLAIN:
+        return Shown(value, look=look)
+    return Shown(value, number_format(value), look)

@@ -49,6 +49,7 @@ def save(
         TakenError: the file is not ours to replace, is open in a program, or is the workbook itself and has changed
             since it was read.
         WorkbookError: the file cannot be written, or has another ending than the workbook.
+        DefinitionError: the workbook's table `xlmc_case` is not what it must be.
     """
     check = partial(_check, simulation, path, overwrite=overwrite)
     check_ending(path, simulation.model.path)

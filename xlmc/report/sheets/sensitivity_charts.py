@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
+from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.styles import AXIS, DARK, FONT, GRID, INK, LIGHT, axis_format, no_reference, straight
 
 if TYPE_CHECKING:
@@ -18,19 +19,38 @@ if TYPE_CHECKING:
     from xlsxwriter.chart_scatter import ChartScatter
     from xlsxwriter.workbook import Workbook
 
+    from xlmc.report.sheets.page import Page
+
 __all__ = [
     "CHART_ROWS",
     "MOST_LINES",
+    "RIGHT",
+    "WIDTHS",
+    "Captioned",
     "TableAt",
     "bar_chart",
     "limit_chart",
+    "place_rows",
+    "set_up_printing",
     "spider_chart",
     "tornado_chart",
 ]
 
 
+WIDTHS: Final = (38, 10, 10, 9, 9, 11, 9, 9, 11, 9, 13, *[9] * 5)
+"""The columns of both sheets."""
+
+RIGHT: Final = 6
+"""The column of the right-hand chart."""
+
 CHART_ROWS: Final = 13
 """Rows of a sheet that a chart covers."""
+
+_ON_A_PAGE, _SCALE = 3, 45
+"""Rows of charts with their headings, and the percentage at which so many fit on a page."""
+
+Captioned: TypeAlias = tuple[Any, str]
+"""A chart, and what it is and is not in words."""
 
 _SIZE: Final = (620, 23 * CHART_ROWS)
 """The size of a chart in pixels."""
@@ -85,6 +105,32 @@ class TableAt:
         from xlsxwriter.utility import xl_range_formula
 
         return f"={xl_range_formula(self.sheet, self.first, column, self.last, column)}"
+
+
+def place_rows(page: Page, charts: Sequence[Captioned]) -> None:
+    """Put charts on a sheet, two side by side with their captions below, and go to the row behind them."""
+    for start in range(0, len(charts), 2):
+        row, columns = charts[start : start + 2], (0, RIGHT)
+        for (chart, caption), column in zip(row, columns, strict=False):
+            page.sheet.insert_chart(page.row, column, chart, {"object_position": 1, "description": caption})
+        page.row += CHART_ROWS
+        left, right = (Shown(caption, look="caption") for caption in (*(text for _, text in row), "")[:2])
+        gap = Shown("", look="caption")
+        page.line([left, gap, right, gap], [0, RIGHT - 1, RIGHT, len(WIDTHS) - 1], len(WIDTHS) - 1)
+
+
+def set_up_printing(page: Page, name: str, rows: Sequence[int], last: int, details: Sequence[int]) -> None:
+    """Have the charts that stand first printed, and what stands behind them only once the print area is cleared.
+
+    Args:
+        page: the sheet.
+        name: of the workbook.
+        rows: where a row of charts begins, with its heading.
+        last: the row behind the last.
+        details: the rows that begin the pages of what is not printed.
+    """
+    page.set_up_printing(name, breaks=sorted({*rows[_ON_A_PAGE::_ON_A_PAGE], last, *details}), scale=_SCALE)
+    page.sheet.print_area(0, 0, last - 1, len(WIDTHS) - 1)
 
 
 def bar_chart(

@@ -1,6 +1,7 @@
 """The sheet Sensitivity: what each forecast depends on.
 
-Each forecast has two pages: the charts, then the tables of influences and of moves that they are drawn from.
+The two charts of each forecast that say most come first and are printed; below them stand its other charts and the
+tables of influences and of moves that all are drawn from.
 """
 
 from __future__ import annotations
@@ -14,8 +15,12 @@ from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.sensitivity_charts import (
     CHART_ROWS,
     MOST_LINES,
+    WIDTHS,
+    Captioned,
     TableAt,
     bar_chart,
+    place_rows,
+    set_up_printing,
     spider_chart,
     tornado_chart,
 )
@@ -43,15 +48,7 @@ __all__ = [
 ]
 
 
-WIDTHS = (38, 10, 10, 9, 9, 11, 9, 9, 11, 9, 13, *[9] * 5)
-
 _LAST: Final = len(WIDTHS) - 1
-
-_RIGHT: Final = 6
-"""The column of the right-hand chart."""
-
-_SCALE: Final = 51
-"""The percentage at which six charts fit on a page."""
 
 BARS: Final = 10
 """Bars on a chart: more would not have readable names."""
@@ -62,21 +59,57 @@ ROWS: Final = 40
 _EXPLAINED, _DEPENDENCE, _RANK, _CONTRIBUTION, _FIRST, _TOTAL = 2, 5, 8, 10, 12, 14
 """The columns of the values; their errors follow them."""
 
+_HEADING: Final = 2
+"""The rows of a heading."""
+
+_PRINTED: Final = 12
+"""Forecasts whose first charts are printed: four pages."""
+
 _CHANGES: Final = 5
 """The column of the first of the five changes."""
 
 
 def write_sensitivity(page: Page, book: Workbook, found: Sensitivities, name: str) -> None:
-    """Write the sheet."""
+    """Write the sheet: two charts of each forecast, which are printed; below all of them its others and its tables.
+
+    The charts draw the tables that stand below them, so room is left for them.
+    """
     page.title("Sensitivity: what the answers depend on", f"{name}: {found.accepted:,} accepted trials")
-    for sentence in sensitivity_sentences(found):
+    for sentence in (*sensitivity_sentences(found), _printed_sentence(len(found.forecasts))):
         page.wide(sentence, "remark", _LAST)
-    breaks: list[int] = []
-    for number, forecast in enumerate(found.forecasts):
-        if number:
-            breaks.append(page.row)
-        _write_forecast(page, book, forecast, found, breaks)
-    page.set_up_printing(name, breaks=breaks, scale=_SCALE)
+    tops = []
+    for forecast in found.forecasts:
+        tops.append(page.row)
+        _write_heading(page, forecast)
+        page.row += CHART_ROWS + 1 if _is_drawn(forecast) else 0
+    printed, details = [*tops, page.row][min(len(tops), _PRINTED)], []
+    for top, forecast in zip(tops, found.forecasts, strict=True):
+        if not _is_drawn(forecast):
+            continue
+        details.append(page.row)
+        charts = _write_details(page, book, forecast, found)
+        bottom, page.row = page.row, top + _HEADING
+        place_rows(page, charts)
+        page.row = bottom
+    set_up_printing(page, name, tops, printed, details)
+
+
+def _printed_sentence(forecasts: int) -> str:
+    which = "each forecast" if forecasts <= _PRINTED else f"each of the first {_PRINTED} forecasts"
+    return (
+        f"Printed are the first two charts of {which}. The other charts and the numbers of all stand below, and are "
+        "not printed unless you clear the print area."
+    )
+
+
+def _write_heading(page: Page, forecast: ForecastSensitivity) -> None:
+    page.heading(f"{forecast.forecast} ({forecast.units})" if forecast.units else forecast.forecast)
+    if not _is_drawn(forecast):
+        page.wide("No assumption is drawn: there is nothing that it could depend on.", "paragraph", _LAST)
+
+
+def _is_drawn(forecast: ForecastSensitivity) -> bool:
+    return bool(forecast.influences or forecast.bars)
 
 
 def sensitivity_sentences(found: Sensitivities) -> list[str]:
@@ -96,36 +129,32 @@ def sensitivity_sentences(found: Sensitivities) -> list[str]:
     return said
 
 
-def _write_forecast(
-    page: Page, book: Workbook, forecast: ForecastSensitivity, found: Sensitivities, breaks: list[int]
-) -> None:
-    """The charts stand before the tables that they draw, so room is left for them."""
-    page.heading(f"{forecast.forecast} ({forecast.units})" if forecast.units else forecast.forecast)
-    if not forecast.influences and not forecast.bars:
-        page.wide("No assumption is drawn: there is nothing that it could depend on.", "paragraph", _LAST)
-        return
+def _write_details(
+    page: Page, book: Workbook, forecast: ForecastSensitivity, found: Sensitivities
+) -> Sequence[Captioned]:
+    """Write the further charts and the tables of a forecast; the first two charts are returned, for the top."""
+    page.heading(f"{forecast.forecast}: all numbers")
     top, sobol = page.row, found.sobol_trials > 0
-    pairs = (2 if forecast.influences else 0) + (1 if forecast.bars else 0)
-    page.row += pairs * (CHART_ROWS + 1)
-    breaks.append(page.row)
-    charts: list[Any] = []
-    captions: list[str] = []
+    count = (4 if forecast.influences else 0) + (2 if forecast.bars else 0)
+    page.row += (count // 2 - 1) * (CHART_ROWS + 1)
+    influences: Sequence[Captioned] = ()
+    moves: Sequence[Captioned] = ()
     if forecast.influences:
         at = write_influences(page, forecast, sobol)
-        charts += influence_charts(book, at, forecast, sobol)
-        captions += influence_captions(forecast, found.sobol_trials)
+        drawn = influence_charts(book, at, forecast, sobol)
+        influences = list(zip(drawn, influence_captions(forecast, found.sobol_trials), strict=True))
         _write_rest(page, len(forecast.influences))
     else:
         page.wide(_nothing(forecast), "paragraph", _LAST)
     if forecast.bars:
         page.row += 1
         at = write_moves(page, forecast)
-        charts += move_charts(book, at, forecast)
-        captions += move_captions(forecast)
+        moves = list(zip(move_charts(book, at, forecast), move_captions(forecast), strict=True))
+    charts = [*influences[:1], *moves[:1], *influences[1:], *moves[1:]]
     bottom, page.row = page.row, top
-    for first in range(0, len(charts), 2):
-        _write_pair(page, charts[first : first + 2], captions[first : first + 2])
+    place_rows(page, charts[2:])
     page.row = bottom
+    return charts[:2]
 
 
 def _nothing(forecast: ForecastSensitivity) -> str:
@@ -138,15 +167,6 @@ def _nothing(forecast: ForecastSensitivity) -> str:
 def _write_rest(page: Page, count: int) -> None:
     if count > ROWS:
         page.wide(f"and {count - ROWS:,} more that explain less.", "remark", _LAST)
-
-
-def _write_pair(page: Page, charts: Sequence[Any], captions: Sequence[str]) -> None:
-    for chart, column, caption in zip(charts, (0, _RIGHT), captions, strict=True):
-        page.sheet.insert_chart(page.row, column, chart, {"object_position": 1, "description": caption})
-    page.row += CHART_ROWS
-    texts = [Shown(caption, look="caption") for caption in captions]
-    gap = Shown("", look="caption")
-    page.line([texts[0], gap, texts[1], gap], [0, _RIGHT - 1, _RIGHT, _LAST], _LAST)
 
 
 def write_influences(page: Page, found: ForecastSensitivity, sobol: bool) -> TableAt:

@@ -20,8 +20,8 @@ _BLOCK = (26, 9, 11, 10, 10, 10)
 WIDTHS = (*_BLOCK, 2, 18, 11, 10, 10, 10)
 _RIGHT = len(_BLOCK) + 1
 _LAST = len(WIDTHS) - 1
-_SCALE = 68
-"""The percentage at which one forecast fits on a page, of A4 too, and with a font that is wider than Excel's own."""
+_ON_A_PAGE, _SCALE = 3, 48
+"""Forecasts, and the percentage at which so many fit, of A4 too, and with a font that is wider than Excel's own."""
 
 _ENDS = ["Value", "±", "95 % from", "to"]
 
@@ -35,10 +35,10 @@ def write_statistics(page: Page, simulation: Simulation) -> None:
     page.wide(ERROR_SENTENCE, "remark", _LAST)
     breaks = []
     for number, result in enumerate(simulation.results.values()):
-        if number:
+        if number and number % _ON_A_PAGE == 0:
             breaks.append(page.row)
         write_forecast(page, result)
-    page.set_up_printing(name, breaks=breaks, scale=_SCALE)
+    page.set_up_printing(name, breaks=breaks, scale=_SCALE, upright=True)
 
 
 def write_forecast(page: Page, result: ForecastResult) -> None:

@@ -7,7 +7,7 @@ import pytest
 from xlmc.address import Area
 from xlmc.definitions.definitions_reader import read_definitions
 from xlmc.errors import DefinitionError, SimulationError
-from xlmc.report.document.case_fields import case_of, fields_from
+from xlmc.report.case_fields import case_of, fields_from
 from xlmc.workbook.workbook import CellContent, Sheet, Table, Workbook
 
 

@@ -50,6 +50,11 @@ class Case:
         """What the field says; empty where it is not given."""
         return self.fields.get(field, "")
 
+    @property
+    def in_a_line(self) -> str:
+        """The fields that say whose case it is, one behind the other; empty where none is given."""
+        return ", ".join(self[field] for field in FIELDS if self[field])
+
 
 def case_of(workbook: Workbook, given: Mapping[str, str]) -> Case:
     """The case of a workbook; what is given wins over the table.

@@ -151,3 +151,38 @@ def test_a_book_that_is_not_there(xlmc):
     outcome = xlmc("fit", "nowhere.xlsx!A1:A9")
     assert outcome.code == 2
     assert "there is no such file" in outcome.err
+
+
+def test_the_values_and_the_best_families_are_drawn_in_every_kind_of_file(xlmc, measured, tmp_path):
+    pypdf = pytest.importorskip("pypdf")
+    pytest.importorskip("typst")
+    files = [tmp_path / f"found.{ending}" for ending in ("xlsx", "html", "pdf")]
+    outcome = xlmc("fit", measured, "Tests!A2:A41", "-o", files[0], "--html", files[1], "--pdf", files[2])
+    assert outcome.code == 0, outcome.err
+    assert outcome.out.count("Written: ") == 3
+    best = [line.split()[0] for line in outcome.out.splitlines() if " ± " in line][1:5]
+    assert outcome.out.startswith(f"{best[0]} describes the 40 values best by AIC.")
+    book = openpyxl.load_workbook(files[0])
+    (chart,) = book["Fit"]._charts
+    assert [series.tx.strRef.f for series in chart.series] == [f"Numbers!${letter}$1" for letter in "ADGJM"]
+    numbers = book["Numbers"]
+    assert [numbers.cell(1, column).value for column in (1, 4, 7, 10, 13)] == ["Values", *best]
+    drawn = [(x, y) for x, y in numbers.iter_rows(2, max_col=2, values_only=True) if x is not None]
+    for value, share in drawn[1:-2:2]:  # the upper corner of each step
+        assert share == pytest.approx(np.mean(value >= np.sort(FRICTION)), abs=1.5 / 40)
+    family = [(x, y) for x, y in numbers.iter_rows(2, min_col=4, max_col=5, values_only=True) if x is not None]
+    assert max(abs(y - np.mean(x >= FRICTION)) for x, y in family) < 0.15  # D at the 5 % level is 1.36 / sqrt(40)
+    page = files[1].read_text(encoding="utf-8")
+    text = "".join(each.extract_text() for each in pypdf.PdfReader(files[2]).pages)
+    assert page.count("<svg") == 1
+    for name in best:
+        assert f">{name}</text>" in page
+        assert name in text
+
+
+def test_counts_are_drawn_as_steps(xlmc, measured, tmp_path):
+    assert xlmc("fit", measured, "Tests!C2:C21", "-o", tmp_path / "found.xlsx").code == 0
+    numbers = openpyxl.load_workbook(tmp_path / "found.xlsx")["Numbers"]
+    points = [(x, y) for x, y in numbers.iter_rows(2, min_col=4, max_col=5, values_only=True) if x is not None]
+    assert all(x == int(x) for x, _ in points)
+    assert [x for x, _ in points[::2]] == [x for x, _ in points[1::2]]

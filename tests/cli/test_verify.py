@@ -70,3 +70,20 @@ def test_a_workbook_without_definitions_needs_all(xlmc, tmp_path):
     outcome = xlmc("verify", tmp_path / "plain.xlsx")
     assert outcome.code == 2
     assert "--all" in outcome.err
+
+
+def test_files_say_what_the_terminal_says(xlmc, spoiled, tmp_path):
+    sheet, page = tmp_path / "found.xlsx", tmp_path / "found.html"
+    outcome = xlmc("verify", spoiled, "-o", sheet, "--html", page)
+    assert outcome.code == 1
+    assert outcome.out.count("Written: ") == 2
+    cells = [cell for row in openpyxl.load_workbook(sheet).active.iter_rows(values_only=True) for cell in row]
+    assert "42 formula cells: 41 matched, 1 differing." in cells
+    assert "Model!D54" in cells
+    assert "Model!D54" in page.read_text(encoding="utf-8")
+
+
+def test_a_file_that_is_the_workbook_is_refused(xlmc, case_study):
+    outcome = xlmc("verify", case_study, "-o", case_study)
+    assert outcome.code == 2
+    assert "this is the workbook itself" in outcome.err

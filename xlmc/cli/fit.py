@@ -5,20 +5,25 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from xlmc.cli.options import OneOf
-from xlmc.cli.study_output import finite
-from xlmc.cli.terminal import paragraph, say, say_json
+from xlmc.cli.study_output import finite, show, study_options
+from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
+    from xlmc.report.study_curves import Curves
+    from xlmc.report.study_report import Block, StudyReport, Table
     from xlmc.studies.fitting import Fitted, Fitting
 
 __all__ = ["fit"]
 
 TOO_FEW = 1
+
+_DRAWN, _POINTS, _BESIDE = 4, 201, 0.1
+"""Families that are drawn, their points, and how far beyond the values, as a share of their range."""
 
 _BY = (
     "What ranks them: aic or bic, how probable the values are, less for every parameter; ad (Anderson-Darling) or ks"
@@ -37,26 +42,50 @@ _BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm))!(?P<range>.
 )
 @click.option("--by", type=OneOf("aic", "bic", "ad", "ks"), default="aic", show_default=True, help=_BY)
 @click.option("--name", default="", help="Name of the assumption, for the row to paste.")
+@study_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-def fit(source: str, cells: str | None, kind: str | None, by: str, name: str, as_json: bool) -> None:
+def fit(
+    source: str,
+    cells: str | None,
+    kind: str | None,
+    by: str,
+    name: str,
+    output: Path | None,
+    html: Path | None,
+    pdf: Path | None,
+    docx: Path | None,
+    overwrite: bool,
+    as_json: bool,
+) -> None:
     """Rank the distributions that describe the values in BOOK!RANGE, or in BOOK RANGE.
 
     RANGE is a range of cells, with its sheet where the workbook has several (data.xlsx!Sheet1!A2:A50), a defined name,
     or a column of a table (Tests[Friction]).
     """
+    from xlmc.report.study_report import Files
     from xlmc.studies import fitting
 
     book, reference = _book_and_range(source, cells)
+    files = Files(output, html, pdf, docx, [book], overwrite=overwrite)
+    files.check()
     values, where, blank = _values(book, reference)
     found = fitting.fit(values, kind=kind, by=by)
     described = f"fitted by maximum likelihood to {book.name} {where}, n = {found.n}"
     row = fitting.row_to_paste(found.fits[0], name or "…", described)
+    report = _report(found, values, f"{book.name} {where}", blank, row)
+    written = files.write(report, "Fit")
     if as_json:
         say_json(_as_json(found, f"{book} {where}", blank, row))
     else:
-        _show(found, f"{book.name} {where}", blank, row)
-    for caution in found.cautions:
-        say(f"warning: {caution}.", err=True)
+        said = _cautions(found)  # as warnings, below
+        show([each for each in report.blocks[:-1] if each not in said])
+        say("\nThe first as a row of xlmc_assumptions, to paste under these headings:\n")
+        say("\t".join(row))
+        say("\t".join(row.values()))
+        for path in written:
+            say(f"Written: {path}")
+    for caution in _cautions(found):
+        say(f"warning: {caution}", err=True)
     if found.n < fitting.FEW:
         raise click.exceptions.Exit(TOO_FEW)
 
@@ -131,13 +160,30 @@ def _entry(fitted: Fitted) -> dict[str, object]:
     }
 
 
-def _show(found: Fitting, source: str, blank: int, row: dict[str, str]) -> None:
-    from xlmc.cli.printing import table
+def _report(found: Fitting, values: list[float], source: str, blank: int, row: dict[str, str]) -> StudyReport:
+    """What was found; the row to paste comes last."""
+    from xlmc.report.study_report import StudyReport, Table
+
+    as_row = Table("The first as a row of xlmc_assumptions", tuple(row), (tuple(row.values()),))
+    below = f"{source}: {found.n} values"
+    verdict = f"{found.fits[0].name} describes the {found.n} values best by {found.by.upper()}."
+    blocks: list[Block] = [verdict, *_cautions(found), _ranking(found, source, blank), _curves(found, values)]
+    blocks += [f"Not fitted: {name}: {reason}." for name, reason in found.unfit.items()]
+    blocks += [f"Standard errors of {', '.join(names)}: {source}." for source, names in _sources(found).items()]
+    return StudyReport("Distributions fitted to measurements", below, [*blocks, _MEANING, as_row])
+
+
+def _cautions(found: Fitting) -> list[str]:
+    return [f"{caution}." for caution in found.cautions]
+
+
+def _ranking(found: Fitting, source: str, blank: int) -> Table:
+    from xlmc.report.study_report import Table
 
     left_out = f"; {blank} blank cells left out" if blank else ""
     title = f"{source}: {found.n} values as {found.kind}{left_out}; the best by {found.by.upper()} first"
     best = min(fitted.aic for fitted in found.fits)
-    rows = [
+    rows = tuple(
         (
             fitted.name,
             _parameters(fitted),
@@ -148,17 +194,40 @@ def _show(found: Fitting, source: str, blank: int, row: dict[str, str]) -> None:
             _statistic(fitted.ks),
         )
         for fitted in found.fits
-    ]
+    )
     headings = ("Distribution", "Parameters ± standard error", "ΔAIC", "AIC", "BIC", "A²", "D")
-    table(title, headings, rows, right=(2, 3, 4, 5, 6))
-    for name, reason in found.unfit.items():
-        say(f"Not fitted: {name}: {reason}.")
-    for source_of_errors, names in _sources(found).items():
-        say(f"Standard errors of {', '.join(names)}: {source_of_errors}.")
-    say(paragraph(_MEANING))
-    say("\nThe first as a row of xlmc_assumptions, to paste under these headings:\n")
-    say("\t".join(row))
-    say("\t".join(row.values()))
+    return Table(title, headings, rows, (2, 3, 4, 5, 6))
+
+
+def _curves(found: Fitting, values: list[float]) -> Curves:
+    """The values and the families that describe them best, as shares at most."""
+    import numpy as np
+
+    from xlmc.report.study_curves import Curves, Line
+    from xlmc.studies.fitting import share_at_most
+
+    x = np.sort(values)
+    margin = _BESIDE * (x[-1] - x[0])
+    own = np.arange(1, x.size + 1) / x.size
+    if found.kind == "counts":
+        at = np.arange(max(0.0, np.floor(x[0] - margin)), np.ceil(x[-1] + margin) + 1)
+    else:
+        at = np.linspace(x[0] - margin, x[-1] + margin, _POINTS)
+    lines = [Line("Values", _staircase(np.append(x, at[-1]), np.append(own, 1.0)))]
+    for fitted in found.fits[:_DRAWN]:
+        shares = share_at_most(found, fitted, at)
+        points = _staircase(at, shares) if found.kind == "counts" else zip(at.tolist(), shares.tolist(), strict=True)
+        lines.append(Line(fitted.name, tuple(points)))
+    title = f"The values and the {len(lines) - 1} distributions that describe them best"
+    return Curves(title, "Value", "Share at most", tuple(lines))
+
+
+def _staircase(x: Any, shares: Any) -> tuple[tuple[float, float], ...]:
+    """The corners of shares `(n,)` that step up at numbers `(n,)`."""
+    below = [0.0, *shares.tolist()[:-1]]
+    return tuple(
+        (at, share) for at, low, high in zip(x.tolist(), below, shares.tolist(), strict=True) for share in (low, high)
+    )
 
 
 _MEANING = (

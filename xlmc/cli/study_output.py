@@ -1,4 +1,4 @@
-"""How `xlmc compare`, `screen` and `stability` give out what they found: a sheet, a page, the terminal, JSON."""
+"""How `xlmc compare`, `screen`, `stability`, `fit` and `verify` give out what they found: files, the terminal, JSON."""
 
 from __future__ import annotations
 
@@ -33,15 +33,16 @@ def study_options(command: Command) -> Command:
 
 
 def show(blocks: Iterable[Block]) -> None:
-    """Print paragraphs, and tables with a line of space around them."""
+    """Print paragraphs, and tables with a line of space around them; curves are for files."""
     from xlmc.cli.printing import table
+    from xlmc.report.study_report import Table
 
     spaced = True
     for each in blocks:
         if isinstance(each, str):
             say(paragraph(each))
             spaced = False
-        else:
+        elif isinstance(each, Table):
             if not spaced:
                 say()
             table(each.title, each.headings, each.rows, right=each.right)

@@ -7,25 +7,39 @@ from typing import TYPE_CHECKING
 
 import click
 
+from xlmc.cli.study_output import show, study_options
 from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
+    from xlmc.report.study_report import Block
     from xlmc.studies.verify import CellCheck, Verification
 
 __all__ = ["verify"]
 
 DIFFERS = 1
-_SHOWN = 50
+_SHOWN, _WRITTEN = 50, 2_000
+"""Differing cells that are printed, and those that are written to a file."""
 
 
 @click.command()
 @click.argument("book", type=click.Path(path_type=Path))
 @click.option("--all", "everything", is_flag=True, help="Check every formula cell, not only the needed ones.")
+@study_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-def verify(book: Path, everything: bool, as_json: bool) -> None:
+def verify(
+    book: Path,
+    everything: bool,
+    output: Path | None,
+    html: Path | None,
+    pdf: Path | None,
+    docx: Path | None,
+    overwrite: bool,
+    as_json: bool,
+) -> None:
     """Recompute the formulas of BOOK at the base case and compare with the values that Excel saved."""
     from xlmc.definitions.definitions_reader import read_definitions
     from xlmc.evaluation.engines import ENGINES
+    from xlmc.report.study_report import Files, StudyReport
     from xlmc.studies.verify import Status
     from xlmc.studies.verify import verify as check
     from xlmc.workbook.reader import read_workbook
@@ -34,11 +48,20 @@ def verify(book: Path, everything: bool, as_json: bool) -> None:
     definitions = None if everything else read_definitions(workbook, ENGINES)
     if definitions is not None and not definitions.forecasts and not definitions.filters:
         raise click.UsageError(f"{book} has no forecasts and no filters; give --all to check every formula cell.")
+    files = Files(output, html, pdf, docx, [book], overwrite=overwrite)
+    files.check()
     found = check(workbook, definitions)
+    cells = "every formula cell" if everything else "the formula cells that forecasts and filters need"
+    report = StudyReport(
+        "Recomputed values beside those that Excel saved", f"{book.name}: {cells}", _blocks(found, _WRITTEN)
+    )
+    written = files.write(report, "Verification")
     if as_json:
         say_json(_as_json(found))
     else:
-        _show(found)
+        show(_blocks(found, _SHOWN))
+        for path in written:
+            say(f"Written: {path}")
     if found.count(Status.DIFFERING):
         raise click.exceptions.Exit(DIFFERS)
 
@@ -70,32 +93,30 @@ def _plain(value: object) -> object:
     return value.text if isinstance(value, ErrorCode) else value
 
 
-def _show(found: Verification) -> None:
-    from xlmc.cli.printing import table
+def _blocks(found: Verification, most: int) -> list[Block]:
+    """What was found, with `most` differing cells."""
+    from xlmc.report.study_report import Table
     from xlmc.studies.verify import Status, groups
 
     counts = [f"{found.count(status):,} {status.value}" for status in Status if found.count(status)]
-    say(f"{len(found.cells):,} formula cells: {', '.join(counts) or 'nothing to check'}.")
+    blocks: list[Block] = [f"{len(found.cells):,} formula cells: {', '.join(counts) or 'nothing to check'}."]
     differing = found.of(Status.DIFFERING)
     if differing:
-        rows = [
+        rows = tuple(
             (str(c.cell), c.formula, str(_plain(c.expected)), str(_plain(c.got)), _percent(c.difference))
-            for c in differing[:_SHOWN]
-        ]
-        table("Differing", ("Cell", "Formula", "Excel saved", "xlmc", "Relative"), rows, right=(4,))
-        _say_how_many_more(len(differing))
+            for c in differing[:most]
+        )
+        blocks.append(Table("Differing", ("Cell", "Formula", "Excel saved", "xlmc", "Relative"), rows, (4,)))
+    if len(differing) > most:
+        blocks.append(f"… and {len(differing) - most:,} more; --json lists them all.")
     volatile = [cell for cell in found.of(Status.VOLATILE) if cell.reason]
     for status, listed in ((Status.UNSUPPORTED, found.of(Status.UNSUPPORTED)), (Status.VOLATILE, volatile)):
         for reason, cells in groups(listed):
             where = ", ".join(str(cell.cell) for cell in cells[:5])
             more = f" and {len(cells) - 5:,} more" if len(cells) > 5 else ""
-            say(f"{status.value}: {reason} ({where}{more})")
+            blocks.append(f"{status.value}: {reason} ({where}{more})")
+    return blocks
 
 
 def _percent(difference: float | None) -> str:
     return "" if difference is None else f"{difference:.2g}"
-
-
-def _say_how_many_more(count: int) -> None:
-    if count > _SHOWN:
-        say(f"… and {count - _SHOWN:,} more; --json lists them all.")

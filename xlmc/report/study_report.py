@@ -1,4 +1,4 @@
-"""What `xlmc compare`, `screen` or `stability` found, as paragraphs and tables of texts.
+"""What `xlmc compare`, `screen`, `stability`, `fit` or `verify` found, as paragraphs, tables of texts, and curves.
 
 The terminal, a page, a sheet and a document show the same content.
 """
@@ -15,6 +15,7 @@ from xlmc.errors import WorkbookError
 from xlmc.report.sheets.cells import Shown
 from xlmc.report.sheets.page import Page
 from xlmc.report.sheets.styles import CREATED, Styles
+from xlmc.report.study_curves import Curves, drawing_of, write_chart
 from xlmc.workbook.seal import sealed_parts, sealed_text
 from xlmc.workbook.target import Target, is_same_file, refuse_same_file
 from xlmc.workbook.writer import package_bytes, write_workbook
@@ -27,6 +28,9 @@ _DOCUMENTS: Final = (".pdf", ".docx")
 
 _WIDEST: Final = 40
 """Characters of a column of a document that may stay in one line."""
+
+_LONG: Final = 60
+"""Characters of a column of the sheet that stay in one line."""
 
 _LAST: Final = 5
 """The column to which paragraphs reach."""
@@ -49,7 +53,7 @@ class Table:
     right: tuple[int, ...] = ()
 
 
-Block = str | Table
+Block = str | Table | Curves
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +63,7 @@ class StudyReport:
     Attributes:
         title: what it is.
         below: of which book, from how many trials.
-        blocks: paragraphs and tables in their order.
+        blocks: paragraphs, tables and curves in their order.
     """
 
     title: str
@@ -149,6 +153,8 @@ def _document(report: StudyReport, ending: str) -> bytes:
             blocks.append(parts.Heading(each.title))
             widths = tuple(_width(column) for column in zip(each.headings, *each.rows, strict=True))
             blocks.append(parts.Table("", each.headings, each.rows, widths, frozenset(each.right)))
+        elif isinstance(each, Curves):
+            blocks.append(parts.Figure(drawing_of(each), f"{each.title}."))
         else:
             blocks.append(parts.Paragraph(each))
     document = parts.Document(report.title, "", None, report.title, "", (), tuple(blocks))
@@ -162,13 +168,23 @@ def _width(column: Sequence[str]) -> float:
 
 def _page(report: StudyReport) -> str:
     """The report as one HTML page that needs no other file."""
-    body = "".join(_table(each) if isinstance(each, Table) else f"<p>{escape(each)}</p>\n" for each in report.blocks)
+    body = "".join(map(_html, report.blocks))
     return (
         "<!DOCTYPE html>\n"
         f'<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>{escape(report.title)}</title>\n'
         f"<style>{_STYLE}</style>\n</head>\n<body>\n"
         f'<h1>{escape(report.title)}</h1>\n<p class="below">{escape(report.below)}</p>\n{body}</body>\n</html>\n'
     )
+
+
+def _html(block: Block) -> str:
+    if isinstance(block, Table):
+        return _table(block)
+    if isinstance(block, Curves):
+        drawn = drawing_of(block)
+        svg = drawn.svg.replace("<svg ", f'<svg role="img" aria-label="{escape(drawn.said)}" ', 1)
+        return f"<figure>{svg}<figcaption>{escape(block.title)}</figcaption></figure>\n"
+    return f"<p>{escape(block)}</p>\n"
 
 
 def _table(table: Table) -> str:
@@ -192,7 +208,10 @@ def _book(report: StudyReport, sheet: str) -> dict[str, bytes]:
 
     with ExactBook() as made:
         made.set_properties({"created": CREATED})
-        written = Page(made.add_worksheet(sheet), Styles(made), _WIDTHS)
+        styles = Styles(made)
+        written = Page(made.add_worksheet(sheet), styles, _widths(report))
+        drawn = any(isinstance(each, Curves) for each in report.blocks)
+        numbers = Page(made.add_worksheet("Numbers"), styles, ()) if drawn else None
         written.title(report.title, report.below)
         written.row += 1
         for each in report.blocks:
@@ -200,11 +219,28 @@ def _book(report: StudyReport, sheet: str) -> dict[str, bytes]:
                 written.heading(each.title)
                 written.table(each.headings, [_cells(row, each.right) for row in each.rows])
                 written.row += 1
+            elif isinstance(each, Curves):
+                assert numbers is not None
+                write_chart(written, made, each, numbers)
             else:
                 written.wide(each, "paragraph", _LAST)
         written.set_up_printing(report.title)
+        if numbers is not None:
+            numbers.sheet.hide()
+            numbers.set_up_printing(report.title, repeat=0)
     parts: dict[str, bytes] = made.parts
     return parts
+
+
+def _widths(report: StudyReport) -> list[float]:
+    """Of the sheet's columns: wider where a table has long texts."""
+    widths = list(_WIDTHS)
+    for each in report.blocks:
+        if isinstance(each, Table):
+            for column, texts in enumerate(zip(*each.rows, strict=True)):
+                if column not in each.right and column < len(widths):
+                    widths[column] = max(widths[column], min(max(map(len, texts)), _LONG))
+    return widths
 
 
 def _cells(row: Sequence[str], right: Sequence[int]) -> list[Shown]:
@@ -229,6 +265,9 @@ h2 { font-size: 1.1em; margin-top: 1.8em; }
 p { max-width: 60em; overflow-wrap: anywhere; }
 p.below { color: #52606D; margin-top: .2em; }
 div.wide { overflow-x: auto; }
+figure { margin: 1.5em 0; }
+figure svg { max-width: 100%; height: auto; }
+figcaption { color: #52606D; font-size: 13px; }
 table { border-collapse: collapse; font-size: 13px; }
 th { background: #1F3044; color: #fff; font-weight: 600; text-align: right; padding: .35em .6em; }
 td { border-bottom: 1px solid #D5DBE3; padding: .3em .6em; text-align: right; font-variant-numeric: tabular-nums; }

@@ -30,6 +30,7 @@ __all__ = [
     "kolmogorov_smirnov",
     "kolmogorov_smirnov_of_counts",
     "row_to_paste",
+    "share_at_most",
 ]
 
 KINDS: Mapping[str, tuple[Candidate, ...]] = {
@@ -244,6 +245,12 @@ def cautions(n: int, rivals: list[str]) -> tuple[str, ...]:
 
 def _join_names(names: list[str]) -> str:
     return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def share_at_most(found: Fitting, fitted: Fitted, x: ArrayLike) -> Floats:
+    """The share that a fitted family has at most at each of `(n,)` numbers: its distribution function."""
+    candidate = next(each for each in KINDS[found.kind] if each.name == fitted.name)
+    return np.asarray(candidate.cdf(np.asarray(x, dtype=float), *fitted.parameters.values()), dtype=float)
 
 
 def row_to_paste(fitted: Fitted, name: str, source: str) -> dict[str, str]:

@@ -12,7 +12,10 @@ SHORT = ("--reference-trials", "65536", "-n", "4096", "--replicates", "2", "--qu
 def test_words_and_files(xlmc, case_study, tmp_path):
     files = [tmp_path / name for name in ("m.png", "m.html", "m.xlsx")]
     outputs = [each for file in files for each in ("-o", file)]
-    outcome = xlmc("methods", case_study.with_name("skid-100-ft.xlsx"), *SHORT, *outputs)
+    pypdf = pytest.importorskip("pypdf")
+    pytest.importorskip("typst")
+    pdf = tmp_path / "m.pdf"
+    outcome = xlmc("methods", case_study.with_name("skid-100-ft.xlsx"), *SHORT, *outputs, "--pdf", pdf)
     assert outcome.code == 0
     text = " ".join(outcome.out.split())
     for name in ("Bounds, corners", "Taylor, second order", "Scrambled Sobol", "Importance grid", "engine formulas"):
@@ -20,6 +23,9 @@ def test_words_and_files(xlmc, case_study, tmp_path):
     assert "Recommended:" in text
     assert "does not see filters" in text
     assert files[0].read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    printed = "".join(each.extract_text() for each in pypdf.PdfReader(pdf).pages)
+    for name in ("Recommended:", "Bounds, corners", "Speed against accuracy: time"):
+        assert name in " ".join(printed.split())
     page = files[1].read_text(encoding="utf-8")
     assert page.count("<svg") == 2
     assert "<script" not in page
@@ -51,7 +57,7 @@ def test_json(xlmc, case_study):
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("m.pdf", "is not written as .pdf"),
+        ("m.doc", "is not written as .doc"),
         ("m", "is not written as a file without ending"),
         ("nowhere/m.png", "there is no folder"),
     ],
@@ -60,6 +66,12 @@ def test_an_output_that_cannot_be(xlmc, case_study, name, message):
     outcome = xlmc("methods", case_study, "-o", name)
     assert outcome.code == 2
     assert message in outcome.err
+
+
+def test_a_document_must_have_the_ending_of_its_option(xlmc, case_study, tmp_path):
+    outcome = xlmc("methods", case_study, "--pdf", tmp_path / "m.docx")
+    assert outcome.code == 2
+    assert "the document must end in .pdf" in outcome.err
 
 
 def test_the_workbook_itself_is_no_output(xlmc, case_study, tmp_path):

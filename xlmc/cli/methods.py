@@ -50,8 +50,11 @@ NOT_TO_BE_USED = 1
     "--output",
     type=click.Path(path_type=Path),
     multiple=True,
-    help="Also write charts and tables: .png, .html or .xlsx; may be given several times.",
+    help="Also write charts and tables: .png, .html, .xlsx, .pdf or .docx; may be given several times.",
 )
+@click.option("--html", type=click.Path(path_type=Path), help="Also write the result as a page, .html.")
+@click.option("--pdf", type=click.Path(path_type=Path), help="Also write the result as a document, .pdf.")
+@click.option("--docx", type=click.Path(path_type=Path), help="Also write it for a word processor, .docx.")
 @click.option("--overwrite", is_flag=True, help="Replace existing files, whoever wrote them.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
@@ -64,6 +67,9 @@ def methods(
     quick: bool,
     seed: int | None,
     output: tuple[Path, ...],
+    html: Path | None,
+    pdf: Path | None,
+    docx: Path | None,
     overwrite: bool,
     as_json: bool,
     quiet: bool,
@@ -71,10 +77,15 @@ def methods(
     """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
     from xlmc.cli.progress_bar import step_line
     from xlmc.report.methods import check_targets, save_methods
+    from xlmc.report.study_report import refuse_other_ending
     from xlmc.run.loading import load
     from xlmc.studies.methods import quick_settings, study
 
     model = load(book)
+    for path, ending in ((html, ".html"), (pdf, ".pdf"), (docx, ".docx")):
+        if path is not None:
+            refuse_other_ending(path, ending)
+            output += (path,)
     check_targets(output, book, overwrite=overwrite)
     asked: dict[str, Any] = {"reference_trials": reference_trials, "trials": trials, "replicates": replicates}
     given = {name: value for name, value in asked.items() if value is not None}

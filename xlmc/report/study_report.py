@@ -20,14 +20,14 @@ from xlmc.workbook.seal import sealed_parts, sealed_text
 from xlmc.workbook.target import Target, is_same_file, refuse_same_file
 from xlmc.workbook.writer import package_bytes, write_workbook
 
-__all__ = ["Block", "Files", "StudyReport", "Table"]
+__all__ = ["Block", "Files", "StudyReport", "Table", "column_widths", "refuse_other_ending"]
 
 _WIDTHS: Final = (44.0, *[17.0] * 7)
 
 _DOCUMENTS: Final = (".pdf", ".docx")
 
-_WIDEST: Final = 40
-"""Characters of a column of a document that may stay in one line."""
+_WIDEST, _NARROW, _FEW = 40, 14, 8
+"""Characters of a column of a document that may stay in one line: of a table of few columns, and of one of more."""
 
 _LONG: Final = 60
 """Characters of a column of the sheet that stay in one line."""
@@ -108,11 +108,7 @@ class Files:
         """
         refuse_same_file([path for path, _ in self._endings])
         for path, ending in self._endings:
-            if path.suffix.casefold() != ending:
-                kind = {".xlsx": "the sheet", ".html": "the page"}.get(ending, "the document")
-                raise WorkbookError(
-                    f"{kind} must end in {ending}", where=path, hint=f"Name a file that ends in {ending}"
-                )
+            refuse_other_ending(path, ending)
             if any(is_same_file(path, source) for source in self._sources):
                 raise WorkbookError("this is the workbook itself", where=path, hint="Name another file")
             if ending in _DOCUMENTS:
@@ -151,7 +147,7 @@ def _document(report: StudyReport, ending: str) -> bytes:
     for each in report.blocks:
         if isinstance(each, Table):
             blocks.append(parts.Heading(each.title))
-            widths = tuple(_width(column) for column in zip(each.headings, *each.rows, strict=True))
+            widths = column_widths(each.headings, each.rows)
             blocks.append(parts.Table("", each.headings, each.rows, widths, frozenset(each.right)))
         elif isinstance(each, Curves):
             blocks.append(parts.Figure(drawing_of(each), f"{each.title}."))
@@ -161,9 +157,21 @@ def _document(report: StudyReport, ending: str) -> bytes:
     return document_bytes(document, ending)
 
 
-def _width(column: Sequence[str]) -> float:
-    """How wide a column is beside others: numbers and names stay whole, sentences need not."""
-    return 3.0 + min(max(map(len, column)), _WIDEST)
+def refuse_other_ending(path: Path, ending: str) -> None:
+    """See that a file has the ending that its option is for.
+
+    Raises:
+        WorkbookError: it has another.
+    """
+    if path.suffix.casefold() != ending:
+        kind = {".xlsx": "the sheet", ".html": "the page"}.get(ending, "the document")
+        raise WorkbookError(f"{kind} must end in {ending}", where=path, hint=f"Name a file that ends in {ending}")
+
+
+def column_widths(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> tuple[float, ...]:
+    """How wide each column is beside the others: numbers and names stay whole, sentences need not."""
+    widest = _WIDEST if len(headings) <= _FEW else _NARROW
+    return tuple(3.0 + min(max(map(len, column)), widest) for column in zip(headings, *rows, strict=True))
 
 
 def _page(report: StudyReport) -> str:

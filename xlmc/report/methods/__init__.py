@@ -1,4 +1,4 @@
-"""What `xlmc methods` measured, written to files: a picture, a page or a workbook, by their endings."""
+"""What `xlmc methods` measured, written to files: a picture, a page, a workbook or a document, by their endings."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ from xlmc.workbook.writer import package_bytes, write_workbook
 __all__ = ["ENDINGS", "check_targets", "save_methods"]
 
 
-ENDINGS: Final = (".png", ".html", ".xlsx")
+ENDINGS: Final = (".png", ".html", ".xlsx", ".pdf", ".docx")
+_DOCUMENTS: Final = (".pdf", ".docx")
 
 
 def check_targets(paths: Sequence[Path], source: Path, *, overwrite: bool = False) -> None:
@@ -27,15 +28,20 @@ def check_targets(paths: Sequence[Path], source: Path, *, overwrite: bool = Fals
         TakenError: a file is not ours to replace, or a program has it open.
         WorkbookError: an ending is unknown, a folder is not there, a file is the workbook itself or is named twice, or
             there is nothing to draw with.
+        SimulationError: a library that writes documents is missing.
     """
     refuse_same_file(paths)
     for path in paths:
         ending = path.suffix.casefold()
         if ending not in ENDINGS:
             message = f"a study of methods is not written as {ending or 'a file without ending'}"
-            raise WorkbookError(message, where=path, hint="Name a file that ends in .png, .html or .xlsx")
+            raise WorkbookError(message, where=path, hint="Name a file that ends in .png, .html, .xlsx, .pdf or .docx")
         if is_same_file(path, source):
             raise WorkbookError("this is the workbook itself", where=path, hint="Name another file")
+        if ending in _DOCUMENTS:
+            from xlmc.report.document import check_report_path
+
+            check_report_path(path)
         Target(path, source.name, overwrite).check()
         if ending != ".xlsx" and find_spec("matplotlib") is None:
             hint = "Install it with `pip install 'xlmc[plots]'`, or ask for .xlsx"
@@ -56,7 +62,7 @@ def save_methods(study: Study, path: Path, *, overwrite: bool = False) -> Path:
 
 
 def _content_with_seal(study: Study, ending: str) -> bytes:
-    """The content with its seal; a picture has none."""
+    """The content with its seal; a picture and a document have none."""
     name = study.model.path.name
     if ending == ".xlsx":
         from xlmc.report.methods.methods_workbook import book
@@ -66,6 +72,11 @@ def _content_with_seal(study: Study, ending: str) -> bytes:
         from xlmc.report.methods.methods_page import page
 
         return sealed_text(page(study).encode(), ending, name)
+    if ending in _DOCUMENTS:
+        from xlmc.report.document import document_bytes
+        from xlmc.report.methods.methods_document import document
+
+        return document_bytes(document(study), ending)
     from xlmc.report.methods.matplotlib_figure import draw
 
     drawn = io.BytesIO()

@@ -15,7 +15,7 @@ from xlmc.studies.methods import Study, recommendation
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["ENDS", "page"]
+__all__ = ["ENDS", "page", "svg"]
 
 ENDS: Final = "Where the optimised bounds are reached: points that the workbook accepts"
 
@@ -58,7 +58,7 @@ def page(study: Study) -> str:
     how = "".join(f'<p class="said">{escape(each)}</p>\n' for each in HOW_TO_READ) if study.varying else ""
     figures = "".join(
         f"<h2>Speed against accuracy: {what}</h2>\n{how if against == 'seconds' else ''}"
-        f"<figure>{_svg(draw(study, against, words=False))}</figure>\n"
+        f"<figure>{svg(draw(study, against, words=False))}</figure>\n"
         for against, what in _WORKS
     )
     ends = methods_tables.ends_lines(study)
@@ -105,7 +105,8 @@ def _row(row: tuple[str, ...], right: int) -> str:
     )
 
 
-def _svg(figure: Figure) -> str:
+def svg(figure: Figure) -> str:
+    """A figure as SVG, its letters as shapes; the same figure gives the same bytes."""
     import matplotlib as mpl
 
     drawn = io.StringIO()

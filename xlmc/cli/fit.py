@@ -41,7 +41,13 @@ _BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm))!(?P<range>.
     help="What the values are.  [default: counts if all are whole numbers, 0 or more]",
 )
 @click.option("--by", type=OneOf("aic", "bic", "ad", "ks"), default="aic", show_default=True, help=_BY)
-@click.option("--name", default="", help="Name of the assumption, for the row to paste.")
+@click.option("--name", default="", help="Name of the assumption, for the row to paste or to write.")
+@click.option("--distribution", help="The distribution of that row.  [default: the best]")
+@click.option(
+    "--into",
+    type=click.Path(path_type=Path),
+    help="Write the row into the table xlmc_assumptions of this workbook: into the row of that name, or below all.",
+)
 @study_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def fit(
@@ -50,6 +56,8 @@ def fit(
     kind: str | None,
     by: str,
     name: str,
+    distribution: str | None,
+    into: Path | None,
     output: Path | None,
     html: Path | None,
     pdf: Path | None,
@@ -62,32 +70,65 @@ def fit(
     RANGE is a range of cells, with its sheet where the workbook has several (data.xlsx!Sheet1!A2:A50), a defined name,
     or a column of a table (Tests[Friction]).
     """
+    import numpy as np
+
+    from xlmc.cli import fit_into
     from xlmc.report.study_report import Files
     from xlmc.studies import fitting
+    from xlmc.workbook.printable import label
 
     book, reference = _book_and_range(source, cells)
+    name = label(name.strip())
+    if into is not None and not name:
+        raise click.UsageError("--into needs --name, the name of the assumption.")
     files = Files(output, html, pdf, docx, [book], overwrite=overwrite)
     files.check()
     values, where, blank = _values(book, reference)
     found = fitting.fit(values, kind=kind, by=by)
     described = f"fitted by maximum likelihood to {book.name} {where}, n = {found.n}"
-    row = fitting.row_to_paste(found.fits[0], name or "…", described)
+    chosen = _chosen(found, distribution)
+    row = fitting.row_to_paste(chosen, name or "…", described)
+    edited = None if into is None else fit_into.prepare(into, name, chosen, float(np.median(values)), described)
     report = _report(found, values, f"{book.name} {where}", blank, row)
     written = files.write(report, "Fit")
+    if edited is not None:
+        fit_into.write(edited)
     if as_json:
         say_json(_as_json(found, f"{book} {where}", blank, row))
     else:
         said = _cautions(found)  # as warnings, below
         show([each for each in report.blocks[:-1] if each not in said])
-        say("\nThe first as a row of xlmc_assumptions, to paste under these headings:\n")
+        say(f"\n{chosen.name} as a row of xlmc_assumptions, to paste under these headings:\n")
         say("\t".join(row))
         say("\t".join(row.values()))
+        if edited is not None:
+            done = "a new row" if edited.row.is_new else "its row"
+            say(f"Written: {chosen.name} for {label(name)}, {done} in {into}, {edited.row.where}")
         for path in written:
             say(f"Written: {path}")
     for caution in _cautions(found):
         say(f"warning: {caution}", err=True)
     if found.n < fitting.FEW:
         raise click.exceptions.Exit(TOO_FEW)
+
+
+def _chosen(found: Fitting, distribution: str | None) -> Fitted:
+    """The distribution that the row is to have.
+
+    Raises:
+        DefinitionError: there is none of that name.
+        UsageError: it was not fitted.
+    """
+    from xlmc.distributions import family_named
+
+    if distribution is None:
+        return found.fits[0]
+    name = family_named(distribution).name
+    for fitted in found.fits:
+        if fitted.name == name:
+            return fitted
+    why = found.unfit.get(name, f"{found.kind} values are not fitted with it")
+    raise click.UsageError(f"{name} was not fitted: {why}.")
 
 
 def _book_and_range(source: str, cells: str | None) -> tuple[Path, str]:
@@ -164,7 +205,7 @@ def _report(found: Fitting, values: list[float], source: str, blank: int, row: d
     """What was found; the row to paste comes last."""
     from xlmc.report.study_report import StudyReport, Table
 
-    as_row = Table("The first as a row of xlmc_assumptions", tuple(row), (tuple(row.values()),))
+    as_row = Table(f"{row['Distribution']} as a row of xlmc_assumptions", tuple(row), (tuple(row.values()),))
     below = f"{source}: {found.n} values"
     verdict = f"{found.fits[0].name} describes the {found.n} values best by {found.by.upper()}."
     blocks: list[Block] = [verdict, *_cautions(found), _ranking(found, source, blank), _curves(found, values)]

@@ -22,17 +22,17 @@ from xlmc.errors import DefinitionError
 from xlmc.sampling.draws import Draw
 from xlmc.workbook.workbook import Workbook
 
-__all__ = ["is_percentile", "read_assumptions"]
+__all__ = ["PARAMETERS", "is_percentile", "read_assumptions"]
 
 _OURS = (heading for family in FAMILIES.values() for spec in family.parameters for heading in spec.headings)
 
-_PARAMETERS = tuple(dict.fromkeys((*_OURS, "Data")))
+PARAMETERS = tuple(dict.fromkeys((*_OURS, "Data")))
 """Every column that means a parameter of some distribution, beside percentiles: filled in, it is no note."""
 
 _LIMITS = frozenset({"low", "minimum", "min", "high", "maximum", "max"})
 
 _FIXED = ("Name", "Value", "Cell", "Distribution", *CUTOFFS.values(), "Units", "Source", "Frozen")
-_KNOWN = (*_FIXED, *_PARAMETERS, *OPTIONS)
+_KNOWN = (*_FIXED, *PARAMETERS, *OPTIONS)
 
 _HEADING = re.compile(r"p(\d{1,3}(?:\.\d+)?)")
 
@@ -233,7 +233,7 @@ def _refuse_unused(row: Row, family: Family, findings: Findings) -> None:
     """A number that is silently ignored would mislead: whoever gives a Normal a Low believes that it ends there."""
     used = {plain(heading) for spec in family.parameters for heading in spec.headings}
     used |= {plain("Data")} if family.data else set()
-    for heading in (*_PARAMETERS, *filter(is_percentile, row.headings)):
+    for heading in (*PARAMETERS, *filter(is_percentile, row.headings)):
         if plain(heading) in used or not row.filled(heading):
             continue
         hint = "Clear the cell, or choose a distribution that has this parameter"

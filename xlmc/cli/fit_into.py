@@ -1,0 +1,110 @@
+"""How `xlmc fit --into` writes a row into a person's workbook, after it was seen that the workbook is right with it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from xlmc.errors import WorkbookError
+
+if TYPE_CHECKING:
+    from xlmc.definitions.tables.new_row import RowEdit
+    from xlmc.studies.fitting import Fitted
+    from xlmc.workbook.workbook import Table, Workbook
+
+__all__ = ["Edited", "prepare", "write"]
+
+
+@dataclass(frozen=True, slots=True)
+class Edited:
+    """A workbook with its new row, not written yet; `sha256` is that of the file as it was read."""
+
+    path: Path
+    row: RowEdit
+    data: bytes
+    sha256: str
+
+
+def prepare(path: Path, name: str, fitted: Fitted, base: float, source: str) -> Edited:
+    """Read the workbook and put the row in.
+
+    Args:
+        path: of the workbook.
+        name: of the assumption.
+        fitted: its distribution.
+        base: the value of a new row.
+        source: where the distribution comes from.
+
+    Raises:
+        DefinitionError: the row has no place in the workbook, or the workbook would not be right with it.
+        WorkbookError: the file cannot be read, a program has it open, or a cell of the row holds a formula.
+    """
+    from xlmc.definitions.tables.new_row import row_edit
+    from xlmc.workbook.reader import read_workbook
+    from xlmc.workbook.writer import package_bytes, refuse_if_open
+
+    refuse_if_open(path)
+    workbook = read_workbook(path)
+    row = row_edit(workbook, name, fitted.name, _six_digits(fitted.parameters), float(f"{base:.6g}"), source)
+    data = package_bytes(_parts(workbook, row))
+    _refuse_new_problems(workbook, read_workbook(data, path.name))
+    return Edited(path, row, data, workbook.sha256)
+
+
+def write(edited: Edited) -> None:
+    """Replace the file.
+
+    Raises:
+        TakenError: it has changed since it was read, or a program has it open.
+        WorkbookError: it cannot be written.
+    """
+    from xlmc.workbook.writer import TakenError, refuse_if_open, write_workbook
+
+    def check() -> None:
+        refuse_if_open(edited.path)
+        if hashlib.sha256(edited.path.read_bytes()).hexdigest() != edited.sha256:
+            raise TakenError("the workbook has changed since it was read", where=edited.path, hint="Fit again")
+
+    write_workbook(edited.path, edited.data, check)
+
+
+def _six_digits(parameters: Mapping[str, float]) -> dict[str, float]:
+    """As the row to paste has them: more than a fit ever determines."""
+    return {heading: float(f"{value:.6g}") for heading, value in parameters.items()}
+
+
+def _parts(workbook: Workbook, row: RowEdit) -> dict[str, bytes]:
+    from xlmc.workbook.injection.cell_edit import with_contents, with_last_row
+
+    parts = dict(workbook.parts)
+    sheet = workbook.sheets[row.table.area.sheet]
+    parts[sheet.part] = with_contents(parts[sheet.part], sheet.part, sheet.name, row.contents)
+    if row.is_new:
+        part = _table_part(parts, row.table)
+        parts[part] = with_last_row(parts[part], part, row.row)
+    return parts
+
+
+def _table_part(parts: Mapping[str, bytes], table: Table) -> str:
+    from xlmc.workbook.safe_xml import decode, tree
+
+    for name, xml in parts.items():
+        if name.casefold().endswith(".xml") and b"tableColumns" in xml:
+            root = tree(xml, name)
+            if decode(root.get("displayName", root.get("name", ""))) == table.name:
+                return name
+    raise WorkbookError(f"no part of the file holds the table {table.name}")
+
+
+def _refuse_new_problems(before: Workbook, after: Workbook) -> None:
+    """What the workbook did not have before: parameters outside the cutoffs that stand in the row, for example."""
+    from xlmc.definitions.definitions_reader import read_definitions
+    from xlmc.evaluation.engines import ENGINES
+
+    known = {str(each) for each in read_definitions(before, ENGINES).problems}
+    for problem in read_definitions(after, ENGINES).problems:
+        if str(problem) not in known:
+            raise problem

@@ -92,6 +92,19 @@ def test_a_new_row_stands_below_the_table_which_reaches_to_it(xlmc, data, book):
     assert openpyxl.load_workbook(book)["Inputs"]["D4"].value is None
 
 
+def test_an_empty_row_of_the_table_is_filled_first(xlmc, data, book):
+    made = openpyxl.load_workbook(book)
+    made["Inputs"].tables["xlmc_assumptions"].ref = "A1:I5"
+    made["Inputs"].tables["xlmc_assumptions"].autoFilter.ref = "A1:I5"
+    made.save(book)
+    before = parts(book)
+    outcome = xlmc("fit", f"{data}!A1:A40", "--name", "new", "--distribution", "Normal", "--into", book)
+    assert outcome.code == 0, outcome.err
+    assert "a new row in" in outcome.out
+    assert changed(before, book) == {"xl/worksheets/sheet1.xml"}
+    assert openpyxl.load_workbook(book)["Inputs"]["A4"].value == "new"
+
+
 def test_the_measurements_may_stand_in_the_same_workbook(xlmc, book):
     made = openpyxl.load_workbook(book)
     for row, value in enumerate(VALUES.tolist(), 1):

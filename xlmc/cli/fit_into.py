@@ -82,7 +82,7 @@ def _parts(workbook: Workbook, row: RowEdit) -> dict[str, bytes]:
     parts = dict(workbook.parts)
     sheet = workbook.sheets[row.table.area.sheet]
     parts[sheet.part] = with_contents(parts[sheet.part], sheet.part, sheet.name, row.contents)
-    if row.is_new:
+    if row.grows:
         part = _table_part(parts, row.table)
         parts[part] = with_last_row(parts[part], part, row.row)
     return parts

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from xlmc.address import Cell
@@ -27,7 +27,7 @@ class RowEdit:
     Attributes:
         table: that the row is of.
         row: its number.
-        is_new: whether the table has to reach to it yet.
+        is_new: whether the assumption has no row yet.
         contents: by row and column; None empties a cell.
     """
 
@@ -35,6 +35,11 @@ class RowEdit:
     row: int
     is_new: bool
     contents: Mapping[tuple[int, int], str | float | None]
+
+    @property
+    def grows(self) -> bool:
+        """Whether the table has to reach to it yet."""
+        return self.row > self.table.area.bottom
 
     @property
     def where(self) -> Cell:
@@ -69,8 +74,7 @@ def row_edit(
             row = Row(workbook, table, number)
             if name_key(as_text(row.content("Name").value)) == name_key(name):
                 return RowEdit(table.table, number, False, _contents(row, family, parameters, source))
-    table = tables[-1]
-    number = _free_row(workbook, table)
+    table, number = _place(workbook, tables)
     row = Row(workbook, table, number)
     contents: dict[tuple[int, int], str | float | None] = {_at(row, "Name"): name, _at(row, "Value"): base}
     return RowEdit(table.table, number, True, {**_contents(row, family, parameters, source), **contents})
@@ -108,7 +112,18 @@ def _at(row: Row, heading: str) -> tuple[int, int]:
     return cell.row, cell.column
 
 
-def _free_row(workbook: Workbook, table: DefinitionTable) -> int:
+def _place(workbook: Workbook, tables: Sequence[DefinitionTable]) -> tuple[DefinitionTable, int]:
+    """The first row of a table that is empty, or the row below the last table."""
+    for table in tables:
+        body = table.table.body
+        for number in range(body.top, body.bottom + 1):
+            cells = (Cell(body.sheet, number, column) for column in range(body.left, body.right + 1))
+            if all(is_blank(workbook.content(cell)) for cell in cells):
+                return table, number
+    return tables[-1], _row_below(workbook, tables[-1])
+
+
+def _row_below(workbook: Workbook, table: DefinitionTable) -> int:
     """The row below a table.
 
     Raises:

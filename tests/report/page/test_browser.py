@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import base64
 import contextlib
+import io
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import xlmc
 from xlmc.statistics import format_estimate, proportion
 from xlmc.statistics.estimate import t_quantile
 
+CASE = Path(__file__).resolve().parents[3] / "examples" / "intersection.xlsx"
 EVIL = "</script><img src=x onerror=window.stolen=1>"
 
 
@@ -345,25 +349,49 @@ def test_few_trials_are_no_trouble(request, shown, name):
         assert chart.count == 1
 
 
-def test_on_paper_everything_is_open_and_nothing_is_to_be_pressed(shown, run):
+def test_all_tables_are_opened_and_closed_at_once(shown, run):
+    browser = shown(run)
+    count = "return document.querySelectorAll('details%s').length"
+    for key, left in (("open", ":not([open])"), ("closed", "[open]")):
+        assert browser.execute_script(count % left) > 0
+        browser.find_element("css selector", f"button[data-all={key}]").click()
+        assert browser.execute_script(count % left) == 0
+
+
+def test_the_links_to_the_parts_stay_in_sight(shown, run):
+    browser = shown(run)
+    browser.execute_script("document.getElementById('record').scrollIntoView()")
+    top = "return Math.round(document.querySelector('nav').getBoundingClientRect().top)"
+    assert browser.execute_script(top) == 0
+    heading = "return document.querySelector('#record h2').getBoundingClientRect().top"
+    height = "return document.querySelector('nav').getBoundingClientRect().height"
+    assert browser.execute_script(heading) >= browser.execute_script(height) - 1
+
+
+def test_on_paper_is_what_is_open_and_nothing_is_to_be_pressed(shown, run):
     browser = shown(run)
     pages = base64.b64decode(browser.execute_cdp_cmd("Page.printToPDF", {"printBackground": True})["data"])
     assert pages.startswith(b"%PDF")
-    closed = "return document.querySelectorAll('details:not([open])').length"
-    before = browser.execute_script(closed)
-    assert before > 0
-    browser.execute_script("dispatchEvent(new Event('beforeprint'))")
-    assert browser.execute_script(closed) == 0
-    browser.execute_script("dispatchEvent(new Event('afterprint'))")
-    assert browser.execute_script(closed) == before
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
     try:
+        for selector, displayed in (("details[open] summary", True), ("details:not([open]) summary", False)):
+            found = browser.find_elements("css selector", selector)
+            assert found
+            assert {each.is_displayed() for each in found} == {displayed}
         for selector in ("nav", ".boxes", ".reset", ".views"):
             assert not browser.find_element("css selector", selector).is_displayed()
         for selector in (".chart canvas", ".certainty", "#statistics table"):
             assert browser.find_element("css selector", selector).is_displayed()
     finally:
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+
+
+def test_the_case_study_prints_on_15_pages(shown):
+    pypdf = pytest.importorskip("pypdf")
+    printed = shown(xlmc.load(CASE).simulate(trials=50_000)).execute_cdp_cmd(
+        "Page.printToPDF", {"printBackground": True}
+    )["data"]
+    assert len(pypdf.PdfReader(io.BytesIO(base64.b64decode(printed))).pages) <= 15
 
 
 def test_a_narrow_screen_needs_no_scrolling_aside(shown, run):

@@ -171,5 +171,11 @@ def _header(simulation: Simulation, keys: list[str]) -> Html:
         "header",
         element("h1", "Results of the simulation"),
         element("p", element("bdi", simulation.model.workbook.name), f": {run}", class_="subtitle"),
-        element("nav", *links, aria_label="Parts of this page"),
+        element("nav", *links, *_buttons(), aria_label="Parts of this page"),
     )
+
+
+def _buttons() -> Iterator[Html]:
+    """For the tables that are closed at first; only what is open is printed."""
+    for key, label in (("open", "Open all tables"), ("closed", "Close them")):
+        yield element("button", label, type="button", data_all=key)

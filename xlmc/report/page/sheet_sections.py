@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from xlmc.report.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of
+from xlmc.report.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of, shapes
 from xlmc.report.page.element import EMPTY, Html, element
 from xlmc.report.page.flow import Flow, estimate_html, number
+from xlmc.report.page.svg import before_after
 from xlmc.report.sheets.accounting import write_accounting, write_checks
 from xlmc.report.sheets.assumptions_sheet import MEANING, MOVED, NARROWED, STRATIFIED, write_correlations
 from xlmc.report.sheets.cells import NONE
@@ -33,7 +34,7 @@ _CHANGES = ("Shift of mean in SDs", "SD accepted / before")
 
 _COLUMNS = len(_HEADS) + len(_CHANGES)
 
-_OPEN = frozenset({"run", "file", "counts"})
+_OPEN = frozenset({"run", "file", "trials", "sampling", "software"})
 
 _CODE = frozenset({"repeat", "command", "fingerprint", "sha256", "original_sha256"})
 
@@ -119,13 +120,23 @@ def _remarks(simulation: Simulation) -> Iterator[str]:
 
 def _assumption(simulation: Simulation, assumption: Assumption) -> Html:
     """Its name above two rows, in a body of their own so that they stay together."""
-    named = element("tr", element("th", *_name_line(assumption), scope="rowgroup", colspan=str(_COLUMNS)))
     found = filter_effect_of(simulation, assumption.name)
+    shape = EMPTY if found is None else _shape(simulation, assumption.name)
+    named = element("tr", element("th", shape, *_name_line(assumption), scope="rowgroup", colspan=str(_COLUMNS)))
     if found is None:
         why = element("td", status(simulation.model, assumption.name, assumption.frozen), colspan=str(_COLUMNS))
         return element("tbody", named, element("tr", why))
     before = element("tr", *_marginal(found.prior, "before"), element("td"), element("td"))
     return element("tbody", named, before, element("tr", *_marginal(found.accepted, "accepted"), *_changes(found)))
+
+
+def _shape(simulation: Simulation, name: str) -> Html:
+    """Its draws before filtering and the accepted ones as a small picture; nothing where they are one value."""
+    found = shapes(simulation.prior[name], simulation.inputs[name])
+    if found is None:
+        return EMPTY
+    said = f"{name}: before filtering pale, accepted as a line"
+    return before_after(found.before.tolist(), found.accepted.tolist(), said)
 
 
 def _name_line(assumption: Assumption) -> Iterator[Html | str]:
@@ -160,8 +171,10 @@ def notices(simulation: Simulation) -> Html:
 
 
 def record(found: Record) -> Html:
-    """The record of the run: every part of it can be opened, and is open in print."""
-    said = "What the numbers depend on, and how to repeat them. Every number stands here in full."
+    """The record of the run: every part of it can be opened, and what is open is printed."""
+    said = (
+        "What the numbers depend on, and how to repeat them. Every number stands here in full. What is open is printed."
+    )
     return element(
         "section",
         element("h2", "Record"),

@@ -10,13 +10,10 @@
   }
   document.documentElement.classList.add("ready");
 
-  // On paper everything is open; afterwards as it was.
-  let closed = [];
-  addEventListener("beforeprint", () => {
-    closed = [...document.querySelectorAll("details:not([open])")];
-    for (const each of closed) each.open = true;
-  });
-  addEventListener("afterprint", () => {
-    for (const each of closed) each.open = false;
-  });
+  // What is open is printed, too.
+  for (const button of document.querySelectorAll("button[data-all]")) {
+    button.addEventListener("click", () => {
+      for (const each of document.querySelectorAll("details")) each.open = button.dataset.all === "open";
+    });
+  }
 })();

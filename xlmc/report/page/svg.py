@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from xlmc.report.page.element import Html, element, join
 
-__all__ = ["Bar", "Line", "Scale", "bars", "lines", "scale_of"]
+__all__ = ["Bar", "Line", "Scale", "bars", "before_after", "lines", "scale_of"]
 
 _WIDTH, _HEIGHT = 520, 260
 
@@ -81,6 +81,27 @@ def lines(drawn: Sequence[Line], title: str, across: str, upwards: str, now: flo
     for number, line in enumerate(drawn, 1):
         found += _line(line, number, x, y)
     return _drawing(found, _HEIGHT, f"{title}: {', '.join(line.name for line in drawn)}")
+
+
+def before_after(before: Sequence[float], accepted: Sequence[float], said: str) -> Html:
+    """How often an assumption has each value before filtering, pale, and among accepted draws, as a line.
+
+    Args:
+        before: `(n,)` shares of the draws in each bin.
+        accepted: the same of the accepted draws.
+        said: what it shows.
+    """
+    width, height = 176.0, 32.0
+    step, most = width / len(before), max(*before, *accepted)
+    found = [
+        _rect(index * step, height * (1.0 - share / most), step, height * share / most, "light")
+        for index, share in enumerate(before)
+    ]
+    tops = [1.0 + (height - 1.0) * (1.0 - share / most) for share in accepted]
+    corners = [f"{index * step:.1f} {top:.1f}H{(index + 1) * step:.1f}" for index, top in enumerate(tops)]
+    found.append(element("path", d="M" + "L".join(corners), class_="line"))
+    box = f"0 0 {width:g} {height:g}"
+    return element("svg", join(found), viewBox=box, role="img", aria_label=said, class_="shape")
 
 
 def _line(line: Line, number: int, x: Scale, y: Scale) -> list[Html]:

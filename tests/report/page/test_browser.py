@@ -349,6 +349,44 @@ def test_few_trials_are_no_trouble(request, shown, name):
         assert chart.count == 1
 
 
+def test_every_chart_is_saved_as_a_picture_with_its_own_styles(shown, run):
+    browser = shown(run)
+    browser.execute_script(
+        "window.saved = []; HTMLAnchorElement.prototype.click = function () { saved.push([this.download, this.href]); }"
+    )
+    buttons = [each for each in browser.find_elements("css selector", "button.copy") if each.text == "Save picture"]
+    charts = browser.find_elements("css selector", ".chart, svg.drawn")
+    assert len(buttons) == len(charts) > 3
+    for button in buttons:
+        browser.execute_script("arguments[0].click()", button)
+    count = "return saved.length"
+    for _ in range(100):
+        if browser.execute_script(count) == len(charts):
+            break
+    names = browser.execute_script("return saved.map(([name]) => name)")
+    assert {"area-Variance-explained.svg", "area-chart.png"} <= set(names)
+    drawn = dict(browser.execute_script("return saved"))["area-Variance-explained.svg"]
+    blobs = "return Copies.standalone(document.querySelector('svg.drawn')).text()"
+    svg = browser.execute_script(blobs)
+    assert drawn.startswith("blob:")
+    assert svg.startswith("<svg")
+    assert "--dark: #2f6da8" in svg
+    assert "Variance explained" in svg
+
+
+def test_a_table_is_copied_as_a_table(shown, run):
+    browser = shown(run)
+    browser.execute_script(
+        "window.copied = null;"
+        "document.addEventListener('copy', () => { copied = String(getSelection()); }, { capture: true })"
+    )
+    browser.find_element("css selector", ".answers button.copy").click()
+    lines = [line for line in browser.execute_script("return copied").splitlines() if line.strip()]
+    assert lines[0].split("\t")[0] == "Forecast"
+    assert any(line.startswith("area\t") for line in lines)
+    assert browser.execute_script("return String(getSelection())") == ""
+
+
 def test_all_tables_are_opened_and_closed_at_once(shown, run):
     browser = shown(run)
     count = "return document.querySelectorAll('details%s').length"

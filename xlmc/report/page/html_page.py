@@ -46,6 +46,7 @@ _SCRIPTS = (
     "grabbers.js",
     "panel.js",
     "overlay.js",
+    "copies.js",
     "start.js",
 )
 

@@ -10,6 +10,8 @@
   }
   document.documentElement.classList.add("ready");
 
+  Copies.start();
+
   // What is open is printed, too.
   for (const button of document.querySelectorAll("button[data-all]")) {
     button.addEventListener("click", () => {

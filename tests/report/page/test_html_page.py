@@ -237,3 +237,14 @@ def test_large_runs_stay_small(make, forecasts, trials):
 def test_nothing_of_the_page_is_imported_for_a_run_without_one():
     code = "import sys, xlmc.report, xlmc.cli.simulate; sys.exit('xlmc.report.page' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_statistics_stand_beside_each_chart(page_of, run):
+    page = page_of(run)
+    for article, result in zip(page.all("article", class_="forecast"), run.results.values(), strict=True):
+        (table,) = article.all("table", class_="beside")
+        found = result.statistics
+        expected = [found.mean, found.standard_deviation, found.minimum]
+        expected += [*(found.percentiles[each] for each in (5.0, 25.0, 50.0, 75.0, 95.0)), found.maximum]
+        values = [float(node.attributes["value"]) for node in table.all("data")]
+        assert values == [each.value for each in expected]

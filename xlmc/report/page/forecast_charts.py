@@ -10,15 +10,19 @@ from typing import TYPE_CHECKING
 
 from xlmc.report.histogram import Figure
 from xlmc.report.page.element import EMPTY, Html, element, join, void
+from xlmc.report.page.flow import estimate_html
 from xlmc.report.page.payload import most_values, overlays_of
 from xlmc.report.summary import percent
 
 if TYPE_CHECKING:
+    from xlmc.run.forecast_result import ForecastResult
     from xlmc.run.simulation import Simulation
 
 __all__ = ["charts", "overlays"]
 
 _VIEWS = (("frequency", "Frequency"), ("cumulative", "Cumulative"), ("reverse", "Reverse cumulative"))
+
+_PERCENTS = (5.0, 25.0, 50.0, 75.0, 95.0)
 
 _HOW = (
     "Drag the two grabbers below a chart, or move them with the arrow keys: the certainty is the share of the accepted "
@@ -41,7 +45,7 @@ def charts(simulation: Simulation, figures: Sequence[Figure]) -> Html:
         element("h2", "Forecasts"),
         *(_how_to_read(simulation, figures) if figures else [element("p", _NOTHING, class_="alarm")]),
         element("noscript", element("p", "The charts need JavaScript; every number below is here without it.")),
-        *(_chart(figure) for figure in figures),
+        *(_chart(figure, simulation.results[figure.answer.name]) for figure in figures),
         id="forecasts",
     )
 
@@ -61,7 +65,7 @@ def _how_to_read(simulation: Simulation, figures: Sequence[Figure]) -> Iterator[
         )
 
 
-def _chart(figure: Figure) -> Html:
+def _chart(figure: Figure, result: ForecastResult) -> Html:
     answer, number = figure.answer, figure.number
     about = f"chart-{number}"
     panel = element(
@@ -77,6 +81,7 @@ def _chart(figure: Figure) -> Html:
         ),
         element("p", class_="fault", role="alert"),
         element("button", f"Central {percent(answer.share)} range", type="button", class_="reset"),
+        _statistics(result),
         class_="panel",
     )
     drawing = element(
@@ -94,6 +99,23 @@ def _chart(figure: Figure) -> Html:
         class_="forecast",
         data_forecast=str(number - 1),
     )
+
+
+def _statistics(result: ForecastResult) -> Html:
+    """The numbers that a reader of the chart asks for first; the section Statistics has all."""
+    found = result.statistics
+    shown = {
+        "Mean": found.mean,
+        "Standard deviation": found.standard_deviation,
+        "Minimum": found.minimum,
+        **{f"{each:g} %": found.percentiles[each] for each in _PERCENTS},
+        "Maximum": found.maximum,
+    }
+    rows = (
+        element("tr", element("th", label, scope="row"), element("td", estimate_html(estimate), class_="number"))
+        for label, estimate in shown.items()
+    )
+    return element("table", element("caption", "All accepted trials"), element("tbody", *rows), class_="beside")
 
 
 def _views(about: str) -> Html:

@@ -349,6 +349,26 @@ def test_few_trials_are_no_trouble(request, shown, name):
         assert chart.count == 1
 
 
+def test_bars_are_drawn_together_and_percentiles_marked(shown, run):
+    browser = shown(run)
+    merged = browser.execute_script("return merged({ edges: [0, 1, 2, 3], counts: [5, 6, 7] }, 2)")
+    assert (merged["edges"], merged["counts"]) == ([0, 2, 3], [11, 7])
+    chart = Chart(browser)
+    pixels = "return arguments[0].querySelector('canvas').toDataURL()"
+    before, certainty = browser.execute_script(pixels, chart.root), chart.said
+    chart.one("select.together").send_keys("four")
+    after = browser.execute_script(pixels, chart.root)
+    assert after != before
+    assert chart.said == certainty
+    chart.one("input.percentiles").click()
+    assert browser.execute_script(pixels, chart.root) != after
+    shown_at = dict(re.findall(r"· · (\d+) % ([-\d.]+)", chart.one(".readout").text))
+    for percent, text in shown_at.items():
+        exact = np.percentile(run["area"].values, float(percent))
+        assert float(text) == pytest.approx(exact, abs=0.01 * np.ptp(run["area"].values))
+    assert sorted(shown_at, key=float) == ["5", "50", "95"]
+
+
 def test_every_chart_is_saved_as_a_picture_with_its_own_styles(shown, run):
     browser = shown(run)
     browser.execute_script(

@@ -2,7 +2,7 @@
 // One forecast drawn: bars or curves, dark between the grabbers, light outside.
 
 const INK = "#1F3044", GRID = "#E3E8EE", DARK = "#2F6DA8", LIGHT = "#BCD3E8", BAND = "#F3EFE2";
-const MARKS = { "Mean": [], "Base case": [7, 4], "Threshold": [2, 3] }; // dashes
+const MARKS = { "Mean": [], "Base case": [7, 4], "Threshold": [2, 3] }, PERCENTILE = [1, 4]; // dashes
 const FONT = "12px system-ui, sans-serif";
 const WIDEST = 660, HIGHEST = 300, POINTS = 600;
 
@@ -14,8 +14,9 @@ function widthOf(element) {
 /**
  * Draw a forecast with its bars into `element`; `state` has `view`, `low`, `high` and is read whenever the chart is drawn
  * again. `drawn()` is called then, and `pointed(value)` when the pointer is somewhere else; null when it has left.
+ * `marks()` are the upright lines.
  */
-function drawForecast(element, forecast, trials, bins, state, { drawn, pointed }) {
+function drawForecast(element, forecast, trials, bins, state, { drawn, pointed, marks }) {
   const { edges, counts } = bins;
   const ends = [edges[0], edges[edges.length - 1]];
   const top = state.view === "frequency" ? Math.max(...counts) * 1.08 : 100;
@@ -24,7 +25,7 @@ function drawForecast(element, forecast, trials, bins, state, { drawn, pointed }
   if (bins.whole) options.axes[0].incrs = [1, 2, 5, 10, 20, 50, 100];
   options.hooks = {
     drawClear: [(chart) => band(chart, forecast.range)],
-    draw: [(chart) => paint(chart, shape, forecast.marks, bins.covered(state.low, state.high)), drawn],
+    draw: [(chart) => paint(chart, shape, marks(), bins.covered(state.low, state.high)), drawn],
     setCursor: [(chart) => pointed(chart.cursor.left < 0 ? null : chart.posToVal(chart.cursor.left, "x"))],
   };
   return new uPlot(options, [ends, [0, top]], element);
@@ -43,6 +44,19 @@ function barsOf({ bins, values }) {
     whole: true,
     edges: bins.edges.map((edge) => edge - 0.5),
     covered: (low, high) => [Math.ceil(low) - 0.5, Math.floor(high) + 0.5],
+  };
+}
+
+/** The bars drawn so many as one, from the left on; the last may be of fewer. */
+function merged(bins, together) {
+  if (together === 1) return bins;
+  const starts = [...bins.counts.keys()].filter((i) => i % together === 0);
+  const groups = starts.map((i) => [i, bins.counts.slice(i, i + together)]);
+  return {
+    ...bins,
+    edges: [...groups.map(([i]) => bins.edges[i]), bins.edges.at(-1)],
+    counts: groups.map(([, counts]) => counts.reduce((sum, count) => sum + count, 0)),
+    numbers: together,
   };
 }
 
@@ -113,13 +127,13 @@ function paint(chart, shape, marks, [from, to]) {
   clip(ctx, left, top, right - left, height);
   ctx.fillStyle = LIGHT;
   ctx.fill(path);
-  for (const { label, value } of marks) mark(ctx, chart.valToPos(value, "x", true), top, height, MARKS[label]);
+  for (const { label, value } of marks) mark(ctx, chart.valToPos(value, "x", true), top, height, MARKS[label] ?? PERCENTILE);
   ctx.restore();
   ctx.save();
   clip(ctx, at(from), top, Math.max(0, at(to) - at(from)), height);
   ctx.fillStyle = DARK;
   ctx.fill(path);
-  for (const { label, value } of marks) mark(ctx, chart.valToPos(value, "x", true), top, height, MARKS[label]);
+  for (const { label, value } of marks) mark(ctx, chart.valToPos(value, "x", true), top, height, MARKS[label] ?? PERCENTILE);
   ctx.restore();
 }
 

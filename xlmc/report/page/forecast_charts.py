@@ -71,6 +71,7 @@ def _chart(figure: Figure, result: ForecastResult) -> Html:
     panel = element(
         "div",
         _views(about),
+        _choices(),
         element("p", class_="certainty", role="status"),
         element(
             "div",
@@ -128,6 +129,17 @@ def _views(about: str) -> Html:
         for key, label in _VIEWS
     ]
     return element("fieldset", element("legend", "Chart"), *buttons, class_="views")
+
+
+def _choices() -> Html:
+    """How many bars are drawn as one, and whether percentiles are marked."""
+    options = (
+        element("option", label, value=str(together))
+        for together, label in ((1, "each"), (2, "two as one"), (4, "four as one"))
+    )
+    bars = element("label", "Bars ", element("select", *options, class_="together"))
+    marked = element("label", void("input", type="checkbox", class_="percentiles"), "Mark 5, 50 and 95 %")
+    return element("p", bars, marked, class_="choices")
 
 
 def _box(label: str, key: str, units: str) -> Html:

@@ -6,8 +6,9 @@ class Panel {
     this.forecast = forecast;
     this.z = z;
     this.trials = new Trials(forecast);
-    this.bins = barsOf(forecast);
+    this.bars = this.bins = barsOf(forecast);
     this.step = stepOf(this.bins);
+    this.percentiles = [];
     this.decimals = Math.max(0, -Math.round(Math.log10(this.step)));
     this.find = (selector) => element.querySelector(selector);
     this.box = (key) => element.querySelector(`.boxes .${key}`);
@@ -24,6 +25,14 @@ class Panel {
         this.draw();
       });
     }
+    this.find(".together").addEventListener("change", ({ target }) => {
+      this.bins = merged(this.bars, Number(target.value));
+      this.draw();
+    });
+    this.find(".percentiles").addEventListener("change", ({ target }) => {
+      this.percentiles = target.checked ? [5, 50, 95].map((percent) => this.percentile(percent)) : [];
+      this.draw();
+    });
     for (const key of ["low", "high", "share"]) {
       this.box(key).addEventListener("change", () => this.type(key));
     }
@@ -39,6 +48,7 @@ class Panel {
     this.chart = drawForecast(this.find(".chart"), this.forecast, this.trials, this.bins, this.state, {
       drawn: () => this.element(),
       pointed: (value) => this.read(value),
+      marks: () => this.marks(),
     });
     const { step, state, bins } = this;
     const grid = { step, min: bins.edges[0], max: bins.edges.at(-1) };
@@ -50,6 +60,16 @@ class Panel {
     };
     this.read(null);
     if (state.low !== undefined) this.show();
+  }
+
+  /** A line at a percentile. */
+  percentile(percent) {
+    const value = this.trials.quantile(percent / 100);
+    return { label: `${percent} %`, value, text: valueText(value, this.decimals + 1) };
+  }
+
+  marks() {
+    return [...this.forecast.marks, ...this.percentiles];
   }
 
   /** The forecast's own central range, with the texts that the sheets have. */
@@ -161,7 +181,7 @@ class Panel {
     if (this.state.view === "frequency") {
       const i = Math.min(Math.max(lastUpTo(bins.edges, value), 0), bins.counts.length - 1);
       const [from, to] = [bins.edges[i], bins.edges[i + 1]].map((edge) => valueText(edge, bins.decimals));
-      const bar = bins.whole ? String(bins.edges[i] + 0.5) : `${from} to below ${to}`;
+      const bar = bins.whole && !bins.numbers ? String(bins.edges[i] + 0.5) : `${from} to below ${to}`;
       const percent = ((100 * bins.counts[i]) / trials).toFixed(2);
       return `${bar}${unit}: ${countText(bins.counts[i])} trials, ${percent} %`;
     }
@@ -174,9 +194,9 @@ class Panel {
 
   /** What the lines stand for. */
   legend() {
-    const { marks, units } = this.forecast;
+    const { units } = this.forecast;
     const lines = { "Mean": "—", "Base case": "– –", "Threshold": "····" };
     const unit = units ? ` ${units}` : "";
-    return marks.map(({ label, text }) => `${lines[label]} ${label} ${text}${unit}`).join("    ");
+    return this.marks().map(({ label, text }) => `${lines[label] ?? "· ·"} ${label} ${text}${unit}`).join("    ");
   }
 }

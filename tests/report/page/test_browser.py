@@ -438,7 +438,7 @@ def test_on_paper_is_what_is_open_and_nothing_is_to_be_pressed(shown, run):
             assert {each.is_displayed() for each in found} == {displayed}
         for selector in ("nav", ".boxes", ".reset", ".views"):
             assert not browser.find_element("css selector", selector).is_displayed()
-        for selector in (".chart canvas", ".certainty", "#statistics table"):
+        for selector in (".chart canvas", ".certainty", "#statistics table", ".readout", ".overlay .legend"):
             assert browser.find_element("css selector", selector).is_displayed()
     finally:
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})

@@ -12,6 +12,9 @@
 
   Copies.start();
 
+  // On paper stands what the lines of a chart mean, not what the pointer is at.
+  addEventListener("beforeprint", () => panels.forEach((panel) => panel.read(null)));
+
   // What is open is printed, too.
   for (const button of document.querySelectorAll("button[data-all]")) {
     button.addEventListener("click", () => {

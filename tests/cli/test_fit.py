@@ -186,3 +186,13 @@ def test_counts_are_drawn_as_steps(xlmc, measured, tmp_path):
     points = [(x, y) for x, y in numbers.iter_rows(2, min_col=4, max_col=5, values_only=True) if x is not None]
     assert all(x == int(x) for x, _ in points)
     assert [x for x, _ in points[::2]] == [x for x, _ in points[1::2]]
+
+
+def test_many_values_and_counts_far_apart_are_drawn_with_few_points(xlmc, tmp_path):
+    book = openpyxl.Workbook()
+    for value in [1, 2, 3, 5, 8, 10**9] * 500:
+        book.active.append([value])
+    book.save(tmp_path / "far.xlsx")
+    outcome = xlmc("fit", tmp_path / "far.xlsx", "A1:A3000", "-o", tmp_path / "found.xlsx")
+    assert outcome.code == 0, outcome.err
+    assert openpyxl.load_workbook(tmp_path / "found.xlsx")["Numbers"].max_row <= 4_003

@@ -165,6 +165,14 @@ def test_a_name_that_looks_like_an_escape_or_steers_a_terminal_is_written_as_it_
     assert xlmc("check", book).code == 0
 
 
+def test_the_workbook_is_no_output(xlmc, data, book):
+    before = book.read_bytes()
+    outcome = xlmc("fit", f"{data}!A1:A40", "--name", "new", "--into", book, "-o", book, "--overwrite")
+    assert outcome.code == 2
+    assert "this is the workbook itself" in outcome.err
+    assert book.read_bytes() == before
+
+
 def test_a_name_is_needed(xlmc, data, book):
     outcome = xlmc("fit", f"{data}!A1:A40", "--into", book)
     assert outcome.code == 2

@@ -22,8 +22,8 @@ __all__ = ["fit"]
 
 TOO_FEW = 1
 
-_DRAWN, _POINTS, _BESIDE = 4, 201, 0.1
-"""Families that are drawn, their points, and how far beyond the values, as a share of their range."""
+_DRAWN, _POINTS, _VALUES, _BESIDE = 4, 201, 2_000, 0.1
+"""Families that are drawn, their points, the most values, and how far beyond these, as a share of their range."""
 
 _BY = (
     "What ranks them: aic or bic, how probable the values are, less for every parameter; ad (Anderson-Darling) or ks"
@@ -81,7 +81,8 @@ def fit(
     name = label(name.strip())
     if into is not None and not name:
         raise click.UsageError("--into needs --name, the name of the assumption.")
-    files = Files(output, html, pdf, docx, [book], overwrite=overwrite)
+    sources = [book] if into is None else [book, into]
+    files = Files(output, html, pdf, docx, sources, overwrite=overwrite)
     files.check()
     values, where, blank = _values(book, reference)
     found = fitting.fit(values, kind=kind, by=by)
@@ -247,16 +248,16 @@ def _curves(found: Fitting, values: list[float]) -> Curves:
     from xlmc.report.study_curves import Curves, Line
     from xlmc.studies.fitting import share_at_most
 
-    x = np.sort(values)
+    ranked = np.sort(values)
+    shown = np.unique(np.linspace(0, ranked.size - 1, min(ranked.size, _VALUES)).astype(int))
+    x, own = ranked[shown], (shown + 1) / ranked.size
     margin = _BESIDE * (x[-1] - x[0])
-    own = np.arange(1, x.size + 1) / x.size
+    at = np.linspace(x[0] - margin, x[-1] + margin, _POINTS)
     if found.kind == "counts":
-        at = np.arange(max(0.0, np.floor(x[0] - margin)), np.ceil(x[-1] + margin) + 1)
-    else:
-        at = np.linspace(x[0] - margin, x[-1] + margin, _POINTS)
+        at = np.unique(np.maximum(np.floor(np.linspace(x[0] - margin, x[-1] + margin + 1.0, 4 * _POINTS)), 0.0))
     lines = [Line("Values", _staircase(np.append(x, at[-1]), np.append(own, 1.0)))]
     for fitted in found.fits[:_DRAWN]:
-        shares = share_at_most(found, fitted, at)
+        shares = share_at_most(fitted, at)
         points = _staircase(at, shares) if found.kind == "counts" else zip(at.tolist(), shares.tolist(), strict=True)
         lines.append(Line(fitted.name, tuple(points)))
     title = f"The values and the {len(lines) - 1} distributions that describe them best"

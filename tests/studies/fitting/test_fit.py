@@ -9,7 +9,7 @@ from scipy import stats
 from xlmc.distributions import FAMILIES
 from xlmc.distributions.spelling import plain
 from xlmc.errors import SimulationError
-from xlmc.studies.fitting import CRITERIA, KINDS, fit
+from xlmc.studies.fitting import CRITERIA, KINDS, fit, share_at_most
 from xlmc.studies.fitting.fit import anderson_darling, cautions, kolmogorov_smirnov, kolmogorov_smirnov_of_counts
 
 N = 4000
@@ -186,3 +186,24 @@ def test_kolmogorov_smirnov_of_counts_looks_at_every_whole_number():
     oracle = stats.poisson(4.2)
     expected = max(abs(np.mean(x <= k) - oracle.cdf(k)) for k in range(-1, 30))
     assert kolmogorov_smirnov_of_counts(x, oracle.cdf) == pytest.approx(expected, rel=1e-14)
+
+
+DATA = {
+    "positive": np.random.default_rng(0).lognormal(0.0, 1.0, 60),
+    "between 0 and 1": np.random.default_rng(1).beta(0.5, 0.5, 60),
+    "negative": np.random.default_rng(2).normal(-5.0, 1.0, 50),
+    "heavy tails": np.random.default_rng(3).standard_t(2, 80),
+    "counts": np.random.default_rng(4).poisson(3, 40),
+    "counts from 1": np.random.default_rng(5).geometric(0.3, 40),
+}
+
+
+@pytest.mark.parametrize("name", DATA)
+def test_shares_at_most_rise_from_0_to_1_beyond_the_support_too(name):
+    values = np.sort(DATA[name])
+    margin = 0.3 * (values[-1] - values[0])
+    at = np.linspace(values[0] - margin, values[-1] + margin, 101)
+    for fitted in fit(values).fits:
+        shares = share_at_most(fitted, at)
+        assert np.all((shares >= 0.0) & (shares <= 1.0)), fitted.name
+        assert np.all(np.diff(shares) >= -1e-12), fitted.name

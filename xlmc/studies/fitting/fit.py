@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from xlmc.distributions import FAMILIES
 from xlmc.errors import SimulationError
 from xlmc.studies.fitting.candidate import Candidate, Errors, Floats, Params, Unfit, refuse, standard_errors
 from xlmc.studies.fitting.closed_forms import CLOSED_FORMS
@@ -247,10 +248,16 @@ def _join_names(names: list[str]) -> str:
     return f"{', '.join(names[:-1])} and {names[-1]}"
 
 
-def share_at_most(found: Fitting, fitted: Fitted, x: ArrayLike) -> Floats:
-    """The share that a fitted family has at most at each of `(n,)` numbers: its distribution function."""
-    candidate = next(each for each in KINDS[found.kind] if each.name == fitted.name)
-    return np.asarray(candidate.cdf(np.asarray(x, dtype=float), *fitted.parameters.values()), dtype=float)
+def share_at_most(fitted: Fitted, x: ArrayLike) -> Floats:
+    """The share that a fitted family has at most at each of `(n,)` numbers, those outside its support included."""
+    family = FAMILIES[fitted.name]
+    named = {
+        spec.key: fitted.parameters[heading]
+        for spec in family.parameters
+        for heading in spec.headings
+        if heading in fitted.parameters
+    }
+    return family.cdf(np.asarray(x, dtype=float), **named)
 
 
 def row_to_paste(fitted: Fitted, name: str, source: str) -> dict[str, str]:

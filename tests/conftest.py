@@ -16,6 +16,8 @@ from openpyxl.worksheet.table import Table as WrittenTable
 from xlmc.address import Area, parse_address
 from xlmc.api import Model
 from xlmc.definitions.definitions import Assumption, Correlation, Definitions, Filter, Forecast
+from xlmc.definitions.evidence import Evidence
+from xlmc.definitions.tables.evidence_rows import as_filter
 from xlmc.workbook.workbook import CellContent, DefinedName, Formula, Sheet, Table, Workbook
 
 
@@ -62,13 +64,22 @@ def _filter(name, given):
     return Filter(name, cell, cell, **{key: _parameter(value) for key, value in given.items()})
 
 
-def _definitions(workbook, assumptions, forecasts, filters, correlations):
+def _evidence(name, given):
+    given = dict(given)
+    cell = parse_address(given.pop("cell"), "S")
+    reading, error = (_parameter(given.pop("reading")), given.pop("error", "uniform"))
+    return Evidence(name, cell, cell, reading, error, {key: _parameter(value) for key, value in given.items()})
+
+
+def _definitions(workbook, assumptions, forecasts, filters, correlations, evidence):
     places = {name: parse_address(address, "S") for name, address in forecasts.items()}
+    items = tuple(_evidence(name, given) for name, given in evidence.items())
     return Definitions(
         tuple(_assumption(name, given, workbook) for name, given in assumptions.items()),
         tuple(Forecast(name, cell, cell) for name, cell in places.items()),
-        tuple(_filter(name, given) for name, given in filters.items()),
+        (*(_filter(name, given) for name, given in filters.items()), *map(as_filter, items)),
         tuple(Correlation(*pair, value, parse_address("A1", "Correlations")) for pair, value in correlations.items()),
+        evidence=items,
     )
 
 
@@ -92,7 +103,7 @@ def table():
 
 @pytest.fixture(scope="session")
 def definitions():
-    """`definitions(workbook, assumptions, forecasts, filters, correlations)`; see `book` for what these are."""
+    """`definitions(workbook, assumptions, forecasts, filters, correlations, evidence)`; see `book` for these."""
     return _definitions
 
 
@@ -102,12 +113,14 @@ def book():
 
     An assumption is `{"cell": "A1", "low": 0, "high": 1}`, with `distribution`, `frozen` and cutoffs if need be; a
     parameter that is an address is a dynamic one. A forecast is an address. A filter is an address, or
-    `{"cell": "A1", "below": 1}`. A correlation is `{("a", "b"): 0.5}`.
+    `{"cell": "A1", "below": 1}`. A correlation is `{("a", "b"): 0.5}`. Evidence is `{"cell": "A1", "reading": 1,
+    "error": "normal", "std_dev": 0.5}`.
     """
 
-    def make(cells, assumptions=None, forecasts=None, filters=None, correlations=None, **of_workbook):
+    def make(cells, assumptions=None, forecasts=None, filters=None, correlations=None, evidence=None, **of_workbook):
         held = _workbook(cells, **of_workbook)
-        found = _definitions(held, assumptions or {}, forecasts or {}, filters or {}, correlations or {})
+        given = assumptions or {}, forecasts or {}, filters or {}, correlations or {}, evidence or {}
+        found = _definitions(held, *given)
         return Model(held, found, Path("book.xlsx"))
 
     return make

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from xlmc.address import Area, Cell
+from xlmc.definitions.evidence import Evidence
 from xlmc.definitions.stopping import NO_GOAL, Stopping
 from xlmc.distributions import FAMILIES, Family
 from xlmc.errors import DefinitionError, FormulaError, Notice
@@ -137,7 +138,12 @@ class Forecast:
 
 @dataclass(frozen=True, slots=True)
 class Filter:
-    """What makes a trial physically possible. With no limit at all the cell itself must be TRUE."""
+    """What makes a trial physically possible. With no limit at all the cell itself must be TRUE.
+
+    Attributes:
+        evidence: the row of `xlmc_evidence` that it comes from, which then says what it keeps; None for a row of
+            `xlmc_filters`.
+    """
 
     name: str
     cell: Cell
@@ -148,6 +154,7 @@ class Filter:
     below: Parameter | None = None
     because: str = ""
     notes: Mapping[str, str] = field(default_factory=dict)
+    evidence: Evidence | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,6 +208,7 @@ class Definitions:
     formulas in which calls stand for assumptions (`=10+RiskNormal(5,1)`), with assumptions instead of the calls, or why
     a cell cannot be computed; `results` are the cells that show results of the run, and `unavailable` are those that
     should, or belong to a what-if table of the run, and cannot be computed, each with the reason.
+    `evidence` are the rows of `xlmc_evidence`; those that are used are also among `filters`.
     """
 
     assumptions: tuple[Assumption, ...] = ()
@@ -214,3 +222,4 @@ class Definitions:
     results: tuple[Cell, ...] = ()
     unavailable: Mapping[Cell, str] = field(default_factory=dict)
     checks: tuple[Check, ...] = ()
+    evidence: tuple[Evidence, ...] = ()

@@ -10,6 +10,7 @@ from xlmc.definitions.in_cells.calls import InCells, in_cell_correlations, in_ce
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.assumptions import read_assumptions
 from xlmc.definitions.tables.correlations import read_correlations
+from xlmc.definitions.tables.evidence_rows import as_filter, read_evidence
 from xlmc.definitions.tables.filters import read_checks, read_filters
 from xlmc.definitions.tables.forecasts import read_forecasts
 from xlmc.definitions.tables.identity import Claims
@@ -46,6 +47,8 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
     assumptions = read_assumptions(workbook, tables["xlmc_assumptions"], computed, uncertain, findings)
     forecasts = read_forecasts(workbook, tables["xlmc_forecasts"], computed, central, answers, findings)
     filters = read_filters(workbook, tables["xlmc_filters"], computed, tests, findings)
+    evidence = read_evidence(workbook, tables["xlmc_evidence"], computed, filters, findings)
+    filters = *filters, *(as_filter(each) for each in evidence if each.used)
     checks = read_checks(workbook, tables["xlmc_checks"], computed, Claims("check"), findings)
     calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings)
     _remark_on_stored_assumptions(workbook, findings)
@@ -84,6 +87,7 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
         results=tuple(calls.results),
         unavailable=unavailable,
         checks=checks,
+        evidence=evidence,
     )
 
 

@@ -164,7 +164,7 @@ def base_case(simulation: Simulation) -> BaseCase | None:
         return None
     settings = simulation.settings  # always in float64
     evaluator = model.program(settings.engine).evaluator(1)
-    filters = [_fails(column) for column in evaluator.filters(known, 1)]
+    filters = [_fails(column) for column in evaluator.filters(known | model.certain(1), 1)]
     columns = evaluator.forecasts(np.zeros(1, np.intp))
     return BaseCase(
         forecasts={f.name: _number(column) for f, column in zip(model.forecasts, columns, strict=True)},

@@ -70,13 +70,15 @@ def filter_faults(model: Model) -> list[DefinitionError]:
 
     The base case is looked at, where there is one; then, for quantities, some trials.
     """
-    filters = [each for each in model.filters if not filter_limits(each) or _may_be_text(model, each)]
+    rows = [each for each in model.filters if each.evidence is None or filter_limits(each)]
+    filters = [each for each in rows if not filter_limits(each) or _may_be_text(model, each)]
     if not filters:
         return []
     targets = [target for each in filters for target in (Target(each.cell, each.cell), _length(each))]
     drawn = frozenset(name_key(a.name) for a in model.live)
     evaluator = NumpyProgram.of(model.lowering, targets, [], drawn).evaluator(_DRAWN)
     base = {name_key(a.name): np.full(1, np.nan if a.base is None else a.base) for a in model.live}
+    base |= model.certain(1)
     found = dict(_faults(filters, evaluator.filters(base, 1), "at the base case", texts=True))
     if any(not filter_limits(each) and each.cell not in found for each in filters):
         columns = evaluator.filters(model.sampler(0, _DRAWN).draw(0), _DRAWN)

@@ -24,6 +24,7 @@ from xlmc.evaluation.passes.bounds import NodeBounds
 from xlmc.formula import Graph
 from xlmc.run.correlating import correlated_groups, repair_notices, tie_notices
 from xlmc.run.draw_binding import draw_of, dynamic_parameters, with_base_parameters
+from xlmc.run.evidence_filters import chances_of, with_evidence_numbers
 from xlmc.run.needed import (
     Needed,
     definitions_of_checks,
@@ -64,6 +65,7 @@ def lower_needed(workbook: Workbook, definitions: Definitions) -> tuple[Needed, 
     Raises:
         FormulaError, DefinitionError: as for `load`.
     """
+    definitions = replace(definitions, assumptions=(*definitions.assumptions, *chances_of(definitions.filters)))
     inputs = {a.cell: name_key(a.name) for a in definitions.assumptions if not a.frozen}
     held = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
     found: list[Needed] = []
@@ -102,21 +104,24 @@ class Model:
         workbook, definitions, path: what it was made from.
         assumptions, forecasts, filters, checks: as defined.
         live: the assumptions that are drawn: needed and not frozen.
-        draws: name of a live assumption -> how it is drawn.
+        chances: what decides which trials are kept by evidence whose error is no limit; drawn as assumptions are.
+        draws: name of a live assumption or a chance -> how it is drawn.
         lowering: the nodes of the needed cells.
         groups: of correlated ones among them.
         notices: what the person should know.
     """
 
     def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
-        definitions = with_base_parameters(workbook, definitions)
+        definitions = with_evidence_numbers(workbook, with_base_parameters(workbook, definitions))
         self.workbook, self.definitions, self.path = workbook, definitions, path
         self.assumptions, self.forecasts = definitions.assumptions, definitions.forecasts
         self.filters, self.checks = definitions.filters, definitions.checks
         self.needed, self.lowering = lower_needed(workbook, definitions)
-        named = {a.name: a for a in self.assumptions}
-        self.live: tuple[Assumption, ...] = tuple(map(named.__getitem__, self.needed.live))
-        self.draws: Mapping[str, Draw] = {a.name: draw_of(a, self.lowering) for a in self.live}
+        self.chances = chances_of(self.filters)
+        named, chances = {a.name: a for a in self.assumptions}, {a.name: a for a in self.chances}
+        drawn = [{**named, **chances}[name] for name in self.needed.live]
+        self.live: tuple[Assumption, ...] = tuple(a for a in drawn if a.name not in chances)
+        self.draws: Mapping[str, Draw] = {a.name: draw_of(a, self.lowering) for a in drawn}
         found = {draw.name: draw.support() for draw in self.draws.values()}
         self._ends = {key: ends for key, ends in found.items() if ends is not None}
         rows = definitions.correlations
@@ -147,6 +152,15 @@ class Model:
         """The cells of the live assumptions whose range has more than one value, as far as it is known."""
         still = {key for key, (low, high) in self._ends.items() if low >= high}
         return {a.cell for a in self.live if name_key(a.name) not in still}
+
+    @property
+    def drawn_keys(self) -> tuple[str, ...]:
+        """Keys of all that is drawn: the live assumptions, and the chances after them."""
+        return tuple(name_key(a.name) for a in (*self.live, *self.chances))
+
+    def certain(self, n: int) -> dict[str, NDArray[np.float64]]:
+        """Key of each chance -> `(n,)` the number that keeps every trial, for whoever draws the assumptions alone."""
+        return {name_key(a.name): np.zeros(n) for a in self.chances}
 
     @property
     def read(self) -> frozenset[Cell]:
@@ -270,9 +284,9 @@ class Model:
         bases = {a.name: a.base for a in self.live}
         for number, names in enumerate(self.needed.stages):
             varying: Mapping[Hashable, NDArray[np.float64]] = {}
-            if number:
+            if number:  # no chance: its parameters are numbers
                 varying = dynamic_parameters([self.draws[name] for name in names], self.lowering, 1)(held, 1)
-            for name in names:
+            for name in (name for name in names if name in bases):
                 values, base = np.append(wanted, 0.5), bases[name]
                 self.draws[name].fill(values, varying)
                 found[name] = values[:-1]

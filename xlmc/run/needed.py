@@ -8,6 +8,7 @@ from typing import Final
 
 from xlmc.address import Cell, InFormula
 from xlmc.definitions.definitions import Assumption, Check, Definitions, Filter, Forecast
+from xlmc.definitions.evidence import Bell
 from xlmc.errors import DefinitionError, Notice
 from xlmc.formula import Graph, Resolver, build_graph, ir
 from xlmc.workbook.workbook import Workbook
@@ -19,6 +20,7 @@ __all__ = [
     "filter_condition",
     "filter_limits",
     "find_needed",
+    "kept_by_chance",
     "refuse_without_base",
     "targets_of",
     "upstream",
@@ -166,6 +168,8 @@ def targets_of(forecasts: Iterable[Forecast], filters: Iterable[Filter]) -> list
     targets = [forecast.cell for forecast in forecasts]
     for filter_ in filters:
         targets += [filter_.cell, *(bound for _, bound in filter_limits(filter_) if isinstance(bound, Cell))]
+        if filter_.evidence is not None and filter_.evidence.bell is not None:
+            targets.append(filter_.evidence.chance)
     return targets
 
 
@@ -175,17 +179,39 @@ def filter_limits(filter_: Filter) -> list[tuple[str, float | Cell]]:
     return [(relation, bound) for relation, bound in limits if bound is not None]
 
 
-def filter_condition(filter_: Filter) -> ir.Expression:
+def filter_condition(filter_: Filter, *, certain: bool = False) -> ir.Expression:
     """What a filter asks, as a formula. Its cell is taken as a number, so that a text is `#VALUE!`, not "large".
 
     Limits are compared to the last bit, not at the 15 digits of comparisons in formulas.
+
+    Args:
+        filter_: of a row of `xlmc_filters` or `xlmc_evidence`.
+        certain: evidence whose error is no limit keeps every trial whose probability is above 0.
     """
+    if filter_.evidence is not None and (bell := filter_.evidence.bell) is not None:
+        return kept_by_chance(bell, filter_.cell, ir.Number(0.0) if certain else filter_.evidence.chance)
     number = ir.Binary("+", filter_.cell, ir.Number(0.0))
     limits = filter_limits(filter_)
     if not limits:
         return ir.Binary("<>", number, ir.Number(0.0), all_bits=True)
     parts = tuple(ir.Binary(relation, number, _bound(bound), all_bits=True) for relation, bound in limits)
     return parts[0] if len(parts) == 1 else ir.Call("AND", parts)
+
+
+def kept_by_chance(bell: Bell, cell: Cell, chance: ir.Expression) -> ir.Expression:
+    """Whether a trial is kept, with probability exp(-z²/2).
+
+    Args:
+        bell: the error of the reading.
+        cell: the model's quantity.
+        chance: a uniform number; 0 keeps every trial that has a probability above 0.
+    """
+    exponent = ir.Binary("*", ir.Number(-0.5), bell.tree_of_square(cell))
+    kept: ir.Expression = ir.Binary("<=", chance, ir.Call("EXP", (exponent,)), all_bits=True)
+    if not bell.logarithmic:
+        return kept
+    positive = ir.Binary(">", ir.Binary("+", cell, ir.Number(0.0)), ir.Number(0.0), all_bits=True)
+    return ir.Call("IF", (positive, kept, ir.Logical(value=False)))
 
 
 def _bound(bound: float | Cell) -> ir.Expression:

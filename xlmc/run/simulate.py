@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.columns import ColumnStore
-from xlmc.definitions.definitions import name_key
 from xlmc.definitions.stopping import LIMIT, MOST_TRIALS, NO_GOAL, Stopping
 from xlmc.errors import SimulationError
 from xlmc.evaluation.engine import Room
@@ -212,10 +211,10 @@ class _Gathered:
 
     def __init__(self, model: Model, block: int, keep_inputs: int, trials: int) -> None:
         self._model, self._block, self._keep_inputs = model, block, keep_inputs
-        keys = [name_key(a.name) for a in model.live]
         real, whole = np.dtype(np.float64), np.dtype(np.int64)
-        self._inputs = {a.name: ("input", key) for a, key in zip(model.live, keys, strict=True)}
-        self._prior = {a.name: ("prior", key) for a, key in zip(model.live, keys, strict=True)}
+        drawn = [*model.live, *model.chances]
+        self._inputs = {a.name: ("input", key) for a, key in zip(drawn, model.drawn_keys, strict=True)}
+        self._prior = {a.name: ("prior", key) for a, key in zip(drawn, model.drawn_keys, strict=True)}
         self._forecasts = {f.name: ("forecast", number) for number, f in enumerate(model.forecasts)}
         columns = (*self._inputs.values(), *self._prior.values(), *self._forecasts.values())
         expected: dict[Hashable, int] = {("trial", 0): trials, **dict.fromkeys(self._forecasts.values(), trials)}
@@ -279,8 +278,8 @@ class _Gathered:
             block=self._block,
             trials=self.trials,
             trial_index=self.accepted_trials,
-            inputs=self._keeper.columns(self._inputs),
-            prior=self._keeper.columns(self._prior),
+            inputs=self._keeper.columns({a.name: self._inputs[a.name] for a in self._model.live}),
+            prior=self._keeper.columns({a.name: self._prior[a.name] for a in self._model.live}),
             forecasts=self._keeper.columns(self._forecasts),
             faults={f.name: counts for f, counts in zip(self._model.forecasts, self._faults, strict=True)},
             tally=self._tally,

@@ -25,7 +25,7 @@ __all__ = [
     "static_value",
 ]
 
-_WORDS = {"true": True, "yes": True, "false": False, "no": False}
+_WORDS = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False}
 
 
 def required_text(row: Row, heading: str) -> str:
@@ -90,7 +90,7 @@ def static_value(given: Parameter | None, workbook: Workbook) -> float | None:
 
 
 def logical(row: Row, heading: str) -> bool:
-    """TRUE or FALSE, also as the words true, false, yes, no; blank is FALSE.
+    """TRUE or FALSE, also as the words true, false, yes, no, on, off; blank is FALSE.
 
     Raises:
         DefinitionError: the cell holds anything else.

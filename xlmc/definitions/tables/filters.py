@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
@@ -66,7 +67,8 @@ def _filter(row: Row, computed: Computed, claims: Claims, findings: Findings) ->
         findings.notice(
             f"The filter {name!r} gives no evidence under Because, the first thing an opponent asks for", where
         )
-    return Filter(name=name, cell=cell, row=row.where, **limits, because=because, notes=row.notes(_FILTER_COLUMNS))
+    known: dict[str, Any] = {**limits, "because": because, "notes": row.notes(_FILTER_COLUMNS)}
+    return Filter(name=name, cell=cell, row=row.where, **known)
 
 
 def _refuse_contradiction(row: Row, limits: Mapping[str, Parameter | None]) -> None:

@@ -28,9 +28,14 @@ __all__ = ["Claims", "identify"]
 
 @dataclass(slots=True)
 class Claims:
-    """The names and cells that the rows read so far have taken; `kind` is what one row is called, `assumption`."""
+    """The names and cells that the rows read so far have taken; `kind` is what one row is called, `assumption`.
+
+    Attributes:
+        shared: whether several rows may be about one cell.
+    """
 
     kind: str
+    shared: bool = False
     names: dict[str, tuple[str, Cell]] = field(default_factory=dict)
     cells: dict[Cell, Cell] = field(default_factory=dict)
 
@@ -54,7 +59,7 @@ class Claims:
         Raises:
             DefinitionError: another row has it.
         """
-        if cell in self.cells:
+        if cell in self.cells and not self.shared:
             message = f"Two {self.kind} rows have the same cell {cell}, this one and {self.cells[cell]}"
             raise DefinitionError(message, where=where, hint="Keep one row for each cell")
         self.cells[cell] = where

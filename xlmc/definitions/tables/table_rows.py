@@ -29,6 +29,7 @@ KINDS = (
     "xlmc_assumptions",
     "xlmc_forecasts",
     "xlmc_filters",
+    "xlmc_evidence",
     "xlmc_checks",
     "xlmc_correlations",
     "xlmc_settings",

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.address import Cell
 from xlmc.definitions.definitions import Assumption, DataRange, Filter, Parameter
+from xlmc.definitions.evidence import ERRORS, SIZES, Evidence, Within
 from xlmc.sampling.sampling_methods import GENERATOR, METHODS
 from xlmc.statistics.sample import MOST_GROUPS
 
@@ -19,6 +20,7 @@ __all__ = [
     "cutoffs_text",
     "distribution_text",
     "errors_text",
+    "evidence_text",
     "generator_text",
     "limits_text",
     "method_text",
@@ -70,7 +72,9 @@ def distribution_text(assumption: Assumption) -> str:
 
 
 def limits_text(filter_: Filter) -> str:
-    """`at least 0 and below 1`; `TRUE` where the filter has no limits."""
+    """`at least 0 and below 1`; `TRUE` where the filter has no limits; what evidence says, where it is some."""
+    if filter_.evidence is not None:
+        return evidence_text(filter_.evidence)
     limits = (
         ("at least", filter_.at_least),
         ("above", filter_.above),
@@ -78,6 +82,20 @@ def limits_text(filter_: Filter) -> str:
         ("below", filter_.below),
     )
     return " and ".join(f"{relation} {number_text(bound)}" for relation, bound in limits if bound is not None) or "TRUE"
+
+
+def evidence_text(evidence: Evidence) -> str:
+    """`reads 12, normal (Std dev 0.6)`; `reads 12, instrument (Percent 10): from 10.9091 to 13.3333`."""
+    if not evidence.used or evidence.reading is None:
+        return f"not used: {evidence.unused}"
+    known = None if any(evidence.cells) else evidence.law
+    sizes = ", ".join(f"{SIZES[key]} {number_text(value)}" for key, value in evidence.sizes.items())
+    kept = ""
+    if isinstance(known, Within):
+        ends = [("from", known.low), ("to", known.high)]
+        kept = ": " + " ".join(f"{word} {end:.6g}" for word, end in ends if end is not None)
+    given = f" ({sizes})" if sizes else ""
+    return f"reads {number_text(evidence.reading)}, {ERRORS[evidence.error].lower()}{given}{kept}"
 
 
 def notes_text(notes: Mapping[str, str]) -> str:

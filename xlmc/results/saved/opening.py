@@ -201,7 +201,7 @@ def _simulation(found: Document, model: Model, columns: _Columns) -> Simulation:
     plan, trials = plan_of(settings, found["order"]), whole(found["trials"], "its number of trials")
     require(1 <= trials <= plan.trials, "its number of trials")
     live = {name_key(a.name) for a in model.live}
-    require(set(plan.order) <= live, "its order of dimensions")
+    require(set(plan.order) <= {*model.drawn_keys}, "its order of dimensions")
     invalid = counts(found["invalid"], "its invalid draws")
     require(set(invalid) <= live, "its invalid draws")
     index = columns.of("trial")[""]

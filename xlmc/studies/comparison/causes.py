@@ -122,7 +122,9 @@ def _filters_only(mine: Model, theirs: Model) -> tuple[str, ...]:
 
 
 def _limits(filter_: Filter) -> list[tuple[str, object]]:
-    return [(relation, bound) for relation, bound in filter_limits(filter_)]
+    bell = None if filter_.evidence is None else filter_.evidence.bell
+    limits: list[tuple[str, object]] = [(relation, bound) for relation, bound in filter_limits(filter_)]
+    return limits if bell is None else [("agrees with", bell)]
 
 
 @dataclass(frozen=True, slots=True)

@@ -209,6 +209,10 @@ def _check(seed: int, replicates: int | None, trials: int | None, reference: int
     if not model.live:
         message = "no assumption that the forecasts or filters need is drawn, so that every method gives the same"
         raise SimulationError(message, hint="give the table xlmc_assumptions a range that a forecast depends on")
+    if model.chances:
+        named = ", ".join(repr(each.name) for each in model.filters if each.evidence and each.evidence.bell)
+        message = f"the methods that draw no trials cannot use evidence with a normal or lognormal error: {named}"
+        raise SimulationError(message, hint="switch it off under Use in xlmc_evidence, or give it a uniform error")
     if seed < 0:
         raise SimulationError(f"the seed {seed} is negative", hint="give a whole number from 0 up")
     if replicates is not None and replicates < 2:

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from xlmc.address import Cell
 from xlmc.definitions.definitions import name_key
+from xlmc.evaluation.engine import Target
 from xlmc.run.draw_binding import parameter_target
-from xlmc.run.needed import filter_limits
+from xlmc.run.needed import filter_condition, filter_limits
 from xlmc.studies.sensitivity.moved_limit import LimitTrials, grid, holds_to
 
 if TYPE_CHECKING:
@@ -75,9 +76,9 @@ class _LimitCells:
     @cached_property
     def program(self) -> Program:
         """Gives filters' cells and limits instead of filters, and the forecasts."""
-        cells = [filter_.cell for filter_ in self._model.filters]
-        cells += [limit.bound for limit in self.limits if isinstance(limit.bound, Cell)]
-        return self._model.program_of([parameter_target(cell) for cell in cells])
+        targets = [_asked_of(filter_) for filter_ in self._model.filters]
+        targets += [parameter_target(limit.bound) for limit in self.limits if isinstance(limit.bound, Cell)]
+        return self._model.program_of(targets)
 
     def look(self, evaluator: Evaluator, draws: Mapping[str, Floats], n: int) -> _CellValues:
         """Into the cells, in `n` trials, with an evaluator of the program."""
@@ -101,6 +102,13 @@ class _LimitCells:
         for name in sorted(self._model.fallible):
             broken += np.isnan(draws[name])
         return [(broken == 1) & ~each for each in held]
+
+
+def _asked_of(filter_: Filter) -> Target:
+    """Its cell; or, of evidence whose error is no limit, whether it keeps the trial."""
+    if filter_.evidence is not None and filter_.evidence.bell is not None:
+        return Target(filter_condition(filter_), filter_.cell)
+    return parameter_target(filter_.cell)
 
 
 @dataclass(frozen=True)
@@ -190,7 +198,7 @@ def _look_at_accepted(simulation: Simulation, cells: _LimitCells, m: int) -> _Ce
             name_key(a.name): np.ascontiguousarray(simulation.inputs[a.name][start : start + n])
             for a in simulation.model.live
         }
-        parts.append(cells.look(evaluator, draws, n))
+        parts.append(cells.look(evaluator, draws | simulation.model.certain(n), n))
     filters = [np.concatenate(columns) for columns in zip(*(part.filters for part in parts), strict=True)]
     return _CellValues(
         filters, [np.concatenate(columns) for columns in zip(*(part.bounds for part in parts), strict=True)]

@@ -79,7 +79,8 @@ def _evaluate(model: Model, base: dict[str, float], moved: dict[str, Floats]) ->
             rows = np.arange(start, start + len(PERCENTS)) - first
             inside = (rows >= 0) & (rows < n)
             columns[name][rows[inside]] = moved[name][inside]
-        filters = evaluator.filters({name_key(name): column for name, column in columns.items()}, n)
+        given = {name_key(name): column for name, column in columns.items()} | model.certain(n)
+        filters = evaluator.filters(given, n)
         rejected.append(np.logical_or.reduce([np.zeros(n, bool), *(_fails(column) for column in filters)]))
         answers.append([column.as_floats() for column in evaluator.forecasts(np.arange(n))])
     return [np.concatenate(parts) for parts in zip(*answers, strict=True)], np.concatenate(rejected)

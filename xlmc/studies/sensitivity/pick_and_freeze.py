@@ -100,7 +100,7 @@ def pick_and_freeze(model: Model, assumptions: Sequence[str], trials: int, seed:
 def _draws(model: Model, seed: int, start: int, count: int, block: int) -> dict[str, Floats]:
     """`(count,)` draws of independent trials from `start` on."""
     sampler = model.sampler(seed, block)
-    drawn = {name_key(a.name): np.empty(count) for a in model.live}
+    drawn = {key: np.empty(count) for key in model.drawn_keys}
     for first in range(0, count, block):
         part = sampler.draw(start + first)
         for key, values in drawn.items():

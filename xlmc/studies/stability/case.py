@@ -71,7 +71,9 @@ class Case:
         targets = [*(f.cell for f in model.forecasts), *(f.cell for f in model.filters)]
         self.node = {cell: self.lowering.cell(cell) for cell in (*self.cells, *targets)}
         self.names = [name_key(a.name) for a in model.live]
-        self.conditions = [self.lowering.target(Target(filter_condition(f), f.cell)) for f in model.filters]
+        self.conditions = [
+            self.lowering.target(Target(filter_condition(f, certain=True), f.cell)) for f in model.filters
+        ]
         self.nodes = closure(self.dag, [*self.node.values(), *self.conditions])
         self._exact = Exact(self.dag, self.nodes)
         self._known: dict[int, dict[int, Any]] = {}

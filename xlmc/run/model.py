@@ -6,9 +6,10 @@ import gc
 import re
 from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
-from dataclasses import replace
+from copy import copy
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from typing import Final, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +21,7 @@ from xlmc.evaluation.engine import Evaluator, Program, Target
 from xlmc.evaluation.engines import ENGINES
 from xlmc.evaluation.graph.lower import Lowering, lower_until_complete
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
-from xlmc.evaluation.passes.bounds import NodeBounds
+from xlmc.evaluation.passes.bounds import Bounds, NodeBounds
 from xlmc.formula import Graph
 from xlmc.run.correlating import correlated_groups, repair_notices, tie_notices
 from xlmc.run.draw_binding import draw_of, dynamic_parameters, with_base_parameters
@@ -32,6 +33,7 @@ from xlmc.run.needed import (
     filter_condition,
     find_needed,
     refuse_without_base,
+    targets_of,
 )
 from xlmc.sampling.draws import CorrelatedGroup, Draw, DrawStage, Filler, Sampler
 from xlmc.sampling.sampling_plan import SamplingPlan
@@ -41,6 +43,9 @@ __all__ = ["Model", "lower_needed", "paused_collection"]
 
 _EXAMPLE: Final = re.compile(r"example\b", re.IGNORECASE)
 _MOST_NAMED: Final = 4
+
+_MOST_GROWN: Final = 4
+"""Nodes that changed limits of filters may have added, as a multiple of the first ones, before all are made anew."""
 
 
 @contextmanager
@@ -83,6 +88,53 @@ def lower_needed(workbook: Workbook, definitions: Definitions) -> tuple[Needed, 
     return needed, lowering
 
 
+@dataclass(frozen=True, slots=True)
+class _Compiled:
+    """A program, and the least and largest draws, by key of the assumption, that it was compiled for."""
+
+    program: Program
+    ends: Mapping[str, Bounds]
+
+    def holds_for(self, ends: Mapping[str, Bounds]) -> bool:
+        """Whether draws with these ends lie within its own."""
+        return all(
+            key in ends and low <= ends[key][0] and ends[key][1] <= high for key, (low, high) in self.ends.items()
+        )
+
+
+def _hull(first: Mapping[str, Bounds], second: Mapping[str, Bounds]) -> dict[str, Bounds]:
+    """The ends that hold the draws of two models; none where one of them has none."""
+    return {
+        key: (min(low, second[key][0]), max(high, second[key][1]))
+        for key, (low, high) in first.items()
+        if key in second
+    }
+
+
+def _asks_for_the_same(old: Definitions, new: Definitions, live: Collection[str]) -> bool:
+    """Whether two definitions ask for the same cells, so that only numbers can be others.
+
+    Args:
+        old: of a workbook.
+        new: of the same one, changed.
+        live: names of the assumptions that the old ones draw.
+    """
+    if (old.forecasts, old.checks) != (new.forecasts, new.checks) or old.rewritten is not new.rewritten:
+        return False
+    if len(old.assumptions) != len(new.assumptions) or len(old.filters) != len(new.filters):
+        return False
+    pairs = zip(old.assumptions, new.assumptions, strict=True)
+    if any(a is not b and _cells_of(a, live) != _cells_of(b, live) for a, b in pairs):
+        return False
+    return all(targets_of((), (a,)) == targets_of((), (b,)) for a, b in zip(old.filters, new.filters, strict=True))
+
+
+def _cells_of(assumption: Assumption, live: Collection[str]) -> tuple[object, ...]:
+    """What of an assumption the nodes depend on; the base value of one that is drawn is not among it."""
+    held = None if assumption.name in live else assumption.base
+    return assumption.name, assumption.cell, assumption.frozen, assumption.formulas, assumption.data, held
+
+
 def _lower_checks(workbook: Workbook, definitions: Definitions, live: Collection[str]) -> Lowering:
     """The nodes of the checks, apart from those of the run, which they must not change.
 
@@ -112,35 +164,78 @@ class Model:
     """
 
     def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
+        given = definitions
         definitions = with_evidence_numbers(workbook, with_base_parameters(workbook, definitions))
-        self.workbook, self.definitions, self.path = workbook, definitions, path
+        self._folded = definitions is not given
+        self.workbook, self.path = workbook, path
+        self.needed, self.lowering = lower_needed(workbook, definitions)
+        self._nodes = len(self.lowering.dag.nodes)
+        self._programs: dict[str, _Compiled] = {}
+        self._define(definitions, {})
+        self._check_targets()
+        self._checks = _lower_checks(workbook, definitions, frozenset(self.needed.live)) if self.checks else None
+        self._take_notices()
+
+    def _define(self, definitions: Definitions, known: Mapping[str, Draw]) -> None:
+        """Take the definitions; `known` are the draws of assumptions that are as they were, by name."""
+        self.definitions = definitions
         self.assumptions, self.forecasts = definitions.assumptions, definitions.forecasts
         self.filters, self.checks = definitions.filters, definitions.checks
-        self.needed, self.lowering = lower_needed(workbook, definitions)
         self.chances = chances_of(self.filters)
         named, chances = {a.name: a for a in self.assumptions}, {a.name: a for a in self.chances}
         drawn = [{**named, **chances}[name] for name in self.needed.live]
         self.live: tuple[Assumption, ...] = tuple(a for a in drawn if a.name not in chances)
-        self.draws: Mapping[str, Draw] = {a.name: draw_of(a, self.lowering) for a in drawn}
+        self.draws: Mapping[str, Draw] = {a.name: known.get(a.name) or draw_of(a, self.lowering) for a in drawn}
         found = {draw.name: draw.support() for draw in self.draws.values()}
         self._ends = {key: ends for key, ends in found.items() if ends is not None}
         rows = definitions.correlations
         tied = {name_key(name) for row in rows for name in (row.first, row.second)}
-        correlated = {draw.name: draw for draw in self.draws.values() if draw.name in tied}
-        self.groups: tuple[CorrelatedGroup, ...] = tuple(correlated_groups(rows, correlated))
-        self._programs: dict[str, Program] = {}
-        self._check_targets()
-        self._checks = _lower_checks(workbook, definitions, frozenset(self.needed.live)) if self.checks else None
+        self._correlated = {draw.name: draw for draw in self.draws.values() if draw.name in tied}
+        self.groups: tuple[CorrelatedGroup, ...] = tuple(correlated_groups(rows, self._correlated))
+
+    def _take_notices(self) -> None:
+        rows = self.definitions.correlations
         self.notices: tuple[Notice, ...] = (
-            *workbook.notices,
-            *definitions.notices,
+            *self.workbook.notices,
+            *self.definitions.notices,
             *self.needed.notices(frozenset() if self._checks is None else self._checks.graph.reached),
             *self.lowering.notices,
-            *tie_notices(self.groups, rows, correlated),
+            *tie_notices(self.groups, rows, self._correlated),
             *repair_notices(self.groups, rows, self.needed.live),
             *_still_notices(self.needed, self._moving(), self.forecasts),
             *_example_notices(self._sources()),
         )
+
+    def changed(self, workbook: Workbook, definitions: Definitions) -> Self:
+        """The model with other definitions. What they leave as it was is not computed again.
+
+        Where only numbers are others (parameters and cutoffs of drawn assumptions, correlations, limits of filters), no
+        formula is looked at: the new model shares the nodes with this one, and the programs that hold for both. As
+        both may add to the nodes, ask models that share them from one thread at a time.
+
+        Args:
+            workbook: the same in all cells that the forecasts, filters and checks read.
+            definitions: those of this model, changed.
+
+        Raises:
+            DefinitionError: numbers are no distribution, or assumptions need each other in a circle.
+            FormulaError: a cell that is needed now cannot be computed.
+        """
+        own = self.definitions
+        grown = len(self.lowering.dag.nodes) - self._nodes
+        if grown > _MOST_GROWN * self._nodes or not _asks_for_the_same(own, definitions, frozenset(self.needed.live)):
+            found = type(self)(workbook, definitions, self.path)
+            found._folded = self._folded
+            return found
+        found = copy(self)
+        found.workbook = workbook
+        same = {old.name for old, new in zip(own.assumptions, definitions.assumptions, strict=True) if old is new}
+        found._define(definitions, {name: draw for name, draw in self.draws.items() if name in same})
+        if found.filter_targets != self.filter_targets:
+            found._programs = {}
+            found._check_targets()
+        found._take_notices()
+        return found
 
     def _sources(self) -> list[tuple[str, Cell, str]]:
         """What is needed of assumptions and filters, the row of each, and its source or reason."""
@@ -166,6 +261,14 @@ class Model:
     def read(self) -> frozenset[Cell]:
         """Every cell that the forecasts, filters and checks read, blank cells of ranges among them."""
         return self.lowering.read | (frozenset() if self._checks is None else self._checks.read)
+
+    def reads_elsewhere(self, cells: Collection[Cell]) -> bool:
+        """Whether anything but the rows of tables may read one of these cells, which are of such rows."""
+        if not cells:
+            return False
+        own = {a.cell for a in self.assumptions}
+        calls = bool(self.definitions.rewritten)  # whose arguments may be cells that were read as numbers
+        return calls or self._folded or not (self.read - own).isdisjoint(cells)
 
     @property
     def saved(self) -> frozenset[Cell]:
@@ -238,12 +341,14 @@ class Model:
         """
         if engine not in ENGINES:
             raise SimulationError(f"there is no engine {engine!r}", hint=f"choose one of {', '.join(ENGINES)}")
-        if engine not in self._programs:
-            row, parts = ENGINES[engine], (self.lowering, self.filter_targets, self._forecast_targets, self.fallible)
-            more = {"bounds": NodeBounds(self.lowering.dag, self._ends)} if row.bounded else {}
+        row, known = ENGINES[engine], self._programs.get(engine)
+        if known is None or (row.bounded and not known.holds_for(self._ends)):
+            ends = self._ends if known is None else _hull(known.ends, self._ends)
+            parts = self.lowering, self.filter_targets, self._forecast_targets, self.fallible
+            more = {"bounds": NodeBounds(self.lowering.dag, ends)} if row.bounded else {}
             with paused_collection():
-                self._programs[engine] = row.load()(*parts, **more)
-        return self._programs[engine]
+                known = self._programs[engine] = _Compiled(row.load()(*parts, **more), ends)
+        return known.program
 
     def evaluator(self, targets: Sequence[Target], block: int) -> Evaluator:
         """What computes such targets too, all of them in every trial, for blocks of up to `block` trials."""

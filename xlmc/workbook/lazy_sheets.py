@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from copy import copy
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
+from xlmc.address import Cell
 from xlmc.errors import WorkbookError
 from xlmc.workbook.safe_xml import is_true, shared_strings, tree
 from xlmc.workbook.sheet import CellContext, parse_sheet
 from xlmc.workbook.structure import Structure
-from xlmc.workbook.workbook import DataTable, Sheet
+from xlmc.workbook.workbook import CellContent, CellValue, DataTable, Sheet, Workbook
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
-__all__ = ["LazySheets", "dynamic_array_marks", "naming_file"]
+__all__ = ["LazySheets", "dynamic_array_marks", "naming_file", "with_values"]
 
 _T = TypeVar("_T")
 
@@ -57,6 +60,12 @@ class LazySheets(Mapping[str, Sheet]):
 
     def __repr__(self) -> str:
         return f"<sheets {', '.join(self._entries)}>"
+
+    def with_sheets(self, changed: Mapping[str, Sheet]) -> LazySheets:
+        """The same worksheets, but for those of these names."""
+        found = copy(self)
+        found._parsed = {**self._parsed, **changed}
+        return found
 
     def data_tables(self) -> Iterable[DataTable]:
         """All what-if data tables; parses no sheet that cannot hold one.
@@ -133,3 +142,14 @@ def naming_file(file: str) -> Iterator[None]:
         if error.where is not None:
             raise
         raise WorkbookError(error.message, where=file, hint=error.hint) from error
+
+
+def with_values(workbook: Workbook, values: Mapping[Cell, CellValue]) -> Workbook:
+    """The workbook with these values typed into its cells. No file holds it: it has no parts and no fingerprint."""
+    typed: dict[str, dict[tuple[int, int], CellContent]] = {}
+    for cell, value in values.items():
+        typed.setdefault(cell.sheet, {})[cell[1:]] = CellContent(value)
+    sheets = workbook.sheets
+    changed = {name: replace(sheets[name], cells={**sheets[name].cells, **cells}) for name, cells in typed.items()}
+    more = sheets.with_sheets(changed) if isinstance(sheets, LazySheets) else {**sheets, **changed}
+    return replace(workbook, sheets=more, parts={}, sha256="", data=b"")

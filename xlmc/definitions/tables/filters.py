@@ -16,11 +16,11 @@ from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.workbook.workbook import Workbook
 
-__all__ = ["LIMIT_HINT", "read_checks", "read_filters"]
+__all__ = ["LIMITS", "LIMIT_HINT", "contradiction", "read_checks", "read_filters"]
 
-_LIMITS = {"at_least": "At least", "at_most": "At most", "above": "Above", "below": "Below"}
+LIMITS = {"at_least": "At least", "at_most": "At most", "above": "Above", "below": "Below"}
 """Limits of a filter and their headings."""
-_FILTER_COLUMNS = ("Name", "Value", "Cell", *_LIMITS.values(), "Because")
+_FILTER_COLUMNS = ("Name", "Value", "Cell", *LIMITS.values(), "Because")
 LIMIT_HINT = "Fill in At least, At most, Above or Below, or make the cell a test such as =B7>0"
 """What to do where the cell of a filter is no test."""
 
@@ -51,14 +51,14 @@ def read_filters(
 def _filter(row: Row, computed: Computed, claims: Claims, findings: Findings) -> Filter | None:
     before = len(findings.problems)
     identity = identify(row, claims, findings)
-    limits = {key: findings.attempt(parameter, row, heading) for key, heading in _LIMITS.items()}
+    limits = {key: findings.attempt(parameter, row, heading) for key, heading in LIMITS.items()}
     because = findings.attempt(optional_text, row, "Because") or ""
     if len(findings.problems) > before or not identity:
         return None
     name, cell = identity
     findings.attempt(_refuse_contradiction, row, limits)
     findings.attempt(
-        _look_at, row.workbook, cell, not any(map(row.filled, _LIMITS.values())), computed.at_all(cell), findings
+        _look_at, row.workbook, cell, not any(map(row.filled, LIMITS.values())), computed.at_all(cell), findings
     )
     if len(findings.problems) > before:
         return None
@@ -77,14 +77,26 @@ def _refuse_contradiction(row: Row, limits: Mapping[str, Parameter | None]) -> N
     Raises:
         DefinitionError: no number can satisfy two of them.
     """
+    found = contradiction({key: static_value(limit, row.workbook) for key, limit in limits.items()})
+    if found is not None:
+        key, message = found
+        raise DefinitionError(message, where=row.cell(LIMITS[key]), hint="Correct one of them")
+
+
+def contradiction(limits: Mapping[str, float | None]) -> tuple[str, str] | None:
+    """The first of two limits that no number can satisfy both, and why; None where there are none.
+
+    Args:
+        limits: by key; None for one that is not given or not known.
+    """
     for floor, ceiling in (("at_least", "at_most"), ("at_least", "below"), ("above", "at_most"), ("above", "below")):
-        low, high = static_value(limits[floor], row.workbook), static_value(limits[ceiling], row.workbook)
+        low, high = limits.get(floor), limits.get(ceiling)
         if low is None or high is None or low < high:
             continue
         if low > high or (floor, ceiling) != ("at_least", "at_most"):
-            pair = f"{_LIMITS[floor]} ({show(low)}) and {_LIMITS[ceiling]} ({show(high)})"
-            message = f"{pair} contradict each other: no trial could pass"
-            raise DefinitionError(message, where=row.cell(_LIMITS[floor]), hint="Correct one of them")
+            pair = f"{LIMITS[floor]} ({show(low)}) and {LIMITS[ceiling]} ({show(high)})"
+            return floor, f"{pair} contradict each other: no trial could pass"
+    return None
 
 
 def _look_at(workbook: Workbook, cell: Cell, must_be_true: bool, computed: bool, findings: Findings) -> None:
@@ -159,7 +171,7 @@ def _refuse_limits(row: Row) -> None:
     Raises:
         DefinitionError: the row fills in a limit.
     """
-    given = next((heading for heading in _LIMITS.values() if row.filled(heading)), None)
+    given = next((heading for heading in LIMITS.values() if row.filled(heading)), None)
     if given is not None:
         message = f"A check has no limits: its cell must be TRUE, and {row.heading(given)} would not be tested"
         hint = "Write the limits into the check's cell, such as =AND(B7>0,B7<=1.5), or make the row a filter"

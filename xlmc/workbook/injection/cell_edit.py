@@ -18,8 +18,8 @@ __all__ = ["Content", "with_contents", "with_last_row"]
 _ESCAPE: Final = re.compile("_(?=x[0-9A-Fa-f]{4}_)")
 """What begins an escape: Excel would read the letter that it stands for."""
 
-Content = str | float | None
-"""Of a cell: a text, a number, or nothing."""
+Content = str | float | bool | None
+"""Of a cell: a text, a number, a logical, or nothing."""
 
 
 def with_contents(xml: bytes, part: str, sheet: str, contents: Mapping[tuple[int, int], Content]) -> bytes:
@@ -123,6 +123,8 @@ def _fragment(prefix: str, row: int, column: int, content: Content, style: str |
         said = escape(_ESCAPE.sub("_x005F_", content), quote=False)
         text = f'<{prefix}is><{prefix}t xml:space="preserve">{said}</{prefix}t></{prefix}is>'
         return render(f"{prefix}c", attributes | {"t": "inlineStr"}, text)
+    if isinstance(content, bool):
+        return render(f"{prefix}c", attributes | {"t": "b"}, f"<{prefix}v>{int(content)}</{prefix}v>")
     return render(f"{prefix}c", attributes, f"<{prefix}v>{content!r}</{prefix}v>")
 
 

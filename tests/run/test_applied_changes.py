@@ -14,7 +14,7 @@ from xlmc.definitions.scenarios import Band, Drawn, Held, Limits, Numbers, Range
 from xlmc.distributions import FAMILIES
 from xlmc.errors import DefinitionError
 from xlmc.run.loading import build_model, load
-from xlmc.run.scenarios import applied
+from xlmc.run.applied_changes import applied
 from xlmc.run.simulate import simulate
 from xlmc.workbook.injection.cell_edit import with_contents
 from xlmc.workbook.reader import read_workbook

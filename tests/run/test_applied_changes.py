@@ -13,8 +13,8 @@ from xlmc.address import parse_address
 from xlmc.definitions.scenarios import Band, Drawn, Held, Limits, Numbers, Range, Typed
 from xlmc.distributions import FAMILIES
 from xlmc.errors import DefinitionError
-from xlmc.run.loading import build_model, load
 from xlmc.run.applied_changes import applied
+from xlmc.run.loading import build_model, load
 from xlmc.run.simulate import simulate
 from xlmc.workbook.injection.cell_edit import with_contents
 from xlmc.workbook.reader import read_workbook

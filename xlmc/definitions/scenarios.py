@@ -1,7 +1,7 @@
 """A scenario: a name, and what is other than in the workbook. Assumptions, filters and cells, changed one by one.
 
-To change a table's row is to type other numbers into its cells, and `xlmc.run.applied_changes.applied` gives the model that
-the workbook would have then. These classes only say what to change.
+To change a table's row is to type other numbers into its cells. These classes only say what to change;
+`xlmc.run.applied_changes.applied` gives the model that the workbook would have then.
 """
 
 from __future__ import annotations

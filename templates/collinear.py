@@ -16,6 +16,7 @@ from templates.description import (
 from templates.editions import Both
 from templates.guidance import CAVEATS, FIRST_STEPS, RESTITUTION
 from templates.units import CONVERSIONS, GRAVITY, MPH
+from templates.vehicles import vehicle
 
 __all__ = ["TEMPLATE"]
 
@@ -26,7 +27,7 @@ def _mass(j: int, low: Both, base: Both, high: Both) -> Input:
     return Input(
         f"[w|m]_{j}",
         f"[w|m]{j}",
-        f"Vehicle {j} [weight|mass]",
+        f"{vehicle(j)} [weight|mass]",
         "[lb|kg]",
         base,
         "Example. Enter: scale weight or published curb weight, plus occupants and load",
@@ -51,7 +52,7 @@ _ASSUMPTIONS = (
     Input(
         "V2_before",
         "V2i",
-        "Vehicle 2 speed before, in the direction of vehicle 1",
+        "«2» speed before, in the direction of «1»",
         _SPEED,
         0,
         "Example, held at 0: it stood. Negative where it came the other way",
@@ -62,7 +63,7 @@ _ASSUMPTIONS = (
     Input(
         "V2_after",
         "V2f",
-        "Vehicle 2 speed after (used where known = 2)",
+        "«2» speed after (used where known = 2)",
         _SPEED,
         Both(20, 32),
         "Example. Enter: from its run-out, by skid",
@@ -72,7 +73,7 @@ _ASSUMPTIONS = (
     Input(
         "V1_before",
         "V1i",
-        "Vehicle 1 speed before (used where known = 1)",
+        "«1» speed before (used where known = 1)",
         _SPEED,
         Both(30, 48),
         "Example, held. Enter: event data recorder, video; set Frozen to FALSE",
@@ -86,7 +87,7 @@ _CONSTANTS = (
     Input(
         "known",
         "",
-        "Known speed: 1 = vehicle 1 before, 2 = vehicle 2 after",
+        "Known speed: 1 = «1» before, 2 = «2» after",
         "",
         2,
         "Which of the two rows above is the known one",
@@ -100,17 +101,13 @@ _OPTIONAL = (
     Input(
         "V1_claimed",
         "V1claimed",
-        "Vehicle 1 speed claimed by someone else",
+        "«1» speed claimed by someone else",
         _SPEED,
         None,
-        "Optional. A statement, or another report: is it possible with the speeds of vehicle 2 as given?",
+        "Optional. A statement, or another report: is it possible with the speeds of «2» as given?",
     ),
-    Input(
-        "h_1", "h1", "Vehicle 1 lever arm of the impulse", "[ft|m]", None, "Optional. From its CG to the line of force"
-    ),
-    Input(
-        "h_2", "h2", "Vehicle 2 lever arm of the impulse", "[ft|m]", None, "Optional. From its CG to the line of force"
-    ),
+    Input("h_1", "h1", "«1» lever arm of the impulse", "[ft|m]", None, "Optional. From its CG to the line of force"),
+    Input("h_2", "h2", "«2» lever arm of the impulse", "[ft|m]", None, "Optional. From its CG to the line of force"),
     Input(
         "k_yaw",
         "k",
@@ -122,35 +119,32 @@ _OPTIONAL = (
 )
 
 _SPEEDS = (
-    Equation("[m_1|]", "m1", "Vehicle 1 mass", "lb·s²/ft", "w_1/g", "weight / g"),
-    Equation("[m_2|]", "m2", "Vehicle 2 mass", "lb·s²/ft", "w_2/g", "weight / g"),
-    Equation("V2_i", "V2i", "Vehicle 2 speed before", "[ft|m]/s", f"V2_before/({MPH})", "input"),
+    Equation("[m_1|]", "m1", "«1» mass", "lb·s²/ft", "w_1/g", "weight / g"),
+    Equation("[m_2|]", "m2", "«2» mass", "lb·s²/ft", "w_2/g", "weight / g"),
+    Equation("V2_i", "V2i", "«2» speed before", "[ft|m]/s", f"V2_before/({MPH})", "input"),
     Equation(
         "V1_i",
         "V1i",
-        "Vehicle 1 speed before",
+        "«1» speed before",
         "[ft|m]/s",
         f"IF(known=1,V1_before/({MPH}),V2_i+(V2_after/({MPH})-V2_i)*(1+m_2/m_1)/(1+e))",
         "momentum, restitution",
-        "Where vehicle 2's speed after is known, the impulse is m2·(V2f − V2i), and it is (1 + e) times the plastic "
-        "one.",
+        "Where «2»'s speed after is known, the impulse is m2·(V2f − V2i), and it is (1 + e) times the plastic one.",
     ),
     Equation("V_close", "Vc", "Closing speed", "[ft|m]/s", "V1_i-V2_i", "definition"),
     Equation(
         "dV_1",
         "ΔV1",
-        "Vehicle 1 change in velocity",
+        "«1» change in velocity",
         "[ft|m]/s",
         "V_close*(1+e)/(1+m_1/m_2)",
         "momentum, restitution",
-        "Backward; vehicle 2's is forward.",
+        "Backward; «2»'s is forward.",
     ),
-    Equation(
-        "dV_2", "ΔV2", "Vehicle 2 change in velocity", "[ft|m]/s", "V_close*(1+e)/(1+m_2/m_1)", "momentum, restitution"
-    ),
+    Equation("dV_2", "ΔV2", "«2» change in velocity", "[ft|m]/s", "V_close*(1+e)/(1+m_2/m_1)", "momentum, restitution"),
     Equation("V_sep", "Vsep", "Separation speed", "[ft|m]/s", "e*V_close", "restitution"),
-    Equation("V1_f", "V1f", "Vehicle 1 speed after", "[ft|m]/s", "V1_i-dV_1", "definition"),
-    Equation("V2_f", "V2f", "Vehicle 2 speed after", "[ft|m]/s", "V2_i+dV_2", "definition"),
+    Equation("V1_f", "V1f", "«1» speed after", "[ft|m]/s", "V1_i-dV_1", "definition"),
+    Equation("V2_f", "V2f", "«2» speed after", "[ft|m]/s", "V2_i+dV_2", "definition"),
 )
 
 
@@ -161,11 +155,11 @@ def _answer(symbol: str, notation: str, name: str, quantity: str) -> Equation:
 
 
 _ANSWERS = (
-    _answer("V1", "V1i", "Vehicle 1 impact speed", "V1_i"),
-    _answer("dV1", "ΔV1", "Vehicle 1 delta-V", "dV_1"),
-    _answer("dV2", "ΔV2", "Vehicle 2 delta-V", "dV_2"),
-    _answer("V1f", "V1f", "Vehicle 1 speed after", "V1_f"),
-    _answer("V2f", "V2f", "Vehicle 2 speed after", "V2_f"),
+    _answer("V1", "V1i", "«1» impact speed", "V1_i"),
+    _answer("dV1", "ΔV1", "«1» delta-V", "dV_1"),
+    _answer("dV2", "ΔV2", "«2» delta-V", "dV_2"),
+    _answer("V1f", "V1f", "«1» speed after", "V1_f"),
+    _answer("V2f", "V2f", "«2» speed after", "V2_f"),
     Equation(
         "E_lost",
         "Elost",
@@ -225,7 +219,7 @@ _MORE = (
         "",
         f'IF(V1_claimed<>0,(V2_f-(V1_claimed/({MPH})-m_2/m_1*(V2_f-V2_i)))/(V1_claimed/({MPH})-V2_i),"–")',
         "momentum",
-        "With the speeds of vehicle 2 before and after as above. Below 0, vehicle 1 would leave through vehicle 2.",
+        "With the speeds of «2» before and after as above. Below 0, «1» would leave through «2».",
         number_format="0.00",
     ),
 )
@@ -234,10 +228,10 @@ _CHECKS = checks_section(
     4,
     check(
         "check_closing",
-        "Vehicle 1 catches vehicle 2",
+        "«1» catches «2»",
         "V_close>0",
         "physics",
-        "FALSE: they move apart before they touch. Look at the sign of vehicle 2's speed.",
+        "FALSE: they move apart before they touch. Look at the sign of «2»'s speed.",
     ),
     check(
         "check_restitution",
@@ -248,17 +242,17 @@ _CHECKS = checks_section(
     ),
     check(
         "check_order",
-        "Vehicle 1 does not leave through vehicle 2",
+        "«1» does not leave through «2»",
         "V_sep>=0",
         "physics",
         "FALSE: after the impact the rear vehicle is the faster one. A sign in the separation speed?",
     ),
     check(
         "check_forward",
-        "Vehicle 1 moves forward",
+        "«1» moves forward",
         "V1_i>0",
         "physics",
-        "FALSE: forward is the direction of vehicle 1. Exchange the vehicles, or the signs.",
+        "FALSE: forward is the direction of «1». Exchange the vehicles, or the signs.",
     ),
     check(
         "check_claim",
@@ -282,8 +276,8 @@ _GUIDE = (
         "When to use this model",
         (
             "Head-on and front-to-rear impacts whose line of force passes near both centres of gravity, at low angles. "
-            "It needs the masses, the restitution and one speed: that of vehicle 1 before, or that of vehicle 2 after.",
-            "Positive is the direction of vehicle 1. A vehicle 2 that came the other way has a negative speed.",
+            "It needs the masses, the restitution and one speed: that of «1» before, or that of «2» after.",
+            "Positive is the direction of «1». «2» has a negative speed if it came the other way.",
             "Restitution matters: delta-V is proportional to 1 + e. At low speeds it is far from 0.",
             "Not for impacts off centre: enter the lever arms on sheet Inputs to see by how much delta-V is "
             "overstated. The next rungs are momentum and planar-impact (directions and run-out known) and "
@@ -320,19 +314,20 @@ TEMPLATE = Template(
         _CHECKS,
     ),
     forecasts=(
-        ForecastRow("Vehicle 1 impact speed", "V1_[mph|kmh]", _SPEED),
-        ForecastRow("Vehicle 1 delta-V", "dV1_[mph|kmh]", _SPEED),
-        ForecastRow("Vehicle 2 delta-V", "dV2_[mph|kmh]", _SPEED),
-        ForecastRow("Vehicle 1 speed after", "V1f_[mph|kmh]", _SPEED),
-        ForecastRow("Vehicle 2 speed after", "V2f_[mph|kmh]", _SPEED),
+        ForecastRow("«1» impact speed", "V1_[mph|kmh]", _SPEED),
+        ForecastRow("«1» delta-V", "dV1_[mph|kmh]", _SPEED),
+        ForecastRow("«2» delta-V", "dV2_[mph|kmh]", _SPEED),
+        ForecastRow("«1» speed after", "V1f_[mph|kmh]", _SPEED),
+        ForecastRow("«2» speed after", "V2f_[mph|kmh]", _SPEED),
         ForecastRow("Energy lost", "E_lost", "[ft·lb|J]"),
     ),
     filters=(
-        FilterRow("Closing speed", "closing_[mph|kmh]", "Vehicle 1 must catch vehicle 2 to strike it", above=0),
+        FilterRow("Closing speed", "closing_[mph|kmh]", "One must catch the other to strike it", above=0),
         FilterRow("Energy lost", "E_lost", "An impact takes energy away; it cannot add any", at_least=0),
     ),
     settings=(("Trials", 200_000), ("Seed", 999)),
     correlations=(),
     correlation_note="Do the weights share an error? Then correlate them here.",
     guide=_GUIDE,
+    vehicles=("Vehicle 1", "Vehicle 2"),
 )

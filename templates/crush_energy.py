@@ -20,11 +20,10 @@ from templates.description import (
 from templates.editions import Both
 from templates.guidance import CAVEATS, FIRST_STEPS, RESTITUTION, SIGNS
 from templates.units import CONVERSIONS, GRAVITY, MPH
-from templates.vehicles import for_both
+from templates.vehicles import FIRST, SECOND, for_both, vehicle
 
 __all__ = ["TEMPLATE"]
 
-_VEHICLES = ("Vehicle 1", "Vehicle 2")
 _STATIONS = range(1, 7)
 _TEST = "Example. Enter: published crash test of this model, this end of it"
 
@@ -107,7 +106,7 @@ def _assumptions() -> tuple[Input, ...]:
         Input(
             f"{symbol}_{j}",
             f"{notation},{j}" if notation in ("b0", "b1") else f"{notation}{j}",
-            f"{_VEHICLES[j - 1]} {name}",
+            f"{vehicle(j)} {name}",
             unit,
             _third(values[j - 1], 1),
             source,
@@ -143,7 +142,7 @@ def _constants() -> tuple[Input, ...]:
             Input(
                 f"c_{j}_{i}",
                 f"C{j},{i}",
-                f"Vehicle {j} crush at station {i}",
+                f"{vehicle(j)} crush at station {i}",
                 "[in|cm]",
                 Both(profile.imperial[i - 1], profile.si[i - 1]),
                 f"Residual crush, stations evenly spaced over the width ({what})",
@@ -155,7 +154,7 @@ def _constants() -> tuple[Input, ...]:
             Input(
                 f"[w|m]_test_{j}",
                 f"[w|m]test,{j}",
-                f"Vehicle {j} [weight|mass] in the crash test",
+                f"{vehicle(j)} [weight|mass] in the crash test",
                 "[lb|kg]",
                 Both(3700, 1680) if j == 1 else Both(3200, 1450),
                 _TEST,
@@ -164,7 +163,7 @@ def _constants() -> tuple[Input, ...]:
             Input(
                 f"L_test_{j}",
                 f"Ltest,{j}",
-                f"Vehicle {j} width of the crush in the crash test",
+                f"{vehicle(j)} width of the crush in the crash test",
                 "[in|cm]",
                 Both(62, 157),
                 _TEST,
@@ -173,7 +172,7 @@ def _constants() -> tuple[Input, ...]:
             Input(
                 f"k_{j}",
                 f"k{j}",
-                f"Vehicle {j} radius of gyration in yaw",
+                f"{vehicle(j)} radius of gyration in yaw",
                 "[ft|m]",
                 Both(4.6, 1.4),
                 "Typical of passenger cars: √(I/m)",
@@ -195,7 +194,7 @@ _OPTIONAL = tuple(
     Input(
         f"{letter}_given_{j}",
         f"{letter}{j} given",
-        f"Vehicle {j} stiffness {letter}, where it is published",
+        f"{vehicle(j)} stiffness {letter}, where it is published",
         unit,
         None,
         "Optional. Both A and B replace b0 and b1; a pair taken from tables has no known scatter",
@@ -362,11 +361,11 @@ _MORE = (
     Equation(
         "balance_2",
         "C2 balance",
-        "Uniform crush of vehicle 2 that balances vehicle 1's force",
+        "Uniform crush of «2» that balances the force on «1»",
         "[in|cm]",
         'IF(L_2>0,(force_1*COS(RADIANS(theta_2))/L_2-A_2)/B_2,"–")',
         "Newton's third law",
-        "Compare it with the profile of vehicle 2.",
+        "Compare it with the profile of «2».",
         number_format="0.000",
     ),
     Equation(
@@ -423,7 +422,7 @@ _CHECKS = checks_section(
 
 def _profile(j: int, look: Look) -> Curve:
     points = tuple((f"L_{j}*{i - 1}/5-L_{j}/2", f"MAX(c_{j}_{i}+bias_{j},0)") for i in _STATIONS)
-    return Curve(f"Vehicle {j} crush", look, points)
+    return Curve(f"{vehicle(j)} crush", look, points)
 
 
 _DIAGRAM = Diagram(
@@ -450,8 +449,8 @@ _GUIDE = (
             "Damage was measured and stiffness data fit the vehicles, but momentum is blind: near-parallel approaches, "
             "one vehicle that did not leave the scene, unknown run-out. It answers delta-V, not the speeds of the "
             "vehicles.",
-            "Enter residual crush at six stations evenly spaced over the width. For a fixed barrier as vehicle 2: "
-            "width 0, a weight of 1,000,000,000.",
+            "Enter residual crush at six stations evenly spaced over the width. For a fixed barrier as the second "
+            "vehicle: width 0, a weight of 1,000,000,000.",
             "Stiffness from one test at one speed is a straight line through one point: stay near its crush. A and B "
             "of one test are bound to each other: b0 and b1 are drawn and both computed from them. Published A and B "
             "may be entered under Optional; they are then single values without a distribution, which is worth saying.",
@@ -482,16 +481,16 @@ TEMPLATE = Template(
     constants=_constants(),
     optional=_OPTIONAL,
     sections=(
-        Section("1  Stiffness from a crash test", for_both(_VEHICLES, _STIFFNESS)),
-        Section("2  Crush energy", for_both(_VEHICLES, _ENERGY)),
-        Section("3  Energy to change in velocity", for_both(_VEHICLES, _IMPACT)),
-        Section("4  Answers (the forecasts)", for_both(_VEHICLES, _ANSWERS)),
-        Section("5  For comparison", for_both(_VEHICLES, _MORE)),
+        Section("1  Stiffness from a crash test", for_both(_STIFFNESS)),
+        Section("2  Crush energy", for_both(_ENERGY)),
+        Section("3  Energy to change in velocity", for_both(_IMPACT)),
+        Section("4  Answers (the forecasts)", for_both(_ANSWERS)),
+        Section("5  For comparison", for_both(_MORE)),
         _CHECKS,
     ),
     forecasts=(
-        ForecastRow("Vehicle 1 delta-V", "dV1_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Vehicle 2 delta-V", "dV2_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow(f"{FIRST} delta-V", "dV1_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow(f"{SECOND} delta-V", "dV2_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Closing speed along the force", "closing_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Energy of the crush", "E_crush", "[ft·lb|J]"),
         ForecastRow("Force balance", "ratio", ""),
@@ -510,4 +509,5 @@ TEMPLATE = Template(
     correlation_note="A higher b0 chosen for the same test means a lower b1: enter a negative correlation. 0 is none.",
     guide=_GUIDE,
     diagram=_DIAGRAM,
+    vehicles=("Vehicle 1", "Vehicle 2"),
 )

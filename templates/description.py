@@ -201,6 +201,7 @@ class Template:
         needs: the inputs it needs, one line.
         assumptions, constants: uncertain inputs; inputs held fixed.
         optional: inputs that may stay blank, or that only the drawing uses.
+        vehicles: what the vehicles are called, where labels name them (see `vehicles.py`).
     """
 
     title: str
@@ -219,6 +220,7 @@ class Template:
     correlation_note: str
     guide: tuple[GuideSection, ...]
     diagram: Diagram | None = None
+    vehicles: tuple[str, ...] = ()
 
     @property
     def inputs(self) -> tuple[Input, ...]:

@@ -21,7 +21,7 @@ from templates.two_vehicles.options import (
 from templates.two_vehicles.results import direction_forecasts, paper_forecasts, shared_road_note
 from templates.two_vehicles.scene import Scene, assumptions_of_momentum, constants_of_momentum
 from templates.units import MPH
-from templates.vehicles import for_both
+from templates.vehicles import SECOND, for_both
 
 __all__ = ["describe"]
 
@@ -117,28 +117,28 @@ _CENTRES = tuple(turned(("0", "0"), f"alpha_{j}", f"-0.5*length_{j}", "0") for j
 
 def describe(scene: Scene) -> Template:
     """The workbook of one scene."""
-    vehicles = scene.vehicles
     return Template(
         title=scene.title,
         subtitle=scene.subtitle,
+        vehicles=scene.vehicles,
         rung=4,
         question="How fast were two vehicles that met at an angle? Delta-V?",
         needs="weights, approach and departure angles, run-out, friction",
         assumptions=assumptions_of_momentum(scene),
         constants=constants_of_momentum(),
-        optional=(duration_input(), *turn_inputs(vehicles), *drawing_inputs(vehicles)),
-        sections=_sections(vehicles),
-        forecasts=paper_forecasts(vehicles) + direction_forecasts(vehicles, yaw=False),
-        filters=(*_filters(scene), *turn_filters(vehicles)),
+        optional=(duration_input(), *turn_inputs(), *drawing_inputs()),
+        sections=_sections(),
+        forecasts=paper_forecasts() + direction_forecasts(yaw=False),
+        filters=(*_filters(scene), *turn_filters()),
         settings=(("Trials", 200_000), ("Seed", 999)),
         correlations=(CorrelationRow("f_1", "f_2", 0),),
         correlation_note=shared_road_note(),
         guide=(scene.guide, FIRST_STEPS, NAMES, _WHEN, _TRUST, CAVEATS, _CORRECTIONS),
-        diagram=_diagram(vehicles),
+        diagram=_diagram(),
     )
 
 
-def _sections(vehicles: tuple[str, str]) -> tuple[Section, ...]:
+def _sections() -> tuple[Section, ...]:
     patterns = {
         "1  Masses and run-out speeds": MASSES + RUN_OUT,
         "2  Impact speeds, by conservation of momentum": IMPACT_SPEEDS,
@@ -147,29 +147,29 @@ def _sections(vehicles: tuple[str, str]) -> tuple[Section, ...]:
         "5  Direction of force, energy": FORCE + _ENERGY,
     }
     return (
-        *(Section(title, for_both(vehicles, rows)) for title, rows in patterns.items()),
-        duration_section(6, vehicles),
-        turn_section(7, vehicles),
+        *(Section(title, for_both(rows)) for title, rows in patterns.items()),
+        duration_section(6),
+        turn_section(7),
         checks_section(8, ENERGY, _CLOSING, ANGLES, FORWARD, FRICTION),
     )
 
 
 def _filters(scene: Scene) -> tuple[FilterRow, ...]:
     return (
-        FilterRow(f"{scene.vehicles[1]} impact speed", "V2_[mph|kmh]", scene.because["V2_mph"], above=0),
+        FilterRow(f"{SECOND} impact speed", "V2_[mph|kmh]", scene.because["V2_mph"], above=0),
         FilterRow("Energy lost", "E_lost", "An impact takes energy away; it cannot add any", at_least=0),
         FilterRow("Closing speed along the impulse", "approach_[mph|kmh]", "The vehicles push, not pull", above=0),
     )
 
 
-def _diagram(vehicles: tuple[str, str]) -> Diagram:
+def _diagram() -> Diagram:
     first, second = _CENTRES
     return Diagram(
         "Plan view of the base case",
         "X, [ft|m]",
         "Y, [ft|m]",
         (
-            *vehicle_curves(vehicles, (first, second)),
+            *vehicle_curves((first, second)),
             rest_points((first, second)),
             mark("Point of impact", ("0", "0")),
         ),

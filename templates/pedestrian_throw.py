@@ -57,7 +57,7 @@ _ASSUMPTIONS = (
     Input(
         "efficiency",
         "η",
-        "Projection speed over vehicle speed",
+        "Projection speed over «1» speed",
         "",
         0.9,
         "Example. 1: the body reached the vehicle's speed. Less where it was lifted, or hit at the edge",
@@ -145,7 +145,7 @@ _ANSWERS = (
     Equation(
         "V_vehicle_[mph|kmh]",
         "V",
-        "Vehicle speed at the impact",
+        "«1» speed at the impact",
         "[mph|km/h]",
         f"v_throw/efficiency*{MPH}",
         "v/η",
@@ -256,7 +256,7 @@ TEMPLATE = Template(
         ForecastRow("Projection speed, at least", "vmin_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Projection speed, at most", "vmax_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Projection speed at the angle", "v_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("Vehicle speed", "V_vehicle_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("«1» speed", "V_vehicle_[mph|kmh]", "[mph|km/h]"),
     ),
     filters=(
         FilterRow(
@@ -271,4 +271,5 @@ TEMPLATE = Template(
     correlation_note="A lifted body has a steeper angle and a lower efficiency: correlate them, if you know how much.",
     guide=_GUIDE,
     diagram=_DIAGRAM,
+    vehicles=("Vehicle",),
 )

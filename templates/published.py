@@ -81,7 +81,7 @@ _TEXTBOOK = filled(
     _about(
         "A textbook prints 80 m/s (288 km/h) for the impact speed. The answer is 26.67 m/s (96 km/h): the printed one "
         "has the separation speed negative. It stands here as the claimed speed, and its check in sheet Model is red: "
-        "vehicle 1 would leave through vehicle 2, with a restitution of −0.5."
+        "«1» would leave through «2», with a restitution of −0.5."
     ),
 )
 

@@ -26,7 +26,7 @@ from templates.two_vehicles.options import drawing_inputs, duration_input, durat
 from templates.two_vehicles.results import shared_road_note
 from templates.two_vehicles.scene import Scene, assumptions_of_planar_forward, constants_of_momentum, yaw_rates
 from templates.units import MPH
-from templates.vehicles import for_both
+from templates.vehicles import for_both, vehicle
 
 __all__ = ["describe"]
 
@@ -34,12 +34,12 @@ _SPEEDS = ((Both(31, 50), Both(33, 53), Both(35, 56)), (Both(3, 5), Both(5, 8), 
 _CENTRES = (("a_1", "b_1"), ("a_2", "b_2"))
 
 
-def _speeds(vehicles: tuple[str, str]) -> tuple[Input, ...]:
+def _speeds() -> tuple[Input, ...]:
     return tuple(
         Input(
             f"V{j}_before",
             f"V{j}",
-            f"{vehicles[j - 1]} impact speed",
+            f"{vehicle(j)} impact speed",
             "[mph|km/h]",
             base,
             "Example. Enter: event data recorder, video, skid before the impact; or the speed in question",
@@ -158,25 +158,25 @@ _CHECKS = (
 
 def describe(scene: Scene) -> Template:
     """The workbook of one scene."""
-    vehicles = scene.vehicles
-    given = assumptions_of_planar_forward(scene, _speeds(vehicles))
+    given = assumptions_of_planar_forward(scene, _speeds())
     return Template(
         title=scene.title,
         subtitle=scene.subtitle,
+        vehicles=scene.vehicles,
         rung=6,
         question="What do given impact speeds do: delta-V, spin, where to?",
         needs="impact speeds, headings, restitution, inertias, impact centre",
         assumptions=(*given, *_CLOSURES),
-        constants=(_CLOSURE, *yaw_rates(vehicles), *constants_of_momentum(inches=True)),
-        optional=(duration_input(), *drawing_inputs(vehicles)),
+        constants=(_CLOSURE, *yaw_rates(), *constants_of_momentum(inches=True)),
+        optional=(duration_input(), *drawing_inputs()),
         sections=(
-            *model_sections(vehicles),
-            Section("5  Answers (the forecasts)", for_both(vehicles, (DELTA_V_ANSWER, *_FURTHER))),
-            Section("6  Direction of force, yaw, energy", for_both(vehicles, FORCE + ROTATION + _NORMAL)),
-            duration_section(7, vehicles),
+            *model_sections(),
+            Section("5  Answers (the forecasts)", for_both((DELTA_V_ANSWER, *_FURTHER))),
+            Section("6  Direction of force, yaw, energy", for_both(FORCE + ROTATION + _NORMAL)),
+            duration_section(7),
             checks_section(8, *_CHECKS),
         ),
-        forecasts=_forecasts(vehicles),
+        forecasts=_forecasts(),
         filters=(
             FilterRow("Energy lost", "E_lost", "An impact takes energy away; it cannot add any", at_least=0),
             FilterRow("Normal closing speed", "approach_[mph|kmh]", "The contact points must meet", above=0),
@@ -185,11 +185,11 @@ def describe(scene: Scene) -> Template:
         correlations=(CorrelationRow("f_1", "f_2", 0),),
         correlation_note=shared_road_note(),
         guide=(scene.guide, *GUIDE),
-        diagram=_diagram(vehicles),
+        diagram=_diagram(),
     )
 
 
-def _forecasts(vehicles: tuple[str, str]) -> tuple[ForecastRow, ...]:
+def _forecasts() -> tuple[ForecastRow, ...]:
     patterns = (
         ("delta-V", "dV{j}_[mph|kmh]", "[mph|km/h]"),
         ("speed after", "V{j}f_[mph|kmh]", "[mph|km/h]"),
@@ -199,20 +199,18 @@ def _forecasts(vehicles: tuple[str, str]) -> tuple[ForecastRow, ...]:
         ("PDOF, counter-clockwise", "PDOF_{j}", "deg"),
     )
     of_vehicles = (
-        ForecastRow(f"{vehicles[j - 1]} {name}", symbol.format(j=j), unit)
-        for name, symbol, unit in patterns
-        for j in (1, 2)
+        ForecastRow(f"{vehicle(j)} {name}", symbol.format(j=j), unit) for name, symbol, unit in patterns for j in (1, 2)
     )
     return (*of_vehicles, ForecastRow("Energy lost", "E_lost", "[ft·lb|J]"))
 
 
-def _diagram(vehicles: tuple[str, str]) -> Diagram:
+def _diagram() -> Diagram:
     return Diagram(
         "Plan view of the base case",
         "X, [ft|m]",
         "Y, [ft|m]",
         (
-            *vehicle_curves(vehicles, _CENTRES),
+            *vehicle_curves(_CENTRES),
             line("Contact direction γ", Look.LINE, "gamma_t", "0.4*length_1"),
             rest_points(_CENTRES),
             mark("Impact centre", ("0", "0")),

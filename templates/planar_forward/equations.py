@@ -132,29 +132,29 @@ _IMPULSE = (
     Equation(
         "P_n",
         "Pn",
-        "Normal impulse on vehicle 1",
+        "Normal impulse on «1»",
         "[lb·s|N·s]",
         "-(1+e_n)*V_close_n/(K_nn+mu_used*K_nt)",
         "eqs (9), (26)",
         number_format="#,##0.00",
     ),
     Equation(
-        "P_t", "Pt", "Tangential impulse on vehicle 1", "[lb·s|N·s]", "mu_used*P_n", "eq (26)", number_format="#,##0.00"
+        "P_t", "Pt", "Tangential impulse on «1»", "[lb·s|N·s]", "mu_used*P_n", "eq (26)", number_format="#,##0.00"
     ),
     Equation(
         "P_x",
         "Px",
-        "Impulse on vehicle 1, X",
+        "Impulse on «1», X",
         "[lb·s|N·s]",
         "P_t*COS(RADIANS(gamma_t))-P_n*SIN(RADIANS(gamma_t))",
         "axes",
-        "Vehicle 2 receives the opposite impulse.",
+        "«2» receives the opposite impulse.",
         number_format="#,##0.00",
     ),
     Equation(
         "P_y",
         "Py",
-        "Impulse on vehicle 1, Y",
+        "Impulse on «1», Y",
         "[lb·s|N·s]",
         "P_t*SIN(RADIANS(gamma_t))+P_n*COS(RADIANS(gamma_t))",
         "axes",
@@ -190,7 +190,7 @@ _AFTER = (
         "rad/s",
         "<|->(d_{j}*P_t-c_{j}*P_n)/I_{j}",
         "eq (<3|4>)",
-        "<|Eq (4) with its sign corrected: vehicle 2 receives the opposite impulse.>",
+        "<|Eq (4) with its sign corrected: «2» receives the opposite impulse.>",
     ),
     Equation("omega{j}_f", "ω{j}f", "{who} yaw rate after", "rad/s", "omega{j}_i+d_omega_{j}", "eq (<3|4>)"),
     Equation(
@@ -215,12 +215,12 @@ _AFTER = (
 )
 
 
-def model_sections(vehicles: tuple[str, str]) -> tuple[Section, ...]:
-    """The model of two vehicles called so: from speeds before to motion after."""
+def model_sections() -> tuple[Section, ...]:
+    """The model of two vehicles: from speeds before to motion after."""
     patterns = {
         "1  Masses, speeds before, centres of gravity": MASSES + _BEFORE + CENTRES,
         "2  The contact: closing speed, inverse mass": _CONTACT,
         "3  The impulse": _IMPULSE,
         "4  Motion after": _AFTER,
     }
-    return tuple(Section(title, for_both(vehicles, rows)) for title, rows in patterns.items())
+    return tuple(Section(title, for_both(rows)) for title, rows in patterns.items())

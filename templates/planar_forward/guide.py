@@ -40,7 +40,7 @@ _CORRECTIONS = GuideSection(
     (),
     (
         ("Equation", "As used here"),
-        ("(4)", "Sign corrected: vehicle 2 receives −P, as in (18)"),
+        ("(4)", "Sign corrected: «2» receives −P, as in (18)"),
         ("(7), (8)", "One handedness of (t, n) for both: closing speeds as in (9) to (14)"),
         ("(23)", "Arctangent of two arguments: as printed it can point to the opposite side of the vehicle"),
         ("Travel to rest", "Never stated in the paper: Vf²/(2·g·f)"),

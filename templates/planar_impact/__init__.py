@@ -17,6 +17,7 @@ from templates.two_vehicles.scene import (
     constants_of_momentum,
     yaw_rates,
 )
+from templates.vehicles import SECOND
 
 __all__ = ["Scene", "describe", "evaluate"]
 
@@ -25,24 +26,25 @@ _CENTRES = (("a_1", "b_1"), ("a_2", "b_2"))
 
 def describe(scene: Scene) -> Template:
     """The workbook of one scene."""
-    vehicles, more = scene.vehicles, not scene.paper_only
+    more = not scene.paper_only
     return Template(
         title=scene.title,
         subtitle=scene.subtitle,
+        vehicles=scene.vehicles,
         rung=5,
         question="The same, with yaw: which solutions does restitution allow?",
         needs="those of momentum; yaw inertias, impact centre, contact direction",
         assumptions=assumptions_of_planar_impact(scene),
-        constants=(*yaw_rates(vehicles), *constants_of_momentum(inches=True)),
-        optional=(duration_input(), *(turn_inputs(vehicles) if more else ()), *drawing_inputs(vehicles)),
-        sections=model_sections(vehicles) + answer_sections(vehicles, turning=more),
-        forecasts=paper_forecasts(vehicles) + (direction_forecasts(vehicles, yaw=True) if more else ()),
-        filters=_filters(scene) + (turn_filters(vehicles) if more else ()),
+        constants=(*yaw_rates(), *constants_of_momentum(inches=True)),
+        optional=(duration_input(), *(turn_inputs() if more else ()), *drawing_inputs()),
+        sections=model_sections() + answer_sections(turning=more),
+        forecasts=paper_forecasts() + (direction_forecasts(yaw=True) if more else ()),
+        filters=_filters(scene) + (turn_filters() if more else ()),
         settings=(("Trials", 200_000), ("Seed", 999)),
         correlations=(CorrelationRow("f_1", "f_2", 0),) if more else (),
-        correlation_note=shared_road_note() if more else shared_road(vehicles),
+        correlation_note=shared_road_note() if more else shared_road(),
         guide=guide(scene.guide),
-        diagram=_diagram(vehicles),
+        diagram=_diagram(),
     )
 
 
@@ -51,17 +53,17 @@ def _filters(scene: Scene) -> tuple[FilterRow, ...]:
     return (
         FilterRow("Restitution, normal", "e_n", because["e_n"], at_least=0, below=1),
         FilterRow("Restitution, tangential", "e_t", because["e_t"], at_least=0, at_most=0.25),
-        FilterRow(f"{scene.vehicles[1]} impact speed", "V2_[mph|kmh]", because["V2_mph"], above=0),
+        FilterRow(f"{SECOND} impact speed", "V2_[mph|kmh]", because["V2_mph"], above=0),
     )
 
 
-def _diagram(vehicles: tuple[str, str]) -> Diagram:
+def _diagram() -> Diagram:
     return Diagram(
         "Plan view of the base case",
         "X, [ft|m]",
         "Y, [ft|m]",
         (
-            *vehicle_curves(vehicles, _CENTRES),
+            *vehicle_curves(_CENTRES),
             line("Contact direction γ", Look.LINE, "gamma_t", "0.4*length_1"),
             rest_points(_CENTRES),
             mark("Impact centre", ("0", "0")),

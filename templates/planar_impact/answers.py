@@ -33,17 +33,16 @@ _NORMAL = (
 )
 
 
-def answer_sections(vehicles: tuple[str, str], *, turning: bool) -> tuple[Section, ...]:
+def answer_sections(*, turning: bool) -> tuple[Section, ...]:
     """The answers, what else a report states, the optional rows, and the checks.
 
     Args:
-        vehicles: what to call them.
         turning: give the rows of a turning vehicle too.
     """
-    optional = (duration_section(8, vehicles), *((turn_section(9, vehicles),) if turning else ()))
+    optional = (duration_section(8), *((turn_section(9),) if turning else ()))
     return (
-        Section("6  Answers (the forecasts)", for_both(vehicles, ANSWERS)),
-        Section("7  Direction of force, yaw, energy", for_both(vehicles, FORCE + ROTATION + _NORMAL)),
+        Section("6  Answers (the forecasts)", for_both(ANSWERS)),
+        Section("7  Direction of force, yaw, energy", for_both(FORCE + ROTATION + _NORMAL)),
         *optional,
         checks_section(8 + len(optional), ENERGY, CLOSING, ANGLES, FORWARD, BOUNDS, FRICTION),
     )

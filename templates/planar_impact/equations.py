@@ -17,7 +17,7 @@ _YAW = (
         "<(P_x*b_1-P_y*a_1)|(P_y*a_2-P_x*b_2)>/I_{j}",
         "eq (<17|18>′)",
         "<Eq (3): one moment of the impulse instead of the difference of two large terms.|"
-        "Eq (4) with its sign corrected: vehicle 2 receives the opposite impulse (as in (18)).>",
+        "Eq (4) with its sign corrected: «2» receives the opposite impulse (as in (18)).>",
     ),
     Equation("omega{j}_i", "ω{j}i", "{who} yaw rate before", "rad/s", "RADIANS(omega{j}_deg)", "input"),
     Equation("omega{j}_f", "ω{j}f", "{who} yaw rate after", "rad/s", "omega{j}_i+d_omega_{j}", "eqs (17), (18)"),
@@ -109,8 +109,8 @@ _RESTITUTION = (
 )
 
 
-def model_sections(vehicles: tuple[str, str]) -> tuple[Section, ...]:
-    """The model of two vehicles called so, in the order of the paper."""
+def model_sections() -> tuple[Section, ...]:
+    """The model of two vehicles, in the order of the paper."""
     patterns = {
         "1  Masses, run-out speeds, centres of gravity": MASSES + RUN_OUT + CENTRES,
         "2  Impact speeds, by conservation of momentum": IMPACT_SPEEDS,
@@ -118,4 +118,4 @@ def model_sections(vehicles: tuple[str, str]) -> tuple[Section, ...]:
         "4  Change in yaw rate": _YAW,
         "5  Restitution at the impact centre (judges a solution; not needed to find it)": _RESTITUTION,
     }
-    return tuple(Section(title, for_both(vehicles, rows)) for title, rows in patterns.items())
+    return tuple(Section(title, for_both(rows)) for title, rows in patterns.items())

@@ -44,7 +44,7 @@ _CORRECTIONS = GuideSection(
     ("A prime, as in (15′), marks an equation rewritten to keep its digits: in exact arithmetic it is the same.",),
     (
         ("Equation", "As used here"),
-        ("(4)", "Sign corrected: vehicle 2 receives −P, as in (18)"),
+        ("(4)", "Sign corrected: «2» receives −P, as in (18)"),
         ("(7), (8)", "Need opposite handedness of (t, n); (9) to (14) are right and used"),
         ("(16)", "No division by cos α2: as printed, α2 = 90° or 270° gives a plausible wrong speed without an error"),
         ("(17) to (21)", "From the impulse, not from differences of nearly equal velocities"),

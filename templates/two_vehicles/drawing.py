@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from templates.description import Curve, Look
 from templates.plan_view import arrow, mark, outline, turned
+from templates.vehicles import vehicle
 
 __all__ = ["rest_points", "vehicle_curves"]
 
@@ -12,15 +13,15 @@ Point = tuple[str, str]
 _LOOKS = ((Look.FIRST, Look.FIRST_PATH), (Look.SECOND, Look.SECOND_PATH))
 
 
-def vehicle_curves(vehicles: tuple[str, str], centres: tuple[Point, Point]) -> tuple[Curve, ...]:
+def vehicle_curves(centres: tuple[Point, Point]) -> tuple[Curve, ...]:
     """Either vehicle at the impact, where it came from and where it went.
 
     Args:
-        vehicles: what to call them.
         centres: formulas of the centres of gravity at the impact.
     """
     curves: list[Curve] = []
-    for j, (who, centre, (solid, dashed)) in enumerate(zip(vehicles, centres, _LOOKS, strict=True), 1):
+    for j, (centre, (solid, dashed)) in enumerate(zip(centres, _LOOKS, strict=True), 1):
+        who = vehicle(j)
         came = turned(centre, f"alpha_{j}", f"-0.5*length_{j}", "0")
         curves += [
             outline(who, solid, centre, f"alpha_{j}", f"length_{j}", f"width_{j}"),

@@ -60,7 +60,7 @@ EXAMPLE = Scene(
     because={
         "e_n": "Example. A common velocity was reached along the normal; 1 or more would add energy",
         "e_t": "Example. A common velocity was reached along the contact surface, with little rebound",
-        "V2_mph": "Vehicle 2 was moving forward",
+        "V2_mph": "It was moving forward",
     },
     guide=GuideSection(
         "This workbook",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from templates.description import Equation, FilterRow, Input, Section
 from templates.editions import Both
 from templates.units import MPH
-from templates.vehicles import for_both
+from templates.vehicles import for_both, vehicle
 
 __all__ = ["drawing_inputs", "duration_input", "duration_section", "turn_filters", "turn_inputs", "turn_section"]
 
@@ -62,40 +62,38 @@ def duration_input() -> Input:
     return Input("t_impact", "Δt", "Impact duration", "s", None, source, number_format="0.000")
 
 
-def duration_section(number: int, vehicles: tuple[str, str]) -> Section:
+def duration_section(number: int) -> Section:
     """Mean acceleration, and the tyre impulse that the model neglects."""
-    return Section(f"{number}  Optional: duration of the impact", for_both(vehicles, _DURATION))
+    return Section(f"{number}  Optional: duration of the impact", for_both(_DURATION))
 
 
-def turn_inputs(vehicles: tuple[str, str]) -> tuple[Input, ...]:
+def turn_inputs() -> tuple[Input, ...]:
     """The radius of either vehicle's turn, blank."""
     source = "Optional. Radius of the path before the impact, if the vehicle was turning: limits its speed"
     return tuple(
-        Input(f"R_turn_{j}", f"R{j}", f"{vehicles[j - 1]} radius of its turn", "[ft|m]", None, source) for j in (1, 2)
+        Input(f"R_turn_{j}", f"R{j}", f"{vehicle(j)} radius of its turn", "[ft|m]", None, source) for j in (1, 2)
     )
 
 
-def turn_section(number: int, vehicles: tuple[str, str]) -> Section:
+def turn_section(number: int) -> Section:
     """The lateral acceleration that the impact speed would need."""
-    return Section(f"{number}  Optional: a turning vehicle", for_both(vehicles, _TURN))
+    return Section(f"{number}  Optional: a turning vehicle", for_both(_TURN))
 
 
-def turn_filters(vehicles: tuple[str, str]) -> tuple[FilterRow, ...]:
+def turn_filters() -> tuple[FilterRow, ...]:
     """A vehicle cannot turn faster than its tyres hold: off until a radius is entered."""
     because = (
         "Example; off until the radius of its turn is entered on sheet Inputs. Limit: the top of the range of "
         "friction; the tyres can hold no more sideways"
     )
-    return tuple(
-        FilterRow(f"{vehicles[j - 1]} lateral acceleration", f"a_lat_{j}", because, at_most=0.95) for j in (1, 2)
-    )
+    return tuple(FilterRow(f"{vehicle(j)} lateral acceleration", f"a_lat_{j}", because, at_most=0.95) for j in (1, 2))
 
 
-def drawing_inputs(vehicles: tuple[str, str]) -> tuple[Input, ...]:
+def drawing_inputs() -> tuple[Input, ...]:
     """Length and width of the vehicles, for the drawing only."""
     sizes = (("length", "length", Both(16, 4.9)), ("width", "width", Both(6, 1.8)))
     return tuple(
-        Input(f"{symbol}_{j}", "", f"{vehicles[j - 1]} {name}", "[ft|m]", value, "Only for the drawing on sheet Scene")
+        Input(f"{symbol}_{j}", "", f"{vehicle(j)} {name}", "[ft|m]", value, "Only for the drawing on sheet Scene")
         for j in (1, 2)
         for symbol, name, value in sizes
     )

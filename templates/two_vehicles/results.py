@@ -3,41 +3,38 @@
 from __future__ import annotations
 
 from templates.description import ForecastRow
+from templates.vehicles import FIRST, SECOND, vehicle
 
 __all__ = ["direction_forecasts", "paper_forecasts", "shared_road", "shared_road_note"]
 
 
-def paper_forecasts(vehicles: tuple[str, str]) -> tuple[ForecastRow, ...]:
+def paper_forecasts() -> tuple[ForecastRow, ...]:
     """The four forecasts of SAE 2001-01-3347."""
-    first, second = vehicles
     return (
-        ForecastRow(f"{first} delta-V", "dV1_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow(f"{second} delta-V", "dV2_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow(f"{first} impact speed", "V1_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow(f"{second} impact speed", "V2_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow(f"{FIRST} delta-V", "dV1_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow(f"{SECOND} delta-V", "dV2_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow(f"{FIRST} impact speed", "V1_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow(f"{SECOND} impact speed", "V2_[mph|kmh]", "[mph|km/h]"),
     )
 
 
-def direction_forecasts(vehicles: tuple[str, str], *, yaw: bool) -> tuple[ForecastRow, ...]:
+def direction_forecasts(*, yaw: bool) -> tuple[ForecastRow, ...]:
     """Beyond the paper's four: direction of force, closing speed, energy lost, and the change in yaw rate."""
     rows = [
-        *(ForecastRow(f"{who} PDOF, counter-clockwise", f"PDOF_{j}", "deg") for j, who in enumerate(vehicles, 1)),
+        *(ForecastRow(f"{vehicle(j)} PDOF, counter-clockwise", f"PDOF_{j}", "deg") for j in (1, 2)),
         ForecastRow("Closing speed", "closing_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Energy lost", "E_lost", "[ft·lb|J]"),
     ]
     if yaw:
-        rows += (
-            ForecastRow(f"{who} change in yaw rate", f"d_omega{j}_deg", "deg/s") for j, who in enumerate(vehicles, 1)
-        )
+        rows += (ForecastRow(f"{vehicle(j)} change in yaw rate", f"d_omega{j}_deg", "deg/s") for j in (1, 2))
     return tuple(rows)
 
 
-def shared_road(vehicles: tuple[str, str]) -> str:
+def shared_road() -> str:
     """How to correlate both decelerations, where the row is still blank."""
-    rows = [f"{who} post-impact deceleration" for who in vehicles]
     return (
-        f"Both on one road? First = {rows[0]}, Second = {rows[1]}, Correlation = 0.8, say. "
-        "Blank: none, as in the paper."
+        f"Both on one road? First = {FIRST} post-impact deceleration, Second = {SECOND} post-impact deceleration, "
+        "Correlation = 0.8, say. Blank: none, as in the paper."
     )
 
 

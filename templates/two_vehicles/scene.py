@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from templates.description import GuideSection, Input
 from templates.editions import Both
 from templates.units import CONVERSIONS, GRAVITY, INCHES_PER_FOOT
+from templates.vehicles import vehicle
 
 __all__ = [
     "Scene",
@@ -103,7 +104,7 @@ def _of_both(scene: Scene, *groups: tuple[Row, ...]) -> tuple[Input, ...]:
     return tuple(
         scene.input(
             f"{key}_{j}",
-            (f"{symbol}_{j}", f"{notation}{j}", f"{scene.vehicles[j - 1]} {name}", unit),
+            (f"{symbol}_{j}", f"{notation}{j}", f"{vehicle(j)} {name}", unit),
             number_format,
         )
         for j, (key, symbol, notation, name, unit, number_format) in order
@@ -138,9 +139,7 @@ def constants_of_momentum(*, inches: bool = False) -> tuple[Input, ...]:
     return (GRAVITY, *((INCHES_PER_FOOT,) if inches else ()), *CONVERSIONS)
 
 
-def yaw_rates(vehicles: tuple[str, str]) -> tuple[Input, ...]:
+def yaw_rates() -> tuple[Input, ...]:
     """Yaw rates before the impact, held fixed at 0 unless the engineer knows better."""
     yaw = "Before the impact, counter-clockwise positive; 0 unless the vehicle was turning"
-    return tuple(
-        Input(f"omega{j}_deg", f"ω{j}i", f"{vehicles[j - 1]} pre-impact yaw rate", "deg/s", 0, yaw) for j in (1, 2)
-    )
+    return tuple(Input(f"omega{j}_deg", f"ω{j}i", f"{vehicle(j)} pre-impact yaw rate", "deg/s", 0, yaw) for j in (1, 2))

@@ -6,15 +6,17 @@ from datetime import UTC, datetime
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from xlsxwriter.utility import xl_rowcol_to_cell
 from xlsxwriter.workbook import Workbook
 
 from templates.description import Template
+from templates.vehicles import name_cell
 from templates.writer.cached import Values, computed
 from templates.writer.fixed_size import fix_chart_sizes
 from templates.writer.guide_sheet import draw_guide
 from templates.writer.inputs_sheet import draw_inputs
 from templates.writer.model_sheet import draw_model
-from templates.writer.places import places, reference
+from templates.writer.places import name_cells, places, reference
 from templates.writer.results_sheet import draw_results_wanted
 from templates.writer.scene_sheet import chart_size, draw_scene
 from templates.writer.styles import Styles
@@ -62,6 +64,8 @@ def _write(template: Template, path: Path, values: Values) -> None:
             draw_scene(workbook, workbook.add_worksheet("Scene"), styles, template.diagram, values)
         wanted, guide = map(workbook.add_worksheet, ("Results wanted", "Guide"))
         draw_results_wanted(wanted, styles, template, at, values)
-        draw_guide(guide, styles, template)
+        draw_guide(guide, styles, template, values)
         for symbol, place in at.items():
             workbook.define_name(symbol, f"={reference(place, absolute=True)}")
+        for j, (row, column) in enumerate(name_cells(template), 1):
+            workbook.define_name(name_cell(j), f"=Inputs!{xl_rowcol_to_cell(row, column, row_abs=True, col_abs=True)}")

@@ -5,7 +5,8 @@ from __future__ import annotations
 from xlsxwriter.worksheet import Worksheet
 
 from templates.description import GuideSection, Template
-from templates.writer.page import begin_sheet, fit_row, protect
+from templates.writer.cached import Values
+from templates.writer.page import begin_sheet, fit_row, protect, write_label
 from templates.writer.styles import LEGEND, Styles
 
 __all__ = ["draw_guide"]
@@ -13,12 +14,12 @@ __all__ = ["draw_guide"]
 _WIDTHS = (44, 108)
 
 
-def draw_guide(sheet: Worksheet, styles: Styles, template: Template) -> None:
-    """Write the sheet: section titles in the margin, text beside them."""
+def draw_guide(sheet: Worksheet, styles: Styles, template: Template, values: Values) -> None:
+    """Write the sheet: section titles in the margin, text beside them; `values` are what its formulas give."""
     begin_sheet(sheet, styles, template.title, "Guide", _WIDTHS)
     row = _draw_legend(sheet, styles, 3)
     for section in template.guide:
-        row = _draw_section(sheet, styles, section, row)
+        row = _draw_section(sheet, styles, section, row, values)
     protect(sheet)
 
 
@@ -31,15 +32,15 @@ def _draw_legend(sheet: Worksheet, styles: Styles, row: int) -> int:
     return row + len(LEGEND) + 2
 
 
-def _draw_section(sheet: Worksheet, styles: Styles, section: GuideSection, row: int) -> int:
+def _draw_section(sheet: Worksheet, styles: Styles, section: GuideSection, row: int, values: Values) -> int:
     sheet.write_string(row, 0, section.title, styles("margin"))
     for number, paragraph in enumerate(section.paragraphs):
-        sheet.write_string(row, 1, paragraph, styles("paragraph"))
+        write_label(sheet, row, 1, paragraph, styles("paragraph"), values)
         fit_row(sheet, row, [(paragraph, _WIDTHS[1]), ("" if number else section.title, _WIDTHS[0] - 4)])
         row += 1
     for number, texts in enumerate(section.rows):
         for column, text in enumerate(texts):
-            sheet.write_string(row, column, text, styles("text" if number else "header"))
+            write_label(sheet, row, column, text, styles("text" if number else "header"), values)
         fit_row(sheet, row, list(zip(texts, _WIDTHS, strict=True)))
         row += 1
     return row + 1

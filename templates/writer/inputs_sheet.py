@@ -5,9 +5,10 @@ from __future__ import annotations
 from xlsxwriter.worksheet import Worksheet
 
 from templates.description import ALL_CHECKS, PARAMETER_COLUMNS, Input, Template
+from templates.vehicles import name_cell
 from templates.writer.cached import Values
-from templates.writer.page import add_table, begin_sheet, fit_row, guard, repeat_header, write_formula
-from templates.writer.places import HEADER_ROW, VALUE_COLUMN, Place
+from templates.writer.page import add_table, begin_sheet, fit_row, guard, repeat_header, write_formula, write_label
+from templates.writer.places import HEADER_ROW, VALUE_COLUMN, Place, name_cells
 from templates.writer.styles import Styles
 
 __all__ = ["draw_inputs"]
@@ -26,14 +27,15 @@ def draw_inputs(sheet: Worksheet, styles: Styles, template: Template, at: dict[s
     """Write the sheet; `values` are what the formulas give at the base case."""
     begin_sheet(sheet, styles, template.title, template.subtitle, _WIDTHS)
     _draw_status(sheet, styles, values)
+    _draw_vehicles(sheet, styles, template)
     _fold_columns(sheet)
     sheet.set_row(HEADER_ROW, 32)
     add_table(sheet, styles, "xlmc_assumptions", HEADER_ROW, _HEADERS, len(template.assumptions))
     for given in template.assumptions:
-        _draw_assumption(sheet, styles, given, at[given.symbol][1])
+        _draw_assumption(sheet, styles, given, at[given.symbol][1], values)
     _guard_table(sheet, styles, HEADER_ROW + 1, HEADER_ROW + len(template.assumptions))
-    _draw_fixed(sheet, styles, "Held fixed", template.constants, at)
-    _draw_fixed(sheet, styles, "Optional: leave blank what does not apply", template.optional, at)
+    _draw_fixed(sheet, styles, "Held fixed", template.constants, at, values)
+    _draw_fixed(sheet, styles, "Optional: leave blank what does not apply", template.optional, at, values)
     repeat_header(sheet, HEADER_ROW, 1)
 
 
@@ -52,9 +54,30 @@ def _draw_status(sheet: Worksheet, styles: Styles, values: Values) -> None:
     sheet.conditional_format(2, 0, 2, 2, rule)
 
 
-def _draw_assumption(sheet: Worksheet, styles: Styles, given: Input, row: int) -> None:
+def _draw_vehicles(sheet: Worksheet, styles: Styles, template: Template) -> None:
+    """The name of each vehicle, from which all labels take it."""
+    cells = name_cells(template)
+    if not cells:
+        return
+    sheet.set_row(cells[0][0], 20)
+    sheet.write_string(cells[0][0], 0, "Vehicles, as every label calls them", styles("heading"))
+    for j, (name, (row, column)) in enumerate(zip(template.vehicles, cells, strict=True), 1):
+        sheet.write_string(row, column - 1, name_cell(j), styles("centred"))
+        sheet.write_string(row, column, name, styles("name"))
+        others = "".join(f",{name_cell(k)}<>{name_cell(j)}" for k, _ in enumerate(cells, 1) if k != j)
+        rule = {
+            "validate": "custom",
+            "value": f'=AND(TRIM({name_cell(j)})<>""{others})',
+            "ignore_blank": False,
+            "error_title": "Name of a vehicle",
+            "error_message": "Each vehicle needs a name of its own: assumptions and forecasts are told apart by it.",
+        }
+        sheet.data_validation(row, column, row, column, rule)
+
+
+def _draw_assumption(sheet: Worksheet, styles: Styles, given: Input, row: int, values: Values) -> None:
     shown = given.number_format
-    _draw_name(sheet, styles, given, row)
+    _draw_name(sheet, styles, given, row, values)
     sheet.write_number(row, VALUE_COLUMN, given.base, styles("assumption", shown))
     sheet.write_string(row, 5, given.distribution, styles("open centred"))
     for column, header in enumerate(PARAMETER_COLUMNS, len(_BEFORE)):
@@ -71,8 +94,8 @@ def _draw_assumption(sheet: Worksheet, styles: Styles, given: Input, row: int) -
     fit_row(sheet, row, [(given.name, _WIDTHS[0]), (given.source, _SOURCE_WIDTH)])
 
 
-def _draw_name(sheet: Worksheet, styles: Styles, given: Input, row: int) -> None:
-    sheet.write_string(row, 0, given.name, styles("text"))
+def _draw_name(sheet: Worksheet, styles: Styles, given: Input, row: int, values: Values) -> None:
+    write_label(sheet, row, 0, given.name, styles("text"), values, asks=True)
     sheet.write_string(row, 1, given.notation, styles("centred"))
     sheet.write_string(row, 2, given.symbol, styles("centred"))
     sheet.write_string(row, 4, given.unit, styles("centred"))
@@ -115,7 +138,12 @@ def _guard_table(sheet: Worksheet, styles: Styles, first: int, last: int) -> Non
 
 
 def _draw_fixed(
-    sheet: Worksheet, styles: Styles, heading: str, given_values: tuple[Input, ...], at: dict[str, Place]
+    sheet: Worksheet,
+    styles: Styles,
+    heading: str,
+    given_values: tuple[Input, ...],
+    at: dict[str, Place],
+    values: Values,
 ) -> None:
     if not given_values:
         return
@@ -125,10 +153,10 @@ def _draw_fixed(
         sheet.write_string(top - 1, column, header, styles("header"))
     for given in given_values:
         row = at[given.symbol][1]
-        _draw_name(sheet, styles, given, row)
+        _draw_name(sheet, styles, given, row, values)
         fit_row(sheet, row, [(given.name, _WIDTHS[0])])
         _draw_fixed_value(sheet, styles, given, row)
-        sheet.write_string(row, 5, given.source, styles("remark"))
+        write_label(sheet, row, 5, given.source, styles("remark"), values, asks=True)
 
 
 def _draw_fixed_value(sheet: Worksheet, styles: Styles, given: Input, row: int) -> None:

@@ -11,7 +11,7 @@ from xlsxwriter.worksheet import Worksheet
 from templates.description import Equation, Role, Template
 from templates.notation import printed
 from templates.writer.cached import Values
-from templates.writer.page import begin_sheet, fit_row, protect, repeat_header, write_formula
+from templates.writer.page import begin_sheet, fit_row, protect, repeat_header, write_formula, write_label
 from templates.writer.places import HEADER_ROW, VALUE_COLUMN, Place
 from templates.writer.styles import Styles
 
@@ -40,7 +40,7 @@ def draw_model(sheet: Worksheet, styles: Styles, template: Template, at: dict[st
             look = "answer" if equation.symbol in forecasts else _LOOK[equation.role]
             style = styles(look, equation.number_format)
             _draw_equation(sheet, styles, equation, at[equation.symbol][1], style, values)
-            _draw_words(sheet, styles, equation, at[equation.symbol][1], notation)
+            _draw_words(sheet, styles, equation, at[equation.symbol][1], notation, values)
     repeat_header(sheet, HEADER_ROW, 1)
     protect(sheet)
 
@@ -62,10 +62,12 @@ def _draw_equation(
         sheet.conditional_format(row, VALUE_COLUMN, row, VALUE_COLUMN, rule)
 
 
-def _draw_words(sheet: Worksheet, styles: Styles, equation: Equation, row: int, notation: Mapping[str, str]) -> None:
+def _draw_words(
+    sheet: Worksheet, styles: Styles, equation: Equation, row: int, notation: Mapping[str, str], values: Values
+) -> None:
     texts = equation.name, printed(equation.formula, notation), equation.reference, equation.note
     for column, text in zip(_TEXT_COLUMNS, texts, strict=True):
-        sheet.write_string(row, column, text, styles("text"))
+        write_label(sheet, row, column, text, styles("text"), values)
     fit_row(sheet, row, [(text, _WIDTHS[column]) for column, text in zip(_TEXT_COLUMNS, texts, strict=True)])
     sheet.write_string(row, 1, equation.notation, styles("centred"))
     sheet.write_string(row, 2, equation.symbol, styles("centred"))

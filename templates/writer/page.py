@@ -8,15 +8,30 @@ from textwrap import wrap
 from xlsxwriter.format import Format
 from xlsxwriter.worksheet import Worksheet
 
+from templates.vehicles import label_formula, names_a_vehicle, shown_label
 from templates.writer.cached import Values
 from templates.writer.styles import Styles
 
-__all__ = ["add_table", "begin_sheet", "fit_row", "guard", "protect", "repeat_header", "write_formula"]
+__all__ = [
+    "add_table",
+    "begin_sheet",
+    "fit_row",
+    "guard",
+    "protect",
+    "repeat_header",
+    "write_formula",
+    "write_label",
+]
 
 _LINE = 15.0
 """Height of a line of text, in points."""
 _LETTERS = 1.12
 """Letters of running text in one unit of column width, which is the width of a digit."""
+_ROOMY = ("Twelve chars",) * 9
+"""Names of vehicles for which a row has room."""
+_FOLLOWS = (
+    "This label follows the name of the vehicle at the top of sheet Inputs. Type over it only to change this one."
+)
 
 
 def begin_sheet(sheet: Worksheet, styles: Styles, title: str, subtitle: str, widths: Sequence[float]) -> None:
@@ -38,9 +53,9 @@ def begin_sheet(sheet: Worksheet, styles: Styles, title: str, subtitle: str, wid
 def fit_row(sheet: Worksheet, row: int, texts: Sequence[tuple[str, float]]) -> None:
     """Make the row as high as its wrapped texts need; each comes with the width of its column.
 
-    LibreOffice does not do so by itself when it opens the file.
+    LibreOffice does not do so by itself when it opens the file. There is room for vehicles with longer names.
     """
-    lines = max(len(wrap(text, int(_LETTERS * width) - 1)) for text, width in texts)
+    lines = max(len(wrap(shown_label(text, _ROOMY), int(_LETTERS * width) - 1)) for text, width in texts)
     sheet.set_row(row, _LINE * max(lines, 1) + 2)
 
 
@@ -63,6 +78,28 @@ def add_table(sheet: Worksheet, styles: Styles, name: str, top: int, headers: Se
 def write_formula(sheet: Worksheet, row: int, column: int, formula: str, style: Format, values: Values) -> None:
     """Write a formula, given without `=`, with its cached value."""
     sheet.write_formula(row, column, f"={formula}", style, values.get((sheet.name, row, column), 0))
+
+
+def write_label(
+    sheet: Worksheet, row: int, column: int, text: str, style: Format, values: Values, *, asks: bool = False
+) -> None:
+    """Write a text; one that names a vehicle as a formula, with its cached value.
+
+    Args:
+        sheet: to write to.
+        row: of the cell.
+        column: of the cell.
+        text: with the vehicles marked.
+        style: of the cell.
+        values: what formulas give.
+        asks: ask before someone types over the formula, on a sheet that is not locked.
+    """
+    if not names_a_vehicle(text):
+        sheet.write_string(row, column, text, style)
+        return
+    write_formula(sheet, row, column, label_formula(text), style, values)
+    if asks:
+        guard(sheet, (row, column, row, column), "A formula", _FOLLOWS)
 
 
 def protect(sheet: Worksheet) -> None:

@@ -6,7 +6,7 @@ from xlsxwriter.utility import xl_rowcol_to_cell
 
 from templates.description import Template
 
-__all__ = ["HEADER_ROW", "VALUE_COLUMN", "Place", "places", "reference"]
+__all__ = ["HEADER_ROW", "VALUE_COLUMN", "Place", "name_cells", "places", "reference"]
 
 Place = tuple[str, int]
 """Sheet and row, the row counted from 0."""
@@ -33,6 +33,11 @@ def places(template: Template) -> dict[str, Place]:
             found[equation.symbol] = "Model", row
         row += 1
     return found
+
+
+def name_cells(template: Template) -> list[tuple[int, int]]:
+    """Row and column, on sheet Inputs, of the cell with the name of each vehicle."""
+    return [(HEADER_ROW - 1, VALUE_COLUMN + 2 * index) for index, _ in enumerate(template.vehicles)]
 
 
 def reference(place: Place, *, absolute: bool = False) -> str:

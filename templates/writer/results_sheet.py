@@ -10,8 +10,9 @@ from collections.abc import Sequence
 from xlsxwriter.worksheet import Worksheet
 
 from templates.description import ALL_CHECKS, CorrelationRow, FilterRow, ForecastRow, Role, Template
+from templates.vehicles import names_a_vehicle
 from templates.writer.cached import Values
-from templates.writer.page import add_table, begin_sheet, fit_row, guard, write_formula
+from templates.writer.page import add_table, begin_sheet, fit_row, guard, write_formula, write_label
 from templates.writer.places import Place, reference
 from templates.writer.styles import Styles
 
@@ -37,13 +38,13 @@ def draw_results_wanted(
     row = _draw_forecasts(sheet, styles, template, at, values, 3)
     row = _draw_filters(sheet, styles, template, at, values, row + _ROOM)
     row = _draw_checks(sheet, styles, template, at, values, row + _ROOM)
-    row = _draw_correlations(sheet, styles, template, row + _ROOM)
-    _draw_settings(sheet, styles, template.settings, row + _ROOM)
+    row = _draw_correlations(sheet, styles, template, at, values, row + _ROOM)
+    _draw_settings(sheet, styles, template.settings, values, row + _ROOM)
 
 
-def _head(sheet: Worksheet, styles: Styles, row: int, title: str, remark: str) -> None:
+def _head(sheet: Worksheet, styles: Styles, row: int, title: str, remark: str, values: Values) -> None:
     sheet.write_string(row, 0, title, styles("heading"))
-    sheet.write_string(row, 1, remark, styles("remark"))
+    write_label(sheet, row, 1, remark, styles("remark"), values, asks=True)
 
 
 def _draw_forecasts(
@@ -51,19 +52,21 @@ def _draw_forecasts(
 ) -> int:
     """Write the table under its heading in row `top`; the row below it is returned, here and in the others."""
     remark = "Range % is the central range reported; a Threshold also reports the probability of exceeding it."
-    _head(sheet, styles, top, "Forecasts", remark)
+    _head(sheet, styles, top, "Forecasts", remark, values)
     add_table(sheet, styles, "xlmc_forecasts", top + 1, _FORECASTS, len(template.forecasts))
     equations = {equation.symbol: equation for equation in template.equations}
     for row, forecast in enumerate(template.forecasts, top + 2):
-        _draw_forecast(sheet, styles, forecast, row, equations[forecast.symbol].notation)
+        _draw_forecast(sheet, styles, forecast, row, equations[forecast.symbol].notation, values)
         shown = styles("answer", equations[forecast.symbol].number_format)
         write_formula(sheet, row, 1, reference(at[forecast.symbol]), shown, values)
     guard(sheet, (top + 2, 1, top + 1 + len(template.forecasts), 1), "A formula", _POINTS)
     return top + 2 + len(template.forecasts)
 
 
-def _draw_forecast(sheet: Worksheet, styles: Styles, forecast: ForecastRow, row: int, notation: str) -> None:
-    sheet.write_string(row, 0, forecast.name, styles("open text"))
+def _draw_forecast(
+    sheet: Worksheet, styles: Styles, forecast: ForecastRow, row: int, notation: str, values: Values
+) -> None:
+    _draw_name(sheet, styles, forecast.name, row, values)
     sheet.write_string(row, 2, forecast.unit, styles("centred"))
     _number(sheet, styles, row, 3, forecast.central_percent)
     _number(sheet, styles, row, 4, forecast.threshold)
@@ -75,11 +78,11 @@ def _draw_filters(
     sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values, top: int
 ) -> int:
     remark = "A trial is kept when every row holds. Red: the base case itself would be rejected."
-    _head(sheet, styles, top, "Filters", remark)
+    _head(sheet, styles, top, "Filters", remark, values)
     add_table(sheet, styles, "xlmc_filters", top + 1, _FILTERS, len(template.filters))
     formats = {equation.symbol: equation.number_format for equation in template.equations}
     for row, kept in enumerate(template.filters, top + 2):
-        _draw_filter(sheet, styles, kept, row)
+        _draw_filter(sheet, styles, kept, row, values)
         shown = styles("step", formats[kept.symbol])
         write_formula(sheet, row, 1, reference(at[kept.symbol]), shown, values)
     last = top + 1 + len(template.filters)
@@ -89,8 +92,8 @@ def _draw_filters(
     return last + 1
 
 
-def _draw_filter(sheet: Worksheet, styles: Styles, kept: FilterRow, row: int) -> None:
-    sheet.write_string(row, 0, kept.name, styles("open text"))
+def _draw_filter(sheet: Worksheet, styles: Styles, kept: FilterRow, row: int, values: Values) -> None:
+    _draw_name(sheet, styles, kept.name, row, values)
     for column, limit in enumerate((kept.at_least, kept.at_most, kept.above, kept.below), 2):
         _number(sheet, styles, row, column, limit)
     sheet.write_string(row, 6, kept.because, styles("open text"))
@@ -110,13 +113,13 @@ def _draw_checks(
     sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values, top: int
 ) -> int:
     remark = "Must be TRUE at the base case and in the accepted trials; xlmc says so first where they are not."
-    _head(sheet, styles, top, "Physics checks", remark)
+    _head(sheet, styles, top, "Physics checks", remark, values)
     checks = [each for each in template.equations if each.role is Role.CHECK and each.symbol != ALL_CHECKS]
     add_table(sheet, styles, "xlmc_checks", top + 1, _CHECKS, len(checks))
     for row, check in enumerate(checks, top + 2):
-        sheet.write_string(row, 0, check.name, styles("open text"))
+        _draw_name(sheet, styles, check.name, row, values)
         write_formula(sheet, row, 1, reference(at[check.symbol]), styles("check", "General"), values)
-        sheet.write_string(row, 2, check.note, styles("overflowing"))
+        write_label(sheet, row, 2, check.note, styles("overflowing"), values, asks=True)
         fit_row(sheet, row, [(check.name, _WIDTHS[0])])
     last = top + 1 + len(checks)
     guard(sheet, (top + 2, 1, last, 1), "A formula", _POINTS)
@@ -125,13 +128,14 @@ def _draw_checks(
     return last + 1
 
 
-def _draw_correlations(sheet: Worksheet, styles: Styles, template: Template, top: int) -> int:
-    _head(sheet, styles, top, "Correlations", template.correlation_note)
+def _draw_correlations(
+    sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values, top: int
+) -> int:
+    _head(sheet, styles, top, "Correlations", template.correlation_note, values)
     rows = max(len(template.correlations), 1)
-    names = {given.symbol: given.name for given in template.assumptions}
     add_table(sheet, styles, "xlmc_correlations", top + 1, _CORRELATIONS, rows)
     for row, pair in enumerate(template.correlations, top + 2):
-        _draw_correlation(sheet, styles, pair, names, row)
+        _draw_correlation(sheet, styles, pair, at, row, values)
     if not template.correlations:
         sheet.set_row(top + 2, 32)
         for column, look in enumerate(("open text", "open text", "number")):
@@ -153,19 +157,30 @@ def _draw_correlations(sheet: Worksheet, styles: Styles, template: Template, top
     return top + 2 + rows
 
 
-def _draw_correlation(sheet: Worksheet, styles: Styles, pair: CorrelationRow, names: dict[str, str], row: int) -> None:
+def _draw_correlation(
+    sheet: Worksheet, styles: Styles, pair: CorrelationRow, at: dict[str, Place], row: int, values: Values
+) -> None:
     sheet.set_row(row, 32)
     for column, symbol in enumerate((pair.first, pair.second)):
-        sheet.write_string(row, column, names[symbol], styles("open text"))
+        write_formula(sheet, row, column, f"Inputs!A{at[symbol][1] + 1}", styles("text"), values)
+    guard(sheet, (row, 0, row, 1), "A formula", "It says which assumption is meant. Change it only to name another.")
     sheet.write_number(row, 2, pair.correlation, styles("number"))
 
 
-def _draw_settings(sheet: Worksheet, styles: Styles, settings: Sequence[tuple[str, float]], top: int) -> None:
-    _head(sheet, styles, top, "Settings", "The same workbook and the same seed give the same answers.")
+def _draw_settings(
+    sheet: Worksheet, styles: Styles, settings: Sequence[tuple[str, float]], values: Values, top: int
+) -> None:
+    _head(sheet, styles, top, "Settings", "The same workbook and the same seed give the same answers.", values)
     add_table(sheet, styles, "xlmc_settings", top + 1, _SETTINGS, len(settings))
     for row, (setting, value) in enumerate(settings, top + 2):
         sheet.write_string(row, 0, setting, styles("text"))
         sheet.write_number(row, 1, value, styles("number", "0" if setting == "Seed" else "#,##0"))
+
+
+def _draw_name(sheet: Worksheet, styles: Styles, name: str, row: int, values: Values) -> None:
+    """The name of a row, yours to change; locked where it is a formula, as Excel marks formulas that are not."""
+    look = "text" if names_a_vehicle(name) else "open text"
+    write_label(sheet, row, 0, name, styles(look), values, asks=True)
 
 
 def _number(sheet: Worksheet, styles: Styles, row: int, column: int, value: float | None) -> None:

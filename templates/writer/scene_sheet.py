@@ -10,8 +10,9 @@ from xlsxwriter.workbook import Workbook
 from xlsxwriter.worksheet import Worksheet
 
 from templates.description import Curve, Diagram, Look
+from templates.vehicles import names_a_vehicle
 from templates.writer.cached import Values
-from templates.writer.page import begin_sheet, protect, write_formula
+from templates.writer.page import begin_sheet, protect, write_formula, write_label
 from templates.writer.styles import Styles
 
 __all__ = ["chart_size", "draw_scene"]
@@ -69,7 +70,7 @@ def chart_size(diagram: Diagram) -> tuple[int, int]:
 
 def _draw_points(sheet: Worksheet, styles: Styles, curve: Curve, row: int, values: Values) -> int:
     for point in curve.points:
-        sheet.write_string(row, 0, curve.name, styles("text"))
+        write_label(sheet, row, 0, curve.name, styles("text"), values)
         for column, formula in enumerate(point, 1):
             write_formula(sheet, row, column, formula, styles("step", "0.00"), values)
         row += 1
@@ -80,7 +81,7 @@ def _add_series(chart: Chart, name: str, look: Look | None, row: int, points: in
     """A curve of that look from so many rows; not drawn where there is none."""
     chart.add_series(
         {
-            "name": name,
+            "name": ["Scene", row, 0] if names_a_vehicle(name) else name,
             "categories": ["Scene", row, 1, row + points - 1, 1],
             "values": ["Scene", row, 2, row + points - 1, 2],
             "line": {"none": True} if look is None else _LINES[look],

@@ -27,6 +27,7 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "centred": _CELL | {"align": "center"},
     "number": _NUMBER | {"locked": False},
     "assumption": _NUMBER | {"bg_color": "#C6E7B5", "locked": False},
+    "name": _CELL | {"align": "center", "shrink": True, "bg_color": "#FFF2C2", "locked": False},
     "fixed": _NUMBER | {"bg_color": "#FFF2C2", "locked": False},
     "open text": _WRAPPED | {"indent": 1, "locked": False},
     "overflowing": {"indent": 1, "valign": "vcenter", "locked": False},

@@ -27,11 +27,8 @@ _CELL = re.compile(r'<c r="([A-Z]+)(\d+)"([^>]*)>(<f>[^<]*</f>)<v\s*(?:/>|></v>)
 
 
 def _type(book: openpyxl.Workbook) -> None:
-    for sheet in (book["Inputs"], book["Results wanted"]):
-        for cell in (cell for row in sheet.iter_rows() for cell in row):
-            for old, new in NAMES:
-                if isinstance(cell.value, str) and not cell.value.startswith("="):
-                    cell.value = cell.value.replace(old, new)
+    for cell in book["Inputs"][4]:
+        cell.value = dict(NAMES).get(cell.value, cell.value)
     heads = {cell.value: cell.column for cell in book["Inputs"][5]}
     rows = {row[heads["Cell name"] - 1].value: row[0].row for row in book["Inputs"].iter_rows(min_row=6)}
     for symbol, _, low, high, source in RANGES:
@@ -39,12 +36,20 @@ def _type(book: openpyxl.Workbook) -> None:
         for head, value in told.items():
             book["Inputs"].cell(rows[symbol], heads[head], value)
     wanted = book["Results wanted"]
-    rows = {row[0].value: row[0].row for row in wanted.iter_rows(min_row=20, max_row=28)}
+    named = [cell.value for cell in book["Inputs"][4]]
+    shown = {f'={cell}&"': named[named.index(cell) + 1] for cell in ("vehicle_1", "vehicle_2")}
+    rows = {_label(row[0].value, shown): row[0].row for row in wanted.iter_rows(min_row=20, max_row=28)}
     for name, limits, because in FILTERS:
         given = {text.rpartition(" ")[0]: float(text.rpartition(" ")[2]) for text in limits.split(", ")}
         for column, limit in enumerate(COLUMNS, 3):
             wanted.cell(rows[name], column, given.get(limit))
         wanted.cell(rows[name], 7, because)
+
+
+def _label(written: str | None, shown: dict[str, str]) -> str | None:
+    """The text that a label's formula shows, where it begins with the name of a vehicle."""
+    start = next((start for start in shown if written and written.startswith(start)), None)
+    return written if start is None or written is None else shown[start] + written.removeprefix(start).rstrip('"')
 
 
 def _saved_by_excel(book: openpyxl.Workbook, path: Path) -> None:

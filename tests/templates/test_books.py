@@ -10,6 +10,7 @@ import pytest
 from committed_books import BOOKS, TEMPLATES
 
 import xlmc
+from templates.vehicles import label_formula, name_cell, names_a_vehicle
 from xlmc.studies.verify import Status, verify
 from xlmc.workbook.reader import read_workbook
 
@@ -99,7 +100,12 @@ def test_tables_stand_where_they_belong(name, book_path, subtests):
 def test_every_quantity_is_a_named_cell(name, book_path, described):
     book = opened(book_path[name])
     template = described[name]
-    assert set(book.defined_names) == {quantity.symbol for quantity in (*template.inputs, *template.equations)}
+    symbols = {quantity.symbol for quantity in (*template.inputs, *template.equations)}
+    names = [name_cell(j) for j, _ in enumerate(template.vehicles, 1)]
+    assert set(book.defined_names) == symbols | {*names}
+    for name, called in zip(names, template.vehicles, strict=True):
+        [(sheet, place)] = book.defined_names[name].destinations
+        assert book[sheet][place].value == called
     for given in template.inputs:
         [(sheet, place)] = book.defined_names[given.symbol].destinations
         assert book[sheet][place].value == given.base
@@ -113,7 +119,8 @@ def test_forecasts_and_filters_point_at_their_cells(name, book_path, described):
     book, template = opened(book_path[name]), described[name]
     for table, described_rows in (("xlmc_forecasts", template.forecasts), ("xlmc_filters", template.filters)):
         for row, wanted in zip(rows(book, table), described_rows, strict=True):
-            assert row["Name"].value == wanted.name
+            named = names_a_vehicle(wanted.name)
+            assert row["Name"].value == (f"={label_formula(wanted.name)}" if named else wanted.name)
             assert REFERENCE.fullmatch(row["Cell"].value)
             [(_, place)] = book.defined_names[wanted.symbol].destinations
             assert row["Cell"].value == f"=Model!{place.replace('$', '')}"
@@ -129,7 +136,8 @@ def test_the_case_study_says_what_the_paper_says(book_path):
     headers = ("At least", "At most", "Above", "Below")
     limits = [[row[header].value for header in headers] for row in rows(book, "xlmc_filters")]
     assert limits == [[0, None, None, 1], [0, 0.25, None, None], [None, None, 0, None]]
-    assert [row["Name"].value for row in rows(book, "xlmc_forecasts")] == [
+    shown = opened(book_path["intersection"], data_only=True)
+    assert [row["Name"].value for row in rows(shown, "xlmc_forecasts")] == [
         "Chevrolet delta-V",
         "Nissan delta-V",
         "Chevrolet impact speed",

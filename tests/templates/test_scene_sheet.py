@@ -12,6 +12,7 @@ import pytest
 
 from templates.build import TEMPLATES
 from templates.description import Look
+from templates.vehicles import FIRST, SECOND, shown_label
 
 DRAWN = [name for name, template in TEMPLATES.items() if template.diagram is not None]
 PLANS = [name for name in DRAWN if TEMPLATES[name].diagram.plan]
@@ -41,10 +42,11 @@ def test_the_chart_has_a_series_for_every_curve_over_its_own_cells(name, units, 
         xml = book.read(charts[0]).decode()
     assert len(charts) == 1
     areas = re.findall(r"<c:xVal>.*?<c:f>Scene!\$B\$(\d+)(?::\$B\$(\d+))?</c:f>", xml, re.DOTALL)
-    sheet = openpyxl.load_workbook(book_path[name + units])["Scene"]
+    sheet = openpyxl.load_workbook(book_path[name + units], data_only=True)["Scene"]
+    vehicles = described[name + units].vehicles
     names = [[sheet.cell(row, 1).value for row in range(int(top), int(end or top) + 1)] for top, end in areas]
     for curve, labels in zip(diagram.curves, names, strict=False):
-        assert labels == [curve.name] * len(curve.points)
+        assert labels == [shown_label(curve.name, vehicles)] * len(curve.points)
     assert len(areas) == len(diagram.curves) + diagram.plan
 
 
@@ -91,4 +93,4 @@ def test_the_skid_is_drawn_from_the_answer_to_the_end(cells, shown, book_path):
 def test_looks_of_the_two_vehicles_differ():
     for name in PLANS:
         looks = {curve.name: curve.look for curve in TEMPLATES[name].diagram.curves}
-        assert (looks["Vehicle 1"], looks["Vehicle 2"]) == (Look.FIRST, Look.SECOND)
+        assert (looks[FIRST], looks[SECOND]) == (Look.FIRST, Look.SECOND)

@@ -1,17 +1,67 @@
 from __future__ import annotations
 
+import re
+
+import openpyxl
+import pytest
+from committed_books import TEMPLATES
+
+import xlmc
 from templates.description import Equation
-from templates.vehicles import for_both
+from templates.vehicles import for_both, label_formula, names_a_vehicle, shown_label
+from templates.writer.cached import computed
+
+NAMED = [name for name in TEMPLATES if not name.startswith(("skid", "critical-speed-yaw"))]
+NEW = ("Ford", 'Volvo "240"')
 
 
 def test_a_pattern_becomes_one_equation_for_each_vehicle():
     pattern = Equation("V{j}_i", "V{j}i", "{who} speed", "ft/s", "<|->V{k}_f", "eq (<15|16>)", "<only here|>")
-    first, second = for_both(("Truck", "Car"), [pattern])
+    first, second = for_both([pattern])
     assert (first.symbol, first.formula, first.reference, first.note) == ("V1_i", "V2_f", "eq (15)", "only here")
     assert (second.symbol, second.formula, second.reference, second.note) == ("V2_i", "-V1_f", "eq (16)", "")
-    assert (first.name, second.name) == ("Truck speed", "Car speed")
+    assert [shown_label(each.name, ("Truck", "Car")) for each in (first, second)] == ["Truck speed", "Car speed"]
 
 
 def test_what_is_not_a_pattern_stays_as_it_is():
     plain = Equation("e_n", "e_n", "Restitution", "", "a<b", "eq (9)")
-    assert for_both(("Truck", "Car"), [plain]) == (plain,)
+    assert for_both([plain]) == (plain,)
+
+
+def test_a_label_is_a_formula_of_the_names():
+    assert not names_a_vehicle("Restitution")
+    assert label_formula("«1»") == "vehicle_1"
+    assert label_formula("«2» delta-V") == 'vehicle_2&" delta-V"'
+    assert label_formula('From «1» to «2»: "late"') == '"From "&vehicle_1&" to "&vehicle_2&": ""late"""'
+    long = label_formula("«1»" + "x" * 600)
+    assert [len(text) for text in re.findall('"(x+)"', long)] == [255, 255, 90]
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_a_new_name_shows_in_every_label_of_every_sheet(name, book_path, described, tmp_path):
+    """Typed by a program that calculates nothing: xlmc reads the tables' labels all the same."""
+    book = openpyxl.load_workbook(book_path[name])
+    old = described[name].vehicles
+    names = dict(zip(old, NEW, strict=False))
+    cells = [cell for cell in book["Inputs"][4] if cell.value in old]
+    assert len(cells) == len(old)
+    for cell in cells:
+        cell.value = names[cell.value]
+    path = tmp_path / "renamed.xlsx"
+    book.save(path)
+    typed = [cell.value for sheet in book for row in sheet.iter_rows() for cell in row]
+    shown = [*computed(path).values(), *(text for text in typed if not str(text).startswith("="))]
+    called = re.compile("|".join(old) if len(old) > 1 else r"Vehicle (?=speed)", re.IGNORECASE)
+    assert not [text for text in shown if isinstance(text, str) and called.search(text)]
+    before, after = xlmc.load(book_path[name]), xlmc.load(path)
+    for kind in ("assumptions", "forecasts", "filters", "checks"):
+        expected = [renamed(each.name, names) for each in getattr(before, kind)]
+        assert [each.name for each in getattr(after, kind)] == expected
+    assert any(NEW[0] in each.name for each in after.forecasts)
+    assert len(after.definitions.correlations) == len(before.definitions.correlations)
+
+
+def renamed(label, names):
+    for old, new in names.items():
+        label = label.replace(old, new)
+    return label

@@ -39,11 +39,12 @@ def check(book: Path) -> None:
     from xlmc.definitions.definitions_reader import read_definitions
     from xlmc.errors import XlmcError
     from xlmc.evaluation.engines import ENGINES
+    from xlmc.run.labels import calculate_labels
     from xlmc.run.loading import filter_faults
     from xlmc.run.model import Model
     from xlmc.workbook.reader import read_workbook
 
-    workbook = read_workbook(book)
+    workbook = calculate_labels(read_workbook(book))
     definitions = read_definitions(workbook, ENGINES)
     problems: list[XlmcError] = list(definitions.problems)
     model: Model | None = None

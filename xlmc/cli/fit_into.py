@@ -103,8 +103,9 @@ def _refuse_new_problems(before: Workbook, after: Workbook) -> None:
     """What the workbook did not have before: parameters outside the cutoffs that stand in the row, for example."""
     from xlmc.definitions.definitions_reader import read_definitions
     from xlmc.evaluation.engines import ENGINES
+    from xlmc.run.labels import calculate_labels
 
-    known = {str(each) for each in read_definitions(before, ENGINES).problems}
-    for problem in read_definitions(after, ENGINES).problems:
+    known = {str(each) for each in read_definitions(calculate_labels(before), ENGINES).problems}
+    for problem in read_definitions(calculate_labels(after), ENGINES).problems:
         if str(problem) not in known:
             raise problem

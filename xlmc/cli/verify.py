@@ -40,12 +40,13 @@ def verify(
     from xlmc.definitions.definitions_reader import read_definitions
     from xlmc.evaluation.engines import ENGINES
     from xlmc.report.study_report import Files, StudyReport
+    from xlmc.run.labels import calculate_labels
     from xlmc.studies.verify import Status
     from xlmc.studies.verify import verify as check
     from xlmc.workbook.reader import read_workbook
 
     workbook = read_workbook(book)
-    definitions = None if everything else read_definitions(workbook, ENGINES)
+    definitions = None if everything else read_definitions(calculate_labels(workbook), ENGINES)
     if definitions is not None and not definitions.forecasts and not definitions.filters:
         raise click.UsageError(f"{book} has no forecasts and no filters; give --all to check every formula cell.")
     files = Files(output, html, pdf, docx, [book], overwrite=overwrite)

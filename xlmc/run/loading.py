@@ -22,6 +22,7 @@ from xlmc.evaluation.engine import TEXT_RESULT, Column, Target
 from xlmc.evaluation.engines import ENGINES
 from xlmc.evaluation.numpy.numpy_engine import NumpyProgram
 from xlmc.formula import ir
+from xlmc.run.labels import calculate_labels
 from xlmc.run.model import Model, paused_collection
 from xlmc.run.needed import filter_limits
 from xlmc.workbook.reader import read_workbook
@@ -52,6 +53,7 @@ def build_model(workbook: Workbook, path: Path) -> Model:
         FormulaError: a needed cell cannot be computed.
     """
     with paused_collection():
+        workbook = calculate_labels(workbook)
         definitions = read_definitions(workbook, ENGINES)
         if definitions.problems:
             raise _joined(definitions.problems)

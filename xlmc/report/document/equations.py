@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
+from xlmc.address import Cell
 from xlmc.definitions.tables.table_rows import as_text
+from xlmc.run.labels import calculated_texts, is_uncalculated
 from xlmc.run.model import Model
-from xlmc.workbook.workbook import CellContent, Sheet
+from xlmc.workbook.workbook import CellContent, Sheet, Workbook
 
 __all__ = ["Equation", "equations_of"]
 
@@ -38,25 +40,26 @@ def equations_of(model: Model) -> list[Equation]:
         needed.setdefault(cell.sheet, set()).add(cell.row)
     for name, sheet in model.workbook.sheets.items():
         if name in needed:
-            found += _of_sheet(sheet, needed[name])
+            found += _of_sheet(model.workbook, sheet, needed[name])
     return found
 
 
-def _of_sheet(sheet: Sheet, needed: set[int]) -> Iterator[Equation]:
+def _of_sheet(workbook: Workbook, sheet: Sheet, needed: set[int]) -> Iterator[Equation]:
     cells: Mapping[tuple[int, int], CellContent] = sheet.cells
     heads: dict[int, dict[str, int]] = {}
     for (row, column), content in cells.items():
-        said = as_text(content.value).casefold() if isinstance(content.value, str) else ""
-        if said in _HEADS and column <= _COLUMNS:
-            heads.setdefault(row, {}).setdefault(said, column)
+        head = as_text(content.value).casefold() if isinstance(content.value, str) else ""
+        if head in _HEADS and column <= _COLUMNS:
+            heads.setdefault(row, {}).setdefault(head, column)
     starts = sorted(row for row, found in heads.items() if found.keys() >= _NEEDED)
     if not starts:
         return
-    for row in sorted(needed):
-        above = [start for start in starts if start < row]
-        if not above:
-            continue
-        columns = heads[above[-1]]
-        texts = {head: as_text(cells[row, at].value) if (row, at) in cells else "" for head, at in columns.items()}
+    below = {row: heads[max(above)] for row in sorted(needed) if (above := [start for start in starts if start < row])}
+    spots = [(row, at) for row, columns in below.items() for at in columns.values() if (row, at) in cells]
+    missing = [Cell(sheet.name, *spot) for spot in spots if is_uncalculated(cells[spot])]
+    calculated = {cell[1:]: text for cell, text in calculated_texts(workbook, missing).items()} if missing else {}
+    said = {spot: calculated.get(spot) or as_text(cells[spot].value) for spot in spots}
+    for row, columns in below.items():
+        texts = {head: said.get((row, at), "") for head, at in columns.items()}
         if texts["equation"]:
             yield Equation(texts["quantity"], texts.get("symbol", ""), texts["equation"], texts.get("source", ""))

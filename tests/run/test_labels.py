@@ -1,0 +1,58 @@
+from __future__ import annotations
+
+import openpyxl
+import pytest
+from openpyxl.worksheet.table import Table
+
+from xlmc.address import Cell
+from xlmc.run.labels import calculate_labels, calculated_texts
+from xlmc.workbook.reader import read_workbook
+
+ROWS = (
+    ("Name", "Value", "Low", "High", "Source", "Cell"),
+    ('=Names!A1&" weight"', 3, "=1+1", 4, '=IF(B2=3,"scale","")', None),
+    ("plain", 5, 4, 6, "=NOSUCH(1)", None),
+    ("=A2", 7, 6, 8, "=RAND()", "=Names!A1"),
+)
+
+
+@pytest.fixture
+def book(tmp_path):
+    """`book(other="xlmc_assumptions")`: read from a file whose formulas were never calculated."""
+
+    def make(table="xlmc_assumptions"):
+        made = openpyxl.Workbook()
+        sheet = made.active
+        sheet.title = "S"
+        for row in ROWS:
+            sheet.append(row)
+        sheet.add_table(Table(displayName=table, ref="A1:F4"))
+        made.create_sheet("Names")["A1"] = "Ford"
+        made.create_sheet("Damaged")
+        made.save(tmp_path / "book.xlsx")
+        return read_workbook(tmp_path / "book.xlsx")
+
+    return make
+
+
+def test_texts_of_the_tables_are_calculated_and_nothing_else(book):
+    before = book()
+    after = calculate_labels(before)
+    found = {(row, column): content.value for (row, column), content in after.sheets["S"].cells.items() if row > 1}
+    assert {spot: value for spot, value in found.items() if isinstance(value, str)} == {
+        (2, 1): "Ford weight",
+        (2, 5): "scale",
+        (3, 1): "plain",
+        (4, 1): "Ford weight",
+    }
+    assert found[2, 3] is None  # a number is not a label: each run computes it
+    assert found[3, 5] is found[4, 5] is found[4, 6] is None
+    assert list(after.sheets) == list(before.sheets)
+    assert after.content(Cell("S", 2, 1)).formula == before.content(Cell("S", 2, 1)).formula
+    assert (after.data, after.sha256) == (before.data, before.sha256)
+
+
+def test_a_book_without_anything_to_calculate_stays_itself(book):
+    other = book("prices")
+    assert calculate_labels(other) is other
+    assert calculated_texts(other, [Cell("S", 2, 1), Cell("S", 3, 5)]) == {Cell("S", 2, 1): "Ford weight"}

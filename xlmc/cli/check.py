@@ -68,7 +68,9 @@ def check(book: Path) -> None:
         raise click.exceptions.Exit(2)
     for fault in faults:
         say(f"warning: {fault}; an answer must not be used as it stands.", err=True)
-    if faults:
+    for refused in definitions.refused:
+        say(f"warning: {refused}", err=True)
+    if faults or definitions.refused:
         raise click.exceptions.Exit(1)
     say("No problem found.")
 

@@ -2,10 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import Final
 
+from xlmc.address import Cell
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.definitions import Definitions, Settings, name_key
+from xlmc.definitions.crystal_ball.dialogs import FromDialogs, read_dialogs
+from xlmc.definitions.crystal_ball.lost_data import remark_on_lost_data
+from xlmc.definitions.crystal_ball.refused import refusals
+from xlmc.definitions.definitions import (
+    Assumption,
+    Correlation,
+    Definitions,
+    Filter,
+    Forecast,
+    Settings,
+    name_key,
+)
 from xlmc.definitions.in_cells.calls import InCells, in_cell_correlations, in_cell_forecasts, read_in_cells
 from xlmc.definitions.problems import Findings
 from xlmc.definitions.tables.assumptions import read_assumptions
@@ -24,10 +37,13 @@ from xlmc.definitions.unavailable import (
     remark_on_unavailable,
     tables_of_run,
 )
-from xlmc.errors import DefinitionError
+from xlmc.errors import DefinitionError, FormulaError
+from xlmc.formula.ir import Expression
 from xlmc.workbook.workbook import Workbook
 
 __all__ = ["read_definitions"]
+
+SAVE_AGAIN: Final = "Open the workbook in Excel with Crystal Ball, and save it again"
 
 
 def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definitions:
@@ -50,30 +66,36 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
     evidence = read_evidence(workbook, tables["xlmc_evidence"], computed, filters, findings)
     filters = *filters, *(as_filter(each) for each in evidence if each.used)
     checks = read_checks(workbook, tables["xlmc_checks"], computed, Claims("check"), findings)
+    dialogs = read_dialogs(workbook, computed, central, uncertain, answers, findings)
     calls = read_in_cells(workbook, computed, settings.lognorm or "@RISK", uncertain, findings)
-    _remark_on_stored_assumptions(workbook, findings)
-    if not (calls or any(tables.values())):
+    if not dialogs.stored:
+        remark_on_lost_data(workbook, bool(calls or any(tables.values())), findings)
+    if not (dialogs or calls or any(tables.values())):
         remark_on_tables(workbook.data_tables, TablesOfRun(), findings)
-        _say_how_to_begin(workbook, findings)
+        if not findings.problems:
+            _say_how_to_begin(workbook, findings)
         return Definitions(notices=tuple(findings.notices), problems=tuple(findings.problems))
 
     names = {key: name for key, (name, _) in uncertain.names.items()}
-    assumptions = *assumptions, *calls.assumptions
+    assumptions = *assumptions, *dialogs.assumptions, *calls.assumptions
     frozen = [name_key(each.name) for each in assumptions if each.frozen]
     correlations = read_correlations(workbook, tables["xlmc_correlations"], names, frozen, findings)
+    correlations = *correlations, *_take_pairs(correlations, dialogs.correlations, findings)
     more = in_cell_correlations(workbook, calls.assumptions, calls.matrices, correlations, findings)
-    forecasts = *forecasts, *in_cell_forecasts(calls, computed, central, answers, findings)
+    forecasts = *forecasts, *dialogs.forecasts, *in_cell_forecasts(calls, computed, central, answers, findings)
     _remark_on_calls(calls, settings, findings)
     drawn = {each.cell for each in assumptions if not each.frozen}
     what_if = tables_of_run(workbook, drawn, calls.results.keys() | calls.unavailable.keys(), calls.rewritten)
     remark_on_tables(workbook.data_tables, what_if, findings)
     unavailable = {**calls.unavailable, **dict.fromkeys(faults_of(workbook, what_if.stale), TABLE_REASON)}
     remark_on_unavailable(calls.unavailable, findings)
-    if not calls.assumptions:
+    rewritten = {**dialogs.rewritten, **calls.rewritten, **faults_of(workbook, what_if.varying)}
+    forecasts, refused = _without_refused(workbook, dialogs, rewritten, assumptions, forecasts, filters, findings)
+    if not (calls.assumptions or dialogs.assumptions):
         _refuse_no_assumption(workbook, calls, tables["xlmc_assumptions"], findings)
-    if calls and not (forecasts or tables["xlmc_forecasts"]):
+    if calls and not (forecasts or tables["xlmc_forecasts"] or refused):
         _say_how_to_mark(workbook, findings)
-    elif not forecasts:
+    elif not (forecasts or refused):
         _refuse_none(workbook, "forecast", tables["xlmc_forecasts"], findings)
     return Definitions(
         assumptions=assumptions,
@@ -83,11 +105,12 @@ def read_definitions(workbook: Workbook, engines: Collection[str]) -> Definition
         settings=settings,
         notices=tuple(findings.notices),
         problems=tuple(findings.problems),
-        rewritten={**calls.rewritten, **faults_of(workbook, what_if.varying)},
+        rewritten=rewritten,
         results=tuple(calls.results),
         unavailable=unavailable,
         checks=checks,
         evidence=evidence,
+        refused=refused,
     )
 
 
@@ -102,15 +125,37 @@ def _remark_on_calls(calls: InCells, settings: Settings, findings: Findings) -> 
         findings.notice(message, calls.lognorms[0])
 
 
-def _remark_on_stored_assumptions(workbook: Workbook, findings: Findings) -> None:
-    """Crystal Ball keeps what its dialogs define outside the cells, and marks the workbook by a hidden sheet."""
-    mark = next((name for name in workbook.sheets if name.casefold().startswith("cb_data_")), None)
-    if mark is not None:
-        message = (
-            "The workbook holds assumptions or forecasts from Crystal Ball's dialogs, which are not read: write them "
-            "as rows of the tables xlmc_assumptions and xlmc_forecasts, or as functions such as CB.Normal in cells"
-        )
-        findings.notice(message, mark)
+def _take_pairs(taken: Sequence[Correlation], more: Iterable[Correlation], findings: Findings) -> Iterator[Correlation]:
+    """The correlations of dialogs that no row of a table is about."""
+    rows = {frozenset(map(name_key, (row.first, row.second))): row for row in taken}
+    for each in more:
+        row = rows.get(frozenset(map(name_key, (each.first, each.second))))
+        if row is None:
+            yield each
+        else:
+            message = f"{each.first!r} and {each.second!r} are correlated by this row and by Crystal Ball ({each.row})"
+            findings.problem(message, row.row, "Keep one of them")
+
+
+def _without_refused(
+    workbook: Workbook,
+    dialogs: FromDialogs,
+    rewritten: Mapping[Cell, Expression | FormulaError],
+    assumptions: Sequence[Assumption],
+    forecasts: tuple[Forecast, ...],
+    filters: Sequence[Filter],
+    findings: Findings,
+) -> tuple[tuple[Forecast, ...], tuple[DefinitionError, ...]]:
+    """The forecasts that need no cell of Crystal Ball that cannot be read; and what of the others is to be told."""
+    found = refusals(workbook, dialogs.refused, rewritten, assumptions, forecasts, filters)
+    findings.problems += found.filters.values()
+    for cell in found.idle:
+        findings.notice(f"no forecast or filter needs this cell: {dialogs.refused[cell].message}", cell)
+    damages = (DefinitionError(damage, where=workbook.name, hint=SAVE_AGAIN) for damage in dialogs.damages)
+    left = tuple(each for each in forecasts if each.name not in found.forecasts)
+    if forecasts and not left:
+        findings.problems += found.forecasts.values()
+    return left, (*damages, *found.forecasts.values())
 
 
 def _refuse_no_assumption(

@@ -217,7 +217,8 @@ class Simulation:
         failing = [warning for check in self.checks for warning in check.warnings]
         rare = () if self.rare is None else self.rare.warnings
         missing = self.shown_results.warning
-        return [*failing, *found, *self._sparse(), *self._lost_digits, *rare, *([missing] if missing else [])]
+        refused = [str(each).rstrip(".") for each in self.model.definitions.refused]
+        return [*refused, *failing, *found, *self._sparse(), *self._lost_digits, *rare, *([missing] if missing else [])]
 
     @cached_property
     def shown_results(self) -> ShownResults:

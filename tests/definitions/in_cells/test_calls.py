@@ -421,7 +421,7 @@ def test_a_pair_is_correlated_once(workbook, table):
 
 def test_crystal_balls_hidden_sheet_is_pointed_out(workbook):
     found = read_definitions(workbook({"A1": "=RiskOutput()+RAND()"}, sheets=["CB_DATA_"]), ENGINES)
-    assert any("Crystal Ball's dialogs" in notice.message for notice in found.notices)
+    assert any("Crystal Ball's dialogs are lost" in notice.message for notice in found.notices)
 
 
 def test_an_answer_that_cannot_be_read_is_never_left_out(workbook):

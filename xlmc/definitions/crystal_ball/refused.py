@@ -1,0 +1,88 @@
+"""What follows from cells that cannot be read: the answers that need one are refused, by name.
+
+A filter that needs one decides over all trials, so that then nothing can be run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from xlmc.address import Cell
+from xlmc.definitions.definitions import Assumption, Filter, Forecast
+from xlmc.errors import DefinitionError, FormulaError
+from xlmc.formula import Graph, Resolver, build_graph, ir
+from xlmc.workbook.workbook import Workbook
+
+__all__ = ["Refusals", "refusals"]
+
+
+@dataclass(frozen=True, slots=True)
+class Refusals:
+    """What needs a cell that cannot be read, each with the error to tell; and the refused cells that nothing needs."""
+
+    forecasts: Mapping[str, DefinitionError]
+    filters: Mapping[str, DefinitionError]
+    idle: tuple[Cell, ...]
+
+
+def refusals(
+    workbook: Workbook,
+    refused: Mapping[Cell, FormulaError],
+    rewritten: Mapping[Cell, ir.Expression | FormulaError],
+    assumptions: Sequence[Assumption],
+    forecasts: Sequence[Forecast],
+    filters: Sequence[Filter],
+) -> Refusals:
+    """Which forecasts and filters need a refused cell.
+
+    Args:
+        workbook: that holds them.
+        refused: the cells, each with why.
+        rewritten: as in `Definitions`, the refused cells among them.
+        assumptions: of the workbook; one whose parameters need a refused cell passes that on.
+        forecasts, filters: of the workbook.
+    """
+    if not refused:
+        return Refusals({}, {}, ())
+    parameters = {a.cell: a.cells for a in assumptions if not a.frozen}
+    asked = {each.name: (each.cell,) for each in forecasts}
+    kept = {each.name: (each.cell, *_limits(each)) for each in filters}
+    targets = [cell for cells in (*asked.values(), *kept.values(), *parameters.values()) for cell in cells]
+    resolver = Resolver(workbook, parameters, strict=False, rewritten=rewritten)
+    held = frozenset(a.cell for a in assumptions if a.frozen)
+    graph = build_graph(resolver, targets, frozenset(parameters), held, strict=False)
+    reached: set[Cell] = set()
+
+    def fault(what: str, name: str, cells: Iterable[Cell]) -> DefinitionError | None:
+        needed = [cell for cell in _upstream(graph, parameters, cells) if cell in refused]
+        reached.update(needed)
+        if not needed:
+            return None
+        error = refused[needed[0]]
+        return DefinitionError(f"the {what} {name!r} needs {error.where}. {error.message}", hint=error.hint)
+
+    return Refusals(
+        {name: error for name, cells in asked.items() if (error := fault("forecast", name, cells))},
+        {name: error for name, cells in kept.items() if (error := fault("filter", name, cells))},
+        tuple(cell for cell in refused if cell not in reached),
+    )
+
+
+def _limits(filter_: Filter) -> Iterator[Cell]:
+    for limit in (filter_.at_least, filter_.at_most, filter_.above, filter_.below):
+        if isinstance(limit, Cell):
+            yield limit
+
+
+def _upstream(graph: Graph, parameters: Mapping[Cell, Sequence[Cell]], cells: Iterable[Cell]) -> Iterator[Cell]:
+    """The cells and all that they depend on, what the parameters of assumptions depend on among them."""
+    seen: set[Cell] = set()
+    open_ = list(cells)
+    while open_:
+        cell = open_.pop()
+        if cell not in seen:
+            seen.add(cell)
+            yield cell
+            open_ += parameters.get(cell, ())
+            open_ += graph.needs.get(cell, ())

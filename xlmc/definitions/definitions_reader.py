@@ -151,11 +151,12 @@ def _without_refused(
     findings.problems += found.filters.values()
     for cell in found.idle:
         findings.notice(f"no forecast or filter needs this cell: {dialogs.refused[cell].message}", cell)
-    damages = (DefinitionError(damage, where=workbook.name, hint=SAVE_AGAIN) for damage in dialogs.damages)
+    damages = [DefinitionError(damage, where=workbook.name, hint=SAVE_AGAIN) for damage in dialogs.damages]
+    refused = (*damages, *found.forecasts.values())
     left = tuple(each for each in forecasts if each.name not in found.forecasts)
-    if forecasts and not left:
-        findings.problems += found.forecasts.values()
-    return left, (*damages, *found.forecasts.values())
+    if refused and not left:
+        findings.problems += refused
+    return left, refused
 
 
 def _refuse_no_assumption(

@@ -55,9 +55,7 @@ def hidden_scripts(parts: Mapping[str, bytes], structure: Structure) -> Iterator
     """
     for entry in structure.worksheets:
         try:
-            targets = [
-                rel.target for rel in relationships(parts, entry.part).values() if rel.kind == "vmlDrawing"
-            ]
+            targets = [rel.target for rel in relationships(parts, entry.part).values() if rel.kind == "vmlDrawing"]
             for target in targets:
                 if target not in parts:
                     yield DamagedDrawing(entry.name, f"the drawing {target} is missing from the file")

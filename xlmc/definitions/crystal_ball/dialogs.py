@@ -93,7 +93,8 @@ def read_dialogs(
         workbook: that may hold Crystal Ball's data.
         computed: which cells something gives a value.
         central: the share of the central range.
-        assumptions, forecasts: take names and cells; the rows of tables have taken theirs.
+        assumptions: take names and cells; the rows of tables have taken theirs.
+        forecasts: likewise.
         findings: takes mistakes and remarks.
     """
     blocks = read_blocks(workbook)
@@ -130,9 +131,9 @@ class _Dialogs:
         for sheet, forecast, cell in self._placed(stored, StoredForecast):
             self._forecast(sheet, forecast, cell)
         known = {(sheet, each.guid): each for sheet, each in stored if isinstance(each, StoredAssumption)}
-        for sheet, each in stored:
-            if isinstance(each, StoredCorrelation):
-                self._findings.attempt(self._correlation, sheet, each, known)
+        for sheet, one in stored:
+            if isinstance(one, StoredCorrelation):
+                self._findings.attempt(self._correlation, sheet, one, known)
         self._refuse_missing(stored)
         self._remark_on_decisions(stored)
         self._remark_on_others(each for _, each in stored)
@@ -332,7 +333,9 @@ class _Dialogs:
             raise DefinitionError(message, where=where, hint="Correct it")
         pair = {name_key(first), name_key(second)}
         if len(pair) == 1:
-            raise DefinitionError(f"{first!r} is correlated with itself", where=where, hint="Correct it in Crystal Ball")
+            raise DefinitionError(
+                f"{first!r} is correlated with itself", where=where, hint="Correct it in Crystal Ball"
+            )
         if any({name_key(each.first), name_key(each.second)} == pair for each in self._found.correlations):
             message = f"Crystal Ball correlates {first!r} and {second!r} twice"
             raise DefinitionError(message, where=where, hint="Keep one of the two correlations")
@@ -340,7 +343,7 @@ class _Dialogs:
             self._found.correlations.append(Correlation(first, second, value, where))
 
     def _end(self, sheet: str, end: tuple[str, str], known: Mapping[_Key, StoredAssumption]) -> _Key | None:
-        """The assumption that is meant, among those read; on the correlation's own sheet first, as copies have copies."""
+        """The assumption that is meant, if it was read; copies of a sheet have assumptions of the same GUIDs."""
         of_sheet, guid = end
         sheets = self._names.sheets_of(of_sheet)
         keys = [(name, guid) for name in ([sheet] if sheet in sheets else sheets) if (name, guid) in known]
@@ -359,7 +362,9 @@ class _Dialogs:
                 message = f"The correlation of {first!r} and {second!r} cannot be read: {error}"
                 raise DefinitionError(message, where=own or sheet, hint=_CURE_OF_CORRELATION) from None
             if not isinstance(tree, Cell):
-                message = f"The correlation of {first!r} and {second!r} comes from {formula_text(tree)}, not from a cell"
+                message = (
+                    f"The correlation of {first!r} and {second!r} comes from {formula_text(tree)}, not from a cell"
+                )
                 raise DefinitionError(message, where=own or sheet, hint=_CURE_OF_CORRELATION)
             content = self._workbook.content(tree)
             return number_in(f"The correlation of {first!r} and {second!r}", content, tree), tree
@@ -398,9 +403,10 @@ class _Dialogs:
     def _remark_on_decisions(self, stored: list[tuple[str, Stored]]) -> None:
         found = self._placed(stored, StoredDecision)
         if found:
-            named = ", ".join(f"{self._shown(sheet, each.name, each.references, at)!r} ({at})" for sheet, each, at in found)
-            many = "variables keep the values of their cells" if len(found) > 1 else "variable keeps the value of its cell"
-            self._findings.notice(f"Crystal Ball's decision {many}: {named}", found[0][2])
+            shown = [(self._shown(sheet, each.name, each.references, cell), cell) for sheet, each, cell in found]
+            named = ", ".join(f"{name!r} ({cell})" for name, cell in shown)
+            message = f"decision variables of Crystal Ball keep the values of their cells: {named}"
+            self._findings.notice(message, found[0][2])
 
     def _remark_on_others(self, stored: Iterator[Stored]) -> None:
         kinds = dict.fromkeys(each.kind for each in stored if isinstance(each, StoredOther) and each.kind not in _PLAIN)
@@ -410,9 +416,9 @@ class _Dialogs:
 
 
 _RUN_PREFERENCES: Final = (
-    "Crystal Ball keeps no run preferences in a workbook: trials, seed and sampling method are those of the command, of "
-    "the table xlmc_settings, or xlmc's own (200,000 trials, seed 999, mc). Crystal Ball's habit is --sampling lhs500 "
-    "with the seed of its run preferences, 999 unless it was changed"
+    "Crystal Ball keeps no run preferences in a workbook: trials, seed and sampling method are those of the command, "
+    "of the table xlmc_settings, or xlmc's own (200,000 trials, seed 999, mc). Crystal Ball's habit is --sampling "
+    "lhs500, with the seed of its run preferences"
 )
 _WORDS: Final = {StoredAssumption: "assumption", StoredForecast: "forecast", StoredDecision: "decision variable"}
 _PLAIN: Final = ("SheetPreferences",)

@@ -91,9 +91,7 @@ _DOCUMENTED: Final = {
     "DYesNo": _Words("Yes-No", {"Prob": "probability"}),
     "DGeometric": _Words("Geometric", {"Prob": "probability"}),
     "DNegBinomial": _Words("Negative Binomial", {"Prob": "probability", "Shape": "shape"}),
-    "DHypergeometric": _Words(
-        "Hypergeometric", {"Success": "success", "Trials": "trials", "Population": "population"}
-    ),
+    "DHypergeometric": _Words("Hypergeometric", {"Success": "success", "Trials": "trials", "Population": "population"}),
 }
 
 _ALSO: Final = {

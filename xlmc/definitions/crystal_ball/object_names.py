@@ -26,6 +26,7 @@ _OF_REFERENCE: Final = re.compile(r"CBCR_[0-9a-f]{32}", re.IGNORECASE)
 _OF_SHEET: Final = "CBx_Sheet_Guid"
 _NO_CELL: Final = ("#REF!", "#N/A")
 
+
 class ObjectNames:
     """Looks the names of a workbook up."""
 

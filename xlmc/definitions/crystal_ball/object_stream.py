@@ -45,7 +45,8 @@ class _Reference(NamedTuple):
     number: int
 
 
-class _Empty(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class _Empty:
     """So many empty elements of an array."""
 
     count: int

@@ -41,7 +41,8 @@ def refusals(
         refused: the cells, each with why.
         rewritten: as in `Definitions`, the refused cells among them.
         assumptions: of the workbook; one whose parameters need a refused cell passes that on.
-        forecasts, filters: of the workbook.
+        forecasts: of the workbook.
+        filters: of the workbook.
     """
     if not refused:
         return Refusals({}, {}, ())

@@ -1,0 +1,195 @@
+"""What Crystal Ball's dialogs define, read from books that are laid out as genuine ones."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+from crystal_ball_book import Asked, Decided, Drawn, Tied, object_guid, read_parts, save, write_parts
+
+from xlmc.api import load
+from xlmc.definitions.definitions_reader import read_definitions
+from xlmc.evaluation.engines import ENGINES
+from xlmc.workbook.reader import read_workbook
+
+S = "Sheet1"
+SKID = Drawn(S, "$B$2", "Skid", "Normal", {"Mean": 100.0, "StdDev": 15.0})
+OFFSET = Drawn(S, "$B$3", "Offset", "LogNormal", {"Mean": 50.0, "StdDev": 10.0, "Location": 0.0})
+TOTAL = Asked(S, "$B$5", "Total", "ft")
+CELLS = {S: {"A2": "Skid", "B2": 100, "A3": "Offset", "B3": 50, "B5": "=2*B2-B3+30", "B6": "=2*B3"}}
+
+
+@pytest.fixture
+def read(tmp_path):
+    """The definitions of a book of these objects, in one block; the keywords are those of `save`."""
+
+    def definitions(*items, cells=CELLS, blocks=None, **more):
+        path = tmp_path / "book.xlsx"
+        save(path, cells, blocks or [list(items)], **more)
+        return read_definitions(read_workbook(path), ENGINES)
+
+    return definitions
+
+
+def test_assumptions_and_forecasts_are_read_with_their_cells_and_names(read):
+    found = read(TOTAL, OFFSET, SKID)
+    assert [(a.name, str(a.cell), a.distribution, a.parameters, a.base) for a in found.assumptions] == [
+        ("Skid", "Sheet1!B2", "Normal", {"mean": 100.0, "std_dev": 15.0}, 100.0),
+        ("Offset", "Sheet1!B3", "Lognormal", {"mean": 50.0, "std_dev": 10.0, "location": 0.0}, 50.0),
+    ]
+    assert [(f.name, str(f.cell), f.units) for f in found.forecasts] == [("Total", "Sheet1!B5", "ft")]
+    assert not found.problems
+    assert not found.refused
+    assert any("no run preferences" in notice.message for notice in found.notices)
+
+
+FAMILIES = [
+    ("Normal", {"Mean": 1.0, "StdDev": 2.0}, "Normal", True),
+    ("Beta", {"Min": 0.1, "Max": 0.9, "Alpha": 2.0, "Beta": 5.0}, "Beta", True),
+    ("DPoisson", {"Rate": 12.0}, "Poisson", True),
+    ("LogNormal", {"Mean": 5.0, "StdDev": 2.0, "Location": 0.0}, "Lognormal", True),
+    ("Uniform", {"Min": 0.5, "Max": 1.5}, "Uniform", False),
+    ("Triangular", {"Min": 0.0, "Likeliest": 1.0, "Max": 3.0}, "Triangular", False),
+    ("BetaPERT", {"Minimum": 0.0, "Likeliest": 1.0, "Maximum": 3.0}, "BetaPERT", False),
+    ("Gamma", {"Location": 0.0, "Scale": 1.0, "Shape": 3.0}, "Gamma", False),
+    ("DYesNo", {"Prob": 0.5}, "Yes-No", False),
+    ("DBinomial", {"Probability": 0.5, "Trials": 6.0}, "Binomial", False),
+]
+
+
+def test_families_go_by_their_text_and_those_not_met_in_genuine_books_are_pointed_out(read):
+    cells = {S: {f"B{row}": 1 for row in range(1, len(FAMILIES) + 1)} | {"D1": "=SUM(B1:B20)"}}
+    items = [Drawn(S, f"$B${row}", f"x{row}", f[0], f[1]) for row, f in enumerate(FAMILIES, 1)]
+    found = read(*items, Asked(S, "$D$1", "Sum"), cells=cells)
+    assert [a.distribution for a in found.assumptions] == [family for _, _, family, _ in FAMILIES]
+    told = {str(notice.where) for notice in found.notices if "not yet met" in notice.message}
+    assert told == {str(a.cell) for a, f in zip(found.assumptions, FAMILIES, strict=True) if not f[3]}
+
+
+UNREADABLE = {
+    "unknown family": (replace(SKID, family="Unheard", code=77), "is not known"),
+    "unknown parameter": (replace(SKID, parameters={"Mean": 1.0, "Sigma": 2.0}), "needs Mean, StdDev"),
+    "code of another family": (replace(SKID, code=4), "the code 4 LogNormal"),
+    "another slot": (replace(SKID, slots={3: 100.0, 4: 16.0}), "disagree on StdDev"),
+    "more slots": (replace(SKID, slots={3: 100.0, 4: 15.0, 5: 1.0}), "that the text lacks"),
+    "a cutoff in the slots alone": (replace(SKID, slots={1: 0.0, 3: 100.0, 4: 15.0}), "disagree on LoCut"),
+    "custom data": (replace(SKID, custom=True), "custom data"),
+    "no distribution": (replace(SKID, parameters={"Mean": 1.0, "StdDev": -2.0}), "Std dev"),
+    "a family that was not met, with a known code": (
+        replace(SKID, family="Uniform", parameters={"Min": 0.0, "Max": 1.0}, code=3),
+        "the code 3 Normal",
+    ),
+    "a parameter that nobody knows": (replace(SKID, references={7: "$A$2"}), "it cannot be said which"),
+    "a lost reference": (replace(SKID, references={2: "#REF!"}), "has lost its cell"),
+}
+
+
+@pytest.mark.parametrize(("skid", "why"), UNREADABLE.values(), ids=UNREADABLE)
+def test_what_cannot_be_read_is_no_constant_but_costs_the_forecasts_that_need_it(read, skid, why):
+    found = read(skid, OFFSET, TOTAL, Asked(S, "$B$6", "Other"))
+    assert [f.name for f in found.forecasts] == ["Other"]
+    (refused,) = found.refused
+    assert "'Total' needs Sheet1!B2" in refused.message
+    assert why in refused.message
+    assert not found.problems
+
+
+def test_nothing_is_run_where_all_forecasts_need_what_cannot_be_read(read):
+    problems = [str(problem) for problem in read(replace(SKID, family="Unheard"), TOTAL).problems]
+    assert any("'Total' needs Sheet1!B2" in problem for problem in problems)
+
+
+def test_cutoffs_and_parameters_may_come_from_cells(read):
+    speed = Drawn(S, "$B$3", "=B9", "Normal", {"Mean": 20.0, "StdDev": 2.0}, {"LoCut": -1.0, "HiCut": 30.0})
+    speed = replace(speed, references={2: "$B$2", 3: "$D$1*2"}, named_by='$A$3&" of "&$A$2')
+    cells = {S: {**CELLS[S], "D1": 1}}
+    found = read(SKID, replace(speed, references={2: "$B$2", 3: 'Sheet1!$D$1*2&""'}), TOTAL, cells=cells)
+    assert found.assumptions[1].name == "Offset of Skid"
+    found = read(SKID, speed, TOTAL, cells=cells)
+    drawn = found.assumptions[1]
+    assert str(drawn.parameters["mean"]) == "Sheet1!B2"
+    assert (drawn.lower_cutoff, drawn.upper_cutoff) == (-1.0, 30.0)
+
+
+def test_a_parameter_of_another_family_comes_from_the_cell_that_holds_its_number(read):
+    share = Drawn(
+        S, "$B$2", "Share", "Beta", {"Min": 0.0, "Max": 9.0, "Alpha": 2.0, "Beta": 5.0}, references={5: "$D$1"}
+    )
+    found = read(share, TOTAL, cells={S: {**CELLS[S], "B2": 1, "D1": 9}})
+    assert str(found.assumptions[0].parameters["high"]) == "Sheet1!D1"
+
+
+def test_correlations_take_their_coefficient_from_the_cell(read):
+    tied = Tied(S, "$D$1", SKID, OFFSET, 0.6)
+    (found,) = read(SKID, OFFSET, tied, TOTAL, cells={S: {**CELLS[S], "D1": -0.3}}).correlations
+    assert (found.first, found.second, found.value, str(found.row)) == ("Skid", "Offset", -0.3, "Sheet1!D1")
+    (typed,) = read(SKID, OFFSET, replace(tied, cell=""), TOTAL).correlations
+    assert typed.value == 0.6
+    assert not read(SKID, tied, TOTAL).correlations
+
+
+def test_cells_move_with_their_names_and_what_was_deleted_with_its_cell_is_left_out(read):
+    moved = {f"CB_{object_guid(SKID).hex}": f"{S}!$B$9", f"CB_{object_guid(OFFSET).hex}": "#REF!"}
+    found = read(SKID, OFFSET, TOTAL, cells={S: {**CELLS[S], "B9": 1, "B5": "=B9"}}, names=moved)
+    assert [str(a.cell) for a in found.assumptions] == ["Sheet1!B9"]
+    assert any("'Offset' was deleted with its cell" in notice.message for notice in found.notices)
+
+
+def test_a_cell_whose_object_is_missing_is_no_constant(read, tmp_path):
+    """The block with the assumption is damaged; its defined name still says that the cell held something."""
+    cells = {S: {**CELLS[S], "D1": "=B2"}}
+    blocks = [[SKID, TOTAL, Asked(S, "$D$1", "Skid alone")], [OFFSET]]
+    found = read(cells=cells, blocks=blocks, spoil=lambda shape, text: text[:-9] if shape.endswith("_2") else text)
+    assert [f.name for f in found.forecasts] == ["Skid alone"]
+    damage, total = found.refused
+    assert "the block CB_Block_7.0.0.0:2 of the sheet 'Sheet1' is damaged" in damage.message
+    assert "'Total' needs Sheet1!B3" in total.message
+
+
+def test_one_cell_has_one_assumption(read):
+    twice = Drawn(S, "$B$4", "Other", "Normal", {"Mean": 1.0, "StdDev": 1.0})
+    names = {f"CB_{object_guid(twice).hex}": f"{S}!$B$2"}
+    (problem,) = read(SKID, twice, TOTAL, names=names).problems
+    assert "two assumptions on Sheet1!B2" in problem.message
+
+
+def test_two_objects_of_one_name_are_told_apart_by_their_cells(read):
+    found = read(SKID, replace(OFFSET, name="skid"), TOTAL)
+    assert [a.name for a in found.assumptions] == ["Skid", "skid (Sheet1!B3)"]
+
+
+def test_the_range_of_a_certainty_is_a_threshold(read):
+    low = {"fCertaintyChartPrefs": {"fCertaintyRangeMin": 120.0}}
+    both = {"fCertaintyChartPrefs": {"fCertaintyRangeMin": 120.0, "fCertaintyRangeMax": 150.0}}
+    assert read(SKID, replace(TOTAL, prefs=low)).forecasts[0].threshold == 120.0
+    found = read(SKID, replace(TOTAL, prefs=both))
+    assert found.forecasts[0].threshold == 120.0
+    assert any("150 is left out" in notice.message for notice in found.notices)
+
+
+def test_decision_variables_keep_their_values_and_are_named_once(read):
+    found = read(SKID, TOTAL, Decided(S, "$B$3", "Share"))
+    (said,) = [notice for notice in found.notices if "decision" in notice.message]
+    assert "'Share' (Sheet1!B3)" in said.message
+
+
+def test_the_answers_are_those_of_the_distributions(tmp_path):
+    """Means and standard deviations within 4 standard errors of the exact ones, at 20,000 trials."""
+    model = "Other's data"
+    share = Drawn(model, "$A$1", "Share", "Beta", {"Min": 0.1, "Max": 0.9, "Alpha": 2.0, "Beta": 5.0})
+    cells = {**CELLS, model: {"A1": 0.3, "A2": "=10*A1+Sheet1!B2"}}
+    sum_ = Asked(model, "$A$2", "Sum")
+    path = tmp_path / "book.xlsx"
+    blocks = [[SKID, OFFSET, TOTAL, Tied(S, "", SKID, OFFSET, 0.5)], [share], [sum_]]
+    save(path, cells, blocks, comments=[(S, "B2", "a comment")])
+    parts = read_parts(path)
+    drawing = next(name for name in parts if name.startswith("xl/drawings/comments"))
+    parts[drawing] = parts[drawing].replace(b"<xml>", b"<xml><div>Excel leaves it open<br></div>")
+    write_parts(path, parts)
+    found = load(path).simulate(20_000)
+    spread = 0.8 * math.sqrt(2 * 5 / 8) / 7
+    mean, sd = 100 + 10 * (0.1 + 0.8 * 2 / 7), math.hypot(15, 10 * spread)
+    assert abs(found["Sum"].mean.value - mean) < 4 * found["Sum"].mean.error
+    assert abs(found["Sum"].standard_deviation.value - sd) < 4 * found["Sum"].standard_deviation.error
+    assert abs(found["Total"].mean.value - 180) < 4 * found["Total"].mean.error

@@ -13,8 +13,8 @@ from typing import Final, TypeVar
 
 from xlmc.address import Cell, InFormula
 from xlmc.definitions.computed import Computed
-from xlmc.definitions.crystal_ball.blocks import Blocks, read_blocks
 from xlmc.definitions.crystal_ball.distribution_text import Distribution, UnreadableError, distribution_of
+from xlmc.definitions.crystal_ball.hidden_blocks import Blocks, read_blocks
 from xlmc.definitions.crystal_ball.object_names import ObjectNames
 from xlmc.definitions.crystal_ball.stored_objects import (
     NAME,

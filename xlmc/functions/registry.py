@@ -58,6 +58,7 @@ __all__ = [
     "excel",
     "function_named",
     "row_of",
+    "side_by_side",
 ]
 
 
@@ -271,7 +272,7 @@ class Function:
 
     def _of_sets(self, arguments: Sequence[Value]) -> Value:
         kind = self.parameters[0].kind
-        x, counts, errors = _flatten(arguments, kind)
+        x, counts, errors = side_by_side(arguments, kind)
         return _as_value(self.body(x, counts), self.returns, errors if errors.any() else None)
 
 
@@ -302,7 +303,7 @@ def _put_errors_over(value: Value, errors: Codes) -> Value:
     return with_errors(value, errors[:, None, None] if value.numbers.ndim > errors.ndim else errors)
 
 
-def _flatten(arguments: Sequence[Value], kind: Kind) -> tuple[NDArray[Any], Bools, Codes]:
+def side_by_side(arguments: Sequence[Value], kind: Kind) -> tuple[NDArray[Any], Bools, Codes]:
     """Put all arguments side by side, `(n, k)`: the values, which of them count, and the first error of each trial.
 
     A value given directly is converted; a cell of a range (n, r, c) counts only if it is of the kind itself.

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -263,3 +265,24 @@ def test_an_error_counts_before_an_overflow_of_the_cells_before_it(run):
 def test_a_long_sum_in_a_branch(run):
     cells = {f"B{row}": f"=A1+{row}" for row in range(1, 101)} | {"C1": "=IF(A1>0,SUM(B1:B100)/A1,1/A1)"}
     assert run(cells, {"A1": [1.0, -1.0]}, ["C1"]).forecasts == [[5150.0, -1.0]]
+
+
+@pytest.mark.parametrize("name", ["SUM", "PRODUCT", "AVERAGE"])
+@pytest.mark.parametrize("range_", ["B$1:B{r}", "B{r}:B$99", "OFFSET(B$1,0,0,{r},1)"])
+def test_an_error_counts_before_an_overflow_of_a_shorter_range(run, name, range_):
+    """The numbers overflow at both ends, and in two trials there is an error in between."""
+    cells = {f"B{row}": "=1.7E308-A1" for row in (1, 2, 3, 97, 98, 99)} | {f"B{row}": "=1+A1" for row in range(4, 97)}
+    cells |= {"B40": "=1/(A1-2)", "B60": "=IF(A1<1,NA(),1)", "B1": "=1.7E308", "B2": "=1.6E308", "B20": "x"}
+    cells |= {f"D{r}": f"={name}({range_.format(r=r)})" for r in range(1, 100)}
+    draws = {"A1": [3.0, 2.0, 0.5]}
+    wanted = [f"D{row}" for row in (2, 18, 30, 50, 70, 98)]
+    together = run(cells, draws, wanted).forecasts
+    assert together == [alone(run, cells, draws, cell) for cell in wanted]
+    assert ["#NUM!", "#DIV/0!", "#N/A"] in together
+
+
+def test_programs_with_running_totals_can_be_sent_to_another_process(run):
+    program = run(totals(20), {"A1": [1.0]}, ["C18", "C20"]).program
+    again = pickle.loads(pickle.dumps(program)).evaluator(1)
+    again.filters({"A1": np.array([1.7e307])}, 1)
+    assert [column.codes.tolist() for column in again.forecasts(np.arange(1))] == [[6], [6]]

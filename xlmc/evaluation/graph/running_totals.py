@@ -25,7 +25,7 @@ from xlmc.evaluation.graph.nodes import Apply, Constant, Range
 from xlmc.formula import ir
 from xlmc.functions import Function, Kind
 from xlmc.functions.families import REGISTRY
-from xlmc.functions.math.aggregate import SO_FAR
+from xlmc.functions.math.aggregate import RUNNING, SO_FAR
 from xlmc.functions.values import ERROR, NUMBER, constant
 
 __all__ = ["FOLDS", "RunningTotals"]
@@ -59,7 +59,7 @@ class RunningTotals:
 
     def __init__(self, dag: Dag, trees: Iterable[ir.Expression], cell: Callable[[Cell], int]) -> None:
         self._dag, self._cell = dag, cell
-        self._known: dict[tuple[Function, tuple[int, ...]], int] = {}
+        self._known: dict[tuple[int, ...], int] = {}
         self._states: dict[tuple[str, bool, Area], int] = {}
         self._folds: Counter[tuple[Function, int]] = Counter()
         self._made: dict[tuple[str, Area], int] = {}
@@ -120,14 +120,15 @@ class RunningTotals:
             return before
         if name == "SUM" or self._dag.types[before] is Kind.NUMBER:
             range_ = self._row(cells)
-            return self._dag.add(Apply(REGISTRY[name], (range_, before) if upwards else (before, range_)))
+            function = RUNNING.get(name, REGISTRY[name])
+            return self._dag.add(Apply(function, (range_, before) if upwards else (before, range_)))
         both = [*cells, before] if upwards else [before, *cells]
         return self._apply_to_row(self._function(name, both), both)
 
     def _function(self, name: str, cells: Sequence[int]) -> Function:
         """The function that folds cells: the one of that name where a cell is surely a number, else its `SO_FAR`."""
         surely = name == "SUM" or any(self._dag.types[cell] is Kind.NUMBER for cell in cells)
-        return REGISTRY[name] if surely else SO_FAR[name]
+        return RUNNING.get(name, REGISTRY[name]) if surely else SO_FAR[name]
 
     def _apply_to_row(self, function: Function, cells: Sequence[int]) -> int:
         return self._dag.add(Apply(function, (self._row(cells),)))
@@ -153,13 +154,14 @@ class RunningTotals:
         """The node of a function whose arguments are one set."""
         node = Apply(function, arguments)
         cells = self._column(function, arguments)
-        before = None if cells is None else self._known.get((function, cells[:-1]))
-        if cells is not None and before is not None:
-            node = Apply(function, (before, self._row(cells[-1:])))
+        before = None if cells is None else self._known.get(cells[:-1])
+        if cells is not None:
+            last = arguments if before is None else (before, self._row(cells[-1:]))
+            node = Apply(RUNNING[function.name], last)
         folded = self._fold(function, arguments) if before is None else None
         node_id = self._dag.add(node)
         if cells is not None:
-            self._known[function, cells] = node_id
+            self._known[cells] = node_id
         if folded is not None and folded < node_id:  # else the node was there before
             self._dag.folded[node_id] = folded
         return node_id

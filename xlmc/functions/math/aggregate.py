@@ -7,9 +7,9 @@ blank in it does not count; given directly it does.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -18,11 +18,11 @@ from xlmc.functions.arguments import errors_unless_range, first_error, first_err
 from xlmc.functions.denormals import TINIEST
 from xlmc.functions.facts import EmptyCells, Facts, Repeats
 from xlmc.functions.lookup.picked_cells import Indices, flatten_cells
-from xlmc.functions.registry import REGISTRY, Arrays, Cells, Function, Kind, Number, Numbers, excel
+from xlmc.functions.registry import REGISTRY, Arrays, Cells, Function, Kind, Number, Numbers, excel, side_by_side
 from xlmc.functions.samples import row_sums, sample_of
 from xlmc.functions.values import BLANK, DIV0, ERROR, NUM, NUMBER, TEXT, Bools, Floats, Value, constant
 
-__all__ = ["SO_FAR"]
+__all__ = ["RUNNING", "SO_FAR"]
 
 
 @excel(
@@ -253,12 +253,65 @@ def small(values: Value, rank: Value) -> Value:
     return _ranked(values, rank, lambda ranks, k: np.floor(ranks) - 1)
 
 
+class _Overflowed(Value):
+    """A sum or product of numbers of which some overflowed: #NUM! to all who read it, but not yet in a longer range."""
+
+    __slots__ = ("overflows",)
+
+    overflows: Bools
+
+    def __init__(self, value: Value, overflows: Bools) -> None:
+        super().__init__(value.numbers, value.kinds)
+        object.__setattr__(self, "overflows", overflows)
+
+    def take(self, index: Indices) -> Value:
+        """The trials of `index`."""
+        taken = super().take(index)
+        return self if taken is self else _Overflowed(taken, self.overflows[index])
+
+    def opened(self) -> Value:
+        """The value with infinite numbers for the overflows."""
+        return Value(
+            np.where(self.overflows, np.inf, self.numbers), np.where(self.overflows, np.uint8(NUMBER), self.kinds)
+        )
+
+
+class _Running(Function):
+    """A sum or product whose first or last argument may be that of a shorter range, of cells before or behind.
+
+    In Excel an error in any cell counts before an overflow. So an overflow on the way must not hide a later error.
+    """
+
+    __slots__ = ()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _running, (self.name,)
+
+    def _of_sets(self, arguments: Sequence[Value]) -> Value:
+        opened = [part.opened() if isinstance(part, _Overflowed) else part for part in arguments]
+        x, counts, errors = side_by_side(opened, Kind.NUMBER)
+        total = self.body(x, counts)
+        found = Value.of_numbers(total, errors)
+        overflows = ~np.isfinite(total) & (errors == 0)
+        return _Overflowed(found, overflows) if overflows.any() else found
+
+
+def _running(name: str) -> Function:
+    return RUNNING[name]
+
+
 def _so_far(cells: Value, of: str) -> Value:
     """What the function gives of a range, (n, r, c) -> (n,); blank where no cell is a number."""
     result = REGISTRY[of]((cells,))
     none = ~(cells.kinds == NUMBER).any(axis=(1, 2)) & (result.kinds < ERROR)
     return Value(np.where(none, 0.0, result.numbers), np.where(none, np.uint8(BLANK), result.kinds))
 
+
+RUNNING: Final[Mapping[str, Function]] = {
+    name: _Running(name, row.parameters, row.body, row.returns, row.ufunc, facts=row.facts)
+    for name, row in ((name, REGISTRY[name]) for name in ("SUM", "PRODUCT"))
+}
+"""Sums and products that go on, by the name of Excel's function."""
 
 SO_FAR: Final[Mapping[str, Function]] = {
     name: Function(

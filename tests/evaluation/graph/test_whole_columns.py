@@ -6,6 +6,7 @@ import pytest
 
 from xlmc.address import Area
 from xlmc.errors import FormulaError
+from xlmc.evaluation.tracking import TrackingEvaluator
 from xlmc.workbook.workbook import CellContent, Formula
 
 ROWS, COLUMNS = 1048576.0, 16384.0
@@ -244,3 +245,11 @@ def test_a_range_that_moves_with_its_formula_ends_with_the_last_filled_cell(run)
     cells = {"A1": 0.0, "C1": 1.0, "C5": 2.0, "C6": 4.0} | {f"B{r}": f"=SUM(C{r + 2}:C1048576)" for r in (3, 2, 1, 4)}
     got = run(cells, {"A1": [1.0]}, ["B4", "B3", "B2", "B1"])
     assert [column[0] for column in got.forecasts] == [4.0, 6.0, 6.0, 6.0]
+
+
+def test_a_position_that_is_an_error_in_some_trials_is_no_row_0_of_a_whole_column(run, monkeypatch):
+    """Such a block was once taken trial by trial."""
+    monkeypatch.setattr(TrackingEvaluator, "_shrink", None)
+    cells = {f"N{row}": float(row) for row in range(1, 9)}
+    cells |= {f"B{row}": f"=ROUND(A$1*{row},0)" for row in range(1, 9)} | {"C1": "=INDEX(B:B,MATCH(A$1,N$1:N$8,1))"}
+    assert run(cells, {"A1": [0.5, 2.2, 9.0]}, ["C1"]).forecasts == [["#N/A", 4.0, 72.0]]

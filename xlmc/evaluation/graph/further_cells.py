@@ -17,8 +17,8 @@ from xlmc.address import Area
 from xlmc.errors import FormulaError
 from xlmc.functions import Function, Kind
 from xlmc.functions.budget import TooLargeError
-from xlmc.functions.registry import Number
-from xlmc.functions.values import Floats
+from xlmc.functions.registry import Anything, Number
+from xlmc.functions.values import Floats, Value
 
 __all__ = [
     "beyond",
@@ -127,7 +127,7 @@ def refusal(name: str) -> FormulaError:
 def keep_within(held: int, whole: int, zero_is_all: bool) -> Function:
     """A function that makes `held` of numbers of rows or columns above it, up to `whole`."""
     body = partial(_within, held=held, whole=whole, zero_is_all=zero_is_all)
-    return Function(f"within {held} of {whole}", (Number,), body, Kind.NUMBER)
+    return Function(f"within {held} of {whole}", (Anything,), body, Kind.NUMBER)
 
 
 @cache
@@ -140,7 +140,8 @@ def _of_whole(numbers: Floats, held: int, whole: int) -> Floats:
     return np.where(numbers > held, float(whole), numbers)
 
 
-def _within(numbers: Floats, held: int, whole: int, zero_is_all: bool) -> Floats:
-    if zero_is_all and (np.trunc(numbers) == 0).any():
+def _within(given: Value, held: int, whole: int, zero_is_all: bool) -> Value:
+    numbers, errors = given.to_numbers()
+    if zero_is_all and ((np.trunc(numbers) == 0) & (errors == 0)).any():
         raise TooLargeError(_MESSAGE.format("INDEX with row or column 0"), hint=_HINT)
-    return np.where(numbers < whole + 1, np.minimum(numbers, held), numbers)
+    return Value.of_numbers(np.where(numbers < whole + 1, np.minimum(numbers, held), numbers), errors)

@@ -75,6 +75,7 @@ LISTS = {
     ("formula/precedents.py", "LOOKED_AT"): "any other function reads its arguments",
     ("formula/stencil.py", "_leaves"): "formulas without LET and LAMBDA are filled down by their shape",
     ("functions/math/rounding.py", "ceiling_precise"): "aliases of one row",
+    ("functions/math/aggregate.py", "RUNNING"): "no other function that goes on in a longer range overflows",
     ("functions/math/aggregate.py", "SO_FAR"): "any other function is computed of each range by itself",
     ("replay/versions.py", "_BESIDE"): "what changed in an earlier version",
     ("replay/versions.py", "_CHOICES"): "what changed in an earlier version",

@@ -41,10 +41,14 @@ def script_of_docs(name):
 
 
 def test_every_distribution_is_documented():
-    page = script_of_docs("list_distributions").page()
+    script = script_of_docs("list_distributions")
+    page = script.page()
     assert (ROOT / "docs" / "distributions.md").read_text(encoding="utf-8") == page
+    assert script.EXAMPLES.keys() == FAMILIES.keys()
     for family in FAMILIES.values():
         assert f"\n## {family.name}\n" in page
+        drawn = (script.PICTURES / script.picture_name(family)).read_text(encoding="utf-8")
+        assert f"<title>{family.name}" in drawn
         if family.roles or family.data:
             assert family.formula, family.name
             assert family.source, family.name

@@ -138,6 +138,36 @@ def test_a_known_member(family, params, given_keys, p):
     np.testing.assert_allclose(family.ppf(np.array(p), *found), x, rtol=0, atol=1e-8 * spread)
 
 
+RISK_MEMBERS = [
+    ("Burr12", (1.0, 2.0, 3.0, 1.5)),
+    ("Cauchy", (3.0, 2.0)),
+    ("Dagum", (1.0, 2.0, 3.0, 2.0)),
+    ("Fatigue life", (1.0, 2.0, 0.5)),
+    ("Frechet", (1.0, 2.0, 3.0)),
+    ("Hyperbolic secant", (3.0, 2.0)),
+    ("Inverse Gaussian", (1.0, 3.0, 5.0)),
+    ("Kumaraswamy", (2.0, 6.0, 2.0, 3.0)),
+    ("Laplace", (3.0, 2.0)),
+    ("Levy", (1.0, 2.0)),
+    ("Log-logistic", (1.0, 2.0, 3.0)),
+    ("Pareto2", (1.0, 2.0, 3.0)),
+    ("Pearson5", (1.0, 2.0, 3.0)),
+    ("Pearson6", (1.0, 2.0, 3.0, 4.0)),
+]
+
+
+def test_known_members_of_risk_families():
+    for name, params in RISK_MEMBERS:
+        family = FAMILIES[name]
+        for given_keys in givens(family):
+            p = PERCENTILES[len(family.keys) - len(given_keys)][0]
+            x = family.ppf(np.array(p), *params)
+            known = {key: value for key, value in zip(family.keys, params, strict=True) if key in given_keys}
+            found = match_percentiles(family, known, list(zip(p, x.tolist(), strict=True)))
+            assert found is not None, (name, given_keys)
+            np.testing.assert_allclose(family.ppf(np.array(p), *found), x, rtol=0, atol=1e-8 * (x.max() - x.min() + 1))
+
+
 def test_percentiles_that_lead_to_one_member_only():
     """Families that are moved, stretched and bent: the very parameters come back."""
     for name, params in MEMBERS:

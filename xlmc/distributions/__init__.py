@@ -12,29 +12,50 @@ from typing import Final
 from xlmc.distributions.base import Family
 from xlmc.distributions.beta import Beta
 from xlmc.distributions.beta_pert import BetaPERT
+from xlmc.distributions.beta_subj import BetaSubj
 from xlmc.distributions.binomial import Binomial
+from xlmc.distributions.burr12 import Burr12
 from xlmc.distributions.by_percentiles import ByPercentiles
-from xlmc.distributions.cumul import Cumul
+from xlmc.distributions.cauchy import Cauchy
+from xlmc.distributions.cumul import Cumul, CumulD
 from xlmc.distributions.custom import Custom
+from xlmc.distributions.dagum import Dagum
 from xlmc.distributions.discrete import Discrete, DUniform
 from xlmc.distributions.discrete_uniform import DiscreteUniform
+from xlmc.distributions.double_triang import DoubleTriang
 from xlmc.distributions.empirical import Empirical
 from xlmc.distributions.empirical_smoothed import EmpiricalSmoothed
 from xlmc.distributions.exponential import Exponential
 from xlmc.distributions.extreme_value import MaximumExtreme, MinimumExtreme
+from xlmc.distributions.f_distribution import F
+from xlmc.distributions.fatigue_life import FatigueLife
+from xlmc.distributions.frechet import Frechet
 from xlmc.distributions.gamma import Gamma
 from xlmc.distributions.general import General
 from xlmc.distributions.geometric import Geomet, Geometric
 from xlmc.distributions.histogrm import Histogrm
+from xlmc.distributions.hyperbolic_secant import HyperbolicSecant
 from xlmc.distributions.hypergeometric import Hypergeometric
+from xlmc.distributions.inverse_gaussian import InverseGaussian
+from xlmc.distributions.johnson_moments import JohnsonMoments
+from xlmc.distributions.johnson_sb import JohnsonSB
+from xlmc.distributions.johnson_su import JohnsonSU
+from xlmc.distributions.kumaraswamy import Kumaraswamy
+from xlmc.distributions.laplace import Laplace
+from xlmc.distributions.levy import Levy
+from xlmc.distributions.log_logistic import LogLogistic
 from xlmc.distributions.logistic import Logistic
 from xlmc.distributions.lognormal import Lognorm2, Lognormal
 from xlmc.distributions.negative_binomial import NegativeBinomial, Negbin
 from xlmc.distributions.normal import Normal
 from xlmc.distributions.parameters import DataError, DataSpec, Fault, ParameterSpec
 from xlmc.distributions.pareto import Pareto
+from xlmc.distributions.pareto2 import Pareto2
+from xlmc.distributions.pearson5 import Pearson5
+from xlmc.distributions.pearson6 import Pearson6
 from xlmc.distributions.piecewise import Piecewise
 from xlmc.distributions.poisson import Poisson
+from xlmc.distributions.reciprocal import Reciprocal
 from xlmc.distributions.spelling import did_you_mean, plain
 from xlmc.distributions.students_t import StudentsT
 from xlmc.distributions.trapezoid import Trapezoid
@@ -77,7 +98,29 @@ _CONTINUOUS = (
     StudentsT(),
     Trigen(),
     Weibull(),
+    BetaSubj(),
+    Burr12(),
+    Cauchy(),
+    Dagum(),
+    DoubleTriang(),
+    F(),
+    FatigueLife(),
+    Frechet(),
+    HyperbolicSecant(),
+    InverseGaussian(),
+    JohnsonMoments(),
+    JohnsonSB(),
+    JohnsonSU(),
+    Kumaraswamy(),
+    Laplace(),
+    Levy(),
+    LogLogistic(),
+    Pareto2(),
+    Pearson5(),
+    Pearson6(),
+    Reciprocal(),
     Cumul(),
+    CumulD(),
     General(),
     Histogrm(),
 )

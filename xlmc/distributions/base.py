@@ -52,6 +52,8 @@ class Family(ABC):
         formula: its density, distribution or quantile function in the headings of its parameters, for people.
         source: where the formula is written down.
         elsewhere: what other programs call it, such as `@RISK Gamma(shape, scale)`.
+        given_by: what its member is searched by, such as `percentiles`, which takes too long for each trial: a workbook
+            may not let such parameters depend on an assumption. Empty where nothing is searched.
     """
 
     name: str
@@ -65,6 +67,7 @@ class Family(ABC):
     formula: str = ""
     source: str = ""
     elsewhere: tuple[str, ...] = ()
+    given_by: str = ""
 
     def __init_subclass__(cls) -> None:
         """Refuse a family whose upper tail nobody has written: cutoffs would meet it in the midst of a run.

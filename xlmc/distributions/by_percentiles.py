@@ -72,6 +72,8 @@ class ByPercentiles(Family):
     'P10 (2) is not below P90 (0.8)'
     """
 
+    given_by = "percentiles"
+
     def __init__(self, family: Family, given: tuple[str, ...], percents: tuple[float, ...]) -> None:
         self.family, self.percents = family, percents
         self.name, self.aliases = family.name, family.aliases
@@ -325,7 +327,7 @@ class _Chart:
     def parameters(self, coordinates: Array) -> tuple[float, ...]:
         """The parameters at these coordinates, `(missing,)`."""
         values, move = list(self.known), dict(zip(self.missing, coordinates.tolist(), strict=True))
-        if not self.ends and self.after:
+        if not self.ends and self.roles[0] == "ordered":
             values[0] = self.lowest - self._step(move[0])
         for i in reversed(range(self.ends[0] if self.ends else 0)):
             values[i] = values[i + 1] - self._step(move[i])

@@ -11,7 +11,7 @@ from xlmc.distributions.base import Array, Values
 from xlmc.distributions.parameters import DataError, DataSpec, show
 from xlmc.distributions.piecewise import Between, Piecewise, data_column
 
-__all__ = ["Cumul"]
+__all__ = ["Cumul", "CumulD"]
 
 
 class Cumul(Between):
@@ -60,3 +60,29 @@ class Cumul(Between):
     @cached_property
     def _mirror(self) -> Cumul:
         return Cumul(-self.values[::-1], 1 - self.heights[::-1])
+
+
+class CumulD(Cumul):
+    """Values, each with the probability that it is exceeded; in straight lines from low (1) to high (0).
+
+    >>> reserve = CumulD().built(np.array([[1.0, 0.75], [1.5, 0.25]]))
+    >>> print(reserve.ppf(np.array([0.0, 0.25, 0.5, 0.875]), low=0.5, high=2.5))
+    [0.5  1.   1.25 2.  ]
+    """
+
+    name = "CumulD"
+    aliases = ("Cumulative descending",)
+    data = DataSpec((2,), "values, probabilities to exceed them")
+    formula = "P(X > x) in straight lines from (Low, 1) through the points of Data to (High, 0)"
+    source = "@RISK's manual, CumulD"
+    elsewhere = ("@RISK CumulD(min, max, {x}, {p})",)
+
+    def _heights(self, data: Array) -> Array:
+        probabilities = data_column(data, 1, "probability")
+        for row in np.flatnonzero((probabilities < 0) | (probabilities > 1)):
+            message = f"The probability {show(probabilities[row])} is not from 0 to 1"
+            raise DataError(message, "Type a share of 1, such as 0.25", int(row), 1)
+        for row in np.flatnonzero(np.diff(probabilities) > 0):
+            message = f"The probability {show(probabilities[row + 1])} is above the one before it"
+            raise DataError(message, "Probabilities to exceed a value never rise with it", int(row) + 1, 1)
+        return 1 - probabilities

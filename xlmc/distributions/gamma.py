@@ -32,7 +32,12 @@ class Gamma(Family):
     )
     formula = "density (x − Location)^(Shape − 1) · exp(−(x − Location)/Scale) / (Scale^Shape · Γ(Shape)), x ≥ Location"
     source = "Johnson, Kotz and Balakrishnan, Continuous Univariate Distributions, vol. 1, ch. 17"
-    elsewhere = ("Crystal Ball Gamma (location, scale, shape)", "@RISK Gamma(shape, scale)")
+    elsewhere = (
+        "Crystal Ball Gamma (location, scale, shape)",
+        "@RISK Gamma(shape, scale)",
+        "@RISK Erlang(shape, scale)",
+        "@RISK ChiSq(ν): Shape ν/2, Scale 2",
+    )
 
     def _ppf(self, u: Array, location: Values, scale: Values, shape: Values) -> Array:
         from scipy.special import gammaincinv

@@ -27,7 +27,11 @@ class Normal(Family):
     parameters = (MEAN, STD_DEV)
     formula = "density ∝ exp(−((x − Mean)/Std dev)²/2)"
     source = "Johnson, Kotz and Balakrishnan, Continuous Univariate Distributions, vol. 1, ch. 13"
-    elsewhere = ("Crystal Ball Normal (mean, std dev)", "@RISK Normal(mean, std dev)")
+    elsewhere = (
+        "Crystal Ball Normal (mean, std dev)",
+        "@RISK Normal(mean, std dev)",
+        "@RISK Erf(h): Mean 0, Std dev 1/(√2·h)",
+    )
     roles = ("location", "scale")
     rules = (
         above_zero(

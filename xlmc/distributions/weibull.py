@@ -31,7 +31,11 @@ class Weibull(Family):
     rules = (above_zero(parameters, "scale"), above_zero(parameters, "shape"))
     formula = "P(X ≤ x) = 1 − exp(−((x − Location)/Scale)^Shape), x ≥ Location"
     source = "Johnson, Kotz and Balakrishnan, Continuous Univariate Distributions, vol. 1, ch. 21"
-    elsewhere = ("Crystal Ball Weibull (location, scale, shape)", "@RISK Weibull(shape, scale)")
+    elsewhere = (
+        "Crystal Ball Weibull (location, scale, shape)",
+        "@RISK Weibull(shape, scale)",
+        "@RISK Rayleigh(b): Shape 2, Scale √2·b",
+    )
 
     def _ppf(self, u: Array, location: Values, scale: Values, shape: Values) -> Array:
         np.negative(u, out=u)

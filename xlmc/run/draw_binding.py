@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from xlmc.address import Cell, InFormula
 from xlmc.definitions.definitions import CUTOFFS, Assumption, DataRange, Definitions, Parameter, name_key
 from xlmc.definitions.tables.data import data_family
-from xlmc.distributions import ByPercentiles, Family
+from xlmc.distributions import Family
 from xlmc.distributions.parameters import show
 from xlmc.errors import DefinitionError, Notice
 from xlmc.evaluation.engine import Evaluator, Target
@@ -48,8 +48,8 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     computed = {key: fold_cell(cell, lowering) for key, cell in assumption.formulas.items()}
     given = {**assumption.parameters, **assumption.cutoffs, **computed}
     draw = Draw.of(name_key(assumption.name), family, given)
-    if isinstance(family, ByPercentiles) and draw.varying:  # the member with these percentiles is looked for once
-        message = f"{assumption.name}: a distribution given by percentiles cannot depend on another assumption"
+    if family.given_by and draw.varying:  # the member is searched for once
+        message = f"{assumption.name}: a distribution given by {family.given_by} cannot depend on another assumption"
         raise DefinitionError(message, where=draw.varying[0], hint="give it by its parameters, or by numbers")
     if draw != assumption.checked and (fault := draw.fault()) is not None:
         raise DefinitionError(f"{assumption.name}: {fault.message}", where=assumption.row, hint=fault.hint)

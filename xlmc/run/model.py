@@ -203,6 +203,7 @@ class Model:
             *tie_notices(self.groups, rows, self._correlated),
             *repair_notices(self.groups, rows, self.needed.live),
             *_still_notices(self.needed, self._moving(), self.forecasts),
+            *_heavy_notices([a for a in self.live if name_key(a.name) not in self._ends], self.draws),
             *_example_notices(self._sources()),
         )
 
@@ -443,6 +444,21 @@ def _example_notices(sources: Iterable[tuple[str, Cell, str]]) -> list[Notice]:
     begins = "source still says" if len(found) == 1 else f"{len(found)} sources still say"
     message = f'{begins} "Example": {named}{more}. Write there what each number of this case rests on'
     return [Notice(message[0].upper() + message[1:], found[0][1])]
+
+
+def _heavy_notices(unbounded: Sequence[Assumption], draws: Mapping[str, Draw]) -> list[Notice]:
+    """The assumptions whose mean is infinite or does not exist, as far as their parameters are numbers."""
+    found = []
+    for assumption in unbounded:
+        draw = draws[assumption.name]
+        if draw.fixed and not np.isfinite(draw.family.mean(*draw.parameters)):
+            message = (
+                f"{assumption.name!r} ({assumption.distribution}) has no finite mean: means and standard deviations of "
+                "what depends on it need not settle, however many trials there are; report medians and percentiles, or "
+                "give it cutoffs at both ends"
+            )
+            found.append(Notice(message, assumption.row))
+    return found
 
 
 def _still_notices(needed: Needed, moving: Set[Cell], forecasts: Sequence[Forecast]) -> list[Notice]:

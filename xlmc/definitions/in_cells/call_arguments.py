@@ -45,6 +45,9 @@ def number_of(tree: ir.Expression | None, value: Callable[[Cell], float | None] 
         case ir.Call("INT", (argument,)):
             inner = number_of(argument, value)
             return None if inner is None else float(inner // 1)
+        case ir.Call("IF", (ir.Binary("<=", left, right), then, otherwise)):
+            a, b = number_of(left, value), number_of(right, value)
+            return None if a is None or b is None else number_of(then if a <= b else otherwise, value)
         case ir.Binary(operator, left, right) if operator in _ARITHMETIC:
             a, b = number_of(left, value), number_of(right, value)
             if a is None or b is None or (operator == "/" and b == 0):

@@ -149,11 +149,7 @@ NOT_COMPUTED: Final = (
 )
 """Functions that show results, and that xlmc does not compute."""
 
-_OTHER_DRAWS: Final = (
-    "BetaSubj Burr12 Cauchy Compound CumulD Dagum DoubleTriang Erf F FatigueLife Frechet HypSecant InvGauss "
-    "JohnsonMoments JohnsonSB JohnsonSL JohnsonSU Kumaraswamy Laplace Levy Library LogLogistic MakeInput Pareto2 "
-    "Pearson5 Pearson6 Reciprocal Resample Simtable Splice Vary"
-)
+_OTHER_DRAWS: Final = "Compound Library MakeInput Resample Simtable Splice Vary"
 """@RISK's functions that draw, or stand for a value as a draw does, and that xlmc does not know."""
 
 _BY_NAME: Final = {name.upper(): (name, *row) for name, row in RESULTS.items()}

@@ -41,6 +41,8 @@ _Points = dict[float, ir.Expression]
 
 _LOC: Final = {"loc": "location"}
 
+_TWO_SHAPES: Final = {"gamma": "location", "beta": "scale", "alpha1": "shape_1", "alpha2": "shape_2"}
+
 _LIMITS: Final = {"min": "low", "m. likely": "likeliest", "max": "high"}
 
 
@@ -50,6 +52,24 @@ def _rayleigh_scale(given: Arguments) -> ir.Expression:
 
 def _half_freedom(given: Arguments) -> ir.Expression:
     return quotient(given["freedom"], ir.Number(2.0))
+
+
+def _erf_deviation(given: Arguments) -> ir.Expression:
+    return quotient(math.sqrt(0.5), given["h"])
+
+
+def _percent_of(name: str) -> Callable[[Arguments], ir.Expression]:
+    """A percentage of RiskTrigen; where the upper one is at most 1, both are shares, as XLRisk takes them."""
+
+    def percent(given: Arguments) -> ir.Expression:
+        asked, top = given[name], number_of(given["top share"])
+        known = number_of(asked)
+        share = ir.Binary("*", ir.Number(100.0), asked) if known is None else ir.Number(100 * known)
+        if top is not None:
+            return share if top <= 1 else asked
+        return ir.Call("IF", (ir.Binary("<=", given["top share"], ir.Number(1.0)), share, asked))
+
+    return percent
 
 
 RISK: Final = {
@@ -64,7 +84,12 @@ RISK: Final = {
     "RiskHistogrm": Signature("Histogrm", ("low", "high", "p")),
     "RiskCumul": Signature("Cumul", ("low", "high", "x", "p")),
     "RiskGeneral": Signature("General", ("low", "high", "x", "p")),
-    "RiskTrigen": Signature("Trigen", ("bottom", "likeliest", "top", "bottom_percent", "top_percent")),
+    "RiskCumulD": Signature("CumulD", ("low", "high", "x", "p")),
+    "RiskTrigen": Signature(
+        "Trigen",
+        ("bottom", "likeliest", "top", "bottom share", "top share"),
+        computed={"bottom_percent": _percent_of("bottom share"), "top_percent": _percent_of("top share")},
+    ),
     "RiskBeta": Signature("Beta", ("alpha", "beta"), {"low": 0.0, "high": 1.0}),
     "RiskBetaGeneral": Signature("Beta", ("alpha", "beta", "low", "high")),
     "RiskGamma": Signature("Gamma", ("shape", "scale"), _LOCATED),
@@ -85,6 +110,28 @@ RISK: Final = {
     "RiskIntUniform": Signature("Discrete Uniform", ("low", "high")),
     "RiskExtvalue": Signature("Maximum Extreme", ("likeliest", "scale")),
     "RiskExtvalueMin": Signature("Minimum Extreme", ("likeliest", "scale")),
+    "RiskBetaSubj": Signature("BetaSubj", ("low", "likeliest", "mean", "high")),
+    "RiskBurr12": Signature("Burr12", ("location", "scale", "shape_1", "shape_2")),
+    "RiskCauchy": Signature("Cauchy", ("location", "scale")),
+    "RiskDagum": Signature("Dagum", ("location", "scale", "shape_1", "shape_2")),
+    "RiskDoubleTriang": Signature("DoubleTriang", ("low", "likeliest", "high", "lower_share")),
+    "RiskErf": Signature("Normal", ("h",), {"mean": 0.0}, {"std_dev": _erf_deviation}),
+    "RiskF": Signature("F", ("degrees_1", "degrees_2")),
+    "RiskFatigueLife": Signature("Fatigue life", ("location", "scale", "shape")),
+    "RiskFrechet": Signature("Frechet", ("location", "scale", "shape")),
+    "RiskHypSecant": Signature("Hyperbolic secant", ("mean", "std_dev")),
+    "RiskInvGauss": Signature("Inverse Gaussian", ("mean", "shape"), _LOCATED),
+    "RiskJohnsonMoments": Signature("Johnson moments", ("mean", "std_dev", "skewness", "kurtosis")),
+    "RiskJohnsonSB": Signature("Johnson SB", ("shape_1", "shape_2", "low", "high")),
+    "RiskJohnsonSU": Signature("Johnson SU", ("shape_1", "shape_2", "location", "scale")),
+    "RiskKumaraswamy": Signature("Kumaraswamy", ("shape_1", "shape_2", "low", "high")),
+    "RiskLaplace": Signature("Laplace", ("mean", "std_dev")),
+    "RiskLevy": Signature("Levy", ("location", "scale")),
+    "RiskLogLogistic": Signature("Log-logistic", ("location", "scale", "shape")),
+    "RiskPareto2": Signature("Pareto2", ("scale", "shape"), _LOCATED),
+    "RiskPearson5": Signature("Pearson5", ("shape", "scale"), _LOCATED),
+    "RiskPearson6": Signature("Pearson6", ("shape_1", "shape_2", "scale"), _LOCATED),
+    "RiskReciprocal": Signature("Reciprocal", ("low", "high")),
 }
 """Function -> what its arguments are."""
 
@@ -117,13 +164,14 @@ def risk_draw(call: ir.Call, lognorm: str) -> Drawn | None:
 class _Alternate:
     """A family with @RISK's names of its parameters, and those that @RISK's does not have.
 
-    `rate` names a parameter that is one over ours; `mean_above` says that the mean is counted from the location.
+    `converted` are the keys of our parameters whose number follows from @RISK's; `mean_above` says that the mean is
+    counted from the location.
     """
 
     family: str
     names: Mapping[str, str]
     fixed: Mapping[str, float] = field(default_factory=dict)
-    inverted: str = ""
+    converted: Mapping[str, Callable[[ir.Expression], ir.Expression]] = field(default_factory=dict)
     mean_above: bool = False
 
 
@@ -134,7 +182,7 @@ ALTERNATES: Final = {
     "RiskPert": _Alternate("BetaPERT", _LIMITS),
     "RiskLognorm": _Alternate("Lognormal", {"mu": "mean", "sigma": "std_dev", **_LOC}, mean_above=True),
     "RiskLognorm2": _Alternate("Lognorm2", {"mu": "mu", "sigma": "sigma", **_LOC}),
-    "RiskExpon": _Alternate("Exponential", {"beta": "rate"}, inverted="rate"),
+    "RiskExpon": _Alternate("Exponential", {"beta": "rate"}, converted={"rate": lambda mean: quotient(1.0, mean)}),
     "RiskGamma": _Alternate("Gamma", {"alpha": "shape", "beta": "scale", **_LOC}),
     "RiskWeibull": _Alternate("Weibull", {"alpha": "shape", "beta": "scale", **_LOC}),
     "RiskLogistic": _Alternate("Logistic", {"alpha": "mean", "beta": "scale"}),
@@ -143,6 +191,37 @@ ALTERNATES: Final = {
     "RiskExtvalueMin": _Alternate("Minimum Extreme", {"a": "likeliest", "b": "scale"}),
     "RiskBetaGeneral": _Alternate("Beta", {"alpha1": "alpha", "alpha2": "beta", "min": "low", "max": "high"}),
     "RiskStudent": _Alternate("Student's t", {"nu": "degrees"}, {"midpoint": 0.0, "scale": 1.0}),
+    "RiskBurr12": _Alternate("Burr12", _TWO_SHAPES),
+    "RiskCauchy": _Alternate("Cauchy", {"gamma": "location", "beta": "scale"}),
+    "RiskChiSq": _Alternate(
+        "Gamma",
+        {"nu": "shape", **_LOC},
+        {"scale": 2.0},
+        converted={"shape": lambda freedom: quotient(freedom, ir.Number(2.0))},
+    ),
+    "RiskDagum": _Alternate("Dagum", _TWO_SHAPES),
+    "RiskErf": _Alternate(
+        "Normal", {"h": "std_dev"}, {"mean": 0.0}, converted={"std_dev": lambda h: quotient(math.sqrt(0.5), h)}
+    ),
+    "RiskFatigueLife": _Alternate("Fatigue life", {"y": "location", "beta": "scale", "alpha": "shape"}),
+    "RiskFrechet": _Alternate("Frechet", {"gamma": "location", "beta": "scale", "alpha": "shape"}),
+    "RiskHypSecant": _Alternate("Hyperbolic secant", {"gamma": "mean", "beta": "std_dev"}),
+    "RiskInvGauss": _Alternate("Inverse Gaussian", {"mu": "mean", "lambda": "shape", **_LOC}, mean_above=True),
+    "RiskKumaraswamy": _Alternate(
+        "Kumaraswamy", {"alpha1": "shape_1", "alpha2": "shape_2", "min": "low", "max": "high"}
+    ),
+    "RiskLaplace": _Alternate("Laplace", {"mu": "mean", "sigma": "std_dev"}),
+    "RiskLevy": _Alternate("Levy", {"a": "location", "c": "scale"}),
+    "RiskLogLogistic": _Alternate("Log-logistic", {"gamma": "location", "beta": "scale", "alpha": "shape"}),
+    "RiskPareto2": _Alternate("Pareto2", {"b": "scale", "q": "shape", **_LOC}),
+    "RiskPearson5": _Alternate("Pearson5", {"alpha": "shape", "beta": "scale", **_LOC}),
+    "RiskPearson6": _Alternate("Pearson6", {"alpha1": "shape_1", "alpha2": "shape_2", "beta": "scale", **_LOC}),
+    "RiskRayleigh": _Alternate(
+        "Weibull",
+        {"b": "scale", **_LOC},
+        {"shape": 2.0},
+        converted={"scale": lambda b: ir.Binary("*", b, ir.Number(math.sqrt(2)))},
+    ),
 }
 """Function without `Alt` -> its alternate form."""
 
@@ -206,7 +285,7 @@ def _pairs(
                     hint=f"use {', '.join(map(repr, alternate.names))}, or a percentile such as 5%",
                 )
             taken, named = key in given, key
-            given[key] = quotient(1.0, value) if key == alternate.inverted else value
+            given[key] = alternate.converted[key](value) if key in alternate.converted else value
         else:
             share = _share(function, what, descending)
             taken, named = share in points, f"{100 * share:g} %"

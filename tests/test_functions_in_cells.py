@@ -196,6 +196,28 @@ SHAPES = {
     "RiskExtvalueMin(5,2)": stats.gumbel_l(5, 2),
     "RiskStudent(4)": stats.t(4),
     "RiskBetaGeneral(2,3,1,10)": stats.beta(2, 3, 1, 9),
+    "RiskBetaSubj(0,2,3,10)": stats.beta(1.8, 4.2, 0, 10),
+    "RiskBurr12(1,2,3,1.5)": stats.burr12(3, 1.5, 1, 2),
+    "RiskCauchy(10,2)": stats.cauchy(10, 2),
+    "RiskDagum(1,2,3,1.5)": stats.burr(3, 1.5, 1, 2),
+    "RiskErf(2)": stats.norm(0, 0.25 * math.sqrt(2)),
+    "RiskF(3,10)": stats.f(3, 10),
+    "RiskFatigueLife(1,2,0.5)": stats.fatiguelife(0.5, 1, 2),
+    "RiskFrechet(1,2,3)": stats.invweibull(3, 1, 2),
+    "RiskHypSecant(10,2)": stats.hypsecant(10, 4 / math.pi),
+    "RiskInvGauss(3,5)": stats.invgauss(0.6, 0, 5),
+    "RiskJohnsonMoments(10,2,0,3)": stats.norm(10, 2),
+    "RiskJohnsonSB(1,2,10,20)": stats.johnsonsb(1, 2, 10, 10),
+    "RiskJohnsonSU(-1,2,10,3)": stats.johnsonsu(-1, 2, 10, 3),
+    "RiskLaplace(10,2)": stats.laplace(10, math.sqrt(2)),
+    "RiskLevy(1,2)": stats.levy(1, 2),
+    "RiskLogLogistic(1,2,3)": stats.fisk(3, 1, 2),
+    "RiskPareto2(2,3)": stats.lomax(3, 0, 2),
+    "RiskPearson5(3,2)": stats.invgamma(3, 0, 2),
+    "RiskPearson6(3,4,2)": stats.betaprime(3, 4, 0, 2),
+    "RiskReciprocal(1,100)": stats.loguniform(1, 100),
+    "RiskFrechet(1,2,3,RiskShift(5))": stats.invweibull(3, 6, 2),
+    "RiskLaplace(10,2,RiskTruncate2(15,),RiskShift(5))": stats.expon(15, math.sqrt(2)),
     "CB.Beta(2,3,10)": stats.beta(2, 3, 0, 10),
     "CB.Gamma(1,2,3)": stats.gamma(3, 1, 2),
     "CB.Weibull(1,2,3)": stats.weibull_min(3, 1, 2),
@@ -341,6 +363,20 @@ def test_beside_tables(tmp_path):
     assert abs(run.acceptance.value - 0.5) < 5 * 0.5 / math.sqrt(TRIALS)
     deviation = math.sqrt(25 / 12 + 1 + 1 / 12)
     assert abs(run["answer"].mean.value - 13) < 5 * deviation / math.sqrt(run.accepted)
+
+
+def test_what_has_no_mean_says_so(model):
+    """And with cutoffs at both ends it has one."""
+    cells = {
+        "A1": "=RiskCauchy(0,1)",
+        "A2": "=RiskCauchy(0,1,RiskTruncate(-5,5))",
+        "A3": "=RiskLevy(0,1,RiskTruncate(1,))",
+        "A4": "=RiskPareto(1.5,1)",
+        "A5": "=SUM(A1:A4)+RiskOutput()",
+    }
+    told = [notice for notice in model(cells).notices if "has no finite mean" in notice.message]
+    assert [str(notice.where) for notice in told] == ["S!A1", "S!A3"]
+    assert "'S!A1#1' (Cauchy) has no finite mean" in told[0].message
 
 
 def test_draws_that_nothing_needs_are_told_of_together(model):

@@ -32,7 +32,7 @@ class Cumul(Between):
     bend = 1.0
     formula = "P(X ≤ x) in straight lines from (Low, 0) through the points of Data to (High, 1)"
     source = "@RISK's manual, Cumul"
-    elsewhere = ("@RISK Cumul(min, max, {x}, {p})", "Crystal Ball Custom by cumulative weights")
+    elsewhere: tuple[str, ...] = ("@RISK Cumul(min, max, {x}, {p})", "Crystal Ball Custom by cumulative weights")
 
     def _heights(self, data: Array) -> Array:
         probabilities = data_column(data, 1, "cumulative probability")

@@ -60,7 +60,7 @@ class DoubleTriang(Family):
 
     def _variance(self, low: Values, likeliest: Values, high: Values, share: Values) -> Values:
         below, above, rest = np.subtract(likeliest, low), np.subtract(high, likeliest), np.subtract(1, share)
-        return (share * below**2 + rest * above**2) / 6 - ((rest * above - share * below) / 3) ** 2
+        return np.asarray((share * below**2 + rest * above**2) / 6 - ((rest * above - share * below) / 3) ** 2)
 
     def _support(self, low: Values, likeliest: Values, high: Values, share: Values) -> tuple[Values, Values]:
         nothing = 0 * np.add(likeliest, share)

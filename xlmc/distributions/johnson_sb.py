@@ -80,7 +80,7 @@ def share_moments(first: Values, second: Values, orders: int = 2) -> list[Values
     """
     first, second = np.broadcast_arrays(np.asarray(first, dtype=float), np.asarray(second, dtype=float))
     rows = np.stack([first.ravel(), second.ravel()], axis=1)
-    parts = [_moments_of(*rows[i : i + _ROWS].T, orders) for i in range(0, len(rows), _ROWS)]
+    parts = [_moments_of(rows[i : i + _ROWS, 0], rows[i : i + _ROWS, 1], orders) for i in range(0, len(rows), _ROWS)]
     return [np.concatenate([part[k] for part in parts]).reshape(first.shape) for k in range(orders)]
 
 

@@ -47,7 +47,7 @@ class JohnsonSU(Family):
         inverse = np.divide(1.0, second)
         square = inverse**2
         spread = np.expm1(square) * (np.exp(square) * np.cosh(2 * first * inverse) + 1) / 2
-        return np.square(scale) * spread + 0 * location
+        return np.asarray(np.square(scale) * spread + 0 * location)
 
     def _support(self, location: Values, scale: Values, first: Values, second: Values) -> tuple[Values, Values]:
         return ends(-np.inf, np.inf, location, scale, first, second)

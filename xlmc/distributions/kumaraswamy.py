@@ -54,7 +54,7 @@ class Kumaraswamy(Family):
     def _variance(self, low: Values, high: Values, first: Values, second: Values) -> Values:
         once = _log_moment(1, first, second)
         spread = np.exp(2 * once) * np.expm1(_log_moment(2, first, second) - 2 * once)
-        return np.square(np.subtract(high, low)) * spread
+        return np.asarray(np.square(np.subtract(high, low)) * spread)
 
     def _support(self, low: Values, high: Values, first: Values, second: Values) -> tuple[Values, Values]:
         nothing = 0 * np.add(first, second)

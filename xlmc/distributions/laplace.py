@@ -32,12 +32,12 @@ class Laplace(Family):
 
     def _ppf(self, u: Array, mean: Values, std_dev: Values) -> Array:
         distance = np.log(2 * np.minimum(u, 1 - u)) * np.divide(std_dev, np.sqrt(2))
-        return mean + np.where(u < 0.5, distance, -distance)
+        return np.asarray(mean + np.where(u < 0.5, distance, -distance))
 
     def _cdf(self, x: Values, mean: Values, std_dev: Values) -> Values:
         z = np.divide(x - mean, std_dev) * np.sqrt(2)
         tail = np.exp(-np.abs(z)) / 2
-        return np.where(z < 0, tail, 1 - tail)
+        return np.asarray(np.where(z < 0, tail, 1 - tail))
 
     def _mean(self, mean: Values, std_dev: Values) -> Values:
         return mean + 0 * std_dev

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from xlmc.distributions.base import Array, Family, Values, ends
-from xlmc.distributions.parameters import LOCATION, SCALE, Constraint, ParameterSpec, above_zero
+from xlmc.distributions.parameters import LOCATION, SCALE, Constraint, ParameterSpec, Role, above_zero
 
 __all__ = ["SHAPE_1", "SHAPE_2", "Located", "when_above"]
 
@@ -27,8 +27,8 @@ class Located(Family):
         lowest: the lowest possible value of the standard form.
     """
 
-    parameters = (LOCATION, SCALE)
-    roles = ("location", "scale")
+    parameters: tuple[ParameterSpec, ...] = (LOCATION, SCALE)
+    roles: tuple[Role, ...] = ("location", "scale")
     rules: tuple[Constraint, ...] = (above_zero(parameters, "scale"),)
     lowest = 0.0
 

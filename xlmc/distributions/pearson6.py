@@ -52,7 +52,7 @@ class Pearson6(Located):
         small = z < 1
         share = np.where(small, z / (1 + z), 1 / (1 + z))
         below = betainc(np.where(small, first, second), np.where(small, second, first), share)
-        return np.where(small, below, 1 - below)
+        return np.asarray(np.where(small, below, 1 - below))
 
     def _above(self, z: Array, first: Values, second: Values) -> Values:
         return self._below(1 / z, second, first)

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.address import Cell
 from xlmc.definitions.definitions import Assumption, Definitions, Forecast, name_key
+from xlmc.distributions.base import Member
 from xlmc.errors import Notice, SimulationError
 from xlmc.evaluation.engine import Evaluator, Program, Target
 from xlmc.evaluation.engines import ENGINES
@@ -451,7 +452,7 @@ def _heavy_notices(unbounded: Sequence[Assumption], draws: Mapping[str, Draw]) -
     found = []
     for assumption in unbounded:
         draw = draws[assumption.name]
-        if draw.fixed and not np.isfinite(draw.family.mean(*draw.parameters)):
+        if draw.fixed and not np.isfinite(Member(draw.family, draw.parameters).mean()):
             message = (
                 f"{assumption.name!r} ({assumption.distribution}) has no finite mean: means and standard deviations of "
                 "what depends on it need not settle, however many trials there are; report medians and percentiles, or "

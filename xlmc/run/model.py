@@ -204,7 +204,7 @@ class Model:
             *tie_notices(self.groups, rows, self._correlated),
             *repair_notices(self.groups, rows, self.needed.live),
             *_still_notices(self.needed, self._moving(), self.forecasts),
-            *_heavy_notices([a for a in self.live if name_key(a.name) not in self._ends], self.draws),
+            *_heavy_notices(self.live, self.draws),
             *_example_notices(self._sources()),
         )
 
@@ -447,12 +447,14 @@ def _example_notices(sources: Iterable[tuple[str, Cell, str]]) -> list[Notice]:
     return [Notice(message[0].upper() + message[1:], found[0][1])]
 
 
-def _heavy_notices(unbounded: Sequence[Assumption], draws: Mapping[str, Draw]) -> list[Notice]:
+def _heavy_notices(live: Sequence[Assumption], draws: Mapping[str, Draw]) -> list[Notice]:
     """The assumptions whose mean is infinite or does not exist, as far as their parameters are numbers."""
     found = []
-    for assumption in unbounded:
+    for assumption in live:
         draw = draws[assumption.name]
-        if draw.fixed and not np.isfinite(Member(draw.family, draw.parameters).mean()):
+        if not draw.fixed or (draw.cutoffs is not None and np.isfinite(draw.cutoffs).all()):  # type: ignore[arg-type]
+            continue  # each trial has a mean of its own, or the cutoffs see to it that there is one
+        if not np.isfinite(Member(draw.family, draw.parameters).mean()):
             message = (
                 f"{assumption.name!r} ({assumption.distribution}) has no finite mean: means and standard deviations of "
                 "what depends on it need not settle, however many trials there are; report medians and percentiles, or "
